@@ -1,0 +1,63 @@
+"""What plantar says when it cannot go on.
+
+Every error that a user can cause is a `PlantarError`: one line that names the file, the column, the time and
+the value, and says what would be valid. The command line prints that line and exits with 1.
+"""
+
+from __future__ import annotations
+
+import os
+
+
+class PlantarError(Exception):
+    """A problem with the input that the user can mend; the message is one line."""
+
+
+class RobotError(PlantarError):
+    """The robot file or its URDF is wrong."""
+
+
+class LogError(PlantarError):
+    """A log cannot be read or does not hold what is needed."""
+
+
+class DataError(PlantarError):
+    """The logs are readable, but what is asked cannot be computed from them."""
+
+
+class MotionError(PlantarError):
+    """A planned motion cannot be played: out of reach, out of limits or out of balance."""
+
+
+class ExportError(PlantarError):
+    """A result cannot be written to the target asked for."""
+
+
+class MissingExtra(PlantarError):
+    """An optional dependency is not installed."""
+
+    def __init__(self, package: str, extra: str, purpose: str) -> None:
+        super().__init__(f"{purpose} needs the package '{package}': pip install 'plantar[{extra}]'")
+
+
+def located(
+    message: str,
+    *,
+    path: str | os.PathLike[str] | None = None,
+    column: str | None = None,
+    time: float | None = None,
+    value: object | None = None,
+    valid: str | None = None,
+) -> str:
+    """One line in a fixed order: file, column, time, value, message, what would be valid."""
+    where = [str(path)] if path is not None else []
+    if column is not None:
+        where.append(f"column '{column}'")
+    if time is not None:
+        where.append(f"t = {time:.6g} s")
+    if value is not None:
+        where.append(f"value {value!r}" if isinstance(value, str) else f"value {value}")
+    line = ": ".join([", ".join(where), message] if where else [message])
+    if valid is not None:
+        line += f" (valid: {valid})"
+    return " ".join(line.split())

@@ -1,0 +1,61 @@
+"""Files on disk: whole or not at all when written, bounded and hashed when read."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import IO
+
+from plantar.errors import PlantarError, located
+
+
+@contextmanager
+def atomic_write(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
+    """A binary handle whose content appears under `path` only when the block ends without an error."""
+    target = Path(path)
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        descriptor, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.", suffix=".part")
+    except OSError as error:
+        raise PlantarError(located(f"cannot be written: {error.strerror}", path=target)) from error
+    temporary = Path(name)
+    try:
+        with os.fdopen(descriptor, "wb") as handle:
+            yield handle
+            handle.flush()
+            os.fsync(handle.fileno())
+        umask = os.umask(0)
+        os.umask(umask)
+        temporary.chmod(0o666 & ~umask)
+        temporary.replace(target)
+    except BaseException:
+        temporary.unlink(missing_ok=True)
+        raise
+
+
+def write_text(path: str | os.PathLike[str], text: str) -> None:
+    """Write UTF-8 text, whole or not at all."""
+    with atomic_write(path) as handle:
+        handle.write(text.encode())
+
+
+def sha256(path: str | os.PathLike[str]) -> str:
+    """The file's SHA-256 as lower-case hex."""
+    with open(path, "rb") as handle:
+        return hashlib.file_digest(handle, "sha256").hexdigest()
+
+
+def read_bounded(path: str | os.PathLike[str], limit: int, error: type[PlantarError] = PlantarError) -> bytes:
+    """The file's bytes, or `error` when it is missing, unreadable or longer than `limit` bytes."""
+    try:
+        with open(path, "rb") as handle:
+            content = handle.read(limit + 1)
+    except OSError as problem:
+        raise error(located(f"cannot be read: {problem.strerror}", path=path)) from problem
+    if len(content) > limit:
+        raise error(located(f"is larger than {limit} bytes", path=path, valid="a smaller file"))
+    return content
