@@ -1,0 +1,146 @@
+"""The robot file's grammar: what may stand in the YAML, and one line for what may not."""
+
+from __future__ import annotations
+
+import difflib
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import yaml
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
+
+from plantar.errors import RobotError, located
+from plantar.files import read_bounded
+
+FILE_LIMIT = 2**20  # bytes
+DEPTH_LIMIT = 20  # levels of nesting: a robot file needs five
+
+Number = Annotated[float, Field(allow_inf_nan=False)]
+Vector = tuple[Number, Number, Number]
+Name = Annotated[str, Field(min_length=1, max_length=200)]
+Term = Literal["viscous", "coulomb", "offset", "stiffness", "inertia"]
+
+
+class Entry(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class FrameEntry(Entry):
+    link: Name | None = None
+    xyz: Vector = (0.0, 0.0, 0.0)
+    rpy: Vector = (0.0, 0.0, 0.0)
+
+
+class ImuEntry(FrameEntry):
+    name: Name
+    link: Name
+
+
+class WrenchEntry(FrameEntry):
+    name: Name
+    sign: Literal[1, -1] = 1
+
+
+class SoleEntry(FrameEntry):
+    polygon: Annotated[list[tuple[Number, Number]], Field(min_length=3, max_length=100)]
+
+    @field_validator("polygon")
+    @classmethod
+    def _has_area(cls, polygon: list[tuple[float, float]]) -> list[tuple[float, float]]:
+        following = polygon[1:] + polygon[:1]
+        area = sum(x * v - u * y for (x, y), (u, v) in zip(polygon, following, strict=True)) / 2
+        if abs(area) < 1e-6:
+            raise ValueError(f"the polygon's area is {abs(area):.3g} m²; corners go round the sole in order")
+        return polygon
+
+
+class FootEntry(Entry):
+    ankle: Name
+    bush: FrameEntry
+    wrench: WrenchEntry
+    sole: SoleEntry
+    contact: Literal["auto", "always"] = "auto"
+
+
+class JointEntry(Entry):
+    terms: list[Term] | None = None
+    passive: bool = False
+
+
+class RobotEntry(Entry):
+    """The whole file."""
+
+    name: Name
+    urdf: Name
+    base: Literal["floating", "fixed"] = "floating"
+    imu: ImuEntry | None = None
+    feet: Annotated[dict[Name, FootEntry], Field(max_length=8)] = {}
+    joints: dict[Name, JointEntry] = {}
+    topics: dict[Name, str] = {}
+    columns: dict[Name, Any] = {}
+
+    @model_validator(mode="after")
+    def _sensor_names_differ(self) -> RobotEntry:
+        names = [foot.wrench.name for foot in self.feet.values()]
+        if len(set(names)) < len(names):
+            raise ValueError(f"feet share one wrench sensor: {', '.join(names)}")
+        return self
+
+
+def read_robot_file(path: Path) -> RobotEntry:
+    """Parse and check a robot file; RobotError says in one line which key is wrong and what would be valid."""
+    content = read_bounded(path, FILE_LIMIT, RobotError)
+    try:
+        _refuse_bombs(content, path)
+        data = yaml.safe_load(content)
+    except (yaml.YAMLError, UnicodeDecodeError, ValueError) as error:
+        reason = " ".join(str(getattr(error, "problem", None) or error).split())
+        mark = getattr(error, "problem_mark", None)
+        line = f" at line {mark.line + 1}" if mark is not None else ""
+        raise RobotError(located(f"is not readable YAML{line}: {reason}", path=path)) from error
+    if not isinstance(data, dict):
+        raise RobotError(located("holds no keys", path=path, valid="name, urdf, imu, feet"))
+    try:
+        return RobotEntry.model_validate(data)
+    except ValidationError as error:
+        raise RobotError(_explain(error, path)) from error
+
+
+def _refuse_bombs(content: bytes, path: Path) -> None:
+    """No aliases (they can multiply without bound) and no deep nesting, found before anything is built."""
+    depth = 0
+    for event in yaml.parse(content, Loader=yaml.SafeLoader):
+        if isinstance(event, yaml.AliasEvent):
+            raise RobotError(located("uses a YAML alias", path=path, valid="values written out"))
+        depth += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
+        if depth > DEPTH_LIMIT:
+            raise RobotError(located("is nested too deeply", path=path, valid=f"{DEPTH_LIMIT} levels"))
+
+
+def _explain(error: ValidationError, path: Path) -> str:
+    """The first problem as one line, an unknown key with the nearest known one."""
+    problems = error.errors()
+    first = next((p for p in problems if p["type"] == "extra_forbidden"), problems[0])
+    key = ".".join(str(part) for part in first["loc"])
+    if first["type"] == "extra_forbidden":
+        known = _known_keys(first["loc"])
+        near = difflib.get_close_matches(str(first["loc"][-1]), known, n=1) or known
+        return located(f"unknown key '{key}'", path=path, valid=", ".join(near))
+    if first["type"] == "missing":
+        return located(f"key '{key}' is missing", path=path)
+    message = first["msg"].removeprefix("Value error, ")
+    value = first["input"] if isinstance(first["input"], str | int | float) else None
+    return located(f"{key or 'the file'}: {message}", path=path, value=value)
+
+
+def _known_keys(location: tuple[int | str, ...]) -> list[str]:
+    """The keys valid beside the one at `location`."""
+    entries: dict[str, type[BaseModel]] = {
+        "imu": ImuEntry, "bush": FrameEntry, "wrench": WrenchEntry, "sole": SoleEntry,
+    }  # fmt: skip
+    if len(location) == 1:
+        return list(RobotEntry.model_fields)
+    parent = str(location[-2])
+    if parent in entries:
+        return list(entries[parent].model_fields)
+    return list((FootEntry if location[0] == "feet" else JointEntry).model_fields)
