@@ -1,0 +1,127 @@
+"""Which foot stands, when, and which samples may serve: every one left out carries its reason."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from plantar.conventions import Array, Mask
+from plantar.signals import runs
+
+LANDING_SHARE = 0.10  # of the weight: a foot that carries more stands
+LIFTING_SHARE = 0.05  # of the weight: a foot that carries less is in the air; between the two it keeps its state
+SETTLING_TIME = 0.25  # s around landing and lifting, left out: the sole is not flat yet
+SHORTEST_STANCE = 0.5  # s: shorter contacts are steps or impacts, not stances
+
+DOUBLE, SINGLE, AIR, TRANSITION = "double", "single", "air", "transition"
+SUPPORTS = (DOUBLE, SINGLE, AIR, TRANSITION)
+
+
+@dataclass(frozen=True)
+class Phase:
+    """A stretch of one foot's log in one state: `used` says whether it served, `reason` why not."""
+
+    motion: str
+    foot: str
+    start: float
+    end: float
+    support: str
+    used: bool
+    reason: str | None
+
+    def to_dict(self) -> dict[str, object]:
+        return {**vars(self), "start": round(self.start, 6), "end": round(self.end, 6)}
+
+
+@dataclass
+class FootContact:
+    """One foot through one log: its `support` at each sample (index into SUPPORTS) and why a sample is left out.
+
+    `reasons[code[i]]` is the reason of sample i; code 0 means that it serves.
+    """
+
+    support: np.ndarray[tuple[int], np.dtype[np.int8]]
+    code: np.ndarray[tuple[int], np.dtype[np.int8]]
+    reasons: list[str | None]
+
+    @property
+    def used(self) -> Mask:
+        return np.asarray(self.code == 0)
+
+    @property
+    def standing(self) -> Mask:
+        """Samples in double or single support."""
+        return np.asarray(self.support < SUPPORTS.index(AIR))
+
+    def leave_out(self, samples: Mask, reason: str) -> None:
+        """Mark samples as not serving; those that already have a reason keep it."""
+        if reason not in self.reasons:
+            self.reasons.append(reason)
+        self.code[samples & (self.code == 0)] = self.reasons.index(reason)
+
+    def phases(self, motion: str, foot: str, time: Array) -> list[Phase]:
+        """The log as stretches of one support and one reason."""
+        change = (np.diff(self.support) != 0) | (np.diff(self.code) != 0)
+        starts = np.concatenate([[0], np.flatnonzero(change) + 1])
+        ends = np.concatenate([starts[1:], [len(time) - 1]])
+        found = []
+        for start, end in zip(starts, ends, strict=True):
+            reason = self.reasons[self.code[start]]
+            support = SUPPORTS[self.support[start]]
+            found.append(Phase(motion, foot, float(time[start]), float(time[end]), support, reason is None, reason))
+        return found
+
+
+def detect_contact(
+    force: Mapping[str, Array], always: Mapping[str, bool], weight: float, period: float
+) -> dict[str, FootContact]:
+    """Contact of each foot from its vertical force [N], (N,) each, evenly sampled every `period` [s].
+
+    `always` names feet that stand throughout whatever their force says; `weight` [N] is the robot's.
+    """
+    stands = {
+        foot: np.ones(len(values), dtype=bool) if always[foot] else _standing(values, weight, period)
+        for foot, values in force.items()
+    }
+    count = np.sum(list(stands.values()), axis=0)
+    contacts = {}
+    for foot, standing in stands.items():
+        support = np.full(len(standing), SUPPORTS.index(AIR), dtype=np.int8)
+        support[standing & (count > 1)] = SUPPORTS.index(DOUBLE)
+        support[standing & (count == 1)] = SUPPORTS.index(SINGLE)
+        settling = _around_changes(standing, round(SETTLING_TIME / period))
+        support[settling & standing] = SUPPORTS.index(TRANSITION)
+        contact = FootContact(support, np.zeros(len(standing), dtype=np.int8), [None])
+        contact.leave_out(~standing, "in the air: no load on this foot")
+        contact.leave_out(settling, f"landing or lifting: within {SETTLING_TIME} s of a change of contact")
+        contacts[foot] = contact
+    return contacts
+
+
+def carried_weight(force: Mapping[str, Array]) -> float:
+    """What the feet carry together, as a rule [N]: the median of the sum of the vertical forces."""
+    total = np.sum(list(force.values()), axis=0)
+    finite = total[np.isfinite(total)]
+    return float(np.median(finite)) if finite.size else 0.0
+
+
+def _standing(force: Array, weight: float, period: float) -> Mask:
+    """Hysteresis on the vertical force; contacts shorter than a stance count as air."""
+    loaded, lifted = force > LANDING_SHARE * weight, ~(force > LIFTING_SHARE * weight)
+    decided = loaded | lifted
+    last = np.maximum.accumulate(np.where(decided, np.arange(len(force)), -1))
+    standing = np.where(last >= 0, loaded[np.maximum(last, 0)], False)
+    for run in runs(standing):
+        if (run.stop - run.start) * period < SHORTEST_STANCE:
+            standing[run] = False
+    return np.asarray(standing)
+
+
+def _around_changes(standing: Mask, reach: int) -> Mask:
+    """Samples within `reach` of a change between standing and not."""
+    near = np.zeros(len(standing), dtype=bool)
+    for change in np.flatnonzero(np.diff(standing)):
+        near[max(0, change + 1 - reach) : change + 1 + reach] = True
+    return near

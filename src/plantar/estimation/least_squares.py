@@ -1,0 +1,114 @@
+"""Linear fits over several recordings (eq. 6 and 7) with an offset each, or one for all."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from plantar.conventions import Array
+from plantar.estimation.intervals import cosine_covariance, pooled_freedom
+from plantar.estimation.triangular import TriangularFactor
+
+
+@dataclass(frozen=True)
+class Block:
+    """One recording's rows: `regressor` (n, k) without the offset's column, `response` (n,), `period` [s]."""
+
+    label: str
+    regressor: Array
+    response: Array
+    period: float
+
+    @property
+    def duration(self) -> float:
+        return len(self.response) * self.period
+
+
+@dataclass(frozen=True)
+class LinearFit:
+    """Parameters common to all recordings, then offsets: one per recording, or a single shared one.
+
+    `values` (k,), `offsets` by recording's label; `covariance` (k + offsets, same) holds with coloured residuals,
+    `white_covariance` assumes white ones (the paper's). `freedom` (k + offsets,) goes with `covariance`.
+    """
+
+    values: Array
+    offsets: dict[str, float]
+    covariance: Array
+    white_covariance: Array
+    freedom: Array
+    residuals: dict[str, Array]
+    rank: int
+    condition_number: float
+    shared_offset: bool
+
+    @property
+    def std(self) -> Array:
+        """Standard deviations of `values`, robust to coloured residuals, (k,)."""
+        return np.asarray(np.sqrt(np.diag(self.covariance))[: len(self.values)])
+
+    @property
+    def white_std(self) -> Array:
+        """Standard deviations of `values` for white residuals, (k,)."""
+        return np.asarray(np.sqrt(np.diag(self.white_covariance))[: len(self.values)])
+
+    def offset_std(self, label: str) -> float:
+        """Standard deviation of a recording's offset."""
+        place = 0 if self.shared_offset else list(self.offsets).index(label)
+        return float(np.sqrt(self.covariance[len(self.values) + place, len(self.values) + place]))
+
+    def predict(self, regressor: Array, offset: float) -> Array:
+        """Response (n,) of `regressor` (n, k) with a given offset."""
+        return np.asarray(regressor @ self.values + offset)
+
+
+def fit_linear(blocks: Sequence[Block], *, shared_offset: bool = False) -> LinearFit:
+    """Least squares of response = regressor · values + offset over all blocks.
+
+    With `shared_offset` one offset serves every recording, as in the paper; otherwise each has its own.
+    """
+    columns = blocks[0].regressor.shape[1]
+    offsets = 1 if shared_offset else len(blocks)
+    designs = [_design(block, 0 if shared_offset else i, offsets) for i, block in enumerate(blocks)]
+    parts = (TriangularFactor.of(x, block.response) for x, block in zip(designs, blocks, strict=True))
+    total = next(parts)
+    for part in parts:
+        total = total + part
+    solution = total.solve()
+    residuals = [block.response - x @ solution for x, block in zip(designs, blocks, strict=True)]
+    inverse = total.information_inverse()
+    covariance, freedom = _robust(designs, residuals, blocks, inverse)
+    variance = total.residual_norm**2 / max(total.rows - total.rank, 1)
+    of_block = [solution[columns + (0 if shared_offset else i)] for i in range(len(blocks))]
+    return LinearFit(
+        values=solution[:columns],
+        offsets={block.label: float(value) for block, value in zip(blocks, of_block, strict=True)},
+        covariance=covariance,
+        white_covariance=variance * inverse,
+        freedom=freedom,
+        residuals={block.label: residual for block, residual in zip(blocks, residuals, strict=True)},
+        rank=total.rank,
+        condition_number=total.condition_number,
+        shared_offset=shared_offset,
+    )
+
+
+def _design(block: Block, place: int, offsets: int) -> Array:
+    ones = np.zeros((len(block.response), offsets))
+    ones[:, place] = 1.0
+    return np.column_stack([block.regressor, ones])
+
+
+def _robust(
+    designs: Sequence[Array], residuals: Sequence[Array], blocks: Sequence[Block], inverse: Array
+) -> tuple[Array, Array]:
+    """Sandwich covariance with the coloured scores of each recording inside, and degrees of freedom."""
+    parts, freedoms = [], []
+    for design, residual, block in zip(designs, residuals, blocks, strict=True):
+        middle, freedom = cosine_covariance(design * residual[:, None], block.duration)
+        parts.append(inverse @ middle @ inverse)
+        freedoms.append(freedom)
+    variances = np.array([np.diag(part) for part in parts])
+    return np.sum(parts, axis=0), pooled_freedom(variances, np.array(freedoms, dtype=float))

@@ -1,0 +1,75 @@
+"""A least-squares problem kept as its triangular factor: rows come and go, only R stays."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import linalg
+
+from plantar.conventions import Array
+
+RANK_TOLERANCE = 1e-10  # of the largest scaled diagonal element of R: below it a direction is not excited
+
+
+@dataclass(frozen=True)
+class TriangularFactor:
+    """The factor R of [regressor response], (k + 1, k + 1), and how many rows it has seen.
+
+    Factors add: `a + b` is the factor of both sets of rows, in any order, so that motions can be summed up one by one
+    (eq. 7) without ever standing in memory together.
+    """
+
+    factor: Array
+    rows: int
+
+    @classmethod
+    def of(cls, regressor: Array, response: Array) -> TriangularFactor:
+        """Factor of `regressor` (n, k) and `response` (n,)."""
+        stacked = np.column_stack([regressor, response])
+        if len(stacked) < stacked.shape[1]:
+            stacked = np.vstack([stacked, np.zeros((stacked.shape[1] - len(stacked), stacked.shape[1]))])
+        return cls(np.linalg.qr(stacked, mode="r"), len(regressor))
+
+    def __add__(self, other: TriangularFactor) -> TriangularFactor:
+        stacked = np.vstack([self.factor, other.factor])
+        return TriangularFactor(np.linalg.qr(stacked, mode="r"), self.rows + other.rows)
+
+    @property
+    def size(self) -> int:
+        """Number of parameters k."""
+        return len(self.factor) - 1
+
+    @property
+    def residual_norm(self) -> float:
+        """Norm of the residual of the least-squares solution."""
+        return float(abs(self.factor[-1, -1]))
+
+    def _scaled(self) -> tuple[Array, Array]:
+        triangle = self.factor[:-1, :-1]
+        scale = np.linalg.norm(triangle, axis=0)
+        return triangle / np.where(scale > 0, scale, 1.0), np.where(scale > 0, scale, 1.0)
+
+    @property
+    def condition_number(self) -> float:
+        """Condition of the regressor with its columns scaled to one length; inf where it is singular."""
+        values = linalg.svdvals(self._scaled()[0])
+        return float(values[0] / values[-1]) if values.size and values[-1] > 0 else float("inf")
+
+    @property
+    def rank(self) -> int:
+        """How many directions of the parameters the rows excite."""
+        values = linalg.svdvals(self._scaled()[0])
+        return int(np.sum(values > RANK_TOLERANCE * max(values[0], 1e-300))) if values.size else 0
+
+    def solve(self) -> Array:
+        """The least-squares parameters (k,); of minimum norm in scaled columns where the rank is short."""
+        triangle, scale = self._scaled()
+        solution = linalg.lstsq(triangle, self.factor[:-1, -1], cond=RANK_TOLERANCE)[0]
+        return np.asarray(solution / scale)
+
+    def information_inverse(self) -> Array:
+        """(RᵀR)⁻¹ (k, k): covariance of the parameters for residuals of unit variance; pseudo-inverse where singular."""
+        triangle, scale = self._scaled()
+        inverse = linalg.pinv(triangle, rtol=RANK_TOLERANCE) / scale[:, None]
+        return np.asarray(inverse @ inverse.T)

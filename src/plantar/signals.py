@@ -1,0 +1,116 @@
+"""Signals on one time base: runs without gaps, zero-phase filtering, differentiation, resampling, delay."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import signal
+
+from plantar.conventions import Array, Mask
+from plantar.log import MotionLog
+from plantar.notes import Note
+
+GAP_PERIODS = 3.5  # a step of time longer than this many periods is a gap
+JITTER_SHARE = 0.25  # of a period: below it, samples count as evenly spaced
+FILTER_ORDER = 4  # Butterworth, run forth and back
+
+
+@dataclass(frozen=True)
+class Sampling:
+    """How evenly a log is sampled: `rate` [Hz], `jitter` (rms of the steps' deviation) [s], gaps as (start, end) [s]."""
+
+    rate: float
+    jitter: float
+    gaps: tuple[tuple[float, float], ...]
+
+
+def sampling(log: MotionLog) -> Sampling:
+    """Rate, jitter and gaps of a log's time column."""
+    step, period = np.diff(log.time), log.period
+    gap = step > GAP_PERIODS * period
+    jitter = float(np.sqrt(np.mean((step[~gap] - period) ** 2)))
+    gaps = tuple((float(log.time[i]), float(log.time[i + 1])) for i in np.flatnonzero(gap))
+    return Sampling(1 / period, jitter, gaps)
+
+
+def evenly_sampled(log: MotionLog) -> MotionLog:
+    """The log on an even grid of its usual period; untouched (the same object) where it already stands on one.
+
+    Values are interpolated linearly, quaternions with their signs aligned; inside a gap they are NaN.
+    """
+    period = log.period
+    steps = np.diff(log.time)
+    if np.all(np.abs(steps - period) < JITTER_SHARE * period):
+        return log
+    count = round(log.duration / period) + 1
+    grid = log.time[0] + period * np.arange(count)
+    columns = {name: interpolate(grid, log.time, values, GAP_PERIODS * period) for name, values in _aligned(log).items()}
+    text = f"{log.name}: sampled unevenly or with gaps; put on an even grid of {1 / period:.4g} Hz, gaps kept as gaps"
+    note = Note("resampled", "info", text)
+    return MotionLog(log.name, grid, columns, log.path, log.sha256, (*log.notes, note))
+
+
+def interpolate(at: Array, time: Array, values: Array, longest: float) -> Array:
+    """Linear interpolation of `values` (N,) at the times `at`; NaN where the samples around are `longest` [s] apart."""
+    finite = np.isfinite(values)
+    if finite.sum() < 2:
+        return np.full(at.shape, np.nan)
+    time, values = time[finite], values[finite]
+    result = np.interp(at, time, values, left=np.nan, right=np.nan)
+    after = np.clip(np.searchsorted(time, at), 1, time.size - 1)
+    exact = (time[after] == at) | (time[after - 1] == at)
+    result[(time[after] - time[after - 1] > longest) & ~exact] = np.nan
+    return result
+
+
+def shifted(values: Array, period: float, delay: float) -> Array:
+    """Evenly sampled `values` (N, k) as they were `delay` [s] later: undoes a sensor that reports late by `delay`."""
+    time = period * np.arange(len(values))
+    flat = values.reshape(len(values), -1)
+    moved = [interpolate(time + delay, time, column, 2 * period) for column in flat.T]
+    return np.column_stack(moved).reshape(values.shape)
+
+
+def runs(valid: Mask) -> list[slice]:
+    """The stretches of consecutive true samples, as slices."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], valid, [False]]).astype(np.int8)))
+    return [slice(int(start), int(stop)) for start, stop in edges.reshape(-1, 2)]
+
+
+def low_pass(values: Array, period: float, cutoff: float) -> Array:
+    """Zero-phase Butterworth low-pass of (N,) or (N, k) at `cutoff` [Hz], each run without NaN by itself.
+
+    A cutoff at or above the Nyquist frequency changes nothing. Runs too short to filter become NaN.
+    """
+    nyquist = 0.5 / period
+    if cutoff >= 0.95 * nyquist:
+        return values.copy()
+    sections = signal.butter(FILTER_ORDER, cutoff / nyquist, output="sos")
+    padding = int(min(3 / cutoff / period, 10_000))
+    flat = values.reshape(len(values), -1)
+    result = np.full_like(flat, np.nan)
+    for run in runs(np.isfinite(flat).all(axis=1)):
+        if run.stop - run.start > 3 * (2 * FILTER_ORDER + 1):
+            pad = min(padding, run.stop - run.start - 1)
+            result[run] = signal.sosfiltfilt(sections, flat[run], axis=0, padlen=pad)
+    return result.reshape(values.shape)
+
+
+def differentiate(values: Array, period: float) -> Array:
+    """Central differences of evenly sampled (N,) or (N, k): use beside `low_pass`, never raw."""
+    return np.gradient(values, period, axis=0) if len(values) > 1 else np.zeros_like(values)
+
+
+def _aligned(log: MotionLog) -> dict[str, Array]:
+    """The log's columns with each quaternion's sign made continuous, so that it can be interpolated."""
+    columns = dict(log.columns)
+    imus = {name.removesuffix(".orientation.w") for name in columns if name.endswith(".orientation.w")}
+    for imu in imus:
+        names = [f"{imu}.orientation.{axis}" for axis in "wxyz"]
+        if log.has(*names):
+            quaternion = log.stack(names)
+            dots = np.sum(quaternion[1:] * quaternion[:-1], axis=1)
+            signs = np.concatenate([[1.0], np.cumprod(np.where(dots < 0, -1.0, 1.0))])
+            columns.update(zip(names, (quaternion * signs[:, None]).T, strict=True))
+    return columns
