@@ -1,0 +1,5 @@
+"""`python -m plantar` is `plantar`."""
+
+from plantar.cli import main
+
+main()

@@ -1,0 +1,110 @@
+"""The command line: one file a verb, each imported only when it is called."""
+
+from __future__ import annotations
+
+import os
+import sys
+from importlib import import_module
+
+import typer
+
+from plantar import __version__
+from plantar.errors import PlantarError
+
+# verb -> (module of this package, one line of help); the module has a function `run`.
+COMMANDS = {
+    "demo": ("demo", "The paper's campaign on the built-in twin: tables, figures, report."),
+    "inspect": ("inspect", "What is in the logs, what is wrong with them, what they can identify."),
+    "identify feet": ("identify_feet", "Stiffness, damping and offset of each foot (eq. 4 to 7)."),
+    "identify inertia": ("identify_inertia", "Inertial parameters without joint torques (eq. 2)."),
+    "identify joints": ("identify_joints", "Friction, springs and offsets of the joints (eq. 3)."),
+    "validate": ("validate", "Score a result on logs that it has not seen."),
+    "simulate": ("simulate", "Logs from the twin, with the imperfections asked for."),
+    "export": ("export", "Hand a result to a simulator or controller."),
+    "select": ("select", "Which of these logs tell most about each parameter."),
+    "diagnose": ("diagnose", "What limits each number of a result, and what to record next."),
+    "report": ("report", "Write the result's report.html again."),
+    "convert": ("convert", "A log in another format."),
+    "init": ("init", "A first robot file from a URDF and logs, every guess marked."),
+}
+SEVERAL = "--validate"  # takes one log or more
+GROUPS = {"identify": "Identify feet, inertial parameters or joints from logs."}
+
+EPILOG = "Example: plantar identify feet robot.yaml sway_*.csv --validate squat.csv --out out/feet"
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Run one command. Exits 0 when done, 1 on a known error (one line on stderr), 2 on wrong usage."""
+    arguments = _spread(sys.argv[1:] if arguments is None else arguments)
+    try:
+        _application(arguments)(args=arguments, prog_name="plantar")
+    except PlantarError as error:
+        _fail(f"plantar: {error}")
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        sys.exit(1)
+    except KeyboardInterrupt:
+        _fail("plantar: interrupted", 130)
+    except MemoryError:
+        _fail("plantar: not enough memory for these logs (valid: fewer or shorter logs at a time)")
+
+
+def _application(arguments: list[str]) -> typer.Typer:
+    """The tree of commands, with only the one that is called imported."""
+    application = _group("What does your legged robot stand on? Foot stiffness, damping and offset from its own logs.")
+    application.callback()(_root)
+    groups = {name: _group(text) for name, text in GROUPS.items()}
+    called = _called(arguments)
+    for verb, (module, text) in COMMANDS.items():
+        *group, name = verb.split()
+        holder = groups[group[0]] if group else application
+        command = import_module(f"plantar.cli.{module}").run if verb == called else _not_called
+        holder.command(name, help=None if verb == called else text, short_help=text)(command)
+    for name, group_application in groups.items():
+        application.add_typer(group_application, name=name)
+    return application
+
+
+def _spread(arguments: list[str]) -> list[str]:
+    """`--validate A B` as `--validate A --validate B`: the option takes every log up to the next option."""
+    spread: list[str] = []
+    taking = False
+    for argument in arguments:
+        if argument.startswith("-"):
+            taking = argument == SEVERAL
+        elif taking and spread[-1] != SEVERAL:
+            spread.append(SEVERAL)
+        spread.append(argument)
+    return spread
+
+
+def _called(arguments: list[str]) -> str:
+    """The verb in the arguments, of one or two words; options of the root come before it."""
+    words = [word for word in arguments if not word.startswith("-")]
+    return " ".join(words[:2]) if words and words[0] in GROUPS else words[0] if words else ""
+
+
+def _group(text: str) -> typer.Typer:
+    return typer.Typer(
+        help=text,
+        epilog=EPILOG,
+        no_args_is_help=True,
+        add_completion=False,
+        pretty_exceptions_enable=False,
+        context_settings={"help_option_names": ["-h", "--help"]},
+    )
+
+
+def _root(version: bool = typer.Option(False, "--version", is_eager=True, help="Print the version and exit.")) -> None:
+    if version:
+        print(__version__)
+        raise typer.Exit
+
+
+def _not_called() -> None:
+    """Stands for a command whose module is not needed now."""
+
+
+def _fail(line: str, code: int = 1) -> None:
+    print(line, file=sys.stderr)
+    sys.exit(code)

@@ -1,0 +1,81 @@
+"""`plantar inspect`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import typer
+from rich.console import Console
+from rich.markup import escape
+
+from plantar.cli.terminal import SEVERITY_STYLE, VERDICT_STYLE, console, end_progress, number, progress, table
+from plantar.inspection import LogSummary, inspect_log
+from plantar.readers import open_log
+from plantar.result import dump_json
+from plantar.robot import load_robot
+
+
+def run(
+    robot: Annotated[Path, typer.Argument(help="Robot file (YAML).", metavar="ROBOT.yaml")],
+    logs: Annotated[list[Path], typer.Argument(help="Logs to look at.", metavar="LOG...")],
+    columns: Annotated[bool, typer.Option("--columns", help="Also the range of every column.")] = False,
+    json: Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Only the exit code: 1 where a log cannot serve.")] = False,
+) -> None:
+    """What is in the logs, what is wrong with them, and what each can identify by itself.
+
+    Example: plantar inspect talos.yaml sway_1.csv
+    """
+    step = progress(quiet)
+    loaded = load_robot(robot)
+    summaries = []
+    for path in logs:
+        step(f"inspect {path.name}")
+        summaries.append(inspect_log(loaded, open_log(path, loaded)))
+    end_progress(quiet)
+    if json:
+        print(dump_json({"schema": "plantar.inspect/1", "logs": [summary.to_dict() for summary in summaries]}), end="")
+    elif not quiet:
+        for summary in summaries:
+            _print(console(), summary, columns)
+    if any(finding.fatal for summary in summaries for finding in summary.findings):
+        raise typer.Exit(1)
+
+
+def _print(out: Console, log: LogSummary, columns: bool) -> None:
+    sampling = log.sampling
+    out.print(f"\n[bold]{escape(log.name)}[/]: {log.duration:.1f} s, {log.samples} samples at {sampling.rate:.4g} Hz, "
+              f"jitter {1e3 * sampling.jitter:.2g} ms, {len(sampling.gaps)} gaps, {len(log.columns)} columns")  # fmt: skip
+    for start, end in sampling.gaps[:5]:
+        out.print(f"  gap from {start:.3f} to {end:.3f} s")
+    holes = [column for column in log.columns if column.missing]
+    for column in holes[:5]:
+        out.print(f"  {escape(column.name)}: {column.missing} samples without a value")
+    if log.carried is not None:
+        out.print(f"  the feet carry {log.carried:.2f} kg, the URDF weighs {log.mass:.2f} kg")
+    for finding in log.findings:
+        mark = "[red]problem[/]" if finding.fatal else f"[{SEVERITY_STYLE[finding.severity]}]{finding.severity}[/]"
+        out.print(f"  {mark}: {escape(finding.text)}")
+    if log.feet:
+        out.print(table("Feet", ("foot", "double s", "single s", "load N", "serving s", "pitch deg rms", "roll deg rms",
+                                 "pitch rad/s rms", "roll rad/s rms"), _foot_rows(log)))  # fmt: skip
+    if log.parameters:
+        out.print(table("What this log identifies by itself", ("foot", "axis", "parameter", "value", "verdict", "reason"),
+                        [(p.foot, p.axis, p.name, number(p.value), p.verdict, p.reason) for p in log.parameters],
+                        [VERDICT_STYLE[p.verdict] for p in log.parameters]))  # fmt: skip
+    if columns:
+        out.print(table("Columns", ("column", "least", "largest", "missing"),
+                        [(c.name, number(c.least), number(c.largest), str(c.missing)) for c in log.columns]))  # fmt: skip
+    for note in log.notes:
+        out.print(f"  [{SEVERITY_STYLE[note.severity]}]note: {escape(note.text)}[/]")
+
+
+def _foot_rows(log: LogSummary) -> list[tuple[str, ...]]:
+    return [
+        (foot.foot, f"{foot.double:.1f}", f"{foot.single:.1f}", f"{foot.load:.0f}", f"{foot.serving:.1f}",
+         *(f"{np.degrees(foot.deflection_rms[axis]):.2f}" for axis in ("pitch", "roll")),
+         *(f"{foot.rate_rms[axis]:.3f}" for axis in ("pitch", "roll")))
+        for foot in log.feet
+    ]  # fmt: skip

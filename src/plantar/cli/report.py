@@ -1,0 +1,23 @@
+"""`plantar report`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from plantar.report import write_dynamics_report, write_feet_report
+from plantar.result import FEET_SCHEMA, read_result
+
+
+def run(
+    result: Annotated[Path, typer.Argument(help="A result.json with its residuals beside it.", metavar="RESULT.json")],
+    out: Annotated[Path | None, typer.Option("--out", help="Where to write; beside the result if left out.")] = None,
+) -> None:
+    """Write the result's report.html again, from its result.json and residuals.
+
+    Example: plantar report out/feet/result.json
+    """
+    feet = read_result(result)["schema"] == FEET_SCHEMA
+    print(write_feet_report(result, out) if feet else write_dynamics_report(result, out))

@@ -1,0 +1,55 @@
+"""What commands share: progress on stderr, tables on stdout."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterable, Sequence
+
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+VERDICT_STYLE = {"usable": "green", "weak": "yellow", "unidentifiable": "red"}
+SEVERITY_STYLE = {"info": "dim", "warning": "yellow"}
+PIPE_WIDTH = 150  # columns where stdout is not a terminal
+
+
+def console() -> Console:
+    """Where tables go: stdout, wide enough for a table also in a pipe."""
+    return Console(width=None if sys.stdout.isatty() else PIPE_WIDTH, highlight=False)
+
+
+def progress(quiet: bool) -> Callable[[str], None]:
+    """A function that shows one step of long work on stderr: in place on a terminal, as lines elsewhere."""
+    if quiet:
+        return lambda _: None
+    if not sys.stderr.isatty():
+        return lambda line: print(f"  {line}", file=sys.stderr, flush=True)
+    return lambda line: print(f"\r\033[K  {line}", end="", file=sys.stderr, flush=True)
+
+
+def end_progress(quiet: bool) -> None:
+    """Clear the progress line of a terminal."""
+    if not quiet and sys.stderr.isatty():
+        print("\r\033[K", end="", file=sys.stderr, flush=True)
+
+
+def table(title: str, columns: Sequence[str], rows: Iterable[Sequence[str]], styles: Sequence[str] = ()) -> Table:
+    """A table of text cells; numbers to the right, hostile markup escaped. `styles` colours whole rows."""
+    drawn = Table(title=title, title_justify="left", header_style="bold", box=None, pad_edge=False)
+    cells = [[escape(str(cell)) for cell in row] for row in rows]
+    for place, name in enumerate(columns):
+        numeric = bool(cells) and all(_numeric(row[place]) for row in cells)
+        drawn.add_column(name, justify="right" if numeric else "left", no_wrap=numeric)
+    for place, row in enumerate(cells):
+        drawn.add_row(*row, style=styles[place] if place < len(styles) else None)
+    return drawn
+
+
+def number(value: float | None, digits: int = 4) -> str:
+    """A number to so many significant digits, or a dash."""
+    return "–" if value is None else f"{value:.{digits}g}"
+
+
+def _numeric(cell: str) -> bool:
+    return cell[:1] in "0123456789-+–±." or not cell

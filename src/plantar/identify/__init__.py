@@ -1,0 +1,1 @@
+"""The identifications, each a short story in the paper's order."""

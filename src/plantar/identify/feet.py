@@ -1,0 +1,209 @@
+"""Stiffness, damping and offset of each foot from what the robot recorded (paper, sections 3 and 4)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from plantar.conventions import DAMPING_UNIT, OFFSET_UNIT, ROTATIONAL_AXES, STIFFNESS_UNIT, Axis
+from plantar.errors import DataError
+from plantar.estimation import Block, LinearFit, fit_linear, interval95, relative_std_percent
+from plantar.identify.recording import Recording, prepare
+from plantar.identify.residual_table import Predictions, residual_table
+from plantar.identify.settings import FeetSettings
+from plantar.identify.tipping import leave_out_tipping
+from plantar.identify.verdicts import Evidence, judge
+from plantar.log import MotionLog
+from plantar.models import KelvinVoigt
+from plantar.notes import Note, unique
+from plantar.result import FeetResult, Input, Offset, Parameter, ValidationRow
+from plantar.robot import Foot, Placement, RobotModel
+from plantar.validation import opening, score
+
+UNITS = {"stiffness": STIFFNESS_UNIT, "damping": DAMPING_UNIT}
+FEWEST_SAMPLES = 50  # of one recording, for it to take part in a fit
+
+Progress = Callable[[str], None]
+
+
+def identify_feet(
+    robot: RobotModel,
+    logs: Sequence[MotionLog],
+    validate: Sequence[MotionLog] = (),
+    settings: FeetSettings | None = None,
+    progress: Progress = lambda _: None,
+) -> FeetResult:
+    """Fit every foot's law in pitch and roll to `logs` together (eq. 6 and 7) and score it, also on `validate`.
+
+    Raises RobotError, LogError or DataError with one line when the input cannot serve; what could be worked around
+    is a note in the result. `progress` is called with a line for each step.
+    """
+    settings = settings or FeetSettings()
+    _check_names([*logs, *validate])
+    fitted = _prepare_all(robot, logs, "fit", settings, progress)
+    unseen = _prepare_all(robot, validate, "validate", settings, progress)
+    if not any(recording.contacts[foot].standing.any() for recording in fitted for foot in robot.feet):
+        raise DataError(f"{', '.join(log.name for log in logs)}: no foot carries load in any log (valid: a standing robot)")
+    notes = [note for recording in fitted + unseen for note in recording.notes]
+    parameters: list[Parameter] = []
+    offsets: list[Offset] = []
+    rows: list[ValidationRow] = []
+    predictions: Predictions = {}
+    for foot in robot.feet:
+        for axis in ROTATIONAL_AXES:
+            progress(f"fit {foot} {axis}")
+            fit = _fit_axis(fitted, foot, axis, settings)
+            parameters += _parameters(fit, fitted, foot, axis)
+            if fit is None:
+                continue
+            offsets += [
+                Offset(foot, axis, motion, OFFSET_UNIT[axis], value, fit.offset_std(motion))
+                for motion, value in fit.offsets.items()
+            ]
+            rows += _validate_axis(fit, fitted + unseen, foot, axis, predictions)
+    notes += _feet_notes(robot, fitted)
+    return FeetResult(
+        robot=robot.name,
+        inputs=(*(Input.of(log, "fit") for log in logs), *(Input.of(log, "validate") for log in validate)),
+        settings=settings.to_dict(),
+        model=settings.model,
+        parameters=tuple(parameters),
+        offsets=tuple(offsets),
+        phases=tuple(
+            phase
+            for recording in fitted + unseen
+            for foot, contact in recording.contacts.items()
+            for phase in contact.phases(recording.name, foot, recording.time)
+        ),
+        validation=tuple(sorted(rows, key=lambda row: row.kind != "direct")),
+        notes=unique(notes),
+        robot_model=_robot_model(robot),
+        residuals=residual_table(fitted + unseen, predictions),
+    )
+
+
+def _prepare_all(
+    robot: RobotModel, logs: Sequence[MotionLog], role: Any, settings: FeetSettings, progress: Progress
+) -> list[Recording]:
+    recordings = []
+    for log in logs:
+        progress(f"prepare {log.name}")
+        recording = prepare(robot, log, role, settings)
+        leave_out_tipping(robot, recording, settings)
+        recordings.append(recording)
+    return recordings
+
+
+def _check_names(logs: Sequence[MotionLog]) -> None:
+    seen: dict[str, MotionLog] = {}
+    for log in logs:
+        if log.name in seen:
+            message = f"two logs are called '{log.name}': {seen[log.name].source} and {log.source}"
+            raise DataError(f"{message} (valid: file names that differ, since results name motions by them)")
+        seen[log.name] = log
+
+
+def _fit_axis(recordings: Sequence[Recording], foot: str, axis: Axis, settings: FeetSettings) -> LinearFit | None:
+    """Eq. 7 for one axis of one foot, or None where no recording has samples that serve."""
+    column, law = ROTATIONAL_AXES.index(axis), KelvinVoigt()
+    blocks = []
+    for recording in recordings:
+        used, bush = recording.used(foot), recording.bushes[foot]
+        if used.sum() < FEWEST_SAMPLES:
+            continue
+        regressor = law.regressor(bush.deflection[used, column], bush.rate[used, column])
+        blocks.append(Block(recording.name, regressor, bush.torque[used, column], recording.period))
+    return fit_linear(blocks, shared_offset=settings.offset == "shared") if blocks else None
+
+
+def _parameters(
+    fit: LinearFit | None, recordings: Sequence[Recording], foot: str, axis: Axis
+) -> list[Parameter]:
+    """The rows of table 1 for one axis, each with its verdict."""
+    if fit is None:
+        reason = f"the {foot} foot has no samples that serve in these logs"
+        return [
+            Parameter(foot, axis, term, UNITS[term][axis], None, None, None, None, "unidentifiable", reason,
+                      f"record motions in which the {foot} foot stands")
+            for term in KelvinVoigt.terms
+        ]  # fmt: skip
+    evidence = _evidence(fit, recordings, foot, axis)
+    rows = []
+    for place, term in enumerate(KelvinVoigt.terms):
+        value, std = float(fit.values[place]), float(fit.std[place])
+        interval = interval95(value, std, float(fit.freedom[place]))
+        verdict, reason, advice = judge(foot, axis, term, value, interval, evidence)
+        relative = relative_std_percent(value, float(fit.white_std[place]))
+        rows.append(
+            Parameter(foot, axis, term, UNITS[term][axis], value, std, interval, relative, verdict, reason, advice)
+        )
+    return rows
+
+
+def _evidence(fit: LinearFit, recordings: Sequence[Recording], foot: str, axis: Axis) -> Evidence:
+    column = ROTATIONAL_AXES.index(axis)
+    seconds = moved = varied = missed = 0.0
+    for recording in recordings:
+        residual = fit.residuals.get(recording.name)
+        if residual is None:
+            continue
+        used, bush = recording.used(foot), recording.bushes[foot]
+        seconds += used.sum() * recording.period
+        moved += float(np.sum((bush.deflection[used, column] - bush.deflection[used, column].mean()) ** 2))
+        varied += float(np.sum((bush.torque[used, column] - bush.torque[used, column].mean()) ** 2))
+        missed += float(np.sum(residual**2))
+    samples = sum(len(residual) for residual in fit.residuals.values())
+    return Evidence(seconds, float(np.sqrt(moved / samples)), 1 - missed / varied if varied else 0.0)
+
+
+def _validate_axis(
+    fit: LinearFit, recordings: Sequence[Recording], foot: str, axis: Axis, predictions: Predictions
+) -> list[ValidationRow]:
+    """Direct rows for the fit's motions, cross rows for the others; the predictions go to the residual table."""
+    column, law, rows = ROTATIONAL_AXES.index(axis), KelvinVoigt(), []
+    for recording in recordings:
+        used, bush = recording.used(foot), recording.bushes[foot]
+        torque = bush.torque[:, column]
+        reconstructed = law.regressor(bush.deflection[:, column], bush.rate[:, column]) @ fit.values
+        direct = recording.role == "fit"
+        if direct:
+            if recording.name not in fit.offsets:
+                continue
+            scored, offset, trivial = used, fit.offsets[recording.name], float(np.mean(torque[used]))
+        else:
+            first = opening(recording.time, used)
+            scored = used & ~first
+            if scored.sum() < FEWEST_SAMPLES:
+                continue
+            offset, trivial = float(np.mean((torque - reconstructed)[first])), float(np.mean(torque[first]))
+        predicted = reconstructed + offset
+        predictions[recording.name, foot, axis] = predicted
+        kind = "direct" if direct else "cross"
+        rows.append(score(kind, recording.name, foot, axis, torque[scored], predicted[scored], trivial))
+    return rows
+
+
+def _feet_notes(robot: RobotModel, recordings: Sequence[Recording]) -> list[Note]:
+    notes = []
+    for foot in robot.feet:
+        if not any(recording.contacts[foot].standing.any() for recording in recordings):
+            notes.append(Note("foot_never_stands", "warning", f"the {foot} foot carries no load in any log"))
+    double = any(np.any(contact.support == 0) for recording in recordings for contact in recording.contacts.values())
+    if len(robot.feet) > 1 and not double:
+        notes.append(Note("no_double_support", "info", "no log has both feet on the ground: slip cannot be checked"))
+    return notes
+
+
+def _robot_model(robot: RobotModel) -> dict[str, Any]:
+    """What an export needs of the robot: its URDF's path, and each foot's geometry."""
+
+    def placed(placement: Placement) -> dict[str, Any]:
+        return {"link": placement.link, "xyz": placement.xyz.tolist(), "rpy": placement.rpy.tolist()}
+
+    def described(foot: Foot) -> dict[str, Any]:
+        sole = {**placed(foot.sole.placement), "polygon": foot.sole.polygon.tolist()}
+        return {"ankle": foot.ankle, "bush": placed(foot.bush), "sole": sole}
+
+    return {"urdf": str(robot.urdf_path), "feet": {name: described(foot) for name, foot in robot.feet.items()}}

@@ -1,0 +1,188 @@
+"""A log made ready for eq. 6: even samples, bush angles, rates and torques, contact, and what is left out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from plantar.attitude import attitude_from_inertial
+from plantar.contact import FootContact, carried_weight, detect_contact
+from plantar.conventions import GRAVITY, Array, Mask
+from plantar.deflection import BushState, bush_states
+from plantar.errors import DataError, RobotError, located
+from plantar.identify.settings import FeetSettings
+from plantar.log import MotionLog
+from plantar.notes import Note
+from plantar.polygon import inside_distance
+from plantar.robot import Imu, RobotModel
+from plantar.sanity import check_log
+from plantar.signals import differentiate, evenly_sampled, interpolate, low_pass, runs
+
+FILTER_EDGE = 1.0  # of the filter's period, left out where a run of samples begins or ends
+WEIGHT_MISMATCH = 0.15  # share by which the feet may carry more or less than the model weighs
+
+Role = Literal["fit", "validate"]
+
+
+@dataclass(frozen=True)
+class Recording:
+    """One log with each foot's bush state, filtered, and its contact. Arrays run over `time` (N,)."""
+
+    log: MotionLog
+    role: Role
+    bushes: Mapping[str, BushState]
+    contacts: Mapping[str, FootContact]
+    notes: tuple[Note, ...]
+
+    @property
+    def name(self) -> str:
+        return self.log.name
+
+    @property
+    def time(self) -> Array:
+        return self.log.time
+
+    @property
+    def period(self) -> float:
+        return self.log.period
+
+    def used(self, foot: str) -> Mask:
+        """Samples of this foot that serve."""
+        return self.contacts[foot].used
+
+
+def prepare(robot: RobotModel, log: MotionLog, role: Role, settings: FeetSettings) -> Recording:
+    """Bush states and contact of every foot in one log.
+
+    Raises RobotError without IMU or feet in the robot file, LogError for a missing column, DataError where a sensor
+    reads something impossible (degrees for radians, a flipped sign, swapped feet; see `sanity`).
+    """
+    imu = _require(robot)
+    findings = check_log(robot, log)
+    problems = [finding for finding in findings if finding.fatal]
+    if problems:
+        raise DataError(located(problems[0].text, path=log.source))
+    notes = [*log.notes, *log.joint_notes(robot), *(Note(f.code, f.severity, f"{log.name}: {f.text}") for f in findings)]
+    even = evenly_sampled(log)
+    notes += even.notes[len(log.notes) :]
+    period = even.period
+    positions = even.positions(robot)
+    velocities = _velocities(robot, even, positions, settings.cutoff, notes)
+    orientation, rates = _attitude(even, imu, notes)
+    wrenches = {name: even.wrench(foot.wrench.name) for name, foot in robot.feet.items()}
+    raw = bush_states(robot, positions, velocities, orientation, rates, wrenches)
+    contacts = _contacts(robot, even, raw, settings, notes)
+    filtered = {name: _filtered(state, period, settings.cutoff) for name, state in raw.items()}
+    for name, state in filtered.items():
+        valid = np.isfinite(np.column_stack([state.deflection, state.rate, state.torque])).all(axis=1)
+        contacts[name].leave_out(~valid, "not recorded: NaN or a gap in a column that this foot needs")
+        contacts[name].leave_out(_run_edges(valid, FILTER_EDGE / settings.cutoff / period), "filter's edge")
+    return Recording(even, role, filtered, contacts, tuple(notes))
+
+
+def _require(robot: RobotModel) -> Imu:
+    if not robot.feet:
+        raise RobotError(located("names no feet", path=robot.path, valid="feet: {left: ..., right: ...}"))
+    if robot.imu is None:
+        message = "names no imu: bush angles need the direction of gravity"
+        raise RobotError(located(message, path=robot.path, valid="imu: {name: ..., link: ...}"))
+    return robot.imu
+
+
+def _velocities(
+    robot: RobotModel, log: MotionLog, positions: Array, cutoff: float, notes: list[Note]
+) -> Array:
+    """Joint velocities (N, n_joints): as recorded, else filtered differences of the positions."""
+    recorded = [log.joint(name, "velocity") for name in robot.joint_names]
+    missing = [i for i, values in enumerate(recorded) if values is None]
+    velocities = np.column_stack([np.zeros(len(log)) if v is None else v for v in recorded] or [np.zeros((len(log), 0))])
+    derived = [i for i in missing if log.has(f"joint.{robot.joint_names[i]}.position")]
+    if derived:
+        velocities[:, derived] = differentiate(low_pass(positions[:, derived], log.period, 2 * cutoff), log.period)
+        text = f"{log.name}: velocities of {len(derived)} joints not recorded, differentiated from filtered positions"
+        notes.append(Note("velocity_derived", "info", text))
+    return velocities
+
+
+def _attitude(log: MotionLog, imu: Imu, notes: list[Note]) -> tuple[Array, Array]:
+    """Orientation w x y z (N, 4) and angular velocity (N, 3) of the IMU, derived where one is missing."""
+    name = imu.name
+    orientation = log.orientation(name)
+    has_gyro = log.has(*(f"imu.{name}.angular_velocity.{axis}" for axis in "xyz"))
+    if orientation is not None and not has_gyro:
+        notes.append(Note("gyroscope_missing", "warning", f"{log.name}: no angular velocity; rates come from "
+                          "differentiated orientation, so damping is less certain"))  # fmt: skip
+        return orientation, _rates_from(orientation, log.period)
+    rates = log.angular_velocity(name)
+    if orientation is not None:
+        return orientation, rates
+    acceleration = log.linear_acceleration(name)
+    whole = np.isfinite(np.column_stack([rates, acceleration])).all(axis=1)
+    if not whole.any():
+        raise DataError(located(f"imu '{name}' has no sample with all values", path=log.source))
+    filled = [interpolate(log.time, log.time[whole], column[whole], np.inf) for column in (*rates.T, *acceleration.T)]
+    bridged = np.nan_to_num(np.column_stack(filled))
+    orientation = attitude_from_inertial(bridged[:, :3], bridged[:, 3:], log.period)
+    orientation[~whole] = np.nan
+    notes.append(Note("attitude_derived", "warning", f"{log.name}: no IMU orientation; gravity's direction blended "
+                      "from gyroscope and accelerometer"))  # fmt: skip
+    return orientation, rates
+
+
+def _rates_from(orientation: Array, period: float) -> Array:
+    """Angular velocity in the body frame, (N, 3), from quaternions w x y z by central differences."""
+    norm = np.linalg.norm(orientation, axis=1, keepdims=True)
+    unit = orientation / norm
+    unit = unit * np.concatenate([[1.0], np.cumprod(np.where(np.sum(unit[1:] * unit[:-1], axis=1) < 0, -1.0, 1.0))])[:, None]
+    slope = differentiate(unit, period)
+    w, vector, dw, dvector = unit[:, :1], unit[:, 1:], slope[:, :1], slope[:, 1:]
+    return np.asarray(2 * (w * dvector - dw * vector - np.cross(vector, dvector)))
+
+
+def _contacts(
+    robot: RobotModel, log: MotionLog, bushes: Mapping[str, BushState], settings: FeetSettings, notes: list[Note]
+) -> dict[str, FootContact]:
+    """Phases from the vertical forces, and the samples near the sole's edge left out."""
+    force = {name: low_pass(state.force_z, log.period, 2 * settings.cutoff) for name, state in bushes.items()}
+    always = {name: foot.contact == "always" for name, foot in robot.feet.items()}
+    carried, model_weight = carried_weight(force), robot.mass * GRAVITY
+    if not any(always.values()) and abs(carried - model_weight) > WEIGHT_MISMATCH * model_weight:
+        text = f"{log.name}: the feet carry {carried / GRAVITY:.1f} kg where the URDF weighs {robot.mass:.1f} kg"
+        notes.append(Note("weight", "warning", text))
+    weight = carried if carried > 0.3 * model_weight else model_weight
+    contacts = detect_contact(force, always, weight, log.period)
+    for name, state in bushes.items():
+        if always[name]:
+            continue  # zeroed under load: its centre of pressure means nothing
+        distance = inside_distance(state.cop, robot.feet[name].sole.polygon)
+        near = _widened(distance < settings.edge_margin, round(0.05 / log.period))
+        margin = f"{1000 * settings.edge_margin:.0f} mm"
+        contacts[name].leave_out(near & contacts[name].standing, f"tipping: centre of pressure within {margin} of the edge")
+    return contacts
+
+
+def _filtered(state: BushState, period: float, cutoff: float) -> BushState:
+    """The state with angles, rates and torques through one zero-phase filter: the law between them stays."""
+    values = low_pass(np.column_stack([state.deflection, state.rate, state.torque]), period, cutoff)
+    return replace(state, deflection=values[:, 0:2], rate=values[:, 2:4], torque=values[:, 4:6])
+
+
+def _run_edges(valid: Mask, reach: float) -> Mask:
+    edges = np.zeros(len(valid), dtype=bool)
+    for run in runs(valid):
+        edges[run.start : min(run.stop, run.start + round(reach))] = True
+        edges[max(run.start, run.stop - round(reach)) : run.stop] = True
+    return edges
+
+
+def _widened(samples: Mask, reach: int) -> Mask:
+    """Each true stretch made longer by `reach` samples at both ends."""
+    wide = samples.copy()
+    for run in runs(samples):
+        wide[max(0, run.start - reach) : run.stop + reach] = True
+    return wide
+
+

@@ -1,0 +1,63 @@
+"""May this number be used? A verdict per parameter, its reason, and the motion to record next."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from plantar.conventions import Axis
+from plantar.result import Verdict
+
+USABLE_WIDTH = 0.15  # half width of the 95 % interval over the value, at most
+WEAK_WIDTH = 0.5
+LEAST_SECONDS = 3.0  # of samples that serve
+LEAST_EXPLAINED = 0.3  # share of the torque's variance that the law must explain
+GOOD_EXPLAINED = 0.8
+
+SWAY = {
+    "pitch": "sway the robot forward and backward",
+    "roll": "sway the robot left and right",
+    "z": "shift the weight from foot to foot",
+}
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What one fit shows: `seconds` that served, rms of deflection [rad], share of variance explained, and whether
+    the recordings that excite it are too few to see their differences."""
+
+    seconds: float
+    excitation: float
+    explained: float
+
+
+def judge(
+    foot: str, axis: Axis, term: str, value: float, interval: tuple[float, float], evidence: Evidence
+) -> tuple[Verdict, str, str | None]:
+    """Verdict, reason, and advice (None where none is needed) for one stiffness or damping."""
+    advice = _advice(foot, axis, term)
+    half = (interval[1] - interval[0]) / 2
+    width = half / abs(value) if value else np.inf
+    motion = f"{np.degrees(evidence.excitation):.2g} deg rms of {axis}"
+    if evidence.seconds < LEAST_SECONDS:
+        return "unidentifiable", f"only {evidence.seconds:.1f} s of samples serve", advice
+    if value <= 0 and interval[1] <= 0:
+        return "unidentifiable", f"{term} comes out negative: something else than the bush makes this torque", advice
+    if interval[0] <= 0:
+        return "unidentifiable", f"the 95 % interval reaches zero; the motion gave {motion}", advice
+    if evidence.explained < LEAST_EXPLAINED:
+        share = f"{100 * max(evidence.explained, 0):.0f} %"
+        return "unidentifiable", f"the law explains {share} of the torque's variance", advice
+    if width > WEAK_WIDTH:
+        return "unidentifiable", f"the 95 % interval is ±{100 * width:.0f} %; the motion gave {motion}", advice
+    if width > USABLE_WIDTH:
+        return "weak", f"the 95 % interval is ±{100 * width:.0f} %; the motion gave {motion}", advice
+    if evidence.explained < GOOD_EXPLAINED:
+        return "weak", f"the law explains only {100 * evidence.explained:.0f} % of the torque's variance", advice
+    return "usable", f"95 % interval ±{100 * width:.2g} %, {evidence.seconds:.0f} s served", None
+
+
+def _advice(foot: str, axis: Axis, term: str) -> str:
+    pace = "faster, at 0.3 to 1 Hz" if term == "damping" else "slowly and by some degrees, at 0.1 to 0.5 Hz"
+    return f"{SWAY[axis]} with its weight on the {foot} foot, {pace}, for 30 s or more, without lifting the sole's edge"

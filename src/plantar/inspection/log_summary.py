@@ -1,0 +1,122 @@
+"""One log at a glance: sampling, gaps, values, weight, contact, excitation, and what it can identify."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from plantar.contact import DOUBLE, SINGLE, SUPPORTS
+from plantar.conventions import GRAVITY, ROTATIONAL_AXES
+from plantar.errors import PlantarError
+from plantar.identify.feet import identify_feet
+from plantar.identify.recording import Recording, prepare
+from plantar.identify.settings import FeetSettings
+from plantar.log import MotionLog
+from plantar.notes import Note
+from plantar.result import Parameter, finite
+from plantar.robot import RobotModel
+from plantar.sanity import Finding, check_log
+from plantar.signals import Sampling, sampling
+
+
+@dataclass(frozen=True)
+class ColumnRange:
+    """Least and largest value of a column, and how many samples hold none."""
+
+    name: str
+    least: float | None
+    largest: float | None
+    missing: int
+
+
+@dataclass(frozen=True)
+class FootSummary:
+    """One foot: seconds in each support, mean load [N], seconds that serve, and rms of angle [rad] and rate [rad/s]."""
+
+    foot: str
+    double: float
+    single: float
+    load: float
+    serving: float
+    deflection_rms: Mapping[str, float]
+    rate_rms: Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class LogSummary:
+    """What `plantar inspect` shows of one log. `carried` and `mass` are in kg."""
+
+    name: str
+    duration: float
+    samples: int
+    sampling: Sampling
+    columns: tuple[ColumnRange, ...]
+    carried: float | None
+    mass: float
+    feet: tuple[FootSummary, ...]
+    parameters: tuple[Parameter, ...]
+    findings: tuple[Finding, ...]
+    notes: tuple[Note, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        plain: dict[str, Any] = finite(asdict(self))
+        return plain
+
+
+def inspect_log(robot: RobotModel, log: MotionLog) -> LogSummary:
+    """Everything about one log that can be said; a problem that would stop a fit is a fatal finding, not an error."""
+    findings = []
+    feet: tuple[FootSummary, ...] = ()
+    parameters: tuple[Parameter, ...] = ()
+    notes = (*log.notes, *log.joint_notes(robot))
+    try:
+        findings = check_log(robot, log)
+        if robot.feet and not any(finding.fatal for finding in findings):
+            recording = prepare(robot, log, "fit", FeetSettings())
+            feet = tuple(_foot(recording, foot) for foot in robot.feet)
+            result = identify_feet(robot, [log])
+            parameters, notes = result.parameters, result.notes
+    except PlantarError as error:
+        findings.append(Finding("not_usable", str(error), True))
+    return LogSummary(
+        name=log.name,
+        duration=log.duration,
+        samples=len(log),
+        sampling=sampling(log),
+        columns=tuple(_range(name, log) for name in log.columns),
+        carried=sum(foot.load for foot in feet) / GRAVITY if feet else None,
+        mass=robot.mass,
+        feet=feet,
+        parameters=parameters,
+        findings=tuple(findings),
+        notes=notes,
+    )
+
+
+def _range(name: str, log: MotionLog) -> ColumnRange:
+    values = log.columns[name]
+    finite_values = values[np.isfinite(values)]
+    if not finite_values.size:
+        return ColumnRange(name, None, None, len(values))
+    return ColumnRange(name, float(finite_values.min()), float(finite_values.max()), len(values) - finite_values.size)
+
+
+def _foot(recording: Recording, foot: str) -> FootSummary:
+    bush, contact, period = recording.bushes[foot], recording.contacts[foot], recording.period
+    used = contact.used
+
+    def rms(values: np.ndarray) -> float:  # type: ignore[type-arg]
+        return float(np.std(values[used])) if used.any() else 0.0
+
+    return FootSummary(
+        foot=foot,
+        double=period * int(np.sum(contact.support == SUPPORTS.index(DOUBLE))),
+        single=period * int(np.sum(contact.support == SUPPORTS.index(SINGLE))),
+        load=float(np.nanmean(bush.force_z)),
+        serving=period * int(used.sum()),
+        deflection_rms={axis: rms(bush.deflection[:, i]) for i, axis in enumerate(ROTATIONAL_AXES)},
+        rate_rms={axis: rms(bush.rate[:, i]) for i, axis in enumerate(ROTATIONAL_AXES)},
+    )
