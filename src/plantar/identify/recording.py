@@ -11,7 +11,7 @@ import numpy as np
 from plantar.attitude import attitude_from_inertial
 from plantar.contact import FootContact, carried_weight, detect_contact
 from plantar.conventions import GRAVITY, Array, Mask
-from plantar.deflection import BushState, bush_states
+from plantar.deflection import BushState, bush_states, path_joints
 from plantar.errors import DataError, RobotError, located
 from plantar.identify.settings import FeetSettings
 from plantar.log import MotionLog
@@ -69,11 +69,9 @@ def prepare(robot: RobotModel, log: MotionLog, role: Role, settings: FeetSetting
     even = evenly_sampled(log)
     notes += even.notes[len(log.notes) :]
     period = even.period
-    positions = even.positions(robot)
-    velocities = _velocities(robot, even, positions, settings.cutoff, notes)
-    orientation, rates = _attitude(even, imu, notes)
-    wrenches = {name: even.wrench(foot.wrench.name) for name, foot in robot.feet.items()}
-    raw = bush_states(robot, positions, velocities, orientation, rates, wrenches)
+    velocities = _velocities(robot, even, settings.cutoff, notes)
+    even, orientation = _attitude(even, imu, notes)
+    raw = bush_states(robot, even, velocities, orientation)
     contacts = _contacts(robot, even, raw, settings, notes)
     filtered = {name: _filtered(state, period, settings.cutoff) for name, state in raw.items()}
     for name, state in filtered.items():
@@ -92,34 +90,39 @@ def _require(robot: RobotModel) -> Imu:
     return robot.imu
 
 
-def _velocities(
-    robot: RobotModel, log: MotionLog, positions: Array, cutoff: float, notes: list[Note]
-) -> Array:
-    """Joint velocities (N, n_joints): as recorded, else filtered differences of the positions."""
-    recorded = [log.joint(name, "velocity") for name in robot.joint_names]
-    missing = [i for i, values in enumerate(recorded) if values is None]
-    velocities = np.column_stack([np.zeros(len(log)) if v is None else v for v in recorded] or [np.zeros((len(log), 0))])
-    derived = [i for i in missing if log.has(f"joint.{robot.joint_names[i]}.position")]
+def _velocities(robot: RobotModel, log: MotionLog, cutoff: float, notes: list[Note]) -> dict[str, Array]:
+    """Velocity of each joint between IMU and feet, (N,): as recorded, else filtered differences of its position."""
+    velocities, derived, missing = {}, [], []
+    for name in path_joints(robot):
+        position, recorded = log.joint(name, "position"), log.joint(name, "velocity")
+        if position is None:
+            missing.append(name)
+        elif recorded is not None:
+            velocities[name] = recorded
+        else:
+            velocities[name] = differentiate(low_pass(position, log.period, 2 * cutoff), log.period)
+            derived.append(name)
     if derived:
-        velocities[:, derived] = differentiate(low_pass(positions[:, derived], log.period, 2 * cutoff), log.period)
         text = f"{log.name}: velocities of {len(derived)} joints not recorded, differentiated from filtered positions"
         notes.append(Note("velocity_derived", "info", text))
+    if missing:
+        text = f"{log.name}: between IMU and feet, but not recorded: {', '.join(missing)}; angles are right only if they stood at 0"
+        notes.append(Note("path_joint_missing", "warning", text))
     return velocities
 
 
-def _attitude(log: MotionLog, imu: Imu, notes: list[Note]) -> tuple[Array, Array]:
-    """Orientation w x y z (N, 4) and angular velocity (N, 3) of the IMU, derived where one is missing."""
+def _attitude(log: MotionLog, imu: Imu, notes: list[Note]) -> tuple[MotionLog, Array]:
+    """The log with the IMU's angular velocity and its orientation w x y z (N, 4), derived where one is missing."""
     name = imu.name
+    columns = [f"imu.{name}.angular_velocity.{axis}" for axis in "xyz"]
     orientation = log.orientation(name)
-    has_gyro = log.has(*(f"imu.{name}.angular_velocity.{axis}" for axis in "xyz"))
-    if orientation is not None and not has_gyro:
-        notes.append(Note("gyroscope_missing", "warning", f"{log.name}: no angular velocity; rates come from "
-                          "differentiated orientation, so damping is less certain"))  # fmt: skip
-        return orientation, _rates_from(orientation, log.period)
-    rates = log.angular_velocity(name)
     if orientation is not None:
-        return orientation, rates
-    acceleration = log.linear_acceleration(name)
+        if log.has(*columns):
+            return log, orientation
+        text = f"{log.name}: no angular velocity; rates come from differentiated orientation, so damping is less certain"
+        notes.append(Note("gyroscope_missing", "warning", text))
+        return log.with_columns(dict(zip(columns, _rates_from(orientation, log.period).T, strict=True))), orientation
+    rates, acceleration = log.angular_velocity(name), log.linear_acceleration(name)
     whole = np.isfinite(np.column_stack([rates, acceleration])).all(axis=1)
     if not whole.any():
         raise DataError(located(f"imu '{name}' has no sample with all values", path=log.source))
@@ -127,9 +130,9 @@ def _attitude(log: MotionLog, imu: Imu, notes: list[Note]) -> tuple[Array, Array
     bridged = np.nan_to_num(np.column_stack(filled))
     orientation = attitude_from_inertial(bridged[:, :3], bridged[:, 3:], log.period)
     orientation[~whole] = np.nan
-    notes.append(Note("attitude_derived", "warning", f"{log.name}: no IMU orientation; gravity's direction blended "
-                      "from gyroscope and accelerometer"))  # fmt: skip
-    return orientation, rates
+    text = f"{log.name}: no IMU orientation; gravity's direction blended from gyroscope and accelerometer"
+    notes.append(Note("attitude_derived", "warning", text))
+    return log, orientation
 
 
 def _rates_from(orientation: Array, period: float) -> Array:
