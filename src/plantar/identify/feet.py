@@ -12,6 +12,7 @@ from plantar.errors import DataError
 from plantar.estimation import Block, LinearFit, fit_linear, interval95, relative_std_percent
 from plantar.identify.recording import Recording, prepare
 from plantar.identify.residual_table import Predictions, residual_table
+from plantar.identify.scoring import score_axis
 from plantar.identify.settings import FeetSettings
 from plantar.identify.tipping import leave_out_tipping
 from plantar.identify.verdicts import Evidence, judge
@@ -20,7 +21,6 @@ from plantar.models import KelvinVoigt
 from plantar.notes import Note, unique
 from plantar.result import FeetResult, Input, Offset, Parameter, ValidationRow
 from plantar.robot import Foot, Placement, RobotModel
-from plantar.validation import opening, score
 
 UNITS = {"stiffness": STIFFNESS_UNIT, "damping": DAMPING_UNIT}
 FEWEST_SAMPLES = 50  # of one recording, for it to take part in a fit
@@ -62,7 +62,7 @@ def identify_feet(
                 Offset(foot, axis, motion, OFFSET_UNIT[axis], value, fit.offset_std(motion))
                 for motion, value in fit.offsets.items()
             ]
-            rows += _validate_axis(fit, fitted + unseen, foot, axis, predictions)
+            rows += score_axis(fitted + unseen, foot, axis, KelvinVoigt(), fit.values, fit.offsets, predictions)
     notes += _feet_notes(robot, fitted)
     return FeetResult(
         robot=robot.name,
@@ -156,33 +156,6 @@ def _evidence(fit: LinearFit, recordings: Sequence[Recording], foot: str, axis: 
         missed += float(np.sum(residual**2))
     samples = sum(len(residual) for residual in fit.residuals.values())
     return Evidence(seconds, float(np.sqrt(moved / samples)), 1 - missed / varied if varied else 0.0)
-
-
-def _validate_axis(
-    fit: LinearFit, recordings: Sequence[Recording], foot: str, axis: Axis, predictions: Predictions
-) -> list[ValidationRow]:
-    """Direct rows for the fit's motions, cross rows for the others; the predictions go to the residual table."""
-    column, law, rows = ROTATIONAL_AXES.index(axis), KelvinVoigt(), []
-    for recording in recordings:
-        used, bush = recording.used(foot), recording.bushes[foot]
-        torque = bush.torque[:, column]
-        reconstructed = law.regressor(bush.deflection[:, column], bush.rate[:, column]) @ fit.values
-        direct = recording.role == "fit"
-        if direct:
-            if recording.name not in fit.offsets:
-                continue
-            scored, offset, trivial = used, fit.offsets[recording.name], float(np.mean(torque[used]))
-        else:
-            first = opening(recording.time, used)
-            scored = used & ~first
-            if scored.sum() < FEWEST_SAMPLES:
-                continue
-            offset, trivial = float(np.mean((torque - reconstructed)[first])), float(np.mean(torque[first]))
-        predicted = reconstructed + offset
-        predictions[recording.name, foot, axis] = predicted
-        kind = "direct" if direct else "cross"
-        rows.append(score(kind, recording.name, foot, axis, torque[scored], predicted[scored], trivial))
-    return rows
 
 
 def _feet_notes(robot: RobotModel, recordings: Sequence[Recording]) -> list[Note]:

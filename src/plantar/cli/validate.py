@@ -1,0 +1,37 @@
+"""`plantar validate`."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from plantar.cli.feet_tables import validation_table
+from plantar.cli.terminal import console, end_progress, progress
+from plantar.identify.revalidation import validate_feet
+from plantar.readers import open_log
+from plantar.result import FEET_SCHEMA, dump_json, read_result
+from plantar.robot import load_robot
+
+
+def run(
+    result: Annotated[Path, typer.Argument(help="The result of `identify feet`.", metavar="RESULT.json")],
+    robot: Annotated[Path, typer.Argument(help="Robot file (YAML).", metavar="ROBOT.yaml")],
+    logs: Annotated[list[Path], typer.Argument(help="Logs that the fit has not seen.", metavar="LOG...")],
+    json: Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No table, no progress.")] = False,
+) -> None:
+    """Reconstruct the torque of unseen logs with identified feet and compare (table 3).
+
+    Example: plantar validate out/feet/result.json robot.yaml squat.csv
+    """
+    step = progress(quiet)
+    content, loaded = read_result(result, FEET_SCHEMA), load_robot(robot)
+    rows = validate_feet(content, loaded, [open_log(path, loaded) for path in logs], step)
+    end_progress(quiet)
+    if json:
+        print(dump_json({"schema": "plantar.validation/1", "validation": [asdict(row) for row in rows]}), end="")
+    elif not quiet:
+        console().print(validation_table("Table 3. Cross validation", rows))
