@@ -11,7 +11,7 @@ import numpy as np
 from plantar.attitude import attitude_from_inertial
 from plantar.contact import FootContact, carried_weight, detect_contact
 from plantar.conventions import GRAVITY, Array, Mask
-from plantar.deflection import BushState, bush_states, path_joints
+from plantar.deflection import BushState, bush_states
 from plantar.errors import DataError, RobotError, located
 from plantar.identify.settings import FeetSettings
 from plantar.log import MotionLog
@@ -70,8 +70,9 @@ def prepare(robot: RobotModel, log: MotionLog, role: Role, settings: FeetSetting
     notes += even.notes[len(log.notes) :]
     period = even.period
     velocities = _velocities(robot, even, settings.cutoff, notes)
-    even, orientation = _attitude(even, imu, notes)
-    raw = bush_states(robot, even, velocities, orientation)
+    orientation, rates = _attitude(even, imu, notes)
+    wrenches = {name: even.wrench(foot.wrench.name) for name, foot in robot.feet.items()}
+    raw = bush_states(robot, even.positions(robot), velocities, orientation, rates, wrenches)
     contacts = _contacts(robot, even, raw, settings, notes)
     filtered = {name: _filtered(state, period, settings.cutoff) for name, state in raw.items()}
     for name, state in filtered.items():
@@ -90,17 +91,21 @@ def _require(robot: RobotModel) -> Imu:
     return robot.imu
 
 
-def _velocities(robot: RobotModel, log: MotionLog, cutoff: float, notes: list[Note]) -> dict[str, Array]:
-    """Velocity of each joint between IMU and feet, (N,): as recorded, else filtered differences of its position."""
-    velocities, derived, missing = {}, [], []
-    for name in path_joints(robot):
+def _velocities(robot: RobotModel, log: MotionLog, cutoff: float, notes: list[Note]) -> Array:
+    """Joint velocities (N, n_joints): as recorded, else filtered differences; 0 for joints off the feet's paths."""
+    velocities = np.zeros((len(log), len(robot.joint_names)))
+    derived, missing = [], []
+    needed = _path_joints(robot)
+    for place, name in enumerate(robot.joint_names):
+        if name not in needed:
+            continue
         position, recorded = log.joint(name, "position"), log.joint(name, "velocity")
         if position is None:
             missing.append(name)
         elif recorded is not None:
-            velocities[name] = recorded
+            velocities[:, place] = recorded
         else:
-            velocities[name] = differentiate(low_pass(position, log.period, 2 * cutoff), log.period)
+            velocities[:, place] = differentiate(low_pass(position, log.period, 2 * cutoff), log.period)
             derived.append(name)
     if derived:
         text = f"{log.name}: velocities of {len(derived)} joints not recorded, differentiated from filtered positions"
@@ -111,17 +116,22 @@ def _velocities(robot: RobotModel, log: MotionLog, cutoff: float, notes: list[No
     return velocities
 
 
-def _attitude(log: MotionLog, imu: Imu, notes: list[Note]) -> tuple[MotionLog, Array]:
-    """The log with the IMU's angular velocity and its orientation w x y z (N, 4), derived where one is missing."""
+def _path_joints(robot: RobotModel) -> frozenset[str]:
+    """The joints between the IMU and any foot."""
+    imu = _require(robot).placement
+    return frozenset().union(*(robot.joints_between(imu, foot.bush) for foot in robot.feet.values()))
+
+
+def _attitude(log: MotionLog, imu: Imu, notes: list[Note]) -> tuple[Array, Array]:
+    """Orientation w x y z (N, 4) and angular velocity (N, 3) of the IMU, derived where one is missing."""
     name = imu.name
-    columns = [f"imu.{name}.angular_velocity.{axis}" for axis in "xyz"]
     orientation = log.orientation(name)
     if orientation is not None:
-        if log.has(*columns):
-            return log, orientation
+        if log.has(*(f"imu.{name}.angular_velocity.{axis}" for axis in "xyz")):
+            return orientation, log.angular_velocity(name)
         text = f"{log.name}: no angular velocity; rates come from differentiated orientation, so damping is less certain"
         notes.append(Note("gyroscope_missing", "warning", text))
-        return log.with_columns(dict(zip(columns, _rates_from(orientation, log.period).T, strict=True))), orientation
+        return orientation, _rates_from(orientation, log.period)
     rates, acceleration = log.angular_velocity(name), log.linear_acceleration(name)
     whole = np.isfinite(np.column_stack([rates, acceleration])).all(axis=1)
     if not whole.any():
@@ -132,7 +142,7 @@ def _attitude(log: MotionLog, imu: Imu, notes: list[Note]) -> tuple[MotionLog, A
     orientation[~whole] = np.nan
     text = f"{log.name}: no IMU orientation; gravity's direction blended from gyroscope and accelerometer"
     notes.append(Note("attitude_derived", "warning", text))
-    return log, orientation
+    return orientation, rates
 
 
 def _rates_from(orientation: Array, period: float) -> Array:
