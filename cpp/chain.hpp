@@ -1,0 +1,40 @@
+// The chain of joints from the IMU to a foot: what the deflection kernel reads and writes (paper 3.2).
+#pragma once
+
+#include "columns.hpp"
+
+namespace plantar {
+
+// One joint of the path, about or along the z axis of its own frame. Frames are composed outwards from the
+// IMU, so a joint that is passed from child to parent enters with sign -1.
+struct ChainStep {
+  Frame frame;    // of the joint, before it moves, in the frame after the step before
+  bool slides;    // prismatic, else revolute
+  double sign;    // +1 parent to child, -1 child to parent
+  Column position;
+  Column velocity;
+};
+
+struct Chain {
+  const ChainStep* steps;
+  std::size_t n_steps;
+  Frame bush;  // in the frame after the last step
+  Frame sole;  // in the bush frame when the bush is not deflected
+};
+
+struct Attitude {
+  Column quaternion[4];        // w x y z, IMU to world
+  Column angular_velocity[3];  // in the IMU frame
+};
+
+// Rows of the output, each one a contiguous array of all samples.
+enum ChainOutput {
+  UP = 0,               // 3: the world's up in the bush frame
+  DEFLECTION = 3,       // 2: pitch, roll
+  RATE = 5,             // 2
+  SOLE_POSITION = 7,    // 3: from the IMU, world axes
+  HEADING = 10,         // 1: of the sole's x axis in the world
+  CHAIN_OUTPUTS = 11
+};
+
+}  // namespace plantar

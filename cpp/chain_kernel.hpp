@@ -1,0 +1,95 @@
+// Bush deflection, its rate, and where the sole is, from encoders and IMU, for samples [begin, end).
+#pragma once
+
+#include "chain.hpp"
+#include "vec3.hpp"
+
+namespace plantar::PLANTAR_ISA {
+
+// Lanes beyond the last sample repeat it, so that no lane ever holds a number that nobody measured.
+PLANTAR_INLINE Lanes gather(const Column& column, std::size_t first, std::size_t last) {
+  Lanes x = Lanes{};
+  if (column.data == nullptr) return x;
+  const double* p = column.data + static_cast<std::ptrdiff_t>(first) * column.stride;
+  if (first + LANES <= last && column.stride == 1) return load(p);
+  for (int l = 0; l < LANES; ++l) {
+    x[l] = *p;
+    if (first + l + 1 < last) p += column.stride;
+  }
+  return x;
+}
+
+PLANTAR_INLINE void scatter(double* out, Lanes x, std::size_t first, std::size_t last) {
+  if (first + LANES <= last) {
+    store(out + first, x);
+  } else {
+    for (int l = 0; first + l < last; ++l) out[first + l] = x[l];
+  }
+}
+
+PLANTAR_INLINE void chain_pack(const Chain& chain, const Attitude& attitude, std::size_t first, std::size_t last,
+                               double* const* out) {
+  Lanes w = gather(attitude.quaternion[0], first, last), x = gather(attitude.quaternion[1], first, last);
+  Lanes y = gather(attitude.quaternion[2], first, last), z = gather(attitude.quaternion[3], first, last);
+  const Lanes scale = 2.0 / (w * w + x * x + y * y + z * z);
+  const Mat3 world = {  // IMU axes in the world
+      {1.0 - scale * (y * y + z * z), scale * (x * y + w * z), scale * (x * z - w * y)},
+      {scale * (x * y - w * z), 1.0 - scale * (x * x + z * z), scale * (y * z + w * x)},
+      {scale * (x * z + w * y), scale * (y * z - w * x), 1.0 - scale * (x * x + y * y)}};
+  Vec3 omega = {gather(attitude.angular_velocity[0], first, last), gather(attitude.angular_velocity[1], first, last),
+                gather(attitude.angular_velocity[2], first, last)};
+
+  // Along the path, everything is expressed in IMU axes.
+  const Lanes one = splat(1.0), zero = Lanes{};
+  Mat3 rotation = {{one, zero, zero}, {zero, one, zero}, {zero, zero, one}};
+  Vec3 origin = {zero, zero, zero};
+  for (std::size_t i = 0; i < chain.n_steps; ++i) {
+    const ChainStep& step = chain.steps[i];
+    origin = origin + times(rotation, step.frame.origin);
+    rotation = times_matrix(rotation, step.frame.rotation);
+    const Lanes q = step.sign * gather(step.position, first, last);
+    if (step.slides) {
+      origin = origin + q * rotation.z;
+    } else {
+      Lanes s, c;
+      sincos(q, s, c);
+      const Vec3 turned = c * rotation.x + s * rotation.y;
+      rotation.y = c * rotation.y - s * rotation.x;
+      rotation.x = turned;
+      omega = omega + (step.sign * gather(step.velocity, first, last)) * rotation.z;
+    }
+  }
+  origin = origin + times(rotation, chain.bush.origin);
+  rotation = times_matrix(rotation, chain.bush.rotation);
+
+  // A flat sole on level ground: the world's up in the bush frame is all that the two angles need.
+  const Vec3 up = transposed(rotation, Vec3{world.x.z, world.y.z, world.z.z});
+  const Vec3 up_rate = cross(up, transposed(rotation, omega));
+  const Lanes level2 = up.x * up.x + up.z * up.z, level = sqrt(level2);
+  scatter(out[UP], up.x, first, last);
+  scatter(out[UP + 1], up.y, first, last);
+  scatter(out[UP + 2], up.z, first, last);
+  scatter(out[DEFLECTION], atan2(up.x, up.z), first, last);
+  scatter(out[DEFLECTION + 1], -atan2(up.y, level), first, last);
+  scatter(out[RATE], (up.z * up_rate.x - up.x * up_rate.z) / level2, first, last);
+  scatter(out[RATE + 1], -up_rate.y / level, first, last);
+
+  // The deflected sole: Ry(pitch) Rx(roll) about the bush centre, its sines and cosines straight from `up`.
+  const Lanes cp = up.z / level, sp = up.x / level, cr = level, sr = -up.y;
+  const Mat3 deflected = {{cp, zero, -sp}, {sp * sr, cr, cp * sr}, {sp * cr, -sr, cp * cr}};
+  const Mat3 sole = rotation * deflected;
+  const Vec3 position = world * (origin + times(sole, chain.sole.origin));
+  const double forward[3] = {chain.sole.rotation[0], chain.sole.rotation[3], chain.sole.rotation[6]};
+  const Vec3 heading = world * times(sole, forward);
+  scatter(out[SOLE_POSITION], position.x, first, last);
+  scatter(out[SOLE_POSITION + 1], position.y, first, last);
+  scatter(out[SOLE_POSITION + 2], position.z, first, last);
+  scatter(out[HEADING], atan2(heading.y, heading.x), first, last);
+}
+
+inline void chain(const Chain& chain, const Attitude& attitude, std::size_t begin, std::size_t end,
+                  double* const* out) {
+  for (std::size_t first = begin; first < end; first += LANES) chain_pack(chain, attitude, first, end, out);
+}
+
+}  // namespace plantar::PLANTAR_ISA

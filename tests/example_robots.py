@@ -1,0 +1,22 @@
+"""URDFs of real robots that the test dependency example-robot-data brings along."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pinocchio as pin
+
+ROBOTS = Path(pin.__file__).parents[4] / "share" / "example-robot-data" / "robots"
+TALOS = ROBOTS / "talos_data/robots/talos_reduced.urdf"
+G1 = ROBOTS / "g1_description/urdf/g1_29dof_rev_1_0.urdf"
+ICUB = ROBOTS / "icub_description/robots/icub.urdf"
+HUMANOID = ROBOTS / "simple_humanoid_description/urdf/simple_humanoid.urdf"
+HAND = ROBOTS / "allegro_hand_description/urdf/allegro_right_hand.urdf"
+PANDA = ROBOTS / "panda_description/urdf/panda.urdf"
+UR5 = ROBOTS / "ur_description/urdf/ur5_robot.urdf"
+TIAGO = ROBOTS / "tiago_description/robots/tiago_no_hand.urdf"
+
+
+def model(urdf: Path, *, floating: bool = False) -> pin.Model:
+    text = urdf.read_text()
+    return pin.buildModelFromXML(text, pin.JointModelFreeFlyer()) if floating else pin.buildModelFromXML(text)
