@@ -1,0 +1,39 @@
+# From a clean clone: `make demo`, `make test`, `make check`. Needs Python >= 3.11, a C++20 compiler and make;
+# everything else goes into .venv, once, and again when the package's recipe or its native part change.
+
+NEW_ENOUGH := import sys; sys.exit(sys.version_info < (3, 11))
+PYTHON ?= $(firstword $(foreach name,python3 python3.14 python3.13 python3.12 python3.11,\
+	$(shell $(name) -c '$(NEW_ENOUGH)' 2>/dev/null && echo $(name))) python3)
+JOBS ?= 2
+BIN := .venv/bin
+INSTALLED := .venv/.installed
+
+# Small problems on few cores: threads inside threads only get in each other's way.
+export OMP_NUM_THREADS ?= 1
+export OPENBLAS_NUM_THREADS ?= 1
+
+.PHONY: demo test check format clean
+
+demo: $(INSTALLED)
+	$(BIN)/plantar demo
+
+test: $(INSTALLED)
+	$(BIN)/python -m pytest -n $(JOBS)
+
+check: $(INSTALLED)
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/python -m pytest tests/test_architecture.py tests/test_docs.py
+
+format: $(INSTALLED)
+	$(BIN)/ruff check --fix .
+
+clean:
+	rm -rf .venv build dist out .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	find src tests -name __pycache__ -prune -exec rm -rf {} +
+
+$(INSTALLED): pyproject.toml CMakeLists.txt $(wildcard cpp/*)
+	@$(PYTHON) -c '$(NEW_ENOUGH)' || { echo "plantar needs Python >= 3.11: make PYTHON=/path/to/python3" >&2; exit 1; }
+	test -x $(BIN)/python || $(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	touch $@

@@ -1,0 +1,278 @@
+"""A biped made for tests, and exact logs of it without a physics engine.
+
+The torso's attitude and the ankles' angles are chosen as functions of time; everything that a log holds follows from
+rotation products and from high-order differences of them, never from the formulas of the package under test. Each
+foot's bush obeys torque = K·deflection + C·rate + offset exactly, so what a fit should find is known.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+import yaml
+from scipy.spatial.transform import Rotation
+
+from plantar.log import MotionLog
+from plantar.robot import RobotModel, load_robot
+
+FEET = ("left", "right")
+MASS = 60.0
+WEIGHT = MASS * 9.80665
+Signal = Callable[[np.ndarray], np.ndarray]
+
+
+@dataclass(frozen=True)
+class Law:
+    """Stiffness [N·m/rad], damping [N·m·s/rad], offset [N·m]."""
+
+    stiffness: float
+    damping: float
+    offset: float
+
+
+TRUTH = {
+    ("left", "pitch"): Law(420.0, 22.0, -1.5),
+    ("left", "roll"): Law(350.0, 17.0, 0.6),
+    ("right", "pitch"): Law(455.0, 26.0, 0.9),
+    ("right", "roll"): Law(330.0, 19.0, -0.4),
+}
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Where something sits on its link: `xyz` [m], `rpy` [rad]."""
+
+    xyz: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    rpy: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    @property
+    def rotation(self) -> np.ndarray:
+        return Rotation.from_euler("xyz", self.rpy).as_matrix()
+
+    def entry(self, **more: object) -> dict[str, object]:
+        return {**more, "xyz": list(self.xyz), "rpy": list(self.rpy)}
+
+
+@dataclass(frozen=True)
+class Mounting:
+    """Where sensors and bush sit; the defaults can be moved to show that results do not depend on them."""
+
+    imu: Frame = Frame((-0.05, 0.02, 0.3))
+    bush: Frame = Frame((0.0, 0.0, -0.06))
+    wrench: Frame = Frame((0.01, 0.0, -0.04))
+    sign: int = 1
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A movement: torso roll, pitch, yaw [rad]; each foot's ankle pitch and roll [rad]; when a foot is in the air."""
+
+    name: str
+    duration: float
+    torso: tuple[Signal, Signal, Signal]
+    ankles: Mapping[str, tuple[Signal, Signal]]
+    lifts: tuple[tuple[str, float, float], ...] = ()
+    truth: Mapping[tuple[str, str], Law] = field(default_factory=lambda: dict(TRUTH))
+
+
+def sines(*terms: tuple[float, float, float]) -> Signal:
+    """Sum of amplitude·sin(2π·frequency·t + phase)."""
+    return lambda t: np.sum([a * np.sin(2 * np.pi * f * t + p) for a, f, p in terms], axis=0) + 0.0 * t
+
+
+def sway(name: str = "sway", seed: int = 0, duration: float = 20.0, **changes: object) -> Motion:
+    """Both feet rock in pitch and roll, each by itself, at 0.2 to 1 Hz and by one to three degrees."""
+    random = np.random.default_rng(seed)
+
+    def wave(degrees: float) -> Signal:
+        slow, fast = random.uniform(0.2, 0.4), random.uniform(0.7, 1.0)
+        first, second = random.uniform(0, 2 * np.pi, 2)
+        return sines((np.radians(degrees), slow, first), (0.4 * np.radians(degrees), fast, second))
+
+    torso = (wave(0.3), wave(0.8), wave(1.0))
+    ankles = {foot: (wave(1.2), wave(0.9)) for foot in FEET}
+    return replace(Motion(name, duration, torso, ankles), **changes)
+
+
+def write_robot(folder: Path, mounting: Mounting = Mounting(), **changes: object) -> Path:  # noqa: B008
+    """`biped.urdf` and `robot.yaml` in `folder`; `changes` replace keys of the latter. Returns the latter's path."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "biped.urdf").write_text(URDF)
+    path = folder / "robot.yaml"
+    path.write_text(yaml.safe_dump({**robot_entry(mounting), **changes}, sort_keys=False))
+    return path
+
+
+def robot_entry(mounting: Mounting = Mounting()) -> dict[str, object]:  # noqa: B008
+    """The robot file's content."""
+    polygon = [[0.13, 0.08], [-0.13, 0.08], [-0.13, -0.08], [0.13, -0.08]]
+    feet = {
+        foot: {
+            "ankle": f"{foot}_foot",
+            "bush": mounting.bush.entry(),
+            "wrench": mounting.wrench.entry(name=foot, link=f"{foot}_foot", sign=mounting.sign),
+            "sole": {"link": f"{foot}_sole", "polygon": polygon},
+        }
+        for foot in FEET
+    }
+    return {"name": "biped", "urdf": "biped.urdf", "imu": mounting.imu.entry(name="chest", link="torso"), "feet": feet}
+
+
+def make_robot(folder: Path, mounting: Mounting = Mounting(), **changes: object) -> RobotModel:  # noqa: B008
+    return load_robot(write_robot(folder, mounting, **changes))
+
+
+def times(motion: Motion, rate: float = 200.0, jitter: float = 0.0, seed: int = 0) -> np.ndarray:
+    """Sampling times; `jitter` is the rms deviation of each from the even grid, in periods."""
+    count = round(motion.duration * rate) + 1
+    shift = np.random.default_rng(seed).normal(0, jitter, count) if jitter else np.zeros(count)
+    return np.sort((np.arange(count) + shift) / rate)
+
+
+def record(motion: Motion, mounting: Mounting = Mounting(), at: np.ndarray | None = None) -> MotionLog:  # noqa: B008
+    """What the robot records of a motion, exactly."""
+    t = times(motion) if at is None else at
+    columns: dict[str, np.ndarray] = {}
+    for foot in FEET:
+        for joint, angle in zip(("pitch", "roll"), motion.ankles[foot], strict=True):
+            columns[f"joint.{foot}_ankle_{joint}.position"] = angle(t)
+            columns[f"joint.{foot}_ankle_{joint}.velocity"] = derivative(angle, t)
+    columns["joint.neck.position"] = 0.1 * np.sin(t)
+    columns |= _imu_columns(motion, mounting, t)
+    for foot in FEET:
+        wrench = sensor_wrench(motion, mounting, foot, t)
+        for place, part in enumerate(f"{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz"):
+            columns[f"wrench.{foot}.{part}"] = wrench[:, place]
+    return MotionLog(motion.name, t, columns)
+
+
+def torso_rotation(motion: Motion, t: np.ndarray) -> np.ndarray:
+    """Torso to world, (N, 3, 3)."""
+    return Rotation.from_euler("xyz", np.column_stack([angle(t) for angle in motion.torso])).as_matrix()
+
+
+def foot_rotation(motion: Motion, foot: str, t: np.ndarray) -> np.ndarray:
+    """Foot link to world, (N, 3, 3)."""
+    pitch, roll = motion.ankles[foot]
+    return torso_rotation(motion, t) @ Rotation.from_euler("YX", np.column_stack([pitch(t), roll(t)])).as_matrix()
+
+
+def up_in_bush(motion: Motion, mounting: Mounting, foot: str, t: np.ndarray) -> np.ndarray:
+    """The world's up seen from the bush frame, (N, 3)."""
+    return foot_rotation(motion, foot, t)[:, 2, :] @ mounting.bush.rotation
+
+
+def deflection(motion: Motion, mounting: Mounting, foot: str, t: np.ndarray) -> np.ndarray:
+    """Pitch and roll of the sole relative to the ankle [rad], (N, 2): the sole stays level."""
+    n = up_in_bush(motion, mounting, foot, t)
+    return np.column_stack([np.arctan2(n[:, 0], n[:, 2]), -np.arcsin(n[:, 1])])
+
+
+def deflection_rate(motion: Motion, mounting: Mounting, foot: str, t: np.ndarray) -> np.ndarray:
+    return derivative(lambda s: deflection(motion, mounting, foot, s), t)
+
+
+def bush_torque(motion: Motion, mounting: Mounting, foot: str, t: np.ndarray) -> np.ndarray:
+    """The law's generalised torques in pitch and roll, (N, 2)."""
+    q, v = deflection(motion, mounting, foot, t), deflection_rate(motion, mounting, foot, t)
+    laws = [motion.truth[foot, axis] for axis in ("pitch", "roll")]
+    return np.column_stack([law.stiffness * q[:, i] + law.damping * v[:, i] + law.offset for i, law in enumerate(laws)])
+
+
+def sensor_wrench(motion: Motion, mounting: Mounting, foot: str, t: np.ndarray) -> np.ndarray:
+    """What the force sensor reads, (N, 6): the law's torque at the bush, moved to the sensor and into its axes."""
+    n, q = up_in_bush(motion, mounting, foot, t), deflection(motion, mounting, foot, t)
+    pitch_torque, roll_torque = bush_torque(motion, mounting, foot, t).T
+    roll_axis = Rotation.from_euler("y", q[:, :1]).apply([1.0, 0.0, 0.0])
+    torque = pitch_torque[:, None] * [0.0, 1.0, 0.0] + roll_torque[:, None] * roll_axis
+    level = np.column_stack([4 * np.sin(1.3 * t), 3 * np.cos(0.9 * t), np.zeros_like(t)])
+    sideways = np.einsum("nji,nj->ni", foot_rotation(motion, foot, t), level) @ mounting.bush.rotation
+    stands = contact_share(motion, foot, t)[:, None]
+    force = vertical_load(motion, foot, t)[:, None] * n + stands * sideways
+    force, torque = force @ mounting.bush.rotation.T, (stands * torque) @ mounting.bush.rotation.T  # in the foot link
+    arm = np.array(mounting.bush.xyz) - np.array(mounting.wrench.xyz)
+    torque = torque + np.cross(arm, force)
+    return np.hstack([force @ mounting.wrench.rotation, torque @ mounting.wrench.rotation]) / mounting.sign
+
+
+def contact_share(motion: Motion, foot: str, t: np.ndarray) -> np.ndarray:
+    """1 where the foot stands, 0 in the air, (N,), smooth over 0.2 s."""
+    share = np.ones_like(t)
+    for name, start, end in motion.lifts:
+        if name == foot:
+            down = np.clip((t - start + 0.1) / 0.2, 0, 1), np.clip((end + 0.1 - t) / 0.2, 0, 1)
+            share = share * (1 - np.minimum(*(x * x * (3 - 2 * x) for x in down)))
+    return share
+
+
+def vertical_load(motion: Motion, foot: str, t: np.ndarray) -> np.ndarray:
+    """The foot's share of the weight [N], (N,): a foot in the air gives its share to the other."""
+    left = 0.5 + 0.06 * np.sin(0.7 * t)
+    wished = {"left": left * contact_share(motion, "left", t), "right": (1 - left) * contact_share(motion, "right", t)}
+    total = wished["left"] + wished["right"]
+    return np.where(total > 0, WEIGHT * wished[foot] / np.where(total > 0, total, 1.0), 0.0)
+
+
+def derivative(function: Signal, t: np.ndarray, step: float = 2e-3) -> np.ndarray:
+    """First derivative by sixth-order central differences."""
+    weights = {1: 3 / 4, 2: -3 / 20, 3: 1 / 60}
+    return sum(w * (function(t + k * step) - function(t - k * step)) for k, w in weights.items()) / step
+
+
+def second_derivative(function: Signal, t: np.ndarray, step: float = 2e-3) -> np.ndarray:
+    """Second derivative by sixth-order central differences."""
+    weights = {1: 3 / 2, 2: -3 / 20, 3: 1 / 90}
+    around = sum(w * (function(t + k * step) + function(t - k * step)) for k, w in weights.items())
+    return (around - 49 / 18 * function(t)) / step**2
+
+
+def _imu_columns(motion: Motion, mounting: Mounting, t: np.ndarray) -> dict[str, np.ndarray]:
+    torso = torso_rotation(motion, t)
+    spin = np.swapaxes(torso, 1, 2) @ derivative(lambda s: torso_rotation(motion, s), t)
+    rate = np.column_stack([spin[:, 2, 1], spin[:, 0, 2], spin[:, 1, 0]]) @ mounting.imu.rotation
+    moved = second_derivative(lambda s: torso_rotation(motion, s) @ np.array(mounting.imu.xyz), t)
+    world = torso @ mounting.imu.rotation
+    proper = np.einsum("nji,nj->ni", world, moved + [0.0, 0.0, 9.80665])
+    quaternion = Rotation.from_matrix(world).as_quat(scalar_first=True)
+    kinds = {"orientation": ("wxyz", quaternion), "angular_velocity": ("xyz", rate), "linear_acceleration": ("xyz", proper)}
+    return {
+        f"imu.chest.{kind}.{axis}": values[:, i] for kind, (axes, values) in kinds.items() for i, axis in enumerate(axes)
+    }
+
+
+def _leg(foot: str, side: int) -> str:
+    def axis(joint: str, parent: str, child: str, xyz: str, direction: str) -> str:
+        return (
+            f'<joint name="{foot}_ankle_{joint}" type="revolute"><parent link="{parent}"/><child link="{child}"/>'
+            f'<origin xyz="{xyz}"/><axis xyz="{direction}"/>'
+            f'<limit lower="-1.2" upper="1.2" effort="100" velocity="10"/></joint>'
+        )
+
+    hip = f"0 {0.1 * side} -0.5"
+    return (
+        axis("pitch", "torso", f"{foot}_ankle", hip, "0 1 0")
+        + _link(f"{foot}_ankle", 1.0)
+        + axis("roll", f"{foot}_ankle", f"{foot}_foot", "0 0 0", "1 0 0")
+        + _link(f"{foot}_foot", 4.0)
+        + f'<link name="{foot}_sole"/><joint name="{foot}_sole_fixed" type="fixed"><parent link="{foot}_foot"/>'
+        f'<child link="{foot}_sole"/><origin xyz="0 0 -0.09"/></joint>'
+    )
+
+
+def _link(name: str, mass: float) -> str:
+    inertia = f'ixx="{0.02 * mass}" ixy="0" ixz="0" iyy="{0.02 * mass}" iyz="0" izz="{0.01 * mass}"'
+    return f'<link name="{name}"><inertial><mass value="{mass}"/><inertia {inertia}/></inertial></link>'
+
+
+URDF = (
+    '<robot name="biped">'
+    + _link("torso", 48.0)
+    + _leg("left", 1)
+    + _leg("right", -1)
+    + _link("head", 2.0)
+    + '<joint name="neck" type="revolute"><parent link="torso"/><child link="head"/><origin xyz="0 0 0.4"/>'
+    '<axis xyz="0 0 1"/><limit lower="-1.5" upper="1.5" effort="5" velocity="5"/></joint></robot>'
+)

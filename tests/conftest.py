@@ -1,0 +1,32 @@
+"""What every test may ask for."""
+
+from __future__ import annotations
+
+import os
+
+# Small problems on few cores: threads inside threads only get in each other's way.
+for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ.setdefault(variable, "1")
+
+from pathlib import Path
+
+import pytest
+from biped import make_robot
+
+from plantar.robot import RobotModel
+
+
+@pytest.fixture(scope="session")
+def shared_data() -> Path:
+    """The folder of real recordings, which is no part of the project: PLANTAR_SHARED_DATA, or beside the repository."""
+    beside = Path(__file__).resolve().parents[2] / "shared" / "data"
+    folder = Path(os.environ.get("PLANTAR_SHARED_DATA", beside))
+    if not folder.is_dir():
+        pytest.skip(f"real recordings not found at {folder} (set PLANTAR_SHARED_DATA)")
+    return folder
+
+
+@pytest.fixture(scope="session")
+def robot(tmp_path_factory: pytest.TempPathFactory) -> RobotModel:
+    """The test biped in its usual mounting."""
+    return make_robot(tmp_path_factory.mktemp("biped"))
