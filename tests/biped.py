@@ -108,13 +108,12 @@ def write_robot(folder: Path, mounting: Mounting = Mounting(), **changes: object
 
 def robot_entry(mounting: Mounting = Mounting()) -> dict[str, object]:  # noqa: B008
     """The robot file's content."""
-    polygon = [[0.13, 0.08], [-0.13, 0.08], [-0.13, -0.08], [0.13, -0.08]]
     feet = {
         foot: {
             "ankle": f"{foot}_foot",
             "bush": mounting.bush.entry(),
             "wrench": mounting.wrench.entry(name=foot, link=f"{foot}_foot", sign=mounting.sign),
-            "sole": {"link": f"{foot}_sole", "polygon": polygon},
+            "sole": {"link": f"{foot}_sole", "polygon": [[0.13, 0.08], [-0.13, 0.08], [-0.13, -0.08], [0.13, -0.08]]},
         }
         for foot in FEET
     }

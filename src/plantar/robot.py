@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import os
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -188,7 +189,7 @@ def _terms(entry: JointEntry) -> tuple[str, ...]:
 
 
 def _parse_urdf(urdf: str, path: Path, *, floating: bool) -> pin.Model:
-    if "<!DOCTYPE" in urdf or "<!ENTITY" in urdf:
+    if re.search(r"<!(DOCTYPE|ENTITY)", urdf, re.IGNORECASE):
         raise RobotError(located("declares a DOCTYPE or an entity", path=path, valid="plain URDF"))
     try:
         return (
