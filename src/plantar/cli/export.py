@@ -1,0 +1,38 @@
+"""`plantar export`."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from plantar.export import TARGETS, export
+
+TARGET_HELP = "One of: " + ", ".join(TARGETS) + "."
+MODEL_HELP = "Existing robot model to extend: MJCF, SDFormat or URDF; the result's own URDF if left out."
+OFFSET_HELP = "Let each spring rest at -offset/K instead of 0."
+
+
+def run(
+    result: Annotated[
+        Path, typer.Argument(help="A result.json of identify feet or inertia.", metavar="RESULT.json")
+    ],
+    to: Annotated[str, typer.Option("--to", help=TARGET_HELP, metavar="TARGET")],
+    out: Annotated[Path, typer.Option("--out", help="The file to write.", metavar="FILE")],
+    model: Annotated[Path | None, typer.Option("--model", help=MODEL_HELP, metavar="MODEL")] = None,
+    with_offset: Annotated[bool, typer.Option("--with-offset", help=OFFSET_HELP)] = False,
+    quiet: Annotated[
+        bool, typer.Option("--quiet", help="Say nothing of what the target cannot hold.")
+    ] = False,
+) -> None:
+    """Hand a result to a simulator or controller: springs and dampers in its own format and units.
+
+    Example: plantar export out/feet/result.json --to mjcf --model robot.xml --out robot_on_bushes.xml
+    """
+    notes = export(result, to, out, model, with_offset=with_offset)
+    if not quiet:
+        for note in notes:
+            print(f"{note.severity}: {note.text}", file=sys.stderr)
+    print(out)

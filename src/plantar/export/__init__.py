@@ -1,0 +1,89 @@
+"""Results out: the files that simulators and controllers read. One file a target.
+
+    from plantar.export import export
+    export("out/result.json", "mjcf", "robot_on_bushes.xml", model="robot.xml")
+
+A result of `identify feet` goes to any target of `TARGETS`; a result of `identify inertia` to `urdf`.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+from plantar.errors import ExportError, located
+from plantar.export.bush import FootBush, feet_of_result
+from plantar.export.source import read_result, robot_urdf
+from plantar.files import write_text
+from plantar.notes import Note, unique
+
+# Target -> (module of this package, what it writes).
+TARGETS: dict[str, tuple[str, str]] = {
+    "mjcf": ("mjcf", "MuJoCo model (MJCF): bush joints and a light sole in each foot"),
+    "sdf": ("sdf", "SDFormat model: prismatic and revolute joints with spring and damper"),
+    "urdf": ("urdf", "URDF with Gazebo's spring tags, or the inertias of a plantar.inertia/1"),
+    "drake": ("drake", "SDFormat for Drake: free bush joints under a drake:linear_bushing_rpy"),
+    "usd": ("usd", "USD layer (.usda) with UsdPhysics joint drives, per degree, as Isaac reads them"),
+    "mc_rtc": ("mc_rtc", "mc_rtc robot module: the JSON entry 'flexibilities'"),
+    "openhrp": ("openhrp", "OpenHRP and hrpsys: configuration of the bush customizer"),
+    "choreonoid": ("choreonoid", "Choreonoid: the YAML entry 'bush' of a body customizer"),
+    "kinetics_observer": ("kinetics_observer", "Kinetics Observer: stiffness and damping of contacts"),
+    "yaml": ("plain", "YAML with every number, its unit and its interval"),
+}
+
+
+@dataclass(frozen=True)
+class Job:
+    """What a target is given: the feet, the result, the model to extend and where the file will stand."""
+
+    result: Mapping[str, Any]
+    feet: tuple[FootBush, ...]
+    model: Path | None
+    out: Path
+    with_offset: bool
+    remarks: tuple[Note, ...]  # what holds for every target, for the comment at the file's head
+
+
+def export(
+    result: Mapping[str, Any] | str | os.PathLike[str],
+    target: str,
+    out: str | os.PathLike[str],
+    model: str | os.PathLike[str] | None = None,
+    *,
+    with_offset: bool = False,
+) -> tuple[Note, ...]:
+    """Write a result to `out` in the format of `target`; returns what the target could not hold, as notes.
+
+    `model` is an existing robot model of that format to extend (MJCF, SDFormat, URDF; a URDF also serves MJCF
+    and SDFormat); without it the result's own URDF is taken. `with_offset` moves the springs' rest to
+    -offset/K; else it is 0, since the offset is mostly the sensors' zero.
+    Raises ExportError: unknown target, a result without what the target needs, a model without the ankle.
+    """
+    if target not in TARGETS:
+        raise ExportError(located(f"'{target}' is not a target", valid=", ".join(TARGETS)))
+    data, base = read_result(result)
+    path = Path(out)
+    given = None if model is None else Path(model)
+    if data.get("schema") == "plantar.inertia/1":
+        if target != "urdf":
+            raise ExportError(
+                located("cannot hold a result of plantar.inertia/1", value=target, valid="urdf")
+            )
+        from plantar.export.inertia import identified_urdf
+
+        text, notes = identified_urdf(data, given or robot_urdf(data, base))
+    else:
+        feet, remarks = feet_of_result(data, base, with_offset=with_offset)
+        module = import_module(f"plantar.export.{TARGETS[target][0]}")
+        if given is None and getattr(module, "EXTENDS", False):
+            given = robot_urdf(data, base)
+        if given is not None and not getattr(module, "EXTENDS", False):
+            raise ExportError(located("this target takes no model", value=target, valid="no --model"))
+        text, notes = module.write(Job(data, feet, given, path, with_offset, remarks))
+        notes = (*remarks, *notes)
+    write_text(path, text)
+    return unique(notes)

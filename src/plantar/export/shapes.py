@@ -1,0 +1,56 @@
+"""Which collision shapes stand on the ground: those that go to the sole when a bush is inserted."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from plantar.conventions import Array
+from plantar.export.bush import FootBush
+
+SOLE_MASS = 0.05  # kg: light beside any foot, heavy enough for every engine
+SOLE_INERTIA = 1e-4  # kg·m² about each axis; shifts the decay rate of K = 500, C = 20 by 0.01 %
+PLATE = 0.01  # m: thickness of the plate written where a model has no sole of its own
+MESH_LIMIT = 256 * 2**20  # bytes
+
+
+def box_corners(size: Array) -> Array:
+    """Corners of a box of full edge lengths `size`, (8, 3), about its centre."""
+    signs = np.array(np.meshgrid([-0.5, 0.5], [-0.5, 0.5], [-0.5, 0.5])).reshape(3, -1).T
+    corners: Array = signs * np.asarray(size)
+    return corners
+
+
+def mesh_corners(path: Path | None, scale: Array) -> Array | None:
+    """Corners of a mesh's bounding box, (8, 3), or None where no such mesh can be read."""
+    if path is None or not path.is_file() or path.stat().st_size > MESH_LIMIT:
+        return None
+    import coal  # type: ignore[import-untyped]
+
+    try:
+        mesh = coal.MeshLoader().load(str(path), np.asarray(scale, float))
+        mesh.computeLocalAABB()
+        box = mesh.aabb_local
+    except (RuntimeError, ValueError):
+        return None
+    low, high = np.array(box.min_, float).ravel(), np.array(box.max_, float).ravel()
+    corners: Array = box_corners(high - low) + (high + low) / 2
+    return corners
+
+
+def reaches_sole(points: Array, foot: FootBush) -> bool:
+    """Whether a shape with these points (n, 3) in the ankle's frame reaches past half way from bush to sole.
+
+    Such a shape would carry the ground's force past the bush if it stayed with the ankle.
+    """
+    depths = (foot.centre - np.atleast_2d(points)) @ foot.rotation[:, 2]
+    return float(depths.max()) > max(0.5 * foot.sole_depth, 1e-4)
+
+
+def plate(foot: FootBush) -> tuple[Array, Array]:
+    """Full edge lengths (3,) and centre (3,), in the bush's frame, of a plate under the sole's outline."""
+    corners = (foot.sole - foot.centre) @ foot.rotation
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    size = np.array([high[0] - low[0], high[1] - low[1], PLATE])
+    return size, np.array([*((low + high) / 2)[:2], -foot.sole_depth + PLATE / 2])
