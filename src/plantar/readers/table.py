@@ -59,6 +59,11 @@ def _read_csv(path: Path, notes: list[Note]) -> pa.Table:
         # No end of line: the last number may have lost digits, and nobody could tell.
         content = content[: content.rindex(b"\n") + 1]
         notes.append(_cut(path, "ends in the middle of a line; that line is left out"))
+    try:
+        content.decode()
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        raise LogError(located(f"is not UTF-8 text at line {line}", path=path, valid="a CSV")) from error
     ragged: list[pa_csv.InvalidRow] = []
 
     def collect(row: pa_csv.InvalidRow) -> str:
@@ -68,16 +73,15 @@ def _read_csv(path: Path, notes: list[Note]) -> pa.Table:
     try:
         table = pa_csv.read_csv(
             pa.BufferReader(content),
-            # Ragged rows are numbered only when one thread reads; files this small lose little.
             read_options=pa_csv.ReadOptions(block_size=2**22, use_threads=True),
             parse_options=pa_csv.ParseOptions(invalid_row_handler=collect),
             convert_options=pa_csv.ConvertOptions(strings_can_be_null=True, null_values=["", "nan", "NaN", "null"]),
         )
-    except (pa.ArrowInvalid, pa.ArrowKeyError, UnicodeDecodeError) as error:
+    except (pa.ArrowInvalid, pa.ArrowKeyError) as error:
         reason = str(error).splitlines()[0]
         raise LogError(located(f"is not a readable CSV: {reason}", path=path)) from error
     if ragged:
-        if len(ragged) > 1 or not content.rstrip().endswith(ragged[0].text.encode().rstrip()):
+        if len(ragged) > 1 or content.rstrip().rsplit(b"\n", 1)[-1] != ragged[0].text.encode().rstrip():
             row = ragged[0]
             message = f"a row has {row.actual_columns} values where the header has {row.expected_columns}: "
             raise LogError(located(message + row.text[:40] + "...", path=path))

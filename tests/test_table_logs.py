@@ -1,0 +1,241 @@
+"""Table logs: three formats read alike, and every way they can be broken gives one line or a note."""
+
+from __future__ import annotations
+
+import gzip
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pa_parquet
+import pytest
+from biped import record, sway
+
+from plantar.errors import LogError
+from plantar.log import MotionLog
+from plantar.readers import motion_name, open_log
+
+HEADER = "time,joint.a.position,wrench.left.force.z"
+
+
+def csv_text(rows: int = 5, header: str = HEADER) -> str:
+    columns = header.count(",")
+    lines = [",".join([f"{0.01 * i:.2f}", *(f"{i + 0.25 * c}" for c in range(columns))]) for i in range(rows)]
+    return "\n".join([header, *lines]) + "\n"
+
+
+def write(folder: Path, content: str | bytes, name: str = "log.csv") -> Path:
+    path = folder / name
+    path.write_bytes(content.encode() if isinstance(content, str) else content)
+    return path
+
+
+def refusal(folder: Path, content: str | bytes, name: str = "log.csv") -> str:
+    """The one line with which a log is refused; it names the file."""
+    path = write(folder, content, name)
+    with pytest.raises(LogError) as caught:
+        open_log(path)
+    message = str(caught.value)
+    assert "\n" not in message
+    assert name in message
+    return message
+
+
+def codes(log: MotionLog) -> list[str]:
+    return [note.code for note in log.notes]
+
+
+def as_csv(log: MotionLog) -> str:
+    names = list(log.columns)
+    rows = np.column_stack([log.time, *(log.columns[name] for name in names)])
+    return "\n".join([",".join(["time", *names]), *(",".join(map(repr, row)) for row in rows.tolist())]) + "\n"
+
+
+def test_csv_gzip_and_parquet_read_alike(tmp_path: Path) -> None:
+    original = record(sway(duration=1.0))
+    text = as_csv(original)
+    plain = write(tmp_path, text, "a.csv")
+    zipped = write(tmp_path, gzip.compress(text.encode()), "b.csv.gz")
+    parquet = tmp_path / "c.parquet"
+    pa_parquet.write_table(pa.table({"time": original.time, **original.columns}), parquet)
+    for path in (plain, zipped, parquet):
+        log = open_log(path)
+        assert log.name == path.name[0]
+        assert log.path == path
+        assert log.sha256 is not None
+        assert len(log.sha256) == 64
+        assert log.notes == ()
+        np.testing.assert_array_equal(log.time, original.time)
+        assert set(log.columns) == set(original.columns)
+        for name, values in original.columns.items():
+            np.testing.assert_array_equal(log.columns[name], values, err_msg=f"{path.name} {name}")
+
+
+def test_columns_may_stand_in_any_order_and_have_windows_ends(tmp_path: Path) -> None:
+    text = "joint.a.position,time\r\n1,0\r\n2,0.5\r\n3,1\r\n"
+    log = open_log(write(tmp_path, text))
+    np.testing.assert_array_equal(log.time, [0, 0.5, 1])
+    np.testing.assert_array_equal(log.column("joint.a.position"), [1, 2, 3])
+
+
+def test_a_byte_order_mark_is_no_part_of_the_first_name(tmp_path: Path) -> None:
+    assert len(open_log(write(tmp_path, b"\xef\xbb\xbf" + csv_text().encode()))) == 5
+
+
+@pytest.mark.parametrize("hole", ["", "nan", "NaN", "null"])
+def test_empty_cells_are_nan(tmp_path: Path, hole: str) -> None:
+    log = open_log(write(tmp_path, f"time,joint.a.position\n0,1\n0.1,{hole}\n0.2,3\n"))
+    np.testing.assert_array_equal(log.column("joint.a.position"), [1, np.nan, 3])
+
+
+def test_infinities_are_numbers_that_nothing_trips_over(tmp_path: Path) -> None:
+    log = open_log(write(tmp_path, "time,joint.a.position\n0,1\n0.1,inf\n0.2,-inf\n"))
+    assert np.isinf(log.column("joint.a.position")[1:]).all()
+
+
+def test_columns_of_no_known_name_are_left_with_a_note(tmp_path: Path) -> None:
+    header = "time,joint.a.position,battery,joint.a.temperature,wrench.left.force.w"
+    log = open_log(write(tmp_path, csv_text(header=header)))
+    assert list(log.columns) == ["joint.a.position"]
+    assert codes(log) == ["columns_ignored"]
+    for name in ("battery", "joint.a.temperature", "wrench.left.force.w"):
+        assert name in log.notes[0].text
+
+
+def test_a_text_among_ignored_columns_does_no_harm(tmp_path: Path) -> None:
+    log = open_log(write(tmp_path, "time,label,joint.a.position\n0,walk,1\n0.1,stand,2\n"))
+    np.testing.assert_array_equal(log.column("joint.a.position"), [1, 2])
+
+
+def test_missing_duplicate_and_texty_columns(tmp_path: Path) -> None:
+    assert "column 'time': is missing" in refusal(tmp_path, "t,joint.a.position\n0,1\n0.1,2\n")
+    twice = refusal(tmp_path, "time,joint.a.position,joint.a.position\n0,1,2\n0.1,2,3\n")
+    assert "column 'joint.a.position': stands twice" in twice
+    texty = refusal(tmp_path, "time,joint.a.position\n0,1\n0.1,2\n0.2,off\n")
+    assert "column 'joint.a.position', t = 0.2 s, value 'off': is not a number" in texty
+    texty = refusal(tmp_path, "time,joint.a.position\n0,1\nsoon,2\n0.2,3\n")
+    assert "column 'time', value 'soon'" in texty
+
+
+def test_time_that_does_not_increase(tmp_path: Path) -> None:
+    message = refusal(tmp_path, "time,joint.a.position\n0,1\n0.1,2\n0.1,3\n0.05,4\n0.2,5\n")
+    assert "column 'time'" in message
+    assert "does not increase" in message
+    assert "t = 0.1 s" in message, message
+    assert "time" in refusal(tmp_path, "time,joint.a.position\n3,1\n2,2\n1,3\n")
+
+
+def test_a_stray_time_is_left_out_with_a_note(tmp_path: Path) -> None:
+    rows = [f"{0.01 * i:.2f},{i}" for i in range(300)]
+    rows[100] = "0.00,100"
+    log = open_log(write(tmp_path, "time,joint.a.position\n" + "\n".join(rows) + "\n"))
+    assert len(log) == 299
+    assert codes(log) == ["time_order"]
+    assert "0.99" in log.notes[0].text
+    assert 100 not in log.column("joint.a.position")
+
+
+def test_empty_files(tmp_path: Path) -> None:
+    assert "is empty" in refusal(tmp_path, "")
+    assert "is empty" in refusal(tmp_path, " \n\n")
+    assert "no samples" in refusal(tmp_path, HEADER + "\n")
+    assert "fewer than two samples" in refusal(tmp_path, HEADER + "\n0,1,2\n")
+    assert "is empty" in refusal(tmp_path, gzip.compress(b""), "log.csv.gz")
+    refusal(tmp_path, b"", "log.csv.gz")
+    assert "Parquet" in refusal(tmp_path, b"", "log.parquet")
+
+
+def test_a_file_cut_in_the_middle_of_a_row(tmp_path: Path) -> None:
+    log = open_log(write(tmp_path, csv_text() + "0.05,7"))
+    assert len(log) == 5
+    assert codes(log) == ["file_cut"]
+    log = open_log(write(tmp_path, csv_text() + "0.05,7\n"))
+    assert len(log) == 5
+    assert codes(log) == ["file_cut"]
+
+
+def test_a_file_cut_in_the_middle_of_a_number_loses_that_row(tmp_path: Path) -> None:
+    text = csv_text() + "0.05,123.456,789.125"
+    for cut in range(1, 8):
+        log = open_log(write(tmp_path, text[:-cut]))
+        assert len(log) == 5, text[:-cut][-20:]
+        assert codes(log) == ["file_cut"]
+
+
+def test_a_last_line_without_an_end_of_line_is_left_out_with_a_note(tmp_path: Path) -> None:
+    """Nobody can tell 12.5 from 12.59 cut short."""
+    log = open_log(write(tmp_path, csv_text().rstrip("\n")))
+    assert len(log) == 4
+    assert codes(log) == ["file_cut"]
+
+
+def test_a_file_cut_within_its_header(tmp_path: Path) -> None:
+    refusal(tmp_path, "time,joint.a.posi")
+
+
+def test_a_gzip_stream_cut_anywhere_gives_its_whole_lines(tmp_path: Path) -> None:
+    random = np.random.default_rng(0)
+    rows = [f"{0.01 * i:.2f},{random.normal()},{random.normal()}" for i in range(400)]
+    whole = gzip.compress("\n".join([HEADER, *rows, ""]).encode())
+    lengths = []
+    for share in (0.5, 0.9, 0.999):
+        log = open_log(write(tmp_path, whole[: int(share * len(whole))], "log.csv.gz"))
+        assert "file_cut" in codes(log)
+        expected = [float(row.split(",")[1]) for row in rows[: len(log)]]
+        np.testing.assert_array_equal(log.column("joint.a.position"), expected)
+        lengths.append(len(log))
+    assert 100 < lengths[0] < lengths[1] < lengths[2] <= 400
+
+
+def test_several_gzip_members_are_one_file(tmp_path: Path) -> None:
+    first, second = csv_text(4), "0.10,1,2\n0.20,3,4\n"
+    log = open_log(write(tmp_path, gzip.compress(first.encode()) + gzip.compress(second.encode()), "log.csv.gz"))
+    assert len(log) == 6
+
+
+def test_files_that_are_not_what_they_say(tmp_path: Path) -> None:
+    assert "gzip" in refusal(tmp_path, csv_text(), "log.csv.gz")
+    damaged = bytearray(gzip.compress(csv_text(200).encode()))
+    damaged[len(damaged) // 2] ^= 0xFF
+    assert "gzip" in refusal(tmp_path, bytes(damaged), "log.csv.gz")
+    assert "Parquet" in refusal(tmp_path, csv_text(), "log.parquet")
+    assert "not UTF-8 text at line 2" in refusal(tmp_path, bytes(range(1, 256)) * 8)
+
+
+def test_a_cut_parquet_file_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "whole.parquet"
+    pa_parquet.write_table(pa.table({"time": [0.0, 0.1], "joint.a.position": [1.0, 2.0]}), path)
+    assert "Parquet" in refusal(tmp_path, path.read_bytes()[:-10], "log.parquet")
+
+
+def test_a_ragged_row_in_the_middle_is_an_error(tmp_path: Path) -> None:
+    lines = csv_text(8).splitlines()
+    lines[4] += ",99"
+    message = refusal(tmp_path, "\n".join(lines) + "\n")
+    assert "4 values where the header has 3" in message
+    lines[4] = "0.03,1"
+    assert "2 values where the header has 3" in refusal(tmp_path, "\n".join(lines) + "\n")
+    lines[4] = lines[-1].split(",")[-1]  # as the last row ends, but not the last row
+    assert "1 values where the header has 3" in refusal(tmp_path, "\n".join(lines) + "\n")
+
+
+def test_unknown_endings_and_missing_files(tmp_path: Path) -> None:
+    assert ".csv" in refusal(tmp_path, "x", "log.xlsx")
+    with pytest.raises(LogError, match=r"nowhere\.csv: does not exist"):
+        open_log(tmp_path / "nowhere.csv")
+    folder = tmp_path / "folder.csv"
+    folder.mkdir()
+    with pytest.raises(LogError, match=r"folder\.csv"):
+        open_log(folder)
+
+
+def test_motions_are_named_by_files() -> None:
+    assert motion_name(Path("a/tilt_C.csv.gz")) == "tilt_C"
+    assert motion_name(Path("Tilt.3.CSV")) == "Tilt.3"
+    assert motion_name(Path("squat.parquet")) == "squat"
+
+
+def test_real_logs_read(shared_data: Path) -> None:
+    log = open_log(shared_data / "icub_walking" / "walking.csv.gz")
+    assert 85 < log.duration < 93
+    assert log.period == pytest.approx(0.01, rel=0.05)
