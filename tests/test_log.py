@@ -1,0 +1,126 @@
+"""A recording in memory: immutable, whole, and clear about what it lacks."""
+
+from __future__ import annotations
+
+from dataclasses import FrozenInstanceError
+
+import numpy as np
+import pytest
+from biped import record, sway
+
+from plantar.errors import LogError
+from plantar.log import COLUMN, MotionLog
+from plantar.notes import Note
+from plantar.robot import RobotModel
+
+
+def make(**columns: list[float]) -> MotionLog:
+    named = {name.replace("__", "."): np.array(values) for name, values in columns.items()}
+    return MotionLog("tilt", np.arange(3) * 0.1, named)
+
+
+def test_a_log_cannot_be_changed() -> None:
+    position, time = np.array([1.0, 2.0, 3.0]), np.arange(3) * 0.1
+    log = MotionLog("tilt", time, {"joint.a.position": position})
+    with pytest.raises(ValueError, match="read-only"):
+        log.time[0] = 5.0
+    with pytest.raises(ValueError, match="read-only"):
+        log.column("joint.a.position")[0] = 5.0
+    with pytest.raises(TypeError):
+        log.columns["joint.b.position"] = position  # type: ignore[index]
+    with pytest.raises(FrozenInstanceError):
+        log.name = "other"  # type: ignore[misc]
+    position[0], time[0] = 9.0, -9.0
+    assert log.column("joint.a.position")[0] == 1.0, "the caller's arrays are not shared"
+    assert log.time[0] == 0.0
+    assert position.flags.writeable, "and stay the caller's own"
+
+
+def test_values_become_float64() -> None:
+    log = MotionLog("tilt", np.arange(3), {"joint.a.position": np.array([1, 2, 3], dtype=np.float32)})
+    assert log.time.dtype == log.column("joint.a.position").dtype == np.float64
+
+
+def test_lengths_and_time_are_checked() -> None:
+    with pytest.raises(LogError, match=r"tilt, column 'joint\.a\.position': has 2 values where time has 3"):
+        make(joint__a__position=[1.0, 2.0])
+    for bad in ([0.0, 0.0, 1.0], [0.0, 2.0, 1.0], [0.0, np.nan, 1.0]):
+        with pytest.raises(LogError, match=r"column 'time', t = .* does not increase"):
+            MotionLog("tilt", np.array(bad), {})
+    with pytest.raises(LogError, match="fewer than two samples"):
+        MotionLog("tilt", np.array([0.0]), {})
+
+
+def test_a_missing_column_is_named_with_its_neighbours() -> None:
+    log = make(joint__knee__position=[1.0, 2.0, 3.0])
+    with pytest.raises(LogError, match=r"column 'joint\.kne\.position': is missing \(valid: the log has joint\.knee\.position\)"):
+        log.column("joint.kne.position")
+    assert log.has("joint.knee.position")
+    assert not log.has("joint.knee.position", "joint.hip.position")
+    assert log.joint("knee", "effort") is None
+
+
+def test_vectors_are_stacked_in_the_contracts_order() -> None:
+    parts = [f"wrench.left.{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz"]
+    log = MotionLog("tilt", np.arange(3.0), {name: np.full(3, float(i)) for i, name in enumerate(reversed(parts))})
+    np.testing.assert_array_equal(log.wrench("left")[0], [5, 4, 3, 2, 1, 0])
+    assert log.orientation("chest") is None
+    partial = MotionLog("tilt", np.arange(3.0), {"imu.chest.orientation.w": np.ones(3)})
+    with pytest.raises(LogError, match=r"imu\.chest\.orientation\.x"):
+        partial.orientation("chest")
+
+
+def test_duration_and_period_survive_a_gap() -> None:
+    time = np.concatenate([np.arange(10), np.arange(10) + 100]) * 0.01
+    log = MotionLog("tilt", time, {})
+    assert log.period == pytest.approx(0.01)
+    assert log.duration == pytest.approx(1.09)
+    assert len(log) == 20
+
+
+def test_positions_follow_the_robot_and_missing_joints_stand_at_zero(robot: RobotModel) -> None:
+    log = record(sway(duration=1.0))
+    kept = {name: values for name, values in log.columns.items() if "neck" not in name and "right_ankle_roll" not in name}
+    log = MotionLog(log.name, log.time, {**kept, "joint.tail.position": log.time, "joint.neck.effort": log.time})
+    positions = log.positions(robot)
+    assert positions.shape == (len(log), len(robot.joint_names))
+    for place, name in enumerate(robot.joint_names):
+        expected = log.columns.get(f"joint.{name}.position", np.zeros(len(log)))
+        np.testing.assert_array_equal(positions[:, place], expected)
+    notes = {note.code: note.text for note in log.joint_notes(robot)}
+    assert set(notes) == {"joint_missing", "joint_unknown"}
+    assert "neck" in notes["joint_missing"]
+    assert "right_ankle_roll" in notes["joint_missing"]
+    assert "tail" in notes["joint_unknown"]
+    assert "neck" not in notes["joint_unknown"]
+
+
+def test_selecting_and_adding_leave_the_original_alone() -> None:
+    log = make(joint__a__position=[1.0, 2.0, 3.0])
+    part = log.select(slice(1, 3))
+    assert len(part) == 2
+    assert part.column("joint.a.position")[0] == 2.0
+    assert len(log.select(np.array([True, False, True]))) == 2
+    more = log.with_columns({"joint.a.effort": np.ones(3)}, Note("why", "info", "because"))
+    assert more.has("joint.a.effort")
+    assert not log.has("joint.a.effort")
+    assert [note.code for note in more.notes] == ["why"]
+    assert log.notes == ()
+
+
+@pytest.mark.parametrize(
+    ("name", "known"),
+    [
+        ("joint.leg_left_1.position", True),
+        ("joint.a.b.acceleration", True),
+        ("imu.chest.orientation.w", True),
+        ("imu.chest.angular_velocity.w", False),
+        ("wrench.l.torque.z", True),
+        ("wrench.l.torque", False),
+        ("joint..position", False),
+        ("Joint.a.position", False),
+        ("joint.a.position ", False),
+    ],
+)
+def test_the_contracts_column_names(name: str, known: bool) -> None:
+    assert bool(COLUMN.fullmatch(name)) == known
