@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pinocchio as pin
 
-from plantar.conventions import GRAVITY, rotation_from_quaternion
+from plantar.conventions import GRAVITY, Array, rotation_from_quaternion
 from plantar.log import MotionLog
 from plantar.robot import RobotModel
 
-SAMPLES = 200  # spread over the log: enough to tell
+SAMPLES = 50  # spread over the log: enough to tell
 BETTER = 0.5  # share of the misfit that must be left after the exchange
 NOTABLE = 0.02  # m: a lever below it is within the model's own error
 
@@ -32,16 +32,17 @@ def swapped_feet(robot: RobotModel, log: MotionLog) -> bool:
     rows = np.flatnonzero(loaded)[:: max(1, int(loaded.sum() // SAMPLES))]
     if rows.size < 10:
         return False
-    levers = np.array([_levers(robot, positions[i], orientation[i], [w[i] for w in wrenches]) for i in rows])
+    data = robot.model.createData()
+    levers = np.array([_levers(robot, data, positions[i], orientation[i], [w[i] for w in wrenches]) for i in rows])
     as_is, exchanged = np.sqrt(np.mean(levers**2, axis=0))
     return bool(as_is > NOTABLE and exchanged < BETTER * as_is)
 
 
 def _levers(
-    robot: RobotModel, position: np.ndarray, orientation: np.ndarray, wrenches: list[np.ndarray]  # type: ignore[type-arg]
+    robot: RobotModel, data: pin.Data, position: Array, orientation: Array, wrenches: list[Array]
 ) -> tuple[float, float]:
     """Lever of the total wrench about the centre of mass, as recorded and with the feet exchanged [m]."""
-    model, data = robot.model, robot.model.createData()
+    model = robot.model
     configuration = pin.neutral(model)
     for joint, angle in enumerate(position, start=1):
         at = model.idx_qs[joint]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import signal
+from scipy import fft
 
 from plantar.conventions import Array, Mask
 from plantar.log import MotionLog
@@ -14,6 +14,7 @@ from plantar.notes import Note
 GAP_PERIODS = 3.5  # a step of time longer than this many periods is a gap
 JITTER_SHARE = 0.25  # of a period: below it, samples count as evenly spaced
 FILTER_ORDER = 4  # Butterworth, run forth and back
+SHORTEST_RUN = 27  # samples
 
 
 @dataclass(frozen=True)
@@ -79,22 +80,35 @@ def runs(valid: Mask) -> list[slice]:
 
 
 def low_pass(values: Array, period: float, cutoff: float) -> Array:
-    """Zero-phase Butterworth low-pass of (N,) or (N, k) at `cutoff` [Hz], each run without NaN by itself.
+    """Zero-phase low-pass of (N,) or (N, k) at `cutoff` [Hz], each run without NaN by itself.
 
-    A cutoff at or above the Nyquist frequency changes nothing. Runs too short to filter become NaN.
+    The gain is a Butterworth filter's, run forth and back, 1 / (1 + (f / cutoff)^(2·order)), applied to the spectrum
+    of the run mirrored about its ends. A cutoff at or above the Nyquist frequency changes nothing; runs too short to
+    filter become NaN.
     """
-    nyquist = 0.5 / period
-    if cutoff >= 0.95 * nyquist:
+    if cutoff >= 0.95 * 0.5 / period:
         return values.copy()
-    sections = signal.butter(FILTER_ORDER, cutoff / nyquist, output="sos")
     padding = int(min(3 / cutoff / period, 10_000))
     flat = values.reshape(len(values), -1)
     result = np.full_like(flat, np.nan)
     for run in runs(np.isfinite(flat).all(axis=1)):
-        if run.stop - run.start > 3 * (2 * FILTER_ORDER + 1):
-            pad = min(padding, run.stop - run.start - 1)
-            result[run] = signal.sosfiltfilt(sections, flat[run], axis=0, padlen=pad)
+        if run.stop - run.start > SHORTEST_RUN:
+            result[run] = _filtered(flat[run], period, cutoff, min(padding, run.stop - run.start - 1))
     return result.reshape(values.shape)
+
+
+def _filtered(values: Array, period: float, cutoff: float, padding: int) -> Array:
+    """One run (n, k) through the low-pass, continued beyond both ends point-symmetrically."""
+    before = 2 * values[0] - values[padding:0:-1]
+    after = 2 * values[-1] - values[-2 : -padding - 2 : -1]
+    extended = np.vstack([before, values, after])
+    # What is left after the line between the ends is periodic: the spectrum of a jump would ring.
+    line = np.linspace(extended[0], extended[-1], len(extended))
+    length = fft.next_fast_len(len(extended), real=True)
+    spectrum = fft.rfft(extended - line, length, axis=0)
+    gain = 1 / (1 + (fft.rfftfreq(length, period) / cutoff) ** (2 * FILTER_ORDER))
+    smooth = fft.irfft(spectrum * gain[:, None], length, axis=0)[: len(extended)] + line
+    return np.asarray(smooth[padding : padding + len(values)])
 
 
 def differentiate(values: Array, period: float) -> Array:

@@ -9,7 +9,7 @@ J. Business & Economic Statistics 36, 2018), whose few degrees of freedom go int
 from __future__ import annotations
 
 import numpy as np
-from scipy import fft, stats
+from scipy import fft, special
 
 from plantar.conventions import Array
 
@@ -38,7 +38,7 @@ def pooled_freedom(variances: Array, freedoms: Array) -> Array:
 
 def interval95(value: float, std: float, freedom: float) -> tuple[float, float]:
     """Student's 95 % interval around `value` with `freedom` degrees of freedom."""
-    reach = float(stats.t.ppf(0.975, max(freedom, 1.0))) * std
+    reach = float(special.stdtrit(max(freedom, 1.0), 0.975)) * std
     return value - reach, value + reach
 
 

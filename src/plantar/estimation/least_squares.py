@@ -70,45 +70,43 @@ def fit_linear(blocks: Sequence[Block], *, shared_offset: bool = False) -> Linea
     With `shared_offset` one offset serves every recording, as in the paper; otherwise each has its own.
     """
     columns = blocks[0].regressor.shape[1]
-    offsets = 1 if shared_offset else len(blocks)
-    designs = [_design(block, 0 if shared_offset else i, offsets) for i, block in enumerate(blocks)]
-    parts = (TriangularFactor.of(x, block.response) for x, block in zip(designs, blocks, strict=True))
-    total = next(parts)
-    for part in parts:
-        total = total + part
+    size = columns + (1 if shared_offset else len(blocks))
+    places = [np.array([*range(columns), columns + (0 if shared_offset else i)]) for i in range(len(blocks))]
+    total = TriangularFactor(np.zeros((size + 1, size + 1)), 0)
+    for block, own in zip(blocks, places, strict=True):
+        total = total + TriangularFactor.of(_design(block), block.response).among(own, size)
     solution = total.solve()
-    residuals = [block.response - x @ solution for x, block in zip(designs, blocks, strict=True)]
+    residuals = [block.response - _design(block) @ solution[own] for block, own in zip(blocks, places, strict=True)]
     inverse = total.information_inverse()
-    covariance, freedom = _robust(designs, residuals, blocks, inverse)
+    covariance, freedom = _robust(blocks, places, residuals, inverse)
     variance = total.residual_norm**2 / max(total.rows - total.rank, 1)
-    of_block = [solution[columns + (0 if shared_offset else i)] for i in range(len(blocks))]
+    labels = [block.label for block in blocks]
     return LinearFit(
         values=solution[:columns],
-        offsets={block.label: float(value) for block, value in zip(blocks, of_block, strict=True)},
+        offsets={label: float(solution[own[-1]]) for label, own in zip(labels, places, strict=True)},
         covariance=covariance,
         white_covariance=variance * inverse,
         freedom=freedom,
-        residuals={block.label: residual for block, residual in zip(blocks, residuals, strict=True)},
+        residuals=dict(zip(labels, residuals, strict=True)),
         rank=total.rank,
         condition_number=total.condition_number,
         shared_offset=shared_offset,
     )
 
 
-def _design(block: Block, place: int, offsets: int) -> Array:
-    ones = np.zeros((len(block.response), offsets))
-    ones[:, place] = 1.0
-    return np.column_stack([block.regressor, ones])
+def _design(block: Block) -> Array:
+    """The block's regressor with its offset's column, (n, k + 1)."""
+    return np.column_stack([block.regressor, np.ones(len(block.response))])
 
 
 def _robust(
-    designs: Sequence[Array], residuals: Sequence[Array], blocks: Sequence[Block], inverse: Array
+    blocks: Sequence[Block], places: Sequence[Array], residuals: Sequence[Array], inverse: Array
 ) -> tuple[Array, Array]:
     """Sandwich covariance with the coloured scores of each recording inside, and degrees of freedom."""
     parts, freedoms = [], []
-    for design, residual, block in zip(designs, residuals, blocks, strict=True):
-        middle, freedom = cosine_covariance(design * residual[:, None], block.duration)
-        parts.append(inverse @ middle @ inverse)
+    for block, own, residual in zip(blocks, places, residuals, strict=True):
+        middle, freedom = cosine_covariance(_design(block) * residual[:, None], block.duration)
+        parts.append(inverse[:, own] @ middle @ inverse[own])
         freedoms.append(freedom)
     variances = np.array([np.diag(part) for part in parts])
     return np.sum(parts, axis=0), pooled_freedom(variances, np.array(freedoms, dtype=float))

@@ -35,6 +35,12 @@ class TriangularFactor:
         stacked = np.vstack([self.factor, other.factor])
         return TriangularFactor(np.linalg.qr(stacked, mode="r"), self.rows + other.rows)
 
+    def among(self, places: Array, size: int) -> TriangularFactor:
+        """The same rows as part of a problem with `size` parameters, of which these are the ones at `places` (k,)."""
+        wide = np.zeros((len(self.factor), size + 1))
+        wide[:, [*places, size]] = self.factor
+        return TriangularFactor(np.vstack([wide, np.zeros((size - self.size, size + 1))]), self.rows)
+
     @property
     def size(self) -> int:
         """Number of parameters k."""

@@ -127,11 +127,11 @@ def _parameters(
         return [
             Parameter(foot, axis, term, UNITS[term][axis], None, None, None, None, "unidentifiable", reason,
                       f"record motions in which the {foot} foot stands")
-            for term in KelvinVoigt.terms
+            for term in KelvinVoigt().terms
         ]  # fmt: skip
     evidence = _evidence(fit, recordings, foot, axis)
     rows = []
-    for place, term in enumerate(KelvinVoigt.terms):
+    for place, term in enumerate(KelvinVoigt().terms):
         value, std = float(fit.values[place]), float(fit.std[place])
         interval = interval95(value, std, float(fit.freedom[place]))
         verdict, reason, advice = judge(foot, axis, term, value, interval, evidence)

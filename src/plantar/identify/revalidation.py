@@ -43,7 +43,7 @@ def validate_feet(
     predictions: Predictions = {}
     for foot in sorted(feet):
         for axis in ROTATIONAL_AXES:
-            values = [_value(result, foot, axis, term) for term in KelvinVoigt.terms]
+            values = [_value(result, foot, axis, term) for term in KelvinVoigt().terms]
             if None not in values:
                 rows += score_axis(recordings, foot, axis, KelvinVoigt(), np.array(values, dtype=float), {}, predictions)
     if not rows:
