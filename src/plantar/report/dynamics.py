@@ -1,0 +1,175 @@
+"""The report of an inertia or joints identification (eq. 2 and 3): tables and notes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, Final
+
+from plantar.errors import PlantarError, located
+from plantar.files import write_text
+from plantar.report.content import Cell, Column, Figure, Section, Table
+from plantar.report.numbers import MISSING, interval, number, percent, unit, with_uncertainty
+from plantar.report.page import render
+from plantar.report.records import InertiaResult, JointsResult, Result, Row, checked, result_path
+from plantar.report.tables import input_table, settings_table, skill_cell, verdict_cell
+from plantar.report.verdict import listed
+from plantar.result import read_result
+
+INERTIA: Final = "plantar.inertia/1"
+JOINTS: Final = "plantar.joints/1"
+
+_HEADINGS: Final = {
+    "kind": "kind",
+    "motion": "motion",
+    "joint": "joint",
+    "axis": "axis",
+    "unit": "unit",
+    "mean_abs_error": "mean |error|",
+    "rms_error": "rms error",
+    "max_abs": "largest |value|",
+    "percent_of_max": "mean |error| of largest [%]",
+    "zero_mean_abs": "mean |error|, trivial predictor",
+    "relative_error_percent": "relative error [%]",
+}
+
+
+def write_dynamics_report(
+    result: Path,
+    out: Path | None = None,
+    *,
+    figures: Sequence[Figure] = (),
+    sections: Sequence[Section] = (),
+) -> Path:
+    """Write `report.html` for a `plantar.inertia/1` or `plantar.joints/1` result and return its path.
+
+    `result` is `result.json` or its directory; the page is one file that needs no network. Raises
+    `PlantarError` for a result that cannot be read.
+    """
+    path = result_path(Path(result))
+    content = read_result(path)
+    read: Result
+    if content["schema"] == INERTIA:
+        inertia = checked(content, InertiaResult, INERTIA, path)
+        read, subject, verdict, made = (
+            inertia,
+            "Inertial parameters",
+            _inertia_verdict(inertia),
+            _inertia(inertia),
+        )
+    elif content["schema"] == JOINTS:
+        joints = checked(content, JointsResult, JOINTS, path)
+        read, subject, verdict, made = joints, "Joint parameters", _joints_verdict(joints), [_joints(joints)]
+    else:
+        valid = f"{INERTIA} or {JOINTS}"
+        raise PlantarError(
+            located("is another kind of result", path=path, value=content["schema"], valid=valid)
+        )
+    made += [_validation(read)] if read.validation else []
+    page = render(
+        "dynamics.html.j2",
+        styles=["report.css"],
+        title=f"{subject} of {read.robot}",
+        result=read,
+        verdict=verdict,
+        tables=made,
+        sections=sections,
+        figures=figures,
+        appendix=[input_table(read.inputs), settings_table(read.settings)],
+    )
+    target = Path(out) if out is not None else path.parent / "report.html"
+    write_text(target, page)
+    return target
+
+
+def _inertia_verdict(result: InertiaResult) -> list[str]:
+    sentences = []
+    if result.rank is not None:
+        text = f"The logs determine {result.rank} base parameters"
+        if result.condition_number is not None:
+            text += f", with a condition number of {number(result.condition_number, 2)}"
+        sentences.append(f"{text}.")
+    return sentences + _prediction(result)
+
+
+def _joints_verdict(result: JointsResult) -> list[str]:
+    sentences = []
+    for verdict, lead in (("usable", "Trust"), ("weak", "Use with care"), ("unidentifiable", "Do not use")):
+        names = [
+            f"{row.joint} {row.name.replace('_', ' ')}" for row in result.parameters if row.verdict == verdict
+        ]
+        if names:
+            shown = names if len(names) <= 8 else [*names[:7], f"{len(names) - 7} more"]
+            sentences.append(f"{lead}: {listed(shown)}.")
+    return sentences + _prediction(result)
+
+
+def _prediction(result: Result) -> list[str]:
+    judged = [row for row in result.validation if row.has_skill is not None]
+    if not judged:
+        return []
+    better = sum(row.has_skill is True for row in judged)
+    return [f"The model beats the trivial predictor in {better} of {len(judged)} rows of the validation."]
+
+
+def _inertia(result: InertiaResult) -> list[Table]:
+    base = [
+        (row.expression, with_uncertainty(row.value, None if row.std is None else 1.96 * row.std),
+         number(row.std, 2), percent(row.relative_std_percent))
+        for row in result.base_parameters
+    ]  # fmt: skip
+    base_columns = (
+        Column("expression", numeric=False),
+        Column("value ± half of its 95 % interval"),
+        Column("std"),
+        Column("relative std"),
+    )
+    inertial = [
+        (row.link, row.name, unit(row.unit), number(row.value), number(row.cad),
+         MISSING if row.value is None or row.cad is None else number(row.value - row.cad, 3))
+        for row in result.inertial_parameters
+    ]  # fmt: skip
+    columns = [Column(name, numeric=False) for name in ("link", "parameter", "unit")]
+    columns += [Column(name) for name in ("identified", "CAD", "difference")]
+    return [
+        Table.of("Base parameters", base_columns, base, folded=len(base) > 40),
+        Table.of("Inertial parameters of each link", columns, inertial, folded=len(inertial) > 40),
+    ]
+
+
+def _joints(result: JointsResult) -> Table:
+    rows = [
+        (row.joint, row.name.replace("_", " "), unit(row.unit), number(row.value), number(row.std, 2),
+         interval(row.interval95), verdict_cell(row), row.reason or "")
+        for row in result.parameters
+    ]  # fmt: skip
+    columns = [Column(name, numeric=False) for name in ("joint", "parameter", "unit")]
+    columns += [Column(name) for name in ("value", "std", "95 % interval")]
+    columns += [Column(name, numeric=False) for name in ("verdict", "why")]
+    return Table.of("Joint parameters", columns, rows)
+
+
+def _validation(result: Result) -> Table:
+    """Every number that the rows bring, the known ones first: CAD's errors stand beside the model's."""
+    contents = [_content(row) for row in result.validation]
+    present = dict.fromkeys(key for content in contents for key in content)
+    keys = [key for key in _HEADINGS if key in present] + [key for key in present if key not in _HEADINGS]
+    numeric = {key for key in keys if any(isinstance(content.get(key), float) for content in contents)}
+    rows = []
+    for row, content in zip(result.validation, contents, strict=True):
+        cells = [Cell(_text(content.get(key))) for key in keys]
+        rows.append([*cells, skill_cell(row)])
+    columns = [Column(_HEADINGS.get(key, key.replace("_", " ")), numeric=key in numeric) for key in keys]
+    return Table.of("Validation", [*columns, Column("skill", numeric=False)], rows)
+
+
+def _content(row: Row) -> dict[str, Any]:
+    content = row.model_dump(exclude_none=True)
+    plain = {
+        key: value for key, value in content.items() if value != "" and isinstance(value, str | int | float)
+    }
+    return {key: float(value) if isinstance(value, int | float) else value for key, value in plain.items()}
+
+
+def _text(value: object) -> str:
+    return number(value, 3) if isinstance(value, float) else "" if value is None else str(value)

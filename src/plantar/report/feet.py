@@ -1,0 +1,68 @@
+"""The report of a feet identification: the verdict first, then tables, then every sample to look at."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from plantar.files import write_text
+from plantar.report import tables
+from plantar.report.content import Figure, Section, Table
+from plantar.report.motions import motion_views
+from plantar.report.page import render
+from plantar.report.records import FeetResult, checked, result_path
+from plantar.report.residuals import read_residuals, residuals_path
+from plantar.report.verdict import foot_verdicts, trust
+from plantar.result import FEET_SCHEMA, read_result
+
+
+def write_feet_report(
+    result: Path,
+    out: Path | None = None,
+    *,
+    figures: Sequence[Figure] = (),
+    sections: Sequence[Section] = (),
+) -> Path:
+    """Write `report.html` beside a `result.json` (or to `out`) and return its path.
+
+    `result` is the file or its directory. The residuals beside it (`residuals.parquet`, `.csv` or `.csv.gz`)
+    give the plots; without them the page has none and says so. `sections` come after the tables, `figures`
+    after the plots. The page is one file that needs no network. Raises `PlantarError` for a result or
+    residuals that cannot be read.
+    """
+    path = result_path(Path(result))
+    content = checked(read_result(path, FEET_SCHEMA), FeetResult, FEET_SCHEMA, path)
+    residuals = residuals_path(path.parent)
+    motions, stride = motion_views(content, read_residuals(residuals) if residuals is not None else ())
+    page = render(
+        "feet.html.j2",
+        styles=["uPlot.min.css", "report.css"],
+        scripts=["uPlot.iife.min.js", "payload.js", "colours.js", "plots.js", "loops.js", "report.js"],
+        title=f"The feet of {content.robot}",
+        result=content,
+        verdicts=foot_verdicts(content.parameters),
+        trust=trust(content),
+        diagnosis=content.diagnosis_lines,
+        tables=_tables(content),
+        sections=sections,
+        motions=motions,
+        stride=stride,
+        residuals=residuals,
+        figures=figures,
+        appendix=[tables.input_table(content.inputs), tables.settings_table(content.settings)],
+    )
+    target = Path(out) if out is not None else path.parent / "report.html"
+    write_text(target, page)
+    return target
+
+
+def _tables(result: FeetResult) -> list[Table]:
+    kinds = {row.kind for row in result.validation}
+    made = [tables.parameter_table(result.parameters)]
+    made += [
+        tables.validation_table(result.validation, kind) for kind in ("direct", "cross") if kind in kinds
+    ]
+    made += tables.comparison_tables(result)
+    made += [tables.offset_table(result.offsets)] if result.offsets else []
+    made += [tables.served_table(result.phases)] if result.phases else []
+    return made

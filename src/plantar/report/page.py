@@ -1,0 +1,84 @@
+"""One HTML file that needs nothing else: scripts and styles inside, allowed by their hash, the network
+forbidden.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import json
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, Final
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup
+
+_HERE: Final = Path(__file__).parent
+_VENDORED: Final = {"uPlot.iife.min.js", "uPlot.min.css"}
+
+
+def render(template: str, *, styles: Sequence[str], scripts: Sequence[str] = (), **context: Any) -> str:
+    """The page of `templates/<template>` with the named style sheets and scripts inside.
+
+    Everything in `context` is escaped by the template; nothing of it can become a script, because the page's
+    content policy lists the hashes of exactly these scripts and styles.
+    """
+    style_texts = [_asset(name) for name in styles]
+    script_texts = [_asset(name) for name in scripts]
+    environment = Environment(
+        loader=FileSystemLoader(_HERE / "templates"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["embed"] = embed
+    page = environment.get_template(template)
+    return page.render(
+        styles=[Markup(text) for text in style_texts],
+        scripts=[Markup(text) for text in script_texts],
+        policy=content_policy(script_texts, style_texts),
+        **context,
+    )
+
+
+def content_policy(scripts: Sequence[str], styles: Sequence[str]) -> str:
+    """The page's Content-Security-Policy: these scripts and styles, embedded pictures, nothing else."""
+    return "; ".join(
+        [
+            "default-src 'none'",
+            " ".join(["script-src", *map(_hashed, scripts)]) if scripts else "script-src 'none'",
+            " ".join(["style-src", *map(_hashed, styles)]),
+            "img-src data:",
+            "base-uri 'none'",
+            "form-action 'none'",
+        ]
+    )
+
+
+def embed(data: Any) -> Markup:
+    """JSON for a data block inside HTML: no `<`, `>` or `&`, ASCII only, null for NaN and infinity."""
+    text = json.dumps(_finite(data), ensure_ascii=True, allow_nan=False, separators=(",", ":"))
+    return Markup(text.replace("&", r"\u0026").replace("<", r"\u003c").replace(">", r"\u003e"))
+
+
+def _asset(name: str) -> str:
+    folder = "vendor" if name in _VENDORED else "templates"
+    return (_HERE / folder / name).read_text(encoding="utf-8")
+
+
+def _hashed(text: str) -> str:
+    digest = hashlib.sha256(text.encode()).digest()
+    return f"'sha256-{base64.b64encode(digest).decode('ascii')}'"
+
+
+def _finite(data: Any) -> Any:
+    if isinstance(data, float) and not math.isfinite(data):
+        return None
+    if isinstance(data, dict):
+        return {str(key): _finite(value) for key, value in data.items()}
+    if isinstance(data, list | tuple):
+        return [_finite(value) for value in data]
+    return data

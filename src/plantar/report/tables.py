@@ -1,0 +1,209 @@
+"""The tables of a feet report: the paper's table 1 to 3 with what they leave out beside them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import PurePath
+from typing import Any
+
+from plantar.report.content import Cell, Column, Table
+from plantar.report.numbers import MISSING, interval, number, percent, unit, with_uncertainty
+from plantar.report.records import Comparison, FeetResult, Input, Offset, Parameter, Phase, Validation
+from plantar.report.verdict import MARKS, symbol, why_of
+
+
+def parameter_table(parameters: Sequence[Parameter]) -> Table:
+    """Table 1: every parameter with its deviation, interval and verdict."""
+    rows = [
+        (
+            row.foot,
+            row.axis,
+            Cell(symbol(row.name), hover=row.name),
+            unit(row.unit),
+            number(row.value),
+            number(row.std, 2),
+            interval(row.interval95),
+            percent(row.relative_std_percent),
+            verdict_cell(row),
+            why_of(row),
+        )
+        for row in parameters
+    ]
+    columns = (
+        Column("foot", numeric=False),
+        Column("axis", numeric=False),
+        Column("parameter", numeric=False),
+        Column("unit", numeric=False),
+        Column("value"),
+        Column("std"),
+        Column("95 % interval"),
+        Column("relative std, as in the paper"),
+        Column("verdict", numeric=False),
+        Column("why", numeric=False),
+    )
+    remark = (
+        "Trust std and the interval: they allow for residuals that are alike from sample to sample. The "
+        "paper's relative deviation takes residuals for white noise and is far too small; here to compare."
+    )
+    return Table.of("Table 1. Identified parameters", columns, rows, remark=remark)
+
+
+def verdict_cell(row: Parameter) -> Cell:
+    return Cell(row.verdict or MISSING, MARKS.get(row.verdict, ""), row.reason or "")
+
+
+def offset_table(offsets: Sequence[Offset]) -> Table:
+    """Offsets, one line a motion, a column for each foot and axis."""
+    keys = list(dict.fromkeys((row.foot, row.axis, row.unit) for row in offsets))
+    found = {(row.motion, row.foot, row.axis): row for row in offsets}
+    rows: list[list[Cell | str]] = []
+    for motion in dict.fromkeys(row.motion for row in offsets):
+        line: list[Cell | str] = [motion]
+        for foot, axis, _ in keys:
+            row = found.get((motion, foot, axis))
+            half = None if row is None or row.std is None else 1.96 * row.std
+            line.append(MISSING if row is None else with_uncertainty(row.value, half))
+        rows.append(line)
+    columns = [Column("motion", numeric=False)]
+    columns += [Column(f"{foot} {axis}", unit(name)) for foot, axis, name in keys]
+    remark = "Zeros of sensors in each recording, not a property of the foot; ± is half of the 95 % interval."
+    return Table.of("Offsets of each motion", columns, rows, remark=remark)
+
+
+def validation_table(validation: Sequence[Validation], kind: str) -> Table:
+    """Table 2 (`direct`) or table 3 (`cross`), the trivial predictor beside the model."""
+    rows = [
+        (
+            row.motion,
+            row.foot,
+            "z [N]" if row.axis == "z" else row.axis,
+            number(row.mean_abs_error, 3),
+            number(row.rms_error, 3),
+            number(row.max_abs, 3),
+            percent(row.percent_of_max),
+            number(row.zero_mean_abs, 3),
+            skill_cell(row),
+        )
+        for row in validation
+        if row.kind == kind
+    ]
+    columns = (
+        Column("motion", numeric=False),
+        Column("foot", numeric=False),
+        Column("axis", numeric=False),
+        Column("mean |error|", "N·m"),
+        Column("rms error", "N·m"),
+        Column("largest |torque|", "N·m"),
+        Column("mean |error| of largest"),
+        Column("mean |error| of the offset alone", "N·m"),
+        Column("skill", numeric=False),
+    )
+    title = {
+        "direct": "Table 2. Direct validation: the motions that served the fit",
+        "cross": "Table 3. Cross-validation: motions that the fit has not seen",
+    }[kind]
+    remark = "A model that does not beat its own offset has learnt nothing."
+    if kind == "cross":
+        remark += " The unseen motion's offset comes from its first second, which is left out of the score."
+    return Table.of(title, columns, rows, remark=remark)
+
+
+def skill_cell(row: Validation) -> Cell:
+    """How much smaller the error is than the trivial predictor's."""
+    if row.has_skill is None or row.mean_abs_error is None or not row.zero_mean_abs:
+        return Cell(MISSING)
+    share = 100 * (1 - row.mean_abs_error / row.zero_mean_abs)
+    if not row.has_skill:
+        return Cell("none", "bad", "the trivial predictor does as well or better")
+    return Cell(f"{share:.0f} % better", "good" if share >= 50 else "weak")
+
+
+def comparison_tables(result: FeetResult) -> list[Table]:
+    """For each comparison its parameters and its errors beside the result's."""
+    return [table for other in result.comparisons for table in _comparison(result, other)]
+
+
+def _comparison(result: FeetResult, other: Comparison) -> list[Table]:
+    theirs = {(row.foot, row.axis, row.name): row for row in other.parameters}
+    rows = []
+    for ours in result.parameters:
+        row = theirs.get((ours.foot, ours.axis, ours.name))
+        if row is None:
+            continue
+        change = (
+            100 * (row.value - ours.value) / abs(ours.value) if row.value is not None and ours.value else None
+        )
+        text = with_uncertainty(ours.value, ours.half_width)
+        against = with_uncertainty(row.value, row.half_width)
+        signed = MISSING if change is None else f"{change:+.1f} %".replace("-", "−")
+        rows.append((ours.foot, ours.axis, symbol(ours.name), unit(ours.unit), text, against, signed))
+    names = ("foot", "axis", "parameter", "unit")
+    columns = [Column(name, numeric=False) for name in names]
+    columns += [Column("this result"), Column(other.name), Column("difference")]
+    tables = [Table.of(f"Compared: {other.name}, parameters", columns, rows)] if rows else []
+    scores = {(row.kind, row.motion, row.foot, row.axis): row for row in other.validation}
+    lines = []
+    for score in result.validation:
+        match = scores.get((score.kind, score.motion, score.foot, score.axis))
+        if match is not None:
+            ours_text, theirs_text = number(score.mean_abs_error, 3), number(match.mean_abs_error, 3)
+            offset = number(score.zero_mean_abs, 3)
+            lines.append((score.kind, score.motion, score.foot, score.axis, ours_text, theirs_text, offset))
+    heads = [Column(name, numeric=False) for name in ("kind", "motion", "foot", "axis")]
+    heads += [Column(name, "N·m") for name in ("this result", other.name, "offset alone")]
+    if lines:
+        tables.append(Table.of(f"Compared: {other.name}, mean |error|", heads, lines, folded=len(lines) > 24))
+    return tables
+
+
+def served_table(phases: Sequence[Phase]) -> Table:
+    """How much of each log served, and for what reasons the rest did not."""
+    rows = []
+    for motion, foot in dict.fromkeys((phase.motion, phase.foot) for phase in phases):
+        mine = [phase for phase in phases if (phase.motion, phase.foot) == (motion, foot)]
+        whole = sum(phase.end - phase.start for phase in mine)
+        used = sum(phase.end - phase.start for phase in mine if phase.used)
+        reasons: dict[str, float] = {}
+        for phase in mine:
+            if not phase.used:
+                why = phase.reason or phase.support
+                reasons[why] = reasons.get(why, 0.0) + phase.end - phase.start
+        why_not = "; ".join(f"{why} ({number(seconds, 3)} s)" for why, seconds in reasons.items())
+        share = percent(100 * used / whole) if whole > 0 else MISSING
+        rows.append((motion, foot, number(whole, 3), number(used, 3), share, why_not or "nothing left out"))
+    columns = (
+        Column("motion", numeric=False),
+        Column("foot", numeric=False),
+        Column("length", "s"),
+        Column("used", "s"),
+        Column("share"),
+        Column("left out because", numeric=False),
+    )
+    return Table.of("What served of each log", columns, rows)
+
+
+def input_table(inputs: Sequence[Input]) -> Table:
+    columns = [Column(name, numeric=False) for name in ("file", "role", "SHA-256")]
+    rows = [
+        (Cell(PurePath(row.path).name, hover=row.path), row.role, row.sha256 or MISSING) for row in inputs
+    ]
+    return Table.of("Inputs", columns, rows)
+
+
+def settings_table(settings: dict[str, Any]) -> Table:
+    """Settings with nested ones as `outer.inner`."""
+    rows = [(key, text) for key, text in _flat(settings, "")]
+    return Table.of("Settings", [Column("setting", numeric=False), Column("value", numeric=False)], rows)
+
+
+def _flat(settings: dict[str, Any], prefix: str, depth: int = 0) -> list[tuple[str, str]]:
+    lines: list[tuple[str, str]] = []
+    for key, value in settings.items():
+        if isinstance(value, dict) and value and depth < 4:
+            lines += _flat(value, f"{prefix}{key}.", depth + 1)
+        else:
+            lines.append(
+                (f"{prefix}{key}", value if isinstance(value, str) else json.dumps(value, ensure_ascii=False))
+            )
+    return lines

@@ -1,0 +1,116 @@
+"""The verdict in plain words: what to trust, what not, and why."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from plantar.report.content import Mark
+from plantar.report.numbers import unit, with_uncertainty
+from plantar.report.records import FeetResult, Parameter, Validation
+
+MARKS: Final[dict[str, Mark]] = {"usable": "good", "weak": "weak", "unidentifiable": "bad"}
+SYMBOLS: Final[dict[str, str]] = {"stiffness": "K", "damping": "C"}
+_ORDER: Final[dict[Mark, int]] = {"good": 0, "": 1, "weak": 2, "bad": 3}
+
+
+@dataclass(frozen=True)
+class Statement:
+    """One axis of one foot: a sentence, how it is marked, and what lies behind it."""
+
+    subject: str
+    text: str
+    mark: Mark
+    reasons: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class FootVerdict:
+    foot: str
+    statements: tuple[Statement, ...]
+
+
+def foot_verdicts(parameters: Sequence[Parameter]) -> tuple[FootVerdict, ...]:
+    """For each foot a statement per axis, in the result's order."""
+    feet = dict.fromkeys(parameter.foot for parameter in parameters)
+    return tuple(FootVerdict(foot, tuple(_statements(foot, parameters))) for foot in feet)
+
+
+def _statements(foot: str, parameters: Sequence[Parameter]) -> Iterable[Statement]:
+    rows = [parameter for parameter in parameters if parameter.foot == foot]
+    for axis in dict.fromkeys(row.axis for row in rows):
+        yield statement(f"{foot} {axis}", [row for row in rows if row.axis == axis])
+
+
+def statement(subject: str, rows: Sequence[Parameter]) -> Statement:
+    """`left pitch: K = 480 ± 1 N·m/rad, C = ... — usable`; a number that cannot be trusted is not given."""
+    marks = [MARKS.get(row.verdict, "") for row in rows]
+    worst = max(marks, key=lambda mark: _ORDER[mark])
+    verdicts = list(dict.fromkeys(row.verdict for row in rows if row.verdict))
+    alone = len(verdicts) == 1
+    text = ", ".join(_phrase(row, alone) for row in rows)
+    if alone and verdicts != ["unidentifiable"]:
+        text += f" — {verdicts[0]}"
+    behind: dict[str, list[str]] = {}
+    for row in rows:
+        if why := why_of(row):
+            behind.setdefault(why, []).append(symbol(row.name))
+    reasons = tuple(f"{listed(names)}: {why}" for why, names in behind.items())
+    return Statement(subject, text, worst, reasons)
+
+
+def symbol(name: str) -> str:
+    """K and C for stiffness and damping; a richer law's term by its name."""
+    return SYMBOLS.get(name, name.replace("_", " "))
+
+
+def _phrase(row: Parameter, alone: bool) -> str:
+    if row.verdict == "unidentifiable":
+        return f"{symbol(row.name)} cannot be told from these logs"
+    text = f"{symbol(row.name)} = {with_uncertainty(row.value, row.half_width)} {unit(row.unit)}"
+    return text if alone or not row.verdict else f"{text} ({row.verdict})"
+
+
+def why_of(row: Parameter) -> str:
+    """The verdict's reason and what to record next."""
+    return " — ".join(part for part in (row.reason, row.advice) if part)
+
+
+def trust(result: FeetResult) -> tuple[str, ...]:
+    """Sentences on what may be used, what only with care, what not, and how far the model predicts."""
+    sentences = []
+    for verdict, lead in (
+        ("usable", "Trust"),
+        ("weak", "Use with care"),
+        ("unidentifiable", "Do not use"),
+    ):
+        subjects: dict[str, list[str]] = {}
+        for row in result.parameters:
+            if row.verdict == verdict:
+                subjects.setdefault(f"{row.foot} {row.axis}", []).append(symbol(row.name))
+        if subjects:
+            sentences.append(
+                f"{lead}: {'; '.join(f'{name} {listed(terms)}' for name, terms in subjects.items())}."
+            )
+    sentences += [text for kind in ("cross", "direct") for text in _skill(result.validation, kind)]
+    return tuple(sentences)
+
+
+def _skill(validation: Sequence[Validation], kind: str) -> list[str]:
+    rows = [row for row in validation if row.kind == kind and row.has_skill is not None]
+    if not rows:
+        return ["No unseen motion was given, so nothing here is cross-validated."] if kind == "cross" else []
+    what = "On motions it has not seen" if kind == "cross" else "On the motions that it was fitted to"
+    failed = [f"{row.motion} {row.foot} {row.axis}" for row in rows if not row.has_skill]
+    beaten = f"{len(rows) - len(failed)} of {len(rows)}"
+    text = f"{what}, the model beats predicting the offset alone in {beaten} cases"
+    if not failed:
+        return [text + "."]
+    shown = failed if len(failed) <= 6 else [*failed[:5], f"{len(failed) - 5} more (marked in the table)"]
+    return [f"{text}; it has learnt nothing for {listed(shown)}."]
+
+
+def listed(names: Sequence[str]) -> str:
+    """`a`, `a and b`, `a, b and c`."""
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
