@@ -17,21 +17,33 @@ def attitude_from_inertial(angular_velocity: Array, acceleration: Array, period:
     The gyroscope is integrated to a frame that drifts slowly; in that frame the accelerometer's mean points up, and a
     zero-phase low-pass follows the drift. Yaw starts at 0 and drifts: nothing here may depend on it.
     """
-    increments = Rotation.from_rotvec(angular_velocity * period)
-    body = _accumulated(increments)
-    drifting = body.apply(acceleration)
+    # Between two samples the body turns at their mean rate; the earlier one alone would lag by half a period.
+    between = (angular_velocity[:-1] + angular_velocity[1:]) / 2
+    body = _accumulated(Rotation.from_rotvec(between * period)) if len(between) else Rotation.identity(1)
+    drifting = np.asarray(body.apply(np.array(acceleration)))
     if len(acceleration) * period > 2 / BLEND_FREQUENCY:
-        up = low_pass(drifting, period, BLEND_FREQUENCY)
+        up = _slow_part(drifting, period)
     else:
         up = np.broadcast_to(drifting.mean(axis=0), drifting.shape)
     up = up / np.linalg.norm(up, axis=1, keepdims=True)
     return np.asarray((_onto_vertical(up) * body).as_quat(scalar_first=True))
 
 
+def _slow_part(values: Array, period: float) -> Array:
+    """What of `values` (N, k) is slower than the blend: a straight line and the low-passed rest, mirrored at both ends.
+
+    Without line and mirror, a single sample's acceleration would decide the ends.
+    """
+    time = np.linspace(-1.0, 1.0, len(values))[:, None]
+    line = values.mean(axis=0) + time * (time * values).sum(axis=0) / (time**2).sum()
+    rest = values - line
+    mirrored = np.concatenate([rest[::-1], rest, rest[::-1]])
+    return np.asarray(line + low_pass(mirrored, period, BLEND_FREQUENCY)[len(values) : 2 * len(values)])
+
+
 def _accumulated(increments: Rotation) -> Rotation:
     """Orientation at each sample, starting from identity: products of all earlier increments, by doubling."""
-    total = Rotation.concatenate([Rotation.identity(), increments[:-1]]) if len(increments) > 1 else increments
-    quaternion = total.as_quat()
+    quaternion = Rotation.concatenate([Rotation.identity(), increments]).as_quat()
     step = 1
     while step < len(quaternion):
         head = Rotation.from_quat(quaternion[:-step]) * Rotation.from_quat(quaternion[step:])

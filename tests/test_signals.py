@@ -1,0 +1,170 @@
+"""Signals: filtering without lag, gaps that stay gaps, delays undone."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from biped import record, sway, times
+from scipy.spatial.transform import Rotation
+
+from plantar.log import MotionLog
+from plantar.signals import differentiate, evenly_sampled, interpolate, low_pass, runs, sampling, shifted
+
+PERIOD = 0.005
+TIME = np.arange(4000) * PERIOD
+
+
+def tone(hertz: float, phase: float = 0.0, time: np.ndarray = TIME) -> np.ndarray:
+    return np.sin(2 * np.pi * hertz * time + phase)
+
+
+@pytest.mark.parametrize("hertz", [0.2, 1.0, 3.0])
+def test_the_filter_has_no_lag(hertz: float) -> None:
+    middle = slice(500, -500)
+    filtered = low_pass(tone(hertz), PERIOD, 5.0)[middle]
+    in_phase = filtered @ tone(hertz)[middle]
+    quadrature = filtered @ tone(hertz, np.pi / 2)[middle]
+    assert abs(quadrature / in_phase) < 1e-3
+
+
+def test_the_filter_keeps_slow_and_removes_fast() -> None:
+    middle = slice(500, -500)
+    slow = low_pass(tone(0.5), PERIOD, 5.0)[middle]
+    np.testing.assert_allclose(slow, tone(0.5)[middle], atol=1e-5)
+    assert np.abs(low_pass(tone(20.0), PERIOD, 5.0)[middle]).max() < 1e-4
+    half = np.abs(low_pass(tone(5.0), PERIOD, 5.0)[middle]).max()
+    assert half == pytest.approx(0.5, abs=0.01), "forth and back: -6 dB at the cutoff"
+
+
+def test_the_filter_is_linear_and_keeps_constants() -> None:
+    """So a law between signals is a law between filtered signals, edges included."""
+    random = np.random.default_rng(0)
+    a, b = random.normal(size=(2, 1000))
+    both = low_pass(3 * a - 2 * b + 7, PERIOD, 5.0)
+    np.testing.assert_allclose(both, 3 * low_pass(a, PERIOD, 5.0) - 2 * low_pass(b, PERIOD, 5.0) + 7, atol=1e-12)
+
+
+def test_the_filter_treats_each_run_by_itself() -> None:
+    values = tone(0.5)
+    values[1000:1200] = np.nan
+    filtered = low_pass(values, PERIOD, 5.0)
+    assert np.isnan(filtered[1000:1200]).all()
+    np.testing.assert_allclose(filtered[:1000], low_pass(values[:1000], PERIOD, 5.0))
+    np.testing.assert_allclose(filtered[1200:], low_pass(values[1200:], PERIOD, 5.0))
+    np.testing.assert_allclose(filtered[100:900], tone(0.5)[100:900], atol=1e-3)
+
+
+def test_runs_too_short_to_filter_become_nan() -> None:
+    values = tone(0.5)
+    values[100:200] = np.nan
+    values[210:300] = np.nan
+    filtered = low_pass(values, PERIOD, 5.0)
+    assert np.isnan(filtered[100:300]).all()
+    assert np.isfinite(filtered[300:]).all()
+
+
+def test_columns_are_filtered_together_and_nan_spreads_over_them() -> None:
+    pair = np.column_stack([tone(0.5), tone(0.9)])
+    pair[50, 1] = np.nan
+    filtered = low_pass(pair, PERIOD, 5.0)
+    assert filtered.shape == pair.shape
+    assert np.isnan(filtered[50]).all()
+
+
+def test_a_cutoff_above_nyquist_changes_nothing() -> None:
+    noise = np.random.default_rng(0).normal(size=500)
+    np.testing.assert_array_equal(low_pass(noise, PERIOD, 100.0), noise)
+
+
+def test_differences_of_a_parabola() -> None:
+    slope = differentiate(TIME**2, PERIOD)
+    np.testing.assert_allclose(slope[1:-1], 2 * TIME[1:-1], atol=1e-10)
+    assert differentiate(np.array([1.0]), PERIOD).shape == (1,)
+
+
+def test_runs_are_the_stretches_of_true() -> None:
+    assert runs(np.array([1, 1, 0, 1, 0, 0, 1], dtype=bool)) == [slice(0, 2), slice(3, 4), slice(6, 7)]
+    assert runs(np.zeros(4, dtype=bool)) == []
+    assert runs(np.ones(4, dtype=bool)) == [slice(0, 4)]
+
+
+def test_sampling_describes_rate_jitter_and_gaps() -> None:
+    random = np.random.default_rng(1)
+    time = np.arange(2000) * 0.01 + random.normal(0, 0.0005, 2000)
+    time[1000:] += 2.0
+    described = sampling(MotionLog("a", np.sort(time), {}))
+    assert described.rate == pytest.approx(100, rel=0.01)
+    assert described.jitter == pytest.approx(0.0005 * np.sqrt(2), rel=0.1)
+    (start, end), = described.gaps
+    assert start == pytest.approx(time[999])
+    assert end == pytest.approx(time[1000])
+
+
+def test_an_even_log_is_left_alone() -> None:
+    log = record(sway(duration=2.0))
+    assert evenly_sampled(log) is log
+
+
+def test_jitter_is_resampled_to_interpolation_accuracy() -> None:
+    """Linear interpolation of a sine is wrong by at most (step²/8)·max|second derivative|."""
+    motion = sway(duration=10.0)
+    log = record(motion, at=times(motion, jitter=0.2, seed=4))
+    even = evenly_sampled(log)
+    assert [note.code for note in even.notes] == ["resampled"]
+    assert np.ptp(np.diff(even.time)) < 1e-9
+    exact = record(motion, at=even.time)
+    inside = slice(2, -2)
+    for name in ("joint.left_ankle_pitch.position", "imu.chest.angular_velocity.y", "wrench.left.torque.y"):
+        error = np.abs(even.column(name) - exact.column(name))[inside]
+        scale = np.ptp(exact.column(name))
+        assert 0 < error.max() < 2e-3 * scale, name
+
+
+def test_gaps_stay_gaps() -> None:
+    motion = sway(duration=10.0)
+    time = times(motion)
+    log = record(motion, at=time[(time < 4.0) | (time > 5.0)])
+    even = evenly_sampled(log)
+    assert len(even) == len(time)
+    hole = np.isnan(even.column("joint.left_ankle_pitch.position"))
+    assert (even.time[hole].min(), even.time[hole].max()) == (pytest.approx(4.0), pytest.approx(5.0, abs=0.006))
+    assert hole.sum() == pytest.approx(200, abs=2)
+
+
+def test_quaternions_that_change_sign_are_interpolated_the_short_way() -> None:
+    angle = np.linspace(0, 8 * np.pi, 4000)
+    quaternion = Rotation.from_euler("z", angle[:, None]).as_quat(scalar_first=True)
+    quaternion[::3] *= -1
+    names = [f"imu.a.orientation.{axis}" for axis in "wxyz"]
+    time = TIME + np.random.default_rng(0).uniform(-0.0024, 0.0024, TIME.size)
+    even = evenly_sampled(MotionLog("a", time, dict(zip(names, quaternion.T, strict=True))))
+    norm = np.linalg.norm(even.stack(names)[2:-2], axis=1)
+    np.testing.assert_allclose(norm, 1.0, atol=1e-4)
+
+
+def test_interpolation_does_not_bridge_what_is_too_far_apart() -> None:
+    time, values = np.array([0.0, 1.0, 5.0, 6.0]), np.array([0.0, 1.0, 5.0, np.nan])
+    at = np.array([-1.0, 0.5, 1.0, 3.0, 5.0, 5.5])
+    np.testing.assert_array_equal(interpolate(at, time, values, 2.0), [np.nan, 0.5, 1.0, np.nan, 5.0, np.nan])
+    np.testing.assert_array_equal(interpolate(at, time, np.full(4, np.nan), 2.0), np.full(6, np.nan))
+
+
+@pytest.mark.parametrize("delay", [0.0, 0.005, 0.0123, -0.004])
+def test_a_delay_is_undone(delay: float) -> None:
+    """A sensor late by `delay` reports at t what happened at t - delay."""
+    late = np.column_stack([tone(0.8, time=TIME - delay), tone(0.3, time=TIME - delay)])
+    undone = shifted(late, PERIOD, delay)
+    inside = slice(5, -5)
+    expected = np.column_stack([tone(0.8), tone(0.3)])
+    bound = PERIOD**2 / 8 * (2 * np.pi * 0.8) ** 2
+    assert np.abs(undone - expected)[inside].max() <= 1.01 * bound
+    if delay > 0:
+        assert np.isnan(undone[-1]).all(), "nothing is known of what was not yet reported"
+
+
+def test_a_shift_keeps_nan_where_values_are_missing() -> None:
+    values = tone(0.5)
+    values[1000:1100] = np.nan
+    moved = shifted(values, PERIOD, 0.0)
+    assert moved.shape == values.shape
+    np.testing.assert_array_equal(np.isnan(moved), np.isnan(values))
