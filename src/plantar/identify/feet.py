@@ -10,7 +10,7 @@ import numpy as np
 from plantar.conventions import DAMPING_UNIT, OFFSET_UNIT, ROTATIONAL_AXES, STIFFNESS_UNIT, Axis
 from plantar.errors import DataError
 from plantar.estimation import Block, LinearFit, fit_linear, interval95, relative_std_percent
-from plantar.identify.recording import Recording, prepare
+from plantar.identify.recording import Recording, Role, prepare
 from plantar.identify.residual_table import Predictions, residual_table
 from plantar.identify.scoring import score_axis
 from plantar.identify.settings import FeetSettings
@@ -41,9 +41,9 @@ def identify_feet(
     is a note in the result. `progress` is called with a line for each step.
     """
     settings = settings or FeetSettings()
-    _check_names([*logs, *validate])
-    fitted = _prepare_all(robot, logs, "fit", settings, progress)
-    unseen = _prepare_all(robot, validate, "validate", settings, progress)
+    check_names([*logs, *validate])
+    fitted = prepare_all(robot, logs, "fit", settings, progress)
+    unseen = prepare_all(robot, validate, "validate", settings, progress)
     if not any(recording.contacts[foot].standing.any() for recording in fitted for foot in robot.feet):
         raise DataError(f"{', '.join(log.name for log in logs)}: no foot carries load in any log (valid: a standing robot)")
     notes = [note for recording in fitted + unseen for note in recording.notes]
@@ -84,9 +84,10 @@ def identify_feet(
     )
 
 
-def _prepare_all(
-    robot: RobotModel, logs: Sequence[MotionLog], role: Any, settings: FeetSettings, progress: Progress
+def prepare_all(
+    robot: RobotModel, logs: Sequence[MotionLog], role: Role, settings: FeetSettings, progress: Progress
 ) -> list[Recording]:
+    """Every log made ready, with samples of a tipping sole left out."""
     recordings = []
     for log in logs:
         progress(f"prepare {log.name}")
@@ -96,7 +97,8 @@ def _prepare_all(
     return recordings
 
 
-def _check_names(logs: Sequence[MotionLog]) -> None:
+def check_names(logs: Sequence[MotionLog]) -> None:
+    """DataError where two logs have one name: results name motions by them."""
     seen: dict[str, MotionLog] = {}
     for log in logs:
         if log.name in seen:
@@ -107,15 +109,20 @@ def _check_names(logs: Sequence[MotionLog]) -> None:
 
 def _fit_axis(recordings: Sequence[Recording], foot: str, axis: Axis, settings: FeetSettings) -> LinearFit | None:
     """Eq. 7 for one axis of one foot, or None where no recording has samples that serve."""
+    blocks = blocks_of(recordings, foot, axis)
+    return fit_linear(blocks, shared_offset=settings.offset == "shared") if blocks else None
+
+
+def blocks_of(recordings: Sequence[Recording], foot: str, axis: Axis) -> list[Block]:
+    """Eq. 6 for each recording in which the foot has enough samples that serve."""
     column, law = ROTATIONAL_AXES.index(axis), KelvinVoigt()
     blocks = []
     for recording in recordings:
         used, bush = recording.used(foot), recording.bushes[foot]
-        if used.sum() < FEWEST_SAMPLES:
-            continue
-        regressor = law.regressor(bush.deflection[used, column], bush.rate[used, column])
-        blocks.append(Block(recording.name, regressor, bush.torque[used, column], recording.period))
-    return fit_linear(blocks, shared_offset=settings.offset == "shared") if blocks else None
+        if used.sum() >= FEWEST_SAMPLES:
+            regressor = law.regressor(bush.deflection[used, column], bush.rate[used, column])
+            blocks.append(Block(recording.name, regressor, bush.torque[used, column], recording.period))
+    return blocks
 
 
 def _parameters(

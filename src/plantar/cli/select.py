@@ -1,0 +1,72 @@
+"""`plantar select`."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from plantar.cli.terminal import console, end_progress, number, progress, table
+from plantar.identify.selection import UNKNOWN, Choice, Selection, select_motions
+from plantar.readers import open_log
+from plantar.result import dump_json
+from plantar.robot import load_robot
+
+
+def run(
+    robot: Annotated[Path, typer.Argument(help="Robot file (YAML).", metavar="ROBOT.yaml")],
+    logs: Annotated[list[Path], typer.Argument(help="Logs to choose from.", metavar="LOG...")],
+    compare: Annotated[str, typer.Option(help="Motions, with commas between, to set beside the best.")] = "",
+    largest: Annotated[int, typer.Option(help="Most logs in a set.", min=1, max=20)] = 6,
+    json: Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")] = False,
+) -> None:
+    """Rank logs, alone and in sets, by what they tell about each parameter of the feet.
+
+    Example: plantar select robot.yaml out/*.csv --compare Manual_right_roll,Manual_left_roll,Tilt3
+    """
+    step = progress(quiet)
+    loaded = load_robot(robot)
+    named = [name.strip() for name in compare.split(",") if name.strip()]
+    found = select_motions(loaded, [open_log(path, loaded) for path in logs], named, largest, progress=step)
+    end_progress(quiet)
+    if json:
+        print(dump_json({"schema": "plantar.selection/1", **_plain(found)}), end="")
+        return
+    screen = console()
+    screen.print(_table("Each log by itself: 95 % half width it promises [% of the value]", found.alone))
+    screen.print(_table("\nThe best set of each size", found.best))
+    rows = [choice for choice in (found.compared, found.together) if choice is not None]
+    screen.print(_table("\nFor comparison", rows))
+    smallest = next((c for c in found.best if c.usual < 1.2 * found.best[-1].usual), found.best[-1])
+    screen.print(f"\n{len(smallest.motions)} logs tell nearly all: {', '.join(smallest.motions)}.", markup=False)
+
+
+def _table(title: str, choices: Any) -> object:
+    keys = list(choices[0].half_width_percent)
+    heads = [f"{foot[:5]} {axis} {term[0].upper()}".replace("S", "K").replace("D", "C") for foot, axis, term in keys]
+    rows = [
+        (" + ".join(choice.motions), *(_percent(choice.half_width_percent[key]) for key in keys), number(choice.usual, 3),
+         number(choice.condition_number, 3))
+        for choice in choices
+    ]  # fmt: skip
+    return table(title, ("logs", *heads, "usual", "condition"), rows)
+
+
+def _percent(value: float) -> str:
+    return "–" if value >= UNKNOWN else number(value, 3)
+
+
+def _plain(found: Selection) -> dict[str, Any]:
+    def choice(one: Choice) -> dict[str, Any]:
+        widths = [{"foot": f, "axis": a, "name": n, "percent": w} for (f, a, n), w in one.half_width_percent.items()]
+        return {**asdict(one), "half_width_percent": widths, "usual": one.usual}
+
+    return {
+        "alone": [choice(one) for one in found.alone],
+        "best": [choice(one) for one in found.best],
+        "together": choice(found.together),
+        "compared": choice(found.compared) if found.compared else None,
+    }
