@@ -2,13 +2,15 @@
 
 The torso's attitude and the ankles' angles are chosen as functions of time; everything that a log holds follows from
 rotation products and from high-order differences of them, never from the formulas of the package under test. Each
-foot's bush obeys torque = K·deflection + C·rate + offset exactly, so what a fit should find is known.
+foot's bush obeys torque = K·deflection + C·rate + offset exactly, so what a fit should find is known. The legs' slides
+hold the soles where they stand, sunk by load over vertical stiffness, and the torso above the centre of the loads.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -39,6 +41,10 @@ TRUTH = {
     ("right", "pitch"): Law(455.0, 26.0, 0.9),
     ("right", "roll"): Law(330.0, 19.0, -0.4),
 }
+VERTICAL = {"left": 40e3, "right": 52e3}  # N/m
+HIPS = {"left": np.array([0.0, 0.1, -0.1]), "right": np.array([0.0, -0.1, -0.1])}
+SOLE_DEPTH = 0.09  # m below the foot link's origin
+HEIGHT = 0.7  # m of the torso's origin above the ground
 
 
 @dataclass(frozen=True)
@@ -68,13 +74,15 @@ class Mounting:
 
 @dataclass(frozen=True)
 class Motion:
-    """A movement: torso roll, pitch, yaw [rad]; each foot's ankle pitch and roll [rad]; when a foot is in the air."""
+    """A movement: torso roll, pitch, yaw [rad]; each foot's ankle pitch and roll [rad]; when a foot is in the air;
+    how much of the weight goes from foot to foot."""
 
     name: str
     duration: float
     torso: tuple[Signal, Signal, Signal]
     ankles: Mapping[str, tuple[Signal, Signal]]
     lifts: tuple[tuple[str, float, float], ...] = ()
+    shift: float = 0.06
     truth: Mapping[tuple[str, str], Law] = field(default_factory=lambda: dict(TRUTH))
 
 
@@ -92,7 +100,7 @@ def sway(name: str = "sway", seed: int = 0, duration: float = 20.0, **changes: o
         first, second = random.uniform(0, 2 * np.pi, 2)
         return sines((np.radians(degrees), slow, first), (0.4 * np.radians(degrees), fast, second))
 
-    torso = (wave(0.3), wave(0.8), wave(1.0))
+    torso = (wave(0.3), wave(0.8), sines((0.0, 0.0, 0.0)))
     ankles = {foot: (wave(1.2), wave(0.9)) for foot in FEET}
     return replace(Motion(name, duration, torso, ankles), **changes)
 
@@ -124,7 +132,7 @@ def make_robot(folder: Path, mounting: Mounting = Mounting(), **changes: object)
     return load_robot(write_robot(folder, mounting, **changes))
 
 
-def times(motion: Motion, rate: float = 200.0, jitter: float = 0.0, seed: int = 0) -> np.ndarray:
+def times(motion: Motion, rate: float = 100.0, jitter: float = 0.0, seed: int = 0) -> np.ndarray:
     """Sampling times; `jitter` is the rms deviation of each from the even grid, in periods."""
     count = round(motion.duration * rate) + 1
     shift = np.random.default_rng(seed).normal(0, jitter, count) if jitter else np.zeros(count)
@@ -139,6 +147,10 @@ def record(motion: Motion, mounting: Mounting = Mounting(), at: np.ndarray | Non
         for joint, angle in zip(("pitch", "roll"), motion.ankles[foot], strict=True):
             columns[f"joint.{foot}_ankle_{joint}.position"] = angle(t)
             columns[f"joint.{foot}_ankle_{joint}.velocity"] = derivative(angle, t)
+        slides = partial(leg_slides, motion, mounting, foot)
+        for joint, position, velocity in zip("xyz", slides(t).T, derivative(slides, t).T, strict=True):
+            columns[f"joint.{foot}_leg_{joint}.position"] = position
+            columns[f"joint.{foot}_leg_{joint}.velocity"] = velocity
     columns["joint.neck.position"] = 0.1 * np.sin(t)
     columns |= _imu_columns(motion, mounting, t)
     for foot in FEET:
@@ -157,6 +169,25 @@ def foot_rotation(motion: Motion, foot: str, t: np.ndarray) -> np.ndarray:
     """Foot link to world, (N, 3, 3)."""
     pitch, roll = motion.ankles[foot]
     return torso_rotation(motion, t) @ Rotation.from_euler("YX", np.column_stack([pitch(t), roll(t)])).as_matrix()
+
+
+def torso_position(motion: Motion, t: np.ndarray) -> np.ndarray:
+    """The torso's origin in the world, (N, 3): sideways above the loads."""
+    sideways = 2 * HIPS["left"][1] * motion.shift * np.sin(0.7 * t)
+    return np.column_stack([np.zeros_like(t), sideways, np.full_like(t, HEIGHT)])
+
+
+def leg_slides(motion: Motion, mounting: Mounting, foot: str, t: np.ndarray) -> np.ndarray:
+    """How far the leg's three slides are out [m], (N, 3), for a sole that stands still but for its sinking."""
+    torso, ankle = torso_rotation(motion, t), foot_rotation(motion, foot, t)
+    bent = Rotation.from_euler("YX", deflection(motion, mounting, foot, t)).as_matrix()
+    sole = ankle @ mounting.bush.rotation @ bent
+    bush = np.array(mounting.bush.xyz)
+    sole_from_bush = mounting.bush.rotation.T @ (np.array([0.0, 0.0, -SOLE_DEPTH]) - bush)
+    stands_at = np.column_stack([np.zeros((len(t), 2)), -vertical_load(motion, foot, t) / VERTICAL[foot]])
+    stands_at[:, 1] = HIPS[foot][1]
+    origin = stands_at - sole @ sole_from_bush - ankle @ bush
+    return np.einsum("nji,nj->ni", torso, origin - torso_position(motion, t)) - HIPS[foot]
 
 
 def up_in_bush(motion: Motion, mounting: Mounting, foot: str, t: np.ndarray) -> np.ndarray:
@@ -209,7 +240,7 @@ def contact_share(motion: Motion, foot: str, t: np.ndarray) -> np.ndarray:
 
 def vertical_load(motion: Motion, foot: str, t: np.ndarray) -> np.ndarray:
     """The foot's share of the weight [N], (N,): a foot in the air gives its share to the other."""
-    left = 0.5 + 0.06 * np.sin(0.7 * t)
+    left = 0.5 + motion.shift * np.sin(0.7 * t)
     wished = {"left": left * contact_share(motion, "left", t), "right": (1 - left) * contact_share(motion, "right", t)}
     total = wished["left"] + wished["right"]
     return np.where(total > 0, WEIGHT * wished[foot] / np.where(total > 0, total, 1.0), 0.0)
@@ -232,7 +263,8 @@ def _imu_columns(motion: Motion, mounting: Mounting, t: np.ndarray) -> dict[str,
     torso = torso_rotation(motion, t)
     spin = np.swapaxes(torso, 1, 2) @ derivative(lambda s: torso_rotation(motion, s), t)
     rate = np.column_stack([spin[:, 2, 1], spin[:, 0, 2], spin[:, 1, 0]]) @ mounting.imu.rotation
-    moved = second_derivative(lambda s: torso_rotation(motion, s) @ np.array(mounting.imu.xyz), t)
+    at = np.array(mounting.imu.xyz)
+    moved = second_derivative(lambda s: torso_position(motion, s) + torso_rotation(motion, s) @ at, t)
     world = torso @ mounting.imu.rotation
     proper = np.einsum("nji,nj->ni", world, moved + [0.0, 0.0, 9.80665])
     quaternion = Rotation.from_matrix(world).as_quat(scalar_first=True)
@@ -242,22 +274,22 @@ def _imu_columns(motion: Motion, mounting: Mounting, t: np.ndarray) -> dict[str,
     }
 
 
-def _leg(foot: str, side: int) -> str:
-    def axis(joint: str, parent: str, child: str, xyz: str, direction: str) -> str:
-        return (
-            f'<joint name="{foot}_ankle_{joint}" type="revolute"><parent link="{parent}"/><child link="{child}"/>'
-            f'<origin xyz="{xyz}"/><axis xyz="{direction}"/>'
-            f'<limit lower="-1.2" upper="1.2" effort="100" velocity="10"/></joint>'
+def _leg(foot: str) -> str:
+    """Three slides in series, ankle pitch, ankle roll, foot and sole."""
+    hip = " ".join(map(str, HIPS[foot]))
+    parts = []
+    joints = [("leg_x", "1 0 0"), ("leg_y", "0 1 0"), ("leg_z", "0 0 1"), ("ankle_pitch", "0 1 0"), ("ankle_roll", "1 0 0")]
+    links = ["torso", *(f"{foot}_{name}" for name in ("thigh", "knee", "shin", "ankle", "foot"))]
+    for (joint, axis), parent, child in zip(joints, links, links[1:], strict=False):
+        kind, xyz = ("prismatic" if "leg" in joint else "revolute"), (hip if joint == "leg_x" else "0 0 0")
+        parts.append(
+            f'<joint name="{foot}_{joint}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>'
+            f'<origin xyz="{xyz}"/><axis xyz="{axis}"/><limit lower="-1.2" upper="1.2" effort="100" velocity="10"/></joint>'
         )
-
-    hip = f"0 {0.1 * side} -0.5"
-    return (
-        axis("pitch", "torso", f"{foot}_ankle", hip, "0 1 0")
-        + _link(f"{foot}_ankle", 1.0)
-        + axis("roll", f"{foot}_ankle", f"{foot}_foot", "0 0 0", "1 0 0")
-        + _link(f"{foot}_foot", 4.0)
-        + f'<link name="{foot}_sole"/><joint name="{foot}_sole_fixed" type="fixed"><parent link="{foot}_foot"/>'
-        f'<child link="{foot}_sole"/><origin xyz="0 0 -0.09"/></joint>'
+        parts.append(_link(child, 4.2 if child.endswith("foot") else 0.2))
+    return "".join(parts) + (
+        f'<link name="{foot}_sole"/><joint name="{foot}_sole_fixed" type="fixed"><parent link="{foot}_foot"/>'
+        f'<child link="{foot}_sole"/><origin xyz="0 0 {-SOLE_DEPTH}"/></joint>'
     )
 
 
@@ -269,8 +301,8 @@ def _link(name: str, mass: float) -> str:
 URDF = (
     '<robot name="biped">'
     + _link("torso", 48.0)
-    + _leg("left", 1)
-    + _leg("right", -1)
+    + _leg("left")
+    + _leg("right")
     + _link("head", 2.0)
     + '<joint name="neck" type="revolute"><parent link="torso"/><child link="head"/><origin xyz="0 0 0.4"/>'
     '<axis xyz="0 0 1"/><limit lower="-1.5" upper="1.5" effort="5" velocity="5"/></joint></robot>'

@@ -117,7 +117,7 @@ def test_jitter_is_resampled_to_interpolation_accuracy() -> None:
     for name in ("joint.left_ankle_pitch.position", "imu.chest.angular_velocity.y", "wrench.left.torque.y"):
         error = np.abs(even.column(name) - exact.column(name))[inside]
         scale = np.ptp(exact.column(name))
-        assert 0 < error.max() < 2e-3 * scale, name
+        assert 0 < error.max() < 5e-3 * scale, name
 
 
 def test_gaps_stay_gaps() -> None:
@@ -127,8 +127,8 @@ def test_gaps_stay_gaps() -> None:
     even = evenly_sampled(log)
     assert len(even) == len(time)
     hole = np.isnan(even.column("joint.left_ankle_pitch.position"))
-    assert (even.time[hole].min(), even.time[hole].max()) == (pytest.approx(4.0), pytest.approx(5.0, abs=0.006))
-    assert hole.sum() == pytest.approx(200, abs=2)
+    assert (even.time[hole].min(), even.time[hole].max()) == (pytest.approx(4.0, abs=0.011), pytest.approx(5.0, abs=0.011))
+    assert hole.sum() == pytest.approx(100, abs=2)
 
 
 def test_quaternions_that_change_sign_are_interpolated_the_short_way() -> None:
