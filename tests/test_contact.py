@@ -1,0 +1,154 @@
+"""Which foot stands, when, and why samples are left out."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from plantar.contact import AIR, DOUBLE, SINGLE, SUPPORTS, TRANSITION, FootContact, carried_weight, detect_contact
+from plantar.polygon import convex_hull, inside_distance
+
+PERIOD = 0.01
+WEIGHT = 600.0
+AUTO = {"left": False, "right": False}
+
+
+def stepping() -> dict[str, np.ndarray]:
+    """10 s: both, then left alone (2 s to 4 s), both, then none (7 s to 8 s), both."""
+    time = np.arange(1000) * PERIOD
+    right = np.where((time >= 2) & (time < 4), 0.0, 300.0)
+    left = np.where((time >= 2) & (time < 4), 600.0, 300.0)
+    air = (time >= 7) & (time < 8)
+    return {"left": np.where(air, 0.0, left), "right": np.where(air, 0.0, right)}
+
+
+def support(contact: FootContact, second: float) -> str:
+    return SUPPORTS[contact.support[round(second / PERIOD)]]
+
+
+def reason(contact: FootContact, second: float) -> str | None:
+    return contact.reasons[contact.code[round(second / PERIOD)]]
+
+
+def test_double_single_air() -> None:
+    contacts = detect_contact(stepping(), AUTO, WEIGHT, PERIOD)
+    left, right = contacts["left"], contacts["right"]
+    for second, expected in ((1.0, (DOUBLE, DOUBLE)), (3.0, (SINGLE, AIR)), (5.5, (DOUBLE, DOUBLE)), (7.5, (AIR, AIR))):
+        assert (support(left, second), support(right, second)) == expected
+    assert left.used[300]
+    assert not right.used[300]
+    assert "air" in str(reason(right, 3.0))
+    assert reason(left, 3.0) is None
+    assert not left.standing[750]
+
+
+def test_landing_and_lifting_are_left_out() -> None:
+    right = detect_contact(stepping(), AUTO, WEIGHT, PERIOD)["right"]
+    for second in (1.80, 1.95, 4.02, 4.20):
+        assert support(right, second) == TRANSITION
+        assert "landing or lifting" in str(reason(right, second))
+    assert reason(right, 1.7) is None
+    assert reason(right, 4.3) is None
+    assert "air" in str(reason(right, 2.1)), "the first reason stays"
+
+
+def test_the_other_foots_steps_do_not_interrupt_a_stance() -> None:
+    left = detect_contact(stepping(), AUTO, WEIGHT, PERIOD)["left"]
+    assert left.used[100:600].all()
+
+
+def test_between_the_thresholds_a_foot_keeps_its_state() -> None:
+    time = np.arange(1000) * PERIOD
+    load = np.interp(time, [0, 2, 3, 5, 6, 10], [300, 300, 45, 45, 300, 300])  # 7.5 % of the weight from 3 s to 5 s
+    stays = detect_contact({"left": load}, {"left": False}, WEIGHT, PERIOD)["left"]
+    assert stays.standing.all()
+    airborne = np.where(time < 3, 0.0, load)
+    waits = detect_contact({"left": airborne}, {"left": False}, WEIGHT, PERIOD)["left"]
+    assert not waits.standing[:500].any()
+    assert waits.standing[-1]
+
+
+def test_a_touch_too_short_to_be_a_stance_is_air() -> None:
+    load = np.zeros(1000)
+    load[500:540] = 400.0
+    assert not detect_contact({"left": load}, {"left": False}, WEIGHT, PERIOD)["left"].standing.any()
+
+
+def test_always_means_always() -> None:
+    force = {"left": np.zeros(500), "right": np.zeros(500)}
+    contacts = detect_contact(force, {"left": True, "right": False}, WEIGHT, PERIOD)
+    assert contacts["left"].used.all()
+    assert (contacts["left"].support == SUPPORTS.index(SINGLE)).all()
+    assert not contacts["right"].used.any()
+
+
+def test_missing_force_is_no_load() -> None:
+    load = np.full(1000, 300.0)
+    load[400:600] = np.nan
+    contact = detect_contact({"left": load}, {"left": False}, WEIGHT, PERIOD)["left"]
+    assert not contact.used[400:600].any()
+    assert contact.used[:370].all()
+
+
+def test_phases_tell_the_log_from_end_to_end() -> None:
+    time = np.arange(1000) * PERIOD
+    contact = detect_contact(stepping(), AUTO, WEIGHT, PERIOD)["right"]
+    phases = contact.phases("walk", "right", time)
+    assert phases[0].start == 0.0
+    assert phases[-1].end == pytest.approx(9.99)
+    for one, following in zip(phases, phases[1:], strict=False):
+        assert one.end == pytest.approx(following.start)
+        assert (one.support, one.reason) != (following.support, following.reason)
+    assert all(phase.used == (phase.reason is None) for phase in phases)
+    assert phases[0].to_dict() == {
+        "motion": "walk", "foot": "right", "start": 0.0, "end": 1.75, "support": DOUBLE, "used": True, "reason": None,
+    }  # fmt: skip
+
+
+def test_a_first_reason_is_kept_and_others_are_added() -> None:
+    contact = FootContact(np.zeros(4, dtype=np.int8), np.zeros(4, dtype=np.int8), [None])
+    contact.leave_out(np.array([True, True, False, False]), "first")
+    contact.leave_out(np.array([False, True, True, False]), "second")
+    contact.leave_out(np.array([False, False, False, False]), "second")
+    assert [contact.reasons[code] for code in contact.code] == ["first", "first", "second", None]
+    assert contact.reasons == [None, "first", "second"]
+    np.testing.assert_array_equal(contact.used, [False, False, False, True])
+
+
+def test_the_weight_that_the_feet_carry() -> None:
+    assert carried_weight(stepping()) == 600.0
+    assert carried_weight({"left": np.full(5, np.nan)}) == 0.0
+
+
+SQUARE = np.array([[0.1, 0.05], [-0.1, 0.05], [-0.1, -0.05], [0.1, -0.05]])
+
+
+@pytest.mark.parametrize("corners", [SQUARE, SQUARE[::-1], SQUARE[[1, 3, 0, 2]]])
+def test_distance_to_the_edge_of_a_sole(corners: np.ndarray) -> None:
+    points = np.array([[0.0, 0.0], [0.09, 0.0], [0.0, -0.048], [0.1, 0.0], [0.12, 0.0], [0.0, 0.06], [0.2, 0.2]])
+    expected = [0.05, 0.01, 0.002, 0.0, -0.02, -0.01, -0.15]
+    np.testing.assert_allclose(inside_distance(points, corners), expected, atol=1e-12)
+
+
+def test_distance_agrees_with_sampling_the_border() -> None:
+    random = np.random.default_rng(5)
+    corners = convex_hull(random.normal(size=(9, 2)))
+    points = random.uniform(-1, 1, size=(200, 2))
+    border = np.concatenate([a + np.linspace(0, 1, 4000)[:, None] * (b - a) for a, b in zip(corners, np.roll(corners, -1, 0), strict=True)])
+    nearest = np.min(np.linalg.norm(points[:, None] - border, axis=2), axis=1)
+    found = inside_distance(points, corners)
+    inside = found > 0
+    assert inside.any()
+    assert (~inside).any()
+    np.testing.assert_allclose(found[inside], nearest[inside], atol=1e-3)
+    assert (-found[~inside] <= nearest[~inside] + 1e-3).all()
+
+
+def test_nan_points_have_no_distance() -> None:
+    assert np.isnan(inside_distance(np.array([[np.nan, 0.0]]), SQUARE)).all()
+
+
+def test_the_hull_leaves_out_what_is_inside() -> None:
+    assert len(convex_hull(np.vstack([SQUARE, [[0.0, 0.0]]]))) == 4
+    line = np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]])
+    np.testing.assert_array_equal(convex_hull(line), line)
