@@ -11,7 +11,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet
 
-HOSTILE = "</script><img src=x onerror=alert(1)>\u2028'\""
+HOSTILE = "</script ><img src=x onerror=alert(1)>\u2028'\""
 TRUTH = {  # the paper's table 1
     ("right", "pitch"): (434.0, 15.89, 4.79),
     ("right", "roll"): (323.0, 17.53, -0.05),

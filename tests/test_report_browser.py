@@ -166,6 +166,23 @@ def test_a_drag_zooms_all_plots_of_the_motion_and_a_double_click_resets(visit: V
     assert visit.scale(angles) == whole
 
 
+def test_a_reconstruction_of_samples_left_out_does_not_set_the_scale(browser: Any, tmp_path: Path) -> None:
+    import pyarrow as pa
+    import pyarrow.parquet
+
+    campaign = write_campaign(tmp_path, seconds=4.0)
+    columns = {name: values.copy() for name, values in campaign.columns.items()}
+    columns["pitch.predicted"][~columns["used"].astype(bool)] = -5000.0
+    pyarrow.parquet.write_table(pa.table(columns), tmp_path / "residuals.parquet")
+    visit = Visit(browser, write_feet_report(tmp_path))
+    torque = visit.plot(0, "torque", "right", "pitch")
+    low, high = visit.scale(torque, "y")
+    assert -200 < low < 0 < high < 200
+    assert torque.evaluate("host => Math.min(...host.plot.data[2])") == pytest.approx(-5000, abs=5)
+    visit.context.close()
+    assert visit.complaints == []
+
+
 def test_a_loop_zooms_by_itself(visit: Visit) -> None:
     loop = visit.plot(0, "loop", "right", "pitch")
     torque = visit.plot(0, "torque", "right", "pitch")

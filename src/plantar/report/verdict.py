@@ -49,8 +49,12 @@ def statement(subject: str, rows: Sequence[Parameter]) -> Statement:
     worst = max(marks, key=lambda mark: _ORDER[mark])
     verdicts = list(dict.fromkeys(row.verdict for row in rows if row.verdict))
     alone = len(verdicts) == 1
-    text = ", ".join(_phrase(row, alone) for row in rows)
-    if alone and verdicts != ["unidentifiable"]:
+    phrases = [_phrase(row, alone) for row in rows if row.verdict != "unidentifiable"]
+    unknown = [symbol(row.name) for row in rows if row.verdict == "unidentifiable"]
+    if unknown:
+        phrases.append(f"{listed(unknown)} cannot be told from these logs")
+    text = ", ".join(phrases)
+    if alone and not unknown:
         text += f" — {verdicts[0]}"
     behind: dict[str, list[str]] = {}
     for row in rows:
@@ -66,15 +70,13 @@ def symbol(name: str) -> str:
 
 
 def _phrase(row: Parameter, alone: bool) -> str:
-    if row.verdict == "unidentifiable":
-        return f"{symbol(row.name)} cannot be told from these logs"
     text = f"{symbol(row.name)} = {with_uncertainty(row.value, row.half_width)} {unit(row.unit)}"
     return text if alone or not row.verdict else f"{text} ({row.verdict})"
 
 
 def why_of(row: Parameter) -> str:
     """The verdict's reason and what to record next."""
-    return " — ".join(part for part in (row.reason, row.advice) if part)
+    return ". Next: ".join(part for part in (row.reason, row.advice) if part)
 
 
 def trust(result: FeetResult) -> tuple[str, ...]:

@@ -50,7 +50,11 @@
 
   // Keeps a plot as wide as its place and in the page's colours.
   plantar.settle = (plot, host, height) => {
-    plantar.onRecolour(() => plot.redraw(false, true));
+    plantar.onRecolour(() => {
+      plot.redraw(false, true);
+      const markers = [...plot.root.querySelectorAll(".u-marker")].slice(1 - plot.series.length);
+      markers.forEach((marker, i) => { marker.style.borderColor = plot.series[i + 1].stroke(plot, i + 1); });
+    });
     new ResizeObserver(() => {
       const width = host.clientWidth;
       if (width > 0 && width !== plot.width) plot.setSize({ width, height });
@@ -91,16 +95,31 @@
     return uPlot.join(lines.map((line) => [line.time, line.values]));
   };
 
+  // A reconstruction of samples that were left out may be anywhere: it does not set the scale.
+  const rangeOfUsed = (track) => (plot, low, high) => {
+    const [first, last] = plot.series[0].idxs ?? [0, plot.data[0].length - 1];
+    let [min, max] = [Infinity, -Infinity];
+    plot.data.slice(1).forEach((values, line) => {
+      for (let i = first; i <= last; i++) {
+        if (values[i] == null || (line > 0 && track.used[i] === 0)) continue;
+        if (values[i] < min) min = values[i];
+        if (values[i] > max) max = values[i];
+      }
+    });
+    return min > max ? uPlot.rangeNum(low ?? 0, high ?? 1, 0.1, true) : uPlot.rangeNum(min, max, 0.1, true);
+  };
+
   // `lines`: [{label, colour, width, time, values}]
   plantar.timePlot = (host, key, frame, unit, lines, shaded) => {
     let plot = null;
     const options = {
       width: Math.max(host.clientWidth, 200),
       height: HEIGHT,
-      scales: { x: { time: false } },
+      scales: { x: { time: false }, ...(shaded ? { y: { range: rangeOfUsed(shaded) } } : {}) },
       padding: [8, 12, 0, 0],
       cursor: {
         sync: { key, scales: ["x", null], filters: { pub: (type) => type === "mousemove" || type === "mouseleave" } },
+        y: false,
         drag: { x: true, y: false, dist: 4 },
         bind: { dblclick: () => () => frame.reset() },
       },
