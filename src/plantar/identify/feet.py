@@ -10,7 +10,8 @@ import numpy as np
 from plantar.conventions import DAMPING_UNIT, OFFSET_UNIT, ROTATIONAL_AXES, STIFFNESS_UNIT, Axis
 from plantar.errors import DataError
 from plantar.estimation import Block, LinearFit, fit_linear, interval95, relative_std_percent
-from plantar.identify.recording import Recording, Role, prepare
+from plantar.identify.height import fit_height
+from plantar.identify.recording import Recording, Role, moved_centre, prepare
 from plantar.identify.residual_table import Predictions, residual_table
 from plantar.identify.scoring import score_axis
 from plantar.identify.settings import FeetSettings
@@ -47,6 +48,10 @@ def identify_feet(
     if not any(recording.contacts[foot].standing.any() for recording in fitted for foot in robot.feet):
         raise DataError(f"{', '.join(log.name for log in logs)}: no foot carries load in any log (valid: a standing robot)")
     notes = [note for recording in fitted + unseen for note in recording.notes]
+    progress("fit z")
+    vertical = fit_height(fitted, robot, settings.cutoff)
+    notes += vertical.notes
+    fitted, unseen = ([moved_centre(one, vertical.compliance, settings.cutoff) for one in group] for group in (fitted, unseen))
     parameters: list[Parameter] = []
     offsets: list[Offset] = []
     rows: list[ValidationRow] = []
@@ -63,6 +68,7 @@ def identify_feet(
                 for motion, value in fit.offsets.items()
             ]
             rows += score_axis(fitted + unseen, foot, axis, KelvinVoigt(), fit.values, fit.offsets, predictions)
+    parameters += vertical.parameters
     notes += _feet_notes(robot, fitted)
     return FeetResult(
         robot=robot.name,

@@ -18,14 +18,16 @@ import numpy as np
 from plantar.contact import DOUBLE, SUPPORTS
 from plantar.conventions import STIFFNESS_UNIT, Array
 from plantar.deflection import closure
-from plantar.estimation import Block, fit_linear, interval95, relative_std_percent
+from plantar.estimation import Block, LinearFit, fit_linear, interval95, relative_std_percent
 from plantar.identify.recording import Recording
 from plantar.notes import Note
 from plantar.result import Parameter, Verdict
+from plantar.robot import RobotModel
 from plantar.signals import low_pass
 
 FEWEST_SAMPLES = 100  # in double support, of one recording
 SEPARABLE = 0.25  # std of the compliances' difference over their sum, at most, to tell the feet apart
+UNKNOWN_COMPLIANCE = 1e-5  # m/N: of 100 kN/m, the order of soft rubber, where nothing is known
 USABLE_WIDTH, WEAK_WIDTH = 0.15, 0.5  # half width of the interval over the value
 
 ADVICE = "stand on both feet and shift the weight slowly from foot to foot, nearly all of it, for 30 s or more"
@@ -40,29 +42,65 @@ class Compliances:
     covariance: Array
     freedom: float
     white_std: Array
-    separable: bool
+
+    @property
+    def clear(self) -> bool:
+        """Whether the sum is positive beyond doubt."""
+        return interval95(self.total, float(np.sqrt(self.covariance[0, 0])), self.freedom)[0] > 0
+
+    @property
+    def separable(self) -> bool:
+        """Whether the feet can be told apart."""
+        return bool(np.sqrt(self.covariance[1, 1]) < SEPARABLE * self.total)
+
+    def of(self, side: float) -> tuple[float, float]:
+        """Compliance and its std of the left (+1) or right (-1) foot; half of the sum where they do not separate."""
+        weights = np.array([0.5, 0.5 * side if self.separable else 0.0])
+        return float(weights @ [self.total, self.difference]), float(np.sqrt(weights @ self.covariance @ weights))
 
 
-def vertical_stiffness(
-    recordings: Sequence[Recording], feet: tuple[str, str], cutoff: float
-) -> tuple[list[Parameter], Compliances | None, list[Note]]:
-    """Rows of axis z for two feet, and the compliances behind them; empty where no log has double support."""
-    blocks = [block for recording in recordings if (block := _block(recording, feet, cutoff)) is not None]
-    if not blocks:
-        return [], None, []
-    fit = fit_linear(blocks)
-    total, difference = float(fit.values[0]), float(fit.values[1])
-    covariance = fit.covariance[:2, :2]
-    separable = bool(total > 0 and np.sqrt(covariance[1, 1]) < SEPARABLE * total)
-    found = Compliances(total, difference, covariance, float(fit.freedom[0]), fit.white_std[:2], separable)
+@dataclass(frozen=True)
+class Height:
+    """Rows of axis z, and each foot's compliance [m/N] with its standard deviation, for the lever of eq. 6's moments."""
+
+    parameters: tuple[Parameter, ...]
+    notes: tuple[Note, ...]
+    compliance: dict[str, float]
+    compliance_std: dict[str, float]
+
+
+def fit_height(recordings: Sequence[Recording], robot: RobotModel, cutoff: float) -> Height:
+    """Vertical stiffness of two feet; where no log shows it, compliance 0 with the deviation of soft rubber."""
+    feet = tuple(robot.feet)
+    blocks = []
+    if len(feet) == 2:
+        blocks = [block for recording in recordings if (block := _block(recording, feet, cutoff)) is not None]
+    found = _compliances(fit_linear(blocks)) if blocks else None
+    if found is None or not found.clear:
+        text = "z: no log shows the vertical compliance; K of pitch and roll may come out too large by load²·compliance"
+        unknown = tuple(_unknown_row(foot) for foot in feet) if len(feet) == 2 else ()
+        nothing, soft = dict.fromkeys(feet, 0.0), dict.fromkeys(feet, UNKNOWN_COMPLIANCE)
+        return Height(unknown, (Note("z_unknown", "info", text),), nothing, soft)
     notes = []
-    if not separable:
+    if not found.separable:
         text = "z: only the sum of both feet's compliances shows (the total load hardly changes); both taken as equal"
         notes.append(Note("z_sum_only", "info", text))
-    return [_row(foot, side, found) for foot, side in zip(feet, (1.0, -1.0), strict=True)], found, notes
+    own = {foot: found.of(side) for foot, side in zip(feet, (1.0, -1.0), strict=True)}
+    return Height(
+        tuple(_row(foot, *own[foot], found) for foot in feet),
+        tuple(notes),
+        {foot: value for foot, (value, _) in own.items()},
+        {foot: std for foot, (_, std) in own.items()},
+    )
 
 
-def _block(recording: Recording, feet: tuple[str, str], cutoff: float) -> Block | None:
+def _compliances(fit: LinearFit) -> Compliances:
+    return Compliances(
+        float(fit.values[0]), float(fit.values[1]), fit.covariance[:2, :2], float(fit.freedom[0]), fit.white_std[:2]
+    )
+
+
+def _block(recording: Recording, feet: tuple[str, ...], cutoff: float) -> Block | None:
     """h over [s, m, t] in double support; t is the attitude's drift over the recording, a nuisance."""
     left, right = (recording.bushes[foot] for foot in feet)
     both = recording.used(feet[0]) & recording.used(feet[1])
@@ -81,17 +119,11 @@ def _block(recording: Recording, feet: tuple[str, str], cutoff: float) -> Block 
     return Block(recording.name, clear[:, :2], clear[:, 2], recording.period)
 
 
-def _row(foot: str, side: float, found: Compliances) -> Parameter:
+def _row(foot: str, compliance: float, std: float, found: Compliances) -> Parameter:
     """One foot's stiffness: from sum and difference where they separate, else with both feet alike."""
-    weights = np.array([0.5, 0.5 * side if found.separable else 0.0])
-    compliance = float(weights @ [found.total, found.difference])
-    std = float(np.sqrt(weights @ found.covariance @ weights))
     low, high = interval95(compliance, std, found.freedom)
-    unit = STIFFNESS_UNIT["z"]
-    if low <= 0:
-        reason = "the heights of the soles do not follow the load clearly"
-        value = 1 / compliance if compliance > 0 else None
-        return Parameter(foot, "z", "stiffness", unit, value, None, None, None, "unidentifiable", reason, ADVICE)
+    if low <= 0 or compliance <= 0:
+        return _unknown_row(foot)
     value, interval = 1 / compliance, (1 / high, 1 / low)
     width = (high - low) / 2 / compliance
     verdict: Verdict = "usable" if width < USABLE_WIDTH else "weak" if width < WEAK_WIDTH else "unidentifiable"
@@ -99,8 +131,14 @@ def _row(foot: str, side: float, found: Compliances) -> Parameter:
     if not found.separable:
         verdict = "weak" if verdict == "usable" else verdict
         reason += "; only the sum of both compliances shows, both feet taken as equal"
-    white = float(np.sqrt(weights**2 @ found.white_std**2))
+    white = relative_std_percent(found.total, float(found.white_std[0]))
     return Parameter(
-        foot, "z", "stiffness", unit, value, std * value**2, interval, relative_std_percent(compliance, white),
-        verdict, reason, None if verdict == "usable" else ADVICE,
+        foot, "z", "stiffness", STIFFNESS_UNIT["z"], value, std * value**2, interval, white, verdict, reason,
+        None if verdict == "usable" else ADVICE,
     )  # fmt: skip
+
+
+def _unknown_row(foot: str) -> Parameter:
+    reason = "the heights of the soles do not follow the load clearly"
+    unit = STIFFNESS_UNIT["z"]
+    return Parameter(foot, "z", "stiffness", unit, None, None, None, None, "unidentifiable", reason, ADVICE)

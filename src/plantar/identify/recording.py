@@ -10,7 +10,7 @@ import numpy as np
 
 from plantar.attitude import attitude_from_inertial
 from plantar.contact import FootContact, carried_weight, detect_contact
-from plantar.conventions import GRAVITY, Array, Mask
+from plantar.conventions import FORCE, GRAVITY, Array, Mask
 from plantar.deflection import BushState, bush_states
 from plantar.errors import DataError, RobotError, located
 from plantar.identify.settings import FeetSettings
@@ -181,6 +181,21 @@ def _filtered(state: BushState, period: float, cutoff: float) -> BushState:
     """The state with angles, rates and torques through one zero-phase filter: the law between them stays."""
     values = low_pass(np.column_stack([state.deflection, state.rate, state.torque]), period, cutoff)
     return replace(state, deflection=values[:, 0:2], rate=values[:, 2:4], torque=values[:, 4:6])
+
+
+def moved_centre(recording: Recording, compliance: Mapping[str, float], cutoff: float) -> Recording:
+    """The recording with torques about the bush's centre where its z slide has carried it.
+
+    Under a load F_z the slide is compressed by z = compliance·F_z, so that pitch and roll turn about a point z higher in
+    the ankle: torque' = torque - z e_z × force. Left out, K comes out too large by F_z²·compliance.
+    """
+    bushes = {}
+    for foot, bush in recording.bushes.items():
+        force = bush.wrench[:, FORCE]
+        z = compliance[foot] * force[:, 2]
+        change = np.column_stack([-z * force[:, 0], np.cos(bush.deflection[:, 0]) * z * force[:, 1]])
+        bushes[foot] = replace(bush, torque=bush.torque + low_pass(change, recording.period, cutoff))
+    return replace(recording, bushes=bushes)
 
 
 def _run_edges(valid: Mask, reach: float) -> Mask:
