@@ -21,6 +21,16 @@ class Note:
         return asdict(self)
 
 
+@dataclass(frozen=True)
+class Finding:
+    """Something odd in a log; `fatal` where no fit could be trusted."""
+
+    code: str
+    text: str
+    fatal: bool = False
+    severity: Severity = "warning"
+
+
 def unique(notes: Iterable[Note]) -> tuple[Note, ...]:
     """The notes in their order, each once."""
     return tuple(dict.fromkeys(notes))

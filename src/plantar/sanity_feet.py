@@ -50,7 +50,9 @@ def _levers(
             configuration[at] = angle
         else:
             configuration[at : at + 2] = np.cos(angle), np.sin(angle)
-    centre = pin.centerOfMass(model, data, configuration)
+    # The root link is fixed in `model`, and Pinocchio leaves what does not move out of the centre of mass.
+    root, moving = model.inertias[0], robot.mass - model.inertias[0].mass
+    centre = (root.mass * root.lever + moving * pin.centerOfMass(model, data, configuration)) / robot.mass
     assert robot.imu is not None
     joint, in_joint = robot.frame(robot.imu.placement)
     up = (data.oMi[joint] * in_joint).rotation @ rotation_from_quaternion(orientation[None])[0][2]

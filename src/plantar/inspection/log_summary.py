@@ -15,10 +15,10 @@ from plantar.identify.feet import identify_feet
 from plantar.identify.recording import Recording, prepare
 from plantar.identify.settings import FeetSettings
 from plantar.log import MotionLog
-from plantar.notes import Note
+from plantar.notes import Finding, Note
 from plantar.result import Parameter, finite
 from plantar.robot import RobotModel
-from plantar.sanity import Finding, check_log
+from plantar.sanity import check_log
 from plantar.signals import Sampling, sampling
 
 

@@ -1,0 +1,137 @@
+"""An IMU that reads something impossible: units, the quaternion's order and sense, dead channels."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from plantar.conventions import GRAVITY, Array
+from plantar.log import MotionLog
+from plantar.notes import Finding
+
+WRONG_ANGLE = np.radians(25)  # between the accelerometer's up and the quaternion's: more is not noise
+RIGHT_ANGLE = np.radians(8)
+WINDOW = 0.5  # s over which the orientation's turn is compared with the gyroscope's integral
+LEAST_TURN = np.radians(0.5)  # in one window: smaller ones hold noise
+FEWEST_WINDOWS = 20
+WRONG_TURN, RIGHT_TURN = 0.8, 0.3  # difference of the two turns over the turn itself
+
+
+def check_imu(name: str, log: MotionLog) -> Iterator[Finding]:
+    """Findings about one IMU's columns."""
+    gyroscope = [f"imu.{name}.angular_velocity.{axis}" for axis in "xyz"]
+    orientation = log.orientation(name)
+    if log.has(*gyroscope):
+        yield from _dead_channels(log, gyroscope, orientation)
+    if orientation is None:
+        return
+    norm = np.linalg.norm(orientation, axis=1)
+    norm = norm[np.isfinite(norm)]
+    if norm.size and not 0.9 < np.median(norm) < 1.1:
+        text = f"columns 'imu.{name}.orientation.*': the quaternion's norm is {np.median(norm):.3g} (valid: 1)"
+        yield Finding("quaternion_norm", text, True)
+        return
+    if log.has(*gyroscope):
+        yield from _gyroscope_agrees(name, log, orientation)
+    if log.has(*(f"imu.{name}.linear_acceleration.{axis}" for axis in "xyz")):
+        yield from _accelerometer_agrees(name, log, orientation)
+
+
+def _dead_channels(log: MotionLog, columns: list[str], orientation: Array | None) -> Iterator[Finding]:
+    moves = orientation is not None and bool(np.nanmax(np.nanstd(orientation, axis=0)) > 1e-3)
+    for column in columns:
+        values = log.column(column)
+        finite = values[np.isfinite(values)]
+        if finite.size == 0 or (moves and np.ptp(finite) == 0):
+            yield Finding("dead_channel", f"column '{column}': never changes; is the channel dead?", True)
+
+
+def _readings(orientation: Array) -> dict[str, Rotation]:
+    """The orientation body to world as the columns say, and as other conventions would fill them."""
+    as_is = Rotation.from_quat(orientation, scalar_first=True)
+    return {
+        "as it is": as_is,
+        "read as x y z w": Rotation.from_quat(orientation),
+        "inverted": as_is.inv(),
+    }
+
+
+def _misread(name: str, text: str, reading: str) -> Finding:
+    valid = "w x y z" if reading == "read as x y z w" else "body to world"
+    return Finding("quaternion_order", f"columns 'imu.{name}.orientation.*': {text}; {reading} it agrees (valid: {valid})", True)
+
+
+def _gyroscope_agrees(name: str, log: MotionLog, orientation: Array) -> Iterator[Finding]:
+    """How far the orientation turns in a window against the gyroscope's integral: size first, then direction."""
+    rates = log.angular_velocity(name)
+    stride = max(1, round(WINDOW / log.period))
+    if len(log) < 2 * stride:
+        return
+    total = np.vstack([np.zeros(3), np.cumsum((rates[1:] + rates[:-1]) / 2 * np.diff(log.time)[:, None], axis=0)])
+    starts = np.arange(0, len(log) - stride, max(1, stride // 5))
+    whole = np.isfinite(np.column_stack([total[starts + stride] - total[starts], orientation[starts], orientation[starts + stride]]))
+    starts = starts[whole.all(axis=1)]
+    if starts.size == 0:
+        return
+    integral = total[starts + stride] - total[starts]
+    before, after = _readings(orientation[starts]), _readings(orientation[starts + stride])
+    turns = {reading: (before[reading].inv() * after[reading]).as_rotvec() for reading in before}
+    size = np.linalg.norm(turns["as it is"], axis=1)
+    moving = size > LEAST_TURN
+    if moving.sum() < FEWEST_WINDOWS:
+        return
+    ratio = float(np.median(np.linalg.norm(integral[moving], axis=1) / size[moving]))
+    where = f"columns 'imu.{name}.angular_velocity.*'"
+    if 30 < ratio < 110:
+        text = f"{where}: {ratio:.0f} times the orientation's rate, which looks like degrees per second (valid: rad/s)"
+        yield Finding("degrees", text, True)
+        return
+    if not 0.5 < ratio < 2:
+        yield Finding("gyroscope_scale", f"{where}: {ratio:.2g} times the orientation's rate (valid: about 1)")
+        return
+    apart = {
+        reading: float(np.median(np.linalg.norm(turn[moving] - integral[moving], axis=1) / size[moving]))
+        for reading, turn in turns.items()
+    }
+    best = min(apart, key=apart.__getitem__)
+    if apart["as it is"] < WRONG_TURN:
+        return
+    if apart[best] < RIGHT_TURN:
+        yield _misread(name, "turns another way than the gyroscope", best)
+    else:
+        text = f"{where}: turns about other axes than the orientation (valid: both in the IMU's own frame)"
+        yield Finding("gyroscope_frame", text)
+
+
+def _accelerometer_agrees(name: str, log: MotionLog, orientation: Array) -> Iterator[Finding]:
+    """The accelerometer's size, then its up against the quaternion's."""
+    acceleration = log.linear_acceleration(name)
+    whole = np.flatnonzero(np.isfinite(np.column_stack([orientation, acceleration])).all(axis=1))
+    if whole.size < 10:
+        return
+    size = float(np.median(np.linalg.norm(acceleration[whole], axis=1)))
+    where = f"columns 'imu.{name}.linear_acceleration.*'"
+    valid = f"valid: m/s², about {GRAVITY:.2f} at rest"
+    if 0.8 < size < 1.2:
+        yield Finding("accelerometer_unit", f"{where}: its norm is {size:.3g}, which looks like g ({valid})", True)
+        return
+    if not 0.6 * GRAVITY < size < 1.6 * GRAVITY:
+        yield Finding("accelerometer_unit", f"{where}: its usual norm is {size:.3g} ({valid})")
+        return
+    rows = whole[:: max(1, whole.size // 2000)]
+    up = acceleration[rows] / np.linalg.norm(acceleration[rows], axis=1, keepdims=True)
+    apart = {
+        reading: float(np.median(np.arccos(np.clip(rotation.apply(up)[:, 2], -1, 1))))
+        for reading, rotation in _readings(orientation[rows]).items()
+    }
+    best = min(apart, key=apart.__getitem__)
+    if apart["as it is"] < WRONG_ANGLE:
+        return
+    text = f"up differs from the accelerometer's by {np.degrees(apart['as it is']):.0f} deg"
+    if apart[best] < RIGHT_ANGLE:
+        yield _misread(name, text, best)
+    else:
+        full = f"columns 'imu.{name}.orientation.*': {text} (valid: w x y z, body to world, z up)"
+        yield Finding("attitude_mismatch", full, True)
