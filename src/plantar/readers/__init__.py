@@ -21,6 +21,9 @@ FORMATS: dict[str, str] = {
     ".csv": "table",
     ".csv.gz": "table",
     ".parquet": "table",
+    ".mcap": "ros_bag",
+    ".db3": "ros_bag",
+    ".bag": "ros_bag",
 }
 
 

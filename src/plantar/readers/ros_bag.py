@@ -1,0 +1,133 @@
+"""ROS 2 bags (MCAP, sqlite3, a bag's directory) and ROS 1 bags: JointState, Imu and WrenchStamped by topic."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from plantar.conventions import Array
+from plantar.errors import LogError, located
+from plantar.files import sha256
+from plantar.log import MotionLog
+from plantar.notes import Note
+from plantar.readers import motion_name
+from plantar.readers.mcap_file import read_mcap
+from plantar.readers.ros1_file import read_ros1
+from plantar.readers.ros_layouts import JOINT_STATE
+from plantar.readers.ros_topics import Series, Topic, assign
+from plantar.readers.sqlite_bag import read_sqlite
+from plantar.readers.streams import Stream, merge
+
+if TYPE_CHECKING:
+    from plantar.robot import RobotModel
+
+FILES = (".mcap", ".db3", ".bag")
+NO_ORIENTATION = -1.0  # orientation_covariance[0] of an IMU that has none
+
+
+def read(path: Path, robot: RobotModel | None = None) -> MotionLog:
+    """Read a bag; `robot` says which topics its sensors are. Raises LogError: broken, or nothing of use in it."""
+    notes: list[Note] = []
+    topics: dict[str, Topic] = {}
+    files = bag_files(path)
+    for file in files:
+        reader = {".mcap": read_mcap, ".db3": read_sqlite, ".bag": read_ros1}[file.suffix.lower()]
+        reader(file, topics, notes)
+    _check(topics, path, notes)
+    columns_by_topic = assign(topics.values(), robot, path, notes)
+    streams = _streams(columns_by_topic, path, notes)
+    time, columns = merge(streams, path, notes)
+    del streams, columns_by_topic
+    for column in (time, *columns.values()):
+        column.setflags(write=False)  # handed over, not copied
+    return MotionLog(motion_name(path), time, columns, path, sha256(files[0]), tuple(notes))
+
+
+def bag_files(path: Path) -> list[Path]:
+    """The files of a bag: itself, or the parts in a ROS 2 bag's directory in their order."""
+    if not path.is_dir():
+        return [path]
+    parts = sorted(part for part in path.iterdir() if part.suffix.lower() in FILES)
+    if not parts:
+        raise LogError(located("is a directory without bag files", path=path, valid=", ".join(FILES)))
+    return sorted(parts, key=lambda part: (len(part.name), part.name))
+
+
+def _check(topics: dict[str, Topic], path: Path, notes: list[Note]) -> None:
+    if not any(topic.series for topic in topics.values()):
+        valid = "sensor_msgs/JointState, sensor_msgs/Imu, geometry_msgs/WrenchStamped"
+        raise LogError(located("holds no message that plantar reads", path=path, valid=valid))
+    for topic in topics.values():
+        if topic.broken:
+            text = f"{topic.name}: {topic.broken} of {topic.count} messages cannot be decoded and are left out"
+            notes.append(Note("messages_broken", "warning", f"{path.name}: {text}"))
+
+
+def _streams(chosen: dict[str, list[Topic]], path: Path, notes: list[Note]) -> list[Stream]:
+    """Every sensor's columns on its own clock, the clocks on one origin."""
+    sources = [(key, topic, series) for key, topics in chosen.items() for topic in topics for series in topic.series.values()]
+    headers = [np.concatenate(series.header) for _, _, series in sources]
+    clocks = headers
+    if (reason := _unusable(headers, [topic.name for _, topic, _ in sources])) is not None:
+        clocks = [np.concatenate(series.received) for _, _, series in sources]
+        notes.append(Note("receive_time", "warning", f"{path.name}: {reason}; times of receipt are used instead"))
+    first = min(int(clock.min()) for clock in clocks)
+    zero = first // 1_000_000_000 * 1_000_000_000 if first > 10**15 else 0
+    if zero:
+        notes.append(Note("time_origin", "info", f"{path.name}: time counts from {zero // 1_000_000_000} s of the bag's clock"))
+    streams = []
+    seen: set[str] = set()
+    for (key, topic, series), clock in zip(sources, clocks, strict=True):
+        columns = _joints(series, seen, topic, notes, path) if topic.kind == JOINT_STATE else _sensor(key, series, seen)
+        series.values.clear()
+        seen |= set(columns)
+        if columns:
+            streams.append(Stream(topic.name, (clock - zero) * 1e-9, columns))
+    return streams
+
+
+def _unusable(headers: list[np.ndarray[tuple[int], np.dtype[np.int64]]], names: list[str]) -> str | None:
+    """Why the header stamps cannot serve: not set, or clocks that never meet."""
+    for stamps, name in zip(headers, names, strict=True):
+        if stamps.size > 1 and np.count_nonzero(stamps == stamps[0]) > stamps.size // 2:
+            return f"{name} has no header stamps"
+    latest_start, first_end = max(int(s.min()) for s in headers), min(int(s.max()) for s in headers)
+    if latest_start > first_end:
+        late = names[int(np.argmax([int(s.min()) for s in headers]))]
+        return f"the header stamps of {late} do not overlap the others'"
+    return None
+
+
+def _joints(series: Series, seen: set[str], topic: Topic, notes: list[Note], path: Path) -> dict[str, Array]:
+    columns: dict[str, Array] = {}
+    twice = sorted({name for name in series.names if series.names.count(name) > 1})
+    if twice:
+        notes.append(Note("joint_twice", "warning", f"{path.name}: {topic.name} names '{twice[0]}' twice; the first is used"))
+    for quantity in ("position", "velocity", "effort"):
+        if quantity not in series.values:
+            continue
+        for index, joint in enumerate(series.names):
+            name = f"joint.{joint}.{quantity}"
+            if name not in seen and name not in columns:
+                columns[name] = series.column(quantity, index)
+    return columns
+
+
+def _sensor(key: str, series: Series, seen: set[str]) -> dict[str, Array]:
+    columns = {}
+    for name, axes in (("orientation", "xyzw"), ("angular_velocity", "xyz"), ("linear_acceleration", "xyz"),
+                       ("force", "xyz"), ("torque", "xyz")):  # fmt: skip
+        if name not in series.values or (name == "orientation" and _without_orientation(series)):
+            continue
+        for index, axis in enumerate(axes):
+            if (column := f"{key}.{name}.{axis}") not in seen:
+                columns[column] = series.column(name, index)
+    return columns
+
+
+def _without_orientation(series: Series) -> bool:
+    unknown = np.mean([np.mean(chunk[:, 0] == NO_ORIENTATION) for chunk in series.values["orientation_covariance"]])
+    empty = all(not chunk.any() for chunk in series.values["orientation"])
+    return bool(unknown > 0.5 or empty)
