@@ -12,6 +12,7 @@ import pyarrow as pa
 import pyarrow.parquet
 
 HOSTILE = "</script ><img src=x onerror=alert(1)>\u2028'\""
+SOLE = [[0.13, 0.06], [-0.09, 0.06], [-0.09, -0.06], [0.13, -0.06]]
 TRUTH = {  # the paper's table 1
     ("right", "pitch"): (434.0, 15.89, 4.79),
     ("right", "roll"): (323.0, 17.53, -0.05),
@@ -151,6 +152,7 @@ def _result(columns: dict[str, np.ndarray], phases: list[dict[str, Any]]) -> dic
         "inputs": [{"path": f"/logs/{m}.csv", "sha256": "ab" * 32, "role": role} for m, role, _ in MOTIONS],
         "settings": {"offset": "per-motion", "filter": {"cutoff_hz": 20.0, "name": HOSTILE}},
         "model": "kelvin_voigt",
+        "robot_model": {"feet": {foot: {"sole": {"polygon": SOLE}} for foot in ("left", "right")}},
         "parameters": parameters,
         "offsets": offsets,
         "phases": phases,

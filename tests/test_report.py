@@ -131,7 +131,9 @@ def test_hostile_names_stay_text(page: Page) -> None:
     assert page.of("b") == []
     assert not any(name.startswith("on") for _, attributes in page.tags for name in attributes)
     assert HOSTILE in page.plain
-    blocks = re.findall(r'<script type="application/json"[^>]*>(.*?)</script>', page.source, re.S)
+    blocks = re.findall(
+        r'<script type="application/json" class="header"[^>]*>(.*?)</script>', page.source, re.S
+    )
     assert len(blocks) == len(MOTIONS)
     assert all(json.loads(block)["tracks"] for block in blocks)
 

@@ -117,6 +117,11 @@ def test_plots_are_drawn(visit: Visit) -> None:
             assert ink["blue"] > 100, (kind, axis, ink)
             assert ink["red"] > 20, (kind, axis, ink)
     assert visit.plot(0, "force").evaluate(INK)["red"] > 100
+    pressure = visit.plot(0, "pressure")
+    assert pressure.evaluate(INK)["red"] > 100
+    for name, (low, high) in (("x", (-90, 130)), ("y", (-60, 60))):
+        seen = visit.scale(pressure, name)
+        assert seen == pytest.approx((low - 0.05 * (high - low), high + 0.05 * (high - low)))
 
 
 def test_only_what_is_seen_is_drawn(visit: Visit) -> None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
+
 from plantar.files import write_text
 from plantar.report import tables
 from plantar.report.content import Figure, Section, Table
@@ -37,7 +39,7 @@ def write_feet_report(
     page = render(
         "feet.html.j2",
         styles=["uPlot.min.css", "report.css"],
-        scripts=["uPlot.iife.min.js", "payload.js", "colours.js", "plots.js", "loops.js", "report.js"],
+        scripts=["uPlot.iife.min.js", "payload.js", "colours.js", "plots.js", "planes.js", "report.js"],
         title=f"The feet of {content.robot}",
         result=content,
         verdicts=foot_verdicts(content.parameters),
@@ -46,6 +48,7 @@ def write_feet_report(
         tables=_tables(content),
         sections=sections,
         motions=motions,
+        soles=_soles(content),
         stride=stride,
         residuals=residuals,
         figures=figures,
@@ -54,6 +57,15 @@ def write_feet_report(
     target = Path(out) if out is not None else path.parent / "report.html"
     write_text(target, page)
     return target
+
+
+def _soles(result: FeetResult) -> dict[str, list[list[float]]]:
+    """Each foot's sole outline, x forward and y left [mm], where the result knows it."""
+    feet = result.robot_model.feet if result.robot_model is not None else {}
+    outlines = {
+        name: [[1e3 * x, 1e3 * y] for x, y in foot.sole.polygon] for name, foot in feet.items() if foot.sole
+    }
+    return {name: outline for name, outline in outlines.items() if np.isfinite(outline).all()}
 
 
 def _tables(result: FeetResult) -> list[Table]:

@@ -27,7 +27,7 @@ class Lane:
 
 @dataclass(frozen=True)
 class Plot:
-    """One plot to be drawn by the browser: `kind` is angles, force, torque or loop."""
+    """One plot to be drawn by the browser: `kind` is angles, force, pressure, torque or loop."""
 
     kind: str
     title: str
@@ -105,6 +105,8 @@ def _both(tracks: Sequence[Track]) -> Iterable[Plot]:
             yield Plot("angles", f"Bush {what}", f"Bush {what} of each foot over time", axis=axis)
     if any("force_z" in track.values for track in tracks):
         yield Plot("force", "Vertical force", "Vertical force on each foot over time")
+    if any("cop_x" in track.values and "cop_y" in track.values for track in tracks):
+        yield Plot("pressure", "Centre of pressure", "Way of the centre of pressure in each foot's sole")
 
 
 def _foot(track: Track) -> Iterable[Plot]:

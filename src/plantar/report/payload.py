@@ -111,8 +111,9 @@ def _channels(track: Track) -> Mapping[str, Array]:
         channels[f"{axis}.torque"] = track.values[f"{axis}.torque"]
         if f"{axis}.predicted" in track.values:
             channels[f"{axis}.predicted"] = track.values[f"{axis}.predicted"]
-    if "force_z" in track.values:
-        channels["force_z"] = track.values["force_z"]
+    for key, factor in (("force_z", 1.0), ("cop_x", 1e3), ("cop_y", 1e3)):
+        if key in track.values:
+            channels[key] = factor * track.values[key]
     return channels
 
 

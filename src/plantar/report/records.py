@@ -114,8 +114,21 @@ class Result(Row):
     notes: tuple[Remark, ...] = ()
 
 
+class SoleShape(Row):
+    polygon: tuple[tuple[float, float], ...] = ()
+
+
+class FootShape(Row):
+    sole: SoleShape | None = None
+
+
+class RobotShape(Row):
+    feet: dict[str, FootShape] = {}
+
+
 class FeetResult(Result):
     model: str = ""
+    robot_model: RobotShape | None = None
     parameters: tuple[Parameter, ...]
     offsets: tuple[Offset, ...] = ()
     phases: tuple[Phase, ...] = ()

@@ -9,6 +9,8 @@
 
   const block = (kind, motion) => document.querySelector(`script.${kind}[data-motion="${motion}"]`).textContent;
 
+  const soles = JSON.parse(document.getElementById("soles").textContent);
+
   const lines = (tracks, key) =>
     tracks.flatMap((track, index) => track.values[key]
       ? [{ label: track.foot, colour: plantar.footColour(track.foot, index), width: 1,
@@ -31,6 +33,8 @@
       plantar.timePlot(host, key, frame, UNITS[axis].deflection, lines(tracks, `${axis}.deflection`), null);
     } else if (kind === "force") {
       plantar.timePlot(host, key, frame, "force z [N]", lines(tracks, "force_z"), null);
+    } else if (kind === "pressure") {
+      plantar.pressurePlot(host, frame, tracks, soles);
     } else if (kind === "torque") {
       plantar.timePlot(host, key, frame, UNITS[axis].torque, torqueLines(track, axis), track);
     } else {
