@@ -1,0 +1,126 @@
+"""Whole-body inverse kinematics of a robot whose feet stay where they stand."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+
+import numpy as np
+import pink
+import pinocchio as pin
+from pink.limits import ConfigurationLimit
+from pink.tasks import ComTask, FrameTask, PostureTask, Task
+
+from plantar.conventions import Array
+from plantar.errors import MotionError, located
+from plantar.robot import Placement, RobotModel
+
+CHEST = "plantar.chest"
+REACHED = 1e-3  # m: how far a foot or the chest may be from where it should be
+STEPS = 3  # Gauss-Newton steps from one knot to the next
+
+
+class Body:
+    """A robot with a floating base and frames on its soles and chest.
+
+    The chest is the link that carries the IMU, its frame that link's. Raises MotionError where the robot has no
+    IMU or fewer than two feet.
+    """
+
+    def __init__(self, robot: RobotModel) -> None:
+        if robot.imu is None or len(robot.feet) != 2:
+            message = "motions are planned for two feet and a chest that carries an IMU"
+            raise MotionError(located(message, path=robot.path, valid="a robot file with imu and two feet"))
+        self.robot = robot
+        self.model = robot.floating_model.copy()
+        self.chest_link = robot.imu.placement.link
+        self._add_frame(CHEST, Placement(self.chest_link, np.zeros(3), np.zeros(3)))
+        for name, foot in robot.feet.items():
+            self._add_frame(self.sole(name), foot.sole.placement)
+        self.data = self.model.createData()
+
+    @staticmethod
+    def sole(foot: str) -> str:
+        """Name of the frame on a foot's sole."""
+        return f"plantar.{foot}.sole"
+
+    @cached_property
+    def joints(self) -> tuple[str, ...]:
+        return tuple(self.model.names)[2:]
+
+    def neutral(self, posture: Mapping[str, float] | None = None) -> Array:
+        """Configuration with the joints at `posture`, else at 0, and inside their limits with room to move."""
+        q = pin.neutral(self.model)
+        for name, angle in (posture or {}).items():
+            self._set(q, name, angle)
+        room = 0.1
+        for joint in self.model.joints[2:]:
+            if joint.nq == 1:
+                low, high = self.model.lowerPositionLimit[joint.idx_q], self.model.upperPositionLimit[joint.idx_q]
+                margin = min(room, max(high - low, 0.0) / 4) if posture is None else 0.0
+                if low < high:
+                    q[joint.idx_q] = np.clip(q[joint.idx_q], low + margin, high - margin)
+        return q
+
+    def shifted(self, q: Array, posture: Mapping[str, float]) -> Array:
+        """A copy of `q` with some joints set."""
+        changed = q.copy()
+        for name, angle in posture.items():
+            self._set(changed, name, angle)
+        return changed
+
+    def pose(self, q: Array, frame: str) -> pin.SE3:
+        """Pose of a frame in the world."""
+        pin.framesForwardKinematics(self.model, self.data, q)
+        return self.data.oMf[self.model.getFrameId(frame)].copy()
+
+    def centre_of_mass(self, q: Array) -> Array:
+        return np.array(pin.centerOfMass(self.model, self.data, q))
+
+    def positions(self, q: Array) -> Array:
+        """Joint positions, one a joint, in the order of `joints`."""
+        return np.array(
+            [q[j.idx_q] if j.nq == 1 else np.arctan2(q[j.idx_q + 1], q[j.idx_q]) for j in self.model.joints[2:]]
+        )
+
+    def solve(self, q: Array, tasks: list[Task], posture: Array, steps: int) -> Array:
+        """`steps` Gauss-Newton steps towards the tasks, `posture` where they leave freedom."""
+        rest = PostureTask(cost=1e-2, gain=0.3)
+        rest.set_target(posture)
+        configuration = pink.Configuration(self.model, self.data, q.copy())
+        limits = [ConfigurationLimit(self.model, config_limit_gain=0.9)]
+        for _ in range(steps):
+            velocity = pink.solve_ik(
+                configuration, [*tasks, rest], 1.0, solver="daqp", limits=limits, damping=1e-9, safety_break=False
+            )
+            configuration.integrate_inplace(velocity, 1.0)
+        return np.array(configuration.q)
+
+    def foot_tasks(self, soles: Mapping[str, pin.SE3]) -> list[Task]:
+        """Soles held at their poses in the world."""
+        tasks = []
+        for name, target in soles.items():
+            task = FrameTask(self.sole(name), position_cost=100.0, orientation_cost=100.0)
+            task.set_target(target)
+            tasks.append(task)
+        return tasks
+
+    def chest_task(self, target: pin.SE3, *, position: bool = True) -> FrameTask:
+        task = FrameTask(CHEST, position_cost=10.0 if position else 0.0, orientation_cost=3.0)
+        task.set_target(target)
+        return task
+
+    def centre_task(self, target: Array, *, height: float = 0.0) -> ComTask:
+        """Centre of mass over a point; `height` is the cost of its z."""
+        task = ComTask(cost=np.array([10.0, 10.0, height]))
+        task.set_target(target)
+        return task
+
+    def _set(self, q: Array, name: str, angle: float) -> None:
+        joint = self.model.joints[self.model.getJointId(name)]
+        q[joint.idx_q : joint.idx_q + joint.nq] = angle if joint.nq == 1 else (np.cos(angle), np.sin(angle))
+
+    def _add_frame(self, name: str, placement: Placement) -> None:
+        joint, pose = self.robot.frame(placement)
+        carrier = self.model.getJointId(self.robot.model.names[joint]) if joint else 1
+        self.model.addFrame(pin.Frame(name, carrier, 0, pose, pin.FrameType.OP_FRAME), False)

@@ -1,0 +1,84 @@
+"""The paper's fourteen motions by name."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from plantar.errors import MotionError, located
+from plantar.motions.body import Body
+from plantar.motions.manual import manual_plan
+from plantar.motions.plan import Plan
+from plantar.motions.stance import STEP_ASIDE, STEP_FORWARD, Stance, on_one_leg, stand, with_arms
+from plantar.motions.tilt import squat_plan, tilt_plan
+from plantar.motions.upper import sweep_plan
+from plantar.robot import RobotModel
+
+FIT: Final = ("Manual_right_roll", "Manual_right_pitch", "Manual_left_roll", "Manual_left_pitch", "Tilt3")
+DEMO: Final = (*FIT, "Tilt1", "Squat")
+CAMPAIGN: Final = (
+    "Tilt1", "Tilt2", "Tilt3", "Tilt4", "Tilt5", "Tilt6",
+    "Manual_right_roll", "Manual_right_pitch", "Manual_left_roll", "Manual_left_pitch", "Manual_both_pitch",
+    "Myrand4", "Myrand5", "Squat",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Postures:
+    """What a robot's motions start from: joint positions [rad] of standing and of the arm states D and E.
+
+    None lets the knees bend a little from the neutral position; arms that are not named stay as they are.
+    """
+
+    standing: Mapping[str, float] | None = None
+    arms_aside: Mapping[str, float] | None = None
+    arms_forward: Mapping[str, float] | None = None
+
+
+def plan_motion(
+    name: str,
+    robot: RobotModel,
+    postures: Postures | None = None,
+    *,
+    sway: float | None = None,
+    vertical: float | None = None,
+) -> Plan:
+    """One of the paper's motions for a robot with two feet and an IMU in its chest.
+
+    `sway` [m]: how far tilts move the chest (0.02 as in the paper) and how far the operator's hand leads it;
+    `vertical` [m]: how far the chest goes down in Tilt4 to Tilt6 (0.07) and squats (0.1).
+    Raises MotionError when the name is unknown or the motion out of reach.
+    """
+    if name not in CAMPAIGN:
+        raise MotionError(located(f"unknown motion '{name}'", valid=", ".join(CAMPAIGN)))
+    postures = postures or Postures()
+    body = Body(robot)
+    if name.startswith("Tilt"):
+        number = int(name[-1])
+        lower = (0.07 if vertical is None else vertical) if number > 3 else 0.0
+        start = _standing(body, postures, "ABC"[(number - 1) % 3])
+        return tilt_plan(body, name, start, 0.02 if sway is None else sway, lower)
+    start = _standing(body, postures, "A")
+    if name == "Squat":
+        return squat_plan(body, name, start, 0.1 if vertical is None else vertical)
+    if name.startswith("Myrand"):
+        return sweep_plan(body, name, start, int(name[-1]))
+    return _manual(body, name, start, postures, sway)
+
+
+def _manual(body: Body, name: str, start: Stance, postures: Postures, sway: float | None) -> Plan:
+    _, foot, axis = name.split("_")
+    arms = (postures.arms_aside if axis == "roll" else postures.arms_forward) or {}
+    start = with_arms(body, start, arms) if foot == "both" else on_one_leg(body, start, foot, arms)
+    reach = None if sway is None else np.array([sway, sway])
+    return manual_plan(body, name, start, "pitch" if axis == "pitch" else "roll", reach)
+
+
+def _standing(body: Body, postures: Postures, state: str) -> Stance:
+    """The paper's states of the legs: regular (A), right leg aside (B), right leg forward (C)."""
+    steps = {"A": (0.0, 0.0), "B": (0.0, -STEP_ASIDE), "C": (STEP_FORWARD, 0.0)}[state]
+    right = "right" if "right" in body.robot.feet else sorted(body.robot.feet)[-1]
+    return stand(body, postures.standing, {right: steps})

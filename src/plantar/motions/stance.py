@@ -1,0 +1,109 @@
+"""Where a robot starts: regular standing, stepped aside, stepped forward, on one leg; arms as in the paper."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import pinocchio as pin
+
+from plantar.conventions import Array
+from plantar.errors import MotionError, located
+from plantar.motions.body import CHEST, REACHED, Body
+
+KNEE_BEND = 0.94  # of the straight leg's height, where no posture is given
+STEP_ASIDE = 0.05  # m, the right leg to the right (B)
+STEP_FORWARD = 0.10  # m, the right leg forward (C)
+RAISED = 0.08  # m, the free foot above the floor (F, G)
+
+
+@dataclass(frozen=True)
+class Stance:
+    """A configuration with the soles at known places, the floor at z = 0 and the world between the feet."""
+
+    configuration: Array
+    soles: dict[str, pin.SE3]
+    standing: frozenset[str]
+
+    @property
+    def outline(self) -> dict[str, Array]:
+        """Poses of the soles that stand, (4, 4)."""
+        return {name: np.array(self.soles[name].homogeneous) for name in sorted(self.standing)}
+
+
+def stand(body: Body, posture: Mapping[str, float] | None, steps: Mapping[str, tuple[float, float]]) -> Stance:
+    """Both feet flat on the floor, each displaced by `steps` (x, y) [m], the chest upright over their middle.
+
+    Without a posture the knees bend a little from the neutral position.
+    """
+    q = body.neutral(posture)
+    soles = {name: body.pose(q, body.sole(name)).translation for name in body.robot.feet}
+    middle = sum(soles.values(), start=np.zeros(3)) / len(soles)
+    targets = {}
+    for name, place in soles.items():
+        aside = np.array([*steps.get(name, (0.0, 0.0)), 0.0])
+        targets[name] = pin.SE3(np.eye(3), np.array([0.0, place[1] - middle[1], 0.0]) + aside)
+    centre = sum((target.translation for target in targets.values()), start=np.zeros(3)) / len(targets)
+    height = -middle[2] * (KNEE_BEND if posture is None else 1.0)
+    q[:3] = centre + [-middle[0] if posture is not None else 0.0, 0.0, height]
+    chest = body.pose(q, CHEST)
+    if posture is None:
+        over_feet = body.centre_task(np.array([centre[0], centre[1], 0.0]))
+        upright = pin.SE3(np.eye(3), chest.translation)
+        keep = body.chest_task(upright)
+        keep.set_position_cost([0.0, 0.0, 1.0])
+        tasks = [*body.foot_tasks(targets), keep, over_feet]
+    else:
+        tasks = [*body.foot_tasks(targets), body.chest_task(pin.SE3(chest.rotation, chest.translation))]
+    q = body.solve(q, tasks, q, steps=60)
+    check_reached(body, q, targets, "standing")
+    return Stance(q, targets, frozenset(targets))
+
+
+def on_one_leg(body: Body, start: Stance, foot: str, arms: Mapping[str, float]) -> Stance:
+    """The centre of mass over one sole, the other foot raised, arms as given, chest upright."""
+    q = body.shifted(start.configuration, arms)
+    soles = dict(start.soles)
+    for name in soles:
+        if name != foot:
+            soles[name] = soles[name] * pin.SE3(np.eye(3), np.array([0.0, 0.0, RAISED]))
+    centre = _sole_centre(body, start, foot)
+    rest = q
+    for share in np.linspace(0.1, 1.0, 10):
+        moved = {
+            name: pin.SE3.Interpolate(start.soles[name], target, float(share)) for name, target in soles.items()
+        }
+        over = (1 - share) * body.centre_of_mass(rest) + share * centre
+        upright = body.chest_task(body.pose(q, CHEST), position=False)
+        tasks = [*body.foot_tasks(moved), upright, body.centre_task(over)]
+        q = body.solve(q, tasks, rest, steps=6)
+    q = body.solve(q, tasks, rest, steps=40)
+    check_reached(body, q, soles, f"standing on the {foot} foot")
+    return Stance(q, soles, frozenset({foot}))
+
+
+def with_arms(body: Body, start: Stance, arms: Mapping[str, float]) -> Stance:
+    """The same stance with the arms moved, and the chest led back until the centre of mass is where it was."""
+    goal = body.centre_of_mass(start.configuration)
+    q = body.shifted(start.configuration, arms)
+    chest = body.chest_task(body.pose(q, CHEST), position=False)
+    q = body.solve(q, [*body.foot_tasks(start.soles), chest, body.centre_task(goal, height=1.0)], q, steps=60)
+    check_reached(body, q, start.soles, "standing with the arms moved")
+    return Stance(q, start.soles, start.standing)
+
+
+def check_reached(body: Body, q: Array, soles: Mapping[str, pin.SE3], what: str, time: float | None = None) -> None:
+    """MotionError when a foot is not where it should be."""
+    for name, target in soles.items():
+        miss = float(np.linalg.norm(body.pose(q, body.sole(name)).translation - target.translation))
+        if miss > REACHED:
+            message = f"{what}: the {name} foot cannot reach its place, it misses by {1e3 * miss:.1f} mm"
+            raise MotionError(located(message, path=body.robot.name, time=time, valid="a smaller motion"))
+
+
+def _sole_centre(body: Body, start: Stance, foot: str) -> Array:
+    """Middle of a sole's outline in the world, (3,)."""
+    polygon = body.robot.feet[foot].sole.polygon
+    middle = np.array([*(polygon.max(axis=0) + polygon.min(axis=0)) / 2, 0.0])
+    return np.array(start.soles[foot].act(middle))

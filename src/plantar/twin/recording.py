@@ -1,0 +1,84 @@
+"""A recording of the twin: the log a robot would have written, and the truth beside it."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from plantar.conventions import Array
+from plantar.files import atomic_write, write_text
+from plantar.log import MotionLog
+from plantar.robot import RobotModel
+from plantar.twin.exact import exact_columns, truth_columns
+from plantar.twin.foot import cut_feet
+from plantar.twin.from_robot import describe
+from plantar.twin.physics import Physics
+from plantar.twin.presets import Preset
+from plantar.twin.rollout import Rollout
+from plantar.twin.sensors import sense
+
+
+@dataclass(frozen=True)
+class Truth:
+    """What the twin knows and no sensor saw: `columns` (N,) each, and `facts` about what was put in."""
+
+    time: Array
+    columns: Mapping[str, Array] = field(repr=False)
+    facts: Mapping[str, Any]
+
+    def column(self, name: str) -> Array:
+        return self.columns[name]
+
+
+@dataclass(frozen=True)
+class TwinRecording:
+    """One motion as recorded (`log`) and as it was (`truth`)."""
+
+    log: MotionLog
+    truth: Truth
+
+    @property
+    def name(self) -> str:
+        return self.log.name
+
+    def write(self, directory: str | os.PathLike[str]) -> Path:
+        """Write `<motion>.parquet`, `<motion>.truth.parquet` and `<motion>.truth.json`; returns the log's path."""
+        directory = Path(directory)
+        path = directory / f"{self.name}.parquet"
+        _write_parquet(path, self.log.time, self.log.columns)
+        _write_parquet(directory / f"{self.name}.truth.parquet", self.truth.time, self.truth.columns)
+        write_text(directory / f"{self.name}.truth.json", json.dumps(self.truth.facts, indent=1) + "\n")
+        return path
+
+
+def record(rollout: Rollout, robot: RobotModel, physics: Physics, preset: Preset, seed: int) -> TwinRecording:
+    """Sensors of `preset` on a rollout; cheap, so many seeds need one rollout."""
+    feet = cut_feet(describe(robot), robot, physics.bushes)
+    exact = exact_columns(rollout, robot, feet)
+    columns, drawn = sense(exact, rollout.time, robot, preset.sensors, seed, rollout.name)
+    facts = {
+        "motion": rollout.name,
+        "preset": preset.name,
+        "seed": seed,
+        "bushes": {foot: vars(bush) for foot, bush in (physics.bushes or {}).items()},
+        "slips": [vars(slip) for slip in physics.slips],
+        "floor": list(physics.floor),
+        "friction": physics.friction,
+        "sensors": vars(preset.sensors),
+        "drawn": drawn,
+    }
+    truth = Truth(rollout.time, truth_columns(rollout, feet), facts)
+    return TwinRecording(MotionLog(rollout.name, rollout.time, columns), truth)
+
+
+def _write_parquet(path: Path, time: Array, columns: Mapping[str, Array]) -> None:
+    table = pa.table({"time": time, **columns})
+    with atomic_write(path) as handle:
+        pq.write_table(table, handle, compression="zstd")
