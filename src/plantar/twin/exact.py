@@ -78,7 +78,7 @@ def sensor_wrench(rollout: Rollout, foot: CutFoot) -> Array:
     up = np.einsum("nij,nj->ni", _ankle_to_sole(rollout, foot.name), _up_in_sole(rollout, foot.name))
     force = wrench[:, :3] + foot.mass * GRAVITY * up
     centre = np.zeros_like(force)
-    centre[:, 2] = rollout.bush[foot.name][:, 0] - foot.sag
+    centre[:, 2] = rollout.bush[foot.name][:, 0]
     to_sensor = np.linalg.inv(foot.sensor) @ foot.bush
     rotation, offset = to_sensor[:3, :3], to_sensor[:3, 3]
     force, torque = force @ rotation.T, wrench[:, 3:] @ rotation.T

@@ -8,9 +8,8 @@ from typing import Final
 import numpy as np
 import pinocchio as pin
 
-from plantar.conventions import GRAVITY, Array
+from plantar.conventions import Array
 from plantar.robot import Foot, Placement, RobotModel
-from plantar.twin.bush import Feet
 from plantar.twin.description import Body, Description, box_inertia
 
 SOLE_SHARE: Final = 0.65  # of the last link's mass hangs below the force sensor, less where that cannot be
@@ -24,8 +23,7 @@ class CutFoot:
     `ankle`: the body above the bush with the sole's mass taken off, at `place` in the description; `bush`,
     `sensor`: poses (4, 4) in that body's frame; `corners`: the sole's outline in the bush's frame, (n, 3) [m];
     `mass` [kg] and `inertia` (3,) [kg·m²] of the sole about the bush centre, where its centre of mass is.
-    `sag` [m]: how far the whole weight compresses this bush. The robot file's bush centre is where it stands under
-    that weight; unloaded, sole and centre hang lower by `sag`.
+    The robot file's bush centre is where it stands when nothing presses on it; a load moves it up.
     """
 
     name: str
@@ -37,23 +35,11 @@ class CutFoot:
     corners: Array
     mass: float
     inertia: Array
-    sag: float
-
-    @property
-    def unloaded(self) -> Array:
-        """Pose of the bush when nothing presses on it, (4, 4)."""
-        down = np.eye(4)
-        down[2, 3] = -self.sag
-        return np.asarray(self.bush @ down)
 
 
-def cut_feet(description: Description, robot: RobotModel, bushes: Feet | None) -> dict[str, CutFoot]:
-    """Every foot of the robot, cut at its bush (None: a rigid one)."""
-    weight = robot.mass * GRAVITY
-    return {
-        name: _cut(description, robot, foot, weight / bushes[name].z_stiffness if bushes is not None else 0.0)
-        for name, foot in robot.feet.items()
-    }
+def cut_feet(description: Description, robot: RobotModel) -> dict[str, CutFoot]:
+    """Every foot of the robot, cut at its bush."""
+    return {name: _cut(description, robot, foot) for name, foot in robot.feet.items()}
 
 
 def place_of(description: Description, robot: RobotModel, placement: Placement) -> tuple[int, Array]:
@@ -63,7 +49,7 @@ def place_of(description: Description, robot: RobotModel, placement: Placement) 
     return place, np.array(pose.homogeneous)
 
 
-def _cut(description: Description, robot: RobotModel, foot: Foot, sag: float) -> CutFoot:
+def _cut(description: Description, robot: RobotModel, foot: Foot) -> CutFoot:
     place, bush = place_of(description, robot, foot.bush)
     sensor = place_of(description, robot, foot.wrench.placement)[1]
     sole = place_of(description, robot, foot.sole.placement)[1]
@@ -71,7 +57,7 @@ def _cut(description: Description, robot: RobotModel, foot: Foot, sag: float) ->
     corners = (np.linalg.inv(bush) @ sole @ flat.T).T[:, :3]
     size = np.array([*np.ptp(foot.sole.polygon, axis=0), SOLE_THICKNESS])
     ankle, mass, inertia = _split(description.bodies[place], bush, size)
-    return CutFoot(foot.name, place, ankle, bush, sensor, sole, corners, mass, inertia, sag)
+    return CutFoot(foot.name, place, ankle, bush, sensor, sole, corners, mass, inertia)
 
 
 def _split(whole: Body, bush: Array, size: Array) -> tuple[Body, float, Array]:

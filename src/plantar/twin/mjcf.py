@@ -50,7 +50,7 @@ def mjcf_text(robot: RobotModel, bushes: Feet | None, scene: Scene, look: Descri
     the operator's hand adds three.
     """
     description = look or describe(robot)
-    feet = cut_feet(description, robot, bushes)
+    feet = cut_feet(description, robot)
     root = Element("mujoco", model=robot.name)
     SubElement(root, "compiler", angle="radian", autolimits="true", balanceinertia="true")
     options = {"timestep": f"{scene.timestep:.12g}", "gravity": f"0 0 {-GRAVITY}", "integrator": "implicitfast"}
@@ -137,7 +137,7 @@ def _add_inertia(element: Element, body: Body) -> None:
 
 def _add_sole(ankle: Element, foot: CutFoot, bush: Bush | None) -> None:
     """The sole below the bush: z slide, pitch and roll in series, in one light body (none may be massless)."""
-    sole = SubElement(ankle, "body", name=f"{foot.name}.sole", **pose(foot.unloaded))
+    sole = SubElement(ankle, "body", name=f"{foot.name}.sole", **pose(foot.bush))
     centre = {"pos": "0 0 0", "mass": f"{foot.mass:.12g}", "diaginertia": numbers(foot.inertia)}
     SubElement(sole, "inertial", centre)
     if bush is not None:

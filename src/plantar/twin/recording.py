@@ -60,7 +60,7 @@ class TwinRecording:
 
 def record(rollout: Rollout, robot: RobotModel, physics: Physics, preset: Preset, seed: int) -> TwinRecording:
     """Sensors of `preset` on a rollout; cheap, so many seeds need one rollout."""
-    feet = cut_feet(describe(robot), robot, physics.bushes)
+    feet = cut_feet(describe(robot), robot)
     exact = exact_columns(rollout, robot, feet)
     columns, drawn = sense(exact, rollout.time, robot, preset.sensors, seed, rollout.name)
     facts = {

@@ -14,8 +14,6 @@ from plantar.errors import MotionError, located
 from plantar.motions.plan import RATE, Plan
 from plantar.robot import RobotModel
 from plantar.twin.description import Description
-from plantar.twin.foot import cut_feet
-from plantar.twin.from_robot import describe
 from plantar.twin.mjcf import HAND, SERVO_TIME, Scene, mjcf_text, quaternion_from_rotation
 from plantar.twin.physics import Physics
 from plantar.twin.rubber import Rubber
@@ -72,7 +70,6 @@ def roll_out(
     joints = tuple(name for name in joints if name in plan.joints)
     control, anchor = _targets(plan, joints)
     _place(data, plan, joints)
-    data.qpos[2] += _sag(robot, plan, physics)
     stepper = _Stepper(model, data, physics, robot)
     per_control = int(round(1 / (CONTROL_RATE * physics.timestep)))
     controls = int(round(CONTROL_RATE / RATE))
@@ -207,12 +204,6 @@ def _place(data: mujoco.MjData, plan: Plan, joints: tuple[str, ...]) -> None:
     data.qpos[3:7] = quaternion_from_rotation(plan.base[0, :3, :3])
     for name in joints:
         data.joint(name).qpos[0] = plan.positions[0, plan.joints.index(name)]
-
-
-def _sag(robot: RobotModel, plan: Plan, physics: Physics) -> float:
-    """How much higher the robot stands on unloaded bushes than on the plan's feet [m]."""
-    feet = cut_feet(describe(robot), robot, physics.bushes)
-    return max(feet[name].sag for name in plan.standing)
 
 
 def _check_upright(plan: Plan, sample: int, data: mujoco.MjData) -> None:
