@@ -1,16 +1,25 @@
 // The only file that knows Python: arrays in, arrays out, the GIL released while the core works.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
+#include <bit>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "aligned.hpp"
 #include "kernels.hpp"
 #include "parallel.hpp"
+#include "stream.hpp"
+#include "triangular.hpp"
 
 namespace nb = nanobind;
 using namespace plantar;
@@ -87,6 +96,230 @@ nb::ndarray<nb::numpy, double> foot_chain(const std::vector<Packed>& frames, con
   return owned(data.release(), {CHAIN_OUTPUTS, n});
 }
 
+// The tree with its own storage, and the arrays of one batch bound to it.
+class TreeObject {
+ public:
+  TreeObject(const std::vector<int>& parents, const std::vector<bool>& slides, const std::vector<Packed>& axes,
+             const std::vector<Packed>& frames, bool floating) {
+    if (floating) {
+      Link root = {};
+      root.parent = -1;
+      root.joint = Joint::root;
+      links_.push_back(root);
+    }
+    const std::size_t n = parents.size();
+    if (slides.size() != n || axes.size() != n || frames.size() != n)
+      throw std::invalid_argument("every joint needs a parent, a kind, an axis and a frame");
+    for (std::size_t i = 0; i < n; ++i) {
+      Link link = {};
+      link.parent = parents[i] + (floating ? 1 : 0);
+      if (parents[i] < -1 || parents[i] >= static_cast<int>(i)) throw std::invalid_argument("parents come first");
+      if (axes[i].shape(0) != 3) throw std::invalid_argument("an axis is three numbers");
+      std::copy_n(axes[i].data(), 3, link.axis);
+      link.placement = frame(frames[i]);
+      const double* r = link.placement.rotation;
+      link.turned = !(r[0] == 1.0 && r[4] == 1.0 && r[8] == 1.0);
+      link.joint = slides[i]               ? Joint::prismatic
+                   : link.axis[0] == 1.0   ? Joint::revolute_x
+                   : link.axis[1] == 1.0   ? Joint::revolute_y
+                   : link.axis[2] == 1.0   ? Joint::revolute_z
+                                           : Joint::revolute;
+      links_.push_back(link);
+    }
+    if (links_.empty()) throw std::invalid_argument("a tree without links");
+    tree_ = {links_.data(), static_cast<std::int32_t>(links_.size()), floating};
+  }
+
+  TreeObject(const TreeObject& other) : links_(other.links_), tree_(other.tree_) { tree_.links = links_.data(); }
+  TreeObject& operator=(const TreeObject&) = delete;
+
+  const Tree& tree() const { return tree_; }
+  std::size_t joints() const { return links_.size() - tree_.first_joint(); }
+
+ private:
+  std::vector<Link> links_;
+  Tree tree_ = {};
+};
+
+// base: (N, 9); position, velocity, acceleration: (N, joints). The columns live as long as this object.
+struct BoundMotion {
+  std::size_t samples;
+  std::vector<Column> columns;
+  Motion motion = {};
+
+  BoundMotion(const TreeObject& tree, const Matrix& base, const Matrix& q, const Matrix& v, const Matrix& a)
+      : samples(base.shape(0)) {
+    ::columns(base, samples, motion.base);
+    const std::size_t n = tree.joints();
+    for (const Matrix* m : {&q, &v, &a}) {
+      if (m->shape(0) != samples || m->shape(1) != n) throw std::invalid_argument("an array of the wrong shape");
+      for (std::size_t k = 0; k < n; ++k)
+        columns.push_back({m->data() + static_cast<std::ptrdiff_t>(k) * m->stride(1), m->stride(0)});
+    }
+    motion.position = columns.data();
+    motion.velocity = columns.data() + n;
+    motion.acceleration = columns.data() + 2 * n;
+  }
+};
+
+std::vector<std::uint32_t> kept_masks(const TreeObject& tree, const std::vector<unsigned>& kept) {
+  if (kept.size() != static_cast<std::size_t>(tree.tree().n_links)) throw std::invalid_argument("one mask a link");
+  return {kept.begin(), kept.end()};
+}
+
+// (rows, columns, N): every row with the columns of every kept parameter; zero where it does not depend on one.
+nb::ndarray<nb::numpy, double> regressor(const TreeObject& object, const std::vector<unsigned>& kept,
+                                         const std::vector<bool>& wanted, const Matrix& base, const Matrix& q,
+                                         const Matrix& v, const Matrix& a, unsigned threads, const std::string& isa) {
+  const Tree& tree = object.tree();
+  const BoundMotion bound(object, base, q, v, a);
+  const std::vector<std::uint32_t> masks = kept_masks(object, kept);
+  const std::size_t n = bound.samples, rows = tree.n_rows();
+  if (wanted.size() != rows) throw std::invalid_argument("say of each row whether it is wanted");
+  std::vector<std::int32_t> first(tree.n_links);
+  std::size_t columns = 0;
+  for (std::int32_t link = 0; link < tree.n_links; ++link) {
+    first[link] = static_cast<std::int32_t>(columns);
+    columns += std::popcount(masks[link]);
+  }
+  const std::size_t count = std::count(wanted.begin(), wanted.end(), true);
+  std::unique_ptr<double[]> data(new double[std::max<std::size_t>(count * columns * n, 1)]());
+  std::vector<RowSink> sinks;
+  for (std::size_t row = 0, at = 0; row < rows; ++row)
+    sinks.push_back({wanted[row] ? data.get() + at++ * columns * n : nullptr, static_cast<std::ptrdiff_t>(n), first.data()});
+  const Kernels& table = kernels(isa);
+  {
+    nb::gil_scoped_release release;
+    parallel_parts(n, 64, worthwhile_threads(n, 512, threads), [&](unsigned, std::size_t begin, std::size_t end) {
+      Aligned work = aligned_bytes(table.link_work * tree.n_links);
+      table.regressor(tree, bound.motion, masks.data(), sinks.data(), begin, end, begin, work.get());
+    });
+  }
+  return owned(data.release(), {count, columns, n});
+}
+
+// (rows, N). contacts: link, frame (12,) and wrench (N, 6) of each.
+nb::ndarray<nb::numpy, double> inverse_dynamics(const TreeObject& object, const std::optional<Packed>& parameters,
+                                                const std::vector<int>& links, const std::vector<Packed>& frames,
+                                                const std::vector<Matrix>& wrenches, const Matrix& base,
+                                                const Matrix& q, const Matrix& v, const Matrix& a, unsigned threads,
+                                                const std::string& isa) {
+  const Tree& tree = object.tree();
+  const BoundMotion bound(object, base, q, v, a);
+  const std::size_t n = bound.samples, rows = tree.n_rows();
+  if (parameters && parameters->shape(0) != static_cast<std::size_t>(PARAMETERS * tree.n_links))
+    throw std::invalid_argument("ten parameters a link");
+  if (frames.size() != links.size() || wrenches.size() != links.size())
+    throw std::invalid_argument("every contact needs a link, a frame and a wrench");
+  std::vector<Contact> contacts(links.size());
+  for (std::size_t k = 0; k < links.size(); ++k) {
+    if (links[k] < 0 || links[k] >= tree.n_links) throw std::invalid_argument("a contact on no link");
+    contacts[k].link = links[k];
+    contacts[k].frame = frame(frames[k]);
+    columns(wrenches[k], n, contacts[k].wrench);
+  }
+  std::unique_ptr<double[]> data(new double[std::max<std::size_t>(rows * n, 1)]);
+  std::vector<double*> out;
+  for (std::size_t row = 0; row < rows; ++row) out.push_back(data.get() + row * n);
+  const double* given = parameters ? parameters->data() : nullptr;
+  const Kernels& table = kernels(isa);
+  {
+    nb::gil_scoped_release release;
+    parallel_parts(n, 64, worthwhile_threads(n, 1024, threads), [&](unsigned, std::size_t begin, std::size_t end) {
+      Aligned work = aligned_bytes(table.link_work * tree.n_links);
+      table.inverse_dynamics(tree, bound.motion, given, contacts.data(), contacts.size(), begin, end, out.data(),
+                             work.get());
+    });
+  }
+  return owned(data.release(), {rows, n});
+}
+
+class StreamObject {
+ public:
+  StreamObject(const TreeObject& tree, const std::vector<unsigned>& kept, const std::vector<std::size_t>& extras)
+      : tree_(tree), stream_(tree_.tree(), kept_masks(tree, kept), checked(tree, extras)) {}
+  StreamObject(const StreamObject&) = delete;
+
+  void add(const Matrix& base, const Matrix& q, const Matrix& v, const Matrix& a,
+           const std::vector<std::vector<Vector>>& extras, unsigned threads, const std::string& isa) {
+    const BoundMotion bound(tree_, base, q, v, a);
+    if (extras.size() != stream_.rows()) throw std::invalid_argument("extras for each row");
+    std::vector<std::vector<Column>> given(extras.size());
+    for (std::size_t row = 0; row < extras.size(); ++row) {
+      if (extras[row].size() != stream_.layout(row).extras) throw std::invalid_argument("extras of another number");
+      for (const Vector& extra : extras[row]) given[row].push_back(column(extra, bound.samples));
+    }
+    const Kernels& table = kernels(isa);
+    nb::gil_scoped_release release;
+    stream_.add(table, bound.motion, given, bound.samples, threads);
+  }
+
+  nb::ndarray<nb::numpy, double> factor(std::size_t row) const {
+    const RowLayout& layout = stream_.layout(checked_row(row));
+    const std::size_t n = layout.parameters.size() + layout.extras;
+    std::unique_ptr<double[]> data(new double[std::max<std::size_t>(n * n, 1)]);
+    {
+      nb::gil_scoped_release release;
+      stream_.factor(kernels(""), row, data.get());
+    }
+    return owned(data.release(), {n, n});
+  }
+
+  std::vector<int> parameters(std::size_t row) const {
+    const std::vector<std::int32_t>& found = stream_.layout(checked_row(row)).parameters;
+    return {found.begin(), found.end()};
+  }
+
+ private:
+  static const std::vector<std::size_t>& checked(const TreeObject& tree, const std::vector<std::size_t>& extras) {
+    if (extras.size() != static_cast<std::size_t>(tree.tree().n_rows()))
+      throw std::invalid_argument("a number of extras for each row");
+    return extras;
+  }
+  std::size_t checked_row(std::size_t row) const {
+    if (row >= stream_.rows() || stream_.layout(row).extras == 0) throw std::invalid_argument("no such row");
+    return row;
+  }
+
+  TreeObject tree_;
+  Stream stream_;
+};
+
+// R of all factors' rows, each times its weight: upper (n, n). onto[k]: where the factor's columns stand, increasing.
+nb::ndarray<nb::numpy, double> stacked(
+    const std::vector<nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>>& factors,
+    const std::vector<std::vector<int>>& onto, const std::vector<double>& weights, std::size_t n) {
+  Factor all(n);
+  if (onto.size() != factors.size() || weights.size() != factors.size())
+    throw std::invalid_argument("every factor needs its columns and its weight");
+  const Kernels& table = kernels("");
+  for (std::size_t k = 0; k < factors.size(); ++k) {
+    const std::size_t size = factors[k].shape(0);
+    const std::vector<std::int32_t> columns(onto[k].begin(), onto[k].end());
+    const bool valid = factors[k].shape(1) == size && columns.size() == size &&
+                       std::adjacent_find(columns.begin(), columns.end(), std::greater_equal<>()) == columns.end() &&
+                       (columns.empty() || (columns.front() >= 0 && columns.back() < static_cast<int>(n)));
+    if (!valid) throw std::invalid_argument("a factor's columns must increase and be as many as its own");
+    nb::gil_scoped_release release;
+    all.take(table, factors[k].data(), size, columns.data(), weights[k]);
+  }
+  std::unique_ptr<double[]> data(new double[std::max<std::size_t>(n * n, 1)]);
+  all.copy_upper(data.get());
+  return owned(data.release(), {n, n});
+}
+
+nb::ndarray<nb::numpy, double> inverse_upper(
+    const nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>& upper) {
+  const std::size_t n = upper.shape(0);
+  if (upper.shape(1) != n) throw std::invalid_argument("a square matrix");
+  std::unique_ptr<double[]> data(new double[std::max<std::size_t>(n * n, 1)]);
+  {
+    nb::gil_scoped_release release;
+    invert_upper(upper.data(), data.get(), n);
+  }
+  return owned(data.release(), {n, n});
+}
+
 }  // namespace
 
 NB_MODULE(_core, m) {
@@ -95,4 +328,22 @@ NB_MODULE(_core, m) {
   m.def("foot_chain", &foot_chain, nb::arg("frames"), nb::arg("slides"), nb::arg("signs"), nb::arg("bush"),
         nb::arg("sole"), nb::arg("positions"), nb::arg("velocities"), nb::arg("orientation"),
         nb::arg("angular_velocity"), nb::arg("threads") = 0, nb::arg("isa") = "");
+  nb::class_<TreeObject>(m, "Tree")
+      .def(nb::init<const std::vector<int>&, const std::vector<bool>&, const std::vector<Packed>&,
+                    const std::vector<Packed>&, bool>(),
+           nb::arg("parents"), nb::arg("slides"), nb::arg("axes"), nb::arg("frames"), nb::arg("floating"));
+  m.def("regressor", &regressor, nb::arg("tree"), nb::arg("kept"), nb::arg("rows"), nb::arg("base"), nb::arg("q"),
+        nb::arg("v"), nb::arg("a"), nb::arg("threads") = 0, nb::arg("isa") = "");
+  m.def("inverse_dynamics", &inverse_dynamics, nb::arg("tree"), nb::arg("parameters").none(), nb::arg("links"),
+        nb::arg("frames"), nb::arg("wrenches"), nb::arg("base"), nb::arg("q"), nb::arg("v"), nb::arg("a"),
+        nb::arg("threads") = 0, nb::arg("isa") = "");
+  nb::class_<StreamObject>(m, "Stream")
+      .def(nb::init<const TreeObject&, const std::vector<unsigned>&, const std::vector<std::size_t>&>(),
+           nb::arg("tree"), nb::arg("kept"), nb::arg("extras"))
+      .def("add", &StreamObject::add, nb::arg("base"), nb::arg("q"), nb::arg("v"), nb::arg("a"), nb::arg("extras"),
+           nb::arg("threads") = 0, nb::arg("isa") = "")
+      .def("factor", &StreamObject::factor, nb::arg("row"))
+      .def("parameters", &StreamObject::parameters, nb::arg("row"));
+  m.def("stacked", &stacked, nb::arg("factors"), nb::arg("onto"), nb::arg("weights"), nb::arg("n"));
+  m.def("inverse_upper", &inverse_upper, nb::arg("upper"));
 }

@@ -2,30 +2,10 @@
 #pragma once
 
 #include "chain.hpp"
+#include "pack.hpp"
 #include "vec3.hpp"
 
 namespace plantar::PLANTAR_ISA {
-
-// Lanes beyond the last sample repeat it, so that no lane ever holds a number that nobody measured.
-PLANTAR_INLINE Lanes gather(const Column& column, std::size_t first, std::size_t last) {
-  Lanes x = Lanes{};
-  if (column.data == nullptr) return x;
-  const double* p = column.data + static_cast<std::ptrdiff_t>(first) * column.stride;
-  if (first + LANES <= last && column.stride == 1) return load(p);
-  for (int l = 0; l < LANES; ++l) {
-    x[l] = *p;
-    if (first + l + 1 < last) p += column.stride;
-  }
-  return x;
-}
-
-PLANTAR_INLINE void scatter(double* out, Lanes x, std::size_t first, std::size_t last) {
-  if (first + LANES <= last) {
-    store(out + first, x);
-  } else {
-    for (int l = 0; first + l < last; ++l) out[first + l] = x[l];
-  }
-}
 
 PLANTAR_INLINE void chain_pack(const Chain& chain, const Attitude& attitude, std::size_t first, std::size_t last,
                                double* const* out) {
@@ -66,13 +46,13 @@ PLANTAR_INLINE void chain_pack(const Chain& chain, const Attitude& attitude, std
   const Vec3 up = transposed(rotation, Vec3{world.x.z, world.y.z, world.z.z});
   const Vec3 up_rate = cross(up, transposed(rotation, omega));
   const Lanes level2 = up.x * up.x + up.z * up.z, level = sqrt(level2);
-  scatter(out[UP], up.x, first, last);
-  scatter(out[UP + 1], up.y, first, last);
-  scatter(out[UP + 2], up.z, first, last);
-  scatter(out[DEFLECTION], atan2(up.x, up.z), first, last);
-  scatter(out[DEFLECTION + 1], -atan2(up.y, level), first, last);
-  scatter(out[RATE], (up.z * up_rate.x - up.x * up_rate.z) / level2, first, last);
-  scatter(out[RATE + 1], -up_rate.y / level, first, last);
+  scatter(out[UP] + first, up.x, last - first);
+  scatter(out[UP + 1] + first, up.y, last - first);
+  scatter(out[UP + 2] + first, up.z, last - first);
+  scatter(out[DEFLECTION] + first, atan2(up.x, up.z), last - first);
+  scatter(out[DEFLECTION + 1] + first, -atan2(up.y, level), last - first);
+  scatter(out[RATE] + first, (up.z * up_rate.x - up.x * up_rate.z) / level2, last - first);
+  scatter(out[RATE + 1] + first, -up_rate.y / level, last - first);
 
   // The deflected sole: Ry(pitch) Rx(roll) about the bush centre, its sines and cosines straight from `up`.
   const Lanes cp = up.z / level, sp = up.x / level, cr = level, sr = -up.y;
@@ -81,10 +61,10 @@ PLANTAR_INLINE void chain_pack(const Chain& chain, const Attitude& attitude, std
   const Vec3 position = world * (origin + times(sole, chain.sole.origin));
   const double forward[3] = {chain.sole.rotation[0], chain.sole.rotation[3], chain.sole.rotation[6]};
   const Vec3 heading = world * times(sole, forward);
-  scatter(out[SOLE_POSITION], position.x, first, last);
-  scatter(out[SOLE_POSITION + 1], position.y, first, last);
-  scatter(out[SOLE_POSITION + 2], position.z, first, last);
-  scatter(out[HEADING], atan2(heading.y, heading.x), first, last);
+  scatter(out[SOLE_POSITION] + first, position.x, last - first);
+  scatter(out[SOLE_POSITION + 1] + first, position.y, last - first);
+  scatter(out[SOLE_POSITION + 2] + first, position.z, last - first);
+  scatter(out[HEADING] + first, atan2(heading.y, heading.x), last - first);
 }
 
 inline void chain(const Chain& chain, const Attitude& attitude, std::size_t begin, std::size_t end,

@@ -1,6 +1,9 @@
 // Built once per instruction set, with its name, its lanes and its compiler flags set by CMakeLists.txt.
-#include "chain_kernel.hpp"
 #include "kernels.hpp"
+
+#include "chain_kernel.hpp"
+#include "inverse_dynamics_kernel.hpp"
+#include "qr_kernel.hpp"
 
 #define PLANTAR_STRING_(x) #x
 #define PLANTAR_STRING(x) PLANTAR_STRING_(x)
@@ -8,6 +11,8 @@
 namespace plantar::PLANTAR_ISA {
 
 extern const Kernels kernels;
-const Kernels kernels = {PLANTAR_STRING(PLANTAR_ISA), chain};
+const Kernels kernels = {
+    PLANTAR_STRING(PLANTAR_ISA), sizeof(LinkState) + sizeof(Wrench), qr_work, chain, regressor, inverse_dynamics,
+    qr_update};
 
 }  // namespace plantar::PLANTAR_ISA

@@ -1,13 +1,27 @@
 // The kernels as a table of functions, one table per instruction set, the best chosen when the core loads.
 #pragma once
 
+#include <cstdint>
+
 #include "chain.hpp"
+#include "qr.hpp"
+#include "tree.hpp"
 
 namespace plantar {
 
+// All work on samples [begin, end) and may run at the same time on different samples. `work` is aligned to 64
+// bytes and holds `link_work` bytes a link, or `qr_work` bytes.
 struct Kernels {
   const char* name;
+  std::size_t link_work;
+  std::size_t qr_work;
   void (*chain)(const Chain&, const Attitude&, std::size_t begin, std::size_t end, double* const* out);
+  void (*regressor)(const Tree&, const Motion&, const std::uint32_t* kept, const RowSink* sinks, std::size_t begin,
+                    std::size_t end, std::size_t offset, double* work);
+  void (*inverse_dynamics)(const Tree&, const Motion&, const double* parameters, const Contact* contacts,
+                           std::size_t n_contacts, std::size_t begin, std::size_t end, double* const* rows,
+                           double* work);
+  void (*qr_update)(const Triangle&, const Block&, void* work);
 };
 
 // The tables that this build holds and this processor can run, best first; null ends the list.

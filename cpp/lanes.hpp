@@ -40,6 +40,20 @@ PLANTAR_INLINE double sum(Lanes x) {
   return total;
 }
 
+// The lower and the upper halves of two vectors, lane by lane in turn.
+#if PLANTAR_LANES == 8
+#define PLANTAR_LOW 0, 8, 1, 9, 2, 10, 3, 11
+#define PLANTAR_HIGH 4, 12, 5, 13, 6, 14, 7, 15
+#elif PLANTAR_LANES == 4
+#define PLANTAR_LOW 0, 4, 1, 5
+#define PLANTAR_HIGH 2, 6, 3, 7
+#else
+#define PLANTAR_LOW 0, 2
+#define PLANTAR_HIGH 1, 3
+#endif
+PLANTAR_INLINE Lanes interleave_low(Lanes a, Lanes b) { return __builtin_shufflevector(a, b, PLANTAR_LOW); }
+PLANTAR_INLINE Lanes interleave_high(Lanes a, Lanes b) { return __builtin_shufflevector(a, b, PLANTAR_HIGH); }
+
 // Sine and cosine to 1-2 ulp: three-part reduction by pi/2, then Taylor's polynomials, whose next terms are
 // below 1e-17 on [-pi/4, pi/4]. Angles beyond 1e5 rad (or not finite) go to the C library.
 PLANTAR_INLINE void sincos(Lanes x, Lanes& sine, Lanes& cosine) {

@@ -135,7 +135,9 @@ def test_every_quantity_agrees_with_pinocchio_to_1e_10(make: object) -> None:
             for name, state in found.items():
                 for key in QUANTITIES:
                     value = getattr(state, key)[i]
-                    np.testing.assert_allclose(value, expected[name][key], rtol=1e-10, atol=1e-10, err_msg=key)
+                    np.testing.assert_allclose(
+                        value, expected[name][key], rtol=1e-10, atol=1e-10, err_msg=key
+                    )
                 if expected[name]["carries"]:
                     np.testing.assert_allclose(state.cop[i], expected[name]["cop"], rtol=1e-10, atol=1e-10)
                 else:

@@ -18,3 +18,57 @@ def foot_chain(
     threads: int = 0,
     isa: str = "",
 ) -> Array: ...
+
+class Tree:
+    def __init__(
+        self,
+        parents: Sequence[int],
+        slides: Sequence[bool],
+        axes: Sequence[Array],
+        frames: Sequence[Array],
+        floating: bool,
+    ) -> None: ...
+
+class Stream:
+    def __init__(self, tree: Tree, kept: Sequence[int], extras: Sequence[int]) -> None: ...
+    def add(
+        self,
+        base: Array,
+        q: Array,
+        v: Array,
+        a: Array,
+        extras: Sequence[Sequence[Array]],
+        threads: int = 0,
+        isa: str = "",
+    ) -> None: ...
+    def factor(self, row: int) -> Array: ...
+    def parameters(self, row: int) -> list[int]: ...
+
+def regressor(
+    tree: Tree,
+    kept: Sequence[int],
+    rows: Sequence[bool],
+    base: Array,
+    q: Array,
+    v: Array,
+    a: Array,
+    threads: int = 0,
+    isa: str = "",
+) -> Array: ...
+def inverse_dynamics(
+    tree: Tree,
+    parameters: Array | None,
+    links: Sequence[int],
+    frames: Sequence[Array],
+    wrenches: Sequence[Array],
+    base: Array,
+    q: Array,
+    v: Array,
+    a: Array,
+    threads: int = 0,
+    isa: str = "",
+) -> Array: ...
+def stacked(
+    factors: Sequence[Array], onto: Sequence[Sequence[int]], weights: Sequence[float], n: int
+) -> Array: ...
+def inverse_upper(upper: Array) -> Array: ...

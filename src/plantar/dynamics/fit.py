@@ -1,0 +1,193 @@
+"""Least squares for the base parameters (eq. 2), from arrays or from a stream of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+import pinocchio as pin
+from scipy import linalg
+
+from plantar import _core
+from plantar.conventions import Array
+from plantar.dynamics.base_parameters import BaseParameters, base_parameters
+from plantar.dynamics.equation import BASE_ROWS, Equation
+from plantar.dynamics.motion import pinocchio_motion
+from plantar.dynamics.stream import EquationStream, stacked
+from plantar.errors import DataError
+from plantar.notes import Note
+
+SAFE_CONDITION = 1e10  # below this estimate every parameter is excited and no singular values are needed
+RANK_TOLERANCE = 1e-10  # of the largest singular value, columns scaled to one
+UNEXCITED_SHARE = 0.05  # of a unit parameter that must lie in the unexcited directions to be named
+
+Rows = Literal["base", "all"]
+Samples = tuple[Array, Array, Array, Array]
+
+
+@dataclass(frozen=True)
+class BaseParameterFit:
+    """Least-squares base parameters.
+
+    values: (n_base,), where some are not excited the smallest that fit; std: (n_base,), for white residuals
+    of one size in all rows, infinite for a parameter that is not excited; rank: excited directions; names,
+    expressions: of the parameters; samples; residual_rms: over all rows [N and N·m]; notes: what is not
+    excited.
+    """
+
+    equation: Equation = field(repr=False)
+    base: BaseParameters = field(repr=False)
+    rows: tuple[int, ...] = field(repr=False)
+    triangle: Array = field(repr=False)
+    values: Array
+    std: Array
+    rank: int
+    samples: int
+    residual_rms: float
+    notes: tuple[Note, ...]
+    _model: pin.Model = field(repr=False)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return self.base.names
+
+    @property
+    def expressions(self) -> tuple[str, ...]:
+        return self.base.expressions
+
+    @cached_property
+    def condition_number(self) -> float:
+        """Largest over smallest singular value of the stacked regressor; infinite where the rank lacks."""
+        if self.rank < len(self.values):
+            return float("inf")
+        singular = linalg.svdvals(self.triangle[:-1, :-1])
+        return float(singular[0] / singular[-1])
+
+    def predict(self, q: Array, v: Array, a: Array) -> Array:
+        """The fitted rows in another motion, (N, len(rows)) [N, N·m]."""
+        motion = pinocchio_motion(self._model, self.equation.tree, q, v, a)
+        return self.equation.inverse_dynamics(motion, self.base.embed(self.values))[list(self.rows)].T
+
+
+def fit_base_parameters(
+    model: pin.Model, q: Array, v: Array, a: Array, tau: Array, rows: Rows = "base", threads: int = 0
+) -> BaseParameterFit:
+    """Base parameters of a Pinocchio model by least squares.
+
+    q: (N, nq); v, a, tau: (N, nv) in Pinocchio's conventions. rows: "base" uses the six rows of the
+    free-flyer (eq. 2, no joint torque is read), "all" every row. threads: 0 for as many as are worth
+    starting.
+
+    Raises RobotError for a joint type that is not supported, DataError for wrong shapes, values that are not
+    finite, or base rows asked of a model without free-flyer.
+    """
+    return fit_base_parameters_chunked(model, [(q, v, a, tau)], rows, threads)
+
+
+def fit_base_parameters_chunked(
+    model: pin.Model, chunks: Iterable[Samples], rows: Rows = "base", threads: int = 0
+) -> BaseParameterFit:
+    """As `fit_base_parameters`, from any number of batches (q, v, a, tau), in constant memory."""
+    equation = Equation(model)
+    if rows == "base" and not equation.floating:
+        raise DataError("base rows need a free-flyer at the root (valid: rows='all' for a fixed base)")
+    base = base_parameters(equation)
+    chosen = tuple(range(BASE_ROWS if rows == "base" else equation.n_rows))
+    stream = EquationStream(equation, base, chosen)
+    samples = 0
+    for q, v, a, tau in chunks:
+        motion = pinocchio_motion(model, equation.tree, q, v, a)
+        tau = np.asarray(tau, dtype=np.float64)
+        if tau.shape != (len(motion), model.nv):
+            raise DataError(f"tau: an array of shape {tau.shape} (valid: {(len(motion), model.nv)})")
+        if not np.isfinite(tau[:, : len(chosen)]).all():
+            sample, column = np.argwhere(~np.isfinite(tau[:, : len(chosen)]))[0]
+            raise DataError(f"tau: sample {sample}, column {column} is {tau[sample, column]} (valid: finite)")
+        stream.add(motion, {row: tau[:, row] for row in chosen}, threads=threads)
+        samples += len(motion)
+    if samples == 0:
+        raise DataError("no samples to fit (valid: at least one)")
+    triangle = stacked(list(stream.factors().values()), len(base))
+    return _solved(model, equation, base, chosen, triangle, samples)
+
+
+def _solved(
+    model: pin.Model,
+    equation: Equation,
+    base: BaseParameters,
+    rows: tuple[int, ...],
+    triangle: Array,
+    samples: int,
+) -> BaseParameterFit:
+    solution = solve_triangle(triangle)
+    equations = samples * len(rows)
+    freedom = equations - solution.rank
+    residual = abs(float(triangle[-1, -1])) if solution.full else solution.residual
+    variance = residual**2 / freedom if freedom > 0 else np.nan
+    notes = []
+    if not solution.full:
+        named = [base.expressions[k] for k in np.flatnonzero(~solution.excited)]
+        text = f"{len(base) - solution.rank} of {len(base)} directions are not excited; not determined: "
+        notes.append(Note("unexcited", "warning", text + "; ".join(named)))
+    if freedom <= 0:
+        text = f"{equations} equations for {solution.rank} excited directions: no deviations can be given"
+        notes.append(Note("too_few_samples", "warning", text))
+    std = np.where(solution.excited, np.sqrt(variance) * solution.spread, np.inf)
+    return BaseParameterFit(
+        equation=equation,
+        base=base,
+        rows=rows,
+        triangle=triangle,
+        values=solution.values,
+        std=std,
+        rank=solution.rank,
+        samples=samples,
+        residual_rms=residual / np.sqrt(equations),
+        notes=tuple(notes),
+        _model=model,
+    )
+
+
+@dataclass(frozen=True)
+class TriangleSolution:
+    """Least squares from a triangle [R z; 0 r].
+
+    values: (n,); spread: (n,), standard deviations for residuals of size one; excited: (n,) bool; rank;
+    residual: norm of what is left; full: every direction is excited.
+    """
+
+    values: Array
+    spread: Array
+    excited: np.ndarray[tuple[int], np.dtype[np.bool_]]
+    rank: int
+    residual: float
+    full: bool
+
+
+def solve_triangle(triangle: Array) -> TriangleSolution:
+    """Solve a triangle whose last column is the measured side; the smallest of the values that fit."""
+    r, z = triangle[:-1, :-1], triangle[:-1, -1]
+    scale = np.linalg.norm(r, axis=0)
+    scale[scale == 0] = 1.0
+    unit = r / scale
+    n = len(z)
+    if np.all(np.abs(np.diag(unit)) > 1 / SAFE_CONDITION):
+        inverse = _core.inverse_upper(unit)
+        rows = np.sqrt(np.einsum("ij,ij->i", inverse, inverse))
+        if np.sqrt(n) * np.linalg.norm(rows) < SAFE_CONDITION:  # Frobenius norms of R, of its inverse
+            values = np.einsum("ij,j->i", inverse, z) / scale
+            spread = rows / scale
+            return TriangleSolution(
+                values, spread, np.ones(n, dtype=bool), n, abs(float(triangle[-1, -1])), True
+            )
+    u, singular, vt = linalg.svd(unit)
+    rank = int(np.sum(singular > RANK_TOLERANCE * singular[0])) if singular[0] > 0 else 0
+    seen = vt[:rank].T / singular[:rank]
+    values = seen @ (u[:, :rank].T @ z) / scale
+    excited = np.linalg.norm(vt[rank:], axis=0) < UNEXCITED_SHARE
+    rest = np.append(u[:, rank:].T @ z, triangle[-1, -1])
+    spread = np.linalg.norm(seen, axis=1) / scale
+    return TriangleSolution(values, spread, excited, rank, float(np.linalg.norm(rest)), rank == n)

@@ -1,0 +1,141 @@
+"""Equation 1 against Pinocchio: regressors, inverse dynamics and contact transfer."""
+
+from __future__ import annotations
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+import example_robots
+from plantar import _core
+from plantar.conventions import Array
+from plantar.dynamics import Contact, Equation, Motion, model_parameters, pinocchio_motion, regressor
+from plantar.errors import DataError
+
+ROBOTS = [
+    (example_robots.TALOS, True),
+    (example_robots.G1, True),
+    (example_robots.ICUB, True),
+    (example_robots.HAND, False),
+    (example_robots.PANDA, False),
+    (example_robots.TIAGO, True),
+    (example_robots.TIAGO, False),
+]
+NAMES = [f"{urdf.stem}-{'floating' if floating else 'fixed'}" for urdf, floating in ROBOTS]
+
+
+def random_motion(model: pin.Model, samples: int, seed: int) -> tuple[Array, Array, Array]:
+    pin.seed(seed)
+    bound = 2 * np.ones(model.nq)
+    q = np.array([pin.randomConfiguration(model, -bound, bound) for _ in range(samples)])
+    rng = np.random.default_rng(seed)
+    return q, rng.normal(size=(samples, model.nv)), rng.normal(size=(samples, model.nv))
+
+
+def relative(found: Array, expected: Array) -> float:
+    return float(np.abs(found - expected).max() / np.abs(expected).max())
+
+
+@pytest.mark.parametrize(("urdf", "floating"), ROBOTS, ids=NAMES)
+def test_the_regressor_is_pinocchios_to_1e_10(urdf: object, floating: bool) -> None:
+    model = example_robots.model(urdf, floating=floating)  # type: ignore[arg-type]
+    data = model.createData()
+    motion = random_motion(model, 21, 1)
+    samples = zip(*motion, strict=True)
+    expected = np.array([pin.computeJointTorqueRegressor(model, data, *s).copy() for s in samples])
+    assert relative(regressor(model, *motion), expected) < 1e-10
+
+
+@pytest.mark.parametrize(("urdf", "floating"), ROBOTS, ids=NAMES)
+def test_regressor_times_parameters_and_inverse_dynamics_are_rnea(urdf: object, floating: bool) -> None:
+    model = example_robots.model(urdf, floating=floating)  # type: ignore[arg-type]
+    data = model.createData()
+    motion = random_motion(model, 19, 2)
+    expected = np.array([pin.rnea(model, data, *sample).copy() for sample in zip(*motion, strict=True)])
+    parameters = model_parameters(model)
+    assert relative(regressor(model, *motion) @ parameters, expected) < 1e-10
+    equation = Equation(model)
+    found = equation.inverse_dynamics(pinocchio_motion(model, equation.tree, *motion), parameters)
+    assert relative(found.T, expected) < 1e-10
+
+
+@pytest.mark.parametrize(("urdf", "floating"), ROBOTS[:1] + ROBOTS[4:], ids=NAMES[:1] + NAMES[4:])
+def test_contact_transfer_is_the_transposed_jacobian(urdf: object, floating: bool) -> None:
+    model = example_robots.model(urdf, floating=floating)  # type: ignore[arg-type]
+    data = model.createData()
+    q, _, _ = random_motion(model, 7, 3)
+    equation = Equation(model)
+    rng = np.random.default_rng(3)
+    for joint in (2, model.njoints // 2, model.njoints - 1):
+        placement = pin.SE3(pin.exp3(rng.normal(size=3)), rng.normal(size=3))
+        frame = model.addFrame(
+            pin.Frame(f"contact {joint}", joint, 0, placement, pin.FrameType.OP_FRAME), False
+        )
+        data = model.createData()
+        found = equation.contact_transfer(equation.tree.joint_positions(q), Contact(joint - 1, placement))
+        for i in range(len(q)):
+            jacobian = pin.computeFrameJacobian(model, data, q[i], frame, pin.ReferenceFrame.LOCAL)
+            np.testing.assert_allclose(found[i], jacobian.T, rtol=1e-10, atol=1e-10)
+
+
+def test_contacts_carry_part_of_the_inverse_dynamics() -> None:
+    """With two wrenches acting, what is left of Y phi is Y phi - K F, summed over both."""
+    model = example_robots.model(example_robots.TALOS, floating=True)
+    equation = Equation(model)
+    q, v, a = random_motion(model, 9, 4)
+    motion = pinocchio_motion(model, equation.tree, q, v, a)
+    rng = np.random.default_rng(4)
+    contacts = [Contact(link, pin.SE3(pin.exp3(rng.normal(size=3)), rng.normal(size=3))) for link in (6, 12)]
+    wrenches = [rng.normal(size=(9, 6)) for _ in contacts]
+    expected = equation.inverse_dynamics(motion, model_parameters(model)).T
+    for contact, wrench in zip(contacts, wrenches, strict=True):
+        transfer = equation.contact_transfer(motion.positions, contact)
+        expected = expected - np.einsum("nri,ni->nr", transfer, wrench)
+    found = equation.inverse_dynamics(motion, model_parameters(model), contacts, wrenches).T
+    np.testing.assert_allclose(found, expected, atol=1e-9)
+
+
+def test_base_rows_need_no_attitude_only_proper_acceleration() -> None:
+    """The world turned about any axis, gravity with it: the same motion of the root frame, the same rows."""
+    model = example_robots.model(example_robots.G1, floating=True)
+    equation = Equation(model)
+    q, v, a = random_motion(model, 5, 5)
+    before = pinocchio_motion(model, equation.tree, q, v, a)
+    turn = pin.exp3(np.array([0.3, -0.8, 0.5]))
+    model.gravity.linear = turn @ model.gravity.linear
+    turned = q.copy()
+    for i in range(len(q)):
+        rotation = pin.Quaternion(q[i, 3:7]).toRotationMatrix()
+        turned[i, 3:7] = pin.Quaternion(turn @ rotation).coeffs()
+    after = pinocchio_motion(model, equation.tree, turned, v, a)
+    np.testing.assert_allclose(after.base, before.base, atol=1e-12)
+
+
+def test_every_instruction_set_gives_the_same_rows() -> None:
+    model = example_robots.model(example_robots.ICUB, floating=True)
+    equation = Equation(model)
+    motion = pinocchio_motion(model, equation.tree, *random_motion(model, 1030, 6))
+    wanted = [True] * equation.n_rows
+    arguments = ([1023] * len(equation.links), wanted, *vars(motion).values())
+    expected = _core.regressor(equation.core, *arguments, threads=1, isa="baseline")
+    for isa in _core.instruction_sets():
+        found = _core.regressor(equation.core, *arguments, threads=2, isa=isa)
+        assert relative(found, expected) < 1e-13
+
+
+def test_wrong_shapes_and_values_that_are_not_finite_are_named() -> None:
+    model = example_robots.model(example_robots.TALOS, floating=True)
+    q, v, a = random_motion(model, 4, 7)
+    with pytest.raises(DataError, match=r"v: an array of shape \(4, 37\)"):
+        regressor(model, q, v[:, :-1], a)
+    a[2, 5] = np.nan
+    with pytest.raises(DataError, match="a: sample 2, column 5 is nan"):
+        regressor(model, q, v, a)
+
+
+def test_a_motion_knows_its_finite_samples() -> None:
+    zero = np.zeros((3, 2))
+    motion = Motion(np.zeros((3, 9)), zero, zero.copy(), zero.copy())
+    motion.velocities[1, 0] = np.inf
+    assert motion.finite.tolist() == [True, False, True]
+    assert len(motion.select(motion.finite)) == 2

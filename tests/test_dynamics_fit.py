@@ -1,0 +1,165 @@
+"""Streamed least squares for the base parameters, against a stacked QR."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pinocchio as pin
+import pytest
+from scipy import linalg
+
+import example_robots
+from plantar.conventions import Array
+from plantar.dynamics import (
+    Equation,
+    EquationStream,
+    base_parameters,
+    fit_base_parameters,
+    fit_base_parameters_chunked,
+    model_parameters,
+    pinocchio_motion,
+    regressor,
+    stacked,
+)
+from plantar.errors import DataError, RobotError
+from test_dynamics import random_motion
+
+
+def measured(model: pin.Model, motion: tuple[Array, Array, Array], noise: float, seed: int) -> Array:
+    equation = Equation(model)
+    exact = equation.inverse_dynamics(
+        pinocchio_motion(model, equation.tree, *motion), model_parameters(model)
+    ).T
+    return exact + np.random.default_rng(seed).normal(0, noise, exact.shape)
+
+
+def stacked_qr(y: Array, tau: Array) -> tuple[Array, Array]:
+    """Values and white deviations by SciPy, everything stacked."""
+    q, r = linalg.qr(y, mode="economic")
+    values = linalg.solve_triangular(r, q.T @ tau)
+    residual = tau - y @ values
+    inverse = linalg.solve_triangular(r, np.eye(len(values)))
+    return values, np.sqrt(residual @ residual / (len(tau) - len(values)) * np.sum(inverse**2, axis=1))
+
+
+@pytest.mark.parametrize("rows", ["base", "all"])
+def test_values_and_deviations_are_those_of_the_stacked_problem(rows: str) -> None:
+    model = example_robots.model(example_robots.TALOS, floating=True)
+    motion = random_motion(model, 700, 1)
+    tau = measured(model, motion, 0.5, 1)
+    fit = fit_base_parameters(model, *motion, tau, rows=rows)  # type: ignore[arg-type]
+    taken = 6 if rows == "base" else model.nv
+    y = regressor(model, *motion)[:, :taken].reshape(-1, 330)[:, fit.base.kept]
+    values, std = stacked_qr(y, tau[:, :taken].ravel())
+    assert fit.rank == 234
+    np.testing.assert_allclose(fit.values, values, rtol=1e-9, atol=1e-10)
+    np.testing.assert_allclose(fit.std, std, rtol=1e-9)
+    assert fit.condition_number == pytest.approx(np.linalg.cond(y), rel=1e-8)
+    other = random_motion(model, 11, 2)
+    expected = regressor(model, *other)[:, :taken][:, :, fit.base.kept] @ values
+    np.testing.assert_allclose(fit.predict(*other), expected, rtol=1e-9, atol=1e-8)
+
+
+def test_badly_conditioned_samples_keep_the_accuracy_of_qr() -> None:
+    """A robot that hardly moves: condition number far beyond what normal equations bear."""
+    model = example_robots.model(example_robots.PANDA)
+    q, v, a = random_motion(model, 3000, 3)
+    q, v, a = 0.3 + 3e-3 * q, 3e-3 * v, 3e-3 * a
+    tau = measured(model, (q, v, a), 0.0, 3)
+    fit = fit_base_parameters(model, q, v, a, tau, rows="all")
+    assert 1e7 < fit.condition_number < 1e10
+    truth = fit.base.grouping @ model_parameters(model)
+    # Normal equations would leave no digit: eps times the condition squared is above one.
+    assert np.finfo(float).eps * fit.condition_number**2 > 1e-2
+    np.testing.assert_allclose(fit.values, truth, atol=1e-5)
+
+
+def test_batches_of_any_size_give_the_same_as_one() -> None:
+    model = example_robots.model(example_robots.G1, floating=True)
+    motion = random_motion(model, 900, 4)
+    tau = measured(model, motion, 0.1, 4)
+    whole = fit_base_parameters(model, *motion, tau)
+    cuts = [0, 1, 2, 40, 297, 298, 810, 900]
+    chunks = (tuple(array[start:end] for array in (*motion, tau)) for start, end in itertools.pairwise(cuts))
+    streamed = fit_base_parameters_chunked(model, chunks)  # type: ignore[arg-type]
+    np.testing.assert_allclose(streamed.values, whole.values, rtol=1e-9, atol=1e-10)
+    np.testing.assert_allclose(streamed.std, whole.std, rtol=1e-9)
+    assert streamed.samples == 900
+
+
+def test_strided_and_fortran_arrays_are_read_as_they_are() -> None:
+    model = example_robots.model(example_robots.UR5)
+    motion = random_motion(model, 400, 5)
+    tau = measured(model, motion, 0.1, 5)
+    expected = fit_base_parameters(model, *motion, tau, rows="all").values
+    wide = [np.asfortranarray(np.repeat(array, 2, axis=0))[::2] for array in (*motion, tau)]
+    np.testing.assert_allclose(fit_base_parameters(model, *wide, rows="all").values, expected, rtol=1e-9)
+
+
+def test_weights_and_extra_columns_enter_as_in_the_stacked_problem() -> None:
+    model = example_robots.model(example_robots.UR5)
+    equation, rng = Equation(model), np.random.default_rng(6)
+    base = base_parameters(equation)
+    q, v, a = random_motion(model, 500, 6)
+    tau = rng.normal(size=(500, 6))
+    stream = EquationStream(equation, base, range(6), {1: 2, 4: 1})
+    extras = {1: [np.sign(v[:, 1]), np.ones(500)], 4: [v[:, 4]]}
+    stream.add(pinocchio_motion(model, equation.tree, q, v, a), {r: tau[:, r] for r in range(6)}, extras)
+    weights = [1.0, 0.5, 2.0, 3.0, 0.1, 1.5]
+    triangle = stacked(list(stream.factors().values()), len(base), weights)
+    dense = np.zeros((500, 6, len(base) + 3))
+    dense[:, :, : len(base)] = regressor(model, q, v, a)[:, :, base.kept]
+    dense[:, 1, -3:-1] = np.column_stack(extras[1])
+    dense[:, 4, -1] = v[:, 4]
+    y = (dense * np.array(weights)[:, None]).reshape(-1, dense.shape[2])
+    b = (tau * weights).ravel()
+    square = np.column_stack([y, b]).T @ np.column_stack([y, b])
+    np.testing.assert_allclose(triangle.T @ triangle, square, rtol=1e-9, atol=1e-7)
+    assert np.array_equal(triangle, np.triu(triangle))
+
+
+def test_what_a_motion_does_not_excite_is_named_and_infinitely_uncertain() -> None:
+    """An arm that only turns about its first axis: most of the wrist stays unknown, and is said so."""
+    model = example_robots.model(example_robots.UR5)
+    q, v, a = random_motion(model, 500, 7)
+    for array in (q, v, a):
+        array[:, 1:] = 0.0
+    tau = measured(model, (q, v, a), 0.01, 7)
+    fit = fit_base_parameters(model, q, v, a, tau, rows="all")
+    assert fit.rank < len(fit.values)
+    assert fit.condition_number == np.inf
+    assert np.isinf(fit.std).any()
+    assert np.isfinite(fit.values).all()
+    (note,) = fit.notes
+    assert note.code == "unexcited"
+    assert "wrist_3" in note.text
+    np.testing.assert_allclose(fit.predict(q, v, a), tau, atol=0.06)
+
+
+def test_one_sample_is_fitted_with_a_warning() -> None:
+    model = example_robots.model(example_robots.G1, floating=True)
+    motion = random_motion(model, 1, 8)
+    fit = fit_base_parameters(model, *motion, measured(model, motion, 0.0, 8))
+    assert fit.rank == 6
+    assert {note.code for note in fit.notes} == {"unexcited", "too_few_samples"}
+    assert not np.isfinite(fit.std).any()
+
+
+def test_what_cannot_be_fitted_is_refused_in_one_line() -> None:
+    model = example_robots.model(example_robots.UR5)
+    q, v, a = random_motion(model, 10, 9)
+    tau = np.zeros((10, 6))
+    with pytest.raises(DataError, match="free-flyer"):
+        fit_base_parameters(model, q, v, a, tau)
+    with pytest.raises(DataError, match=r"tau: an array of shape \(10, 5\)"):
+        fit_base_parameters(model, q, v, a, tau[:, :5], rows="all")
+    tau[3, 2] = np.inf
+    with pytest.raises(DataError, match="tau: sample 3, column 2 is inf"):
+        fit_base_parameters(model, q, v, a, tau, rows="all")
+    with pytest.raises(DataError, match="no samples"):
+        fit_base_parameters_chunked(model, [], rows="all")
+    ball = pin.Model()
+    ball.addJoint(0, pin.JointModelSpherical(), pin.SE3.Identity(), "ball")
+    with pytest.raises(RobotError, match="'ball'"):
+        fit_base_parameters(ball, q, v, a, tau, rows="all")
