@@ -6,7 +6,6 @@ import base64
 import hashlib
 import json
 import re
-import zlib
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -15,9 +14,7 @@ import pytest
 
 from plantar.errors import PlantarError
 from plantar.report import Column, Figure, Section, Table, write_feet_report
-from plantar.report.numbers import interval, number, with_uncertainty
-from plantar.report.payload import encode_motion, quantise
-from plantar.report.residuals import Track, read_residuals
+from plantar.report.residuals import read_residuals
 from report_samples import HOSTILE, MOTIONS, Campaign, write_campaign
 
 FIVE_MEGABYTES = 5_000_000
@@ -171,58 +168,6 @@ def test_the_policy_allows_these_scripts_and_styles_alone(page: Page) -> None:
     assert policy.count("sha256-") == len(scripts) + len(page.texts["style"])
 
 
-def decoded(track: Track) -> dict[str, np.ndarray]:
-    """The payload read back, written apart from both encoder and browser code."""
-    payload = encode_motion([track])
-    raw = zlib.decompress(base64.b64decode(payload.data))
-    (header,) = payload.header["tracks"]
-    n, at = header["n"], 0
-
-    def planes(width: int) -> np.ndarray:
-        nonlocal at
-        part = np.frombuffer(raw, np.uint8, n * width, at).reshape(width, n).astype(np.int64)
-        at += n * width
-        return (part * 256 ** np.arange(width)[:, None]).sum(axis=0)
-
-    out = {"time": header["t0"] + np.cumsum(planes(4)) * header["tick"]}
-    out["used"] = planes(1) & 1
-    for channel in header["channels"]:
-        zigzag = planes(2)
-        code = np.cumsum(np.where(zigzag % 2, -(zigzag + 1) // 2, zigzag // 2)) % 65536
-        out[channel["key"]] = np.where(code == 0, np.nan, channel["zero"] + (code - 1) * channel["step"])
-    assert at == len(raw)
-    return out
-
-
-def test_every_sample_reaches_the_browser(campaign: Campaign) -> None:
-    tracks = read_residuals(campaign.directory / "residuals.parquet")
-    track = next(t for t in tracks if (t.motion, t.foot) == ("tilt3", "left"))
-    out = decoded(track)
-    np.testing.assert_allclose(out["time"], track.time, atol=1e-6)
-    np.testing.assert_array_equal(out["used"], track.used)
-    for key, unit in (("pitch.torque", 1.0), ("roll.predicted", 1.0), ("pitch.deflection", 1e3)):
-        truth = unit * track.values[key]
-        np.testing.assert_array_equal(np.isnan(out[key]), np.isnan(truth))
-        change = np.nanmedian(np.abs(np.diff(truth)))
-        assert np.nanmax(np.abs(out[key] - truth)) <= max(
-            1.01 * change / 32, np.ptp(truth[~np.isnan(truth)]) / 65534
-        )
-
-
-@pytest.mark.parametrize(
-    "values",
-    [np.full(5, np.nan), np.full(5, 3.0), np.array([1.0]), np.array([]), np.array([-np.inf, 0.0, 1e308]),
-     np.array([0.0, 1e-300]), np.r_[np.zeros(99), 1e6]],
-)  # fmt: skip
-def test_odd_channels_are_coded_without_harm(values: np.ndarray) -> None:
-    codes, zero, step = quantise(values)
-    back = np.where(codes == 0, np.nan, zero + (codes.astype(float) - 1) * step)
-    np.testing.assert_array_equal(np.isfinite(back), np.isfinite(values))
-    finite = values[np.isfinite(values)]
-    if finite.size:
-        np.testing.assert_allclose(back[np.isfinite(back)], finite, atol=np.ptp(finite) / 1000)
-
-
 def test_a_campaign_too_long_is_thinned_and_says_so(
     campaign: Campaign, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -301,29 +246,3 @@ def test_cut_residuals_are_one_line(tmp_path: Path) -> None:
     with pytest.raises(PlantarError, match=re.escape("residuals.parquet")) as error:
         write_feet_report(tmp_path)
     assert "\n" not in str(error.value)
-
-
-@pytest.mark.parametrize(
-    ("value", "half", "text"),
-    [
-        (480.04, 1.12, "480.0 ± 1.1"),
-        (24.27, 0.39, "24.3 ± 0.4"),
-        (949.2, 35.0, "949 ± 35"),
-        (-0.051, 0.004, "−0.051 ± 0.004"),
-        (5.0, None, "5.000"),
-        (None, 1.0, "–"),
-        (float("nan"), 1.0, "–"),
-        (3.0, float("inf"), "3.000"),
-        (2.0, 0.0, "2.000"),
-    ],
-)
-def test_values_are_rounded_to_their_uncertainty(value: float | None, half: float | None, text: str) -> None:
-    assert with_uncertainty(value, half) == text
-
-
-def test_intervals_and_numbers_read_well() -> None:
-    assert interval((947.02, 951.37)) == "947.0 to 951.4"
-    assert interval(None) == "–"
-    assert number(0.0) == "0"
-    assert number(123456.0, 3) == "123456"
-    assert number(1.234e-9, 3) == "1.23e−9"

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -14,82 +12,12 @@ import pytest
 from plantar.report import write_feet_report
 from plantar.report.residuals import Track, read_residuals
 from report_samples import MOTIONS, write_campaign
-
-CHROMIUM = shutil.which("chromium")
-ARGUMENTS = [
-    "--no-sandbox",
-    "--disable-gpu",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--disable-quic",
-]
-INK = """host => {
-  const canvas = host.querySelector("canvas");
-  const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d", {willReadFrequently: true});
-  copy.drawImage(canvas, 0, 0);
-  const pixels = copy.getImageData(0, 0, canvas.width, canvas.height).data;
-  const [red, blue] = ["red", "blue"].map((name) => {
-    const [r, g, b] = plantar.colour(name).match(/[0-9a-f]{2}/g).map((part) => parseInt(part, 16));
-    let count = 0;
-    for (let i = 0; i < pixels.length; i += 4) {
-      const near = Math.abs(pixels[i] - r) + Math.abs(pixels[i + 1] - g) + Math.abs(pixels[i + 2] - b) < 40;
-      if (near && pixels[i + 3] > 200) count++;
-    }
-    return count;
-  });
-  return {red, blue};
-}"""
-
-
-class Visit:
-    """A page, what it logged and what it asked the network for."""
-
-    def __init__(self, browser: Any, report: Path, **context: Any) -> None:
-        self.context = browser.new_context(**{"viewport": {"width": 1280, "height": 900}, **context})
-        self.page = self.context.new_page()
-        self.complaints: list[str] = []
-        self.requests: list[str] = []
-        self.page.on("console", lambda message: self.complaints.append(message.text))
-        self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
-        self.page.on("dialog", lambda dialog: self.complaints.append(f"dialog {dialog.message}"))
-        self.page.on("request", lambda request: self.requests.append(request.url))
-        self.page.goto(report.as_uri())
-
-    def plot(self, motion: int, kind: str, foot: str = "", axis: str = "") -> Any:
-        """The place of one plot, scrolled to and drawn."""
-        place = f'details[data-motion="{motion}"] figure[data-kind="{kind}"]'
-        host = self.page.locator(f'{place}[data-foot="{foot}"][data-axis="{axis}"] .canvas')
-        host.scroll_into_view_if_needed()
-        self.page.wait_for_function("host => host.classList.contains('drawn')", arg=host.element_handle())
-        return host
-
-    def scale(self, host: Any, name: str = "x") -> tuple[float, float]:
-        low, high = host.evaluate(f"host => [host.plot.scales.{name}.min, host.plot.scales.{name}.max]")
-        return low, high
-
-    def drag(self, host: Any, start: tuple[float, float], end: tuple[float, float]) -> None:
-        """A drag between two points given as shares of the plot's area."""
-        box = host.locator(".u-over").bounding_box()
-        for name, (x, y) in (("down", start), ("up", end)):
-            self.page.mouse.move(box["x"] + x * box["width"], box["y"] + y * box["height"], steps=4)
-            getattr(self.page.mouse, name)()
-        self.page.wait_for_timeout(50)
-
-    def settle(self, script: str, arg: Any = None) -> None:
-        self.page.wait_for_function(script, arg=arg)
+from report_visit import INK, Visit, launched
 
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Any]:
-    if CHROMIUM is None:
-        pytest.skip("chromium is not installed")
-    api = pytest.importorskip("playwright.sync_api", reason="the playwright package is not installed")
-    with api.sync_playwright() as playwright:
-        started = playwright.chromium.launch(executable_path=CHROMIUM, args=ARGUMENTS)
-        yield started
-        started.close()
+    yield from launched()
 
 
 @pytest.fixture(scope="module")
@@ -171,23 +99,6 @@ def test_a_drag_zooms_all_plots_of_the_motion_and_a_double_click_resets(visit: V
     assert visit.scale(angles) == whole
 
 
-def test_a_reconstruction_of_samples_left_out_does_not_set_the_scale(browser: Any, tmp_path: Path) -> None:
-    import pyarrow as pa
-    import pyarrow.parquet
-
-    campaign = write_campaign(tmp_path, seconds=4.0)
-    columns = {name: values.copy() for name, values in campaign.columns.items()}
-    columns["pitch.predicted"][~columns["used"].astype(bool)] = -5000.0
-    pyarrow.parquet.write_table(pa.table(columns), tmp_path / "residuals.parquet")
-    visit = Visit(browser, write_feet_report(tmp_path))
-    torque = visit.plot(0, "torque", "right", "pitch")
-    low, high = visit.scale(torque, "y")
-    assert -200 < low < 0 < high < 200
-    assert torque.evaluate("host => Math.min(...host.plot.data[2])") == pytest.approx(-5000, abs=5)
-    visit.context.close()
-    assert visit.complaints == []
-
-
 def test_a_loop_zooms_by_itself(visit: Visit) -> None:
     loop = visit.plot(0, "loop", "right", "pitch")
     torque = visit.plot(0, "torque", "right", "pitch")
@@ -230,34 +141,5 @@ def test_the_page_is_never_wider_than_the_window(browser: Any, report: Path, wid
     assert visit.page.evaluate("document.documentElement.scrollWidth") <= width
     host = visit.plot(1, "torque", "right", "pitch")
     assert host.evaluate("host => host.plot.width <= host.clientWidth")
-    visit.context.close()
-    assert visit.complaints == []
-
-
-def test_a_damaged_block_is_said_on_the_page(browser: Any, report: Path, tmp_path: Path) -> None:
-    text = report.read_text(encoding="utf-8")
-    start = text.index(">", text.index('class="samples" data-motion="0"')) + 1
-    damaged = tmp_path / "damaged.html"
-    damaged.write_text(text[: start + 400] + text[text.index("<", start) :], encoding="utf-8")
-    visit = Visit(browser, damaged)
-    visit.page.locator("#motions").scroll_into_view_if_needed()
-    visit.page.get_by_text("the page seems to be damaged").wait_for(timeout=10_000)
-    visit.context.close()
-    assert visit.complaints == []
-
-
-def test_two_feet_with_times_of_their_own(browser: Any, tmp_path: Path) -> None:
-    import pyarrow as pa
-    import pyarrow.parquet
-
-    campaign = write_campaign(tmp_path, seconds=2.0)
-    columns = {name: values.copy() for name, values in campaign.columns.items()}
-    columns["time"][columns["foot"] == "left"] += 0.0021
-    pyarrow.parquet.write_table(pa.table(columns), tmp_path / "residuals.parquet")
-    (tmp_path / "result.json").write_text(json.dumps(campaign.result | {"phases": []}), encoding="utf-8")
-    visit = Visit(browser, write_feet_report(tmp_path))
-    host = visit.plot(0, "angles", axis="pitch")
-    assert host.evaluate("host => host.plot.data[0].length") == 800
-    assert host.evaluate(INK)["red"] > 15
     visit.context.close()
     assert visit.complaints == []

@@ -159,7 +159,10 @@ def _validation(result: Result) -> Table:
     for row, content in zip(result.validation, contents, strict=True):
         cells = [Cell(_text(content.get(key))) for key in keys]
         rows.append([*cells, skill_cell(row)])
-    columns = [Column(_HEADINGS.get(key, key.replace("_", " ")), numeric=key in numeric) for key in keys]
+    columns = [
+        Column(_HEADINGS.get(key, key.replace("_", " ").replace("cad", "CAD")), numeric=key in numeric)
+        for key in keys
+    ]
     return Table.of("Validation", [*columns, Column("skill", numeric=False)], rows)
 
 
