@@ -24,6 +24,12 @@ FORMATS: dict[str, str] = {
     ".mcap": "ros_bag",
     ".db3": "ros_bag",
     ".bag": "ros_bag",
+    ".bin": "mc_rtc",
+    ".mat": "robot_logger",
+    ".npz": "column_file",
+    ".dat": "column_file",
+    ".txt": "column_file",
+    ".log": "column_file",
 }
 
 
@@ -35,11 +41,28 @@ def open_log(path: str | os.PathLike[str], robot: RobotModel | None = None) -> M
     path = Path(path)
     if not path.exists():
         raise LogError(located("does not exist", path=path))
-    ending = next((e for e in sorted(FORMATS, key=len, reverse=True) if path.name.lower().endswith(e)), None)
-    if ending is None:
-        raise LogError(located("has an unknown ending", path=path, valid=", ".join(FORMATS)))
-    reader: Reader = import_module(f"plantar.readers.{FORMATS[ending]}").read
+    module = _module(path, robot)
+    reader: Reader = import_module(f"plantar.readers.{module}").read
     return reader(path, robot)
+
+
+def _module(path: Path, robot: RobotModel | None) -> str:
+    """The reader for a path: by what a directory holds, by the file's name, by its ending."""
+    if path.is_dir():
+        bag = any(part.suffix.lower() in (".mcap", ".db3", ".bag") for part in path.iterdir())
+        return "ros_bag" if bag else "yarp"
+    if path.name == "data.log":
+        return "yarp"
+    ending = next((e for e in sorted(FORMATS, key=len, reverse=True) if path.name.lower().endswith(e)), None)
+    mapped = robot is not None and any(key not in ("joints", "ports") for key in robot.columns)
+    if ending is not None:
+        return "column_file" if FORMATS[ending] == "table" and mapped else FORMATS[ending]
+    from plantar.readers.hrpsys import is_port_file
+
+    named = robot is not None and path.suffix[1:] in robot.columns.get("ports", ())
+    if named or is_port_file(path):
+        return "hrpsys"
+    raise LogError(located("has an unknown ending", path=path, valid=", ".join(FORMATS)))
 
 
 def motion_name(path: Path) -> str:

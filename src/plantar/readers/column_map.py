@@ -31,15 +31,18 @@ if TYPE_CHECKING:
 
 VECTORS = {"angular_velocity": 3, "linear_acceleration": 3, "force": 3, "torque": 3}
 ENTRY_KEYS = {"from", "unit", "order", "sign"}
+PORT_KEYS = {"role", "unit", "sign", "joints", "take"}
 
 
 @dataclass(frozen=True)
 class Port:
-    """One file, port or key of a log: its role, unit and sign."""
+    """What a file, port or key of a log holds: role, unit, sign, joints in order, which of its values."""
 
     role: str
     unit: str | None = None
     sign: float = 1.0
+    joints: Sequence[str] | None = None
+    take: tuple[int, int] | None = None
 
 
 def maps_columns(robot: RobotModel | None) -> bool:
@@ -57,27 +60,46 @@ def joint_order(robot: RobotModel | None) -> tuple[str, ...] | None:
     return tuple(names)
 
 
-def ports(robot: RobotModel | None) -> dict[str, Port]:
-    """`columns.ports`, by file, port or key. LogError when an entry is not a role."""
+def ports(robot: RobotModel | None) -> dict[str, tuple[Port, ...]]:
+    """`columns.ports`, by file, port or key: one role or several. LogError when an entry is not a role."""
     entries = None if robot is None else robot.columns.get("ports")
     if robot is None or entries is None:
         return {}
     if not isinstance(entries, Mapping):
         raise LogError(located("columns.ports is not a mapping", path=robot.path, valid="port: role"))
-    found = {}
-    for name, entry in entries.items():
-        made = {"role": entry} if isinstance(entry, str) else entry
-        if not isinstance(made, Mapping) or not isinstance(made.get("role"), str) or set(made) - {"role", "unit", "sign"}:
-            message = f"columns.ports.{name} is not a role"
-            raise LogError(located(message, path=robot.path, valid="a role, or {role, unit, sign}"))
-        found[str(name)] = Port(made["role"], made.get("unit"), _sign(made.get("sign", 1), f"columns.ports.{name}", robot.path))
-    return found
+    return {
+        str(name): tuple(
+            _port(part, f"columns.ports.{name}", robot.path)
+            for part in (entry if isinstance(entry, list) else [entry])
+        )
+        for name, entry in entries.items()
+    }
+
+
+def _port(entry: object, where: str, path: Path) -> Port:
+    made = {"role": entry} if isinstance(entry, str) else entry
+    if not isinstance(made, Mapping) or not isinstance(made.get("role"), str) or set(made) - PORT_KEYS:
+        raise LogError(
+            located(f"{where} is not a role", path=path, valid="a role, or {role, unit, sign, joints, take}")
+        )
+    joints, take = made.get("joints"), made.get("take")
+    if joints is not None and not (
+        isinstance(joints, list) and all(isinstance(name, str) for name in joints)
+    ):
+        raise LogError(located(f"{where}.joints is not a list of names", path=path))
+    if take is not None and not (
+        isinstance(take, list) and len(take) == 2 and all(isinstance(i, int) and i >= 0 for i in take)
+    ):
+        raise LogError(located(f"{where}.take", path=path, value=str(take), valid="[first, after the last]"))
+    sign = _sign(made.get("sign", 1), where, path)
+    slot = None if take is None else (int(take[0]), int(take[1]))
+    return Port(made["role"], made.get("unit"), sign, None if joints is None else tuple(joints), slot)
 
 
 def apply(table: Mapping[str, Array], robot: RobotModel, path: Path) -> tuple[Array, dict[str, Array]]:
-    """Time (n,) and columns of a table whose own columns are `table`; what the map does not name keeps its name.
+    """Time (n,) and columns of a table whose own columns are `table`; what is not mapped keeps its name.
 
-    Raises LogError: an entry names a column that is not there, a unknown unit, or a wrong number of sources.
+    Raises LogError: an entry names a column that is not there, an unknown unit, or a wrong number of sources.
     """
     time = np.asarray(table["time"]) if "time" in table else None
     columns = {name: values for name, values in table.items() if COLUMN.fullmatch(name)}
@@ -86,7 +108,14 @@ def apply(table: Mapping[str, Array], robot: RobotModel, path: Path) -> tuple[Ar
             continue
         made = entry if isinstance(entry, Mapping) else {"from": entry}
         if "from" not in made or set(made) - ENTRY_KEYS:
-            raise LogError(located(f"columns.{key}", path=robot.path, value=str(entry)[:60], valid="{from, unit, order, sign}"))
+            raise LogError(
+                located(
+                    f"columns.{key}",
+                    path=robot.path,
+                    value=str(entry)[:60],
+                    valid="{from, unit, order, sign}",
+                )
+            )
         sources = made["from"] if isinstance(made["from"], list) else [made["from"]]
         values = np.column_stack([_source(table, source, key, path) for source in sources])
         unit, sign = made.get("unit"), _sign(made.get("sign", 1), f"columns.{key}", robot.path)
@@ -95,11 +124,20 @@ def apply(table: Mapping[str, Array], robot: RobotModel, path: Path) -> tuple[Ar
         else:
             columns |= _mapped(key, values, unit, made.get("order"), sign, robot.path)
     if time is None:
-        raise LogError(located("is missing", path=path, column="time", valid="a column 'time', or columns.time in the robot file"))
+        raise LogError(
+            located(
+                "is missing",
+                path=path,
+                column="time",
+                valid="a column 'time', or columns.time in the robot file",
+            )
+        )
     return time, columns
 
 
-def _mapped(key: str, values: Array, unit: str | None, order: str | None, sign: float, path: Path) -> dict[str, Array]:
+def _mapped(
+    key: str, values: Array, unit: str | None, order: str | None, sign: float, path: Path
+) -> dict[str, Array]:
     stem, _, last = key.rpartition(".")
     if last == "orientation" and stem.startswith("imu."):
         if order == "rpy" and values.shape[1] == 3:
@@ -131,14 +169,23 @@ def _source(table: Mapping[str, Array], source: Any, key: str, path: Path) -> Ar
     names: Sequence[str] = list(table)
     if isinstance(source, int) and not isinstance(source, bool):
         if not 0 <= source < len(names):
-            raise LogError(located(f"columns.{key}: no column {source}", path=path, valid=f"0 to {len(names) - 1}"))
+            raise LogError(
+                located(f"columns.{key}: no column {source}", path=path, valid=f"0 to {len(names) - 1}")
+            )
         return table[names[source]]
     if source not in table:
-        raise LogError(located(f"is missing (columns.{key})", path=path, column=str(source), valid=nearest(str(source), names)))
+        raise LogError(
+            located(
+                f"is missing (columns.{key})",
+                path=path,
+                column=str(source),
+                valid=nearest(str(source), names),
+            )
+        )
     return table[source]
 
 
 def _sign(value: object, where: str, path: Path) -> float:
     if value not in (1, -1) or isinstance(value, bool):
         raise LogError(located(f"{where}: sign", path=path, value=str(value), valid="1 or -1"))
-    return float(value)  # type: ignore[arg-type]
+    return 1.0 if value == 1 else -1.0

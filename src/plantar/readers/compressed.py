@@ -53,7 +53,7 @@ def _zstd(data: bytes | memoryview, limit: int) -> bytes:
 
 def _lz4(data: bytes | memoryview, limit: int) -> bytes:
     try:
-        import lz4.frame
+        import lz4.frame  # type: ignore[import-untyped]
     except ImportError as error:
         raise MissingExtra("lz4", "logs", "reading this bag") from error
     return bytes(lz4.frame.LZ4FrameDecompressor().decompress(bytes(data), max_length=limit + 1))

@@ -1,6 +1,7 @@
 """MCAP (mcap.dev/spec): records read in order, so that a file cut at any byte gives its whole records.
 
-The index at the end is not needed and not trusted. Files are read in blocks; messages are decoded where they lie.
+The index at the end is not needed and not trusted. Files are read in blocks; messages are decoded where they
+lie.
 """
 
 from __future__ import annotations
@@ -33,7 +34,9 @@ def read_mcap(path: Path, topics: dict[str, Topic], notes: list[Note]) -> None:
     size = path.stat().st_size
     with open(path, "rb") as handle:
         if handle.read(len(MAGIC)) != MAGIC:
-            raise LogError(located("is not an MCAP file", path=path, valid="a file that starts with the MCAP magic"))
+            raise LogError(
+                located("is not an MCAP file", path=path, valid="a file that starts with the MCAP magic")
+            )
         rest, done = b"", False
         while not done:
             block = handle.read(max(BLOCK, scan.needed - len(rest)))
@@ -44,8 +47,8 @@ def read_mcap(path: Path, topics: dict[str, Topic], notes: list[Note]) -> None:
                 notes.append(Note("file_cut", "warning", f"{path.name} is cut; its whole records were read"))
                 return
             if scan.needed > size + len(MAGIC):
-                notes.append(Note("file_cut", "warning", f"{path.name}: a record says it is longer than the file; "
-                                  "what comes before it was read"))  # fmt: skip
+                text = "a record says it is longer than the file; what comes before it was read"
+                notes.append(Note("file_cut", "warning", f"{path.name}: {text}"))
                 return
 
 
@@ -115,7 +118,9 @@ class _Scan:
             if len(content) != size or (checksum and zlib.crc32(content) != checksum):
                 raise BrokenChunk("its checksum or length does not agree")
         except (BrokenChunk, struct.error, UnicodeDecodeError) as error:
-            self.notes.append(Note("chunk_broken", "warning", f"{self.path.name}: a chunk is left out: {error}"))
+            self.notes.append(
+                Note("chunk_broken", "warning", f"{self.path.name}: a chunk is left out: {error}")
+            )
             return
         self.records(content, inside_chunk=True)
 

@@ -1,4 +1,4 @@
-"""What a vector of a log is: joint positions, an IMU's rate, a wrench; its units and order; its columns here."""
+"""What a vector of a log is (joint positions, an IMU's rate, a wrench), in which units and order."""
 
 from __future__ import annotations
 
@@ -21,7 +21,8 @@ UNITS: dict[str, tuple[str, float]] = {
     "rad/s^2": ("angular acceleration", 1.0), "deg/s^2": ("angular acceleration", DEGREE),
     "m/s^2": ("acceleration", 1.0), "g": ("acceleration", GRAVITY),
     "N": ("force", 1.0), "kN": ("force", 1e3), "kgf": ("force", GRAVITY),
-    "N.m": ("torque", 1.0), "N.mm": ("torque", 1e-3), "kN.m": ("torque", 1e3), "kgf.cm": ("torque", GRAVITY / 100),
+    "N.m": ("torque", 1.0), "N.mm": ("torque", 1e-3), "kN.m": ("torque", 1e3),
+    "kgf.cm": ("torque", GRAVITY / 100),
     "1": ("ratio", 1.0),
 }  # fmt: skip
 
@@ -42,7 +43,9 @@ def factor(unit: str | None, quantity: str, where: str, path: Path) -> float:
     kind, scale = UNITS.get(plain, (None, 1.0))
     if kind != quantity:
         fitting = [name for name, (of, _) in UNITS.items() if of == quantity]
-        raise LogError(located(f"{where}: no such unit of {quantity}", path=path, value=unit, valid=", ".join(fitting)))
+        raise LogError(
+            located(f"{where}: no such unit of {quantity}", path=path, value=unit, valid=", ".join(fitting))
+        )
     return scale
 
 
@@ -75,7 +78,11 @@ def role_columns(
         return {f"{role}.{axis}": scale * values[:, i] for i, axis in enumerate("xyz")}
     if kind == "wrench" and rest:
         _length(values, 6, role, path)
-        stem, order = (role.removesuffix(".torque_first"), slice(3, 6)) if last == "torque_first" else (role, slice(0, 3))
+        stem, order = (
+            (role.removesuffix(".torque_first"), slice(3, 6))
+            if last == "torque_first"
+            else (role, slice(0, 3))
+        )
         force, torque = values[:, order], values[:, 3:6] if last != "torque_first" else values[:, 0:3]
         columns = {f"{stem}.force.{axis}": sign * force[:, i] for i, axis in enumerate("xyz")}
         return columns | {f"{stem}.torque.{axis}": sign * torque[:, i] for i, axis in enumerate("xyz")}
@@ -87,7 +94,9 @@ def _length(values: Array, expected: int, role: str, path: Path) -> None:
     if values.ndim != 2 or values.shape[1] != expected:
         found = values.shape[1] if values.ndim == 2 else values.ndim
         hint = "columns.joints in the robot file, in the log's order" if role.startswith("joints") else None
-        raise LogError(located(f"{role}: the log has {found} values a sample, not {expected}", path=path, valid=hint))
+        raise LogError(
+            located(f"{role}: the log has {found} values a sample, not {expected}", path=path, valid=hint)
+        )
 
 
 def quaternion_from_rpy(rpy: Array) -> Array:

@@ -76,7 +76,13 @@ class _Scan:
         self._flush(data, found)
         return at
 
-    def _message(self, header: dict[bytes, bytes], start: int, end: int, found: dict[int, tuple[list[int], list[int], list[int]]]) -> None:
+    def _message(
+        self,
+        header: dict[bytes, bytes],
+        start: int,
+        end: int,
+        found: dict[int, tuple[list[int], list[int], list[int]]],
+    ) -> None:
         try:
             (channel,) = _SIZE.unpack(header[b"conn"])
             seconds, nanoseconds = struct.unpack("<II", header[b"time"])
@@ -117,7 +123,9 @@ class _Scan:
             if len(content) != size:
                 raise BrokenChunk("its length does not agree")
         except (KeyError, struct.error, UnicodeDecodeError, BrokenChunk) as error:
-            self.notes.append(Note("chunk_broken", "warning", f"{self.path.name}: a chunk is left out: {error}"))
+            self.notes.append(
+                Note("chunk_broken", "warning", f"{self.path.name}: a chunk is left out: {error}")
+            )
             return
         self.records(content, inside_chunk=True)
 

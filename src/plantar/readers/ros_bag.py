@@ -1,4 +1,4 @@
-"""ROS 2 bags (MCAP, sqlite3, a bag's directory) and ROS 1 bags: JointState, Imu and WrenchStamped by topic."""
+"""ROS 2 bags (MCAP, sqlite3, a directory) and ROS 1 bags: JointState, Imu and WrenchStamped by topic."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ NO_ORIENTATION = -1.0  # orientation_covariance[0] of an IMU that has none
 
 
 def read(path: Path, robot: RobotModel | None = None) -> MotionLog:
-    """Read a bag; `robot` says which topics its sensors are. Raises LogError: broken, or nothing of use in it."""
+    """Read a bag; `robot` says which topics its sensors are. LogError: broken, or nothing of use in it."""
     notes: list[Note] = []
     topics: dict[str, Topic] = {}
     files = bag_files(path)
@@ -61,30 +61,50 @@ def _check(topics: dict[str, Topic], path: Path, notes: list[Note]) -> None:
         raise LogError(located("holds no message that plantar reads", path=path, valid=valid))
     for topic in topics.values():
         if topic.broken:
-            text = f"{topic.name}: {topic.broken} of {topic.count} messages cannot be decoded and are left out"
+            text = (
+                f"{topic.name}: {topic.broken} of {topic.count} messages cannot be decoded and are left out"
+            )
             notes.append(Note("messages_broken", "warning", f"{path.name}: {text}"))
 
 
 def _streams(chosen: dict[str, list[Topic]], path: Path, notes: list[Note]) -> list[Stream]:
     """Every sensor's columns on its own clock, the clocks on one origin."""
-    sources = [(key, topic, series) for key, topics in chosen.items() for topic in topics for series in topic.series.values()]
+    sources = [
+        (key, topic, series)
+        for key, topics in chosen.items()
+        for topic in topics
+        for series in topic.series.values()
+    ]
     headers = [np.concatenate(series.header) for _, _, series in sources]
     clocks = headers
     if (reason := _unusable(headers, [topic.name for _, topic, _ in sources])) is not None:
         clocks = [np.concatenate(series.received) for _, _, series in sources]
-        notes.append(Note("receive_time", "warning", f"{path.name}: {reason}; times of receipt are used instead"))
+        notes.append(
+            Note("receive_time", "warning", f"{path.name}: {reason}; times of receipt are used instead")
+        )
     first = min(int(clock.min()) for clock in clocks)
     zero = first // 1_000_000_000 * 1_000_000_000 if first > 10**15 else 0
     if zero:
-        notes.append(Note("time_origin", "info", f"{path.name}: time counts from {zero // 1_000_000_000} s of the bag's clock"))
+        notes.append(
+            Note(
+                "time_origin",
+                "info",
+                f"{path.name}: time counts from {zero // 1_000_000_000} s of the bag's clock",
+            )
+        )
     streams = []
     seen: set[str] = set()
     for (key, topic, series), clock in zip(sources, clocks, strict=True):
-        columns = _joints(series, seen, topic, notes, path) if topic.kind == JOINT_STATE else _sensor(key, series, seen)
+        columns = (
+            _joints(series, seen, topic, notes, path)
+            if topic.kind == JOINT_STATE
+            else _sensor(key, series, seen)
+        )
         series.values.clear()
         seen |= set(columns)
         if columns:
-            streams.append(Stream(topic.name, (clock - zero) * 1e-9, columns))
+            time = (clock - zero).astype(np.float64) * 1e-9
+            streams.append(Stream(topic.name, time, columns))
     return streams
 
 
@@ -104,7 +124,13 @@ def _joints(series: Series, seen: set[str], topic: Topic, notes: list[Note], pat
     columns: dict[str, Array] = {}
     twice = sorted({name for name in series.names if series.names.count(name) > 1})
     if twice:
-        notes.append(Note("joint_twice", "warning", f"{path.name}: {topic.name} names '{twice[0]}' twice; the first is used"))
+        notes.append(
+            Note(
+                "joint_twice",
+                "warning",
+                f"{path.name}: {topic.name} names '{twice[0]}' twice; the first is used",
+            )
+        )
     for quantity in ("position", "velocity", "effort"):
         if quantity not in series.values:
             continue
@@ -128,6 +154,8 @@ def _sensor(key: str, series: Series, seen: set[str]) -> dict[str, Array]:
 
 
 def _without_orientation(series: Series) -> bool:
-    unknown = np.mean([np.mean(chunk[:, 0] == NO_ORIENTATION) for chunk in series.values["orientation_covariance"]])
+    unknown = np.mean(
+        [np.mean(chunk[:, 0] == NO_ORIENTATION) for chunk in series.values["orientation_covariance"]]
+    )
     empty = all(not chunk.any() for chunk in series.values["orientation"])
     return bool(unknown > 0.5 or empty)

@@ -2,8 +2,8 @@
 
 A layout says where in a serialised message the stamp and the numbers lie and which bytes must not change;
 every message with the same fixed bytes is then decoded by slicing, without a Python object per message.
-CDR as in OMG DDS-XTypes 7.4 (numbers aligned to their size after the 4-byte encapsulation header), ROS 1 as in
-wiki.ros.org/msg (packed, little-endian).
+CDR as in OMG DDS-XTypes 7.4 (numbers aligned to their size after the 4-byte encapsulation header), ROS 1 as
+in wiki.ros.org/msg (packed, little-endian).
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class BrokenMessage(ValueError):
 
 @dataclass(frozen=True)
 class Layout:
-    """Where things lie in a message: byte order, stamp, fields (name, offset, count of float64), fixed bytes."""
+    """Where things lie in a message: byte order, stamp, fields (name, offset, float64s), fixed bytes."""
 
     size: int
     order: str

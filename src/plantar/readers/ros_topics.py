@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -29,7 +29,18 @@ if TYPE_CHECKING:
     from plantar.robot import RobotModel
 
 LAYOUT_LIMIT = 200  # layouts of one topic: frames and joint lists change rarely
-GENERIC = {"", "imu", "data", "data_raw", "wrench", "ft", "ft_sensor", "force_torque", "force_torque_sensor", "raw"}
+GENERIC = {
+    "",
+    "imu",
+    "data",
+    "data_raw",
+    "wrench",
+    "ft",
+    "ft_sensor",
+    "force_torque",
+    "force_torque_sensor",
+    "raw",
+}
 Stamps = NDArray[np.int64]
 
 
@@ -104,7 +115,9 @@ class Topic:
         series.header.append(layout.stamps(taken))
         series.received.append(clock[left[mine]])
         expected = len(layout.names)
-        present = {entry[0]: entry for entry in layout.fields if self.kind != JOINT_STATE or entry[2] == expected}
+        present = {
+            entry[0]: entry for entry in layout.fields if self.kind != JOINT_STATE or entry[2] == expected
+        }
         done = sum(len(chunk) for chunk in series.header) - len(taken)
         for name, entry in present.items():
             if name not in series.values:
@@ -116,30 +129,50 @@ class Topic:
         return left[~mine]
 
 
-def assign(topics: Iterable[Topic], robot: RobotModel | None, path: Path, notes: list[Note]) -> dict[str, list[Topic]]:
+def assign(
+    topics: Iterable[Topic], robot: RobotModel | None, path: Path, notes: list[Note]
+) -> dict[str, list[Topic]]:
     """Which topic is which sensor: keys `joints`, and `imu.<name>`, `wrench.<name>`.
 
-    The robot file's `topics:` (joints, or a sensor's name, to a topic) goes first; then the frame of a sensor's
-    link; then a name in the topic. Without a robot every topic is taken under its own name.
+    The robot file's `topics:` (joints, or a sensor's name, to a topic) goes first; then a topic called like the
+    sensor, the frame of its link, its name in a topic's. Without a robot every topic is taken under its own name.
     Raises LogError when `topics:` names one that the bag has not.
     """
     known = {topic.name: topic for topic in topics}
     wanted = {} if robot is None else dict(robot.topics)
     for name in wanted.values():
         if name not in known:
-            raise LogError(located(f"has no topic '{name}' (topics in the robot file)", path=path, valid=", ".join(sorted(known)[:8])))
+            raise LogError(
+                located(
+                    f"has no topic '{name}' (topics in the robot file)",
+                    path=path,
+                    valid=", ".join(sorted(known)[:8]),
+                )
+            )
     joints = [t for t in known.values() if t.kind == JOINT_STATE]
     if "joints" in wanted:
         joints = [known[wanted["joints"]]]
-    chosen: dict[str, list[Topic]] = {"joints": sorted(joints, key=lambda t: _joint_rank(t, robot))} if joints else {}
+    chosen: dict[str, list[Topic]] = (
+        {"joints": sorted(joints, key=lambda t: _joint_rank(t, robot))} if joints else {}
+    )
     for kind, prefix, sensors in ((IMU, "imu", _imus(robot)), (WRENCH, "wrench", _wrenches(robot))):
         free = [topic for topic in known.values() if topic.kind == kind]
         for sensor, link in sensors.items():
-            topic = known[wanted[sensor]] if sensor in wanted else _guess(sensor, link, free, only=len(sensors) == 1)
+            topic = (
+                known[wanted[sensor]]
+                if sensor in wanted
+                else _guess(sensor, link, free, only=len(sensors) == 1)
+            )
             if topic is None:
                 continue
             if sensor not in wanted:
-                notes.append(Note("topic_guessed", "info", f"{path.name}: {prefix} '{sensor}' is taken from {topic.name}"))
+                notes.append(
+                    Note(
+                        "topic_guessed",
+                        "info",
+                        f"{path.name}: {prefix} '{sensor}' is taken from {topic.name}",
+                    )
+                )
             chosen[f"{prefix}.{sensor}"] = [topic]
             free = [other for other in free if other is not topic]
         for topic in free:
@@ -163,7 +196,7 @@ def _wrenches(robot: RobotModel | None) -> Mapping[str, str]:
 
 
 def _guess(sensor: str, link: str, free: list[Topic], *, only: bool) -> Topic | None:
-    rules = (
+    rules: tuple[Callable[[Topic], bool], ...] = (
         lambda topic: _own_name(topic, "imu" if topic.kind == IMU else "wrench") == sensor,
         lambda topic: link in topic.frames,
         lambda topic: sensor.lower() in topic.name.lower(),

@@ -50,7 +50,9 @@ def _save_mcap(log: MotionLog, path: Path) -> tuple[Note, ...]:
         raise MissingExtra("rosbags", "logs", "writing MCAP") from error
     stamps = np.rint(log.time * 1e9).astype(np.int64)
     if stamps[0] < 0 or stamps[-1] >= 2**31 * 10**9:
-        raise LogError(located("lies outside what a ROS stamp can hold", path=log.source, time=float(log.time[0])))
+        raise LogError(
+            located("lies outside what a ROS stamp can hold", path=log.source, time=float(log.time[0]))
+        )
     store = get_typestore(Stores.ROS2_HUMBLE)
     with tempfile.TemporaryDirectory() as folder:
         bag = Path(folder) / "bag"
@@ -62,11 +64,19 @@ def _save_mcap(log: MotionLog, path: Path) -> tuple[Note, ...]:
         with atomic_write(path) as handle, open(next(bag.glob("*.mcap")), "rb") as source:
             while block := source.read(2**22):
                 handle.write(block)
-    lost = sorted(name for name in log.columns if name.startswith("joint.") and name.endswith(".acceleration"))
-    return (Note("columns_lost", "warning", f"JointState holds no accelerations: {len(lost)} columns left out"),) if lost else ()
+    lost = sorted(
+        name for name in log.columns if name.startswith("joint.") and name.endswith(".acceleration")
+    )
+    return (
+        (Note("columns_lost", "warning", f"JointState holds no accelerations: {len(lost)} columns left out"),)
+        if lost
+        else ()
+    )
 
 
-def _messages(log: MotionLog, stamps: np.ndarray[tuple[int], np.dtype[np.int64]]) -> Iterable[tuple[str, str, Bytes]]:
+def _messages(
+    log: MotionLog, stamps: np.ndarray[tuple[int], np.dtype[np.int64]]
+) -> Iterable[tuple[str, str, Bytes]]:
     """Topic, type and serialised messages (N, size) of every joint group, IMU and wrench of a log."""
     groups: dict[tuple[str, ...], list[str]] = {}
     for joint in _names(log, "joint."):
@@ -79,7 +89,11 @@ def _messages(log: MotionLog, stamps: np.ndarray[tuple[int], np.dtype[np.int64]]
         template = _Message("base").raw(body)
         for quantity in QUANTITIES:
             template.numbers(len(joints) if quantity in held else 0, counted=True)
-        yield "/joint_states" + (f"_{index + 1}" if index else ""), JOINT_STATE, _fill(JOINT_STATE, template, stamps, values)
+        yield (
+            "/joint_states" + (f"_{index + 1}" if index else ""),
+            JOINT_STATE,
+            _fill(JOINT_STATE, template, stamps, values),
+        )
     for imu in _names(log, "imu."):
         attitude = log.orientation(imu)
         values = {"orientation_covariance": np.zeros((len(log), 9))}
@@ -93,13 +107,21 @@ def _messages(log: MotionLog, stamps: np.ndarray[tuple[int], np.dtype[np.int64]]
         yield f"/imu/{imu}", IMU, _fill(IMU, template, stamps, values)
     for sensor in _names(log, "wrench."):
         values = {quantity: _vector(log, f"wrench.{sensor}.{quantity}") for quantity in ("force", "torque")}
-        yield f"/wrench/{sensor}", WRENCH, _fill(WRENCH, _Message(sensor).numbers(3).numbers(3), stamps, values)
+        yield (
+            f"/wrench/{sensor}",
+            WRENCH,
+            _fill(WRENCH, _Message(sensor).numbers(3).numbers(3), stamps, values),
+        )
 
 
 def _names(log: MotionLog, prefix: str) -> list[str]:
     """Joints or sensors in the log's order."""
     words = 1 if prefix == "joint." else 2
-    return list(dict.fromkeys(name.removeprefix(prefix).rsplit(".", words)[0] for name in log.columns if name.startswith(prefix)))
+    return list(
+        dict.fromkeys(
+            name.removeprefix(prefix).rsplit(".", words)[0] for name in log.columns if name.startswith(prefix)
+        )
+    )
 
 
 def _vector(log: MotionLog, stem: str) -> Array:
@@ -143,7 +165,12 @@ def _sequence(texts: list[bytes]) -> bytes:
     return body
 
 
-def _fill(kind: str, template: _Message, stamps: np.ndarray[tuple[int], np.dtype[np.int64]], values: dict[str, Array]) -> Bytes:
+def _fill(
+    kind: str,
+    template: _Message,
+    stamps: np.ndarray[tuple[int], np.dtype[np.int64]],
+    values: dict[str, Array],
+) -> Bytes:
     layout = layout_of(kind, "cdr", template.data)
     rows = np.tile(np.frombuffer(template.data, np.uint8), (len(stamps), 1))
     clock = np.column_stack([stamps // 1_000_000_000, stamps % 1_000_000_000]).astype("<u4")

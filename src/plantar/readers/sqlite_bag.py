@@ -31,13 +31,17 @@ def read_sqlite(path: Path, topics: dict[str, Topic], notes: list[Note]) -> None
     except (sqlite3.Error, OverflowError, ValueError, TypeError) as error:
         if not any(topic.series for topic in topics.values()):
             raise LogError(located(f"is not a readable sqlite3 bag: {error}", path=path)) from error
-        notes.append(Note("file_cut", "warning", f"{path.name} is damaged ({error}); what could be read was read"))
+        notes.append(
+            Note("file_cut", "warning", f"{path.name} is damaged ({error}); what could be read was read")
+        )
     finally:
         connection.close()
 
 
 def _channels(connection: sqlite3.Connection, path: Path, topics: dict[str, Topic]) -> dict[int, Topic]:
-    rows = connection.execute("SELECT id, name, type, serialization_format FROM topics LIMIT 10000").fetchall()
+    rows = connection.execute(
+        "SELECT id, name, type, serialization_format FROM topics LIMIT 10000"
+    ).fetchall()
     found: dict[int, Topic] = {}
     for identity, name, kind, encoding in rows:
         plain = str(kind).replace("/msg/", "/")
@@ -46,8 +50,12 @@ def _channels(connection: sqlite3.Connection, path: Path, topics: dict[str, Topi
     return found
 
 
-def _messages(connection: sqlite3.Connection, identity: int, topic: Topic, path: Path, notes: list[Note]) -> None:
-    cursor = connection.execute("SELECT timestamp, data FROM messages WHERE topic_id = ? ORDER BY timestamp", (identity,))
+def _messages(
+    connection: sqlite3.Connection, identity: int, topic: Topic, path: Path, notes: list[Note]
+) -> None:
+    cursor = connection.execute(
+        "SELECT timestamp, data FROM messages WHERE topic_id = ? ORDER BY timestamp", (identity,)
+    )
     while True:
         broken: sqlite3.Error | None = None
         rows: list[tuple[object, object]] = []

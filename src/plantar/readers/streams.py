@@ -32,11 +32,13 @@ class Stream:
         return float(np.median(np.diff(self.time)))
 
     def take(self, rows: Mask) -> Stream:
-        return Stream(self.name, self.time[rows], {name: values[rows] for name, values in self.columns.items()})
+        return Stream(
+            self.name, self.time[rows], {name: values[rows] for name, values in self.columns.items()}
+        )
 
 
 def increasing(stream: Stream, path: Path, notes: list[Note]) -> Stream:
-    """The stream without samples whose stamp is NaN or steps back. LogError when that is more than a few."""
+    """The stream without samples whose stamp is NaN or steps back. LogError: more than a few do."""
     finite = np.isfinite(stream.time)
     latest = np.maximum.accumulate(np.where(finite, stream.time, -np.inf))
     keep = finite.copy()
@@ -46,7 +48,7 @@ def increasing(stream: Stream, path: Path, notes: list[Note]) -> Stream:
         return stream
     at = float(stream.time[strays[0] - 1]) if strays[0] else None
     if strays.size > max(1, STRAY_STAMPS * keep.size):
-        message = f"{stream.name}: time steps back or is missing in {strays.size} of {keep.size} samples, first here"
+        message = f"{stream.name}: time steps back in {strays.size} of {keep.size} samples, first here"
         raise LogError(located(message, path=path, time=at, value=float(stream.time[strays[0]])))
     text = f"{path.name}: {stream.name}: {strays.size} samples whose time steps back are left out"
     notes.append(Note("time_order", "warning", text))
@@ -113,7 +115,7 @@ def resample(stream: Stream, time: Array) -> tuple[dict[str, Array], bool]:
     near = np.where(share < 0.5, before, after)
     on_sample = np.abs(stream.time[near] - time) <= SAME_STAMP
     inside = (share >= 0) & (share <= 1) & (step <= GAP_PERIODS * stream.period)
-    columns = {}
+    columns: dict[str, Array] = {}
     for names in _grouped(stream.columns):
         values = np.column_stack([stream.columns[name] for name in names])
         low, high = values[before], values[after]
@@ -135,7 +137,9 @@ def _grouped(columns: dict[str, Array]) -> list[list[str]]:
     for name in columns:
         stem, _, axis = name.rpartition(".")
         groups.setdefault(stem if stem.endswith(".orientation") and axis in "wxyz" else name, []).append(name)
-    return [names for group in groups.values() for names in ([group] if len(group) == 4 else [[n] for n in group])]
+    return [
+        names for group in groups.values() for names in ([group] if len(group) == 4 else [[n] for n in group])
+    ]
 
 
 def origin(first: float) -> float:

@@ -42,11 +42,27 @@ def read(path: Path, robot: RobotModel | None = None) -> MotionLog:
     ignored = [name for name in names if name not in columns and name != "time"]
     if ignored:
         shown = ", ".join(ignored[:6]) + (f" and {len(ignored) - 6} more" if len(ignored) > 6 else "")
-        notes.append(Note("columns_ignored", "info", f"{path.name}: columns of no known name, not used: {shown}"))
+        notes.append(
+            Note("columns_ignored", "info", f"{path.name}: columns of no known name, not used: {shown}")
+        )
     keep = _increasing(time, path, notes)
     if not keep.all():
         time, columns = time[keep], {name: values[keep] for name, values in columns.items()}
     return MotionLog(motion_name(path), time, columns, path, sha256(path), tuple(notes))
+
+
+def read_raw(path: Path, notes: list[Note]) -> dict[str, Array]:
+    """Every column of numbers of a table under its own name, for logs with a column map. Raises LogError."""
+    table = _read_parquet(path) if path.name.lower().endswith(".parquet") else _read_csv(path, notes)
+    numeric = [
+        field.name
+        for field in table.schema
+        if pa.types.is_floating(field.type) or pa.types.is_integer(field.type)
+    ]
+    twice = next((name for name in numeric if numeric.count(name) > 1), None)
+    if twice is not None:
+        raise LogError(located("stands twice in the header", path=path, column=twice))
+    return {name: _numbers(table, name, None, path) for name in numeric}
 
 
 def _read_csv(path: Path, notes: list[Note]) -> pa.Table:
@@ -75,7 +91,9 @@ def _read_csv(path: Path, notes: list[Note]) -> pa.Table:
             pa.BufferReader(content),
             read_options=pa_csv.ReadOptions(block_size=2**22, use_threads=True),
             parse_options=pa_csv.ParseOptions(invalid_row_handler=collect),
-            convert_options=pa_csv.ConvertOptions(strings_can_be_null=True, null_values=["", "nan", "NaN", "null"]),
+            convert_options=pa_csv.ConvertOptions(
+                strings_can_be_null=True, null_values=["", "nan", "NaN", "null"]
+            ),
         )
     except (pa.ArrowInvalid, pa.ArrowKeyError) as error:
         reason = str(error).splitlines()[0]
@@ -126,13 +144,17 @@ def _read_parquet(path: Path) -> pa.Table:
 def _numbers(table: pa.Table, name: str, time: Array | None, path: Path) -> Array:
     """A column as float64, empty cells as NaN; a text in it is an error that shows it."""
     column = table.column(name)
-    if not (pa.types.is_floating(column.type) or pa.types.is_integer(column.type) or pa.types.is_null(column.type)):
+    if not (
+        pa.types.is_floating(column.type) or pa.types.is_integer(column.type) or pa.types.is_null(column.type)
+    ):
         for row, text in enumerate(column.to_pylist()):
             try:
                 float("nan" if text is None else str(text))
             except ValueError:
                 at = None if time is None else float(time[row])
-                raise LogError(located("is not a number", path=path, column=name, time=at, value=text)) from None
+                raise LogError(
+                    located("is not a number", path=path, column=name, time=at, value=text)
+                ) from None
         return np.array([float("nan" if text is None else str(text)) for text in column.to_pylist()])
     return np.asarray(column.cast(pa.float64()).to_numpy(), dtype=np.float64)
 
@@ -154,7 +176,9 @@ def _increasing(time: Array, path: Path, notes: list[Note]) -> np.ndarray[tuple[
         raise LogError(
             located(message, path=path, column="time", time=at, value=float(time[first]), valid=valid)
         )
-    text = f"{path.name}: time does not increase in {strays.size} of {time.size} rows (first after t = {at} s); "
+    text = (
+        f"{path.name}: time does not increase in {strays.size} of {time.size} rows (first after t = {at} s); "
+    )
     notes.append(Note("time_order", "warning", text + "those rows are left out"))
     return keep
 

@@ -1,0 +1,112 @@
+"""Files of columns (OpenHRP's astate.log and its like, NPZ, tables with other names) through `columns:`."""
+
+from __future__ import annotations
+
+import zipfile
+from collections.abc import Mapping
+from io import BytesIO
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from plantar.conventions import Array
+from plantar.errors import LogError, located
+from plantar.files import sha256
+from plantar.log import COLUMN, MotionLog
+from plantar.notes import Note
+from plantar.readers import motion_name, table
+from plantar.readers.column_map import apply, maps_columns
+from plantar.readers.streams import Stream, increasing
+from plantar.readers.text_numbers import read_numbers
+
+if TYPE_CHECKING:
+    from plantar.robot import RobotModel
+
+NPZ_LIMIT = 4 * 2**30  # bytes of arrays
+
+
+def read(path: Path, robot: RobotModel | None = None) -> MotionLog:
+    """Read a file of columns by the robot file's map. LogError: broken, or no map where one is needed."""
+    notes: list[Note] = []
+    ending = path.name.lower()
+    if ending.endswith(".npz"):
+        columns = _read_npz(path)
+    elif ending.endswith((".csv", ".csv.gz", ".parquet")):
+        columns = table.read_raw(path, notes)
+    else:
+        values, names = read_numbers(path, notes)
+        columns = {name: values[:, i] for i, name in enumerate(names or map(str, range(values.shape[1])))}
+    time, mapped = _mapped(columns, robot, path)
+    if not mapped:
+        valid = "columns.<column of plantar>: <column of the file>, in the robot file"
+        raise LogError(located("has no column of a known name", path=path, valid=valid))
+    stream = increasing(Stream(path.name, time, mapped), path, notes)
+    return MotionLog(motion_name(path), stream.time, stream.columns, path, sha256(path), tuple(notes))
+
+
+def _mapped(
+    columns: Mapping[str, Array], robot: RobotModel | None, path: Path
+) -> tuple[Array, dict[str, Array]]:
+    if robot is not None and maps_columns(robot):
+        return apply(columns, robot, path)
+    if "time" not in columns:
+        valid = "a column 'time', or columns.time in the robot file"
+        raise LogError(located("is missing", path=path, column="time", valid=valid))
+    return columns["time"], {name: values for name, values in columns.items() if COLUMN.fullmatch(name)}
+
+
+def _read_npz(path: Path) -> dict[str, Array]:
+    """Every numeric array of an NPZ, those of two dimensions column by column as name.0, name.1, ...
+
+    Nothing is unpickled; sizes are checked before memory is asked for.
+    """
+    columns: dict[str, Array] = {}
+    try:
+        with zipfile.ZipFile(path) as archive:
+            if sum(entry.file_size for entry in archive.infolist()) > NPZ_LIMIT:
+                raise LogError(located(f"holds more than {NPZ_LIMIT} bytes", path=path))
+            for entry in archive.infolist():
+                array = _read_npy(archive.read(entry)) if entry.filename.endswith(".npy") else None
+                name = entry.filename.removesuffix(".npy")
+                if array is None:
+                    continue
+                if array.ndim == 1:
+                    columns[name] = array
+                elif array.ndim == 2 and array.shape[1] <= 10_000:
+                    columns |= {f"{name}.{index}": array[:, index] for index in range(array.shape[1])}
+    except (
+        zipfile.BadZipFile,
+        OSError,
+        ValueError,
+        EOFError,
+        NotImplementedError,
+        RuntimeError,
+        KeyError,
+    ) as error:
+        raise LogError(located(f"is not a readable NPZ file: {error}", path=path)) from error
+    except zipfile.zlib.error as error:  # type: ignore[attr-defined]
+        raise LogError(located(f"is not a readable NPZ file: {error}", path=path)) from error
+    lengths = {values.size for values in columns.values()}
+    if len(lengths) > 1:
+        odd = next(name for name, values in columns.items() if values.size == min(lengths))
+        raise LogError(
+            located(
+                f"arrays have different lengths, from {min(lengths)} to {max(lengths)}", path=path, column=odd
+            )
+        )
+    return columns
+
+
+def _read_npy(content: bytes) -> Array | None:
+    handle = BytesIO(content)
+    version = np.lib.format.read_magic(handle)
+    header = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
+    shape, fortran, kind = header(handle)
+    if kind.kind not in "fiub" or len(shape) not in (1, 2):
+        return None
+    count = int(np.prod(shape, dtype=object))
+    if count * kind.itemsize != len(content) - handle.tell():
+        raise ValueError("an array's shape does not agree with its data")
+    values = np.frombuffer(content, kind, count, handle.tell()).astype(np.float64)
+    return values.reshape(shape, order="F" if fortran else "C")

@@ -1,0 +1,56 @@
+"""One recording, every format: the same columns, and the same numbers of an identification."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from biped import make_robot, record, sway
+from log_formats import WRITERS
+
+import plantar
+from plantar.log import MotionLog
+from plantar.readers import open_log
+from plantar.robot import RobotModel
+
+
+@pytest.fixture(scope="module")
+def original() -> MotionLog:
+    return record(sway("log", duration=8.0))
+
+
+def written(name: str, log: MotionLog, folder: Path) -> tuple[Path, RobotModel]:
+    folder.mkdir(exist_ok=True)
+    path, columns = WRITERS[name](log, folder)
+    return path, make_robot(folder / "robot", columns=columns)
+
+
+@pytest.mark.parametrize("name", WRITERS)
+def test_every_format_gives_the_same_columns(name: str, original: MotionLog, tmp_path: Path) -> None:
+    path, robot = written(name, original, tmp_path)
+    log = open_log(path, robot)
+    assert set(log.columns) == set(original.columns)
+    np.testing.assert_allclose(log.time - log.time[0], original.time - original.time[0], rtol=0, atol=2e-9)
+    attitude, seen = (source.orientation("chest") for source in (original, log))
+    assert attitude is not None
+    assert seen is not None
+    np.testing.assert_allclose(np.abs(np.sum(attitude * seen, axis=1)), 1, rtol=0, atol=1e-13)
+    for column, values in original.columns.items():
+        if ".orientation." not in column:
+            np.testing.assert_allclose(log.columns[column], values, rtol=1e-12, atol=1e-12, err_msg=column)
+    assert not [note for note in log.notes if note.severity == "warning"], log.notes
+    assert log.sha256 is not None
+
+
+@pytest.mark.slow
+def test_every_format_gives_the_same_result(original: MotionLog, tmp_path: Path) -> None:
+    results = {}
+    for name in WRITERS:
+        path, robot = written(name, original, tmp_path / name)
+        result = plantar.identify_feet(robot, [open_log(path, robot)])
+        results[name] = {(p.foot, p.axis, p.name): p.value for p in result.parameters}
+    for name, values in results.items():
+        assert values.keys() == results["csv"].keys()
+        for key, value in values.items():
+            assert value == pytest.approx(results["csv"][key], rel=1e-6), (name, key)
