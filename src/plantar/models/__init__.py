@@ -1,5 +1,39 @@
 """Laws of the bush, one file each: torque from the history of deflection and rate."""
 
+from plantar.models.bouc_wen import BoucWen
+from plantar.models.coulomb import Coulomb
+from plantar.models.coupled import Coupled
+from plantar.models.elastoplastic import Elastoplastic
+from plantar.models.hardening import Hardening
+from plantar.models.iwan import Iwan
 from plantar.models.kelvin_voigt import KelvinVoigt
+from plantar.models.law import Law, Motion
+from plantar.models.standard_linear_solid import StandardLinearSolid
 
-__all__ = ["KelvinVoigt"]
+LAWS: dict[str, Law] = {
+    law.name: law
+    for law in (
+        KelvinVoigt(),
+        Hardening(),
+        Coulomb(),
+        Elastoplastic(),
+        Iwan(),
+        BoucWen(),
+        StandardLinearSolid(),
+        Coupled(),
+    )
+}
+
+__all__ = [
+    "LAWS",
+    "BoucWen",
+    "Coulomb",
+    "Coupled",
+    "Elastoplastic",
+    "Hardening",
+    "Iwan",
+    "KelvinVoigt",
+    "Law",
+    "Motion",
+    "StandardLinearSolid",
+]

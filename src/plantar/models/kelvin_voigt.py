@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
 from typing import ClassVar
 
 import numpy as np
 
 from plantar.conventions import Array
+from plantar.models.law import Law, Motion
 
 
-@dataclass(frozen=True)
-class KelvinVoigt:
+class KelvinVoigt(Law):
     """torque = K·deflection + C·rate + offset; the offset belongs to the recording, not to the bush."""
 
     name: ClassVar[str] = "kelvin_voigt"
-    terms: ClassVar[tuple[str, ...]] = ("stiffness", "damping")
 
     def regressor(self, deflection: Array, rate: Array) -> Array:
         """Y_JJ without the offset's column: (n,) and (n,) -> (n, 2), `[q q̇]` of eq. 5."""
         return np.column_stack([deflection, rate])
+
+    def extra(self, motions: Sequence[Motion], shapes: Array, starts: Sequence[Array]) -> list[Array]:
+        """No columns beside the two: (N, 0, b)."""
+        return [np.zeros((len(motion), 0, len(shapes))) for motion in motions]

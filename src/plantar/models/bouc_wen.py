@@ -1,0 +1,96 @@
+"""Kelvin-Voigt beside a Bouc-Wen element: hysteresis that bends into slip smoothly."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import lru_cache
+from typing import ClassVar
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from plantar.conventions import Array
+from plantar.models.hysteresis import Branches, Hysteretic
+from plantar.models.law import Motion
+
+TABLE = 2001
+DEEPEST = 30.0  # -log(1 - z) at which z counts as 1
+SHARPNESS = (1.0, 2.0, 4.0)  # tried by the search; 1 is Dahl's friction, large ones are a Jenkins element
+
+
+class BoucWen(Hysteretic):
+    """slip_torque·z with dz = (dq / slip_angle)·(1 - sign(dq)·z·|z|^(sharpness - 1)).
+
+    Bouc-Wen's equation with β = 1 / slip_angle, γ = 0, scaled so that z ends at ±1: passive for every
+    sharpness ≥ 1.
+    """
+
+    name: ClassVar[str] = "bouc_wen"
+    elaborates: ClassVar[str | None] = "elastoplastic"
+    shape_terms: ClassVar[tuple[str, ...]] = ("slip_angle", "sharpness")
+    units: ClassVar[dict[str, tuple[str, str]]] = {**Hysteretic.units, "sharpness": ("1", "1")}
+
+    def candidates(self, motions: Sequence[Motion]) -> Array:
+        """Slip angles as for a Jenkins element, each with every sharpness."""
+        angles = super().candidates(motions)[:, 0]
+        return np.array([(angle, sharpness) for sharpness in SHARPNESS for angle in angles[::2]])
+
+    def states(self, branches: Branches, shapes: Array, starts: Array) -> Array:
+        """z (n, r, b)."""
+        runs = np.arange(branches.length.shape[1])
+        direction = branches.direction[branches.branch, runs]
+        result = np.empty((*branches.branch.shape, len(shapes)))
+        for sharpness in np.unique(shapes[:, 1]):
+            chosen = np.flatnonzero(shapes[:, 1] == sharpness)
+            curve, pace = branch_curve(round(float(sharpness), 9)), sharpness / shapes[chosen, 0]
+            left = np.exp(-branches.length[:, :, None] * pace)
+            begins = np.empty_like(left)
+            place = curve.place(branches.direction[0][:, None] * np.clip(starts[:, chosen], -1.0, 1.0))
+            for turn, remaining in enumerate(left):
+                begins[turn] = place
+                place = curve.turned(1.0 - (1.0 - place) * remaining)
+            gone = np.exp(-branches.travelled[:, :, None] * pace)
+            placed = 1.0 - (1.0 - begins[branches.branch, runs]) * gone
+            result[:, :, chosen] = direction[:, :, None] * curve.state(placed)
+        return result
+
+
+class BranchCurve:
+    """The one curve that z follows from -1 to 1, over the place p = 1 - exp(-sharpness·way / slip_angle).
+
+    In p the curve and the turn (z -> -z) have finite slopes at both ends, so a table with linear steps
+    serves.
+    """
+
+    def __init__(self, sharpness: float) -> None:
+        fall = np.linspace(0.0, DEEPEST, 8001)  # -log(1 - |z|)
+        z = -np.expm1(-fall)
+        power = sharpness * np.log1p(-np.exp(-np.maximum(fall, 1e-15)))  # log |z|^n
+        # Way / slip angle: ∫ dz / (1 + |z|^n) from -1 to 0, then ∫ dz / (1 - z^n), both over `fall`.
+        below = CubicSpline(fall, np.exp(-fall) / (1.0 + np.exp(power))).antiderivative()
+        above = CubicSpline(fall, np.exp(-fall) / -np.expm1(power)).antiderivative()
+        z = np.unique(np.concatenate([np.linspace(0.0, 1.0, TABLE)[:-1], z[fall > 4.0][::8]]))
+        fall = -np.log1p(-z)
+        zero = below(DEEPEST)
+        way = np.concatenate([[0.0], zero - below(fall[:0:-1]), zero + above(fall), [np.inf]])
+        self._state = np.concatenate([[-1.0], -z[:0:-1], z, [1.0]])
+        self._place = -np.expm1(-sharpness * way)
+        self._turned = self._place[::-1]
+
+    def place(self, state: Array) -> Array:
+        """p of z."""
+        return np.asarray(np.interp(state, self._state, self._place))
+
+    def state(self, place: Array) -> Array:
+        """z at p."""
+        return np.asarray(np.interp(place, self._place, self._state))
+
+    def turned(self, place: Array) -> Array:
+        """p on the way back from p."""
+        return np.asarray(np.interp(place, self._place, self._turned))
+
+
+@lru_cache(maxsize=64)
+def branch_curve(sharpness: float) -> BranchCurve:
+    """The curve of one sharpness, kept."""
+    return BranchCurve(sharpness)

@@ -1,0 +1,37 @@
+"""Kelvin-Voigt in which each axis also feels the other axes' deflections and rates."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import ClassVar
+
+import numpy as np
+
+from plantar.conventions import Array
+from plantar.errors import DataError
+from plantar.models.law import BESIDE, Law, Motion
+
+
+class Coupled(Law):
+    """torque = K·q + C·q̇ + cross_stiffness·p + cross_damping·ṗ + offset, p the deflection of the other axis.
+
+    A bush whose principal axes are turned against the foot's (or a bush centre that is not where the robot
+    file puts it) shows up here. `Motion.across` holds p as its first column.
+    """
+
+    name: ClassVar[str] = "coupled"
+    terms: ClassVar[tuple[str, ...]] = (*BESIDE, "cross_stiffness", "cross_damping")
+    units: ClassVar[dict[str, tuple[str, str]]] = {
+        "cross_stiffness": ("N.m/rad", "N/rad"),
+        "cross_damping": ("N.m.s/rad", "N.s/rad"),
+    }
+
+    def extra(self, motions: Sequence[Motion], shapes: Array, starts: Sequence[Array]) -> list[Array]:
+        """Deflection and rate of the other axis, (N, 2, b). Raises DataError where a motion lacks them."""
+        columns = []
+        for motion in motions:
+            if motion.across is None or motion.across_rate is None:
+                raise DataError("the coupled law needs the deflection of the foot's other axis")
+            pair = np.column_stack([motion.across[:, 0], motion.across_rate[:, 0]])
+            columns.append(np.repeat(pair[:, :, None], len(shapes), axis=2))
+        return columns

@@ -1,0 +1,34 @@
+"""Kelvin-Voigt beside many Jenkins elements that slip one after the other (Iwan's parallel-series model)."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+import numpy as np
+
+from plantar.conventions import Array
+from plantar.models.elastoplastic import jenkins_states
+from plantar.models.hysteresis import Branches, Hysteretic
+
+ELEMENTS = 8
+
+
+class Iwan(Hysteretic):
+    """slip_torque·z, z the mean of elements of equal stiffness whose slip angles spread evenly from 0 to
+    2·slip_angle.
+
+    The stiffness before any slips is slip_torque / slip_angle, as for one element; it bends over in a
+    parabola until the last slips at 2·slip_angle. In a run's first part all elements start from the same
+    state.
+    """
+
+    name: ClassVar[str] = "iwan"
+    elaborates: ClassVar[str | None] = "elastoplastic"
+
+    def states(self, branches: Branches, shapes: Array, starts: Array) -> Array:
+        """z (n, r, b): torques of the elements, each its slip angle's share."""
+        spread = 2.0 * (np.arange(ELEMENTS) + 0.5) / ELEMENTS  # slip angles over their mean
+        total: Array = np.zeros(())
+        for ratio in spread:
+            total = total + ratio * jenkins_states(branches, ratio * shapes[:, 0], starts)
+        return np.asarray(total / ELEMENTS)

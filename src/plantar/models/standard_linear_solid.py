@@ -1,0 +1,61 @@
+"""Zener's solid: beside spring and damper, a second spring that relaxes through its own damper."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import ClassVar
+
+import numpy as np
+from scipy import signal
+
+from plantar.conventions import Array
+from plantar.models.law import BESIDE, Law, Motion, reach
+
+FASTEST = 0.05  # s: faster relaxation is a damper in the band that a bush is identified in
+LONGEST_SHARE = 0.1  # of the longest run: slower relaxation is drift
+
+
+class StandardLinearSolid(Law):
+    """torque = K·q + C·q̇ + relaxing_stiffness·x + offset, with relaxation_time·ẋ + x = relaxation_time·q̇.
+
+    K is the relaxed stiffness; a fast movement feels K + relaxing_stiffness. The start of a run is the
+    relaxing spring's deflection x there, as a share of the run's largest deflection from its middle.
+    """
+
+    name: ClassVar[str] = "standard_linear_solid"
+    terms: ClassVar[tuple[str, ...]] = (*BESIDE, "relaxing_stiffness")
+    shape_terms: ClassVar[tuple[str, ...]] = ("relaxation_time",)
+    remembers: ClassVar[bool] = True
+    tried_starts: ClassVar[tuple[float, ...]] = (-0.3, 0.0, 0.3)
+    blind_ends: ClassVar[frozenset[tuple[str, str]]] = frozenset(
+        {("relaxation_time", "low"), ("relaxation_time", "high")}
+    )
+    dissipative_terms: ClassVar[tuple[str, ...]] = ("relaxing_stiffness",)
+    units: ClassVar[dict[str, tuple[str, str]]] = {
+        "relaxing_stiffness": ("N.m/rad", "N/m"),
+        "relaxation_time": ("s", "s"),
+    }
+
+    def candidates(self, motions: Sequence[Motion]) -> Array:
+        """Relaxation times between what looks like a damper and what looks like drift, in equal ratios."""
+        longest = max(
+            (motion.period * (run.stop - run.start) for motion in motions for run in motion.runs), default=1.0
+        )
+        return np.geomspace(FASTEST, max(LONGEST_SHARE * longest, 4 * FASTEST), 12)[:, None]
+
+    def extra(self, motions: Sequence[Motion], shapes: Array, starts: Sequence[Array]) -> list[Array]:
+        """Deflection of the relaxing spring, (N, 1, b), exact for a deflection linear between samples."""
+        columns = []
+        for motion, start in zip(motions, starts, strict=True):
+            column = np.full((len(motion), 1, len(shapes)), np.nan)
+            scale = reach([motion])
+            for place, run in enumerate(motion.runs):
+                step = np.diff(motion.deflection[run], prepend=motion.deflection[run.start])
+                for variant, time in enumerate(shapes[:, 0]):
+                    ratio = motion.period / time
+                    decay, gain = np.exp(-ratio), -np.expm1(-ratio) / ratio
+                    first = start[variant, place] * scale
+                    inner, _ = signal.lfilter([gain], [1.0, -decay], step, zi=[first])
+                    column[run, 0, variant] = inner
+            columns.append(column)
+        return columns

@@ -1,0 +1,125 @@
+"""Recordings of one foot axis with a known bush, made without plantar's laws: the state is stepped sample by
+sample."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from plantar.estimation.law_trials import Trial
+from plantar.models import Motion
+from plantar.signals import low_pass
+
+PERIOD = 0.005
+
+
+@dataclass(frozen=True)
+class Rubber:
+    """The truth: spring, damper, and beside them an element that slips (sharpness None: Jenkins), a cubic
+    term."""
+
+    stiffness: float = 434.0
+    damping: float = 15.89
+    slip_torque: float = 0.0
+    slip_angle: float = 0.01
+    sharpness: float | None = None
+    hardening: float = 0.0
+    coulomb: float = 0.0
+
+    def torque(self, deflection: np.ndarray, rate: np.ndarray) -> np.ndarray:
+        plain = self.stiffness * deflection + self.damping * rate + self.hardening * deflection**3
+        plain = plain + self.coulomb * np.tanh(rate / 0.005)
+        return plain + self.slip_torque * self.states(deflection)
+
+    def states(self, deflection: np.ndarray) -> np.ndarray:
+        state, states, substeps = 0.0, [0.0], 1 if self.sharpness is None else 8
+        for step in np.diff(deflection) / self.slip_angle:
+            for _ in range(substeps):
+                if self.sharpness is None:
+                    state = min(max(state + step, -1.0), 1.0)
+                else:
+                    small = step / substeps
+                    state = bouc_wen_step(state, small, self.sharpness)
+            states.append(state)
+        return np.array(states)
+
+
+def bouc_wen_step(state: float, step: float, sharpness: float) -> float:
+    """One fourth-order Runge-Kutta step of dz = dx (1 - sign(dx) z |z|^(n-1))."""
+    way = 1.0 if step >= 0 else -1.0
+
+    def slope(z: float) -> float:
+        return step * (1 - way * z * abs(z) ** (sharpness - 1))
+
+    a = slope(state)
+    b = slope(state + a / 2)
+    c = slope(state + b / 2)
+    d = slope(state + c)
+    return min(max(state + (a + 2 * b + 2 * c + d) / 6, -1.0), 1.0)
+
+
+def sway(rng: np.random.Generator, amplitude: float, frequency: float, duration: float = 24.0) -> np.ndarray:
+    """A hand that sways the robot: roughly a sine, its size and speed wandering, from rest to rest."""
+    time = PERIOD * np.arange(round(duration / PERIOD))
+    wander = low_pass(rng.standard_normal((len(time), 2)), PERIOD, 0.15) / 0.05
+    phase = 2 * np.pi * np.cumsum(frequency * (1 + 0.1 * np.clip(wander[:, 0], -2, 2))) * PERIOD
+    size = amplitude * (1 + 0.12 * np.clip(wander[:, 1], -2, 2))
+    fade = np.clip(np.minimum(time - 2, duration - 2 - time) / 2, 0, 1)
+    lean = 0.004 * rng.standard_normal()
+    return lean + low_pass(size * np.sin(phase) * fade**2 * (3 - 2 * fade), PERIOD, 3.0)
+
+
+def tilt(
+    rng: np.random.Generator, amplitude: float = 0.01, frequency: float = 0.1, duration: float = 44.0
+) -> np.ndarray:
+    """A slow tilt to and fro, with what the robot's own swaying adds."""
+    path = sway(rng, amplitude, frequency, duration)
+    ripple = low_pass(rng.standard_normal(len(path)), PERIOD, 2.0)
+    return path + 0.03 * amplitude * ripple / ripple.std()
+
+
+def recorded(
+    rng: np.random.Generator, label: str, path: np.ndarray, rubber: Rubber, *, noise: float = 1.0
+) -> Trial:
+    """What the sensors say: attitude bias and drift, gyroscope and wrench noise, zeros drawn per
+    recording."""
+    time = PERIOD * np.arange(len(path))
+    rate = np.gradient(path, PERIOD)
+    drift = np.radians(0.03) * rng.standard_normal() * time / time[-1]
+    jitter = low_pass(rng.standard_normal(len(path)), PERIOD, 20.0) * 2e-4
+    gyro = 0.0013 * rng.standard_normal(len(path))
+    bias = np.radians(0.15) * rng.standard_normal()
+    torque = rubber.torque(path, rate) + noise * (
+        0.5 * rng.standard_normal() + 0.1 * rng.standard_normal(len(path))
+    )
+    wander = low_pass(rng.standard_normal(len(path)), PERIOD, 0.5)
+    torque += noise * 0.1 * wander / wander.std()
+    deflection = path + noise * (bias + drift + jitter)
+    used = (time > 0.3) & (time < time[-1] - 0.3)
+    return Trial(label, Motion(deflection, rate + noise * gyro, PERIOD), torque, used)
+
+
+def campaign(seed: int, rubber: Rubber, *, noise: float = 1.0) -> list[Trial]:
+    """Two sways of this axis, two tilts, and two recordings in which the axis hardly moves."""
+    rng = np.random.default_rng(seed)
+    paths = {
+        "sway_1": sway(rng, rng.uniform(0.07, 0.14), rng.uniform(0.3, 1.0)),
+        "sway_2": sway(rng, rng.uniform(0.05, 0.10), rng.uniform(0.3, 1.0)),
+        "tilt_1": tilt(rng),
+        "still": tilt(rng, 0.004, 0.5, 24.0),
+    }
+    return [recorded(rng, name, path, rubber, noise=noise) for name, path in paths.items()]
+
+
+def unseen(seed: int, rubber: Rubber) -> list[Trial]:
+    """Motions that no fit sees."""
+    rng = np.random.default_rng(100_000 + seed)
+    paths = [sway(rng, rng.uniform(0.06, 0.12), rng.uniform(0.3, 1.0)), tilt(rng), sway(rng, 0.03, 0.4)]
+    return [recorded(rng, f"unseen_{i}", path, rubber) for i, path in enumerate(paths)]
+
+
+def largest_torque(trials: Sequence[Trial]) -> float:
+    """Largest torque about its mean over the trials [N·m]."""
+    return max(float(np.max(np.abs(trial.torque - trial.torque.mean()))) for trial in trials)
