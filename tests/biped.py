@@ -3,7 +3,7 @@
 The torso's attitude and the ankles' angles are chosen as functions of time; everything that a log holds follows from
 rotation products and from high-order differences of them, never from the formulas of the package under test. Each
 foot's bush obeys torque = K·deflection + C·rate + offset exactly, so what a fit should find is known. The legs' slides
-hold the soles where they stand, sunk by load over vertical stiffness, and the torso above the centre of the loads.
+hold the soles where they stand, the bushes compressed by load over vertical stiffness, and the torso above the loads.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ TRUTH = {
     ("right", "pitch"): Law(455.0, 26.0, 0.9),
     ("right", "roll"): Law(330.0, 19.0, -0.4),
 }
-VERTICAL = {"left": 40e3, "right": 52e3}  # N/m
+VERTICAL = 45e3  # N/m, of both bushes
 HIPS = {"left": np.array([0.0, 0.1, -0.1]), "right": np.array([0.0, -0.1, -0.1])}
 SOLE_DEPTH = 0.09  # m below the foot link's origin
 HEIGHT = 0.7  # m of the torso's origin above the ground
@@ -178,16 +178,28 @@ def torso_position(motion: Motion, t: np.ndarray) -> np.ndarray:
 
 
 def leg_slides(motion: Motion, mounting: Mounting, foot: str, t: np.ndarray) -> np.ndarray:
-    """How far the leg's three slides are out [m], (N, 3), for a sole that stands still but for its sinking."""
+    """How far the leg's three slides are out [m], (N, 3), for a sole that stands still on the ground."""
     torso, ankle = torso_rotation(motion, t), foot_rotation(motion, foot, t)
     bent = Rotation.from_euler("YX", deflection(motion, mounting, foot, t)).as_matrix()
-    sole = ankle @ mounting.bush.rotation @ bent
-    bush = np.array(mounting.bush.xyz)
-    sole_from_bush = mounting.bush.rotation.T @ (np.array([0.0, 0.0, -SOLE_DEPTH]) - bush)
-    stands_at = np.column_stack([np.zeros((len(t), 2)), -vertical_load(motion, foot, t) / VERTICAL[foot]])
-    stands_at[:, 1] = HIPS[foot][1]
-    origin = stands_at - sole @ sole_from_bush - ankle @ bush
+    sole_from_centre = mounting.bush.rotation.T @ (np.array([0.0, 0.0, -SOLE_DEPTH]) - np.array(mounting.bush.xyz))
+    stands_at = np.array([0.0, HIPS[foot][1], 0.0])
+    centre = stands_at - ankle @ mounting.bush.rotation @ bent @ sole_from_centre
+    origin = centre - np.einsum("nij,nj->ni", ankle, bush_centre(motion, mounting, foot, t))
     return np.einsum("nji,nj->ni", torso, origin - torso_position(motion, t)) - HIPS[foot]
+
+
+def bush_centre(motion: Motion, mounting: Mounting, foot: str, t: np.ndarray) -> np.ndarray:
+    """Where both hinges sit in the foot link, (N, 3): above the resting centre by the compression."""
+    compression = bush_force(motion, mounting, foot, t)[:, 2:] / VERTICAL
+    return np.array(mounting.bush.xyz) + compression * mounting.bush.rotation[:, 2]
+
+
+def bush_force(motion: Motion, mounting: Mounting, foot: str, t: np.ndarray) -> np.ndarray:
+    """Force of the ground in the bush frame, (N, 3): the load, and some newtons along the ground."""
+    level = np.column_stack([4 * np.sin(1.3 * t), 3 * np.cos(0.9 * t), np.zeros_like(t)])
+    sideways = np.einsum("nji,nj->ni", foot_rotation(motion, foot, t), level) @ mounting.bush.rotation
+    upward = vertical_load(motion, foot, t)[:, None] * up_in_bush(motion, mounting, foot, t)
+    return upward + contact_share(motion, foot, t)[:, None] * sideways
 
 
 def up_in_bush(motion: Motion, mounting: Mounting, foot: str, t: np.ndarray) -> np.ndarray:
@@ -214,17 +226,14 @@ def bush_torque(motion: Motion, mounting: Mounting, foot: str, t: np.ndarray) ->
 
 def sensor_wrench(motion: Motion, mounting: Mounting, foot: str, t: np.ndarray) -> np.ndarray:
     """What the force sensor reads, (N, 6): the law's torque at the bush, moved to the sensor and into its axes."""
-    n, q = up_in_bush(motion, mounting, foot, t), deflection(motion, mounting, foot, t)
+    pitch = deflection(motion, mounting, foot, t)[:, :1]
     pitch_torque, roll_torque = bush_torque(motion, mounting, foot, t).T
-    roll_axis = Rotation.from_euler("y", q[:, :1]).apply([1.0, 0.0, 0.0])
+    roll_axis = Rotation.from_euler("y", pitch).apply([1.0, 0.0, 0.0])
     torque = pitch_torque[:, None] * [0.0, 1.0, 0.0] + roll_torque[:, None] * roll_axis
-    level = np.column_stack([4 * np.sin(1.3 * t), 3 * np.cos(0.9 * t), np.zeros_like(t)])
-    sideways = np.einsum("nji,nj->ni", foot_rotation(motion, foot, t), level) @ mounting.bush.rotation
-    stands = contact_share(motion, foot, t)[:, None]
-    force = vertical_load(motion, foot, t)[:, None] * n + stands * sideways
-    force, torque = force @ mounting.bush.rotation.T, (stands * torque) @ mounting.bush.rotation.T  # in the foot link
-    arm = np.array(mounting.bush.xyz) - np.array(mounting.wrench.xyz)
-    torque = torque + np.cross(arm, force)
+    torque = contact_share(motion, foot, t)[:, None] * torque
+    # Into the foot link's axes, then to the sensor.
+    force, torque = bush_force(motion, mounting, foot, t) @ mounting.bush.rotation.T, torque @ mounting.bush.rotation.T
+    torque = torque + np.cross(bush_centre(motion, mounting, foot, t) - mounting.wrench.xyz, force)
     return np.hstack([force @ mounting.wrench.rotation, torque @ mounting.wrench.rotation]) / mounting.sign
 
 

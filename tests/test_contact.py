@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -82,12 +84,16 @@ def test_always_means_always() -> None:
     assert not contacts["right"].used.any()
 
 
-def test_missing_force_is_no_load() -> None:
+def test_a_force_that_is_not_recorded_is_no_lifted_foot() -> None:
     load = np.full(1000, 300.0)
     load[400:600] = np.nan
     contact = detect_contact({"left": load}, {"left": False}, WEIGHT, PERIOD)["left"]
-    assert not contact.used[400:600].any()
-    assert contact.used[:370].all()
+    np.testing.assert_array_equal(contact.used, np.isfinite(load))
+    assert contact.standing.all()
+    assert "not recorded" in str(reason(contact, 5.0))
+    nothing = detect_contact({"left": np.full(1000, np.nan)}, {"left": False}, WEIGHT, PERIOD)["left"]
+    assert not nothing.used.any()
+    assert not nothing.standing.any()
 
 
 def test_phases_tell_the_log_from_end_to_end() -> None:
@@ -96,7 +102,7 @@ def test_phases_tell_the_log_from_end_to_end() -> None:
     phases = contact.phases("walk", "right", time)
     assert phases[0].start == 0.0
     assert phases[-1].end == pytest.approx(9.99)
-    for one, following in zip(phases, phases[1:], strict=False):
+    for one, following in pairwise(phases):
         assert one.end == pytest.approx(following.start)
         assert (one.support, one.reason) != (following.support, following.reason)
     assert all(phase.used == (phase.reason is None) for phase in phases)

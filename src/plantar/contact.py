@@ -15,6 +15,8 @@ LIFTING_SHARE = 0.05  # of the weight: a foot that carries less is in the air; b
 SETTLING_TIME = 0.25  # s around landing and lifting, left out: the sole is not flat yet
 SHORTEST_STANCE = 0.5  # s: shorter contacts are steps or impacts, not stances
 
+NOT_RECORDED = "not recorded: NaN or a gap in a column that this foot needs"
+
 DOUBLE, SINGLE, AIR, TRANSITION = "double", "single", "air", "transition"
 SUPPORTS = (DOUBLE, SINGLE, AIR, TRANSITION)
 
@@ -95,6 +97,7 @@ def detect_contact(
         support[settling & standing] = SUPPORTS.index(TRANSITION)
         contact = FootContact(support, np.zeros(len(standing), dtype=np.int8), [None])
         contact.leave_out(~standing, "in the air: no load on this foot")
+        contact.leave_out(np.isnan(force[foot]), NOT_RECORDED)
         contact.leave_out(settling, f"landing or lifting: within {SETTLING_TIME} s of a change of contact")
         contacts[foot] = contact
     return contacts
@@ -108,8 +111,8 @@ def carried_weight(force: Mapping[str, Array]) -> float:
 
 
 def _standing(force: Array, weight: float, period: float) -> Mask:
-    """Hysteresis on the vertical force; contacts shorter than a stance count as air."""
-    loaded, lifted = force > LANDING_SHARE * weight, ~(force > LIFTING_SHARE * weight)
+    """Hysteresis on the vertical force, through which NaN keeps the state; contacts shorter than a stance are air."""
+    loaded, lifted = force > LANDING_SHARE * weight, force <= LIFTING_SHARE * weight
     decided = loaded | lifted
     last = np.maximum.accumulate(np.where(decided, np.arange(len(force)), -1))
     standing = np.where(last >= 0, loaded[np.maximum(last, 0)], False)

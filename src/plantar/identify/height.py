@@ -106,7 +106,8 @@ def _block(recording: Recording, feet: tuple[str, ...], cutoff: float) -> Block 
     both = recording.used(feet[0]) & recording.used(feet[1])
     both &= recording.contacts[feet[0]].support == SUPPORTS.index(DOUBLE)
     height = closure(left, right).position[:, 2]
-    loads = np.column_stack([left.wrench[:, 2], right.wrench[:, 2]])
+    # Along the slide for the law, and once more along the vertical for what the compression does to the height.
+    loads = np.column_stack([bush.wrench[:, 2] * np.cos(bush.deflection).prod(axis=1) for bush in (left, right)])
     values = low_pass(np.column_stack([height, loads]), recording.period, cutoff)
     both &= np.isfinite(values).all(axis=1)
     if both.sum() < FEWEST_SAMPLES:
