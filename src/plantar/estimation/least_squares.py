@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,12 +14,16 @@ from plantar.estimation.triangular import TriangularFactor
 
 @dataclass(frozen=True)
 class Block:
-    """One recording's rows: `regressor` (n, k) without the offset's column, `response` (n,), `period` [s]."""
+    """One recording's rows: `regressor` (n, k) without the offset's column, `response` (n,), `period` [s].
+
+    `nuisance` (n, m) are columns of this recording alone, fitted beside its offset and then forgotten.
+    """
 
     label: str
     regressor: Array
     response: Array
     period: float
+    nuisance: Array | None = None
 
     @property
     def duration(self) -> float:
@@ -30,8 +34,8 @@ class Block:
 class LinearFit:
     """Parameters common to all recordings, then offsets: one per recording, or a single shared one.
 
-    `values` (k,), `offsets` by recording's label; `covariance` (k + offsets, same) holds with coloured residuals,
-    `white_covariance` assumes white ones (the paper's). `freedom` (k + offsets,) goes with `covariance`.
+    `values` (k,), `offsets` by recording's label; `covariance` of values, offsets and nuisances, in this order, holds
+    with coloured residuals, `white_covariance` assumes white ones (the paper's). `freedom` goes with `covariance`.
     """
 
     values: Array
@@ -59,6 +63,20 @@ class LinearFit:
         place = 0 if self.shared_offset else list(self.offsets).index(label)
         return float(np.sqrt(self.covariance[len(self.values) + place, len(self.values) + place]))
 
+    def widened(self, effect: Array, std: float) -> LinearFit:
+        """The fit with one more cause of error: something of deviation `std` that moves `values` by `effect` (k,)."""
+        added = np.zeros(len(self.covariance))
+        added[: len(effect)] = effect * std
+        variance = np.diag(self.covariance)
+        total = variance + added**2
+        share = np.where(total > 0, variance / np.where(total > 0, total, 1.0), 1.0)
+        return replace(
+            self,
+            covariance=self.covariance + np.outer(added, added),
+            # Welch-Satterthwaite with a cause whose deviation is taken as known.
+            freedom=self.freedom / np.maximum(share**2, 1e-6),
+        )
+
     def predict(self, regressor: Array, offset: float) -> Array:
         """Response (n,) of `regressor` (n, k) with a given offset."""
         return np.asarray(regressor @ self.values + offset)
@@ -70,11 +88,8 @@ def fit_linear(blocks: Sequence[Block], *, shared_offset: bool = False) -> Linea
     With `shared_offset` one offset serves every recording, as in the paper; otherwise each has its own.
     """
     columns = blocks[0].regressor.shape[1]
-    size = columns + (1 if shared_offset else len(blocks))
-    places = [np.array([*range(columns), columns + (0 if shared_offset else i)]) for i in range(len(blocks))]
-    total = TriangularFactor(np.zeros((size + 1, size + 1)), 0)
-    for block, own in zip(blocks, places, strict=True):
-        total = total + TriangularFactor.of(_design(block), block.response).among(own, size)
+    places, size = _places(blocks, columns, shared_offset)
+    total = _factor(blocks, places, size)
     solution = total.solve()
     residuals = [block.response - _design(block) @ solution[own] for block, own in zip(blocks, places, strict=True)]
     inverse = total.information_inverse()
@@ -83,7 +98,7 @@ def fit_linear(blocks: Sequence[Block], *, shared_offset: bool = False) -> Linea
     labels = [block.label for block in blocks]
     return LinearFit(
         values=solution[:columns],
-        offsets={label: float(solution[own[-1]]) for label, own in zip(labels, places, strict=True)},
+        offsets={label: float(solution[own[columns]]) for label, own in zip(labels, places, strict=True)},
         covariance=covariance,
         white_covariance=variance * inverse,
         freedom=freedom,
@@ -94,9 +109,29 @@ def fit_linear(blocks: Sequence[Block], *, shared_offset: bool = False) -> Linea
     )
 
 
+def _places(blocks: Sequence[Block], columns: int, shared_offset: bool) -> tuple[list[Array], int]:
+    """Where each block's own columns stand among all parameters: common ones, offsets, then nuisances; and how many."""
+    size = columns + (1 if shared_offset else len(blocks))
+    places = []
+    for i, block in enumerate(blocks):
+        extra = 0 if block.nuisance is None else block.nuisance.shape[1]
+        offset = columns + (0 if shared_offset else i)
+        places.append(np.array([*range(columns), offset, *range(size, size + extra)]))
+        size += extra
+    return places, size
+
+
+def _factor(blocks: Sequence[Block], places: Sequence[Array], size: int) -> TriangularFactor:
+    total = TriangularFactor(np.zeros((size + 1, size + 1)), 0)
+    for block, own in zip(blocks, places, strict=True):
+        total = total + TriangularFactor.of(_design(block), block.response).among(own, size)
+    return total
+
+
 def _design(block: Block) -> Array:
-    """The block's regressor with its offset's column, (n, k + 1)."""
-    return np.column_stack([block.regressor, np.ones(len(block.response))])
+    """The block's regressor with its offset's column and its nuisances, (n, k + 1 + m)."""
+    parts = [block.regressor, np.ones(len(block.response))]
+    return np.column_stack(parts if block.nuisance is None else [*parts, block.nuisance])
 
 
 def _robust(
@@ -110,3 +145,11 @@ def _robust(
         freedoms.append(freedom)
     variances = np.array([np.diag(part) for part in parts])
     return np.sum(parts, axis=0), pooled_freedom(variances, np.array(freedoms, dtype=float))
+
+
+def effect_of(blocks: Sequence[Block], changes: Sequence[Array], *, shared_offset: bool = False) -> Array:
+    """How `values` (k,) move when each block's response changes by `changes` (n,): the fit is linear in its response."""
+    changed = [replace(block, response=change) for block, change in zip(blocks, changes, strict=True)]
+    columns = blocks[0].regressor.shape[1]
+    places, size = _places(changed, columns, shared_offset)
+    return _factor(changed, places, size).solve()[:columns]

@@ -9,9 +9,9 @@ import numpy as np
 
 from plantar.conventions import DAMPING_UNIT, OFFSET_UNIT, ROTATIONAL_AXES, STIFFNESS_UNIT, Axis
 from plantar.errors import DataError
-from plantar.estimation import Block, LinearFit, fit_linear, interval95, relative_std_percent
+from plantar.estimation import Block, LinearFit, effect_of, fit_linear, interval95, relative_std_percent
 from plantar.identify.height import fit_height
-from plantar.identify.recording import Recording, Role, moved_centre, prepare
+from plantar.identify.recording import Recording, Role, lever_effect, moved_centre, prepare
 from plantar.identify.residual_table import Predictions, residual_table
 from plantar.identify.scoring import score_axis
 from plantar.identify.settings import FeetSettings
@@ -59,7 +59,7 @@ def identify_feet(
     for foot in robot.feet:
         for axis in ROTATIONAL_AXES:
             progress(f"fit {foot} {axis}")
-            fit = _fit_axis(fitted, foot, axis, settings)
+            fit = _fit_axis(fitted, foot, axis, settings, vertical.compliance_std[foot])
             parameters += _parameters(fit, fitted, foot, axis)
             if fit is None:
                 continue
@@ -113,21 +113,38 @@ def check_names(logs: Sequence[MotionLog]) -> None:
         seen[log.name] = log
 
 
-def _fit_axis(recordings: Sequence[Recording], foot: str, axis: Axis, settings: FeetSettings) -> LinearFit | None:
+def _fit_axis(
+    recordings: Sequence[Recording], foot: str, axis: Axis, settings: FeetSettings, compliance_std: float
+) -> LinearFit | None:
     """Eq. 7 for one axis of one foot, or None where no recording has samples that serve."""
-    blocks = blocks_of(recordings, foot, axis)
-    return fit_linear(blocks, shared_offset=settings.offset == "shared") if blocks else None
+    shared = settings.offset == "shared"
+    blocks = blocks_of(recordings, foot, axis, drift=not shared)
+    if not blocks:
+        return None
+    fit = fit_linear(blocks, shared_offset=shared)
+    column, served = ROTATIONAL_AXES.index(axis), {recording.name: recording for recording in recordings}
+    levers = []
+    for block in blocks:
+        recording = served[block.label]
+        effect = lever_effect(recording.bushes[foot], recording.period, settings.cutoff)
+        levers.append(effect[recording.used(foot), column])
+    return fit.widened(effect_of(blocks, levers, shared_offset=shared), compliance_std)
 
 
-def blocks_of(recordings: Sequence[Recording], foot: str, axis: Axis) -> list[Block]:
-    """Eq. 6 for each recording in which the foot has enough samples that serve."""
+def blocks_of(recordings: Sequence[Recording], foot: str, axis: Axis, *, drift: bool = True) -> list[Block]:
+    """Eq. 6 for each recording in which the foot has enough samples that serve.
+
+    `drift` adds a line in time to each recording's offset: the IMU's attitude drifts slowly.
+    """
     column, law = ROTATIONAL_AXES.index(axis), KelvinVoigt()
     blocks = []
     for recording in recordings:
         used, bush = recording.used(foot), recording.bushes[foot]
         if used.sum() >= FEWEST_SAMPLES:
             regressor = law.regressor(bush.deflection[used, column], bush.rate[used, column])
-            blocks.append(Block(recording.name, regressor, bush.torque[used, column], recording.period))
+            time = recording.time[used]
+            nuisance = (time - time.mean())[:, None] if drift else None
+            blocks.append(Block(recording.name, regressor, bush.torque[used, column], recording.period, nuisance))
     return blocks
 
 

@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 
 from plantar.attitude import attitude_from_inertial
-from plantar.contact import FootContact, carried_weight, detect_contact
+from plantar.contact import NOT_RECORDED, FootContact, carried_weight, detect_contact
 from plantar.conventions import FORCE, GRAVITY, Array, Mask
 from plantar.deflection import BushState, bush_states
 from plantar.errors import DataError, RobotError, located
@@ -22,6 +22,7 @@ from plantar.sanity import check_log
 from plantar.signals import differentiate, evenly_sampled, interpolate, low_pass, runs
 
 FILTER_EDGE = 1.0  # of the filter's period, left out where a run of samples begins or ends
+WIDE_BAND = 4.0  # times the cutoff: filter of what is differentiated before the common filter
 WEIGHT_MISMATCH = 0.15  # share by which the feet may carry more or less than the model weighs
 
 Role = Literal["fit", "validate"]
@@ -77,7 +78,7 @@ def prepare(robot: RobotModel, log: MotionLog, role: Role, settings: FeetSetting
     filtered = {name: _filtered(state, period, settings.cutoff) for name, state in raw.items()}
     for name, state in filtered.items():
         valid = np.isfinite(np.column_stack([state.deflection, state.rate, state.torque])).all(axis=1)
-        contacts[name].leave_out(~valid, "not recorded: NaN or a gap in a column that this foot needs")
+        contacts[name].leave_out(~valid, NOT_RECORDED)
         contacts[name].leave_out(_run_edges(valid, FILTER_EDGE / settings.cutoff / period), "filter's edge")
     return Recording(even, role, filtered, contacts, tuple(notes))
 
@@ -92,24 +93,24 @@ def _require(robot: RobotModel) -> Imu:
 
 
 def _velocities(robot: RobotModel, log: MotionLog, cutoff: float, notes: list[Note]) -> Array:
-    """Joint velocities (N, n_joints): as recorded, else filtered differences; 0 for joints off the feet's paths."""
+    """Joint velocities (N, n_joints), differentiated from the positions; 0 for joints off the feet's paths.
+
+    Recorded velocities serve only where there is no position: a controller's own filter makes them late, and that goes
+    straight into the damping; coarse steps make small ones vanish.
+    """
     velocities = np.zeros((len(log), len(robot.joint_names)))
-    derived, missing = [], []
+    missing = []
     needed = _path_joints(robot)
     for place, name in enumerate(robot.joint_names):
         if name not in needed:
             continue
         position, recorded = log.joint(name, "position"), log.joint(name, "velocity")
-        if position is None:
-            missing.append(name)
-        elif recorded is not None:
+        if position is not None:
+            velocities[:, place] = differentiate(low_pass(position, log.period, WIDE_BAND * cutoff), log.period)
+            continue
+        missing.append(name)
+        if recorded is not None:
             velocities[:, place] = recorded
-        else:
-            velocities[:, place] = differentiate(low_pass(position, log.period, 2 * cutoff), log.period)
-            derived.append(name)
-    if derived:
-        text = f"{log.name}: velocities of {len(derived)} joints not recorded, differentiated from filtered positions"
-        notes.append(Note("velocity_derived", "info", text))
     if missing:
         text = f"{log.name}: between IMU and feet, but not recorded: {', '.join(missing)}; angles are right only if they stood at 0"
         notes.append(Note("path_joint_missing", "warning", text))
@@ -189,13 +190,17 @@ def moved_centre(recording: Recording, compliance: Mapping[str, float], cutoff: 
     Under a load F_z the slide is compressed by z = compliance·F_z, so that pitch and roll turn about a point z higher in
     the ankle: torque' = torque - z e_z × force. Left out, K comes out too large by F_z²·compliance.
     """
-    bushes = {}
-    for foot, bush in recording.bushes.items():
-        force = bush.wrench[:, FORCE]
-        z = compliance[foot] * force[:, 2]
-        change = np.column_stack([-z * force[:, 0], np.cos(bush.deflection[:, 0]) * z * force[:, 1]])
-        bushes[foot] = replace(bush, torque=bush.torque + low_pass(change, recording.period, cutoff))
+    bushes = {
+        foot: replace(bush, torque=bush.torque + compliance[foot] * lever_effect(bush, recording.period, cutoff))
+        for foot, bush in recording.bushes.items()
+    }
     return replace(recording, bushes=bushes)
+
+
+def lever_effect(bush: BushState, period: float, cutoff: float) -> Array:
+    """Change of pitch and roll torque for each m/N of vertical compliance, (N, 2) [N·m per m/N], filtered as the rest."""
+    x, y, z = bush.wrench[:, FORCE].T
+    return low_pass(np.column_stack([-z * x, np.cos(bush.deflection[:, 0]) * z * y]), period, cutoff)
 
 
 def _run_edges(valid: Mask, reach: float) -> Mask:
