@@ -28,9 +28,9 @@ class Body:
     """
 
     def __init__(self, robot: RobotModel) -> None:
-        if robot.imu is None or len(robot.feet) != 2:
-            message = "motions are planned for two feet and a chest that carries an IMU"
-            raise MotionError(located(message, path=robot.path, valid="a robot file with imu and two feet"))
+        if robot.imu is None or set(robot.feet) != {"left", "right"}:
+            message = "motions are planned for a left and a right foot and a chest that carries an IMU"
+            raise MotionError(located(message, path=robot.path, valid="a robot file with imu, left and right"))
         self.robot = robot
         self.model = robot.floating_model.copy()
         self.chest_link = robot.imu.placement.link

@@ -8,8 +8,10 @@ from typing import Final
 
 import numpy as np
 
+from plantar.balance import Balance
 from plantar.errors import MotionError, located
 from plantar.motions.body import Body
+from plantar.motions.feasible import check
 from plantar.motions.manual import manual_plan
 from plantar.motions.plan import Plan
 from plantar.motions.stance import STEP_ASIDE, STEP_FORWARD, Stance, on_one_leg, stand, with_arms
@@ -45,31 +47,41 @@ def plan_motion(
     *,
     sway: float | None = None,
     vertical: float | None = None,
+    apart: float | None = None,
 ) -> Plan:
     """One of the paper's motions for a robot with two feet and an IMU in its chest.
 
     `sway` [m]: how far tilts move the chest (0.02 as in the paper) and how far the operator's hand leads it;
-    `vertical` [m]: how far the chest goes down in Tilt4 to Tilt6 (0.07) and squats (0.1).
-    Raises MotionError when the name is unknown or the motion out of reach.
+    `vertical` [m]: how far the chest goes down in Tilt4 to Tilt6 (0.07) and squats (0.1); `apart` [m]: between the
+    soles (as in the posture). Raises MotionError, in one line that says when and by how much, where the name is
+    unknown, a place out of reach, a joint's limit passed or the balance lost.
     """
     if name not in CAMPAIGN:
         raise MotionError(located(f"unknown motion '{name}'", valid=", ".join(CAMPAIGN)))
-    postures = postures or Postures()
-    body = Body(robot)
+    body, postures = Body(robot), postures or Postures()
+    plan = _plan(body, name, postures, sway, vertical, apart)
+    check(body, plan)
+    return plan
+
+
+def planned_balance(robot: RobotModel, plan: Plan) -> Balance:
+    """The zero-moment point that a plan asks for, over the soles that stand (figures 4 and 6 of the paper)."""
+    return check(Body(robot), plan)
+
+
+def _plan(
+    body: Body, name: str, postures: Postures, sway: float | None, vertical: float | None, apart: float | None
+) -> Plan:
     if name.startswith("Tilt"):
         number = int(name[-1])
         lower = (0.07 if vertical is None else vertical) if number > 3 else 0.0
-        start = _standing(body, postures, "ABC"[(number - 1) % 3])
+        start = _standing(body, postures, "ABC"[(number - 1) % 3], apart)
         return tilt_plan(body, name, start, 0.02 if sway is None else sway, lower)
-    start = _standing(body, postures, "A")
+    start = _standing(body, postures, "A", apart)
     if name == "Squat":
         return squat_plan(body, name, start, 0.1 if vertical is None else vertical)
     if name.startswith("Myrand"):
         return sweep_plan(body, name, start, int(name[-1]))
-    return _manual(body, name, start, postures, sway)
-
-
-def _manual(body: Body, name: str, start: Stance, postures: Postures, sway: float | None) -> Plan:
     _, foot, axis = name.split("_")
     arms = (postures.arms_aside if axis == "roll" else postures.arms_forward) or {}
     start = with_arms(body, start, arms) if foot == "both" else on_one_leg(body, start, foot, arms)
@@ -77,8 +89,7 @@ def _manual(body: Body, name: str, start: Stance, postures: Postures, sway: floa
     return manual_plan(body, name, start, "pitch" if axis == "pitch" else "roll", reach)
 
 
-def _standing(body: Body, postures: Postures, state: str) -> Stance:
+def _standing(body: Body, postures: Postures, state: str, apart: float | None) -> Stance:
     """The paper's states of the legs: regular (A), right leg aside (B), right leg forward (C)."""
     steps = {"A": (0.0, 0.0), "B": (0.0, -STEP_ASIDE), "C": (STEP_FORWARD, 0.0)}[state]
-    right = "right" if "right" in body.robot.feet else sorted(body.robot.feet)[-1]
-    return stand(body, postures.standing, {right: steps})
+    return stand(body, postures.standing, {"right": steps}, apart)

@@ -17,6 +17,7 @@ from plantar.robot import Placement
 DURATION = 36.0  # s
 RAMP = 3.0  # s
 ALONG, ACROSS = 0.72, 0.9  # of the sole's half length and width: how far the operator leads the centre of mass
+ROOM = 0.008  # m, kept to the edge even by soles so narrow that the shares would leave less
 ASIDE = 0.2  # of the sway goes across the wanted axis: no hand moves in a plane
 TEMPOS = (0.23, 0.41, 0.67)  # Hz: slow, brisk and quick swings of one hand
 SHARES = (0.5, 0.35, 0.15)
@@ -58,4 +59,4 @@ def _reach(body: Body, start: Stance, height: float) -> Array:
     soles = [body.robot.feet[name].sole.polygon for name in start.standing]
     half = np.min([np.ptp(polygon, axis=0) / 2 for polygon in soles], axis=0)
     centre = body.centre_of_mass(start.configuration)[2]
-    return np.asarray(np.array([ALONG, ACROSS]) * half * height / centre)
+    return np.asarray(np.minimum([ALONG, ACROSS] * half, half - ROOM) * height / centre)

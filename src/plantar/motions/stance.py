@@ -8,9 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
+from plantar.balance import sole_outlines
 from plantar.conventions import Array
 from plantar.errors import MotionError, located
 from plantar.motions.body import CHEST, REACHED, Body
+from plantar.polygon import inside_distance
 
 KNEE_BEND = 0.94  # of the straight leg's height, where no posture is given
 STEP_ASIDE = 0.05  # m, the right leg to the right (B)
@@ -32,18 +34,27 @@ class Stance:
         return {name: np.array(self.soles[name].homogeneous) for name in sorted(self.standing)}
 
 
-def stand(body: Body, posture: Mapping[str, float] | None, steps: Mapping[str, tuple[float, float]]) -> Stance:
+def stand(
+    body: Body,
+    posture: Mapping[str, float] | None,
+    steps: Mapping[str, tuple[float, float]],
+    apart: float | None = None,
+) -> Stance:
     """Both feet flat on the floor, each displaced by `steps` (x, y) [m], the chest upright over their middle.
 
-    Without a posture the knees bend a little from the neutral position.
+    Without a posture the knees bend a little from the neutral position. `apart` [m] between the soles' frames: as
+    in the posture where None. Raises MotionError when the soles overlap or a foot is out of reach.
     """
     q = body.neutral(posture)
+    q[3:7] = _facing_forward(body, q)
     soles = {name: body.pose(q, body.sole(name)).translation for name in body.robot.feet}
     middle = sum(soles.values(), start=np.zeros(3)) / len(soles)
     targets = {}
     for name, place in soles.items():
-        aside = np.array([*steps.get(name, (0.0, 0.0)), 0.0])
-        targets[name] = pin.SE3(np.eye(3), np.array([0.0, place[1] - middle[1], 0.0]) + aside)
+        aside = place[1] - middle[1] if apart is None else np.sign(place[1] - middle[1]) * apart / 2
+        step = np.array([*steps.get(name, (0.0, 0.0)), 0.0])
+        targets[name] = pin.SE3(np.eye(3), np.array([0.0, aside, 0.0]) + step)
+    _check_apart(body, targets)
     centre = sum((target.translation for target in targets.values()), start=np.zeros(3)) / len(targets)
     height = -middle[2] * (KNEE_BEND if posture is None else 1.0)
     q[:3] = centre + [-middle[0] if posture is not None else 0.0, 0.0, height]
@@ -100,6 +111,24 @@ def check_reached(body: Body, q: Array, soles: Mapping[str, pin.SE3], what: str,
         if miss > REACHED:
             message = f"{what}: the {name} foot cannot reach its place, it misses by {1e3 * miss:.1f} mm"
             raise MotionError(located(message, path=body.robot.name, time=time, valid="a smaller motion"))
+
+
+def _facing_forward(body: Body, q: Array) -> Array:
+    """Quaternion x y z w of the root that lets the soles' x axes point forward."""
+    forward = sum((body.pose(q, body.sole(name)).rotation[:, 0] for name in body.robot.feet), start=np.zeros(3))
+    yaw = -np.arctan2(forward[1], forward[0])
+    return np.array([0.0, 0.0, np.sin(yaw / 2), np.cos(yaw / 2)])
+
+
+def _check_apart(body: Body, targets: Mapping[str, pin.SE3]) -> None:
+    """MotionError where two soles would stand on each other: no straight line passes between them."""
+    first, second = sole_outlines(body.robot, {n: np.array(t.homogeneous) for n, t in targets.items()}).values()
+    gap = max(
+        float(-inside_distance(points, other).max()) for points, other in ((first, second), (second, first))
+    )
+    if gap <= 0:
+        message = f"the soles would stand on each other, {-1e3 * gap:.0f} mm deep"
+        raise MotionError(located(message, path=body.robot.name, valid="feet farther apart"))
 
 
 def _sole_centre(body: Body, start: Stance, foot: str) -> Array:

@@ -1,0 +1,116 @@
+"""May a plan be played? Joint limits, torques and balance, before anything moves."""
+
+from __future__ import annotations
+
+import numpy as np
+import pinocchio as pin
+from scipy.interpolate import CubicSpline
+
+from plantar.balance import Balance, planned_wrench, require_balance, sole_outlines, zero_moment_point
+from plantar.conventions import Array
+from plantar.errors import MotionError, located
+from plantar.motions.body import Body
+from plantar.motions.plan import Plan
+
+CHECK_RATE = 50.0  # Hz
+ROOM = 1e-3  # rad: how far a position may pass its limit before it counts
+LEAST = 10.0  # N
+
+
+def check(body: Body, plan: Plan) -> Balance:
+    """The plan's balance; MotionError where a joint's limits, its torque or the balance does not hold.
+
+    The operator's hand is a help that is not counted on: with one, the robot is led without haste (no inertia).
+    """
+    _check_limits(body, plan)
+    q, v, a, time = configurations(body, plan)
+    wrench = planned_wrench(body.model, q, v, a)
+    balance = Balance(
+        plan.name, time, zero_moment_point(wrench, LEAST), sole_outlines(body.robot, plan.stance)
+    )
+    require_balance(balance)
+    _check_torques(body, plan, q, v, a, time)
+    return balance
+
+
+def configurations(body: Body, plan: Plan) -> tuple[Array, Array, Array, Array]:
+    """q (N, nq), v and a (N, nv) of the plan and their time (N,), at 50 Hz.
+
+    Where an operator leads the robot, it turns as a whole about the middle of the soles that stand, so that the
+    held point follows the hand; the speed of that is left out.
+    """
+    time = np.arange(0.0, plan.time[-1] + 1e-9, 1 / CHECK_RATE)
+    rows = np.minimum(np.round(time * (len(plan.time) - 1) / plan.time[-1]).astype(int), len(plan.time) - 1)
+    spline = CubicSpline(plan.time, plan.positions)
+    q = np.tile(pin.neutral(body.model), (time.size, 1))
+    v, a = np.zeros((time.size, body.model.nv)), np.zeros((time.size, body.model.nv))
+    for place, name in enumerate(plan.joints):
+        joint = body.model.joints[body.model.getJointId(name)]
+        values = spline(time)[:, place]
+        q[:, joint.idx_q : joint.idx_q + joint.nq] = (
+            values[:, None] if joint.nq == 1 else np.column_stack([np.cos(values), np.sin(values)])
+        )
+        v[:, joint.idx_v], a[:, joint.idx_v] = spline(time, 1)[:, place], spline(time, 2)[:, place]
+    bases = [pin.SE3(pose) for pose in (plan.base if plan.hand is None else _led(body, plan))[rows]]
+    q[:, :7] = [pin.SE3ToXYZQUAT(base) for base in bases]
+    if plan.hand is None:
+        twist = np.zeros((time.size, 6))
+        for row in range(1, time.size - 1):
+            twist[row] = pin.log6(bases[row - 1].actInv(bases[row + 1])).vector * CHECK_RATE / 2
+        v[:, :6], a[:, :6] = twist, np.gradient(twist, 1 / CHECK_RATE, axis=0)
+    return q, v, a, time
+
+
+def _led(body: Body, plan: Plan) -> Array:
+    """Base poses (N, 4, 4) of a robot that leans as a whole after the hand."""
+    assert plan.hand is not None
+    pivot = np.mean([pose[:3, 3] for pose in plan.stance.values()], axis=0)
+    start = plan.hand.path[0] - pivot
+    led = np.empty_like(plan.base)
+    for row, point in enumerate(plan.hand.path - pivot):
+        axis = np.cross(start, point)
+        lean = pin.exp3(axis / (np.linalg.norm(start) * np.linalg.norm(point)))
+        about = pin.SE3(lean, pivot - lean @ pivot)
+        led[row] = (about * pin.SE3(plan.base[row])).homogeneous
+    return led
+
+
+def _check_limits(body: Body, plan: Plan) -> None:
+    speeds = CubicSpline(plan.time, plan.positions)(plan.time, 1)
+    for place, name in enumerate(plan.joints):
+        joint = body.model.joints[body.model.getJointId(name)]
+        if joint.nq == 1:
+            low, high = body.model.lowerPositionLimit[joint.idx_q], body.model.upperPositionLimit[joint.idx_q]
+            past = np.maximum(low - plan.positions[:, place], plan.positions[:, place] - high)
+            if low < high and past.max() > ROOM:
+                _refuse(plan, name, "position", past, f"{low:.4g} to {high:.4g} rad")
+        fastest = body.model.upperVelocityLimit[joint.idx_v]
+        if fastest > 0:
+            past = np.abs(speeds[:, place]) - fastest
+            if past.max() > 0:
+                _refuse(plan, name, "speed", past, f"at most {fastest:.4g} rad/s")
+
+
+def _refuse(plan: Plan, joint: str, quantity: str, past: Array, valid: str) -> None:
+    row = int(past.argmax())
+    message = f"{plan.name}: joint '{joint}' passes its {quantity} limit by {past[row]:.3g}"
+    raise MotionError(located(message, time=float(plan.time[row]), valid=valid))
+
+
+def _check_torques(body: Body, plan: Plan, q: Array, v: Array, a: Array, time: Array) -> None:
+    """Joint torques with the ground's wrench shared among the feet by least effort, ten times a second."""
+    model, data = body.model, body.data
+    limits = model.upperEffortLimit[6:]
+    frames = [model.getFrameId(body.sole(name)) for name in sorted(plan.standing)]
+    for row in range(0, len(time), int(CHECK_RATE / 10)):
+        tau = pin.rnea(model, data, q[row], v[row], a[row])
+        pin.computeJointJacobians(model, data, q[row])
+        pin.updateFramePlacements(model, data)
+        jacobian = np.vstack([pin.getFrameJacobian(model, data, f, pin.LOCAL_WORLD_ALIGNED) for f in frames])
+        share = np.linalg.lstsq(jacobian[:, :6].T, tau[:6], rcond=None)[0]
+        torque = tau[6:] - jacobian[:, 6:].T @ share
+        past = np.where(limits > 0, np.abs(torque) - limits, -1.0)
+        if past.max() > 0:
+            joint = int(past.argmax())
+            message = f"{plan.name}: joint '{body.joints[joint]}' needs {abs(torque[joint]):.4g} N·m"
+            raise MotionError(located(message, time=float(time[row]), valid=f"at most {limits[joint]:.4g} N·m"))
