@@ -9,10 +9,11 @@ import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES
 from plantar.errors import DataError
-from plantar.identify.recording import prepare
+from plantar.identify.recording import moved_centre, prepare
 from plantar.identify.residual_table import Predictions
 from plantar.identify.scoring import score_axis
 from plantar.identify.settings import FeetSettings
+from plantar.identify.tipping import leave_out_tipping
 from plantar.log import MotionLog
 from plantar.models import KelvinVoigt
 from plantar.result import ValidationRow
@@ -35,10 +36,13 @@ def validate_feet(
         raise DataError(f"the result is about a foot '{strangers[0]}' (valid: {', '.join(robot.feet)})")
     known = {key: value for key, value in result["settings"].items() if key in FeetSettings.__dataclass_fields__}
     settings = FeetSettings(**known)
+    compliance = {foot: _compliance(result, foot) for foot in robot.feet}
     recordings = []
     for log in logs:
         progress(f"prepare {log.name}")
-        recordings.append(prepare(robot, log, "validate", settings))
+        recording = prepare(robot, log, "validate", settings)
+        leave_out_tipping(robot, recording, settings)
+        recordings.append(moved_centre(recording, compliance, settings.cutoff))
     rows: list[ValidationRow] = []
     predictions: Predictions = {}
     for foot in sorted(feet):
@@ -49,6 +53,12 @@ def validate_feet(
     if not rows:
         raise DataError("no log has samples of a standing foot that could be scored (valid: more than 1.3 s of stance)")
     return rows
+
+
+def _compliance(result: Mapping[str, Any], foot: str) -> float:
+    """The foot's vertical compliance [m/N] as the fit used it; 0 where the result has none."""
+    stiffness = _value(result, foot, "z", "stiffness")
+    return 1 / stiffness if stiffness else 0.0
 
 
 def _value(result: Mapping[str, Any], foot: str, axis: str, name: str) -> float | None:

@@ -1,0 +1,103 @@
+"""Inspecting a log: what is in it, what is wrong with it, what it can identify."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from biped import FEET, MASS, WEIGHT, make_robot, record, sway, times
+
+from plantar.inspection import inspect_log
+from plantar.readers import open_log
+from plantar.result import dump_json
+from plantar.robot import RobotModel, load_robot
+
+
+def test_a_healthy_log(robot: RobotModel) -> None:
+    log = record(sway("tilt"))
+    summary = inspect_log(robot, log)
+    assert (summary.name, summary.samples, summary.duration) == ("tilt", 2001, pytest.approx(20.0))
+    assert summary.sampling.rate == pytest.approx(100.0)
+    assert summary.sampling.gaps == ()
+    assert summary.findings == ()
+    assert summary.mass == pytest.approx(MASS)
+    assert summary.carried == pytest.approx(MASS, rel=0.01)
+    for foot in summary.feet:
+        assert foot.double == pytest.approx(20.0, abs=0.1)
+        assert foot.single == 0.0
+        assert foot.load == pytest.approx(WEIGHT / 2, rel=0.05)
+        assert 0.005 < foot.deflection_rms["pitch"] < 0.06
+    assert {row.verdict for row in summary.parameters if row.axis != "z"} == {"usable"}
+    ranges = {column.name: column for column in summary.columns}
+    assert set(ranges) == set(log.columns)
+    force = ranges["wrench.left.force.z"]
+    assert force.least == log.column("wrench.left.force.z").min()
+    assert force.largest == log.column("wrench.left.force.z").max()
+
+
+def test_single_support_and_seconds_that_serve(robot: RobotModel) -> None:
+    summary = inspect_log(robot, record(sway(lifts=(("left", 5.0, 10.0),))))
+    feet = {foot.foot: foot for foot in summary.feet}
+    assert feet["right"].single == pytest.approx(5.0, abs=0.3)
+    assert feet["left"].single == 0.0
+    assert feet["left"].double == pytest.approx(15.0, abs=0.8)
+    assert feet["left"].serving < feet["right"].serving
+
+
+def test_gaps_and_holes(robot: RobotModel) -> None:
+    motion = sway()
+    time = times(motion)
+    log = record(motion, at=time[(time < 5) | (time > 6)])
+    neck = np.where(log.time < 1, np.nan, log.column("joint.neck.position"))
+    summary = inspect_log(robot, log.with_columns({"joint.neck.position": neck, "joint.tail.effort": np.full(len(log), np.nan)}))
+    ((start, end),) = summary.sampling.gaps
+    assert (start, end) == (pytest.approx(4.99, abs=0.02), pytest.approx(6.01, abs=0.02))
+    ranges = {column.name: column for column in summary.columns}
+    assert ranges["joint.neck.position"].missing == 100
+    assert ranges["joint.tail.effort"].least is None
+
+
+@pytest.mark.parametrize("column", ["wrench.left.torque.y", "imu.chest.linear_acceleration.x"])
+def test_a_log_that_cannot_serve_is_told_not_raised(robot: RobotModel, column: str) -> None:
+    log = record(sway(duration=8.0))
+    missing = {name: values for name, values in log.columns.items() if name != column and "orientation" not in name}
+    summary = inspect_log(robot, type(log)(log.name, log.time, missing))
+    assert any(finding.fatal for finding in summary.findings)
+    assert any(column in finding.text for finding in summary.findings)
+
+
+def test_impossible_readings_are_findings(robot: RobotModel) -> None:
+    log = record(sway(duration=8.0))
+    names = [f"imu.chest.angular_velocity.{axis}" for axis in "xyz"]
+    summary = inspect_log(robot, log.with_columns({name: np.degrees(log.column(name)) for name in names}))
+    assert [finding.code for finding in summary.findings] == ["degrees"]
+    assert summary.parameters == ()
+
+
+def test_everything_goes_into_json(robot: RobotModel) -> None:
+    log = record(sway(duration=8.0, lifts=(("left", -1.0, 9.0), ("right", -1.0, 9.0))))
+    content = json.loads(dump_json(inspect_log(robot, log).to_dict()))
+    assert content["findings"][0]["code"] == "not_usable"
+    assert "no foot carries load" in content["findings"][0]["text"]
+
+
+def test_a_robot_without_feet(tmp_path: Path) -> None:
+    summary = inspect_log(make_robot(tmp_path, feet={}), record(sway(duration=4.0)))
+    assert summary.feet == ()
+    assert summary.carried is None
+
+
+def test_real_recordings(shared_data: Path) -> None:
+    folder = shared_data / "icub_walking"
+    robot = load_robot(folder / "robot.yaml")
+    summary = inspect_log(robot, open_log(folder / "walking.csv.gz", robot))
+    assert not any(finding.fatal for finding in summary.findings)
+    assert summary.carried == pytest.approx(33.9, abs=0.5)
+    assert len(summary.feet) == len(FEET)
+    for foot in summary.feet:
+        assert foot.single > 1.0
+        assert foot.double > 10.0
+    for row in summary.parameters:
+        assert row.value is None or row.value > 0 or row.verdict != "usable"
