@@ -231,6 +231,7 @@ def _broken(feet: dict[str, Any], **changes: Any) -> dict[str, Any]:
 def test_what_cannot_be_written_is_one_clear_line(feet: dict[str, Any], urdf: Path, tmp_path: Path) -> None:
     out = tmp_path / "x"
     (tmp_path / "bomb.urdf").write_text('<!DOCTYPE r [<!ENTITY a "b">]><robot name="r"/>')
+    (tmp_path / "wide.urdf").write_text('<?xml version="1.0" encoding="UTF-16"?><!DOCTYPE r [<!ENTITY a "b">]><robot name="r"/>', "utf-16")
     (tmp_path / "deep.urdf").write_text("<robot>" + "<a>" * 5000 + "</a>" * 5000 + "</robot>")
     (tmp_path / "cut.urdf").write_text(urdf.read_text()[:300])
     (tmp_path / "other.urdf").write_text('<robot name="o"><link name="lef_ankle"/></robot>')
@@ -242,6 +243,7 @@ def test_what_cannot_be_written_is_one_clear_line(feet: dict[str, Any], urdf: Pa
         (_broken(feet, stiffness="stiff"), "mc_rtc", None, "not a number"),
         (_broken(feet, damping=float("nan")), "yaml", None, "not a number"),
         (feet, "urdf", tmp_path / "bomb.urdf", "DOCTYPE"),
+        (feet, "urdf", tmp_path / "wide.urdf", "DOCTYPE"),
         (feet, "urdf", tmp_path / "deep.urdf", "nested"),
         (feet, "urdf", tmp_path / "cut.urdf", "not readable XML"),
         (feet, "urdf", tmp_path / "other.urdf", "lef_ankle"),

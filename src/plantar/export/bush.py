@@ -29,6 +29,7 @@ from plantar.export.source import robot_model, robot_urdf
 from plantar.notes import Note
 
 SIDES = {"left": "LLEG", "right": "RLEG"}
+DAMPING_TIME = 0.002  # s: C/K written where none was identified, that of published bush models (5e5, 1e3)
 KNOWN_TERMS = ("stiffness", "damping", "offset")
 
 
@@ -147,10 +148,14 @@ def _spring(
     if "stiffness" not in found:
         return None
     values = {name: _number(value, f"{where} {name}") for name, value in found.items()}
-    stiffness, damping = values["stiffness"], values.get("damping", 0.0)
+    stiffness = values["stiffness"]
+    damping = values.get("damping", DAMPING_TIME * stiffness)
     if stiffness <= 0:
         message = f"{where}: the stiffness is not positive; no simulator can stand on it"
         raise ExportError(located(message, value=stiffness, valid="a result whose stiffness is usable"))
+    if "damping" not in values:
+        text = f"{where}: no damping identified; exported as K x {DAMPING_TIME} s, for stable simulators"
+        notes.append(Note("export_damping", "warning", text))
     if damping < 0:
         text = f"{where}: the identified damping {damping:.4g} is negative (feeds energy in); exported as 0"
         notes.append(Note("export_damping", "warning", text))

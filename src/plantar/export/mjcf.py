@@ -48,7 +48,8 @@ def write(job: Job) -> tuple[str, tuple[Note, ...]]:
     for foot in job.feet:
         _insert(root, foot, before, notes)
     _widen_keyframes(root, before, job)
-    Compiled(root, job.model)  # MuJoCo must take what is written
+    after = Compiled(root, job.model)  # MuJoCo must take what is written
+    _check_timestep(after, job, notes)
     relocate(root, job.out)
     text = "a soft floor is a spring in series: contacts of 4 ms time constant take 1 to 2 percent off K"
     notes.append(Note("export_floor", "info", text))
@@ -159,7 +160,7 @@ def _check_level(foot: FootBush, before: Compiled, notes: list[Note]) -> None:
     depths = [max(foot.depth(point) for point in points) for points in before.reaching(foot)]
     if depths and abs(max(depths) - foot.sole_depth) > 0.02:
         text = f"{foot.name}: the model's lowest shape lies {max(depths):.3f} m below the bush, "
-        text += f"the result's sole {foot.sole_depth:.3f} m: is the body '{foot.ankle}' the URDF's link of that name?"
+        text += f"the result's sole {foot.sole_depth:.3f} m: is '{foot.ankle}' the URDF's link?"
         notes.append(Note("export_sole_level", "warning", text))
 
 
@@ -192,6 +193,17 @@ def _exclude(root: ET.Element, foot: FootBush, before: Compiled) -> None:
             others |= {str(name) for name in pair - {foot.ankle}}
     for other in sorted(others):
         ET.SubElement(section, "exclude", body1=other, body2=foot.sole_link)
+
+
+def _check_timestep(after: Compiled, job: Job, notes: list[Note]) -> None:
+    """MuJoCo integrates springs explicitly: the step must be shorter than the bush's own time C/K."""
+    step = float(after.model.opt.timestep)
+    fast = [
+        foot.joint(s.axis) for foot in job.feet for s in foot.springs if s.damping <= 0.7 * step * s.stiffness
+    ]
+    if fast:
+        text = f"the time step of {step:g} s is long for {', '.join(fast)} (C/K is shorter): shorten it"
+        notes.append(Note("export_timestep", "warning", text))
 
 
 def _widen_keyframes(root: ET.Element, before: Compiled, job: Job) -> None:

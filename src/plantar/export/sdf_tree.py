@@ -15,7 +15,7 @@ import numpy as np
 from plantar.conventions import Array
 from plantar.errors import ExportError, located
 from plantar.export.poses import inverse, pose, rpy_of
-from plantar.export.shapes import box_corners, mesh_corners
+from plantar.export.shapes import box_corners, mesh_points
 from plantar.export.xml_file import load_xml, numbers, vector
 
 OLDEST = (1, 5)  # before it a joint's axis stood in another frame
@@ -110,7 +110,7 @@ class SdfTree:
             name = geometry.findtext("mesh/uri", "").strip().removeprefix("file://").removeprefix("model://")
             starts = [self.path.resolve().parent, *self.path.resolve().parents[1:6]]
             found = next((start / name for start in starts if (start / name).is_file()), None)
-            return mesh_corners(found, vector(geometry.findtext("mesh/scale"), 3, "scale", 1.0))
+            return mesh_points(found, vector(geometry.findtext("mesh/scale"), 3, "scale", 1.0))
         return None
 
 

@@ -22,21 +22,18 @@ def box_corners(size: Array) -> Array:
     return corners
 
 
-def mesh_corners(path: Path | None, scale: Array) -> Array | None:
-    """Corners of a mesh's bounding box, (8, 3), or None where no such mesh can be read."""
+def mesh_points(path: Path | None, scale: Array) -> Array | None:
+    """A mesh's vertices (n, 3), or None where no such mesh can be read."""
     if path is None or not path.is_file() or path.stat().st_size > MESH_LIMIT:
         return None
     import coal  # type: ignore[import-untyped]
 
     try:
         mesh = coal.MeshLoader().load(str(path), np.asarray(scale, float))
-        mesh.computeLocalAABB()
-        box = mesh.aabb_local
+        points = np.array(mesh.vertices(), dtype=np.float64)
     except (RuntimeError, ValueError):
         return None
-    low, high = np.array(box.min_, float).ravel(), np.array(box.max_, float).ravel()
-    corners: Array = box_corners(high - low) + (high + low) / 2
-    return corners
+    return points if points.size else None
 
 
 def reaches_sole(points: Array, foot: FootBush) -> bool:

@@ -11,7 +11,7 @@ import numpy as np
 from plantar.conventions import Array
 from plantar.errors import ExportError, located
 from plantar.export.poses import inverse, pose, rpy_of
-from plantar.export.shapes import box_corners, mesh_corners
+from plantar.export.shapes import box_corners, mesh_points
 from plantar.export.xml_file import load_xml, numbers, vector
 
 PARENTS_SEARCHED = 8  # directories above the URDF in which a package:// path may start
@@ -102,7 +102,7 @@ class UrdfTree:
         if kind.tag == "sphere":
             return box_corners(np.full(3, 2 * vector(kind.get("radius"), 1, "sphere radius")[0]))
         if kind.tag == "mesh":
-            return mesh_corners(
+            return mesh_points(
                 self.mesh_file(kind.get("filename", "")), vector(kind.get("scale"), 3, "scale", 1.0)
             )
         return None

@@ -19,8 +19,6 @@ DEPTH_LIMIT = 200  # levels of nesting: a humanoid's MJCF has about fifteen
 def load_xml(path: Path, root_tag: str) -> ET.Element:
     """The file's root element. ExportError: unreadable, an entity, too deep, or another kind of file."""
     content = read_bounded(path, MODEL_LIMIT, ExportError)
-    if b"<!DOCTYPE" in content or b"<!ENTITY" in content:
-        raise ExportError(located("declares a DOCTYPE or an entity", path=path, valid="plain XML"))
     try:
         root = ET.fromstring(content, parser=ET.XMLParser(target=_Bounded(path)))
     except (ET.ParseError, ValueError) as error:
@@ -42,6 +40,10 @@ class _Bounded(ET.TreeBuilder):
         if self._depth > DEPTH_LIMIT:
             raise ExportError(located("is nested too deeply", path=self._path, valid=f"{DEPTH_LIMIT} levels"))
         return super().start(tag, attrs)
+
+    def doctype(self, name: str, pubid: str | None, system: str | None) -> None:
+        """Whatever the file's encoding, a declared DOCTYPE is seen here, before any entity is."""
+        raise ExportError(located("declares a DOCTYPE or an entity", path=self._path, valid="plain XML"))
 
     def end(self, tag: str, /) -> ET.Element:
         self._depth -= 1

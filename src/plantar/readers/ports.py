@@ -24,7 +24,7 @@ def joints_for(count: int, robot: RobotModel | None, path: Path, notes: list[Not
     if named is not None:
         return named
     if robot is not None and count == len(robot.joint_names):
-        text = "the log does not name its joints; the URDF's order is taken (set columns.joints in the robot file)"
+        text = "joints without names; the URDF's order is taken (set columns.joints in the robot file)"
         notes.append(Note("joint_order", "warning", f"{path.name}: {text}"))
         return robot.joint_names
     valid = "columns.joints in the robot file, in the log's order"

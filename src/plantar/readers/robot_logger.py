@@ -2,8 +2,8 @@
 
 `/robot_logger_device/joints_state/{positions,velocities,torques}` with `data`, `timestamps`,
 `elements_names`; `FTs/<sensor>`, `accelerometers/<imu>`, `gyros/<imu>`, `orientations/<imu>` (roll, pitch,
-yaw) (bipedal-locomotion-framework, YarpRobotLoggerDevice). Units are SI there; where a log's are not, name the
-signal in `columns.ports` with its unit.
+yaw) (bipedal-locomotion-framework, YarpRobotLoggerDevice). Units are SI there; where a log's are not, name
+the signal in `columns.ports` with its unit.
 """
 
 from __future__ import annotations

@@ -30,11 +30,7 @@ NO_ORIENTATION = -1.0  # orientation_covariance[0] of an IMU that has none
 def read(path: Path, robot: RobotModel | None = None) -> MotionLog:
     """Read a bag; `robot` says which topics its sensors are. LogError: broken, or nothing of use in it."""
     notes: list[Note] = []
-    topics: dict[str, Topic] = {}
-    files = bag_files(path)
-    for file in files:
-        reader = {".mcap": read_mcap, ".db3": read_sqlite, ".bag": read_ros1}[file.suffix.lower()]
-        reader(file, topics, notes)
+    topics = _topics(path, notes)
     _check(topics, path, notes)
     columns_by_topic = assign(topics.values(), robot, path, notes)
     streams = _streams(columns_by_topic, path, notes)
@@ -42,7 +38,21 @@ def read(path: Path, robot: RobotModel | None = None) -> MotionLog:
     del streams, columns_by_topic
     for column in (time, *columns.values()):
         column.setflags(write=False)  # handed over, not copied
-    return MotionLog(motion_name(path), time, columns, path, sha256(files[0]), tuple(notes))
+    return MotionLog(motion_name(path), time, columns, path, sha256(bag_files(path)[0]), tuple(notes))
+
+
+def bag_topics(path: Path, robot: RobotModel | None = None) -> dict[str, list[Topic]]:
+    """What a bag's topics are taken for: keys `joints`, `imu.<name>`, `wrench.<name>`. LogError: broken."""
+    notes: list[Note] = []
+    return assign(_topics(path, notes).values(), robot, path, notes)
+
+
+def _topics(path: Path, notes: list[Note]) -> dict[str, Topic]:
+    topics: dict[str, Topic] = {}
+    for file in bag_files(path):
+        reader = {".mcap": read_mcap, ".db3": read_sqlite, ".bag": read_ros1}[file.suffix.lower()]
+        reader(file, topics, notes)
+    return topics
 
 
 def bag_files(path: Path) -> list[Path]:

@@ -134,8 +134,8 @@ def assign(
 ) -> dict[str, list[Topic]]:
     """Which topic is which sensor: keys `joints`, and `imu.<name>`, `wrench.<name>`.
 
-    The robot file's `topics:` (joints, or a sensor's name, to a topic) goes first; then a topic called like the
-    sensor, the frame of its link, its name in a topic's. Without a robot every topic is taken under its own name.
+    The robot file's `topics:` (joints, or a sensor's name, to a topic) goes first; then a topic called like
+    the sensor, the frame of its link, its name in a topic's. Without a robot topics keep their own names.
     Raises LogError when `topics:` names one that the bag has not.
     """
     known = {topic.name: topic for topic in topics}

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import struct
 import tempfile
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyarrow as pa
@@ -19,18 +20,23 @@ from plantar.log import MotionLog
 from plantar.notes import Note
 from plantar.readers.ros_layouts import IMU, JOINT_STATE, WRENCH, Bytes, layout_of
 
+if TYPE_CHECKING:
+    from plantar.robot import Placement, RobotModel
+
 ENDINGS = (".csv", ".parquet", ".mcap")
 QUANTITIES = ("position", "velocity", "effort")
 
 
-def save_log(log: MotionLog, path: Path) -> tuple[Note, ...]:
+def save_log(log: MotionLog, path: Path, robot: RobotModel | None = None) -> tuple[Note, ...]:
     """Write a recording in the format of the path's ending; returns notes on what the format cannot hold.
+
+    `robot` gives a bag's messages the frames of its links; without it they carry the sensors' names.
 
     Raises LogError: another ending. MissingExtra: MCAP without rosbags.
     """
     ending = path.suffix.lower()
     if ending == ".mcap":
-        return _save_mcap(log, path)
+        return _save_mcap(log, path, frames_of(robot))
     if ending not in ENDINGS:
         raise LogError(located("has an unknown ending", path=path, valid=", ".join(ENDINGS)))
     table = pa.table({"time": log.time, **log.columns})
@@ -42,7 +48,16 @@ def save_log(log: MotionLog, path: Path) -> tuple[Note, ...]:
     return ()
 
 
-def _save_mcap(log: MotionLog, path: Path) -> tuple[Note, ...]:
+def frames_of(robot: RobotModel | None) -> dict[str, str]:
+    """Frames of sensors' messages: the link, where the sensor sits at its origin and in its axes."""
+    placed: list[tuple[str, Placement]] = []
+    if robot is not None:
+        placed += [] if robot.imu is None else [(robot.imu.name, robot.imu.placement)]
+        placed += [(foot.wrench.name, foot.wrench.placement) for foot in robot.feet.values()]
+    return {name: place.link for name, place in placed if not (place.xyz.any() or place.rpy.any())}
+
+
+def _save_mcap(log: MotionLog, path: Path, frames: Mapping[str, str]) -> tuple[Note, ...]:
     try:
         from rosbags.rosbag2 import StoragePlugin, Writer
         from rosbags.typesys import Stores, get_typestore
@@ -57,7 +72,7 @@ def _save_mcap(log: MotionLog, path: Path) -> tuple[Note, ...]:
     with tempfile.TemporaryDirectory() as folder:
         bag = Path(folder) / "bag"
         with Writer(bag, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
-            for topic, kind, rows in _messages(log, stamps):
+            for topic, kind, rows in _messages(log, stamps, frames):
                 connection = writer.add_connection(topic, kind.replace("/", "/msg/"), typestore=store)
                 for stamp, row in zip(stamps.tolist(), rows, strict=True):
                     writer.write(connection, stamp, row.tobytes())
@@ -75,7 +90,7 @@ def _save_mcap(log: MotionLog, path: Path) -> tuple[Note, ...]:
 
 
 def _messages(
-    log: MotionLog, stamps: np.ndarray[tuple[int], np.dtype[np.int64]]
+    log: MotionLog, stamps: np.ndarray[tuple[int], np.dtype[np.int64]], frames: Mapping[str, str]
 ) -> Iterable[tuple[str, str, Bytes]]:
     """Topic, type and serialised messages (N, size) of every joint group, IMU and wrench of a log."""
     groups: dict[tuple[str, ...], list[str]] = {}
@@ -101,7 +116,7 @@ def _messages(
         values["orientation"] = np.zeros((len(log), 4)) if attitude is None else attitude[:, [1, 2, 3, 0]]
         for quantity in ("angular_velocity", "linear_acceleration"):
             values[quantity] = _vector(log, f"imu.{imu}.{quantity}")
-        template = _Message(imu)
+        template = _Message(frames.get(imu, imu))
         for size in (4, 9, 3, 9, 3, 9):
             template.numbers(size)
         yield f"/imu/{imu}", IMU, _fill(IMU, template, stamps, values)
@@ -110,7 +125,7 @@ def _messages(
         yield (
             f"/wrench/{sensor}",
             WRENCH,
-            _fill(WRENCH, _Message(sensor).numbers(3).numbers(3), stamps, values),
+            _fill(WRENCH, _Message(frames.get(sensor, sensor)).numbers(3).numbers(3), stamps, values),
         )
 
 
