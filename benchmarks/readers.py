@@ -27,10 +27,18 @@ def recording() -> MotionLog:
     t = np.arange(RATE * SECONDS) / RATE
     rng = np.random.default_rng(0)
     wave = lambda: np.sin(rng.uniform(0.1, 5) * t + rng.uniform(0, 6)) + 1e-3 * rng.standard_normal(t.size)  # noqa: E731
-    columns = {f"joint.leg_left_{i}_joint.{q}": wave() for i in range(JOINTS) for q in ("position", "velocity", "effort")}
+    columns = {
+        f"joint.leg_left_{i}_joint.{q}": wave()
+        for i in range(JOINTS)
+        for q in ("position", "velocity", "effort")
+    }
     columns |= {f"imu.chest.orientation.{a}": wave() for a in "wxyz"}
-    columns |= {f"imu.chest.{q}.{a}": wave() for q in ("angular_velocity", "linear_acceleration") for a in "xyz"}
-    columns |= {f"wrench.{s}.{q}.{a}": wave() for s in ("left", "right") for q in ("force", "torque") for a in "xyz"}
+    columns |= {
+        f"imu.chest.{q}.{a}": wave() for q in ("angular_velocity", "linear_acceleration") for a in "xyz"
+    }
+    columns |= {
+        f"wrench.{s}.{q}.{a}": wave() for s in ("left", "right") for q in ("force", "torque") for a in "xyz"
+    }
     return MotionLog("benchmark", t, columns)
 
 

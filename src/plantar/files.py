@@ -12,6 +12,8 @@ from typing import IO
 
 from plantar.errors import PlantarError, located
 
+READ_BLOCK = 2**24  # bytes
+
 
 @contextmanager
 def atomic_write(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
@@ -53,7 +55,11 @@ def read_bounded(path: str | os.PathLike[str], limit: int, error: type[PlantarEr
     """The file's bytes, or `error` when it is missing, unreadable or longer than `limit` bytes."""
     try:
         with open(path, "rb") as handle:
-            content = handle.read(limit + 1)
+            blocks, size = [], 0
+            while size <= limit and (block := handle.read(min(READ_BLOCK, limit + 1 - size))):
+                blocks.append(block)  # one read of `limit` bytes would ask for that much memory at once
+                size += len(block)
+            content = b"".join(blocks)
     except OSError as problem:
         raise error(located(f"cannot be read: {problem.strerror}", path=path)) from problem
     if len(content) > limit:

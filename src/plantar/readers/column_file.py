@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import zipfile
+import zlib
 from collections.abc import Mapping
 from io import BytesIO
 from pathlib import Path
@@ -24,6 +25,17 @@ if TYPE_CHECKING:
     from plantar.robot import RobotModel
 
 NPZ_LIMIT = 4 * 2**30  # bytes of arrays
+COLUMN_LIMIT = 10_000  # of one array
+BROKEN = (
+    zipfile.BadZipFile,
+    zlib.error,
+    OSError,
+    ValueError,
+    EOFError,
+    NotImplementedError,
+    RuntimeError,
+    KeyError,
+)
 
 
 def read(path: Path, robot: RobotModel | None = None) -> MotionLog:
@@ -31,7 +43,7 @@ def read(path: Path, robot: RobotModel | None = None) -> MotionLog:
     notes: list[Note] = []
     ending = path.name.lower()
     if ending.endswith(".npz"):
-        columns = _read_npz(path)
+        columns = _read_npz(path, notes)
     elif ending.endswith((".csv", ".csv.gz", ".parquet")):
         columns = table.read_raw(path, notes)
     else:
@@ -56,46 +68,43 @@ def _mapped(
     return columns["time"], {name: values for name, values in columns.items() if COLUMN.fullmatch(name)}
 
 
-def _read_npz(path: Path) -> dict[str, Array]:
+def _read_npz(path: Path, notes: list[Note]) -> dict[str, Array]:
     """Every numeric array of an NPZ, those of two dimensions column by column as name.0, name.1, ...
 
-    Nothing is unpickled; sizes are checked before memory is asked for.
+    Nothing is unpickled; sizes are checked before memory is asked for. A damaged array is left out with a note.
     """
-    columns: dict[str, Array] = {}
+    arrays: dict[str, Array] = {}
     try:
         with zipfile.ZipFile(path) as archive:
-            if sum(entry.file_size for entry in archive.infolist()) > NPZ_LIMIT:
+            entries = [entry for entry in archive.infolist() if entry.filename.endswith(".npy")]
+            if sum(entry.file_size for entry in entries) > NPZ_LIMIT:
                 raise LogError(located(f"holds more than {NPZ_LIMIT} bytes", path=path))
-            for entry in archive.infolist():
-                array = _read_npy(archive.read(entry)) if entry.filename.endswith(".npy") else None
+            for entry in entries:
                 name = entry.filename.removesuffix(".npy")
-                if array is None:
-                    continue
-                if array.ndim == 1:
-                    columns[name] = array
-                elif array.ndim == 2 and array.shape[1] <= 10_000:
-                    columns |= {f"{name}.{index}": array[:, index] for index in range(array.shape[1])}
-    except (
-        zipfile.BadZipFile,
-        OSError,
-        ValueError,
-        EOFError,
-        NotImplementedError,
-        RuntimeError,
-        KeyError,
-    ) as error:
-        raise LogError(located(f"is not a readable NPZ file: {error}", path=path)) from error
-    except zipfile.zlib.error as error:  # type: ignore[attr-defined]
-        raise LogError(located(f"is not a readable NPZ file: {error}", path=path)) from error
-    lengths = {values.size for values in columns.values()}
+                try:
+                    arrays |= _by_column(name, _read_npy(archive.read(entry)))
+                except BROKEN as error:
+                    reason = " ".join(str(error).split())[:80]
+                    notes.append(
+                        Note("array_broken", "warning", f"{path.name}: '{name[:80]}' is left out: {reason}")
+                    )
+    except BROKEN as error:
+        reason = " ".join(str(error).split())[:120]
+        raise LogError(located(f"is not a readable NPZ file: {reason}", path=path)) from error
+    lengths = {values.size for values in arrays.values()}
     if len(lengths) > 1:
-        odd = next(name for name, values in columns.items() if values.size == min(lengths))
-        raise LogError(
-            located(
-                f"arrays have different lengths, from {min(lengths)} to {max(lengths)}", path=path, column=odd
-            )
-        )
-    return columns
+        odd = next(name for name, values in arrays.items() if values.size == min(lengths))
+        message = f"arrays have different lengths, from {min(lengths)} to {max(lengths)}"
+        raise LogError(located(message, path=path, column=odd))
+    return arrays
+
+
+def _by_column(name: str, array: Array | None) -> dict[str, Array]:
+    if array is None:
+        return {}
+    if array.ndim == 1:
+        return {name: array}
+    return {f"{name}.{index}": array[:, index] for index in range(min(array.shape[1], COLUMN_LIMIT))}
 
 
 def _read_npy(content: bytes) -> Array | None:
