@@ -84,5 +84,5 @@ def _step(pairs: Sequence[Pair], delay: float) -> Delay | None:
         variances.append(covariance[0, 0] / denominator**2)
         freedoms.append(freedom)
     variance = np.array(variances)[:, None]
-    freedom = float(pooled_freedom(variance, np.array(freedoms, dtype=float))[0])
+    freedom = float(pooled_freedom(variance, np.array(freedoms, dtype=float)[:, None])[0])
     return Delay(step, float(np.sqrt(variance.sum())), freedom, explained)

@@ -15,6 +15,7 @@ from plantar.conventions import Array
 
 SCORE_BANDWIDTH = 0.10  # Hz: the scores' spectrum counts as flat below it (docs/intervals.md: coverage study)
 FEWEST_COSINES = 4
+MOST_FREEDOM = 1e6  # stands for a deviation that is known
 
 
 def cosine_covariance(scores: Array, duration: float) -> tuple[Array, int]:
@@ -30,10 +31,10 @@ def cosine_covariance(scores: Array, duration: float) -> tuple[Array, int]:
 
 
 def pooled_freedom(variances: Array, freedoms: Array) -> Array:
-    """Welch-Satterthwaite degrees of freedom of sums of independent variances, (groups, p) and (groups,) -> (p,)."""
+    """Welch-Satterthwaite degrees of freedom of sums of independent variances, both (groups, p) -> (p,)."""
     total = variances.sum(axis=0)
-    spread = np.sum(variances**2 / freedoms[:, None], axis=0)
-    return np.asarray(np.where(spread > 0, total**2 / np.where(spread > 0, spread, 1.0), freedoms.sum()))
+    spread = np.sum(variances**2 / freedoms, axis=0)
+    return np.asarray(np.where(spread > 0, total**2 / np.where(spread > 0, spread, 1.0), MOST_FREEDOM))
 
 
 def interval95(value: float, std: float, freedom: float) -> tuple[float, float]:

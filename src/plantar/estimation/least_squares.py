@@ -63,18 +63,16 @@ class LinearFit:
         place = 0 if self.shared_offset else list(self.offsets).index(label)
         return float(np.sqrt(self.covariance[len(self.values) + place, len(self.values) + place]))
 
-    def widened(self, effect: Array, std: float) -> LinearFit:
-        """The fit with one more cause of error: something of deviation `std` that moves `values` by `effect` (k,)."""
+    def widened(self, effect: Array, std: float, freedom: float = np.inf) -> LinearFit:
+        """The fit with one more cause of error: something of deviation `std`, itself known with `freedom` degrees, that
+        moves `values` by `effect` (k,)."""
         added = np.zeros(len(self.covariance))
         added[: len(effect)] = effect * std
         variance = np.diag(self.covariance)
-        total = variance + added**2
-        share = np.where(total > 0, variance / np.where(total > 0, total, 1.0), 1.0)
         return replace(
             self,
             covariance=self.covariance + np.outer(added, added),
-            # Welch-Satterthwaite with a cause whose deviation is taken as known.
-            freedom=self.freedom / np.maximum(share**2, 1e-6),
+            freedom=pooled_freedom(np.array([variance, added**2]), np.vstack([self.freedom, np.full_like(added, freedom)])),
         )
 
     def predict(self, regressor: Array, offset: float) -> Array:
@@ -144,7 +142,7 @@ def _robust(
         parts.append(inverse[:, own] @ middle @ inverse[own])
         freedoms.append(freedom)
     variances = np.array([np.diag(part) for part in parts])
-    return np.sum(parts, axis=0), pooled_freedom(variances, np.array(freedoms, dtype=float))
+    return np.sum(parts, axis=0), pooled_freedom(variances, np.array(freedoms, dtype=float)[:, None])
 
 
 def effect_of(blocks: Sequence[Block], changes: Sequence[Array], *, shared_offset: bool = False) -> Array:

@@ -9,12 +9,13 @@ import numpy as np
 
 from plantar.conventions import DAMPING_UNIT, OFFSET_UNIT, ROTATIONAL_AXES, STIFFNESS_UNIT, Axis
 from plantar.errors import DataError
-from plantar.estimation import Block, LinearFit, effect_of, fit_linear, interval95, relative_std_percent
-from plantar.identify.height import fit_height
-from plantar.identify.recording import Recording, Role, lever_effect, moved_centre, prepare
+from plantar.estimation import Block, LinearFit, fit_linear, interval95, relative_std_percent
+from plantar.identify.height import Height, fit_height
+from plantar.identify.recording import Recording, Role, moved_centre, prepare
 from plantar.identify.residual_table import Predictions, residual_table
 from plantar.identify.scoring import score_axis
 from plantar.identify.settings import FeetSettings
+from plantar.identify.systematic import with_systematic_errors
 from plantar.identify.tipping import leave_out_tipping
 from plantar.identify.verdicts import Evidence, judge
 from plantar.log import MotionLog
@@ -59,7 +60,7 @@ def identify_feet(
     for foot in robot.feet:
         for axis in ROTATIONAL_AXES:
             progress(f"fit {foot} {axis}")
-            fit = _fit_axis(fitted, foot, axis, settings, vertical.compliance_std[foot])
+            fit = _fit_axis(fitted, foot, axis, settings, vertical)
             parameters += _parameters(fit, fitted, foot, axis)
             if fit is None:
                 continue
@@ -114,7 +115,7 @@ def check_names(logs: Sequence[MotionLog]) -> None:
 
 
 def _fit_axis(
-    recordings: Sequence[Recording], foot: str, axis: Axis, settings: FeetSettings, compliance_std: float
+    recordings: Sequence[Recording], foot: str, axis: Axis, settings: FeetSettings, vertical: Height
 ) -> LinearFit | None:
     """Eq. 7 for one axis of one foot, or None where no recording has samples that serve."""
     shared = settings.offset == "shared"
@@ -122,13 +123,7 @@ def _fit_axis(
     if not blocks:
         return None
     fit = fit_linear(blocks, shared_offset=shared)
-    column, served = ROTATIONAL_AXES.index(axis), {recording.name: recording for recording in recordings}
-    levers = []
-    for block in blocks:
-        recording = served[block.label]
-        effect = lever_effect(recording.bushes[foot], recording.period, settings.cutoff)
-        levers.append(effect[recording.used(foot), column])
-    return fit.widened(effect_of(blocks, levers, shared_offset=shared), compliance_std)
+    return with_systematic_errors(fit, blocks, recordings, foot, axis, settings, vertical)
 
 
 def blocks_of(recordings: Sequence[Recording], foot: str, axis: Axis, *, drift: bool = True) -> list[Block]:

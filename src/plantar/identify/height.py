@@ -26,7 +26,7 @@ from plantar.robot import RobotModel
 from plantar.signals import low_pass
 
 FEWEST_SAMPLES = 100  # in double support, of one recording
-SEPARABLE = 0.25  # std of the compliances' difference over their sum, at most, to tell the feet apart
+ALIKE = 0.1  # of the compliances' sum: usual deviation of their difference between feet of one robot
 UNKNOWN_COMPLIANCE = 1e-5  # m/N: of 100 kN/m, the order of soft rubber, where nothing is known
 USABLE_WIDTH, WEAK_WIDTH = 0.15, 0.5  # half width of the interval over the value
 
@@ -49,14 +49,22 @@ class Compliances:
         return interval95(self.total, float(np.sqrt(self.covariance[0, 0])), self.freedom)[0] > 0
 
     @property
+    def trust(self) -> float:
+        """How far the data tell the feet apart, 0 to 1: the rest is that feet of one robot are ALIKE."""
+        prior = (ALIKE * self.total) ** 2
+        return float(prior / (prior + self.covariance[1, 1]))
+
+    @property
     def separable(self) -> bool:
-        """Whether the feet can be told apart."""
-        return bool(np.sqrt(self.covariance[1, 1]) < SEPARABLE * self.total)
+        """Whether the data, more than their likeness, tell the feet apart."""
+        return self.trust > 0.5
 
     def of(self, side: float) -> tuple[float, float]:
         """Compliance and its std of the left (+1) or right (-1) foot; half of the sum where they do not separate."""
-        weights = np.array([0.5, 0.5 * side if self.separable else 0.0])
-        return float(weights @ [self.total, self.difference]), float(np.sqrt(weights @ self.covariance @ weights))
+        gain = self.trust
+        weights = np.array([0.5, 0.5 * side * gain])
+        unseen = 0.25 * (1 - gain) ** 2 * (ALIKE * self.total) ** 2
+        return float(weights @ [self.total, self.difference]), float(np.sqrt(weights @ self.covariance @ weights + unseen))
 
 
 @dataclass(frozen=True)
@@ -67,6 +75,7 @@ class Height:
     notes: tuple[Note, ...]
     compliance: dict[str, float]
     compliance_std: dict[str, float]
+    freedom: float
 
 
 def fit_height(recordings: Sequence[Recording], robot: RobotModel, cutoff: float) -> Height:
@@ -80,7 +89,7 @@ def fit_height(recordings: Sequence[Recording], robot: RobotModel, cutoff: float
         text = "z: no log shows the vertical compliance; K of pitch and roll may come out too large by load²·compliance"
         unknown = tuple(_unknown_row(foot) for foot in feet) if len(feet) == 2 else ()
         nothing, soft = dict.fromkeys(feet, 0.0), dict.fromkeys(feet, UNKNOWN_COMPLIANCE)
-        return Height(unknown, (Note("z_unknown", "info", text),), nothing, soft)
+        return Height(unknown, (Note("z_unknown", "info", text),), nothing, soft, np.inf)
     notes = []
     if not found.separable:
         text = "z: only the sum of both feet's compliances shows (the total load hardly changes); both taken as equal"
@@ -91,6 +100,7 @@ def fit_height(recordings: Sequence[Recording], robot: RobotModel, cutoff: float
         tuple(notes),
         {foot: value for foot, (value, _) in own.items()},
         {foot: std for foot, (_, std) in own.items()},
+        found.freedom,
     )
 
 
