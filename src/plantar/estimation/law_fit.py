@@ -22,9 +22,10 @@ from plantar.estimation.law_search import Pieces, fit_pieces
 from plantar.estimation.law_trials import Prepared, Trial, filtered_columns, prepare_trials
 from plantar.models import Law, Motion
 
-ITERATIONS = 12
+ITERATIONS = 16
+WIDEST_SCAN, NARROWEST_SCAN, NARROWING = 0.4, 0.05, 0.25  # of the starts about where the steps came to rest
 HALVINGS = 4
-SETTLED = 1e-6  # relative fall of the squares below which the refinement has arrived
+SETTLED = 1e-4  # relative fall of the squares below which the refinement has arrived
 BOLDEST = 0.4  # largest step of a shape's logarithm
 SHAPE_STEP, START_STEP = 0.01, 0.02  # of the differences that stand for derivatives
 AT_LIMIT = 0.02  # of a shape: so near to its range's end it counts as there
@@ -157,14 +158,17 @@ def refine(
             begin[trial][run - runs[trial]] = pieces.starts[trial][start, run - runs[trial]]
     problem = _Problem(law, prepared, shared_offset)
     point = problem.at(shapes[best], begin)
+    width = WIDEST_SCAN
     for _ in range(ITERATIONS if shapes.shape[1] or law.remembers else 0):
         moved = _step(problem, point, limits)
-        if moved is None:
-            break
-        settled = moved.squares > (1 - SETTLED) * point.squares
+        if moved is None or moved.squares > (1 - SETTLED) * point.squares:
+            scanned = _scan(problem, moved or point, width) if law.remembers else None
+            width *= NARROWING
+            if scanned is None and (not law.remembers or width < NARROWEST_SCAN):
+                point = moved or point
+                break
+            moved = scanned or moved or point
         point = moved
-        if settled:
-            break
     return _finished(problem, point, limits)
 
 
@@ -239,6 +243,27 @@ def _step(problem: _Problem, point: _Point, limits: Array) -> _Point | None:
             return tried
         share *= 0.4
     return None
+
+
+def _scan(problem: _Problem, point: _Point, width: float) -> _Point | None:
+    """The point with each run's start moved to the best of several about it, or None where none is better.
+
+    A state that stops at its ends makes corners, at which the derivative by the start misleads.
+    """
+    around = np.linspace(-width, width, 9)
+    starts = [np.clip(start[None, :] + around[:, None], -1.0, 1.0) for start in point.starts]
+    shapes = np.repeat(point.shape[None, :], len(around), axis=0)
+    extras = filtered_columns(problem.law, problem.prepared, shapes, starts)
+    best = []
+    for place, (each, extra, tried) in enumerate(zip(problem.prepared, extras, starts, strict=True)):
+        linear = each.base @ point.values[:2] + point.offsets[place]
+        missing = each.response[each.used][:, None] - linear[:, None] - np.einsum("neb,e->nb", extra, point.values[2:])
+        if tried.shape[1] == 1 and not problem.shared_offset:
+            missing = missing - missing.mean(axis=0)
+        squares = np.array([np.bincount(each.run_of, column**2, tried.shape[1]) for column in missing.T])
+        best.append(tried[np.argmin(squares, axis=0), np.arange(tried.shape[1])])
+    moved = problem.at(point.shape, best)
+    return moved if moved.squares < (1 - SETTLED) * point.squares else None
 
 
 def _finished(problem: _Problem, point: _Point, limits: Array) -> LawFit:

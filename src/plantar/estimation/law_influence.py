@@ -138,4 +138,4 @@ def robust_covariance(
         parts.append(part)
         freedoms.append(freedom)
     variances = np.array([np.diag(part) for part in parts])
-    return np.sum(parts, axis=0), pooled_freedom(variances, np.array(freedoms, dtype=float))
+    return np.sum(parts, axis=0), pooled_freedom(variances, np.array(freedoms, dtype=float)[:, None])

@@ -40,7 +40,7 @@ def open_unseen(fit: LawFit, trial: Trial, opening: Mask) -> Opening:
     measured = low_pass(trial.torque, motion.period, cutoff)
     runs = fit.path_runs(motion)
     count = len(runs)
-    if not fit.law.remembers or count == 0:
+    if not (fit.law.remembers and fit.law.forgets) or count == 0:
         torque = fit.reconstruct(motion)
         offset = _offset(measured - torque, opening)
         return Opening(torque + offset, offset, np.zeros(count), np.zeros(len(motion), dtype=bool))

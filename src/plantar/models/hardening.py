@@ -11,13 +11,30 @@ from plantar.conventions import Array
 from plantar.models.law import BESIDE, Law, Motion
 
 
+ZERO_ERROR = 0.01  # rad (m): largest error of the deflection's zero that is looked for
+
+
 class Hardening(Law):
-    """torque = K·q + C·q̇ + hardening·q³ + offset; K is the slope at zero deflection."""
+    """torque = K·q + C·q̇ + hardening·((q - e)³ + e³) + offset; K is the slope at zero deflection.
+
+    e is the error of the deflection's zero in each run (attitude bias), in starts of `ZERO_ERROR`: a cube does not
+    absorb it into the offset as a spring does.
+    """
 
     name: ClassVar[str] = "hardening"
     terms: ClassVar[tuple[str, ...]] = (*BESIDE, "hardening")
+    remembers: ClassVar[bool] = True
+    forgets: ClassVar[bool] = False
+    tried_starts: ClassVar[tuple[float, ...]] = (-0.5, 0.0, 0.5)
     units: ClassVar[dict[str, tuple[str, str]]] = {"hardening": ("N.m/rad3", "N/m3")}
 
     def extra(self, motions: Sequence[Motion], shapes: Array, starts: Sequence[Array]) -> list[Array]:
-        """The cube of the deflection, (N, 1, b)."""
-        return [np.repeat(motion.deflection[:, None, None] ** 3, len(shapes), axis=2) for motion in motions]
+        """The cube of the deflection about its true zero, (N, 1, b)."""
+        columns = []
+        for motion, start in zip(motions, starts, strict=True):
+            column = np.full((len(motion), 1, len(shapes)), np.nan)
+            for place, run in enumerate(motion.runs):
+                error = ZERO_ERROR * start[:, place]
+                column[run, 0] = (motion.deflection[run, None] - error) ** 3 + error**3
+            columns.append(column)
+        return columns

@@ -74,7 +74,7 @@ class Hysteretic(Law):
     terms: ClassVar[tuple[str, ...]] = (*BESIDE, "slip_torque")
     shape_terms: ClassVar[tuple[str, ...]] = ("slip_angle",)
     remembers: ClassVar[bool] = True
-    tried_starts: ClassVar[tuple[float, ...]] = (-0.8, -0.3, 0.3, 0.8)
+    tried_starts: ClassVar[tuple[float, ...]] = (-0.9, -0.45, 0.0, 0.45, 0.9)
     blind_ends: ClassVar[frozenset[tuple[str, str]]] = frozenset({("slip_angle", "high")})
     dissipative_terms: ClassVar[tuple[str, ...]] = ("slip_torque",)
     units: ClassVar[dict[str, tuple[str, str]]] = {"slip_torque": ("N.m", "N"), "slip_angle": ("rad", "m")}

@@ -58,6 +58,7 @@ class Law(ABC):
     terms: ClassVar[tuple[str, ...]] = BESIDE
     shape_terms: ClassVar[tuple[str, ...]] = ()
     remembers: ClassVar[bool] = False
+    forgets: ClassVar[bool] = True  # whether motion wears the start's effect away
     tried_starts: ClassVar[tuple[float, ...]] = (0.0,)  # by the rough search, before they are refined
     elaborates: ClassVar[str | None] = None  # a simpler law, without whose gain this one is not worth trying
     blind_ends: ClassVar[frozenset[tuple[str, str]]] = (
