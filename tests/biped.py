@@ -105,7 +105,7 @@ def sway(name: str = "sway", seed: int = 0, duration: float = 20.0, **changes: o
     return replace(Motion(name, duration, torso, ankles), **changes)
 
 
-def write_robot(folder: Path, mounting: Mounting = Mounting(), **changes: object) -> Path:  # noqa: B008
+def write_robot(folder: Path, mounting: Mounting = Mounting(), **changes: object) -> Path:
     """`biped.urdf` and `robot.yaml` in `folder`; `changes` replace keys of the latter. Returns the latter's path."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "biped.urdf").write_text(URDF)
@@ -114,21 +114,29 @@ def write_robot(folder: Path, mounting: Mounting = Mounting(), **changes: object
     return path
 
 
-def robot_entry(mounting: Mounting = Mounting()) -> dict[str, object]:  # noqa: B008
+def robot_entry(mounting: Mounting = Mounting()) -> dict[str, object]:
     """The robot file's content."""
     feet = {
         foot: {
             "ankle": f"{foot}_foot",
             "bush": mounting.bush.entry(),
             "wrench": mounting.wrench.entry(name=foot, link=f"{foot}_foot", sign=mounting.sign),
-            "sole": {"link": f"{foot}_sole", "polygon": [[0.13, 0.08], [-0.13, 0.08], [-0.13, -0.08], [0.13, -0.08]]},
+            "sole": {
+                "link": f"{foot}_sole",
+                "polygon": [[0.13, 0.08], [-0.13, 0.08], [-0.13, -0.08], [0.13, -0.08]],
+            },
         }
         for foot in FEET
     }
-    return {"name": "biped", "urdf": "biped.urdf", "imu": mounting.imu.entry(name="chest", link="torso"), "feet": feet}
+    return {
+        "name": "biped",
+        "urdf": "biped.urdf",
+        "imu": mounting.imu.entry(name="chest", link="torso"),
+        "feet": feet,
+    }
 
 
-def make_robot(folder: Path, mounting: Mounting = Mounting(), **changes: object) -> RobotModel:  # noqa: B008
+def make_robot(folder: Path, mounting: Mounting = Mounting(), **changes: object) -> RobotModel:
     return load_robot(write_robot(folder, mounting, **changes))
 
 
@@ -139,7 +147,7 @@ def times(motion: Motion, rate: float = 100.0, jitter: float = 0.0, seed: int = 
     return np.sort((np.arange(count) + shift) / rate)
 
 
-def record(motion: Motion, mounting: Mounting = Mounting(), at: np.ndarray | None = None) -> MotionLog:  # noqa: B008
+def record(motion: Motion, mounting: Mounting = Mounting(), at: np.ndarray | None = None) -> MotionLog:
     """What the robot records of a motion, exactly."""
     t = times(motion) if at is None else at
     columns: dict[str, np.ndarray] = {}
@@ -168,7 +176,10 @@ def torso_rotation(motion: Motion, t: np.ndarray) -> np.ndarray:
 def foot_rotation(motion: Motion, foot: str, t: np.ndarray) -> np.ndarray:
     """Foot link to world, (N, 3, 3)."""
     pitch, roll = motion.ankles[foot]
-    return torso_rotation(motion, t) @ Rotation.from_euler("YX", np.column_stack([pitch(t), roll(t)])).as_matrix()
+    return (
+        torso_rotation(motion, t)
+        @ Rotation.from_euler("YX", np.column_stack([pitch(t), roll(t)])).as_matrix()
+    )
 
 
 def torso_position(motion: Motion, t: np.ndarray) -> np.ndarray:
@@ -181,7 +192,9 @@ def leg_slides(motion: Motion, mounting: Mounting, foot: str, t: np.ndarray) -> 
     """How far the leg's three slides are out [m], (N, 3), for a sole that stands still on the ground."""
     torso, ankle = torso_rotation(motion, t), foot_rotation(motion, foot, t)
     bent = Rotation.from_euler("YX", deflection(motion, mounting, foot, t)).as_matrix()
-    sole_from_centre = mounting.bush.rotation.T @ (np.array([0.0, 0.0, -SOLE_DEPTH]) - np.array(mounting.bush.xyz))
+    sole_from_centre = mounting.bush.rotation.T @ (
+        np.array([0.0, 0.0, -SOLE_DEPTH]) - np.array(mounting.bush.xyz)
+    )
     stands_at = np.array([0.0, HIPS[foot][1], 0.0])
     centre = stands_at - ankle @ mounting.bush.rotation @ bent @ sole_from_centre
     origin = centre - np.einsum("nij,nj->ni", ankle, bush_centre(motion, mounting, foot, t))
@@ -221,7 +234,9 @@ def bush_torque(motion: Motion, mounting: Mounting, foot: str, t: np.ndarray) ->
     """The law's generalised torques in pitch and roll, (N, 2)."""
     q, v = deflection(motion, mounting, foot, t), deflection_rate(motion, mounting, foot, t)
     laws = [motion.truth[foot, axis] for axis in ("pitch", "roll")]
-    return np.column_stack([law.stiffness * q[:, i] + law.damping * v[:, i] + law.offset for i, law in enumerate(laws)])
+    return np.column_stack(
+        [law.stiffness * q[:, i] + law.damping * v[:, i] + law.offset for i, law in enumerate(laws)]
+    )
 
 
 def sensor_wrench(motion: Motion, mounting: Mounting, foot: str, t: np.ndarray) -> np.ndarray:
@@ -232,7 +247,10 @@ def sensor_wrench(motion: Motion, mounting: Mounting, foot: str, t: np.ndarray) 
     torque = pitch_torque[:, None] * [0.0, 1.0, 0.0] + roll_torque[:, None] * roll_axis
     torque = contact_share(motion, foot, t)[:, None] * torque
     # Into the foot link's axes, then to the sensor.
-    force, torque = bush_force(motion, mounting, foot, t) @ mounting.bush.rotation.T, torque @ mounting.bush.rotation.T
+    force, torque = (
+        bush_force(motion, mounting, foot, t) @ mounting.bush.rotation.T,
+        torque @ mounting.bush.rotation.T,
+    )
     torque = torque + np.cross(bush_centre(motion, mounting, foot, t) - mounting.wrench.xyz, force)
     return np.hstack([force @ mounting.wrench.rotation, torque @ mounting.wrench.rotation]) / mounting.sign
 
@@ -250,7 +268,10 @@ def contact_share(motion: Motion, foot: str, t: np.ndarray) -> np.ndarray:
 def vertical_load(motion: Motion, foot: str, t: np.ndarray) -> np.ndarray:
     """The foot's share of the weight [N], (N,): a foot in the air gives its share to the other."""
     left = 0.5 + motion.shift * np.sin(0.7 * t)
-    wished = {"left": left * contact_share(motion, "left", t), "right": (1 - left) * contact_share(motion, "right", t)}
+    wished = {
+        "left": left * contact_share(motion, "left", t),
+        "right": (1 - left) * contact_share(motion, "right", t),
+    }
     total = wished["left"] + wished["right"]
     return np.where(total > 0, WEIGHT * wished[foot] / np.where(total > 0, total, 1.0), 0.0)
 
@@ -277,9 +298,15 @@ def _imu_columns(motion: Motion, mounting: Mounting, t: np.ndarray) -> dict[str,
     world = torso @ mounting.imu.rotation
     proper = np.einsum("nji,nj->ni", world, moved + [0.0, 0.0, 9.80665])
     quaternion = Rotation.from_matrix(world).as_quat(scalar_first=True)
-    kinds = {"orientation": ("wxyz", quaternion), "angular_velocity": ("xyz", rate), "linear_acceleration": ("xyz", proper)}
+    kinds = {
+        "orientation": ("wxyz", quaternion),
+        "angular_velocity": ("xyz", rate),
+        "linear_acceleration": ("xyz", proper),
+    }
     return {
-        f"imu.chest.{kind}.{axis}": values[:, i] for kind, (axes, values) in kinds.items() for i, axis in enumerate(axes)
+        f"imu.chest.{kind}.{axis}": values[:, i]
+        for kind, (axes, values) in kinds.items()
+        for i, axis in enumerate(axes)
     }
 
 
@@ -287,7 +314,13 @@ def _leg(foot: str) -> str:
     """Three slides in series, ankle pitch, ankle roll, foot and sole."""
     hip = " ".join(map(str, HIPS[foot]))
     parts = []
-    joints = [("leg_x", "1 0 0"), ("leg_y", "0 1 0"), ("leg_z", "0 0 1"), ("ankle_pitch", "0 1 0"), ("ankle_roll", "1 0 0")]
+    joints = [
+        ("leg_x", "1 0 0"),
+        ("leg_y", "0 1 0"),
+        ("leg_z", "0 0 1"),
+        ("ankle_pitch", "0 1 0"),
+        ("ankle_roll", "1 0 0"),
+    ]
     links = ["torso", *(f"{foot}_{name}" for name in ("thigh", "knee", "shin", "ankle", "foot"))]
     for (joint, axis), parent, child in zip(joints, links, links[1:], strict=False):
         kind, xyz = ("prismatic" if "leg" in joint else "revolute"), (hip if joint == "leg_x" else "0 0 0")

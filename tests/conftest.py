@@ -11,8 +11,8 @@ for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 from pathlib import Path
 
 import pytest
-from biped import make_robot
 
+from biped import make_robot
 from plantar.robot import RobotModel
 
 

@@ -79,7 +79,11 @@ def test_imports_point_one_way() -> None:
         if room(path) not in ENTRANCES:
             before = {*ROOMS[: ROOMS.index(room(path)) + 1], "_core", "__version__"}
             own = [(name, line) for name, line in imports(path) if name.startswith("plantar.")]
-            wrong += [f"{where(path, line)} imports {name}" for name, line in own if name.split(".")[1] not in before]
+            wrong += [
+                f"{where(path, line)} imports {name}"
+                for name, line in own
+                if name.split(".")[1] not in before
+            ]
     assert wrong == []
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from biped import Mounting, record, sway
 from scipy.spatial.transform import Rotation
 
+from biped import Mounting, record, sway
 from plantar.attitude import attitude_from_inertial
 
 IMU = [f"imu.chest.{kind}.{axis}" for kind in ("angular_velocity", "linear_acceleration") for axis in "xyz"]
@@ -18,7 +18,9 @@ def tilt_error(found: np.ndarray, truth: np.ndarray) -> np.ndarray:
     return np.linalg.norm(np.cross(*up), axis=1)
 
 
-def inertial(seed: int = 0, duration: float = 120.0, bias: float = 0.0) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
+def inertial(
+    seed: int = 0, duration: float = 120.0, bias: float = 0.0
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
     """Rates, proper acceleration, true orientation and period of the biped's IMU."""
     log = record(sway(seed=seed, duration=duration), Mounting())
     values = log.stack(IMU)
@@ -51,7 +53,9 @@ def test_the_attitude_does_not_lag() -> None:
     for axis in (0, 1):
         found, expected = up[0][:, axis], up[1][:, axis]
         speed = np.gradient(expected, period)
-        lag = -np.linalg.lstsq(np.column_stack([speed, np.ones_like(speed)]), found - expected, rcond=None)[0][0]
+        lag = -np.linalg.lstsq(np.column_stack([speed, np.ones_like(speed)]), found - expected, rcond=None)[
+            0
+        ][0]
         assert abs(lag) < 0.02 * period
 
 

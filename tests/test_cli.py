@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from biped import record, sway, write_robot
 
+from biped import record, sway, write_robot
 from plantar import __version__
 from plantar.cli import COMMANDS, main
 from plantar.log import MotionLog
@@ -18,7 +18,14 @@ from plantar.log import MotionLog
 
 def write_csv(log: MotionLog, path: Path) -> Path:
     header = ",".join(["time", *log.columns])
-    np.savetxt(path, np.column_stack([log.time, *log.columns.values()]), delimiter=",", header=header, comments="", fmt="%.10g")
+    np.savetxt(
+        path,
+        np.column_stack([log.time, *log.columns.values()]),
+        delimiter=",",
+        header=header,
+        comments="",
+        fmt="%.10g",
+    )
     return path
 
 
@@ -52,7 +59,9 @@ def refused(capsys: pytest.CaptureFixture[str], *arguments: object) -> str:
     return lines[0]
 
 
-def test_identify_feet_writes_results_and_tables(campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_identify_feet_writes_results_and_tables(
+    campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     out = tmp_path / "out"
     logs = [campaign / "first.csv", campaign / "second.csv", "--validate", campaign / "third.csv"]
     assert run("identify", "feet", campaign / "robot.yaml", *logs, "--out", out) == 0
@@ -68,7 +77,14 @@ def test_identify_feet_writes_results_and_tables(campaign: Path, tmp_path: Path,
 
 
 def test_json_and_quiet(campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    arguments = ["identify", "feet", campaign / "robot.yaml", campaign / "first.csv", "--out", tmp_path / "out"]
+    arguments = [
+        "identify",
+        "feet",
+        campaign / "robot.yaml",
+        campaign / "first.csv",
+        "--out",
+        tmp_path / "out",
+    ]
     assert run(*arguments, "--json", "--quiet") == 0
     captured = capsys.readouterr()
     assert json.loads(captured.out) == json.loads((tmp_path / "out" / "result.json").read_text())
@@ -80,7 +96,20 @@ def test_json_and_quiet(campaign: Path, tmp_path: Path, capsys: pytest.CaptureFi
 
 def test_several_logs_after_one_validate(campaign: Path, tmp_path: Path) -> None:
     logs = [campaign / f"{name}.csv" for name in ("first", "second", "third")]
-    assert run("identify", "feet", campaign / "robot.yaml", logs[0], "--validate", *logs[1:], "-q", "--out", tmp_path) == 0
+    assert (
+        run(
+            "identify",
+            "feet",
+            campaign / "robot.yaml",
+            logs[0],
+            "--validate",
+            *logs[1:],
+            "-q",
+            "--out",
+            tmp_path,
+        )
+        == 0
+    )
     content = json.loads((tmp_path / "result.json").read_text())
     assert [row["role"] for row in content["inputs"]] == ["fit", "validate", "validate"]
 
@@ -103,7 +132,9 @@ def test_inspect(campaign: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert json.loads(capsys.readouterr().out)["logs"][0]["name"] == "first"
 
 
-def test_inspect_says_1_where_a_log_cannot_serve(campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_inspect_says_1_where_a_log_cannot_serve(
+    campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     log = record(sway("bad", duration=8.0))
     names = [name for name in log.columns if name.startswith("wrench")]
     bad = write_csv(log.with_columns({name: -log.column(name) for name in names}), tmp_path / "bad.csv")
@@ -118,7 +149,9 @@ def test_validate(campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[
     assert "Table 3" in capsys.readouterr().out
     assert run("validate", tmp_path / "result.json", robot, campaign / "third.csv", "--json", "-q") == 0
     rows = json.loads(capsys.readouterr().out)["validation"]
-    assert {(row["foot"], row["axis"]) for row in rows} >= {(f, a) for f in ("left", "right") for a in ("pitch", "roll")}
+    assert {(row["foot"], row["axis"]) for row in rows} >= {
+        (f, a) for f in ("left", "right") for a in ("pitch", "roll")
+    }
     assert all(row["kind"] == "cross" for row in rows)
 
 
@@ -137,13 +170,17 @@ def test_bad_logs_are_one_line_and_leave_nothing(
     bad = tmp_path / "bad.csv"
     bad.write_text(text)
     out = tmp_path / "out"
-    line = refused(capsys, "identify", "feet", campaign / "robot.yaml", campaign / "first.csv", bad, "--out", out)
+    line = refused(
+        capsys, "identify", "feet", campaign / "robot.yaml", campaign / "first.csv", bad, "--out", out
+    )
     assert "bad.csv" in line
     assert expected in line
     assert not out.exists()
 
 
-def test_an_error_leaves_an_earlier_result_untouched(campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_error_leaves_an_earlier_result_untouched(
+    campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     arguments = ["identify", "feet", campaign / "robot.yaml", campaign / "first.csv", "--out", tmp_path, "-q"]
     assert run(*arguments) == 0
     before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
@@ -151,17 +188,23 @@ def test_an_error_leaves_an_earlier_result_untouched(campaign: Path, tmp_path: P
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
 
 
-def test_bad_robot_files_and_places(campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_bad_robot_files_and_places(
+    campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     robot = tmp_path / "robot.yaml"
     robot.write_text((campaign / "robot.yaml").read_text() + "colour: red\n")
     log = campaign / "first.csv"
     assert "unknown key 'colour'" in refused(capsys, "inspect", robot, log)
     assert "No such file" in refused(capsys, "inspect", tmp_path / "none.yaml", log)
-    assert "does not exist" in refused(capsys, "inspect", campaign / "robot.yaml", tmp_path / "none.csv", "-q")
+    assert "does not exist" in refused(
+        capsys, "inspect", campaign / "robot.yaml", tmp_path / "none.csv", "-q"
+    )
     assert "is a file" in refused(capsys, "identify", "feet", campaign / "robot.yaml", log, "--out", robot)
     twice = ["identify", "feet", campaign / "robot.yaml", log, log, "--out", tmp_path / "out"]
     assert "two logs are called 'first'" in refused(capsys, *twice)
-    assert "not such a result" in refused(capsys, "validate", write_json(tmp_path, {"schema": "x"}), campaign / "robot.yaml", log)
+    assert "not such a result" in refused(
+        capsys, "validate", write_json(tmp_path, {"schema": "x"}), campaign / "robot.yaml", log
+    )
 
 
 def write_json(folder: Path, content: object) -> Path:
@@ -201,7 +244,20 @@ def python(code: str) -> str:
     return done.stdout
 
 
-HEAVY = ("numpy", "scipy", "pinocchio", "pyarrow", "mujoco", "matplotlib", "rosbags", "viser", "clarabel", "pink", "pydantic", "jinja2")
+HEAVY = (
+    "numpy",
+    "scipy",
+    "pinocchio",
+    "pyarrow",
+    "mujoco",
+    "matplotlib",
+    "rosbags",
+    "viser",
+    "clarabel",
+    "pink",
+    "pydantic",
+    "jinja2",
+)
 
 
 def test_help_lists_every_command_and_imports_nothing_heavy() -> None:

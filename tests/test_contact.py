@@ -7,7 +7,16 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from plantar.contact import AIR, DOUBLE, SINGLE, SUPPORTS, TRANSITION, FootContact, carried_weight, detect_contact
+from plantar.contact import (
+    AIR,
+    DOUBLE,
+    SINGLE,
+    SUPPORTS,
+    TRANSITION,
+    FootContact,
+    carried_weight,
+    detect_contact,
+)
 from plantar.polygon import convex_hull, inside_distance
 
 PERIOD = 0.01
@@ -35,7 +44,12 @@ def reason(contact: FootContact, second: float) -> str | None:
 def test_double_single_air() -> None:
     contacts = detect_contact(stepping(), AUTO, WEIGHT, PERIOD)
     left, right = contacts["left"], contacts["right"]
-    for second, expected in ((1.0, (DOUBLE, DOUBLE)), (3.0, (SINGLE, AIR)), (5.5, (DOUBLE, DOUBLE)), (7.5, (AIR, AIR))):
+    for second, expected in (
+        (1.0, (DOUBLE, DOUBLE)),
+        (3.0, (SINGLE, AIR)),
+        (5.5, (DOUBLE, DOUBLE)),
+        (7.5, (AIR, AIR)),
+    ):
         assert (support(left, second), support(right, second)) == expected
     assert left.used[300]
     assert not right.used[300]
@@ -61,7 +75,9 @@ def test_the_other_foots_steps_do_not_interrupt_a_stance() -> None:
 
 def test_between_the_thresholds_a_foot_keeps_its_state() -> None:
     time = np.arange(1000) * PERIOD
-    load = np.interp(time, [0, 2, 3, 5, 6, 10], [300, 300, 45, 45, 300, 300])  # 7.5 % of the weight from 3 s to 5 s
+    load = np.interp(
+        time, [0, 2, 3, 5, 6, 10], [300, 300, 45, 45, 300, 300]
+    )  # 7.5 % of the weight from 3 s to 5 s
     stays = detect_contact({"left": load}, {"left": False}, WEIGHT, PERIOD)["left"]
     assert stays.standing.all()
     airborne = np.where(time < 3, 0.0, load)
@@ -131,7 +147,9 @@ SQUARE = np.array([[0.1, 0.05], [-0.1, 0.05], [-0.1, -0.05], [0.1, -0.05]])
 
 @pytest.mark.parametrize("corners", [SQUARE, SQUARE[::-1], SQUARE[[1, 3, 0, 2]]])
 def test_distance_to_the_edge_of_a_sole(corners: np.ndarray) -> None:
-    points = np.array([[0.0, 0.0], [0.09, 0.0], [0.0, -0.048], [0.1, 0.0], [0.12, 0.0], [0.0, 0.06], [0.2, 0.2]])
+    points = np.array(
+        [[0.0, 0.0], [0.09, 0.0], [0.0, -0.048], [0.1, 0.0], [0.12, 0.0], [0.0, 0.06], [0.2, 0.2]]
+    )
     expected = [0.05, 0.01, 0.002, 0.0, -0.02, -0.01, -0.15]
     np.testing.assert_allclose(inside_distance(points, corners), expected, atol=1e-12)
 
@@ -140,7 +158,12 @@ def test_distance_agrees_with_sampling_the_border() -> None:
     random = np.random.default_rng(5)
     corners = convex_hull(random.normal(size=(9, 2)))
     points = random.uniform(-1, 1, size=(200, 2))
-    border = np.concatenate([a + np.linspace(0, 1, 4000)[:, None] * (b - a) for a, b in zip(corners, np.roll(corners, -1, 0), strict=True)])
+    border = np.concatenate(
+        [
+            a + np.linspace(0, 1, 4000)[:, None] * (b - a)
+            for a, b in zip(corners, np.roll(corners, -1, 0), strict=True)
+        ]
+    )
     nearest = np.min(np.linalg.norm(points[:, None] - border, axis=2), axis=1)
     found = inside_distance(points, corners)
     inside = found > 0

@@ -66,7 +66,12 @@ def test_an_offset_for_each_recording_or_one_for_all() -> None:
 
 def test_own_offsets_are_the_stacked_problem_with_dummy_columns() -> None:
     blocks = [block("a", 1, offset=5.0), block("b", 2, offset=-7.0, rows=500)]
-    design = np.vstack([np.column_stack([one.regressor, np.tile(row, (len(one.response), 1))]) for one, row in zip(blocks, np.eye(2), strict=True)])
+    design = np.vstack(
+        [
+            np.column_stack([one.regressor, np.tile(row, (len(one.response), 1))])
+            for one, row in zip(blocks, np.eye(2), strict=True)
+        ]
+    )
     response = np.concatenate([one.response for one in blocks])
     fit = fit_linear(blocks)
     expected, residual = np.linalg.lstsq(design, response, rcond=None)[:2]
@@ -77,7 +82,10 @@ def test_own_offsets_are_the_stacked_problem_with_dummy_columns() -> None:
 
 def test_equation_7_a_recording_cut_in_two_is_the_recording() -> None:
     whole = block("a", 3, offset=2.0)
-    halves = [Block(name, whole.regressor[rows], whole.response[rows], 0.01) for name, rows in (("a", slice(100)), ("b", slice(100, None)))]
+    halves = [
+        Block(name, whole.regressor[rows], whole.response[rows], 0.01)
+        for name, rows in (("a", slice(100)), ("b", slice(100, None)))
+    ]
     fit, cut = fit_linear([whole]), fit_linear(halves, shared_offset=True)
     np.testing.assert_allclose(cut.values, fit.values, rtol=1e-10)
     np.testing.assert_allclose(cut.white_covariance, fit.white_covariance, rtol=1e-8)
@@ -90,7 +98,9 @@ def test_equation_7_a_recording_cut_in_two_is_the_recording() -> None:
     columns=st.integers(1, 6),
     exponent=st.floats(-6, 6),
 )
-def test_factors_add_like_the_rows_they_stand_for(seed: int, rows: list[int], columns: int, exponent: float) -> None:
+def test_factors_add_like_the_rows_they_stand_for(
+    seed: int, rows: list[int], columns: int, exponent: float
+) -> None:
     """R of a sum is R of the stacked rows, in any order: RᵀR agrees, and so does the solution."""
     random = np.random.default_rng(seed)
     parts = [(random.normal(size=(n, columns)) * 10.0**exponent, random.normal(size=n)) for n in rows]
@@ -193,7 +203,9 @@ def test_intervals_cover_the_truth_in_95_of_100_cases(colour: float) -> None:
         for label in "abc":
             slow, fast = random.uniform(0.15, 0.4), random.uniform(0.5, 1.0)
             phase = random.uniform(0, 2 * np.pi, 2)
-            angle = 0.02 * np.sin(2 * np.pi * slow * time + phase[0]) + 0.01 * np.sin(2 * np.pi * fast * time + phase[1])
+            angle = 0.02 * np.sin(2 * np.pi * slow * time + phase[0]) + 0.01 * np.sin(
+                2 * np.pi * fast * time + phase[1]
+            )
             regressor = np.column_stack([angle, np.gradient(angle, period)])
             noise = signal.lfilter([1.0], [1.0, -colour], random.normal(size=count)) * np.sqrt(1 - colour**2)
             blocks.append(Block(label, regressor, regressor @ truth + random.normal() + 0.4 * noise, period))

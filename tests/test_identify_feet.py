@@ -10,9 +10,23 @@ from pathlib import Path
 import numpy as np
 import pyarrow.parquet as pa_parquet
 import pytest
-from biped import FEET, TRUTH, VERTICAL, WEIGHT, Frame, Law, Motion, Mounting, make_robot, record, robot_entry, sway, times
 from scipy.spatial.transform import Rotation
 
+from biped import (
+    FEET,
+    TRUTH,
+    VERTICAL,
+    WEIGHT,
+    Frame,
+    Law,
+    Motion,
+    Mounting,
+    make_robot,
+    record,
+    robot_entry,
+    sway,
+    times,
+)
 from plantar.errors import DataError, LogError, RobotError
 from plantar.identify.feet import identify_feet
 from plantar.identify.settings import FeetSettings
@@ -51,7 +65,9 @@ def assert_truth(result: FeetResult, rel: float, feet: tuple[str, ...] = FEET, t
 def rotational(result: FeetResult) -> np.ndarray:
     """Stiffness and damping in a fixed order."""
     names = ("stiffness", "damping")
-    return np.array([result.parameter(foot, axis, name).value for foot in FEET for axis in AXES for name in names])
+    return np.array(
+        [result.parameter(foot, axis, name).value for foot in FEET for axis in AXES for name in names]
+    )
 
 
 def codes(result: FeetResult) -> set[str]:
@@ -114,7 +130,10 @@ def test_noise_leaves_the_truth_within_the_intervals(robot: RobotModel, logs: li
     for foot in FEET:
         for axis in AXES:
             law = TRUTH[foot, axis]
-            for name, truth, tolerance in (("stiffness", law.stiffness, 0.01), ("damping", law.damping, 0.03)):
+            for name, truth, tolerance in (
+                ("stiffness", law.stiffness, 0.01),
+                ("damping", law.damping, 0.03),
+            ):
                 row = result.parameter(foot, axis, name)
                 assert row.value == pytest.approx(truth, rel=tolerance)
                 assert row.interval95 is not None
@@ -131,7 +150,11 @@ def test_noise_leaves_the_truth_within_the_intervals(robot: RobotModel, logs: li
         Mounting(wrench=Frame((0.03, -0.02, 0.05), (0.0, 0.0, np.pi / 2))),
         Mounting(wrench=Frame((0.0, 0.0, -0.02), (np.pi, 0.0, 0.3))),
         Mounting(sign=-1),
-        Mounting(sign=-1, wrench=Frame((-0.02, 0.01, 0.0), (0.3, -0.2, 1.0)), imu=Frame((0.0, 0.1, 0.0), (np.pi, 0.0, 0.0))),
+        Mounting(
+            sign=-1,
+            wrench=Frame((-0.02, 0.01, 0.0), (0.3, -0.2, 1.0)),
+            imu=Frame((0.0, 0.1, 0.0), (np.pi, 0.0, 0.0)),
+        ),
         Mounting(bush=Frame((0.01, -0.005, -0.05))),
         Mounting(bush=Frame((0.0, 0.0, -0.06), (0.05, -0.04, 0.6))),
     ],
@@ -188,11 +211,15 @@ def test_each_motion_has_its_own_offset_unless_shared(robot: RobotModel) -> None
     for foot in FEET:
         for axis in AXES:
             assert len({row.value for row in shared.offsets if (row.foot, row.axis) == (foot, axis)}) == 1
-    errors = [sum(row.mean_abs_error for row in found.validation if row.kind == "direct") for found in (own, shared)]
+    errors = [
+        sum(row.mean_abs_error for row in found.validation if row.kind == "direct") for found in (own, shared)
+    ]
     assert errors[1] > errors[0] + 1.0
 
 
-def test_an_unseen_motions_offset_comes_from_its_first_second(robot: RobotModel, logs: list[MotionLog]) -> None:
+def test_an_unseen_motions_offset_comes_from_its_first_second(
+    robot: RobotModel, logs: list[MotionLog]
+) -> None:
     found = identify_feet(robot, logs[:1], [biased("unseen", 5, 10.0)])
     for row in found.validation:
         if row.kind == "cross" and row.axis in AXES:
@@ -222,7 +249,9 @@ def test_a_foot_in_the_air_gives_no_rows(robot: RobotModel) -> None:
 
 def test_a_foot_that_never_stands_is_unidentifiable_and_the_other_is_found(robot: RobotModel) -> None:
     found = identify_feet(robot, [record(sway("hop", duration=15.0, lifts=(("left", -1.0, 20.0),)))])
-    assert_truth(found, 1.1 * WEIGHT**2 / VERTICAL / 330, feet=("right",))  # the vertical compliance does not show
+    assert_truth(
+        found, 1.1 * WEIGHT**2 / VERTICAL / 330, feet=("right",)
+    )  # the vertical compliance does not show
     assert "z_unknown" in codes(found)
     for axis in AXES:
         row = found.parameter("left", axis, "stiffness")
@@ -258,34 +287,50 @@ def test_robots_without_feet_or_imu_are_refused(tmp_path: Path, logs: list[Motio
 
 
 def test_without_orientation_gravity_comes_from_gyroscope_and_accelerometer(robot: RobotModel) -> None:
-    recordings = [without(record(sway(name, seed, duration=60.0)), "orientation") for seed, name in enumerate("ab")]
+    recordings = [
+        without(record(sway(name, seed, duration=60.0)), "orientation") for seed, name in enumerate("ab")
+    ]
     found = identify_feet(robot, recordings)
     assert_truth(found, 0.01)
     assert "attitude_derived" in codes(found)
 
 
-def test_velocities_may_be_missing_or_late(robot: RobotModel, logs: list[MotionLog], result: FeetResult) -> None:
+def test_velocities_may_be_missing_or_late(
+    robot: RobotModel, logs: list[MotionLog], result: FeetResult
+) -> None:
     """A controller's filtered velocities, 30 ms late, would go straight into the damping."""
     missing = identify_feet(robot, [without(log, ".velocity") for log in logs[:2]])
     np.testing.assert_allclose(rotational(missing), rotational(result), rtol=EXACT)
-    late = [log.with_columns({n: np.roll(v, 3) for n, v in log.columns.items() if n.endswith(".velocity")}) for log in logs[:2]]
+    late = [
+        log.with_columns({n: np.roll(v, 3) for n, v in log.columns.items() if n.endswith(".velocity")})
+        for log in logs[:2]
+    ]
     np.testing.assert_allclose(rotational(identify_feet(robot, late)), rotational(result), rtol=EXACT)
 
 
-def test_without_a_gyroscope_rates_come_from_the_orientation(robot: RobotModel, logs: list[MotionLog]) -> None:
+def test_without_a_gyroscope_rates_come_from_the_orientation(
+    robot: RobotModel, logs: list[MotionLog]
+) -> None:
     found = identify_feet(robot, [without(log, "angular_velocity") for log in logs[:2]])
     assert_truth(found, 0.005)
     assert "gyroscope_missing" in codes(found)
 
 
-def test_missing_values_are_left_out_with_a_reason(robot: RobotModel, logs: list[MotionLog], result: FeetResult) -> None:
+def test_missing_values_are_left_out_with_a_reason(
+    robot: RobotModel, logs: list[MotionLog], result: FeetResult
+) -> None:
     column = "joint.left_ankle_pitch.position"
-    holed = [log.with_columns({column: np.where((log.time > 5) & (log.time < 7), np.nan, log.column(column))}) for log in logs[:2]]
+    holed = [
+        log.with_columns({column: np.where((log.time > 5) & (log.time < 7), np.nan, log.column(column))})
+        for log in logs[:2]
+    ]
     found = identify_feet(robot, holed)
     assert_truth(found, EXACT)
     reasons = {phase.reason for phase in found.phases if phase.foot == "left"}
     assert any(reason and "NaN" in reason for reason in reasons)
-    assert all(phase.reason is None or "NaN" not in phase.reason for phase in found.phases if phase.foot == "right")
+    assert all(
+        phase.reason is None or "NaN" not in phase.reason for phase in found.phases if phase.foot == "right"
+    )
 
 
 def test_gaps_are_left_out(robot: RobotModel) -> None:
@@ -302,13 +347,17 @@ def test_jitter_is_resampled(robot: RobotModel) -> None:
     assert_truth(found, 5e-3)
 
 
-def test_a_joint_on_the_path_that_is_not_recorded_is_a_warning(robot: RobotModel, logs: list[MotionLog]) -> None:
+def test_a_joint_on_the_path_that_is_not_recorded_is_a_warning(
+    robot: RobotModel, logs: list[MotionLog]
+) -> None:
     found = identify_feet(robot, [without(logs[0], "left_ankle_roll")])
     assert "path_joint_missing" in codes(found)
     assert_truth(found, 2e-3, feet=("right",))
 
 
-def test_a_joint_off_the_path_may_be_missing(robot: RobotModel, logs: list[MotionLog], result: FeetResult) -> None:
+def test_a_joint_off_the_path_may_be_missing(
+    robot: RobotModel, logs: list[MotionLog], result: FeetResult
+) -> None:
     found = identify_feet(robot, [without(log, "neck") for log in logs[:2]])
     np.testing.assert_allclose(rotational(found), rotational(result), rtol=1e-12)
     assert "joint_missing" in codes(found)
@@ -330,7 +379,7 @@ def test_a_robot_that_stands_still_identifies_nothing(robot: RobotModel) -> None
     def flat(t: np.ndarray) -> np.ndarray:
         return 0.0 * t + 0.01
 
-    motion = Motion("still", 20.0, (flat,) * 3, {foot: (flat, flat) for foot in FEET})
+    motion = Motion("still", 20.0, (flat,) * 3, dict.fromkeys(FEET, (flat, flat)))
     found = identify_feet(robot, [noisy(record(motion), 1)])
     for foot in FEET:
         for axis in AXES:
@@ -355,7 +404,9 @@ def test_the_result_keeps_the_contract(result: FeetResult, tmp_path: Path) -> No
         assert keys <= set(row)
         assert row["axis"] in ("pitch", "roll", "z")
         assert row["verdict"] in ("usable", "weak", "unidentifiable")
-        assert row["interval95"] is None or (len(row["interval95"]) == 2 and row["interval95"][0] <= row["interval95"][1])
+        assert row["interval95"] is None or (
+            len(row["interval95"]) == 2 and row["interval95"][0] <= row["interval95"][1]
+        )
     for row in content["offsets"]:
         assert set(row) == {"foot", "axis", "motion", "unit", "value", "std"}
     for row in content["phases"]:
@@ -381,7 +432,10 @@ def test_residuals_have_a_row_for_each_sample_foot_and_motion(result: FeetResult
     columns = table.to_pydict()
     used = np.array(columns["used"])
     for axis in AXES:
-        torque, predicted = np.array(columns[f"{axis}.torque"])[used], np.array(columns[f"{axis}.predicted"])[used]
+        torque, predicted = (
+            np.array(columns[f"{axis}.torque"])[used],
+            np.array(columns[f"{axis}.predicted"])[used],
+        )
         np.testing.assert_allclose(predicted, torque, atol=1e-2)
     assert set(columns["role"]) == {"fit", "validate"}
 

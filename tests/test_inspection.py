@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from biped import FEET, MASS, WEIGHT, make_robot, record, sway, times
 
+from biped import FEET, MASS, WEIGHT, make_robot, record, sway, times
 from plantar.inspection import inspect_log
 from plantar.readers import open_log
 from plantar.result import dump_json
@@ -51,7 +51,9 @@ def test_gaps_and_holes(robot: RobotModel) -> None:
     time = times(motion)
     log = record(motion, at=time[(time < 5) | (time > 6)])
     neck = np.where(log.time < 1, np.nan, log.column("joint.neck.position"))
-    summary = inspect_log(robot, log.with_columns({"joint.neck.position": neck, "joint.tail.effort": np.full(len(log), np.nan)}))
+    summary = inspect_log(
+        robot, log.with_columns({"joint.neck.position": neck, "joint.tail.effort": np.full(len(log), np.nan)})
+    )
     ((start, end),) = summary.sampling.gaps
     assert (start, end) == (pytest.approx(4.99, abs=0.02), pytest.approx(6.01, abs=0.02))
     ranges = {column.name: column for column in summary.columns}
@@ -62,7 +64,9 @@ def test_gaps_and_holes(robot: RobotModel) -> None:
 @pytest.mark.parametrize("column", ["wrench.left.torque.y", "imu.chest.linear_acceleration.x"])
 def test_a_log_that_cannot_serve_is_told_not_raised(robot: RobotModel, column: str) -> None:
     log = record(sway(duration=8.0))
-    missing = {name: values for name, values in log.columns.items() if name != column and "orientation" not in name}
+    missing = {
+        name: values for name, values in log.columns.items() if name != column and "orientation" not in name
+    }
     summary = inspect_log(robot, type(log)(log.name, log.time, missing))
     assert any(finding.fatal for finding in summary.findings)
     assert any(column in finding.text for finding in summary.findings)

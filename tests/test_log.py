@@ -6,8 +6,8 @@ from dataclasses import FrozenInstanceError
 
 import numpy as np
 import pytest
-from biped import record, sway
 
+from biped import record, sway
 from plantar.errors import LogError
 from plantar.log import COLUMN, MotionLog
 from plantar.notes import Note
@@ -53,7 +53,10 @@ def test_lengths_and_time_are_checked() -> None:
 
 def test_a_missing_column_is_named_with_its_neighbours() -> None:
     log = make(joint__knee__position=[1.0, 2.0, 3.0])
-    with pytest.raises(LogError, match=r"column 'joint\.kne\.position': is missing \(valid: the log has joint\.knee\.position\)"):
+    with pytest.raises(
+        LogError,
+        match=r"column 'joint\.kne\.position': is missing \(valid: the log has joint\.knee\.position\)",
+    ):
         log.column("joint.kne.position")
     assert log.has("joint.knee.position")
     assert not log.has("joint.knee.position", "joint.hip.position")
@@ -62,7 +65,9 @@ def test_a_missing_column_is_named_with_its_neighbours() -> None:
 
 def test_vectors_are_stacked_in_the_contracts_order() -> None:
     parts = [f"wrench.left.{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz"]
-    log = MotionLog("tilt", np.arange(3.0), {name: np.full(3, float(i)) for i, name in enumerate(reversed(parts))})
+    log = MotionLog(
+        "tilt", np.arange(3.0), {name: np.full(3, float(i)) for i, name in enumerate(reversed(parts))}
+    )
     np.testing.assert_array_equal(log.wrench("left")[0], [5, 4, 3, 2, 1, 0])
     assert log.orientation("chest") is None
     partial = MotionLog("tilt", np.arange(3.0), {"imu.chest.orientation.w": np.ones(3)})
@@ -80,8 +85,14 @@ def test_duration_and_period_survive_a_gap() -> None:
 
 def test_positions_follow_the_robot_and_missing_joints_stand_at_zero(robot: RobotModel) -> None:
     log = record(sway(duration=1.0))
-    kept = {name: values for name, values in log.columns.items() if "neck" not in name and "right_ankle_roll" not in name}
-    log = MotionLog(log.name, log.time, {**kept, "joint.tail.position": log.time, "joint.neck.effort": log.time})
+    kept = {
+        name: values
+        for name, values in log.columns.items()
+        if "neck" not in name and "right_ankle_roll" not in name
+    }
+    log = MotionLog(
+        log.name, log.time, {**kept, "joint.tail.position": log.time, "joint.neck.effort": log.time}
+    )
     positions = log.positions(robot)
     assert positions.shape == (len(log), len(robot.joint_names))
     for place, name in enumerate(robot.joint_names):

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
-from biped import URDF, Frame, Mounting, make_robot, robot_entry, write_robot
 
+from biped import URDF, Frame, Mounting, make_robot, robot_entry, write_robot
 from plantar.errors import RobotError
 from plantar.robot import load_robot
 
@@ -72,7 +72,10 @@ def test_paths_are_relative_to_the_robot_file(tmp_path: Path, monkeypatch: pytes
     [
         (lambda e: e.update(weight=3), ["unknown key 'weight'", "valid:"]),
         (lambda e: e.update(feets={}), ["unknown key 'feets'", "feet"]),
-        (lambda e: e["feet"]["left"]["wrench"].update(sing=-1), ["unknown key 'feet.left.wrench.sing'", "sign"]),
+        (
+            lambda e: e["feet"]["left"]["wrench"].update(sing=-1),
+            ["unknown key 'feet.left.wrench.sing'", "sign"],
+        ),
         (lambda e: e["feet"]["right"]["sole"].update(polygone=[]), ["'feet.right.sole.polygone'", "polygon"]),
         (lambda e: e["imu"].update(frame="x"), ["unknown key 'imu.frame'", "valid:"]),
         (lambda e: e.update(joints={"neck": {"term": []}}), ["unknown key 'joints.neck.term'", "terms"]),
@@ -84,7 +87,10 @@ def test_paths_are_relative_to_the_robot_file(tmp_path: Path, monkeypatch: pytes
         (lambda e: e["feet"]["left"]["wrench"].update(sign=2), ["feet.left.wrench.sign"]),
         (lambda e: e["feet"]["left"]["bush"].update(xyz=[0, 0]), ["feet.left.bush.xyz"]),
         (lambda e: e["feet"]["left"]["bush"].update(xyz=[0, 0, "low"]), ["feet.left.bush.xyz", "low"]),
-        (lambda e: e["feet"]["left"]["bush"].update(xyz=[0, 0, float("nan")]), ["feet.left.bush.xyz", "finite"]),
+        (
+            lambda e: e["feet"]["left"]["bush"].update(xyz=[0, 0, float("nan")]),
+            ["feet.left.bush.xyz", "finite"],
+        ),
         (lambda e: e["imu"].update(link="tors"), ["link 'tors' is not in the URDF", "torso"]),
         (lambda e: e["feet"]["left"].update(ankle="left_fot"), ["'left_fot'", "left_foot"]),
         (lambda e: e["feet"]["left"]["wrench"].update(name="right"), ["share one wrench sensor"]),

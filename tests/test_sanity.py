@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from biped import FEET, WEIGHT, Frame, Mounting, Motion, make_robot, record, sines, sway
 
+from biped import FEET, WEIGHT, Frame, Motion, Mounting, make_robot, record, sines, sway
 from plantar.errors import DataError
 from plantar.identify.feet import identify_feet
 from plantar.log import MotionLog
@@ -21,7 +21,9 @@ from plantar.sanity import check_log
 QUATERNION = [f"imu.chest.orientation.{axis}" for axis in "wxyz"]
 GYROSCOPE = [f"imu.chest.angular_velocity.{axis}" for axis in "xyz"]
 ACCELEROMETER = [f"imu.chest.linear_acceleration.{axis}" for axis in "xyz"]
-WRENCH = {foot: [f"wrench.{foot}.{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz"] for foot in FEET}
+WRENCH = {
+    foot: [f"wrench.{foot}.{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz"] for foot in FEET
+}
 
 Fault = Callable[[MotionLog], MotionLog]
 
@@ -34,8 +36,13 @@ def log() -> MotionLog:
 
 def leaning(name: str = "lean") -> Motion:
     roll, pitch, still = sines((0.06, 0.2, 0.3)), sines((0.1, 0.15, 1.0)), sines((0.0, 0.0, 0.0))
-    level = (lambda t: -pitch(t) + sines((0.015, 0.3, 0.1))(t), lambda t: -roll(t) + sines((0.01, 0.4, 0.2))(t))
-    return replace(sway(name, duration=15.0, shift=0.3), torso=(roll, pitch, still), ankles=dict.fromkeys(FEET, level))
+    level = (
+        lambda t: -pitch(t) + sines((0.015, 0.3, 0.1))(t),
+        lambda t: -roll(t) + sines((0.01, 0.4, 0.2))(t),
+    )
+    return replace(
+        sway(name, duration=15.0, shift=0.3), torso=(roll, pitch, still), ankles=dict.fromkeys(FEET, level)
+    )
 
 
 def scaled(names: list[str], factor: float) -> Fault:
@@ -57,7 +64,10 @@ def inverted(log: MotionLog) -> MotionLog:
 
 
 def swapped(log: MotionLog) -> MotionLog:
-    pairs = [*zip(WRENCH["left"], WRENCH["right"], strict=True), *zip(WRENCH["right"], WRENCH["left"], strict=True)]
+    pairs = [
+        *zip(WRENCH["left"], WRENCH["right"], strict=True),
+        *zip(WRENCH["right"], WRENCH["left"], strict=True),
+    ]
     return log.with_columns({to: log.column(source) for to, source in pairs})
 
 
@@ -96,7 +106,9 @@ def test_each_fault_is_named(robot: RobotModel, log: MotionLog, name: str) -> No
     assert all("\n" not in finding.text for finding in findings)
 
 
-@pytest.mark.parametrize("name", [name for name in FAULTS if not name.endswith("dead") or "gyroscope" in name])
+@pytest.mark.parametrize(
+    "name", [name for name in FAULTS if not name.endswith("dead") or "gyroscope" in name]
+)
 def test_nothing_is_fitted_to_what_is_impossible(robot: RobotModel, log: MotionLog, name: str) -> None:
     with pytest.raises(DataError, match="lean"):
         identify_feet(robot, [FAULTS[name][0](log)])
@@ -118,10 +130,25 @@ def test_healthy_logs_of_many_kinds_raise_no_alarm(robot: RobotModel, log: Motio
     holes = log.with_columns({name: np.where(log.time < 3, np.nan, log.column(name)) for name in log.columns})
     assert check_log(robot, holes) == []
     noise = np.random.default_rng(0)
-    noisy = log.with_columns({name: values + noise.normal(0, 0.01, len(log)) for name, values in log.columns.items() if "orientation" not in name})
+    noisy = log.with_columns(
+        {
+            name: values + noise.normal(0, 0.01, len(log))
+            for name, values in log.columns.items()
+            if "orientation" not in name
+        }
+    )
     assert check_log(robot, noisy) == []
-    still = record(Motion("still", 10.0, (sines((0.0, 1.0, 0.0)),) * 3, {foot: (sines((0.0, 1.0, 0.0)),) * 2 for foot in FEET}))
-    shaken = still.with_columns({name: values + noise.normal(0, 1e-4, len(still)) for name, values in still.columns.items()})
+    still = record(
+        Motion(
+            "still",
+            10.0,
+            (sines((0.0, 1.0, 0.0)),) * 3,
+            {foot: (sines((0.0, 1.0, 0.0)),) * 2 for foot in FEET},
+        )
+    )
+    shaken = still.with_columns(
+        {name: values + noise.normal(0, 1e-4, len(still)) for name, values in still.columns.items()}
+    )
     assert check_log(robot, shaken) == []
 
 
@@ -158,13 +185,19 @@ def test_the_sign_that_would_be_right_is_told(tmp_path: Path) -> None:
 
 
 def test_a_log_without_an_imu_orientation_can_be_checked(robot: RobotModel, log: MotionLog) -> None:
-    without = MotionLog(log.name, log.time, {name: v for name, v in log.columns.items() if name not in QUATERNION})
+    without = MotionLog(
+        log.name, log.time, {name: v for name, v in log.columns.items() if name not in QUATERNION}
+    )
     assert check_log(robot, without) == []
     in_degrees = scaled(["joint.left_ankle_pitch.position"], 300.0)(without)
     assert "degrees" in names_of(check_log(robot, in_degrees))
 
 
 def test_real_recordings_raise_no_fatal_alarm(shared_data: Path) -> None:
-    for folder, file in (("icub_walking", "walking.csv.gz"), ("icub_mats", "firm.csv"), ("kuka_lwr4", "recording_1.csv")):
+    for folder, file in (
+        ("icub_walking", "walking.csv.gz"),
+        ("icub_mats", "firm.csv"),
+        ("kuka_lwr4", "recording_1.csv"),
+    ):
         robot = load_robot(shared_data / folder / "robot.yaml")
         assert [f for f in check_log(robot, open_log(shared_data / folder / file)) if f.fatal] == []

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from biped import record, sway, times
 from scipy.spatial.transform import Rotation
 
+from biped import record, sway, times
 from plantar.log import MotionLog
 from plantar.signals import differentiate, evenly_sampled, interpolate, low_pass, runs, sampling, shifted
 
@@ -41,7 +41,9 @@ def test_the_filter_is_linear_and_keeps_constants() -> None:
     random = np.random.default_rng(0)
     a, b = random.normal(size=(2, 1000))
     both = low_pass(3 * a - 2 * b + 7, PERIOD, 5.0)
-    np.testing.assert_allclose(both, 3 * low_pass(a, PERIOD, 5.0) - 2 * low_pass(b, PERIOD, 5.0) + 7, atol=1e-12)
+    np.testing.assert_allclose(
+        both, 3 * low_pass(a, PERIOD, 5.0) - 2 * low_pass(b, PERIOD, 5.0) + 7, atol=1e-12
+    )
 
 
 def test_the_filter_treats_each_run_by_itself() -> None:
@@ -95,7 +97,7 @@ def test_sampling_describes_rate_jitter_and_gaps() -> None:
     described = sampling(MotionLog("a", np.sort(time), {}))
     assert described.rate == pytest.approx(100, rel=0.01)
     assert described.jitter == pytest.approx(0.0005 * np.sqrt(2), rel=0.1)
-    (start, end), = described.gaps
+    ((start, end),) = described.gaps
     assert start == pytest.approx(time[999])
     assert end == pytest.approx(time[1000])
 
@@ -127,7 +129,10 @@ def test_gaps_stay_gaps() -> None:
     even = evenly_sampled(log)
     assert len(even) == len(time)
     hole = np.isnan(even.column("joint.left_ankle_pitch.position"))
-    assert (even.time[hole].min(), even.time[hole].max()) == (pytest.approx(4.0, abs=0.011), pytest.approx(5.0, abs=0.011))
+    assert (even.time[hole].min(), even.time[hole].max()) == (
+        pytest.approx(4.0, abs=0.011),
+        pytest.approx(5.0, abs=0.011),
+    )
     assert hole.sum() == pytest.approx(100, abs=2)
 
 

@@ -9,8 +9,8 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pa_parquet
 import pytest
-from biped import record, sway
 
+from biped import record, sway
 from plantar.errors import LogError
 from plantar.log import MotionLog
 from plantar.readers import motion_name, open_log
@@ -48,7 +48,9 @@ def codes(log: MotionLog) -> list[str]:
 def as_csv(log: MotionLog) -> str:
     names = list(log.columns)
     rows = np.column_stack([log.time, *(log.columns[name] for name in names)])
-    return "\n".join([",".join(["time", *names]), *(",".join(map(repr, row)) for row in rows.tolist())]) + "\n"
+    return (
+        "\n".join([",".join(["time", *names]), *(",".join(map(repr, row)) for row in rows.tolist())]) + "\n"
+    )
 
 
 def test_csv_gzip_and_parquet_read_alike(tmp_path: Path) -> None:
@@ -189,7 +191,9 @@ def test_a_gzip_stream_cut_anywhere_gives_its_whole_lines(tmp_path: Path) -> Non
 
 def test_several_gzip_members_are_one_file(tmp_path: Path) -> None:
     first, second = csv_text(4), "0.10,1,2\n0.20,3,4\n"
-    log = open_log(write(tmp_path, gzip.compress(first.encode()) + gzip.compress(second.encode()), "log.csv.gz"))
+    log = open_log(
+        write(tmp_path, gzip.compress(first.encode()) + gzip.compress(second.encode()), "log.csv.gz")
+    )
     assert len(log) == 6
 
 

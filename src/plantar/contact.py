@@ -11,7 +11,9 @@ from plantar.conventions import Array, Mask
 from plantar.signals import runs
 
 LANDING_SHARE = 0.10  # of the weight: a foot that carries more stands
-LIFTING_SHARE = 0.05  # of the weight: a foot that carries less is in the air; between the two it keeps its state
+LIFTING_SHARE = (
+    0.05  # of the weight: a foot that carries less is in the air; between the two it keeps its state
+)
 SETTLING_TIME = 0.25  # s around landing and lifting, left out: the sole is not flat yet
 SHORTEST_STANCE = 0.5  # s: shorter contacts are steps or impacts, not stances
 
@@ -72,7 +74,9 @@ class FootContact:
         for start, end in zip(starts, ends, strict=True):
             reason = self.reasons[self.code[start]]
             support = SUPPORTS[self.support[start]]
-            found.append(Phase(motion, foot, float(time[start]), float(time[end]), support, reason is None, reason))
+            found.append(
+                Phase(motion, foot, float(time[start]), float(time[end]), support, reason is None, reason)
+            )
         return found
 
 

@@ -54,7 +54,9 @@ class MotionLog:
         if bad.size:
             at, value = time[bad[0]], time[bad[0] + 1]
             message = "does not increase"
-            raise LogError(located(message, path=self.source, column="time", time=float(at), value=float(value)))
+            raise LogError(
+                located(message, path=self.source, column="time", time=float(at), value=float(value))
+            )
         object.__setattr__(self, "time", time)
         object.__setattr__(self, "columns", MappingProxyType(columns))
 
@@ -122,7 +124,9 @@ class MotionLog:
 
     def joint_notes(self, robot: RobotModel) -> tuple[Note, ...]:
         """What the log's joints and the URDF's do not have in common."""
-        recorded = {name.split(".", 1)[1].rsplit(".", 1)[0] for name in self.columns if name.startswith("joint.")}
+        recorded = {
+            name.split(".", 1)[1].rsplit(".", 1)[0] for name in self.columns if name.startswith("joint.")
+        }
         with_position = {name for name in recorded if self.has(f"joint.{name}.position")}
         missing = [name for name in robot.joint_names if name not in with_position]
         unknown = sorted(recorded - set(robot.joint_names))

@@ -163,8 +163,12 @@ def read_result(path: Path, schema: str = "plantar.") -> dict[str, Any]:
     try:
         content = json.loads(read_bounded(path, RESULT_LIMIT))
     except (ValueError, RecursionError) as error:
-        raise PlantarError(located(f"is not readable JSON: {error}", path=path, valid="a result.json")) from error
+        raise PlantarError(
+            located(f"is not readable JSON: {error}", path=path, valid="a result.json")
+        ) from error
     found = content.get("schema") if isinstance(content, dict) else None
     if not isinstance(found, str) or not found.startswith(schema):
-        raise PlantarError(located("is not such a result", path=path, value=found, valid=f"schema '{schema}...'"))
+        raise PlantarError(
+            located("is not such a result", path=path, value=found, valid=f"schema '{schema}...'")
+        )
     return dict(content)

@@ -193,7 +193,9 @@ def _parse_urdf(urdf: str, path: Path, *, floating: bool) -> pin.Model:
         raise RobotError(located("declares a DOCTYPE or an entity", path=path, valid="plain URDF"))
     try:
         return (
-            pin.buildModelFromXML(urdf, pin.JointModelFreeFlyer()) if floating else pin.buildModelFromXML(urdf)
+            pin.buildModelFromXML(urdf, pin.JointModelFreeFlyer())
+            if floating
+            else pin.buildModelFromXML(urdf)
         )
     except (ValueError, RuntimeError, IndexError) as error:
         reason = str(error).splitlines()[0] if str(error) else "unreadable"

@@ -25,7 +25,11 @@ def check_log(robot: RobotModel, log: MotionLog) -> list[Finding]:
 def _time(log: MotionLog) -> Iterator[Finding]:
     if log.period >= 1.0:
         valid = "valid: seconds; divide milliseconds by 1000 and nanoseconds by 1e9"
-        yield Finding("time_unit", f"column 'time': samples are {log.period:g} s apart; is it in another unit? ({valid})", True)
+        yield Finding(
+            "time_unit",
+            f"column 'time': samples are {log.period:g} s apart; is it in another unit? ({valid})",
+            True,
+        )
 
 
 def _joints(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
@@ -34,7 +38,10 @@ def _joints(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         values = log.joint(name, "position")
         if values is None or not np.isfinite(values).any():
             continue
-        lower, upper = (float(limit[model.idx_qs[joint]]) for limit in (model.lowerPositionLimit, model.upperPositionLimit))
+        lower, upper = (
+            float(limit[model.idx_qs[joint]])
+            for limit in (model.lowerPositionLimit, model.upperPositionLimit)
+        )
         least, most = float(np.nanmin(values)), float(np.nanmax(values))
         bounded = model.nqs[joint] == 1 and np.isfinite([lower, upper]).all() and upper > lower
         revolute = "P" not in model.joints[joint].shortname().removeprefix("JointModel")[:1]
@@ -59,21 +66,40 @@ def _wrenches(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         sensor, vertical = foot.wrench, f"wrench.{foot.wrench.name}.force.z"
         wrench = log.wrench(sensor.name)
         if not np.isfinite(wrench).any():
-            yield Finding("dead_channel", f"columns 'wrench.{sensor.name}.*': hold no value; the sensor is dead")
+            yield Finding(
+                "dead_channel", f"columns 'wrench.{sensor.name}.*': hold no value; the sensor is dead"
+            )
             continue
         # Along the bush's z axis, whatever way the sensor is mounted.
-        axis = (foot.bush.rotation.T @ foot.wrench.placement.rotation)[2] if foot.bush.link == sensor.placement.link else None
+        axis = (
+            (foot.bush.rotation.T @ foot.wrench.placement.rotation)[2]
+            if foot.bush.link == sensor.placement.link
+            else None
+        )
         load = wrench[:, :3] @ axis * sensor.sign if axis is not None else wrench[:, 2] * sensor.sign
         loads[foot.name] = load
         usual = float(np.nanmedian(load))
         if foot.contact == "auto" and usual < -0.2 * robot.mass * GRAVITY:
             text = f"column '{vertical}', value {usual:.4g}: pulls the standing foot down"
-            yield Finding("sign", f"{text} (valid: > 0; set 'sign: {-int(sensor.sign)}' in feet.{foot.name}.wrench)", True)
-        spans = np.array([np.ptp(values[np.isfinite(values)]) if np.isfinite(values).any() else 0.0 for values in wrench.T])
-        alive = spans.any() or np.nanmax(np.abs(wrench)) > 0.1 * robot.mass * GRAVITY or foot.contact == "always"
-        for span, part in zip(spans, (f"{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz"), strict=True):
+            yield Finding(
+                "sign",
+                f"{text} (valid: > 0; set 'sign: {-int(sensor.sign)}' in feet.{foot.name}.wrench)",
+                True,
+            )
+        spans = np.array(
+            [np.ptp(values[np.isfinite(values)]) if np.isfinite(values).any() else 0.0 for values in wrench.T]
+        )
+        alive = (
+            spans.any() or np.nanmax(np.abs(wrench)) > 0.1 * robot.mass * GRAVITY or foot.contact == "always"
+        )
+        for span, part in zip(
+            spans, (f"{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz"), strict=True
+        ):
             if alive and span == 0:
-                yield Finding("dead_channel", f"column 'wrench.{sensor.name}.{part}': never changes; is the channel dead?")
+                yield Finding(
+                    "dead_channel",
+                    f"column 'wrench.{sensor.name}.{part}': never changes; is the channel dead?",
+                )
     weight = robot.mass * GRAVITY
     automatic = bool(loads) and all(foot.contact == "auto" for foot in robot.feet.values())
     if automatic and len(loads) == len(robot.feet):

@@ -33,7 +33,9 @@ def swapped_feet(robot: RobotModel, log: MotionLog) -> bool:
     if rows.size < 10:
         return False
     data = robot.model.createData()
-    levers = np.array([_levers(robot, data, positions[i], orientation[i], [w[i] for w in wrenches]) for i in rows])
+    levers = np.array(
+        [_levers(robot, data, positions[i], orientation[i], [w[i] for w in wrenches]) for i in rows]
+    )
     as_is, exchanged = np.sqrt(np.mean(levers**2, axis=0))
     return bool(as_is > NOTABLE and exchanged < BETTER * as_is)
 

@@ -30,7 +30,9 @@ def check_imu(name: str, log: MotionLog) -> Iterator[Finding]:
     norm = np.linalg.norm(orientation, axis=1)
     norm = norm[np.isfinite(norm)]
     if norm.size and not 0.9 < np.median(norm) < 1.1:
-        text = f"columns 'imu.{name}.orientation.*': the quaternion's norm is {np.median(norm):.3g} (valid: 1)"
+        text = (
+            f"columns 'imu.{name}.orientation.*': the quaternion's norm is {np.median(norm):.3g} (valid: 1)"
+        )
         yield Finding("quaternion_norm", text, True)
         return
     if log.has(*gyroscope):
@@ -60,7 +62,11 @@ def _readings(orientation: Array) -> dict[str, Rotation]:
 
 def _misread(name: str, text: str, reading: str) -> Finding:
     valid = "w x y z" if reading == "read as x y z w" else "body to world"
-    return Finding("quaternion_order", f"columns 'imu.{name}.orientation.*': {text}; {reading} it agrees (valid: {valid})", True)
+    return Finding(
+        "quaternion_order",
+        f"columns 'imu.{name}.orientation.*': {text}; {reading} it agrees (valid: {valid})",
+        True,
+    )
 
 
 def _gyroscope_agrees(name: str, log: MotionLog, orientation: Array) -> Iterator[Finding]:
@@ -69,9 +75,15 @@ def _gyroscope_agrees(name: str, log: MotionLog, orientation: Array) -> Iterator
     stride = max(1, round(WINDOW / log.period))
     if len(log) < 2 * stride:
         return
-    total = np.vstack([np.zeros(3), np.cumsum((rates[1:] + rates[:-1]) / 2 * np.diff(log.time)[:, None], axis=0)])
+    total = np.vstack(
+        [np.zeros(3), np.cumsum((rates[1:] + rates[:-1]) / 2 * np.diff(log.time)[:, None], axis=0)]
+    )
     starts = np.arange(0, len(log) - stride, max(1, stride // 5))
-    whole = np.isfinite(np.column_stack([total[starts + stride] - total[starts], orientation[starts], orientation[starts + stride]]))
+    whole = np.isfinite(
+        np.column_stack(
+            [total[starts + stride] - total[starts], orientation[starts], orientation[starts + stride]]
+        )
+    )
     starts = starts[whole.all(axis=1)]
     if starts.size == 0:
         return
@@ -89,7 +101,9 @@ def _gyroscope_agrees(name: str, log: MotionLog, orientation: Array) -> Iterator
         yield Finding("degrees", text, True)
         return
     if not 0.5 < ratio < 2:
-        yield Finding("gyroscope_scale", f"{where}: {ratio:.2g} times the orientation's rate (valid: about 1)")
+        yield Finding(
+            "gyroscope_scale", f"{where}: {ratio:.2g} times the orientation's rate (valid: about 1)"
+        )
         return
     apart = {
         reading: float(np.median(np.linalg.norm(turn[moving] - integral[moving], axis=1) / size[moving]))
@@ -115,7 +129,9 @@ def _accelerometer_agrees(name: str, log: MotionLog, orientation: Array) -> Iter
     where = f"columns 'imu.{name}.linear_acceleration.*'"
     valid = f"valid: m/s², about {GRAVITY:.2f} at rest"
     if 0.8 < size < 1.2:
-        yield Finding("accelerometer_unit", f"{where}: its norm is {size:.3g}, which looks like g ({valid})", True)
+        yield Finding(
+            "accelerometer_unit", f"{where}: its norm is {size:.3g}, which looks like g ({valid})", True
+        )
         return
     if not 0.6 * GRAVITY < size < 1.6 * GRAVITY:
         yield Finding("accelerometer_unit", f"{where}: its usual norm is {size:.3g} ({valid})")

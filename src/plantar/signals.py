@@ -46,7 +46,10 @@ def evenly_sampled(log: MotionLog) -> MotionLog:
         return log
     count = round(log.duration / period) + 1
     grid = log.time[0] + period * np.arange(count)
-    columns = {name: interpolate(grid, log.time, values, GAP_PERIODS * period) for name, values in _aligned(log).items()}
+    columns = {
+        name: interpolate(grid, log.time, values, GAP_PERIODS * period)
+        for name, values in _aligned(log).items()
+    }
     text = f"{log.name}: sampled unevenly or with gaps; put on an even grid of {1 / period:.4g} Hz, gaps kept as gaps"
     note = Note("resampled", "info", text)
     return MotionLog(log.name, grid, columns, log.path, log.sha256, (*log.notes, note))

@@ -51,7 +51,9 @@ def main(arguments: list[str] | None = None) -> None:
 
 def _application(arguments: list[str]) -> typer.Typer:
     """The tree of commands, with only the one that is called imported."""
-    application = _group("What does your legged robot stand on? Foot stiffness, damping and offset from its own logs.")
+    application = _group(
+        "What does your legged robot stand on? Foot stiffness, damping and offset from its own logs."
+    )
     application.callback()(_root)
     groups = {name: _group(text) for name, text in GROUPS.items()}
     called = _called(arguments)

@@ -16,7 +16,9 @@ def print_feet(out: Console, result: FeetResult) -> None:
         if row.verdict != "usable":
             advice = f" Next: {row.advice}." if row.advice else ""
             style = VERDICT_STYLE[row.verdict]
-            out.print(f"[{style}]{row.foot} {row.axis} {row.name}: {row.verdict}[/]: {escape(row.reason)}.{escape(advice)}")
+            out.print(
+                f"[{style}]{row.foot} {row.axis} {row.name}: {row.verdict}[/]: {escape(row.reason)}.{escape(advice)}"
+            )
     for kind, title in (("direct", "Table 2. Direct validation"), ("cross", "Table 3. Cross validation")):
         rows = [row for row in result.validation if row.kind == kind]
         if rows:
@@ -49,7 +51,17 @@ def validation_table(title: str, rows: list[ValidationRow]) -> object:
          number(row.percent_of_max, 3), number(row.zero_mean_abs, 3), "no better than the offset alone" if bad else "")
         for row, bad in zip(rows, lost, strict=True)
     ]  # fmt: skip
-    columns = ("motion", "foot", "axis", "mean |error|", "rms", "max |torque|", "% of max", "offset alone", "")
+    columns = (
+        "motion",
+        "foot",
+        "axis",
+        "mean |error|",
+        "rms",
+        "max |torque|",
+        "% of max",
+        "offset alone",
+        "",
+    )
     return table(f"{title} [N·m]", columns, cells, ["yellow" if bad else "" for bad in lost])
 
 

@@ -44,7 +44,12 @@ def run(
     if out.exists() and not out.is_dir():
         raise PlantarError(located("is a file", path=out, valid="a folder for the results"))
     step = progress(quiet)
-    settings = FeetSettings(offset=offset, model=model, cutoff=cutoff, window=None if window is None else float(np.radians(window)))  # type: ignore[arg-type]
+    settings = FeetSettings(
+        offset=offset,
+        model=model,
+        cutoff=cutoff,
+        window=None if window is None else float(np.radians(window)),
+    )  # type: ignore[arg-type]
     loaded = load_robot(robot)
     fitted, unseen = ([open_log(path, loaded) for path in paths] for paths in (logs, validate or ()))
     result = identify_feet(loaded, fitted, unseen, settings, step)

@@ -22,7 +22,9 @@ def run(
     logs: Annotated[list[Path], typer.Argument(help="Logs to look at.", metavar="LOG...")],
     columns: Annotated[bool, typer.Option("--columns", help="Also the range of every column.")] = False,
     json: Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Only the exit code: 1 where a log cannot serve.")] = False,
+    quiet: Annotated[
+        bool, typer.Option("--quiet", "-q", help="Only the exit code: 1 where a log cannot serve.")
+    ] = False,
 ) -> None:
     """What is in the logs, what is wrong with them, and what each can identify by itself.
 
@@ -36,7 +38,10 @@ def run(
         summaries.append(inspect_log(loaded, open_log(path, loaded)))
     end_progress(quiet)
     if json:
-        print(dump_json({"schema": "plantar.inspect/1", "logs": [summary.to_dict() for summary in summaries]}), end="")
+        print(
+            dump_json({"schema": "plantar.inspect/1", "logs": [summary.to_dict() for summary in summaries]}),
+            end="",
+        )
     elif not quiet:
         for summary in summaries:
             _print(console(), summary, columns)
@@ -56,7 +61,11 @@ def _print(out: Console, log: LogSummary, columns: bool) -> None:
     if log.carried is not None:
         out.print(f"  the feet carry {log.carried:.2f} kg, the URDF weighs {log.mass:.2f} kg")
     for finding in log.findings:
-        mark = "[red]problem[/]" if finding.fatal else f"[{SEVERITY_STYLE[finding.severity]}]{finding.severity}[/]"
+        mark = (
+            "[red]problem[/]"
+            if finding.fatal
+            else f"[{SEVERITY_STYLE[finding.severity]}]{finding.severity}[/]"
+        )
         out.print(f"  {mark}: {escape(finding.text)}")
     if log.feet:
         out.print(table("Feet", ("foot", "double s", "single s", "load N", "serving s", "pitch deg rms", "roll deg rms",

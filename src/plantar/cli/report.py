@@ -12,8 +12,12 @@ from plantar.result import FEET_SCHEMA, read_result
 
 
 def run(
-    result: Annotated[Path, typer.Argument(help="A result.json with its residuals beside it.", metavar="RESULT.json")],
-    out: Annotated[Path | None, typer.Option("--out", help="Where to write; beside the result if left out.")] = None,
+    result: Annotated[
+        Path, typer.Argument(help="A result.json with its residuals beside it.", metavar="RESULT.json")
+    ],
+    out: Annotated[
+        Path | None, typer.Option("--out", help="Where to write; beside the result if left out.")
+    ] = None,
 ) -> None:
     """Write the result's report.html again, from its result.json and residuals.
 

@@ -41,12 +41,17 @@ def run(
     rows = [choice for choice in (found.compared, found.together) if choice is not None]
     screen.print(_table("\nFor comparison", rows))
     smallest = next((c for c in found.best if c.usual < 1.2 * found.best[-1].usual), found.best[-1])
-    screen.print(f"\n{len(smallest.motions)} logs tell nearly all: {', '.join(smallest.motions)}.", markup=False)
+    screen.print(
+        f"\n{len(smallest.motions)} logs tell nearly all: {', '.join(smallest.motions)}.", markup=False
+    )
 
 
 def _table(title: str, choices: Any) -> object:
     keys = list(choices[0].half_width_percent)
-    heads = [f"{foot[:5]} {axis} {term[0].upper()}".replace("S", "K").replace("D", "C") for foot, axis, term in keys]
+    heads = [
+        f"{foot[:5]} {axis} {term[0].upper()}".replace("S", "K").replace("D", "C")
+        for foot, axis, term in keys
+    ]
     rows = [
         (" + ".join(choice.motions), *(_percent(choice.half_width_percent[key]) for key in keys), number(choice.usual, 3),
          number(choice.condition_number, 3))
@@ -61,7 +66,9 @@ def _percent(value: float) -> str:
 
 def _plain(found: Selection) -> dict[str, Any]:
     def choice(one: Choice) -> dict[str, Any]:
-        widths = [{"foot": f, "axis": a, "name": n, "percent": w} for (f, a, n), w in one.half_width_percent.items()]
+        widths = [
+            {"foot": f, "axis": a, "name": n, "percent": w} for (f, a, n), w in one.half_width_percent.items()
+        ]
         return {**asdict(one), "half_width_percent": widths, "usual": one.usual}
 
     return {

@@ -34,7 +34,9 @@ def end_progress(quiet: bool) -> None:
         print("\r\033[K", end="", file=sys.stderr, flush=True)
 
 
-def table(title: str, columns: Sequence[str], rows: Iterable[Sequence[str]], styles: Sequence[str] = ()) -> Table:
+def table(
+    title: str, columns: Sequence[str], rows: Iterable[Sequence[str]], styles: Sequence[str] = ()
+) -> Table:
     """A table of text cells; numbers to the right, hostile markup escaped. `styles` colours whole rows."""
     drawn = Table(title=title, title_justify="left", header_style="bold", box=None, pad_edge=False)
     cells = [[escape(str(cell)) for cell in row] for row in rows]

@@ -32,6 +32,8 @@ def run(
     rows = validate_feet(content, loaded, [open_log(path, loaded) for path in logs], step)
     end_progress(quiet)
     if json:
-        print(dump_json({"schema": "plantar.validation/1", "validation": [asdict(row) for row in rows]}), end="")
+        print(
+            dump_json({"schema": "plantar.validation/1", "validation": [asdict(row) for row in rows]}), end=""
+        )
     elif not quiet:
         console().print(validation_table("Table 3. Cross validation", rows))
