@@ -326,7 +326,8 @@ def _leg(foot: str) -> str:
         kind, xyz = ("prismatic" if "leg" in joint else "revolute"), (hip if joint == "leg_x" else "0 0 0")
         parts.append(
             f'<joint name="{foot}_{joint}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>'
-            f'<origin xyz="{xyz}"/><axis xyz="{axis}"/><limit lower="-1.2" upper="1.2" effort="100" velocity="10"/></joint>'
+            f'<origin xyz="{xyz}"/><axis xyz="{axis}"/>'
+            f'<limit lower="-1.2" upper="1.2" effort="100" velocity="10"/></joint>'
         )
         parts.append(_link(child, 4.2 if child.endswith("foot") else 0.2))
     return "".join(parts) + (

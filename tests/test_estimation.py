@@ -178,9 +178,9 @@ def test_cosines_of_coloured_scores_see_the_colour() -> None:
 def test_degrees_of_freedom() -> None:
     assert cosine_covariance(np.ones((1000, 1)), 100.0)[1] == 20
     assert cosine_covariance(np.ones((1000, 1)), 1.0)[1] >= 4
-    equal = pooled_freedom(np.ones((5, 2)), np.full(5, 10.0))
+    equal = pooled_freedom(np.ones((5, 2)), np.full((5, 2), 10.0))
     np.testing.assert_allclose(equal, 50.0)
-    one_rules = pooled_freedom(np.array([[1.0], [1e-9]]), np.array([6.0, 100.0]))
+    one_rules = pooled_freedom(np.array([[1.0], [1e-9]]), np.array([[6.0], [100.0]]))
     assert one_rules[0] == pytest.approx(6.0, rel=1e-3)
 
 

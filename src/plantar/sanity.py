@@ -105,8 +105,8 @@ def _wrenches(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     if automatic and len(loads) == len(robot.feet):
         carried = float(np.nanmedian(np.sum(list(loads.values()), axis=0)))
         if 0.07 < carried / weight < 0.14:
-            text = f"columns 'wrench.*.force.z': the feet carry {carried:.4g}, which looks like kgf (valid: N, about {weight:.0f})"
-            yield Finding("force_unit", text, True)
+            text = f"columns 'wrench.*.force.z': the feet carry {carried:.4g}, which looks like kgf"
+            yield Finding("force_unit", f"{text} (valid: N, about {weight:.0f})", True)
         elif swapped_feet(robot, log):
-            text = "the feet's wrenches look swapped: exchanged, they balance gravity far better (check the sensors' names)"
-            yield Finding("swapped_feet", text, True)
+            text = "the feet's wrenches look swapped: exchanged, they balance gravity far better"
+            yield Finding("swapped_feet", f"{text} (check the sensors' names)", True)

@@ -19,7 +19,7 @@ SHORTEST_RUN = 27  # samples
 
 @dataclass(frozen=True)
 class Sampling:
-    """How evenly a log is sampled: `rate` [Hz], `jitter` (rms of the steps' deviation) [s], gaps as (start, end) [s]."""
+    """How evenly a log is sampled: `rate` [Hz], rms `jitter` of the steps [s], gaps as (start, end) [s]."""
 
     rate: float
     jitter: float
@@ -70,7 +70,7 @@ def interpolate(at: Array, time: Array, values: Array, longest: float) -> Array:
 
 def shifted(values: Array, period: float, delay: float) -> Array:
     """Evenly sampled `values` (N, k) as they were `delay` [s] later: undoes a sensor that reports late by `delay`."""
-    time = period * np.arange(len(values))
+    time: Array = period * np.arange(len(values), dtype=np.float64)
     flat = values.reshape(len(values), -1)
     moved = [interpolate(time + delay, time, column, 2 * period) for column in flat.T]
     return np.column_stack(moved).reshape(values.shape)
@@ -94,7 +94,7 @@ def low_pass(values: Array, period: float, cutoff: float) -> Array:
     padding = int(min(3 / cutoff / period, 10_000))
     flat = values.reshape(len(values), -1)
     result = np.full_like(flat, np.nan)
-    for run in runs(np.isfinite(flat).all(axis=1)):
+    for run in runs(np.asarray(np.isfinite(flat).all(axis=1))):
         if run.stop - run.start > SHORTEST_RUN:
             result[run] = _filtered(flat[run], period, cutoff, min(padding, run.stop - run.start - 1))
     return result.reshape(values.shape)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, cast
 
 import numpy as np
 import typer
@@ -12,7 +12,7 @@ from plantar.cli.feet_tables import print_feet
 from plantar.cli.terminal import console, end_progress, progress
 from plantar.errors import PlantarError, located
 from plantar.identify.feet import identify_feet
-from plantar.identify.settings import FeetSettings
+from plantar.identify.settings import FeetSettings, OffsetRule
 from plantar.readers import open_log
 from plantar.report import write_feet_report
 from plantar.result import dump_json
@@ -25,7 +25,7 @@ def run(
     robot: Annotated[Path, typer.Argument(help="Robot file (YAML).", metavar="ROBOT.yaml")],
     logs: Annotated[list[Path], typer.Argument(help="Logs to fit, each with its own offset.", metavar="LOG...")],
     out: Annotated[Path, typer.Option("--out", help="Folder for result.json, residuals.parquet and report.html.")],
-    validate: Annotated[list[Path] | None, typer.Option("--validate", help="A log to score only; repeat for more.")] = None,
+    validate: Annotated[list[Path] | None, typer.Option("--validate", help="Logs to score only.")] = None,
     offset: Annotated[str, typer.Option(help="One offset per motion, or shared by all as in the paper.",
                                         metavar="per-motion|shared")] = "per-motion",
     model: Annotated[str, typer.Option(help="Law of the bush.")] = "kelvin_voigt",
@@ -44,12 +44,8 @@ def run(
     if out.exists() and not out.is_dir():
         raise PlantarError(located("is a file", path=out, valid="a folder for the results"))
     step = progress(quiet)
-    settings = FeetSettings(
-        offset=offset,
-        model=model,
-        cutoff=cutoff,
-        window=None if window is None else float(np.radians(window)),
-    )  # type: ignore[arg-type]
+    reach = None if window is None else float(np.radians(window))
+    settings = FeetSettings(offset=cast(OffsetRule, offset), model=model, cutoff=cutoff, window=reach)
     loaded = load_robot(robot)
     fitted, unseen = ([open_log(path, loaded) for path in paths] for paths in (logs, validate or ()))
     result = identify_feet(loaded, fitted, unseen, settings, step)

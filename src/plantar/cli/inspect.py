@@ -51,8 +51,10 @@ def run(
 
 def _print(out: Console, log: LogSummary, columns: bool) -> None:
     sampling = log.sampling
-    out.print(f"\n[bold]{escape(log.name)}[/]: {log.duration:.1f} s, {log.samples} samples at {sampling.rate:.4g} Hz, "
-              f"jitter {1e3 * sampling.jitter:.2g} ms, {len(sampling.gaps)} gaps, {len(log.columns)} columns")  # fmt: skip
+    out.print(
+        f"\n[bold]{escape(log.name)}[/]: {log.duration:.1f} s, {log.samples} samples at {sampling.rate:.4g} Hz, "
+        f"jitter {1e3 * sampling.jitter:.2g} ms, {len(sampling.gaps)} gaps, {len(log.columns)} columns"
+    )
     for start, end in sampling.gaps[:5]:
         out.print(f"  gap from {start:.3f} to {end:.3f} s")
     holes = [column for column in log.columns if column.missing]
@@ -71,12 +73,13 @@ def _print(out: Console, log: LogSummary, columns: bool) -> None:
         out.print(table("Feet", ("foot", "double s", "single s", "load N", "serving s", "pitch deg rms", "roll deg rms",
                                  "pitch rad/s rms", "roll rad/s rms"), _foot_rows(log)))  # fmt: skip
     if log.parameters:
-        out.print(table("What this log identifies by itself", ("foot", "axis", "parameter", "value", "verdict", "reason"),
-                        [(p.foot, p.axis, p.name, number(p.value), p.verdict, p.reason) for p in log.parameters],
-                        [VERDICT_STYLE[p.verdict] for p in log.parameters]))  # fmt: skip
+        heads = ("foot", "axis", "parameter", "value", "verdict", "reason")
+        rows = [(p.foot, p.axis, p.name, number(p.value), p.verdict, p.reason) for p in log.parameters]
+        styles = [VERDICT_STYLE[p.verdict] for p in log.parameters]
+        out.print(table("What this log identifies by itself", heads, rows, styles))
     if columns:
-        out.print(table("Columns", ("column", "least", "largest", "missing"),
-                        [(c.name, number(c.least), number(c.largest), str(c.missing)) for c in log.columns]))  # fmt: skip
+        ranges = [(c.name, number(c.least), number(c.largest), str(c.missing)) for c in log.columns]
+        out.print(table("Columns", ("column", "least", "largest", "missing"), ranges))
     for note in log.notes:
         out.print(f"  [{SEVERITY_STYLE[note.severity]}]note: {escape(note.text)}[/]")
 

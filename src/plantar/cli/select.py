@@ -53,8 +53,8 @@ def _table(title: str, choices: Any) -> object:
         for foot, axis, term in keys
     ]
     rows = [
-        (" + ".join(choice.motions), *(_percent(choice.half_width_percent[key]) for key in keys), number(choice.usual, 3),
-         number(choice.condition_number, 3))
+        (" + ".join(choice.motions), *(_percent(choice.half_width_percent[key]) for key in keys),
+         number(choice.usual, 3), number(choice.condition_number, 3))
         for choice in choices
     ]  # fmt: skip
     return table(title, ("logs", *heads, "usual", "condition"), rows)

@@ -29,11 +29,11 @@ class TriangularFactor:
         stacked = np.column_stack([regressor, response])
         if len(stacked) < stacked.shape[1]:
             stacked = np.vstack([stacked, np.zeros((stacked.shape[1] - len(stacked), stacked.shape[1]))])
-        return cls(np.linalg.qr(stacked, mode="r"), len(regressor))
+        return cls(np.asarray(np.linalg.qr(stacked, mode="r")), len(regressor))
 
     def __add__(self, other: TriangularFactor) -> TriangularFactor:
         stacked = np.vstack([self.factor, other.factor])
-        return TriangularFactor(np.linalg.qr(stacked, mode="r"), self.rows + other.rows)
+        return TriangularFactor(np.asarray(np.linalg.qr(stacked, mode="r")), self.rows + other.rows)
 
     def among(self, places: Array, size: int) -> TriangularFactor:
         """The same rows as part of a problem with `size` parameters, of which these are the ones at `places` (k,)."""
@@ -75,7 +75,7 @@ class TriangularFactor:
         return np.asarray(solution / scale)
 
     def information_inverse(self) -> Array:
-        """(RᵀR)⁻¹ (k, k): covariance of the parameters for residuals of unit variance; pseudo-inverse where singular."""
+        """(RᵀR)⁻¹, (k, k): the parameters' covariance for unit residuals; the pseudo-inverse where singular."""
         triangle, scale = self._scaled()
         inverse = linalg.pinv(triangle, rtol=RANK_TOLERANCE) / scale[:, None]
         return np.asarray(inverse @ inverse.T)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Literal
 
 import numpy as np
 
@@ -46,6 +47,6 @@ def score_axis(
             offset, trivial = float(np.mean((torque - reconstructed)[first])), float(np.mean(torque[first]))
         predicted = reconstructed + offset
         predictions[recording.name, foot, axis] = predicted
-        kind = "direct" if recording.role == "fit" else "cross"
+        kind: Literal["direct", "cross"] = "direct" if recording.role == "fit" else "cross"
         rows.append(score(kind, recording.name, foot, axis, torque[scored], predicted[scored], trivial))
     return rows

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from plantar.contact import DOUBLE, SINGLE, SUPPORTS
-from plantar.conventions import GRAVITY, ROTATIONAL_AXES
+from plantar.conventions import GRAVITY, ROTATIONAL_AXES, Array
 from plantar.errors import PlantarError
 from plantar.identify.feet import identify_feet
 from plantar.identify.recording import Recording, prepare
@@ -110,7 +110,7 @@ def _foot(recording: Recording, foot: str) -> FootSummary:
     bush, contact, period = recording.bushes[foot], recording.contacts[foot], recording.period
     used = contact.used
 
-    def rms(values: np.ndarray) -> float:  # type: ignore[type-arg]
+    def rms(values: Array) -> float:
         return float(np.std(values[used])) if used.any() else 0.0
 
     return FootSummary(
