@@ -66,7 +66,11 @@ def prepare(robot: RobotModel, log: MotionLog, role: Role, settings: FeetSetting
     problems = [finding for finding in findings if finding.fatal]
     if problems:
         raise DataError(located(problems[0].text, path=log.source))
-    notes = [*log.notes, *log.joint_notes(robot), *(Note(f.code, f.severity, f"{log.name}: {f.text}") for f in findings)]
+    notes = [
+        *log.notes,
+        *log.joint_notes(robot),
+        *(Note(f.code, f.severity, f"{log.name}: {f.text}") for f in findings),
+    ]
     even = evenly_sampled(log)
     notes += even.notes[len(log.notes) :]
     period = even.period
@@ -77,7 +81,9 @@ def prepare(robot: RobotModel, log: MotionLog, role: Role, settings: FeetSetting
     contacts = _contacts(robot, even, raw, settings, notes)
     filtered = {name: _filtered(state, period, settings.cutoff) for name, state in raw.items()}
     for name, state in filtered.items():
-        valid = np.isfinite(np.column_stack([state.deflection, state.rate, state.torque])).all(axis=1)
+        valid = np.asarray(
+            np.isfinite(np.column_stack([state.deflection, state.rate, state.torque])).all(axis=1)
+        )
         contacts[name].leave_out(~valid, NOT_RECORDED)
         contacts[name].leave_out(_run_edges(valid, FILTER_EDGE / settings.cutoff / period), "filter's edge")
     return Recording(even, role, filtered, contacts, tuple(notes))
@@ -106,7 +112,9 @@ def _velocities(robot: RobotModel, log: MotionLog, cutoff: float, notes: list[No
             continue
         position, recorded = log.joint(name, "position"), log.joint(name, "velocity")
         if position is not None:
-            velocities[:, place] = differentiate(low_pass(position, log.period, WIDE_BAND * cutoff), log.period)
+            velocities[:, place] = differentiate(
+                low_pass(position, log.period, WIDE_BAND * cutoff), log.period
+            )
             continue
         missing.append(name)
         if recorded is not None:
@@ -137,7 +145,10 @@ def _attitude(log: MotionLog, imu: Imu, notes: list[Note]) -> tuple[Array, Array
     whole = np.isfinite(np.column_stack([rates, acceleration])).all(axis=1)
     if not whole.any():
         raise DataError(located(f"imu '{name}' has no sample with all values", path=log.source))
-    filled = [interpolate(log.time, log.time[whole], column[whole], np.inf) for column in (*rates.T, *acceleration.T)]
+    filled = [
+        interpolate(log.time, log.time[whole], column[whole], np.inf)
+        for column in (*rates.T, *acceleration.T)
+    ]
     bridged = np.nan_to_num(np.column_stack(filled))
     orientation = attitude_from_inertial(bridged[:, :3], bridged[:, 3:], log.period)
     orientation[~whole] = np.nan
@@ -150,21 +161,32 @@ def _rates_from(orientation: Array, period: float) -> Array:
     """Angular velocity in the body frame, (N, 3), from quaternions w x y z by central differences."""
     norm = np.linalg.norm(orientation, axis=1, keepdims=True)
     unit = orientation / norm
-    unit = unit * np.concatenate([[1.0], np.cumprod(np.where(np.sum(unit[1:] * unit[:-1], axis=1) < 0, -1.0, 1.0))])[:, None]
+    unit = (
+        unit
+        * np.concatenate([[1.0], np.cumprod(np.where(np.sum(unit[1:] * unit[:-1], axis=1) < 0, -1.0, 1.0))])[
+            :, None
+        ]
+    )
     slope = differentiate(unit, period)
     w, vector, dw, dvector = unit[:, :1], unit[:, 1:], slope[:, :1], slope[:, 1:]
     return np.asarray(2 * (w * dvector - dw * vector - np.cross(vector, dvector)))
 
 
 def _contacts(
-    robot: RobotModel, log: MotionLog, bushes: Mapping[str, BushState], settings: FeetSettings, notes: list[Note]
+    robot: RobotModel,
+    log: MotionLog,
+    bushes: Mapping[str, BushState],
+    settings: FeetSettings,
+    notes: list[Note],
 ) -> dict[str, FootContact]:
     """Phases from the vertical forces, and the samples near the sole's edge left out."""
     force = {name: low_pass(state.force_z, log.period, 2 * settings.cutoff) for name, state in bushes.items()}
     always = {name: foot.contact == "always" for name, foot in robot.feet.items()}
     carried, model_weight = carried_weight(force), robot.mass * GRAVITY
     if not any(always.values()) and abs(carried - model_weight) > WEIGHT_MISMATCH * model_weight:
-        text = f"{log.name}: the feet carry {carried / GRAVITY:.1f} kg where the URDF weighs {robot.mass:.1f} kg"
+        text = (
+            f"{log.name}: the feet carry {carried / GRAVITY:.1f} kg where the URDF weighs {robot.mass:.1f} kg"
+        )
         notes.append(Note("weight", "warning", text))
     weight = carried if carried > 0.3 * model_weight else model_weight
     contacts = detect_contact(force, always, weight, log.period)
@@ -174,7 +196,9 @@ def _contacts(
         distance = inside_distance(state.cop, robot.feet[name].sole.polygon)
         near = _widened(distance < settings.edge_margin, round(0.05 / log.period))
         margin = f"{1000 * settings.edge_margin:.0f} mm"
-        contacts[name].leave_out(near & contacts[name].standing, f"tipping: centre of pressure within {margin} of the edge")
+        contacts[name].leave_out(
+            near & contacts[name].standing, f"tipping: centre of pressure within {margin} of the edge"
+        )
     return contacts
 
 
@@ -191,7 +215,9 @@ def moved_centre(recording: Recording, compliance: Mapping[str, float], cutoff: 
     the ankle: torque' = torque - z e_z × force. Left out, K comes out too large by F_z²·compliance.
     """
     bushes = {
-        foot: replace(bush, torque=bush.torque + compliance[foot] * lever_effect(bush, recording.period, cutoff))
+        foot: replace(
+            bush, torque=bush.torque + compliance[foot] * lever_effect(bush, recording.period, cutoff)
+        )
         for foot, bush in recording.bushes.items()
     }
     return replace(recording, bushes=bushes)
@@ -217,5 +243,3 @@ def _widened(samples: Mask, reach: int) -> Mask:
     for run in runs(samples):
         wide[max(0, run.start - reach) : run.stop + reach] = True
     return wide
-
-
