@@ -5,13 +5,15 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 
 from plantar.motions.campaign import Postures, plan_motion
 from plantar.motions.plan import Plan
 from plantar.robot import RobotModel
-from plantar.twin import hrp2
+from plantar.twin import cache, hrp2
 from plantar.twin.bush import PAPER, Feet
+from plantar.twin.keep import plan_arrays, plan_from, plan_key, rollout_arrays, rollout_from, rollout_key
 from plantar.twin.physics import Physics
 from plantar.twin.presets import DEFAULT, preset_named
 from plantar.twin.recording import TwinRecording, record
@@ -67,7 +69,34 @@ def postures_of(robot: RobotModel) -> Postures:
     return hrp2.postures() if robot.name == hrp2.NAME else Postures()
 
 
-def _roll(motion: str | Plan, robot: RobotModel, physics: Physics, progress: Progress | None) -> Rollout:
-    plan = motion if isinstance(motion, Plan) else plan_motion(motion, robot, postures_of(robot))
+def planned(name: str, robot: RobotModel, **options: float | None) -> Plan:
+    """`plan_motion` from the robot's own postures, kept in the cache."""
+    postures = postures_of(robot)
+    key = plan_key(name, robot, postures, options)
+    if (kept := cache.load(key)) is not None:
+        return plan_from(name, kept)
+    plan = plan_motion(name, robot, postures, **options)
+    cache.save(key, plan_arrays(plan))
+    return plan
+
+
+def rolled(
+    plan: Plan, robot: RobotModel, physics: Physics, progress: Callable[[float], None] | None = None
+) -> Rollout:
+    """`roll_out` on the scene of `physics`, kept in the cache."""
     xml = scene_xml(robot, plan, physics, hrp2.look(robot))
-    return roll_out(robot, plan, physics, xml, None if progress is None else lambda share: progress(plan.name, share))
+    key = rollout_key(plan, physics, xml)
+    if (kept := cache.load(key)) is not None:
+        return rollout_from(plan.name, kept)
+    rollout = roll_out(robot, plan, physics, xml, progress)
+    cache.save(key, rollout_arrays(rollout))
+    return rollout
+
+
+def _roll(motion: str | Plan, robot: RobotModel, physics: Physics, progress: Progress | None) -> Rollout:
+    plan = motion if isinstance(motion, Plan) else planned(motion, robot)
+    report = None if progress is None else partial(progress, plan.name)
+    rollout = rolled(plan, robot, physics, report)
+    if report is not None:
+        report(1.0)
+    return rollout

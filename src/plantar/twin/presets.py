@@ -9,36 +9,41 @@ from typing import Final
 
 from plantar.errors import PlantarError, located
 from plantar.twin.bush import Feet
-from plantar.twin.physics import Physics
+from plantar.twin.mjcf import FLOOR
+from plantar.twin.physics import Physics, Slip
 from plantar.twin.sensors import DEGREE, Sensors
 
-SLIP_TORQUE: Final = {"pitch": 5.0, "roll": 2.2}  # N·m: 7 to 10 % of the largest torques of the campaign
+SLIP_TORQUE: Final = (5.0, 2.2)  # N·m in pitch and roll: 7 to 10 % of the largest torques of the campaign
 SLIP_ANGLE: Final = 0.01  # rad
+HARDENING: Final = 5000.0  # N·m/rad³: a tenth more torque at 0.1 rad
+SOFT_FLOOR: Final = (62500.0, 500.0)  # a contact that takes 4 ms to settle
+SLIPPERY: Final = (Slip(9.0, 10.0, 0.01), Slip(21.0, 22.5, 0.01))  # seconds of every motion
 
 
 @dataclass(frozen=True)
 class Preset:
     """Imperfections of the physics and of the sensors.
 
-    `slip_torque`: of the elastoplastic element beside each spring, (pitch, roll) [N·m].
+    `slip_torque`: of the elastoplastic element beside each spring, (pitch, roll) [N·m]; `hardening` [N·m/rad³] of
+    both axes; `floor` and `slips` as in `Physics`.
     """
 
     name: str
     sensors: Sensors
     slip_torque: tuple[float, float] = (0.0, 0.0)
+    hardening: float = 0.0
+    floor: tuple[float, float] = FLOOR
+    slips: tuple[Slip, ...] = ()
 
     def physics(self, bushes: Feet | None) -> Physics:
-        """The world in which these bushes stand."""
+        """The world in which these bushes stand; rigid feet (None) have no rubber, the floor stays."""
+        world = Physics(bushes=bushes, floor=self.floor, slips=self.slips)
         if bushes is None:
-            return Physics(bushes=None)
+            return world
         pitch, roll = self.slip_torque
-        rubber = {
-            foot: replace(bush, pitch_slip_torque=pitch, roll_slip_torque=roll, slip_angle=SLIP_ANGLE)
-            if pitch or roll
-            else bush
-            for foot, bush in bushes.items()
-        }
-        return Physics(bushes=rubber)
+        rubber = {"pitch_hardening": self.hardening, "roll_hardening": self.hardening}
+        rubber |= {"pitch_slip_torque": pitch, "roll_slip_torque": roll, "slip_angle": SLIP_ANGLE}
+        return replace(world, bushes={foot: replace(bush, **rubber) for foot, bush in bushes.items()})
 
 
 SENSORS: Final = Sensors(
@@ -58,13 +63,33 @@ SENSORS: Final = Sensors(
     torque_zero=0.5,
 )
 
+HARSH: Final = replace(
+    SENSORS,
+    **{
+        size: 2 * getattr(SENSORS, size)
+        for size in (
+            "encoder", "encoder_rate", "effort", "attitude", "attitude_bias", "attitude_drift", "yaw_bias", "yaw_drift",
+            "force", "torque", "force_zero", "torque_zero",
+        )
+    },
+    gyroscope=(0.0026, 0.0026, 0.0044),
+    accelerometer=(0.006, 0.006, 0.010),
+    gyroscope_bias=0.001,
+    wrench_delay=0.010,
+    filtered_attitude=True,
+)  # fmt: skip
+
 PRESETS: Final[Mapping[str, Preset]] = MappingProxyType(
     {
-        "ideal": Preset("ideal", Sensors()),
-        "sensors": Preset("sensors", SENSORS),
-        "realistic": Preset(
-            "realistic", replace(SENSORS, wrench_delay=0.005), (SLIP_TORQUE["pitch"], SLIP_TORQUE["roll"])
-        ),
+        preset.name: preset
+        for preset in (
+            Preset("ideal", Sensors()),
+            Preset("sensors", SENSORS),
+            Preset("realistic", replace(SENSORS, wrench_delay=0.005), SLIP_TORQUE),
+            Preset(
+                "harsh", HARSH, (2 * SLIP_TORQUE[0], 2 * SLIP_TORQUE[1]), HARDENING, SOFT_FLOOR, SLIPPERY
+            ),
+        )
     }
 )
 DEFAULT: Final = "realistic"

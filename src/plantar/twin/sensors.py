@@ -11,6 +11,7 @@ from scipy.interpolate import CubicSpline
 
 from plantar.conventions import Array
 from plantar.robot import RobotModel
+from plantar.twin.attitude_filter import filtered_attitude
 from plantar.twin.exact import Columns
 
 DEGREE: Final = np.pi / 180
@@ -71,7 +72,14 @@ def sense(
                 zero = drawn[f"{column}.bias"] = random.normal(0, bias) if bias else 0.0
                 columns[column] = columns[column] + zero + _white(white[place], time, random)
         names = [f"{prefix}.orientation.{axis}" for axis in "wxyz"]
-        quaternions, errors = _attitude(np.column_stack([columns[n] for n in names]), time, sensors, random)
+        believed = np.column_stack([columns[n] for n in names])
+        if sensors.filtered_attitude:
+            rates, proper = (
+                np.column_stack([columns[f"{prefix}.{quantity}.{axis}"] for axis in "xyz"])
+                for quantity in ("angular_velocity", "linear_acceleration")
+            )
+            believed = filtered_attitude(believed[0], rates, proper, float(np.median(np.diff(time))))
+        quaternions, errors = _attitude(believed, time, sensors, random)
         columns |= dict(zip(names, quaternions.T, strict=True))
         drawn |= {f"{prefix}.orientation.{key}": value for key, value in errors.items()}
     for foot in robot.feet.values():

@@ -1,0 +1,94 @@
+"""Results kept on disk under a hash of everything that they come from, so that none can be stale."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import os
+import sys
+import zipfile
+from collections.abc import Iterable, Mapping
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+
+import numpy as np
+
+import plantar.motions
+import plantar.twin
+from plantar import balance, conventions, polygon, robot
+from plantar.conventions import Array
+from plantar.errors import PlantarError
+from plantar.files import atomic_write
+
+LIMIT = 2 * 2**30  # bytes in the folder: the oldest files go first
+PACKAGES = ("mujoco", "pin", "pin-pink", "numpy", "scipy")
+
+
+def folder() -> Path:
+    """Where results are kept: `PLANTAR_CACHE`, or the platform's place for a user's caches."""
+    if chosen := os.environ.get("PLANTAR_CACHE"):
+        return Path(chosen)
+    if sys.platform == "win32":
+        return Path(os.environ.get("LOCALAPPDATA", Path.home())) / "plantar" / "cache"
+    if sys.platform == "darwin":
+        return Path.home() / "Library" / "Caches" / "plantar"
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "plantar"
+
+
+def key(*parts: str | Array) -> str:
+    """Hash of what a result comes from, of the code that makes it and of the packages that this calls."""
+    digest = hashlib.sha256(_code().encode())
+    for part in parts:
+        content = part.encode() if isinstance(part, str) else np.ascontiguousarray(part).tobytes()
+        shape = "text" if isinstance(part, str) else f"{part.dtype}{part.shape}"
+        digest.update(f"|{shape}:{len(content)}|".encode())
+        digest.update(content)
+    return digest.hexdigest()
+
+
+def load(name: str) -> dict[str, Array] | None:
+    """The arrays kept under a key, or None when there are none or the file is damaged."""
+    path = folder() / f"{name}.npz"
+    try:
+        with np.load(path, allow_pickle=False) as kept:
+            arrays = {field: kept[field] for field in kept.files}
+        os.utime(path)
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
+        return None
+    return arrays
+
+
+def save(name: str, arrays: Mapping[str, Array]) -> None:
+    """Keep arrays under a key; a folder that cannot be written keeps nothing."""
+    content = io.BytesIO()
+    np.savez(content, allow_pickle=False, **dict(arrays))  # type: ignore[arg-type]
+    try:
+        with atomic_write(folder() / f"{name}.npz") as handle:
+            handle.write(content.getbuffer())
+        _prune(folder().glob("*.npz"))
+    except (PlantarError, OSError):
+        return
+
+
+def _prune(files: Iterable[Path]) -> None:
+    """Remove the files used longest ago until the rest fits."""
+    room = LIMIT
+    for file in sorted(files, key=lambda file: file.stat().st_mtime, reverse=True):
+        room -= file.stat().st_size
+        if room < 0:
+            file.unlink(missing_ok=True)
+
+
+@cache
+def _code() -> str:
+    """Hash of the source of everything that a plan or a rollout runs through."""
+    digest = hashlib.sha256()
+    for package in PACKAGES:
+        digest.update(f"{package} {version(package)}\n".encode())
+    for module in (plantar.motions, plantar.twin):
+        for file in sorted(Path(str(module.__file__)).parent.glob("*.py")):
+            digest.update(file.name.encode() + b"\0" + file.read_bytes())
+    for module in (balance, conventions, polygon, robot):
+        digest.update(Path(str(module.__file__)).read_bytes())
+    return digest.hexdigest()
