@@ -17,9 +17,10 @@ from plantar.errors import DataError
 from plantar.estimation.law_fit import LawFit, refine
 from plantar.estimation.law_search import Numbers, Pieces, fit_pieces, held_out_squares
 from plantar.estimation.law_trials import Prepared, Trial, prepare_trials
-from plantar.models import LAWS, KelvinVoigt, Law
+from plantar.models import LAWS, KelvinVoigt, Law, reach
 
 LEAST_GAIN = 0.10  # of the held-out rms error
+TELLING_GAIN = 0.3  # of the held-out rms error: so much better, a law that cannot be identified is still told of
 FOLDS = 5  # contiguous parts that recordings are cut into where they cannot stand for one another
 SEED_REACH = 2.2  # ratio of shapes to those of a simpler law, within which a richer one is looked for
 DOMINANT = 0.5  # share of all motion in one recording, above which the others cannot stand for it
@@ -48,7 +49,9 @@ class LawChoice:
     """The chosen law's fit, the linear equivalent (K, C of Kelvin-Voigt over the same motions), and the
     ranking.
 
-    `untried` are laws that elaborate one which gained nothing.
+    `untried` are laws that elaborate one which gained nothing, or need what the motions do not hold. What
+    holds, holds for deflections up to `reach` [rad] from the middle: an element that none of these motions
+    made slip counts as part of the spring. `caution` says so where the motions show that there is one.
     """
 
     fit: LawFit
@@ -57,6 +60,8 @@ class LawChoice:
     held_out: str
     reason: str
     untried: tuple[str, ...]
+    reach: float
+    caution: str | None
 
 
 def choose_law(
@@ -81,7 +86,11 @@ def choose_law(
     scores: list[LawScore] = []
     errors: list[Array] = []
     untried = []
+    motions = [each.motion for each in prepared]
     for law in sorted(laws, key=lambda law: law.elaborates is not None):
+        if not law.applies(motions):
+            untried.append(law.name)
+            continue
         simpler = [score.law.name for score in scores]
         seed = None
         if law.elaborates in simpler:
@@ -105,6 +114,8 @@ def choose_law(
         held_out=held_out,
         reason=_reason(chosen, scores[linear], held_out),
         untried=tuple(untried),
+        reach=reach(motions),
+        caution=_caution(scores, errors, winner),
     )
 
 
@@ -174,6 +185,25 @@ def _clear(scores: Sequence[LawScore], errors: Sequence[Array], *, simple: int, 
     standard_error = float(np.std(fall) * np.sqrt(len(fall)))
     enough = scores[rich].held_out_rms < (1 - LEAST_GAIN) * scores[simple].held_out_rms
     return enough and float(fall.sum()) > standard_error
+
+
+def _caution(scores: Sequence[LawScore], errors: Sequence[Array], winner: int) -> str | None:
+    """Whether a law that was refused predicts clearly better: then the bush is not as the chosen law says."""
+    better = [
+        place
+        for place, score in enumerate(scores)
+        if score.refused is not None
+        and score.held_out_rms < (1 - TELLING_GAIN) * scores[winner].held_out_rms
+        and _clear(scores, errors, simple=winner, rich=place)
+    ]
+    if not better:
+        return None
+    best = scores[min(better, key=lambda place: scores[place].held_out_rms)]
+    return (
+        f"{best.law.name} predicts held-out motion better ({best.held_out_rms:.3g} against "
+        f"{scores[winner].held_out_rms:.3g} rms) but cannot be identified: {best.refused}; stiffness and damping "
+        "are those of these motions only (record larger motions)"
+    )
 
 
 def _reason(chosen: LawScore, linear: LawScore, held_out: str) -> str:

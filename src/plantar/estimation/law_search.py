@@ -135,17 +135,18 @@ def fit_pieces(pieces: Pieces, chosen: Mask, *, shared_offset: bool = False) -> 
 def held_out_squares(pieces: Pieces, fits: Fits, held: Mask, shape: int, *, whole: bool) -> Array:
     """Squared error (held pieces,) of one shape's fit on pieces that it has not seen.
 
-    `whole`: the pieces are recordings of which the fit knows nothing, so their offsets are their own; else
-    these come from the rest of the same recording. The start of the memory is a piece's own in both cases.
+    `whole`: the pieces are recordings of which the fit knows nothing, so that offset and start are their own;
+    else the offset comes from the rest of the same recording, and a start that does not fade too.
     """
     values, squares = fits.values[shape], []
     for piece in np.flatnonzero(held):
         grams = pieces.grams[piece, shape]
         if whole:
             squares.append(min(_profiled(gram, values) for gram in grams))
-        else:
-            vector = np.concatenate([values, [fits.offsets[shape, pieces.trial[piece]], -1.0]])
-            squares.append(min(float(vector @ gram @ vector) for gram in grams))
+            continue
+        vector = np.concatenate([values, [fits.offsets[shape, pieces.trial[piece]], -1.0]])
+        tried = grams if pieces.law.forgets else grams[[fits.starts[piece, shape]]]
+        squares.append(min(float(vector @ gram @ vector) for gram in tried))
     return np.array(squares)
 
 

@@ -7,7 +7,7 @@ from plantar.models.elastoplastic import Elastoplastic
 from plantar.models.hardening import Hardening
 from plantar.models.iwan import Iwan
 from plantar.models.kelvin_voigt import KelvinVoigt
-from plantar.models.law import Law, Motion
+from plantar.models.law import BESIDE, Law, Motion, reach
 from plantar.models.standard_linear_solid import StandardLinearSolid
 
 LAWS: dict[str, Law] = {
@@ -25,6 +25,7 @@ LAWS: dict[str, Law] = {
 }
 
 __all__ = [
+    "BESIDE",
     "LAWS",
     "BoucWen",
     "Coulomb",
@@ -36,4 +37,5 @@ __all__ = [
     "Law",
     "Motion",
     "StandardLinearSolid",
+    "reach",
 ]

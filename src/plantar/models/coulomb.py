@@ -11,7 +11,7 @@ from plantar.conventions import Array
 from plantar.models.law import BESIDE, Law, Motion
 
 SMOOTHEST = 0.3  # of the motions' fast rate: wider than that, friction is a damper
-SHARPEST = 0.01
+SHARPEST = 0.003
 
 
 class Coulomb(Law):
@@ -33,7 +33,7 @@ class Coulomb(Law):
             [np.abs(motion.rate[run]) for motion in motions for run in motion.runs] or [np.zeros(1)]
         )
         fast = float(np.percentile(rates, 98)) or 1.0
-        return np.geomspace(SHARPEST * fast, SMOOTHEST * fast, 7)[:, None]
+        return np.geomspace(SHARPEST * fast, SMOOTHEST * fast, 9)[:, None]
 
     def extra(self, motions: Sequence[Motion], shapes: Array, starts: Sequence[Array]) -> list[Array]:
         """Sign of the rate, smooth: (N, 1, b)."""

@@ -26,6 +26,10 @@ class Coupled(Law):
         "cross_damping": ("N.m.s/rad", "N.s/rad"),
     }
 
+    def applies(self, motions: Sequence[Motion]) -> bool:
+        """Whether every motion has the other axis."""
+        return all(motion.across is not None and motion.across_rate is not None for motion in motions)
+
     def extra(self, motions: Sequence[Motion], shapes: Array, starts: Sequence[Array]) -> list[Array]:
         """Deflection and rate of the other axis, (N, 2, b). Raises DataError where a motion lacks them."""
         columns = []

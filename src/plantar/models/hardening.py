@@ -10,15 +10,14 @@ import numpy as np
 from plantar.conventions import Array
 from plantar.models.law import BESIDE, Law, Motion
 
-
 ZERO_ERROR = 0.01  # rad (m): largest error of the deflection's zero that is looked for
 
 
 class Hardening(Law):
     """torque = K·q + C·q̇ + hardening·((q - e)³ + e³) + offset; K is the slope at zero deflection.
 
-    e is the error of the deflection's zero in each run (attitude bias), in starts of `ZERO_ERROR`: a cube does not
-    absorb it into the offset as a spring does.
+    e is the error of the deflection's zero in each run (attitude bias), in starts of `ZERO_ERROR`: a cube
+    does not absorb it into the offset as a spring does.
     """
 
     name: ClassVar[str] = "hardening"

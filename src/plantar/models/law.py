@@ -80,6 +80,10 @@ class Law(ABC):
             return DAMPING_UNIT[axis]
         return self.units[term][axis == "z"]
 
+    def applies(self, motions: Sequence[Motion]) -> bool:
+        """Whether these motions hold what the law needs."""
+        return True
+
     def candidates(self, motions: Sequence[Motion]) -> Array:
         """Shapes (g, s) worth trying for these motions; one empty shape where the law has none.
 

@@ -1,0 +1,296 @@
+"""Fits of the laws of the bush to recordings whose rubber is known, and the choice between them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from bush_trials import PERIOD, Rubber, campaign, largest_torque, recorded, sway, tilt, unseen
+from plantar.errors import DataError
+from plantar.estimation.law_choice import choose_law
+from plantar.estimation.law_fit import LawFit, fit_law
+from plantar.estimation.law_influence import Linearised
+from plantar.estimation.law_opening import open_unseen
+from plantar.estimation.law_trials import Trial
+from plantar.models import LAWS, BoucWen, Elastoplastic, Hardening, KelvinVoigt, Motion
+from plantar.signals import low_pass
+
+JENKINS = Rubber(slip_torque=5.0, slip_angle=0.01)
+
+
+def error_percent(fit: LawFit, rubber: Rubber) -> tuple[float, float]:
+    return (
+        100 * abs(fit.value("stiffness") / rubber.stiffness - 1),
+        100 * abs(fit.value("damping") / rubber.damping - 1),
+    )
+
+
+def unseen_error(fit: LawFit, trials: list[Trial]) -> float:
+    """Mean absolute error after the first second, which gives the offset."""
+    errors = []
+    for trial in trials:
+        measured = low_pass(trial.torque, PERIOD, fit.cutoff)
+        served = np.flatnonzero(trial.used)
+        first = np.zeros(len(measured), dtype=bool)
+        first[served[:200]] = True
+        predicted = open_unseen(fit, trial, first).predicted
+        errors.append(np.mean(np.abs(measured - predicted)[served[200:]]))
+    return float(np.mean(errors))
+
+
+SHAPES = {
+    "coulomb": [0.02],
+    "elastoplastic": [0.011],
+    "iwan": [0.009],
+    "bouc_wen": [0.01, 1.8],
+    "standard_linear_solid": [0.6],
+}
+OWN = {
+    "hardening": [6000.0],
+    "coulomb": [3.0],
+    "elastoplastic": [5.0],
+    "iwan": [5.0],
+    "bouc_wen": [5.0],
+    "standard_linear_solid": [150.0],
+    "coupled": [30.0, -2.0],
+}
+
+
+@pytest.mark.parametrize("name", sorted(LAWS))
+def test_a_law_recovers_its_own_parameters(name: str) -> None:
+    law = LAWS[name]
+    rng = np.random.default_rng(5)
+    values, shape = np.array([434.0, 15.9, *OWN.get(name, [])]), np.array(SHAPES.get(name, []))
+    trials = []
+    for label, start in (("a", 0.0), ("b", 0.3)):
+        moved, other = sway(rng, 0.08, 0.5), sway(rng, 0.03, 0.7)
+        motion = Motion(
+            moved,
+            np.gradient(moved, PERIOD),
+            PERIOD,
+            other[:, None],
+            np.gradient(other, PERIOD)[:, None],
+        )
+        starts = np.array([start if law.remembers else 0.0])
+        torque = law.columns(motion, shape, starts) @ values + rng.standard_normal()
+        used = np.ones(len(moved), dtype=bool)
+        used[:60] = used[-60:] = False
+        trials.append(Trial(label, motion, torque, used))
+    fit = fit_law(law, trials)
+    np.testing.assert_allclose(fit.values[:2], values[:2], rtol=5e-3)  # paths are thinned out
+    np.testing.assert_allclose(fit.values[2:], values[2:], rtol=0.01)
+    np.testing.assert_allclose(fit.shape, shape, rtol=0.02)
+    assert fit.doubts == ()
+
+
+def test_kelvin_voigt_is_plain_least_squares() -> None:
+    trials = campaign(1, Rubber())
+    fit = fit_law(KelvinVoigt(), trials)
+    rows, right, places = [], [], []
+    for place, trial in enumerate(trials):
+        filtered = low_pass(
+            np.column_stack([trial.motion.deflection, trial.motion.rate, trial.torque]), PERIOD, 5.0
+        )
+        ones = np.zeros((int(trial.used.sum()), len(trials)))
+        ones[:, place] = 1
+        rows.append(np.column_stack([filtered[trial.used, :2], ones]))
+        right.append(filtered[trial.used, 2])
+        places.append(trial.label)
+    expected = np.linalg.lstsq(np.vstack(rows), np.concatenate(right), rcond=None)[0]
+    np.testing.assert_allclose(fit.values, expected[:2], rtol=5e-4)  # the fit thins the samples out
+    np.testing.assert_allclose([fit.offsets[label] for label in places], expected[2:], atol=0.01)
+
+
+@pytest.mark.parametrize("shared", [False, True])
+def test_nuisances_projected_out_are_the_same_as_fitted(shared: bool) -> None:
+    """Against one dense least-squares problem with a column for every offset and every start."""
+    rng = np.random.default_rng(2)
+    sizes, run_counts, width = (90, 140), (2, 3), 4
+    designs = [rng.standard_normal((n, width)) for n in sizes]
+    responses = [rng.standard_normal(n) + 2 for n in sizes]
+    runs = [np.sort(rng.integers(0, count, n)) for n, count in zip(sizes, run_counts, strict=True)]
+    memories = [np.exp(-0.05 * np.arange(n)) + 0.2 * rng.random(n) for n in sizes]
+    found = Linearised(designs, responses, shared, memories, runs)
+    rows = sum(sizes)
+    offsets = np.zeros((rows, 1 if shared else 2))
+    starts = np.zeros((rows, sum(run_counts)))
+    begin, first = 0, 0
+    for place, (n, count) in enumerate(zip(sizes, run_counts, strict=True)):
+        offsets[begin : begin + n, 0 if shared else place] = 1
+        for run in range(count):
+            mine = np.flatnonzero(runs[place] == run)
+            starts[begin + mine, first + run] = memories[place][mine]
+        begin, first = begin + n, first + count
+    dense = np.column_stack([np.vstack(designs), offsets, starts])
+    expected = np.linalg.lstsq(dense, np.concatenate(responses), rcond=None)[0]
+    np.testing.assert_allclose(found.solve(), expected[:width], atol=1e-10)
+    influence = np.vstack(found.influences())
+    pseudo = np.linalg.pinv(dense)[: width + offsets.shape[1]].T
+    np.testing.assert_allclose(influence[:, :width], pseudo[:, :width], atol=1e-10)
+    np.testing.assert_allclose(influence[:, width:][:, : offsets.shape[1]], pseudo[:, width:], atol=1e-10)
+    if not shared:
+        change = np.concatenate(found.starts(expected[:width]))
+        np.testing.assert_allclose(change, expected[width + 2 :], atol=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_hysteresis_is_chosen_and_spring_and_damper_come_back(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    share, slip_angle = rng.uniform(0.07, 0.2), rng.uniform(0.005, 0.02)
+    plain = largest_torque(campaign(seed, Rubber()))
+    rubber = Rubber(slip_torque=share * plain, slip_angle=slip_angle)
+    trials = campaign(seed, rubber)
+    choice = choose_law(trials)
+    assert choice.fit.law.name in ("elastoplastic", "iwan", "bouc_wen")
+    stiffness, damping = error_percent(choice.fit, rubber)
+    assert stiffness < 1
+    assert damping < 3
+    assert error_percent(choice.equivalent, rubber)[0] > 4  # what the linear law makes of it
+    assert error_percent(choice.equivalent, rubber)[1] > 30
+    others = unseen(seed, rubber)
+    assert unseen_error(choice.fit, others) < 0.5 * unseen_error(choice.equivalent, others)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_without_hysteresis_the_linear_law_is_kept(seed: int) -> None:
+    choice = choose_law(campaign(seed, Rubber()))
+    assert choice.fit.law.name == "kelvin_voigt"
+    assert choice.fit is choice.equivalent
+    assert choice.caution is None
+    assert sum(score.chosen for score in choice.ranking) == 1
+
+
+@pytest.mark.parametrize(
+    ("rubber", "name"),
+    [
+        (Rubber(hardening=8000.0), "hardening"),
+        (Rubber(coulomb=3.0), "coulomb"),
+        (Rubber(slip_torque=5.0, sharpness=1.0), "bouc_wen"),
+        (Rubber(slip_torque=5.0, sharpness=2.0), "bouc_wen"),
+    ],
+)
+def test_the_law_that_made_the_data_is_chosen(rubber: Rubber, name: str) -> None:
+    choice = choose_law(campaign(3, rubber))
+    assert choice.fit.law.name == name
+    stiffness, damping = error_percent(choice.fit, rubber)
+    assert stiffness < 1
+    assert damping < 3
+
+
+@pytest.mark.parametrize(
+    ("law", "rubber"),
+    [
+        (Elastoplastic(), JENKINS),
+        (BoucWen(), replace(JENKINS, sharpness=2.0)),
+        (Hardening(), Rubber(hardening=8000.0)),
+    ],
+    ids=lambda each: getattr(each, "name", ""),
+)
+def test_intervals_hold_the_truth(law: LAWS, rubber: Rubber) -> None:  # type: ignore[valid-type]
+    inside, seeds = np.zeros(2), 15
+    for seed in range(seeds):
+        fit = fit_law(law, campaign(seed, rubber))
+        for place, truth in enumerate((rubber.stiffness, rubber.damping)):
+            low, high = fit.interval95(fit.names[place])
+            inside[place] += low <= truth <= high
+            assert high - low < 0.2 * truth
+    assert np.all(inside >= 0.75 * seeds)
+
+
+def test_small_motions_never_give_a_confident_wrong_spring() -> None:
+    """Nothing slips at a third of the slip angle: the sum of both springs is all there is to see."""
+    rng = np.random.default_rng(0)
+    paths = [sway(rng, 0.0035, 0.5), sway(rng, 0.003, 0.8), tilt(rng, 0.003)]
+    trials = [recorded(rng, f"small_{i}", path, JENKINS) for i, path in enumerate(paths)]
+    fit = fit_law(Elastoplastic(), trials)
+    assert any("largest that these motions can show" in doubt for doubt in fit.doubts)
+    choice = choose_law(trials)
+    assert choice.fit.law.name == "kelvin_voigt"
+    both = JENKINS.stiffness + JENKINS.slip_torque / JENKINS.slip_angle
+    assert choice.fit.value("stiffness") == pytest.approx(both, rel=0.03)
+    assert choice.reach < JENKINS.slip_angle  # up to there it holds
+
+
+def test_motions_that_just_slip_are_told_of() -> None:
+    rng = np.random.default_rng(0)
+    paths = [sway(rng, 0.01, 0.5), sway(rng, 0.007, 0.8), tilt(rng, 0.01)]
+    choice = choose_law([recorded(rng, f"medium_{i}", path, JENKINS) for i, path in enumerate(paths)])
+    assert choice.fit.law.name == "kelvin_voigt"
+    assert choice.caution is not None
+    assert "cannot be identified" in choice.caution
+
+
+def test_gaps_and_unused_samples_change_little() -> None:
+    trials = campaign(2, JENKINS)
+    holed = []
+    for place, trial in enumerate(trials):
+        deflection, torque, used = trial.motion.deflection.copy(), trial.torque.copy(), trial.used.copy()
+        deflection[1500 + 100 * place : 1560 + 100 * place] = np.nan
+        torque[2500:2510] = np.nan
+        used[3000:3300] = False
+        used[1300 + 100 * place : 1760 + 100 * place] = False
+        used[2300:2710] = False
+        holed.append(Trial(trial.label, replace(trial.motion, deflection=deflection), torque, used))
+    whole, parted = fit_law(Elastoplastic(), trials), fit_law(Elastoplastic(), holed)
+    assert all(len(starts) == 3 for starts in parted.starts.values())
+    assert all(np.isfinite(residual).all() for residual in parted.residuals.values())
+    assert error_percent(parted, JENKINS)[0] < 0.5
+    assert error_percent(parted, JENKINS)[1] < 2
+    np.testing.assert_allclose(parted.values, whole.values, rtol=0.02)
+
+
+def test_a_start_that_is_not_virgin_is_found() -> None:
+    rng = np.random.default_rng(4)
+    trials = campaign(4, JENKINS)
+    law, path = Elastoplastic(), sway(rng, 0.08, 0.5)
+    motion = Motion(path, np.gradient(path, PERIOD), PERIOD)
+    torque = law.columns(motion, [0.01], np.array([-0.7])) @ [434.0, 15.89, 5.0] + 1.5
+    strained = Trial("strained", motion, torque, np.ones(len(path), dtype=bool))
+    fit = fit_law(law, [*trials, strained])
+    assert fit.starts["strained"] == pytest.approx([-0.7], abs=0.05)
+    assert fit.offsets["strained"] == pytest.approx(1.5, abs=0.2)
+    first = np.arange(len(path)) < 200
+    opened = open_unseen(fit_law(law, trials), strained, first)
+    assert opened.starts == pytest.approx([-0.7], abs=0.1)
+    assert opened.offset == pytest.approx(1.5, abs=0.5)
+    assert 0 < opened.settling.sum() < len(path) / 2
+
+
+def test_a_shared_offset_is_one_number() -> None:
+    trials = campaign(5, JENKINS, noise=0.0)
+    fit = fit_law(Elastoplastic(), trials, shared_offset=True)
+    assert len(set(fit.offsets.values())) == 1
+    assert error_percent(fit, JENKINS)[0] < 0.2
+    choice = choose_law(trials, shared_offset=True)
+    assert choice.fit.law.name == "elastoplastic"
+
+
+def test_reconstruction_is_the_fit_plus_its_residual() -> None:
+    trials = campaign(6, JENKINS)
+    fit = fit_law(Elastoplastic(), trials)
+    for trial in trials:
+        torque = fit.reconstruct(trial.motion, fit.starts[trial.label]) + fit.offsets[trial.label]
+        missed = (low_pass(trial.torque, PERIOD, fit.cutoff) - torque)[trial.used]
+        assert np.std(missed) == pytest.approx(np.std(fit.residuals[trial.label]), rel=0.05)
+
+
+def test_whole_recordings_are_held_out_where_they_can_stand_for_one_another() -> None:
+    rng = np.random.default_rng(8)
+    trials = [recorded(rng, f"sway_{i}", sway(rng, 0.08, 0.4 + 0.1 * i), JENKINS) for i in range(4)]
+    choice = choose_law(trials)
+    assert choice.held_out == "whole recordings"
+    assert choice.fit.law.name == "elastoplastic"
+    alone = choose_law(trials[:1])
+    assert "parts" in alone.held_out
+    assert alone.fit.law.name == "elastoplastic"
+
+
+def test_nothing_to_fit_is_one_line() -> None:
+    trial = campaign(0, Rubber())[0]
+    unused = replace(trial, used=np.zeros_like(trial.used))
+    with pytest.raises(DataError, match="no recording has a sample"):
+        fit_law(KelvinVoigt(), [unused])
+    with pytest.raises(DataError, match="no recording has a sample"):
+        choose_law([unused])

@@ -1,0 +1,243 @@
+"""Every law of the bush under one set of demands, against integrations made step by step."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+from scipy import signal
+
+from bush_trials import bouc_wen_step
+from plantar.conventions import AXES
+from plantar.errors import DataError
+from plantar.models import BESIDE, LAWS, BoucWen, Coulomb, Law, Motion, StandardLinearSolid, reach
+
+PERIOD = 0.005
+# Shapes and linear parameters of a bush that can exist, law by law.
+EXAMPLES: dict[str, tuple[tuple[float, ...], tuple[float, ...]]] = {
+    "kelvin_voigt": ((), (430.0, 16.0)),
+    "hardening": ((), (430.0, 16.0, 5000.0)),
+    "coulomb": ((0.02,), (430.0, 16.0, 3.0)),
+    "elastoplastic": ((0.012,), (430.0, 16.0, 5.0)),
+    "iwan": ((0.008,), (430.0, 16.0, 5.0)),
+    "bouc_wen": ((0.01, 1.7), (430.0, 16.0, 5.0)),
+    "standard_linear_solid": ((0.4,), (430.0, 16.0, 120.0)),
+    "coupled": ((), (430.0, 16.0, 25.0, 2.0)),
+}
+HYSTERETIC = ("elastoplastic", "iwan", "bouc_wen")
+
+
+def path(seed: int = 0, seconds: float = 12.0, size: float = 0.05) -> np.ndarray:
+    """A periodic deflection (its second half repeats the first), with reversals of every size."""
+    rng = np.random.default_rng(seed)
+    half = round(seconds / 2 / PERIOD)
+    time = np.arange(2 * half) * PERIOD
+    cycles = np.array([1, 2, 3, 5, 8, 13])
+    angles = 2 * np.pi * np.outer(time / (half * PERIOD), cycles) + rng.uniform(0, 2 * np.pi, len(cycles))
+    return size * np.sin(angles) @ (rng.uniform(0.3, 1, len(cycles)) / cycles)
+
+
+def rate_of(deflection: np.ndarray, period: float = PERIOD) -> np.ndarray:
+    """Exact derivative of a periodic deflection that is smooth."""
+    spectrum = np.fft.rfft(deflection)
+    return np.fft.irfft(2j * np.pi * np.fft.rfftfreq(len(deflection), period) * spectrum, len(deflection))
+
+
+def motion(deflection: np.ndarray, period: float = PERIOD, other: np.ndarray | None = None) -> Motion:
+    other = path(seed=7) if other is None else other
+    return Motion(
+        deflection, rate_of(deflection, period), period, other[:, None], rate_of(other, period)[:, None]
+    )
+
+
+@pytest.fixture(params=sorted(LAWS))
+def law(request: pytest.FixtureRequest) -> Law:
+    return LAWS[request.param]
+
+
+def torque(law: Law, moved: Motion, starts: Sequence[float] | None = None) -> np.ndarray:
+    shape, values = EXAMPLES[law.name]
+    return law.columns(moved, shape, None if starts is None else np.array(starts)) @ np.array(values)
+
+
+def test_terms_start_with_spring_and_damper_and_have_units(law: Law) -> None:
+    assert law.terms[:2] == BESIDE
+    assert law.name == next(name for name, each in LAWS.items() if each is law)
+    for axis in AXES:
+        assert all(law.unit(term, axis) for term in (*law.terms, *law.shape_terms))
+    assert set(law.dissipative_terms) <= set(law.terms)
+    assert {term for term, _ in law.blind_ends} <= set(law.shape_terms)
+    assert law.size == len(law.terms) + len(law.shape_terms)
+
+
+def test_columns_have_their_shape_and_the_linear_ones_come_first(law: Law) -> None:
+    moved = motion(path())
+    columns = law.columns(moved, EXAMPLES[law.name][0])
+    assert columns.shape == (len(moved), len(law.terms))
+    np.testing.assert_array_equal(columns[:, 0], moved.deflection)
+    np.testing.assert_array_equal(columns[:, 1], moved.rate)
+
+
+def test_candidates_span_the_motions(law: Law) -> None:
+    small, large = law.candidates([motion(path())]), law.candidates([motion(2 * path())])
+    assert small.shape[1] == len(law.shape_terms)
+    assert np.all(small > 0)
+    if law.name in HYSTERETIC:
+        np.testing.assert_allclose(large[:, 0], 2 * small[:, 0])
+        assert small[:, 0].max() < reach([motion(path())])  # an element that never slips is a spring
+
+
+def test_rest_gives_no_torque(law: Law) -> None:
+    still = np.zeros(400)
+    np.testing.assert_array_equal(torque(law, motion(still, other=still)), 0.0)
+
+
+def test_mirrored_motion_gives_mirrored_torque(law: Law) -> None:
+    moved, other = path(), path(seed=7)
+    starts = [0.3]
+    plus = torque(law, motion(moved, other=other), starts)
+    minus = torque(law, motion(-moved, other=-other), [-0.3])
+    np.testing.assert_allclose(minus, -plus, atol=1e-9)
+
+
+def test_no_energy_comes_out_of_a_closed_cycle(law: Law) -> None:
+    """Work put in over the second of two equal cycles; for the coupled law over both axes together."""
+    moved, other = path(seed=3), path(seed=4)
+    cycle = slice(len(moved) // 2, None)
+    work = np.sum((torque(law, motion(moved, other=other)) * rate_of(moved))[cycle]) * PERIOD
+    if law.name == "coupled":
+        work += np.sum((torque(law, motion(other, other=moved)) * rate_of(other))[cycle]) * PERIOD
+    damped = EXAMPLES[law.name][1][1] * np.sum(rate_of(moved)[cycle] ** 2) * PERIOD
+    assert work > 0.9 * damped
+    if law.dissipative_terms:
+        assert work > 1.05 * damped
+
+
+def test_negative_friction_is_not_possible(law: Law) -> None:
+    values = np.array(EXAMPLES[law.name][1])
+    assert law.possible(values)
+    for term in law.dissipative_terms:
+        worse = values.copy()
+        worse[law.terms.index(term)] *= -1
+        assert not law.possible(worse)
+
+
+def test_gaps_part_the_runs_and_memory_starts_anew(law: Law) -> None:
+    whole = motion(path())
+    assert whole.across is not None
+    assert whole.across_rate is not None
+    hole = whole.deflection.copy()
+    hole[1000:1010] = np.nan
+    parted = Motion(hole, whole.rate, PERIOD, whole.across, whole.across_rate)
+    starts = np.array([0.4, -0.7])
+    columns = law.columns(parted, EXAMPLES[law.name][0], starts)
+    assert np.isnan(columns[1000:1010]).all()
+    tail = slice(1010, None)
+    alone = Motion(hole[tail], whole.rate[tail], PERIOD, whole.across[tail], whole.across_rate[tail])
+    if law.name == "standard_linear_solid":  # its start is a share of the motion's reach
+        starts = starts * reach([parted]) / reach([alone])
+    np.testing.assert_allclose(
+        columns[tail], law.columns(alone, EXAMPLES[law.name][0], starts[1:]), atol=1e-12
+    )
+
+
+def test_variants_side_by_side_are_those_one_by_one(law: Law) -> None:
+    moved = motion(path())
+    shapes = np.array([np.array(EXAMPLES[law.name][0]) * scale for scale in (1.0, 1.3, 2.0)])
+    starts = np.array([[0.1], [-0.5], [0.9]])
+    together = law.extra([moved, moved], shapes, [starts, starts])
+    for variant, (shape, start) in enumerate(zip(shapes, starts, strict=True)):
+        alone = law.columns(moved, shape, start)[:, 2:]
+        for columns in together:
+            np.testing.assert_allclose(columns[:, :, variant], alone, atol=1e-12)
+
+
+@pytest.mark.parametrize("name", [*HYSTERETIC, "hardening"])
+def test_speed_does_not_matter_without_rates(name: str) -> None:
+    slow, fast = motion(path()), motion(path(), period=PERIOD / 7)
+    shape = EXAMPLES[name][0]
+    np.testing.assert_allclose(LAWS[name].columns(slow, shape)[:, 2], LAWS[name].columns(fast, shape)[:, 2])
+
+
+@pytest.mark.parametrize("name", HYSTERETIC)
+def test_a_hysteretic_state_depends_on_deflection_over_slip_angle_only(name: str) -> None:
+    shape = np.array(EXAMPLES[name][0])
+    wide = shape.copy()
+    wide[0] *= 3
+    small = LAWS[name].columns(motion(path()), shape)[:, 2]
+    np.testing.assert_allclose(LAWS[name].columns(motion(3 * path()), wide)[:, 2], small, atol=1e-9)
+
+
+@pytest.mark.parametrize("name", HYSTERETIC)
+def test_a_hysteretic_state_starts_as_a_spring_and_ends_at_one(name: str) -> None:
+    shape = np.array(EXAMPLES[name][0])
+    ramp = np.linspace(0, 30 * shape[0], 60_001)
+    state = LAWS[name].columns(Motion(ramp, np.ones_like(ramp), PERIOD), shape)[:, 2]
+    assert state[1] / ramp[1] == pytest.approx(1 / shape[0], rel=0.01)
+    assert state[-1] == pytest.approx(1.0, abs=1e-6)
+    assert np.all(np.diff(state) >= -1e-12)
+
+
+@pytest.mark.parametrize("start", [-1.0, -0.4, 0.0, 0.8])
+def test_jenkins_element_against_a_stepped_one(start: float) -> None:
+    moved, state, states = path(), start, []
+    for step in np.diff(moved, prepend=moved[0]) / 0.012:
+        state = min(max(state + step, -1.0), 1.0)
+        states.append(state)
+    found = LAWS["elastoplastic"].columns(motion(moved), [0.012], np.array([start]))[:, 2]
+    np.testing.assert_allclose(found, states, atol=1e-11)
+
+
+def test_iwan_elements_against_stepped_ones() -> None:
+    moved = path()
+    ratios = (np.arange(8) + 0.5) / 4
+    states, torques = np.zeros(8), []
+    for step in np.diff(moved, prepend=moved[0]):
+        states = np.clip(states + step / (ratios * 0.008), -1, 1)
+        torques.append(np.mean(ratios * states))
+    np.testing.assert_allclose(LAWS["iwan"].columns(motion(moved), [0.008])[:, 2], torques, atol=1e-11)
+
+
+@pytest.mark.parametrize("sharpness", [1.0, 1.7, 4.0])
+def test_bouc_wen_against_a_stepped_one(sharpness: float) -> None:
+    moved, state, states, substeps = path(), -0.3, [], 12
+    for step in np.diff(moved, prepend=moved[0]) / 0.01:
+        for _ in range(substeps):
+            state = bouc_wen_step(state, step / substeps, sharpness)
+        states.append(state)
+    found = BoucWen().columns(motion(moved), [0.01, sharpness], np.array([-0.3]))[:, 2]
+    np.testing.assert_allclose(found, states, atol=2e-6)
+
+
+def test_relaxing_spring_against_a_state_space_simulation() -> None:
+    moved, time = path(), 0.4
+    start = 0.2 * reach([motion(moved)])
+    # The state w with ẇ = -w/τ + q gives x = q - w/τ; its start follows from x(0).
+    system = signal.StateSpace([[-1 / time]], [[1.0]], [[-1 / time]], [[1.0]])
+    _, expected, _ = signal.lsim(
+        system, moved, np.arange(len(moved)) * PERIOD, X0=[(moved[0] - start) * time], interp=True
+    )
+    found = StandardLinearSolid().columns(motion(moved), [time], np.array([0.2]))[:, 2]
+    np.testing.assert_allclose(found, expected, atol=1e-8)
+
+
+def test_coulomb_friction_follows_the_sign_of_a_fast_rate() -> None:
+    moved = motion(path())
+    column = Coulomb().columns(moved, [1e-4])[:, 2]
+    fast = np.abs(moved.rate) > 1e-3
+    np.testing.assert_allclose(column[fast], np.sign(moved.rate[fast]))
+
+
+def test_a_loaded_element_starts_where_its_load_put_it() -> None:
+    law = LAWS["elastoplastic"]
+    lean = motion(path() - path()[0] + 0.004)
+    assert law.starts(lean, np.array([0.01])) == pytest.approx([0.4])
+    assert law.starts(lean, np.array([0.001])) == pytest.approx([1.0])
+
+
+def test_the_coupled_law_asks_for_the_other_axis() -> None:
+    alone = Motion(path(), rate_of(path()), PERIOD)
+    assert not LAWS["coupled"].applies([alone])
+    with pytest.raises(DataError, match="other axis"):
+        LAWS["coupled"].columns(alone)
