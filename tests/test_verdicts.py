@@ -1,0 +1,102 @@
+"""What may be said of a number, and which samples of a tipping sole are left out."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from biped import FEET, make_robot, record, robot_entry, sines, sway
+from plantar.identify.feet import identify_feet
+from plantar.identify.settings import FeetSettings
+from plantar.identify.verdicts import Evidence, judge
+from plantar.readers import open_log
+from plantar.robot import load_robot
+
+GOOD = Evidence(seconds=60.0, excitation=0.02, explained=0.98)
+
+
+@pytest.mark.parametrize(
+    ("value", "interval", "evidence", "verdict", "part"),
+    [
+        (400.0, (390.0, 410.0), GOOD, "usable", "60 s"),
+        (400.0, (320.0, 480.0), GOOD, "weak", "±20 %"),
+        (400.0, (100.0, 700.0), GOOD, "unidentifiable", "±75 %"),
+        (400.0, (-10.0, 810.0), GOOD, "unidentifiable", "reaches zero"),
+        (-40.0, (-50.0, -30.0), GOOD, "unidentifiable", "negative"),
+        (400.0, (390.0, 410.0), Evidence(2.0, 0.02, 0.98), "unidentifiable", "2.0 s"),
+        (400.0, (390.0, 410.0), Evidence(60.0, 0.02, 0.1), "unidentifiable", "10 %"),
+        (400.0, (390.0, 410.0), Evidence(60.0, 0.02, 0.6), "weak", "60 %"),
+        (0.0, (-1.0, 1.0), GOOD, "unidentifiable", "reaches zero"),
+    ],
+)
+def test_verdicts(
+    value: float, interval: tuple[float, float], evidence: Evidence, verdict: str, part: str
+) -> None:
+    found, reason, advice = judge("left", "pitch", "stiffness", value, interval, evidence)
+    assert found == verdict
+    assert part in reason
+    assert (advice is None) == (verdict == "usable")
+    assert advice is None or ("left foot" in advice and "forward and backward" in advice)
+
+
+def test_damping_asks_for_faster_motion() -> None:
+    wide = (1.0, 39.0)
+    _, _, slow = judge("left", "roll", "stiffness", 20.0, wide, GOOD)
+    _, _, fast = judge("left", "roll", "damping", 20.0, wide, GOOD)
+    assert "slowly" in str(slow)
+    assert "faster" in str(fast)
+
+
+def test_a_window_leaves_out_what_is_beyond_it(tmp_path: Path) -> None:
+    robot = make_robot(tmp_path)
+    log = record(sway())
+    wide = identify_feet(robot, [log])
+    narrow = identify_feet(robot, [log], settings=FeetSettings(window=np.radians(1.0)))
+    reasons = {phase.reason for phase in narrow.phases}
+    assert any(reason and "beyond the window of 1 deg" in reason for reason in reasons)
+    served = [sum(p.end - p.start for p in found.phases if p.used) for found in (wide, narrow)]
+    assert 0.05 * served[0] < served[1] < 0.9 * served[0]
+    assert narrow.parameter("left", "pitch", "stiffness").value == pytest.approx(420.0, rel=1e-3)
+
+
+def test_a_pressure_near_the_edge_is_left_out(tmp_path: Path) -> None:
+    """The same motion over a sole of half the length: its centre of pressure leaves it."""
+    entry = robot_entry()
+    assert isinstance(entry["feet"], dict)
+    for foot in entry["feet"].values():
+        foot["sole"]["polygon"] = [[0.03, 0.08], [-0.03, 0.08], [-0.03, -0.08], [0.03, -0.08]]
+    found = identify_feet(make_robot(tmp_path, feet=entry["feet"]), [record(sway())])
+    tipping = [phase for phase in found.phases if phase.reason and "tipping" in phase.reason]
+    assert {phase.foot for phase in tipping} == set(FEET)
+    assert sum(phase.end - phase.start for phase in tipping) > 1.0
+
+
+def test_real_mats_soften_with_their_layers(shared_data: Path) -> None:
+    """Firm floor, then one and three layers of mat: pitch stiffness falls, roll is not to be trusted."""
+    robot = load_robot(shared_data / "icub_mats" / "robot.yaml")
+    stiffness = []
+    for name in ("firm", "mat_1_layer", "mat_3_layers"):
+        found = identify_feet(robot, [open_log(shared_data / "icub_mats" / f"{name}.csv", robot)])
+        stiffness.append(found.parameter("right", "pitch", "stiffness").value)
+        assert found.parameter("right", "roll", "stiffness").verdict != "usable"
+        assert any(phase.reason and "tipping" in phase.reason for phase in found.phases)
+    assert None not in stiffness
+    assert stiffness[0] > stiffness[1] > stiffness[2] > 0
+
+
+def test_still_axes_are_not_judged_by_moving_ones(tmp_path: Path) -> None:
+    """Pitch moves, roll hardly: roll's numbers are not called usable under noise."""
+    still = sines((1e-5, 0.3, 0.0))
+    motion = sway()
+    ankles = {foot: (motion.ankles[foot][0], still) for foot in FEET}
+    log = record(sway(torso=(still, motion.torso[1], sines((0.0, 0.0, 0.0))), ankles=ankles))
+    random = np.random.default_rng(0)
+    noisy = log.with_columns(
+        {n: v + random.normal(0, 0.2, len(log)) for n, v in log.columns.items() if "torque" in n}
+    )
+    found = identify_feet(make_robot(tmp_path), [noisy])
+    for foot in FEET:
+        assert found.parameter(foot, "pitch", "stiffness").verdict == "usable"
+        assert found.parameter(foot, "roll", "stiffness").verdict == "unidentifiable"
