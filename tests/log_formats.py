@@ -23,7 +23,9 @@ IMU, FEET = "chest", ("left", "right")
 
 
 def joints(log: MotionLog) -> list[str]:
-    return [name.split(".")[1] for name in log.columns if name.startswith("joint.") and name.endswith(".position")]
+    return [
+        name.split(".")[1] for name in log.columns if name.startswith("joint.") and name.endswith(".position")
+    ]
 
 
 def moving(log: MotionLog) -> list[str]:
@@ -103,7 +105,11 @@ def write_astate(log: MotionLog, folder: Path) -> Written:
     places = {name: index for index, name in enumerate(data)}
     np.savetxt(folder / "astate.log", np.column_stack(list(data.values())), fmt="%.17g")
     for entry in columns.values():
-        entry["from"] = [places[name] for name in entry["from"]] if isinstance(entry["from"], list) else places[entry["from"]]
+        entry["from"] = (
+            [places[name] for name in entry["from"]]
+            if isinstance(entry["from"], list)
+            else places[entry["from"]]
+        )
     return folder / "astate.log", columns
 
 
@@ -123,9 +129,12 @@ def ros_messages(log: MotionLog, store: Any, ros1: bool):  # type: ignore[no-unt
     v = {name: log.column(f"joint.{name}.velocity") for name in fast}
     attitude, rate = vector(log, f"imu.{IMU}.orientation", "xyzw"), vector(log, f"imu.{IMU}.angular_velocity")
     proper, none = vector(log, f"imu.{IMU}.linear_acceleration"), np.zeros(9)
-    forces = {foot: (vector(log, f"wrench.{foot}.force"), vector(log, f"wrench.{foot}.torque")) for foot in FEET}
+    forces = {
+        foot: (vector(log, f"wrench.{foot}.force"), vector(log, f"wrench.{foot}.torque")) for foot in FEET
+    }
     empty = np.zeros(0)
     for row, stamp in enumerate(np.rint(log.time * 1e9).astype(np.int64).tolist()):
+
         def top(frame: str, stamp: int = stamp, row: int = row) -> Any:
             time = clock(sec=stamp // 10**9, nanosec=stamp % 10**9)
             return header(seq=row, stamp=time, frame_id=frame) if ros1 else header(stamp=time, frame_id=frame)
@@ -198,7 +207,10 @@ def write_mc_rtc(log: MotionLog, folder: Path, version: int = 0) -> Written:
 
     # The body sensor's orientation turns world into body.
     attitude = vector(log, f"imu.{IMU}.orientation", "wxyz") * [1, -1, -1, -1]
-    wrenches = {foot: np.hstack([vector(log, f"wrench.{foot}.torque"), vector(log, f"wrench.{foot}.force")]) for foot in FEET}
+    wrenches = {
+        foot: np.hstack([vector(log, f"wrench.{foot}.torque"), vector(log, f"wrench.{foot}.force")])
+        for foot in FEET
+    }
     parts: list[tuple[str, int, np.ndarray]] = [
         ("t", 11, log.time), ("qIn", 21, positions(log)), ("alphaIn", 21, velocities(log)),
         ("rpyIn", 17, attitude), ("rateIn", 14, vector(log, f"imu.{IMU}.angular_velocity")),
@@ -214,10 +226,20 @@ def write_mc_rtc(log: MotionLog, folder: Path, version: int = 0) -> Written:
             values = [value.tolist() for _, _, value in now]
             if version == 0:
                 head = [key for key, _, _ in now] if changed else None
-                body = [part for (_, kind, _), value in zip(now, values, strict=True) for part in (kind, value)]
+                body = [
+                    part for (_, kind, _), value in zip(now, values, strict=True) for part in (kind, value)
+                ]
             else:
                 added = [[0, kind, key] for key, kind, _ in now]
-                head = added if row == 0 else [[0, 10, "perf"]] if row == 50 else [[1, "perf"]] if row == 80 else None
+                head = (
+                    added
+                    if row == 0
+                    else [[0, 10, "perf"]]
+                    if row == 50
+                    else [[1, "perf"]]
+                    if row == 80
+                    else None
+                )
                 body = values if not extra else [*values[1:], values[0]]
             entry = msgpack.packb([head, body])
             handle.write(struct.pack("<Q", len(entry)) + entry)
@@ -248,12 +270,21 @@ def write_yarp(log: MotionLog, folder: Path) -> Written:
     rpy = Rotation.from_quat(vector(log, f"imu.{IMU}.orientation", "xyzw")).as_euler("xyz", degrees=True)
     inertial = np.hstack([rpy, vector(log, f"imu.{IMU}.linear_acceleration"),
                           np.degrees(vector(log, f"imu.{IMU}.angular_velocity"))])  # fmt: skip
-    ports = {"body/state": np.degrees(positions(log)), "body/speed": np.degrees(velocities(log)), "inertial": inertial}
-    ports |= {f"{foot}_foot": np.hstack([vector(log, f"wrench.{foot}.{k}") for k in ("force", "torque")]) for foot in FEET}
+    ports = {
+        "body/state": np.degrees(positions(log)),
+        "body/speed": np.degrees(velocities(log)),
+        "inertial": inertial,
+    }
+    ports |= {
+        f"{foot}_foot": np.hstack([vector(log, f"wrench.{foot}.{k}") for k in ("force", "torque")])
+        for foot in FEET
+    }
     for port, values in ports.items():
         (folder / "dump" / port).mkdir(parents=True)
         both = port == "inertial"
-        (folder / "dump" / port / "info.log").write_text(f"Type: Bottle;\nStamp: {'tx;rx;' if both else 'rx;'}\n[1] /a [connected]\n")
+        (folder / "dump" / port / "info.log").write_text(
+            f"Type: Bottle;\nStamp: {'tx;rx;' if both else 'rx;'}\n[1] /a [connected]\n"
+        )
         with open(folder / "dump" / port / "data.log", "w") as handle:
             for row, (time, line) in enumerate(zip(log.time, values, strict=True)):
                 stamps = f"{time:.9f} {time + 0.5:.9f}" if both else f"{time:.9f}"
@@ -276,10 +307,14 @@ def write_mat(log: MotionLog, folder: Path) -> Written:
 
     rpy = Rotation.from_quat(vector(log, f"imu.{IMU}.orientation", "xyzw")).as_euler("xyz")
     signals = {
-        "joints_state/positions": (positions(log), joints(log)), "joints_state/velocities": (velocities(log), moving(log)),
+        "joints_state/positions": (positions(log), joints(log)),
+        "joints_state/velocities": (velocities(log), moving(log)),
         f"orientations/{IMU}": (rpy, None), f"gyros/{IMU}": (vector(log, f"imu.{IMU}.angular_velocity"), None),
         f"accelerometers/{IMU}": (vector(log, f"imu.{IMU}.linear_acceleration"), None),
-        **{f"FTs/{foot}": (np.hstack([vector(log, f"wrench.{foot}.{k}") for k in ("force", "torque")]), None) for foot in FEET},
+        **{
+            f"FTs/{foot}": (np.hstack([vector(log, f"wrench.{foot}.{k}") for k in ("force", "torque")]), None)
+            for foot in FEET
+        },
     }  # fmt: skip
     with h5py.File(folder / "robot_logger_device.mat", "w", userblock_size=512) as file:
         for name, (values, names) in signals.items():
@@ -290,7 +325,9 @@ def write_mat(log: MotionLog, folder: Path) -> Written:
                 cells = []
                 for number, text in enumerate(names):
                     codes = np.frombuffer(text.encode("utf-16-le"), np.uint16)[:, None]
-                    cells.append(file.create_dataset(f"#refs#/{name.replace('/', '_')}_{number}", data=codes).ref)
+                    cells.append(
+                        file.create_dataset(f"#refs#/{name.replace('/', '_')}_{number}", data=codes).ref
+                    )
                 group.create_dataset("elements_names", data=np.array(cells, dtype=h5py.ref_dtype)[None, :])
     return folder / "robot_logger_device.mat", {}
 

@@ -20,8 +20,8 @@ from typing import Any
 import numpy as np
 import pytest
 import yaml
-from export_robots import CENTRE, SOLE_Z, TRUTH, bush_rotation, result, write_sdf, write_urdf
 
+from export_robots import CENTRE, SOLE_Z, TRUTH, bush_rotation, result, write_sdf, write_urdf
 from plantar.cli import main
 from plantar.errors import ExportError
 from plantar.export import TARGETS, export
@@ -231,7 +231,8 @@ def _broken(feet: dict[str, Any], **changes: Any) -> dict[str, Any]:
 def test_what_cannot_be_written_is_one_clear_line(feet: dict[str, Any], urdf: Path, tmp_path: Path) -> None:
     out = tmp_path / "x"
     (tmp_path / "bomb.urdf").write_text('<!DOCTYPE r [<!ENTITY a "b">]><robot name="r"/>')
-    (tmp_path / "wide.urdf").write_text('<?xml version="1.0" encoding="UTF-16"?><!DOCTYPE r [<!ENTITY a "b">]><robot name="r"/>', "utf-16")
+    wide = '<?xml version="1.0" encoding="UTF-16"?><!DOCTYPE r [<!ENTITY a "b">]><robot name="r"/>'
+    (tmp_path / "wide.urdf").write_text(wide, "utf-16")
     (tmp_path / "deep.urdf").write_text("<robot>" + "<a>" * 5000 + "</a>" * 5000 + "</robot>")
     (tmp_path / "cut.urdf").write_text(urdf.read_text()[:300])
     (tmp_path / "other.urdf").write_text('<robot name="o"><link name="lef_ankle"/></robot>')

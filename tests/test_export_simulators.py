@@ -17,9 +17,9 @@ from pathlib import Path
 import numpy as np
 import pinocchio as pin
 import pytest
-from export_robots import CENTRE, TRUTH, bush_rotation, result, write_mjcf, write_sdf, write_urdf
 from scipy.integrate import simpson, solve_ivp
 
+from export_robots import CENTRE, TRUTH, bush_rotation, result, write_mjcf, write_sdf, write_urdf
 from plantar.conventions import rotation_from_rpy
 from plantar.export import export
 
@@ -237,9 +237,8 @@ def test_pinocchio_gives_stiffness_and_damping_back(tmp_path: Path) -> None:
 DRAKE_PROGRAM = """
 import json, sys
 import numpy as np
-from pydrake.all import (AddMultibodyPlantSceneGraph, ApplySimulatorConfig, DiagramBuilder, ExternallyAppliedSpatialForce,
-                         Parser, Simulator, SimulatorConfig, SpatialForce, RotationMatrix)
-from pydrake.common.value import AbstractValue, Value
+from pydrake.all import (AddMultibodyPlantSceneGraph, ApplySimulatorConfig, DiagramBuilder,
+                         ExternallyAppliedSpatialForce, Parser, Simulator, SimulatorConfig, SpatialForce)
 
 job = json.load(sys.stdin)
 builder = DiagramBuilder()

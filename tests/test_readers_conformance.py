@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from biped import make_robot, record, sway
-from log_formats import WRITERS
 
 import plantar
+from biped import make_robot, record, sway
+from log_formats import WRITERS
 from plantar.log import MotionLog
 from plantar.readers import open_log
 from plantar.robot import RobotModel

@@ -7,11 +7,26 @@ import zlib
 
 from plantar.errors import MissingExtra
 
-CHUNK_LIMIT = 2**30  # bytes that one chunk of a bag may hold
+CHUNK_LIMIT = 2**28  # bytes that one chunk of a bag may hold
+SMALL = 2**28  # bytes that any bag may unpack to
+RATIO = 100  # bytes that a bag may unpack to for each of its own: recordings shrink to a tenth at best
 
 
 class BrokenChunk(ValueError):
     """A compressed chunk that does not hold what it says."""
+
+
+class Budget:
+    """How much a whole bag may unpack to, from its own size."""
+
+    def __init__(self, file_size: int) -> None:
+        self._left = SMALL + RATIO * file_size
+
+    def spend(self, size: int) -> None:
+        """BrokenChunk when the bag unpacks to more than any recording does."""
+        self._left -= size
+        if self._left < 0:
+            raise BrokenChunk("the bag unpacks to a size that no recording has")
 
 
 def decompress(kind: str, data: bytes | memoryview, limit: int = CHUNK_LIMIT) -> bytes:

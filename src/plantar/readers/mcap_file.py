@@ -14,7 +14,7 @@ import numpy as np
 
 from plantar.errors import LogError, located
 from plantar.notes import Note
-from plantar.readers.compressed import CHUNK_LIMIT, BrokenChunk, decompress
+from plantar.readers.compressed import CHUNK_LIMIT, BrokenChunk, Budget, decompress
 from plantar.readers.ros_layouts import IMU, JOINT_STATE, WRENCH, Encoding
 from plantar.readers.ros_topics import Topic
 
@@ -43,12 +43,9 @@ def read_mcap(path: Path, topics: dict[str, Topic], notes: list[Note]) -> None:
             data = rest + block if rest else block
             used, done = scan.records(data)
             rest = data[used:]
-            if not block and not done:
-                notes.append(Note("file_cut", "warning", f"{path.name} is cut; its whole records were read"))
-                return
-            if scan.needed > size + len(MAGIC):
-                text = "a record says it is longer than the file; what comes before it was read"
-                notes.append(Note("file_cut", "warning", f"{path.name}: {text}"))
+            if not done and (not block or scan.needed > size):
+                scan.cut(rest)
+                notes.append(Note("file_cut", "warning", f"{path.name} is cut; what is whole was read"))
                 return
 
 
@@ -58,6 +55,7 @@ class _Scan:
     def __init__(self, path: Path, topics: dict[str, Topic], notes: list[Note]) -> None:
         self.path, self.topics, self.notes = path, topics, notes
         self.needed = 0  # bytes that the record at the end of a block wants
+        self._budget = Budget(path.stat().st_size)
         self._schemas: dict[int, str] = {}
         self._channels: dict[int, Topic | None] = {}
 
@@ -77,7 +75,8 @@ class _Scan:
             at = end
             if code == MESSAGE:
                 if length < _MESSAGE.size:
-                    continue
+                    done = self._lost()
+                    break
                 channel, _, received, _ = message(data, start)
                 if channels.get(channel) is not None:
                     lists = found.get(channel)
@@ -97,8 +96,18 @@ class _Scan:
             elif code in (DATA_END, FOOTER):
                 done = True
                 break
+            elif code == 0 or inside_chunk:
+                done = self._lost()
+                break
         self._flush(data, found)
         return at, done
+
+    def _lost(self) -> bool:
+        """A record that cannot stand here: what follows is not in step either."""
+        self.notes.append(
+            Note("file_damaged", "warning", f"{self.path.name} is damaged; what comes before was read")
+        )
+        return True
 
     def _flush(self, data: bytes, found: dict[int, tuple[list[int], list[int], list[int]]]) -> None:
         buffer = np.frombuffer(data, np.uint8)
@@ -108,14 +117,20 @@ class _Scan:
                 topic.add(buffer, starts, ends, received)
         found.clear()
 
-    def _chunk(self, body: bytes) -> None:
+    def cut(self, rest: bytes) -> None:
+        """What is whole in a chunk that the file's end cuts."""
+        if rest[:1] == bytes([CHUNK]):
+            self._chunk(rest[_RECORD.size :], whole=False)
+
+    def _chunk(self, body: bytes, *, whole: bool = True) -> None:
         try:
             _, _, size, checksum = _CHUNK.unpack_from(body)
             kind, at = _string(body, _CHUNK.size + 0)
             (length,) = struct.unpack_from("<Q", body, at)
-            packed = body[at + 8 : at + 8 + length]
+            packed = body[at + 8 : at + 8 + min(length, len(body))]
             content = decompress(kind, packed, min(size, CHUNK_LIMIT))
-            if len(content) != size or (checksum and zlib.crc32(content) != checksum):
+            self._budget.spend(len(content))
+            if whole and (len(content) != size or (checksum and zlib.crc32(content) != checksum)):
                 raise BrokenChunk("its checksum or length does not agree")
         except (BrokenChunk, struct.error, UnicodeDecodeError) as error:
             self.notes.append(

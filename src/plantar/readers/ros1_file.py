@@ -12,7 +12,7 @@ import numpy as np
 
 from plantar.errors import LogError, located
 from plantar.notes import Note
-from plantar.readers.compressed import CHUNK_LIMIT, BrokenChunk, decompress
+from plantar.readers.compressed import CHUNK_LIMIT, BrokenChunk, Budget, decompress
 from plantar.readers.mcap_file import BLOCK, READ
 from plantar.readers.ros_topics import Topic
 
@@ -34,16 +34,18 @@ def read_ros1(path: Path, topics: dict[str, Topic], notes: list[Note]) -> None:
             block = handle.read(max(BLOCK, scan.needed - len(rest)))
             data = rest + block if rest else block
             rest = data[scan.records(data) :]
-            if (not block and rest) or scan.needed > size:
+            if not scan.lost and ((not block and rest) or scan.needed > size):
+                scan.cut(rest)
                 notes.append(Note("file_cut", "warning", f"{path.name} is cut; its whole records were read"))
-            if not block or scan.needed > size:
+            if not block or scan.needed > size or scan.lost:
                 return
 
 
 class _Scan:
     def __init__(self, path: Path, topics: dict[str, Topic], notes: list[Note]) -> None:
         self.path, self.topics, self.notes = path, topics, notes
-        self.needed = 0
+        self.needed, self.lost = 0, False
+        self._budget = Budget(path.stat().st_size)
         self._channels: dict[int, Topic | None] = {}
 
     def records(self, data: bytes, *, inside_chunk: bool = False) -> int:
@@ -63,6 +65,14 @@ class _Scan:
                 self.needed = end - at
                 break
             header = _fields(data[at + 4 : start])
+            if b"op" not in header:  # no record: what follows is not in step either
+                self.notes.append(
+                    Note(
+                        "file_damaged", "warning", f"{self.path.name} is damaged; what comes before was read"
+                    )
+                )
+                self.lost = True
+                break
             at = end
             code = header.get(b"op", b"\0")[:1]
             if code == bytes([MESSAGE]):
@@ -116,11 +126,20 @@ class _Scan:
             topic = self.topics[name] = Topic(name, kind, "ros1")
         self._channels[channel] = topic
 
-    def _chunk(self, header: dict[bytes, bytes], body: bytes) -> None:
+    def cut(self, rest: bytes) -> None:
+        """What is whole in a chunk that the file's end cuts."""
+        if len(rest) >= 4:
+            (header_size,) = _SIZE.unpack_from(rest)
+            header = _fields(rest[4 : 4 + header_size])
+            if header.get(b"op") == bytes([CHUNK]) and b"size" in header:
+                self._chunk(header, rest[8 + header_size :], whole=False)
+
+    def _chunk(self, header: dict[bytes, bytes], body: bytes, *, whole: bool = True) -> None:
         try:
             (size,) = _SIZE.unpack(header[b"size"])
             content = decompress(header[b"compression"].decode(), body, min(size, CHUNK_LIMIT))
-            if len(content) != size:
+            self._budget.spend(len(content))
+            if whole and len(content) != size:
                 raise BrokenChunk("its length does not agree")
         except (KeyError, struct.error, UnicodeDecodeError, BrokenChunk) as error:
             self.notes.append(

@@ -72,10 +72,15 @@ def _save_mcap(log: MotionLog, path: Path, frames: Mapping[str, str]) -> tuple[N
     with tempfile.TemporaryDirectory() as folder:
         bag = Path(folder) / "bag"
         with Writer(bag, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
-            for topic, kind, rows in _messages(log, stamps, frames):
-                connection = writer.add_connection(topic, kind.replace("/", "/msg/"), typestore=store)
-                for stamp, row in zip(stamps.tolist(), rows, strict=True):
-                    writer.write(connection, stamp, row.tobytes())
+            topics = [
+                (writer.add_connection(topic, kind.replace("/", "/msg/"), typestore=store), rows)
+                for topic, kind, rows in _messages(log, stamps, frames)
+            ]
+            for row, stamp in enumerate(
+                stamps.tolist()
+            ):  # in time's order, so that a cut bag is a shorter one
+                for connection, rows in topics:
+                    writer.write(connection, stamp, rows[row].tobytes())
         with atomic_write(path) as handle, open(next(bag.glob("*.mcap")), "rb") as source:
             while block := source.read(2**22):
                 handle.write(block)

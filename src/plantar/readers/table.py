@@ -136,7 +136,7 @@ def _read_parquet(path: Path) -> pa.Table:
         if metadata.num_rows * max(metadata.num_columns, 1) * 8 > SIZE_LIMIT:
             raise LogError(located(f"holds more than {SIZE_LIMIT} bytes of values", path=path))
         return source.read()
-    except (pa.ArrowException, OSError) as error:
+    except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
         reason = str(error).splitlines()[0]
         raise LogError(located(f"is not a readable Parquet file: {reason}", path=path)) from error
 

@@ -1,0 +1,148 @@
+"""`plantar convert` and `plantar init`, and a newcomer's way from a bag and a URDF to a MuJoCo model."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pinocchio as pin
+import pytest
+import yaml
+
+from biped import TRUTH, Frame, Mounting, make_robot, record, sway, write_robot
+from example_robots import G1, ICUB, TALOS
+from log_formats import write_hrpsys, write_mcap
+from plantar.cli import main
+from plantar.export.urdf_tree import UrdfTree
+from plantar.log import MotionLog
+from plantar.readers import open_log
+from plantar.readers.save import save_log
+from plantar.robot import load_robot
+from plantar.robot_guess import find_ankles
+
+
+def command(*words: object) -> int:
+    with pytest.raises(SystemExit) as done:
+        main([str(word) for word in words])
+    return int(done.value.code or 0)
+
+
+@pytest.fixture(scope="module")
+def log() -> MotionLog:
+    return record(sway("sway", duration=2.0))
+
+
+def test_convert_to_every_format_and_back(
+    log: MotionLog, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    bag, _ = write_mcap(log, tmp_path)
+    robot = write_robot(tmp_path / "robot")
+    for ending in ("parquet", "csv", "mcap"):
+        out = tmp_path / f"sway.{ending}"
+        assert command("convert", bag, "--robot", robot, "--out", out) == 0
+        again = open_log(out, load_robot(robot))
+        assert set(again.columns) == set(log.columns)
+        np.testing.assert_allclose(again.column("wrench.left.torque.x"), log.column("wrench.left.torque.x"))
+    assert "imu 'chest' is taken from /sensors/torso/imu" in capsys.readouterr().err
+
+
+def test_convert_several_logs_into_a_directory(
+    log: MotionLog, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for name in ("one", "two"):
+        save_log(log, tmp_path / f"{name}.csv")
+    logs = [tmp_path / "one.csv", tmp_path / "two.csv"]
+    assert command("convert", *logs, "--out", tmp_path / "all", "--to", "mcap") == 0
+    assert sorted(path.name for path in (tmp_path / "all").iterdir()) == ["one.mcap", "two.mcap"]
+    assert command("convert", *logs, "--out", tmp_path / "all.csv") == 1
+    assert command("convert", logs[0], logs[0], "--out", tmp_path / "all") == 1
+    assert command("convert", logs[0], "--out", tmp_path / "log.xlsx") == 0  # a directory of that name
+    assert command("convert", *logs, "--out", tmp_path / "all", "--to", "xlsx") == 1
+    assert "csv, parquet, mcap" in capsys.readouterr().err
+
+
+def test_convert_reads_the_robots_column_map(log: MotionLog, tmp_path: Path) -> None:
+    port, columns = write_hrpsys(log, tmp_path)
+    robot = write_robot(tmp_path / "robot", columns=columns)
+    assert command("convert", port, "--robot", robot, "--out", tmp_path / "walk.parquet", "--quiet") == 0
+    again = open_log(tmp_path / "walk.parquet")
+    np.testing.assert_allclose(
+        again.column("joint.neck.position"), log.column("joint.neck.position"), atol=1e-12
+    )
+
+
+def test_init_marks_every_guess_and_does_not_write_over(log: MotionLog, tmp_path: Path) -> None:
+    write_robot(tmp_path)
+    (tmp_path / "robot.yaml").unlink()
+    save_log(log, tmp_path / "sway.mcap", make_robot(tmp_path / "known"))
+    out = tmp_path / "robot.yaml"
+    assert command("init", tmp_path / "biped.urdf", tmp_path / "sway.mcap", "--out", out) == 0
+    text = out.read_text()
+    data = yaml.safe_load(text)
+    assert data["feet"]["left"]["ankle"] == "left_foot"
+    assert data["feet"]["right"]["wrench"]["name"] == "right"
+    assert data["imu"]["name"] == "chest"
+    assert data["topics"]["left"] == "/wrench/left"
+    for line in text.splitlines():
+        if "bush:" in line:
+            assert "GUESS" in line
+    assert command("init", tmp_path / "biped.urdf", tmp_path / "sway.mcap", "--out", out) == 1
+    assert command("init", tmp_path / "biped.urdf", tmp_path / "sway.mcap", "--out", out, "--force") == 0
+
+
+def test_init_sees_a_sensor_that_reads_the_other_way(log: MotionLog, tmp_path: Path) -> None:
+    write_robot(tmp_path)
+    columns = {
+        name: -values if name.startswith("wrench.left.") else values for name, values in log.columns.items()
+    }
+    save_log(MotionLog("sway", log.time, columns), tmp_path / "sway.csv")
+    assert command("init", tmp_path / "biped.urdf", tmp_path / "sway.csv", "--out", tmp_path / "r.yaml") == 0
+    feet = yaml.safe_load((tmp_path / "r.yaml").read_text())["feet"]
+    assert feet["left"]["wrench"]["sign"] == -1
+    assert "sign" not in feet["right"]["wrench"]
+
+
+@pytest.mark.parametrize(
+    ("urdf", "ankles", "depth"),
+    [
+        (TALOS, {"left": "leg_left_6_link", "right": "leg_right_6_link"}, -0.107),
+        (G1, {"left": "left_ankle_roll_link", "right": "right_ankle_roll_link"}, -0.035),
+        (ICUB, {"left": "l_ankle_2", "right": "r_ankle_2"}, None),
+    ],
+)
+def test_feet_of_real_robots_are_found(urdf: Path, ankles: dict[str, str], depth: float | None) -> None:
+    found = find_ankles(UrdfTree.load(urdf), pin.buildModelFromXML(urdf.read_text()))
+    assert {ankle.side: ankle.link for ankle in found} == ankles
+    for ankle in found:
+        length, width = np.ptp(ankle.sole, axis=0)
+        assert 0.05 < width < length < 0.35
+        assert depth is None or ankle.depth == pytest.approx(depth, abs=1e-3)
+
+
+@pytest.mark.slow
+def test_a_newcomer_gets_from_a_bag_and_a_urdf_to_mujoco_in_four_commands(tmp_path: Path) -> None:
+    """init, two lines by hand, inspect, identify, export: the MuJoCo model has the bushes' true numbers."""
+    mujoco = pytest.importorskip("mujoco")
+    mounting = Mounting(wrench=Frame())  # sensors at a link of the URDF, as drivers say in their messages
+    write_robot(tmp_path, mounting)
+    known = make_robot(tmp_path / "known", mounting)
+    (tmp_path / "robot.yaml").unlink()
+    bag, robot, result = tmp_path / "sway.mcap", tmp_path / "robot.yaml", tmp_path / "out" / "result.json"
+    save_log(record(sway("sway", duration=20.0), mounting), bag, known)
+
+    assert command("init", tmp_path / "biped.urdf", bag, "--out", robot) == 0
+    lines = robot.read_text().splitlines()
+    by_hand = [index for index, line in enumerate(lines) if "    bush:" in line]
+    assert len(by_hand) <= 3
+    for index in by_hand:  # what no URDF knows
+        lines[index] = "    bush: {xyz: [0, 0, -0.06]}"
+    robot.write_text("\n".join(lines))
+    assert command("inspect", robot, bag, "--quiet") == 0
+    assert command("identify", "feet", robot, bag, "--out", tmp_path / "out", "--quiet") == 0
+    assert command("export", result, "--to", "mjcf", "--out", tmp_path / "feet.xml") == 0
+
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "feet.xml"))
+    for (foot, axis), law in TRUTH.items():
+        joint = model.joint(f"{'L' if foot == 'left' else 'R'}LEG_BUSH_{axis.upper()}")
+        assert joint.stiffness[0] == pytest.approx(law.stiffness, rel=0.01)
+        assert model.dof_damping[joint.dofadr[0]] == pytest.approx(law.damping, rel=0.01)
