@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import struct
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from biped import make_robot, record, sway
 from log_formats import write_mcap, write_ros1
@@ -17,6 +20,7 @@ from plantar.readers import open_log
 from plantar.readers.ros_layouts import IMU, JOINT_STATE, WRENCH, BrokenMessage, layout_of
 from plantar.readers.save import save_log
 from plantar.readers.streams import Stream, merge, resample
+from plantar.robot import RobotModel
 
 
 def stream(name: str, time: np.ndarray, **columns: np.ndarray) -> Stream:
@@ -346,3 +350,34 @@ def test_a_text_log_with_broken_lines_keeps_the_good_ones(tmp_path: Path) -> Non
     log = open_log(tmp_path / "walk.sh_q", make_robot(tmp_path / "robot", columns={"joints": ["neck"]}))
     assert len(log) == 399
     assert {"lines_broken", "file_cut"} <= {note.code for note in log.notes}
+
+
+words = st.sampled_from([
+    "time", "a", "joint.neck.position", "imu.chest.orientation", "wrench.left.force", "joints", "ports", "from", "unit",
+    "order", "sign", "deg", "N", "wxyz", "rpy", "role", "joints.position", "take", "",
+])  # fmt: skip
+scalars = st.none() | st.booleans() | st.integers(-3, 5) | st.floats(allow_nan=False) | words
+trees = st.recursive(
+    scalars,
+    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(words, inner, max_size=4),
+    max_leaves=8,
+)
+
+
+def refusal(path: Path, robot: RobotModel) -> str:
+    """Why a log is refused, or nothing."""
+    try:
+        open_log(path, robot)
+    except LogError as error:
+        return str(error)
+    return ""
+
+
+@given(columns=st.dictionaries(words.filter(bool), trees, max_size=4))
+@settings(max_examples=300, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_whatever_stands_in_columns(columns: dict[str, object], tmp_path: Path, robot: RobotModel) -> None:
+    """A log or one line, never anything else."""
+    (tmp_path / "log.csv").write_text("time,a\n0,1\n1,2\n2,3\n")
+    (tmp_path / "log.sh_q").write_text("0 1\n1 2\n2 3\n")
+    for name in ("log.csv", "log.sh_q"):
+        assert "\n" not in refusal(tmp_path / name, replace(robot, columns=columns))

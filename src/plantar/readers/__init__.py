@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -59,7 +59,11 @@ def _module(path: Path, robot: RobotModel | None) -> str:
         return "column_file" if FORMATS[ending] == "table" and mapped else FORMATS[ending]
     from plantar.readers.hrpsys import is_port_file
 
-    named = robot is not None and path.suffix[1:] in robot.columns.get("ports", ())
+    named = (
+        robot is not None
+        and isinstance(entries := robot.columns.get("ports"), Mapping)
+        and path.suffix[1:] in entries
+    )
     if named or is_port_file(path):
         return "hrpsys"
     raise LogError(located("has an unknown ending", path=path, valid=", ".join(FORMATS)))

@@ -141,7 +141,7 @@ def _mapped(
     stem, _, last = key.rpartition(".")
     if last == "orientation" and stem.startswith("imu."):
         if order == "rpy" and values.shape[1] == 3:
-            values, order = quaternion_from_rpy(values * factor(unit, "angle", key, path)), "wxyz"
+            values, order = quaternion_from_rpy(values * factor(unit, "position", key, path)), "wxyz"
         if values.shape[1] != 4 or (order or "wxyz") not in ORDERS:
             message = f"columns.{key} needs four sources and an order"
             raise LogError(located(message, path=path, value=order, valid="wxyz, xyzw, or three and rpy"))
@@ -173,7 +173,7 @@ def _source(table: Mapping[str, Array], source: Any, key: str, path: Path) -> Ar
                 located(f"columns.{key}: no column {source}", path=path, valid=f"0 to {len(names) - 1}")
             )
         return table[names[source]]
-    if source not in table:
+    if not isinstance(source, str) or source not in table:
         raise LogError(
             located(
                 f"is missing (columns.{key})",

@@ -16,9 +16,9 @@ DEGREE = np.pi / 180
 # Unit -> (what it measures, factor to SI).
 UNITS: dict[str, tuple[str, float]] = {
     "s": ("time", 1.0), "ms": ("time", 1e-3), "us": ("time", 1e-6), "ns": ("time", 1e-9),
-    "rad": ("angle", 1.0), "deg": ("angle", DEGREE),
-    "rad/s": ("rate", 1.0), "deg/s": ("rate", DEGREE),
-    "rad/s^2": ("angular acceleration", 1.0), "deg/s^2": ("angular acceleration", DEGREE),
+    "rad": ("position", 1.0), "deg": ("position", DEGREE), "m": ("position", 1.0), "mm": ("position", 1e-3),
+    "rad/s": ("velocity", 1.0), "deg/s": ("velocity", DEGREE), "m/s": ("velocity", 1.0), "mm/s": ("velocity", 1e-3),
+    "rad/s^2": ("joint acceleration", 1.0), "deg/s^2": ("joint acceleration", DEGREE),
     "m/s^2": ("acceleration", 1.0), "g": ("acceleration", GRAVITY),
     "N": ("force", 1.0), "kN": ("force", 1e3), "kgf": ("force", GRAVITY),
     "N.m": ("torque", 1.0), "N.mm": ("torque", 1e-3), "kN.m": ("torque", 1e3),
@@ -28,23 +28,28 @@ UNITS: dict[str, tuple[str, float]] = {
 
 # Last words of a column or role -> what it measures.
 QUANTITIES = {
-    "time": "time", "position": "angle", "velocity": "rate", "acceleration": "angular acceleration",
-    "effort": "torque", "orientation": "ratio", "rpy": "angle", "angular_velocity": "rate",
+    "time": "time", "position": "position", "velocity": "velocity", "acceleration": "joint acceleration",
+    "effort": "torque", "orientation": "ratio", "rpy": "position", "angular_velocity": "velocity",
     "linear_acceleration": "acceleration", "force": "force", "torque": "torque",
 }  # fmt: skip
 ORDERS = ("wxyz", "xyzw")
 
 
-def factor(unit: str | None, quantity: str, where: str, path: Path) -> float:
+def factor(unit: object, quantity: str, where: str, path: Path) -> float:
     """What to multiply by to get SI. LogError: an unknown unit, or one of another quantity."""
     if unit is None:
         return 1.0
-    plain = unit.replace("·", ".").replace("²", "^2").replace("Nm", "N.m").strip()
+    plain = str(unit).replace("·", ".").replace("²", "^2").replace("Nm", "N.m").strip()
     kind, scale = UNITS.get(plain, (None, 1.0))
     if kind != quantity:
         fitting = [name for name, (of, _) in UNITS.items() if of == quantity]
         raise LogError(
-            located(f"{where}: no such unit of {quantity}", path=path, value=unit, valid=", ".join(fitting))
+            located(
+                f"{where}: no such unit of {quantity}",
+                path=path,
+                value=str(unit)[:40],
+                valid=", ".join(fitting),
+            )
         )
     return scale
 
@@ -69,7 +74,7 @@ def role_columns(
         stem = role.rpartition(".")[0]
         if last == "rpy":
             _length(values, 3, role, path)
-            values, last = quaternion_from_rpy(values * factor(unit, "angle", role, path)), "wxyz"
+            values, last = quaternion_from_rpy(values * factor(unit, "position", role, path)), "wxyz"
         _length(values, 4, role, path)
         return {f"{stem}.{axis}": values[:, i] for i, axis in enumerate(last)}
     if kind in ("imu", "wrench") and last in ("angular_velocity", "linear_acceleration", "force", "torque"):
