@@ -107,15 +107,12 @@ def apply(table: Mapping[str, Array], robot: RobotModel, path: Path) -> tuple[Ar
         if key in ("joints", "ports"):
             continue
         made = entry if isinstance(entry, Mapping) else {"from": entry}
-        if "from" not in made or set(made) - ENTRY_KEYS:
-            raise LogError(
-                located(
-                    f"columns.{key}",
-                    path=robot.path,
-                    value=str(entry)[:60],
-                    valid="{from, unit, order, sign}",
-                )
+        if made.get("from") in (None, "", []) or set(made) - ENTRY_KEYS:
+            message, valid = (
+                f"columns.{key} is no source",
+                "a column, a list of columns, or {from, unit, order, sign}",
             )
+            raise LogError(located(message, path=robot.path, value=str(entry)[:60], valid=valid))
         sources = made["from"] if isinstance(made["from"], list) else [made["from"]]
         values = np.column_stack([_source(table, source, key, path) for source in sources])
         unit, sign = made.get("unit"), _sign(made.get("sign", 1), f"columns.{key}", robot.path)
