@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -146,3 +147,81 @@ def test_a_newcomer_gets_from_a_bag_and_a_urdf_to_mujoco_in_four_commands(tmp_pa
         joint = model.joint(f"{'L' if foot == 'left' else 'R'}LEG_BUSH_{axis.upper()}")
         assert joint.stiffness[0] == pytest.approx(law.stiffness, rel=0.01)
         assert model.dof_damping[joint.dofadr[0]] == pytest.approx(law.damping, rel=0.01)
+
+
+TALOS_LAW = {
+    "left": ((940.0, 31.0), (720.0, 26.0)),
+    "right": ((980.0, 35.0), (680.0, 22.0)),
+}  # pitch, roll: K, C
+
+
+def talos_log() -> MotionLog:
+    """TALOS sways over its feet, both legs alike, the torso level: exact by Pinocchio's kinematics and the law."""
+    model = pin.buildModelFromXML(TALOS.read_text())
+    data, imu = model.createData(), model.getFrameId("imu_link")
+    time = np.arange(0, 20, 0.005)
+    fore, side = (0.05 * np.sin(2 * np.pi * f * time + p) for f, p in ((0.3, 0.0), (0.2, 1.0)))
+    bend = [0.02 * np.sin(2 * np.pi * f * time + p) for f, p in ((0.5, 0.3), (0.37, 2.0))]
+    angles = {2: -side, 3: -0.4 - fore, 4: 0.8 + 0 * fore, 5: -0.4 + fore + bend[0], 6: side + bend[1]}
+    columns: dict[str, np.ndarray] = {}
+    q = np.tile(pin.neutral(model), (time.size, 1))
+    for name in list(model.names)[1:]:
+        number = name.split("_")[2] if name.startswith("leg_") else ""
+        values = angles.get(int(number), 0 * time) if number else 0 * time
+        columns[f"joint.{name}.position"] = q[:, model.joints[model.getJointId(name)].idx_q] = values
+    rotations = {side: np.empty((time.size, 3, 3)) for side in TALOS_LAW}
+    for row in range(time.size):
+        pin.framesForwardKinematics(model, data, q[row])
+        for foot in TALOS_LAW:
+            rotations[foot][row] = data.oMf[model.getFrameId(f"leg_{foot}_6_link")].rotation
+    w, x, y, z = np.roll(pin.Quaternion(data.oMf[imu].rotation).coeffs(), 1)
+    columns |= {
+        f"imu.base.orientation.{axis}": np.full(time.size, v)
+        for axis, v in zip("wxyz", (w, x, y, z), strict=True)
+    }
+    up = data.oMf[imu].rotation.T @ [0, 0, 9.80665]
+    columns |= {f"imu.base.angular_velocity.{axis}": 0 * time for axis in "xyz"}
+    columns |= {
+        f"imu.base.linear_acceleration.{axis}": np.full(time.size, v)
+        for axis, v in zip("xyz", up, strict=True)
+    }
+    for foot, laws in TALOS_LAW.items():
+        n = rotations[foot][:, 2, :]  # the world's up in the ankle link
+        bent = [np.arctan2(n[:, 0], n[:, 2]), -np.arcsin(n[:, 1])]
+        pitch, roll = (
+            k * b + c * np.gradient(b, time, edge_order=2) for (k, c), b in zip(laws, bent, strict=True)
+        )
+        axis = np.column_stack([np.cos(bent[0]), 0 * time, -np.sin(bent[0])])
+        force = 450.0 * n
+        torque = np.outer(pitch, [0, 1, 0]) + roll[:, None] * axis + np.cross([0, 0, -0.08], force)
+        for kind, values in (("force", force), ("torque", torque)):
+            columns |= {f"wrench.{foot}.{kind}.{a}": values[:, i] for i, a in enumerate("xyz")}
+    return MotionLog("sway", time, columns)
+
+
+@pytest.mark.slow
+def test_talos_straight_from_mcap_with_two_lines_by_hand(tmp_path: Path) -> None:
+    urdf = tmp_path / "talos.urdf"
+    urdf.write_text(TALOS.read_text())
+    known = {"name": "talos", "urdf": "talos.urdf", "imu": {"name": "base", "link": "imu_link"}, "feet": {
+        foot: {"ankle": f"leg_{foot}_6_link", "bush": {}, "wrench": {"name": foot},
+               "sole": {"xyz": [0, 0, -0.107], "polygon": [[0.1, 0.1], [-0.1, 0.1], [-0.1, -0.1]]}} for foot in TALOS_LAW}}  # fmt: skip
+    (tmp_path / "known.yaml").write_text(yaml.safe_dump(known))
+    save_log(talos_log(), tmp_path / "sway.mcap", load_robot(tmp_path / "known.yaml"))
+    robot = tmp_path / "robot.yaml"
+    assert command("init", urdf, tmp_path / "sway.mcap", "--out", robot) == 0
+    lines = [
+        "    bush: {xyz: [0, 0, -0.08]}" if "    bush:" in line else line
+        for line in robot.read_text().splitlines()
+    ]
+    robot.write_text("\n".join(lines))
+    assert load_robot(robot).imu.placement.link == "imu_link"  # type: ignore[union-attr]
+    assert (
+        command("identify", "feet", robot, tmp_path / "sway.mcap", "--out", tmp_path / "out", "--quiet") == 0
+    )
+    result = json.loads((tmp_path / "out" / "result.json").read_text())
+    found = {(p["foot"], p["axis"], p["name"]): p["value"] for p in result["parameters"]}
+    for foot, laws in TALOS_LAW.items():
+        for axis, (stiffness, damping) in zip(("pitch", "roll"), laws, strict=True):
+            assert found[foot, axis, "stiffness"] == pytest.approx(stiffness, rel=0.01)
+            assert found[foot, axis, "damping"] == pytest.approx(damping, rel=0.02)
