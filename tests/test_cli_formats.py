@@ -203,10 +203,18 @@ def talos_log() -> MotionLog:
 def test_talos_straight_from_mcap_with_two_lines_by_hand(tmp_path: Path) -> None:
     urdf = tmp_path / "talos.urdf"
     urdf.write_text(TALOS.read_text())
-    known = {"name": "talos", "urdf": "talos.urdf", "imu": {"name": "base", "link": "imu_link"}, "feet": {
-        foot: {"ankle": f"leg_{foot}_6_link", "bush": {}, "wrench": {"name": foot},
-               "sole": {"xyz": [0, 0, -0.107], "polygon": [[0.1, 0.1], [-0.1, 0.1], [-0.1, -0.1]]}} for foot in TALOS_LAW}}  # fmt: skip
-    (tmp_path / "known.yaml").write_text(yaml.safe_dump(known))
+    outline = [[0.1, 0.1], [-0.1, 0.1], [-0.1, -0.1]]
+    feet = {
+        foot: {
+            "ankle": f"leg_{foot}_6_link",
+            "bush": {},
+            "wrench": {"name": foot},
+            "sole": {"xyz": [0, 0, -0.107], "polygon": outline},
+        }
+        for foot in TALOS_LAW
+    }
+    known = {"name": "talos", "urdf": "talos.urdf", "imu": {"name": "base", "link": "imu_link"}, "feet": feet}
+    (tmp_path / "known.yaml").write_text(json.dumps(known))
     save_log(talos_log(), tmp_path / "sway.mcap", load_robot(tmp_path / "known.yaml"))
     robot = tmp_path / "robot.yaml"
     assert command("init", urdf, tmp_path / "sway.mcap", "--out", robot) == 0

@@ -186,6 +186,9 @@ def test_identified_urdf_gives_pinocchio_the_parameters(urdf: Path, tmp_path: Pa
 
     from plantar.conventions import INERTIAL_NAMES
 
+    inertia = "<inertia ixx='.01' ixy='0' ixz='0' iyy='.01' iyz='0' izz='.01'/>"
+    sensor = f'<link name="left_sensor"><inertial><mass value="0.7"/>{inertia}</inertial></link>'
+    urdf.write_text(urdf.read_text().replace('<link name="left_sensor"/>', sensor))
     model = pin.buildModelFromUrdf(str(urdf), pin.JointModelFreeFlyer())
     pin.seed(1)
     wanted, rows = {}, []
