@@ -16,7 +16,7 @@ from log_formats import write_mcap, write_ros1
 from plantar.errors import LogError
 from plantar.log import MotionLog
 from plantar.notes import Note
-from plantar.readers import open_log
+from plantar.readers import compressed, open_log
 from plantar.readers.ros_layouts import IMU, JOINT_STATE, WRENCH, BrokenMessage, layout_of
 from plantar.readers.save import save_log
 from plantar.readers.streams import Stream, merge, resample
@@ -306,6 +306,17 @@ def test_a_decompression_bomb_is_left_out(tmp_path: Path) -> None:
         (tmp_path / "bomb.mcap").write_bytes(b"\x89MCAP0\r\n" + record_of(6, chunk))
         with pytest.raises(LogError, match="no message"):
             open_log(tmp_path / "bomb.mcap")
+
+
+def test_a_bag_of_many_bombs_is_stopped_by_its_own_size(
+    original: MotionLog, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path, _ = write_mcap(original, tmp_path)
+    assert open_log(path).columns
+    monkeypatch.setattr(compressed, "SMALL", 1000)
+    monkeypatch.setattr(compressed, "RATIO", 0)
+    with pytest.raises(LogError, match="no message"):
+        open_log(path)
 
 
 # --- maps -------------------------------------------------------------------------------------------------
