@@ -126,6 +126,21 @@ def measured_balance(robot: RobotModel, log: MotionLog, soles: Mapping[str, Arra
 
 def flat_soles(robot: RobotModel, positions: Array) -> dict[str, Array]:
     """Poses of the soles on the floor, (4, 4) each, as joint positions (n,) place them: middle at the origin."""
+    found = soles_in_root(robot, positions)
+    first = np.linalg.inv(next(iter(found.values())))
+    poses = {name: first @ pose for name, pose in found.items()}
+    middle = np.mean([pose[:2, 3] for pose in poses.values()], axis=0)
+    flat = {}
+    for name, pose in poses.items():
+        yaw = np.arctan2(pose[1, 0], pose[0, 0])
+        flat[name] = np.eye(4)
+        flat[name][:2, :2] = [[np.cos(yaw), -np.sin(yaw)], [np.sin(yaw), np.cos(yaw)]]
+        flat[name][:2, 3] = pose[:2, 3] - middle
+    return flat
+
+
+def soles_in_root(robot: RobotModel, positions: Array) -> dict[str, Array]:
+    """Poses of the soles in the root link's frame, (4, 4) each, at joint positions (n,) in the robot's order."""
     model, data = robot.model, robot.model.createData()
     q = pin.neutral(model)
     for name, value in zip(robot.joint_names, positions, strict=True):
@@ -135,14 +150,5 @@ def flat_soles(robot: RobotModel, positions: Array) -> dict[str, Array]:
     found = {}
     for name, foot in robot.feet.items():
         joint, placement = robot.frame(foot.sole.placement)
-        found[name] = data.oMi[joint] * placement
-    first = next(iter(found.values()))
-    poses = {name: (first.inverse() * pose) for name, pose in found.items()}
-    middle = np.mean([pose.translation for pose in poses.values()], axis=0)
-    flat = {}
-    for name, pose in poses.items():
-        yaw = np.arctan2(pose.rotation[1, 0], pose.rotation[0, 0])
-        flat[name] = np.eye(4)
-        flat[name][:2, :2] = [[np.cos(yaw), -np.sin(yaw)], [np.sin(yaw), np.cos(yaw)]]
-        flat[name][:2, 3] = pose.translation[:2] - middle[:2]
-    return flat
+        found[name] = np.array((data.oMi[joint] * placement).homogeneous)
+    return found

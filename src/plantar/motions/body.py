@@ -30,7 +30,9 @@ class Body:
     def __init__(self, robot: RobotModel) -> None:
         if robot.imu is None or set(robot.feet) != {"left", "right"}:
             message = "motions are planned for a left and a right foot and a chest that carries an IMU"
-            raise MotionError(located(message, path=robot.path, valid="a robot file with imu, left and right"))
+            raise MotionError(
+                located(message, path=robot.path, valid="a robot file with imu, left and right")
+            )
         self.robot = robot
         self.model = robot.floating_model.copy()
         self.chest_link = robot.imu.placement.link
@@ -50,13 +52,16 @@ class Body:
 
     def neutral(self, posture: Mapping[str, float] | None = None) -> Array:
         """Configuration with the joints at `posture`, else at 0, and inside their limits with room to move."""
-        q = pin.neutral(self.model)
+        q: Array = np.array(pin.neutral(self.model))
         for name, angle in (posture or {}).items():
             self._set(q, name, angle)
         room = 0.1
         for joint in self.model.joints[2:]:
             if joint.nq == 1:
-                low, high = self.model.lowerPositionLimit[joint.idx_q], self.model.upperPositionLimit[joint.idx_q]
+                low, high = (
+                    self.model.lowerPositionLimit[joint.idx_q],
+                    self.model.upperPositionLimit[joint.idx_q],
+                )
                 margin = min(room, max(high - low, 0.0) / 4) if posture is None else 0.0
                 if low < high:
                     q[joint.idx_q] = np.clip(q[joint.idx_q], low + margin, high - margin)
@@ -80,7 +85,10 @@ class Body:
     def positions(self, q: Array) -> Array:
         """Joint positions, one a joint, in the order of `joints`."""
         return np.array(
-            [q[j.idx_q] if j.nq == 1 else np.arctan2(q[j.idx_q + 1], q[j.idx_q]) for j in self.model.joints[2:]]
+            [
+                q[j.idx_q] if j.nq == 1 else np.arctan2(q[j.idx_q + 1], q[j.idx_q])
+                for j in self.model.joints[2:]
+            ]
         )
 
     def solve(self, q: Array, tasks: list[Task], posture: Array, steps: int) -> Array:
@@ -91,7 +99,13 @@ class Body:
         limits = [ConfigurationLimit(self.model, config_limit_gain=0.9)]
         for _ in range(steps):
             velocity = pink.solve_ik(
-                configuration, [*tasks, rest], 1.0, solver="daqp", limits=limits, damping=1e-9, safety_break=False
+                configuration,
+                [*tasks, rest],
+                1.0,
+                solver="daqp",
+                limits=limits,
+                damping=1e-9,
+                safety_break=False,
             )
             configuration.integrate_inplace(velocity, 1.0)
         return np.array(configuration.q)

@@ -113,4 +113,6 @@ def _check_torques(body: Body, plan: Plan, q: Array, v: Array, a: Array, time: A
         if past.max() > 0:
             joint = int(past.argmax())
             message = f"{plan.name}: joint '{body.joints[joint]}' needs {abs(torque[joint]):.4g} N·m"
-            raise MotionError(located(message, time=float(time[row]), valid=f"at most {limits[joint]:.4g} N·m"))
+            raise MotionError(
+                located(message, time=float(time[row]), valid=f"at most {limits[joint]:.4g} N·m")
+            )

@@ -16,19 +16,24 @@ from plantar.robot import Placement
 
 DURATION = 36.0  # s
 RAMP = 3.0  # s
-ALONG, ACROSS = 0.72, 0.9  # of the sole's half length and width: how far the operator leads the centre of mass
+ALONG, ACROSS = (
+    0.72,
+    0.9,
+)  # of the sole's half length and width: how far the operator leads the centre of mass
 ROOM = 0.008  # m, kept to the edge even by soles so narrow that the shares would leave less
 ASIDE = 0.2  # of the sway goes across the wanted axis: no hand moves in a plane
 TEMPOS = (0.23, 0.41, 0.67)  # Hz: slow, brisk and quick swings of one hand
 SHARES = (0.5, 0.35, 0.15)
 
 
-def manual_plan(body: Body, name: str, start: Stance, axis: Literal["pitch", "roll"], sway: Array | None) -> Plan:
+def manual_plan(
+    body: Body, name: str, start: Stance, axis: Literal["pitch", "roll"], sway: Array | None
+) -> Plan:
     """The operator holds the chest and sways it: forward and backward (pitch) or left and right (roll).
 
     `sway` (x, y) [m] at the chest; without one, the centre of mass goes most of the way to the sole's edge.
     """
-    time = np.arange(int(round(DURATION * RATE)) + 1) / RATE
+    time = np.arange(round(DURATION * RATE) + 1) / RATE
     held = Placement(body.chest_link, np.array([0.0, 0.0, 0.1]), np.zeros(3))
     grip = _grip(body, start.configuration, held)
     reach = _reach(body, start, grip[2]) if sway is None else sway

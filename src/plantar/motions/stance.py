@@ -83,7 +83,8 @@ def on_one_leg(body: Body, start: Stance, foot: str, arms: Mapping[str, float]) 
     rest = q
     for share in np.linspace(0.1, 1.0, 10):
         moved = {
-            name: pin.SE3.Interpolate(start.soles[name], target, float(share)) for name, target in soles.items()
+            name: pin.SE3.Interpolate(start.soles[name], target, float(share))
+            for name, target in soles.items()
         }
         over = (1 - share) * body.centre_of_mass(rest) + share * centre
         upright = body.chest_task(body.pose(q, CHEST), position=False)
@@ -104,7 +105,9 @@ def with_arms(body: Body, start: Stance, arms: Mapping[str, float]) -> Stance:
     return Stance(q, start.soles, start.standing)
 
 
-def check_reached(body: Body, q: Array, soles: Mapping[str, pin.SE3], what: str, time: float | None = None) -> None:
+def check_reached(
+    body: Body, q: Array, soles: Mapping[str, pin.SE3], what: str, time: float | None = None
+) -> None:
     """MotionError when a foot is not where it should be."""
     for name, target in soles.items():
         miss = float(np.linalg.norm(body.pose(q, body.sole(name)).translation - target.translation))
@@ -115,14 +118,18 @@ def check_reached(body: Body, q: Array, soles: Mapping[str, pin.SE3], what: str,
 
 def _facing_forward(body: Body, q: Array) -> Array:
     """Quaternion x y z w of the root that lets the soles' x axes point forward."""
-    forward = sum((body.pose(q, body.sole(name)).rotation[:, 0] for name in body.robot.feet), start=np.zeros(3))
+    forward = sum(
+        (body.pose(q, body.sole(name)).rotation[:, 0] for name in body.robot.feet), start=np.zeros(3)
+    )
     yaw = -np.arctan2(forward[1], forward[0])
     return np.array([0.0, 0.0, np.sin(yaw / 2), np.cos(yaw / 2)])
 
 
 def _check_apart(body: Body, targets: Mapping[str, pin.SE3]) -> None:
     """MotionError where two soles would stand on each other: no straight line passes between them."""
-    first, second = sole_outlines(body.robot, {n: np.array(t.homogeneous) for n, t in targets.items()}).values()
+    first, second = sole_outlines(
+        body.robot, {n: np.array(t.homogeneous) for n, t in targets.items()}
+    ).values()
     gap = max(
         float(-inside_distance(points, other).max()) for points, other in ((first, second), (second, first))
     )

@@ -31,7 +31,7 @@ def track(
     `tasks(offset)` gives the tasks of one knot beside the feet. Raises MotionError when a foot or the body
     cannot follow, with the time and how far it falls short.
     """
-    knots = np.linspace(0.0, duration, int(round(duration * KNOTS)) + 1)
+    knots = np.linspace(0.0, duration, round(duration * KNOTS) + 1)
     offsets = displacement(knots)
     q = start.configuration
     found = np.empty((knots.size, q.size))
@@ -57,7 +57,7 @@ def splined(
     body: Body, name: str, start: Stance, knots: Array, found: Array, hand: Hand | None = None
 ) -> Plan:
     """The plan through configurations (K, nq) at `knots` (K,) [s]."""
-    time = np.arange(int(round(knots[-1] * RATE)) + 1) / RATE
+    time = np.arange(round(knots[-1] * RATE) + 1) / RATE
     positions = np.unwrap(np.array([body.positions(q) for q in found]), axis=0)
     joints = _through(knots, positions, time)
     if np.ptp(found[:, :7], axis=0).max() < 1e-12:

@@ -21,7 +21,7 @@ def sweep_plan(body: Body, name: str, start: Stance, variant: int) -> Plan:
 
     Two variants differ in the order of the joints and their senses. Legs stay as they are.
     """
-    time = np.arange(int(round(DURATION * RATE)) + 1) / RATE
+    time = np.arange(round(DURATION * RATE) + 1) / RATE
     found = np.tile(start.configuration, (time.size, 1))
     random = np.random.default_rng(variant)
     for joint in upper_joints(body):

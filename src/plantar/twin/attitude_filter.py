@@ -29,7 +29,9 @@ def filtered_attitude(start: Array, angular_velocity: Array, acceleration: Array
         # the world's up in the body as the filter believes it
         ux, uy, uz = 2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z
         ex, ey, ez = ay * uz - az * uy, az * ux - ax * uz, ax * uy - ay * ux
-        bias_x, bias_y, bias_z = (b + LEARN * e * period for b, e in zip((bias_x, bias_y, bias_z), (ex, ey, ez), strict=True))
+        bias_x, bias_y, bias_z = (
+            b + LEARN * e * period for b, e in zip((bias_x, bias_y, bias_z), (ex, ey, ez), strict=True)
+        )
         px = 0.5 * period * (rate[0] + bias_x + PULL * ex)
         py = 0.5 * period * (rate[1] + bias_y + PULL * ey)
         pz = 0.5 * period * (rate[2] + bias_z + PULL * ez)

@@ -62,7 +62,7 @@ def load(name: str) -> dict[str, Array] | None:
 def save(name: str, arrays: Mapping[str, Array]) -> None:
     """Keep arrays under a key; a folder that cannot be written keeps nothing."""
     content = io.BytesIO()
-    np.savez(content, allow_pickle=False, **dict(arrays))  # type: ignore[arg-type]
+    np.savez(content, allow_pickle=False, **dict(arrays))
     try:
         with atomic_write(folder() / f"{name}.npz") as handle:
             handle.write(content.getbuffer())

@@ -87,7 +87,9 @@ class Description:
         centres = np.array([r @ b.com + p for (r, p), b in zip(placements, self.bodies, strict=True)])
         centre = masses @ centres / masses.sum()
         inertia = np.zeros((3, 3))
-        for (rotation, _), body, mass, arm in zip(placements, self.bodies, masses, centres - centre, strict=True):
+        for (rotation, _), body, mass, arm in zip(
+            placements, self.bodies, masses, centres - centre, strict=True
+        ):
             inertia += rotation @ body.inertia @ rotation.T
             inertia += mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
         return float(masses.sum()), centre, inertia

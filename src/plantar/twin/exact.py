@@ -23,7 +23,11 @@ def exact_columns(rollout: Rollout, robot: RobotModel, feet: dict[str, CutFoot])
         for place, joint in enumerate(rollout.joints):
             columns[f"joint.{joint}.{quantity}"] = values[:, place]
     if robot.imu is not None:
-        for quantity, axes in (("orientation", "wxyz"), ("angular_velocity", "xyz"), ("linear_acceleration", "xyz")):
+        for quantity, axes in (
+            ("orientation", "wxyz"),
+            ("angular_velocity", "xyz"),
+            ("linear_acceleration", "xyz"),
+        ):
             values = rollout.sensors[f"imu.{quantity}"]
             columns |= labelled(f"imu.{robot.imu.name}.{quantity}", axes, values)
     for name, foot in robot.feet.items():
@@ -96,7 +100,9 @@ def _at_bush(rollout: Rollout, foot: str) -> Array:
     MuJoCo's sensors give the parent's action on the child in the child's axes: the opposite, turned.
     """
     turn = _ankle_to_sole(rollout, foot)
-    parts = [-np.einsum("nij,nj->ni", turn, rollout.sensors[f"{foot}.{kind}"]) for kind in ("force", "torque")]
+    parts = [
+        -np.einsum("nij,nj->ni", turn, rollout.sensors[f"{foot}.{kind}"]) for kind in ("force", "torque")
+    ]
     return np.column_stack(parts)
 
 

@@ -53,7 +53,9 @@ def _cut(description: Description, robot: RobotModel, foot: Foot) -> CutFoot:
     place, bush = place_of(description, robot, foot.bush)
     sensor = place_of(description, robot, foot.wrench.placement)[1]
     sole = place_of(description, robot, foot.sole.placement)[1]
-    flat = np.column_stack([foot.sole.polygon, np.zeros(len(foot.sole.polygon)), np.ones(len(foot.sole.polygon))])
+    flat = np.column_stack(
+        [foot.sole.polygon, np.zeros(len(foot.sole.polygon)), np.ones(len(foot.sole.polygon))]
+    )
     corners = (np.linalg.inv(bush) @ sole @ flat.T).T[:, :3]
     size = np.array([*np.ptp(foot.sole.polygon, axis=0), SOLE_THICKNESS])
     ankle, mass, inertia = _split(description.bodies[place], bush, size)

@@ -22,7 +22,9 @@ def describe(robot: RobotModel) -> Description:
     """
     model = robot.model
     columns = _axes(model, robot)
-    bodies = [Body(model.frames[1].name if model.nframes > 1 else "root", -1, **_inertia(model.inertias[0]))]
+    mass, com, inertia = _inertia(model.inertias[0])
+    root = model.frames[1].name if model.nframes > 1 else "root"
+    bodies = [Body(root, -1, mass=mass, com=com, inertia=inertia)]
     for joint in range(1, model.njoints):
         column = columns[joint]
         revolute = bool(np.linalg.norm(column[3:]) > 0.5)
@@ -43,8 +45,8 @@ def describe(robot: RobotModel) -> Description:
                 upper,
                 _positive(model.upperVelocityLimit[place], DEFAULT_VELOCITY),
                 _positive(model.upperEffortLimit[place], DEFAULT_EFFORT),
-                **_inertia(model.inertias[joint]),
-                shapes=_rods(model, joint),
+                *_inertia(model.inertias[joint]),
+                _rods(model, joint),
             )
         )
     return Description(robot.name, tuple(bodies))
@@ -63,8 +65,9 @@ def _axes(model: pin.Model, robot: RobotModel) -> dict[int, Array]:
     return axes
 
 
-def _inertia(inertia: pin.Inertia) -> dict[str, float | Array]:
-    return {"mass": float(inertia.mass), "com": np.array(inertia.lever), "inertia": np.array(inertia.inertia)}
+def _inertia(inertia: pin.Inertia) -> tuple[float, Array, Array]:
+    """Mass, centre of mass and the inertia about it."""
+    return float(inertia.mass), np.array(inertia.lever), np.array(inertia.inertia)
 
 
 def _limits(model: pin.Model, place: int) -> tuple[float, float]:

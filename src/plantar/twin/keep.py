@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
@@ -51,7 +52,14 @@ def plan_from(name: str, arrays: Mapping[str, Array]) -> Plan:
     standing = frozenset(str(foot) for foot in arrays["standing"])
     joints = tuple(str(joint) for joint in arrays["joints"])
     return Plan(
-        name, arrays["time"], joints, arrays["positions"], arrays["base"], standing, _table(arrays, "stance"), hand
+        name,
+        arrays["time"],
+        joints,
+        arrays["positions"],
+        arrays["base"],
+        standing,
+        _table(arrays, "stance"),
+        hand,
     )
 
 
@@ -63,8 +71,8 @@ def rollout_arrays(rollout: Rollout) -> dict[str, Array]:
 
 
 def rollout_from(name: str, arrays: Mapping[str, Array]) -> Rollout:
-    tables = {table: _table(arrays, table) for table in TABLES}
-    plain = {field: arrays[field] for field in ARRAYS}
+    tables: dict[str, Any] = {table: _table(arrays, table) for table in TABLES}
+    plain: dict[str, Any] = {field: arrays[field] for field in ARRAYS}
     return Rollout(name=name, joints=tuple(str(joint) for joint in arrays["joints"]), **plain, **tables)
 
 

@@ -53,7 +53,11 @@ def mjcf_text(robot: RobotModel, bushes: Feet | None, scene: Scene, look: Descri
     feet = cut_feet(description, robot)
     root = Element("mujoco", model=robot.name)
     SubElement(root, "compiler", angle="radian", autolimits="true", balanceinertia="true")
-    options = {"timestep": f"{scene.timestep:.12g}", "gravity": f"0 0 {-GRAVITY}", "integrator": "implicitfast"}
+    options = {
+        "timestep": f"{scene.timestep:.12g}",
+        "gravity": f"0 0 {-GRAVITY}",
+        "integrator": "implicitfast",
+    }
     SubElement(root, "option", options | {"cone": "elliptic", "impratio": "10"})
     SubElement(SubElement(root, "visual"), "global", offwidth="1280", offheight="960")
     world = SubElement(root, "worldbody")
@@ -96,7 +100,9 @@ def _add_world(world: Element, scene: Scene) -> None:
     stiffness, damping = scene.floor
     touch = {"contype": "0", "conaffinity": "1", "solref": f"{-stiffness:.12g} {-damping:.12g}"}
     # priority: the floor's numbers hold, whatever the sole's are
-    SubElement(world, "geom", floor | touch | {"friction": f"{scene.friction:.12g} 0.005 0.0001", "priority": "1"})
+    SubElement(
+        world, "geom", floor | touch | {"friction": f"{scene.friction:.12g} 0.005 0.0001", "priority": "1"}
+    )
     SubElement(world, "light", pos="1 -1 4", dir="-0.2 0.2 -1", directional="true")
     SubElement(world, "site", name="world")
 
@@ -108,7 +114,7 @@ def _add_bodies(world: Element, description: Description, ankles: Mapping[int, B
         matrix = np.eye(4)
         matrix[:3, :3], matrix[:3, 3] = body.rotation, body.xyz
         parent = elements[body.parent] if body.parent >= 0 else world
-        element = SubElement(parent, "body", name=body.name, **pose(matrix))
+        element = SubElement(parent, "body", {"name": body.name} | pose(matrix))
         elements.append(element)
         if body.parent < 0:
             SubElement(element, "freejoint", name="base")
@@ -132,12 +138,14 @@ def _add_inertia(element: Element, body: Body) -> None:
     mass = max(body.mass, 1e-4)  # a link that only carries a frame
     if np.linalg.eigvalsh(i)[0] <= 0:
         full = [1e-7, 1e-7, 1e-7, 0.0, 0.0, 0.0]
-    SubElement(element, "inertial", pos=numbers(body.com), mass=f"{mass:.12g}", fullinertia=numbers(np.array(full)))
+    SubElement(
+        element, "inertial", pos=numbers(body.com), mass=f"{mass:.12g}", fullinertia=numbers(np.array(full))
+    )
 
 
 def _add_sole(ankle: Element, foot: CutFoot, bush: Bush | None) -> None:
     """The sole below the bush: z slide, pitch and roll in series, in one light body (none may be massless)."""
-    sole = SubElement(ankle, "body", name=f"{foot.name}.sole", **pose(foot.bush))
+    sole = SubElement(ankle, "body", {"name": f"{foot.name}.sole"} | pose(foot.bush))
     centre = {"pos": "0 0 0", "mass": f"{foot.mass:.12g}", "diaginertia": numbers(foot.inertia)}
     SubElement(sole, "inertial", centre)
     if bush is not None:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import ThreadPoolExecutor
-from functools import partial
+from concurrent.futures import CancelledError, ThreadPoolExecutor
 from pathlib import Path
+from threading import Event
+from typing import TypeVar
 
 from plantar.motions.campaign import Postures, plan_motion
 from plantar.motions.plan import Plan
@@ -20,6 +21,8 @@ from plantar.twin.recording import TwinRecording, record
 from plantar.twin.rollout import Rollout, roll_out, scene_xml
 
 Progress = Callable[[str, float], None]  # motion, share done
+Job = TypeVar("Job")
+Done = TypeVar("Done")
 
 
 def play(
@@ -46,12 +49,50 @@ def play_all(
     progress: Progress | None = None,
 ) -> list[list[TwinRecording]]:
     """Play motions on both cores; one list of recordings for each seed, from one rollout a motion."""
-    robot = robot or hrp2.robot()
+    robot, names = robot or hrp2.robot(), list(motions)
     chosen = preset_named(preset)
     physics = chosen.physics(bushes)
-    with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
-        rollouts = list(pool.map(lambda motion: _roll(motion, robot, physics, progress), motions))
+    plans = on_cores(lambda motion: motion if isinstance(motion, Plan) else planned(motion, robot), names)
+    rollouts = roll_all([(plan, physics) for plan in plans], robot, progress)
     return [[record(rollout, robot, physics, chosen, seed) for rollout in rollouts] for seed in seeds]
+
+
+def roll_all(
+    played: Sequence[tuple[Plan, Physics]], robot: RobotModel, progress: Progress | None = None
+) -> list[Rollout]:
+    """Roll out plans, each in its own world, on all cores; the first error stops the others."""
+    stop = Event()
+
+    def roll(job: tuple[Plan, Physics]) -> Rollout:
+        plan, physics = job
+
+        def report(share: float) -> None:
+            if stop.is_set():
+                raise CancelledError
+            if progress is not None:
+                progress(plan.name, share)
+
+        rollout = rolled(plan, robot, physics, report)
+        report(1.0)
+        return rollout
+
+    try:
+        return on_cores(roll, played)
+    finally:
+        stop.set()
+
+
+def on_cores(work: Callable[[Job], Done], jobs: Sequence[Job]) -> list[Done]:
+    """`work` on every job, as many at a time as there are cores, in the jobs' order.
+
+    For work that releases the GIL. After an error the jobs that have not begun are dropped.
+    """
+    pool = ThreadPoolExecutor(os.cpu_count() or 1)
+    futures = [pool.submit(work, job) for job in jobs]
+    try:
+        return [future.result() for future in futures]
+    finally:
+        pool.shutdown(wait=False, cancel_futures=True)
 
 
 def write_campaign(
@@ -66,7 +107,7 @@ def write_campaign(
 
 def postures_of(robot: RobotModel) -> Postures:
     """Where the motions of a robot start: the published postures for HRP-2, bent knees for others."""
-    return hrp2.postures() if robot.name == hrp2.NAME else Postures()
+    return Postures() if hrp2.look(robot) is None else hrp2.postures()
 
 
 def planned(name: str, robot: RobotModel, **options: float | None) -> Plan:
@@ -90,13 +131,4 @@ def rolled(
         return rollout_from(plan.name, kept)
     rollout = roll_out(robot, plan, physics, xml, progress)
     cache.save(key, rollout_arrays(rollout))
-    return rollout
-
-
-def _roll(motion: str | Plan, robot: RobotModel, physics: Physics, progress: Progress | None) -> Rollout:
-    plan = motion if isinstance(motion, Plan) else planned(motion, robot)
-    report = None if progress is None else partial(progress, plan.name)
-    rollout = rolled(plan, robot, physics, report)
-    if report is not None:
-        report(1.0)
     return rollout

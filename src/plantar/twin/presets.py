@@ -17,7 +17,7 @@ SLIP_TORQUE: Final = (5.0, 2.2)  # N·m in pitch and roll: 7 to 10 % of the larg
 SLIP_ANGLE: Final = 0.01  # rad
 HARDENING: Final = 5000.0  # N·m/rad³: a tenth more torque at 0.1 rad
 SOFT_FLOOR: Final = (62500.0, 500.0)  # a contact that takes 4 ms to settle
-SLIPPERY: Final = (Slip(9.0, 10.0, 0.01), Slip(21.0, 22.5, 0.01))  # seconds of every motion
+SLIPPERY: Final = (Slip(9.0, 10.0, 0.02), Slip(21.0, 22.0, 0.02))  # seconds of every motion
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,8 @@ class Preset:
             return world
         pitch, roll = self.slip_torque
         rubber = {"pitch_hardening": self.hardening, "roll_hardening": self.hardening}
-        rubber |= {"pitch_slip_torque": pitch, "roll_slip_torque": roll, "slip_angle": SLIP_ANGLE}
+        rubber |= {"pitch_slip_torque": pitch, "roll_slip_torque": roll, "pitch_slip_angle": SLIP_ANGLE}
+        rubber["roll_slip_angle"] = SLIP_ANGLE
         return replace(world, bushes={foot: replace(bush, **rubber) for foot, bush in bushes.items()})
 
 
@@ -86,9 +87,7 @@ PRESETS: Final[Mapping[str, Preset]] = MappingProxyType(
             Preset("ideal", Sensors()),
             Preset("sensors", SENSORS),
             Preset("realistic", replace(SENSORS, wrench_delay=0.005), SLIP_TORQUE),
-            Preset(
-                "harsh", HARSH, (2 * SLIP_TORQUE[0], 2 * SLIP_TORQUE[1]), HARDENING, SOFT_FLOOR, SLIPPERY
-            ),
+            Preset("harsh", HARSH, (2 * SLIP_TORQUE[0], 2 * SLIP_TORQUE[1]), HARDENING, SOFT_FLOOR, SLIPPERY),
         )
     }
 )

@@ -31,5 +31,5 @@ class Rubber:
     """The elements of one foot."""
 
     def __init__(self, bush: Bush) -> None:
-        self.pitch = Element(bush.pitch_slip_torque, bush.slip_angle, bush.pitch_hardening)
-        self.roll = Element(bush.roll_slip_torque, bush.slip_angle, bush.roll_hardening)
+        self.pitch = Element(bush.pitch_slip_torque, bush.pitch_slip_angle, bush.pitch_hardening)
+        self.roll = Element(bush.roll_slip_torque, bush.roll_slip_angle, bush.roll_hardening)

@@ -1,0 +1,105 @@
+"""`plantar simulate`."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from plantar.cli.terminal import console, end_progress, number, progress, table
+from plantar.errors import MissingExtra, PlantarError, located
+from plantar.robot import load_robot
+
+if TYPE_CHECKING:
+    from plantar.twin.bush import Feet
+
+BUSH_HELP = "Bush of every foot as K_pitch,C_pitch,K_roll,C_roll[,K_z,C_z]; the paper's table 1 if left out."
+
+
+def run(
+    motion: Annotated[
+        str, typer.Argument(help="A motion's name, several with commas between, 'demo' or 'campaign'.")
+    ],
+    out: Annotated[Path, typer.Option(help="Folder for the robot file, the logs and the truth beside them.")],
+    preset: Annotated[
+        str, typer.Option(help="Imperfections: ideal, sensors, realistic or harsh.")
+    ] = "realistic",
+    seed: Annotated[int, typer.Option(help="Draws the sensors' noise, biases and zeros.", min=0)] = 0,
+    robot: Annotated[
+        Path | None, typer.Option(help="Robot file of a biped; the HRP-2-like one if left out.")
+    ] = None,
+    bush: Annotated[str | None, typer.Option(help=BUSH_HELP)] = None,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")] = False,
+) -> None:
+    """Play motions on the twin, a robot in MuJoCo whose feet are known, and write what it records.
+
+    Motions: Tilt1 to Tilt6, Manual_right_roll, Manual_right_pitch, Manual_left_roll, Manual_left_pitch,
+    Manual_both_pitch, Myrand4, Myrand5, Squat. Each log MOTION.parquet has its truth in MOTION.truth.parquet
+    (bush angles, contact forces) and MOTION.truth.json (what was put in). A motion that would fall is refused.
+
+    Example: plantar simulate Tilt3,Squat --out out/twin --preset sensors --seed 3
+    """
+    try:
+        from plantar.motions import CAMPAIGN, DEMO
+        from plantar.twin import PAPER, play_all, write_campaign
+    except ImportError as error:
+        raise MissingExtra(error.name or "mujoco", "twin", "plantar simulate") from error
+    names = list({"campaign": CAMPAIGN, "demo": DEMO}.get(motion, tuple(motion.split(","))))
+    bushes = PAPER if bush is None else _bushes(bush)
+    model = None if robot is None else load_robot(robot)
+    if model is not None and bush is None and model.name != "hrp2_like":
+        message = f"'{model.name}' stands on unknown bushes"
+        raise PlantarError(located(message, valid="--bush K_pitch,C_pitch,K_roll,C_roll"))
+    (recordings,) = play_all(names, model, bushes, preset, [seed], _reporter(len(names), progress(quiet)))
+    end_progress(quiet)
+    robot_file = write_campaign(out, recordings, model)
+    rows = [
+        (
+            recording.name,
+            number(recording.log.duration),
+            f"{len(recording.log)}",
+            f"{out / recording.name}.parquet",
+        )
+        for recording in recordings
+    ]
+    console().print(
+        table(f"{preset}, seed {seed}; robot file {robot_file}", ("motion", "s", "samples", "log"), rows)
+    )
+
+
+def _bushes(text: str) -> Feet:
+    from plantar.twin import Bush
+
+    try:
+        values = [float(part) for part in text.split(",")]
+        if len(values) not in (4, 6) or not all(0 <= value < 1e9 for value in values):
+            raise ValueError
+    except ValueError:
+        message = "--bush is not four or six numbers that are at least 0"
+        raise PlantarError(
+            located(message, value=text, valid="1000,20,800,16 or 1000,20,800,16,4e5,1000")
+        ) from None
+    return {foot: Bush(*values) for foot in ("left", "right")}
+
+
+def _reporter(count: int, show: Callable[[str], None]) -> Callable[[str, float], None]:
+    """Shows the motions that are playing, from more than one thread, a tenth at a time."""
+    lock, done, playing = threading.Lock(), set[str](), dict[str, int]()
+
+    def report(motion: str, share: float) -> None:
+        with lock:
+            tenth = int(10 * share)
+            if share >= 1.0:
+                done.add(motion)
+                playing.pop(motion, None)
+            elif playing.get(motion) == tenth:
+                return
+            else:
+                playing[motion] = tenth
+            parts = [f"{name} {10 * part} %" for name, part in playing.items()]
+            show(", ".join([f"{len(done)} of {count} motions played", *parts]))
+
+    return report

@@ -1,0 +1,177 @@
+"""Identified feet in a simulator: a recording's joints played open loop on a fresh twin, and what it feels."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Final
+
+import numpy as np
+
+from plantar.balance import LOADED, flat_soles, soles_in_root
+from plantar.conventions import GRAVITY, Array, rotation_from_quaternion
+from plantar.errors import DataError, PlantarError, located
+from plantar.log import MotionLog
+from plantar.motions.plan import RATE, Hand, Plan
+from plantar.robot import RobotModel
+from plantar.signals import low_pass
+from plantar.twin.bush import Bush, Feet
+from plantar.twin.exact import exact_columns
+from plantar.twin.foot import cut_feet
+from plantar.twin.from_robot import describe
+from plantar.twin.mjcf import SERVO_ANGLE
+from plantar.twin.physics import Physics
+from plantar.twin.play import Progress, roll_all
+
+SMOOTH: Final = 10.0  # Hz: encoder steps are no motion
+REFERENCE: Final = 1.0  # s at the start that zeros of sensors are taken from, and that are not scored
+LAWS: Final = ("kelvin_voigt", "hardening", "elastoplastic")
+TERMS: Final = ("stiffness", "damping", "hardening", "slip_torque", "slip_angle")
+
+
+@dataclass(frozen=True)
+class Replayed:
+    """One motion on one candidate's feet beside the recording, at `time` (N,).
+
+    `torque` and `recorded_torque`: by (foot, axis), (N,) [N·m] at the bush; `chest` and `recorded_chest`: pitch and
+    roll of the IMU's link, (N, 2) [rad]. All are relative to their mean over the first second.
+    """
+
+    motion: str
+    feet: str
+    time: Array
+    torque: Mapping[tuple[str, str], Array]
+    recorded_torque: Mapping[tuple[str, str], Array]
+    chest: Array
+    recorded_chest: Array
+
+    def torque_error(self, foot: str, axis: str) -> float:
+        """Mean absolute error of a foot's torque after the first second [N·m]."""
+        scored = self.time > self.time[0] + REFERENCE
+        return float(np.mean(np.abs(self.torque[foot, axis] - self.recorded_torque[foot, axis])[scored]))
+
+    def chest_error(self) -> tuple[float, float]:
+        """Root mean square error of the chest's pitch and roll after the first second [rad]."""
+        scored = self.time > self.time[0] + REFERENCE
+        pitch, roll = np.sqrt(np.mean((self.chest - self.recorded_chest)[scored] ** 2, axis=0))
+        return float(pitch), float(roll)
+
+
+def replay(
+    robot: RobotModel,
+    logs: Sequence[MotionLog],
+    candidates: Mapping[str, Feet | None],
+    hands: Mapping[str, Hand] | None = None,
+    progress: Progress | None = None,
+) -> list[Replayed]:
+    """Play recordings open loop on each candidate's feet (None: rigid ones), on all cores.
+
+    Servos follow the recorded joints; `hands`, by motion, lead the robot where an operator did. Raises DataError
+    where a log holds no attitude, MotionError where a candidate lets the robot fall.
+    """
+    plans = [plan_of(robot, log, (hands or {}).get(log.name)) for log in logs]
+    jobs = [
+        (replace(plan, name=f"{plan.name} on {feet}"), Physics(bushes=bushes))
+        for plan in plans
+        for feet, bushes in candidates.items()
+    ]
+    rollouts = iter(roll_all(jobs, robot, progress))
+    cut, compared = cut_feet(describe(robot), robot), []
+    for plan, log in zip(plans, logs, strict=True):
+        resampled = _at(log, log.time[0] + plan.time)
+        for feet in candidates:
+            played = MotionLog(log.name, plan.time, exact_columns(next(rollouts), robot, cut))
+            compared.append(
+                Replayed(
+                    log.name, feet, plan.time, _torques(robot, played), _torques(robot, resampled),
+                    _chest(robot, played), _chest(robot, resampled),
+                )
+            )  # fmt: skip
+    return compared
+
+
+def feet_of(result: Mapping[str, Any]) -> Feet:
+    """The bushes that a `result.json` (as read) describes.
+
+    Raises PlantarError when its law is one that the twin has no element for, or a value is missing. z keeps the
+    twin's own where the result has none.
+    """
+    if result["model"] not in LAWS:
+        message = f"the law '{result['model']}' cannot be played on the twin"
+        raise PlantarError(located(message, valid=", ".join(LAWS)))
+    values: dict[str, dict[str, float]] = {}
+    for row in result["parameters"]:
+        if row["name"] in TERMS and row["value"] is not None and (row["axis"] != "z" or row["value"] > 0):
+            values.setdefault(row["foot"], {})[f"{row['axis']}_{row['name']}"] = float(row["value"])
+    feet = {}
+    for foot, found in values.items():
+        known = {name: value for name, value in found.items() if name in Bush.__dataclass_fields__}
+        missing = {f"{axis}_{term}" for axis in ("pitch", "roll") for term in TERMS[:2]} - known.keys()
+        if missing:
+            raise PlantarError(located(f"the result has no {min(missing)} of the {foot} foot"))
+        feet[foot] = Bush(**known)
+    return feet
+
+
+def plan_of(robot: RobotModel, log: MotionLog, hand: Hand | None = None) -> Plan:
+    """The recorded joints as a plan at 200 Hz, from where the first sample stands on flat soles.
+
+    Where efforts were recorded, a servo's give under them is added, so that it stands where the recorded one did.
+    """
+    time = np.arange(int((log.time[-1] - log.time[0]) * RATE + 1e-6) + 1) / RATE
+    recorded = _at(log, log.time[0] + time)
+    positions = recorded.positions(robot)
+    limits = {body.joint: body.effort for body in describe(robot).bodies[1:]}
+    for place, joint in enumerate(robot.joint_names):
+        effort = recorded.joint(joint, "effort")
+        if effort is not None:
+            positions[:, place] += np.nan_to_num(effort) * SERVO_ANGLE / limits[joint]
+    positions = low_pass(positions, 1 / RATE, SMOOTH)
+    soles = flat_soles(robot, recorded.positions(robot)[0])
+    least = LOADED * robot.mass * GRAVITY
+    standing = frozenset(
+        name
+        for name, foot in robot.feet.items()
+        if np.nanmedian(foot.wrench.sign * recorded.wrench(foot.wrench.name)[:, 2]) > least
+    )
+    if not standing:
+        raise DataError(located("no foot carries the robot", path=log.source))
+    base = np.tile(_root(robot, recorded.positions(robot)[0], soles, min(standing)), (time.size, 1, 1))
+    stance = {name: soles[name] for name in standing}
+    return Plan(log.name, time, robot.joint_names, positions, base, standing, stance, hand)
+
+
+def _root(robot: RobotModel, positions: Array, soles: Mapping[str, Array], foot: str) -> Array:
+    """Pose (4, 4) of the root that puts one sole where it stands."""
+    return np.asarray(soles[foot] @ np.linalg.inv(soles_in_root(robot, positions)[foot]))
+
+
+def _at(log: MotionLog, time: Array) -> MotionLog:
+    """The log at other times, by straight lines between its samples; the new time starts at 0."""
+    columns = {name: np.interp(time, log.time, values) for name, values in log.columns.items()}
+    return MotionLog(log.name, time - time[0], columns, log.path)
+
+
+def _torques(robot: RobotModel, log: MotionLog) -> dict[tuple[str, str], Array]:
+    """Pitch and roll torque at each foot's bush centre, less its mean over the first second."""
+    torques = {}
+    for name, foot in robot.feet.items():
+        wrench = foot.wrench.sign * log.wrench(foot.wrench.name)
+        to_bush = (robot.frame(foot.bush)[1].inverse() * robot.frame(foot.wrench.placement)[1]).homogeneous
+        force, torque = wrench[:, :3] @ to_bush[:3, :3].T, wrench[:, 3:] @ to_bush[:3, :3].T
+        torque = _changed(log, torque + np.cross(to_bush[:3, 3], force))
+        torques[name, "pitch"], torques[name, "roll"] = torque[:, 1], torque[:, 0]
+    return torques
+
+
+def _chest(robot: RobotModel, log: MotionLog) -> Array:
+    """Pitch and roll of the IMU, (N, 2) [rad], less their mean over the first second; yaw does not enter."""
+    quaternions = log.orientation(robot.imu.name) if robot.imu is not None else None
+    if quaternions is None:
+        raise DataError(located("holds no attitude to compare with", path=log.source))
+    up = rotation_from_quaternion(quaternions)[:, 2, :]
+    return _changed(log, np.column_stack([-np.arcsin(up[:, 0]), np.arctan2(up[:, 1], up[:, 2])]))
+
+
+def _changed(log: MotionLog, values: Array) -> Array:
+    return np.asarray(values - values[log.time < log.time[0] + REFERENCE].mean(axis=0))

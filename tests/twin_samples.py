@@ -1,0 +1,48 @@
+"""Short plans and rollouts of the twin, so that its tests take seconds."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+
+from plantar.motions import Plan, plan_motion
+from plantar.twin import hrp2
+from plantar.twin.physics import Physics
+from plantar.twin.rollout import Rollout, roll_out, scene_xml
+
+
+def short(plan: Plan, start: float, end: float) -> Plan:
+    """The part of a plan between two times [s], on a time base that starts at 0."""
+    rows = (plan.time >= start) & (plan.time < end)
+    hand = None if plan.hand is None else replace(plan.hand, path=plan.hand.path[rows])
+    return replace(
+        plan,
+        time=np.arange(rows.sum()) / 200.0,
+        positions=plan.positions[rows],
+        base=plan.base[rows],
+        hand=hand,
+    )
+
+
+@cache
+def plan(motion: str) -> Plan:
+    return plan_motion(motion, hrp2.robot(), hrp2.postures())
+
+
+def roll(played: Plan, physics: Physics | None = None) -> Rollout:
+    physics = physics or Physics()
+    return roll_out(hrp2.robot(), played, physics, scene_xml(hrp2.robot(), played, physics))
+
+
+@cache
+def swayed() -> Rollout:
+    """Six seconds of the right foot's manual roll on the paper's bushes."""
+    return roll(short(plan("Manual_right_roll"), 10.0, 16.0))
+
+
+@cache
+def tilted() -> Rollout:
+    """Four seconds of Tilt3 on the paper's bushes."""
+    return roll(short(plan("Tilt3"), 2.0, 6.0))
