@@ -73,6 +73,8 @@ def export(
             raise ExportError(
                 located("cannot hold a result of plantar.inertia/1", value=target, valid="urdf")
             )
+        if given is None and "robot_model" not in data:
+            raise ExportError(located("the result names no URDF", valid="--model with the robot's URDF"))
         from plantar.export.inertia import identified_urdf
 
         text, notes = identified_urdf(data, given or robot_urdf(data, base))
