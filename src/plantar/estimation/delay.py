@@ -1,4 +1,8 @@
-"""How late one signal is against another that it should equal (measured against predicted wrench)."""
+"""How late one signal is against another that it should equal (measured against predicted wrench).
+
+Each axis in each band of frequencies gives a delay of its own. Where the prediction is wrong by more than noise these
+disagree, and their disagreement goes into the deviation: a fit over everything at once could not see that.
+"""
 
 from __future__ import annotations
 
@@ -8,18 +12,21 @@ from dataclasses import dataclass
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.estimation.intervals import cosine_covariance, pooled_freedom
-from plantar.signals import differentiate, shifted
+from plantar.estimation.intervals import cosine_covariance
+from plantar.signals import differentiate, low_pass, shifted
 
 ROUNDS = 4  # the moment equation is linear near its solution: each round shifts and solves again
-LONGEST = 0.05  # s: later signals than this are another fault than a delay
-LEAST_EXPLAINED = 0.8  # share of an axis' variance that the prediction must explain to take part
-GAIN_BAND = (0.75, 1.35)  # measured over predicted: outside it something else acts on the robot
+LONGEST = 0.05  # s: later signals than this have another fault than a delay
+BAND_EDGES = (0.15, 0.4, 0.8, 1.6, 3.2, 6.4)  # Hz
+LEAST_EXPLAINED = 0.8  # share of an axis' variance in a band that the prediction must explain to take part
+LEAST_CLOSED = 0.93  # share of the forces' variance that the prediction explains as it is: less, and somebody pushes
+GAIN_BAND = (0.8, 1.25)  # measured over predicted, of an axis that takes part
+MODEL_ERROR = 0.003  # of the amplitude, in quadrature: what any URDF and any filter get wrong; a delay of this over ω
 
 
 @dataclass(frozen=True)
 class Pair:
-    """Measured and predicted signals of one recording, (n, k) each, evenly sampled, without NaN, equally filtered."""
+    """Measured and predicted wrench of one recording, (n, 6) each, evenly sampled, without NaN, equally filtered."""
 
     label: str
     measured: Array
@@ -29,60 +36,73 @@ class Pair:
 
 @dataclass(frozen=True)
 class Delay:
-    """`value` [s] > 0: the measured signal is late. `explained` (pairs, k): share of variance explained, NaN where
-    an axis did not take part."""
+    """`value` [s] > 0: the measured signal is late; `freedom`: degrees of freedom of `std`; `cells` took part."""
 
     value: float
     std: float
     freedom: float
-    explained: Array
+    cells: int
 
 
 def estimate_delay(pairs: Sequence[Pair]) -> Delay | None:
-    """Delay common to all pairs and axes, or None where nothing follows the prediction.
-
-    With m(t) = g·p(t - δ) + noise, Σ m ṗ = -δ Σ ṁ ṗ for small δ. Only products of the two signals enter, so that
-    noise of either one does not bias δ. Axes weigh by the inverse variance of what the prediction leaves.
-    """
-    value, last = 0.0, None
+    """Delay common to all pairs, or None where in none the prediction closes, or what it says is no delay."""
+    value, found = 0.0, None
     for _ in range(ROUNDS):
-        step = _step(pairs, value)
-        if step is None:
+        cells = [cell for pair in pairs if _closes(pair, value) for cell in _cells(pair, value)]
+        if not cells:
             return None
-        value, last = float(np.clip(value + step.value, -LONGEST, LONGEST)), step
-    return last and Delay(value, last.std, last.freedom, last.explained)
+        found = _pooled(cells)
+        value += found.value
+        if abs(value) > LONGEST:
+            return None
+    return found and Delay(value, found.std, found.freedom, found.cells)
 
 
-def _step(pairs: Sequence[Pair], delay: float) -> Delay | None:
-    numerator = denominator = 0.0
-    explained = np.full((len(pairs), pairs[0].measured.shape[1]), np.nan)
-    moments: list[tuple[Array, Array, float]] = []
-    for place, pair in enumerate(pairs):
-        measured = shifted(pair.measured, pair.period, delay)
-        whole = np.isfinite(measured).all(axis=1)
-        m, p = measured[whole], pair.predicted[whole]
-        m, p = m - m.mean(axis=0), p - p.mean(axis=0)
-        gain = np.sum(m * p, axis=0) / np.maximum(np.sum(p * p, axis=0), 1e-300)
-        left = np.var(m - gain * p, axis=0)
-        share = 1 - left / np.maximum(np.var(m, axis=0), 1e-300)
-        takes_part = (share > LEAST_EXPLAINED) & (gain > GAIN_BAND[0]) & (gain < GAIN_BAND[1])
-        if not takes_part.any():
-            continue
-        explained[place, takes_part] = share[takes_part]
-        rate_m, rate_p = differentiate(m, pair.period), differentiate(p, pair.period)
-        weight = np.where(takes_part, 1 / np.maximum(left, 1e-300), 0.0)
-        moment, slope = (m * rate_p) @ weight, (rate_m * rate_p) @ weight
-        numerator += float(moment.sum())
-        denominator += float(slope.sum())
-        moments.append((moment, slope, pair.period))
-    if denominator <= 0:
-        return None
-    step = -numerator / denominator
-    variances, freedoms = [], []
-    for moment, slope, period in moments:
-        covariance, freedom = cosine_covariance((moment + step * slope)[:, None], len(moment) * period)
-        variances.append(covariance[0, 0] / denominator**2)
-        freedoms.append(freedom)
-    variance = np.array(variances)[:, None]
-    freedom = float(pooled_freedom(variance, np.array(freedoms, dtype=float)[:, None])[0])
-    return Delay(step, float(np.sqrt(variance.sum())), freedom, explained)
+def _pooled(cells: Sequence[Delay]) -> Delay:
+    """Mean by inverse variance; its deviation grows where the cells disagree by more than they claim."""
+    weights = np.array([1 / cell.std**2 for cell in cells])
+    values = np.array([cell.value for cell in cells])
+    value = float(weights @ values / weights.sum())
+    disagreement = float(weights @ (values - value) ** 2) / max(len(cells) - 1, 1)
+    freedoms = np.array([cell.freedom for cell in cells])
+    freedom = float(weights.sum() ** 2 / np.sum(weights**2 / freedoms))
+    return Delay(value, float(np.sqrt(max(1.0, disagreement) / weights.sum())), freedom, len(cells))
+
+
+def _closes(pair: Pair, delay: float) -> bool:
+    """Whether the forces follow from the prediction: they do not where an operator holds the robot."""
+    measured = shifted(pair.measured, pair.period, delay)[:, :3]
+    whole = np.isfinite(measured).all(axis=1)
+    m, p = measured[whole], pair.predicted[whole, :3]
+    return bool(np.var(m - p, axis=0).sum() <= (1 - LEAST_CLOSED) * np.var(m, axis=0).sum())
+
+
+def _cells(pair: Pair, delay: float) -> list[Delay]:
+    """What is left of the delay, by axis and band: Σ (m - g·p) ṗ = -δ Σ ṁ ṗ for m(t) = g·p(t - δ) + noise.
+
+    Noise is nowhere multiplied with itself, only with its own rate, so that it does not bias δ.
+    """
+    measured = shifted(pair.measured, pair.period, delay)
+    whole = np.isfinite(measured).all(axis=1)
+    both = np.hstack([measured[whole], pair.predicted[whole]])
+    duration = len(both) * pair.period
+    layers = [low_pass(both, pair.period, edge) for edge in BAND_EDGES if edge < 0.4 / pair.period]
+    found = []
+    for low, high in zip(layers, layers[1:], strict=False):
+        band = high - low
+        rates = differentiate(band, pair.period)
+        width = both.shape[1] // 2
+        for axis in range(width):
+            m, p, rate_m, rate_p = band[:, axis], band[:, width + axis], rates[:, axis], rates[:, width + axis]
+            power = float(p @ p)
+            slope = float(rate_m @ rate_p)
+            gain = float(m @ p) / power if power > 0 else 0.0
+            rest = m - gain * p
+            explains = float(rest @ rest) < (1 - LEAST_EXPLAINED) * float(m @ m)
+            if not (explains and GAIN_BAND[0] < gain < GAIN_BAND[1] and slope > 0):
+                continue
+            step = -float(rest @ rate_p) / slope
+            variance, freedom = cosine_covariance(((rest + step * rate_m) * rate_p)[:, None], duration)
+            floor = MODEL_ERROR * np.sqrt(power / float(rate_p @ rate_p))
+            found.append(Delay(step, float(np.hypot(np.sqrt(variance[0, 0]) / slope, floor)), freedom, 1))
+    return found
