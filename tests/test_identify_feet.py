@@ -341,6 +341,20 @@ def test_gaps_are_left_out(robot: RobotModel) -> None:
     assert "resampled" in codes(found)
 
 
+def test_single_absurd_values_do_no_harm(robot: RobotModel, logs: list[MotionLog]) -> None:
+    def spiked(name: str, value: float) -> np.ndarray:
+        return np.where(np.arange(len(logs[0])) == 700, value, logs[0].column(name))
+
+    torque, force = "wrench.left.torque.y", "wrench.right.force.z"
+    found = identify_feet(
+        robot, [logs[0].with_columns({torque: spiked(torque, np.inf), force: spiked(force, 1e308)})]
+    )
+    assert_truth(found, EXACT)
+    assert "absurd_values" in codes(found)
+    quaternion = [f"imu.chest.orientation.{axis}" for axis in "wxyz"]
+    assert_truth(identify_feet(robot, [logs[0].with_columns({n: spiked(n, 0.0) for n in quaternion})]), EXACT)
+
+
 def test_jitter_is_resampled(robot: RobotModel) -> None:
     motion = sway("jitter")
     found = identify_feet(robot, [record(motion, at=times(motion, rate=200.0, jitter=0.25, seed=3))])

@@ -95,6 +95,13 @@ FAULTS: dict[str, tuple[Fault, str, str]] = {
     "torque dead": (constant("wrench.left.torque.y"), "dead_channel", "wrench.left.torque.y"),
     "force dead": (constant("wrench.right.force.z"), "dead_channel", "wrench.right.force.z"),
     "time in milliseconds": (milliseconds, "time_unit", "'time'"),
+    "time in gigaseconds": (
+        lambda log: MotionLog(log.name, log.time * 1e-9, log.columns),
+        "time_unit",
+        "'time'",
+    ),
+    "a blink": (lambda log: log.select(slice(0, 20)), "too_short", "0.19 s"),
+    "quaternion empty": (constant("imu.chest.orientation.w", np.nan), "dead_channel", "orientation"),
 }
 
 
@@ -189,6 +196,8 @@ def test_a_log_without_an_imu_orientation_can_be_checked(robot: RobotModel, log:
         log.name, log.time, {name: v for name, v in log.columns.items() if name not in QUATERNION}
     )
     assert check_log(robot, without) == []
+    dead = without.with_columns({name: np.zeros(len(log)) for name in ACCELEROMETER})
+    assert [(finding.code, finding.fatal) for finding in check_log(robot, dead)] == [("dead_channel", True)]
     in_degrees = scaled(["joint.left_ankle_pitch.position"], 300.0)(without)
     assert "degrees" in names_of(check_log(robot, in_degrees))
 

@@ -136,6 +136,19 @@ def test_gaps_stay_gaps() -> None:
     assert hole.sum() == pytest.approx(100, abs=2)
 
 
+def test_a_clock_that_jumps_by_days_costs_no_memory() -> None:
+    motion = sway(duration=10.0)
+    log = record(motion)
+    jumped = MotionLog("a", np.where(log.time < 5, log.time, log.time + 1e6), log.columns)
+    even = evenly_sampled(jumped)
+    assert len(even) < len(log) + 10
+    known = np.isfinite(even.column("joint.left_ankle_pitch.position"))
+    assert [stretch.stop - stretch.start for stretch in runs(known)] == pytest.approx([500, 501], abs=1)
+    exact = record(motion, at=even.time[known] - np.where(even.time[known] > 1e5, 1e6, 0.0))
+    for name in ("joint.left_ankle_pitch.position", "wrench.right.torque.x"):
+        np.testing.assert_allclose(even.column(name)[known], exact.column(name), atol=1e-5)
+
+
 def test_quaternions_that_change_sign_are_interpolated_the_short_way() -> None:
     angle = np.linspace(0, 8 * np.pi, 4000)
     quaternion = Rotation.from_euler("z", angle[:, None]).as_quat(scalar_first=True)

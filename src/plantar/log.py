@@ -25,13 +25,15 @@ COLUMN = re.compile(
     r"|wrench\..+\.(force|torque)\.[xyz]"
 )
 
+LARGEST = 1e12  # in any unit: what no sensor reads
+
 
 @dataclass(frozen=True)
 class MotionLog:
     """A recording: `time` (N,) [s], increasing, and `columns`, each (N,), named as in `docs/log_columns.md`.
 
-    Arrays are read-only float64; NaN marks a value that was not recorded. Raises LogError on construction when
-    lengths differ or time does not increase.
+    Arrays are read-only float64; NaN marks a value that was not recorded, and stands for infinite ones. Raises
+    LogError on construction when lengths differ or time does not increase.
     """
 
     name: str
@@ -44,6 +46,12 @@ class MotionLog:
     def __post_init__(self) -> None:
         time = _frozen(self.time)
         columns = {name: _frozen(values) for name, values in self.columns.items()}
+        absurd = [name for name, values in columns.items() if (np.abs(values) > LARGEST).any()]
+        for name in absurd:
+            columns[name] = _frozen(np.where(np.abs(columns[name]) > LARGEST, np.nan, columns[name]))
+        if absurd:
+            text = f"{self.name}: infinite or absurd values count as not recorded: {_listing(absurd)}"
+            object.__setattr__(self, "notes", (*self.notes, Note("absurd_values", "warning", text)))
         for name, values in columns.items():
             if values.shape != time.shape:
                 message = f"has {values.size} values where time has {time.size}"

@@ -14,6 +14,8 @@ from plantar.sanity_feet import swapped_feet
 from plantar.sanity_imu import check_imu
 
 DEGREES = 180 / np.pi
+FASTEST, SLOWEST = 1e-5, 1.0  # s between samples: beyond them time is in another unit
+SHORTEST = 0.5  # s of a log from which anything can be said
 
 
 def check_log(robot: RobotModel, log: MotionLog) -> list[Finding]:
@@ -23,12 +25,13 @@ def check_log(robot: RobotModel, log: MotionLog) -> list[Finding]:
 
 
 def _time(log: MotionLog) -> Iterator[Finding]:
-    if log.period >= 1.0:
+    if not FASTEST < log.period < SLOWEST:
+        text = f"column 'time': samples are {log.period:g} s apart; is it in another unit?"
         valid = "valid: seconds; divide milliseconds by 1000 and nanoseconds by 1e9"
+        yield Finding("time_unit", f"{text} ({valid})", True)
+    elif log.duration < SHORTEST:
         yield Finding(
-            "time_unit",
-            f"column 'time': samples are {log.period:g} s apart; is it in another unit? ({valid})",
-            True,
+            "too_short", f"column 'time': lasts {log.duration:g} s (valid: {SHORTEST:g} s or more)", True
         )
 
 

@@ -28,6 +28,7 @@ def swapped_feet(robot: RobotModel, log: MotionLog) -> bool:
     wrenches = [foot.wrench.sign * log.wrench(foot.wrench.name) for foot in robot.feet.values()]
     positions = log.positions(robot)
     whole = np.isfinite(np.column_stack([orientation, positions, *wrenches])).all(axis=1)
+    whole &= np.linalg.norm(np.nan_to_num(orientation), axis=1) > 0.5
     loaded = whole & (sum(np.abs(w[:, 2]) for w in wrenches) > 0.3 * robot.mass * GRAVITY)
     rows = np.flatnonzero(loaded)[:: max(1, int(loaded.sum() // SAMPLES))]
     if rows.size < 10:

@@ -25,24 +25,31 @@ def check_imu(name: str, log: MotionLog) -> Iterator[Finding]:
     orientation = log.orientation(name)
     if log.has(*gyroscope):
         yield from _dead_channels(log, gyroscope, orientation)
+    accelerometer = [f"imu.{name}.linear_acceleration.{axis}" for axis in "xyz"]
+    problem = _accelerometer_size(name, log) if log.has(*accelerometer) else None
+    if problem is not None:
+        yield problem
     if orientation is None:
         return
     norm = np.linalg.norm(orientation, axis=1)
-    norm = norm[np.isfinite(norm)]
-    if norm.size and not 0.9 < np.median(norm) < 1.1:
-        text = (
-            f"columns 'imu.{name}.orientation.*': the quaternion's norm is {np.median(norm):.3g} (valid: 1)"
-        )
-        yield Finding("quaternion_norm", text, True)
+    columns = f"columns 'imu.{name}.orientation.*'"
+    if not np.isfinite(norm).any():
+        yield Finding("dead_channel", f"{columns}: hold no value (valid: leave the columns out)", True)
         return
+    usual = float(np.nanmedian(norm))
+    if not 0.9 < usual < 1.1:
+        yield Finding("quaternion_norm", f"{columns}: the quaternion's norm is {usual:.3g} (valid: 1)", True)
+        return
+    orientation = np.where(norm[:, None] > 0.5, orientation, np.nan)
     if log.has(*gyroscope):
         yield from _gyroscope_agrees(name, log, orientation)
-    if log.has(*(f"imu.{name}.linear_acceleration.{axis}" for axis in "xyz")):
+    if log.has(*accelerometer) and problem is None:
         yield from _accelerometer_agrees(name, log, orientation)
 
 
 def _dead_channels(log: MotionLog, columns: list[str], orientation: Array | None) -> Iterator[Finding]:
-    moves = orientation is not None and bool(np.nanmax(np.nanstd(orientation, axis=0)) > 1e-3)
+    whole = orientation[np.isfinite(orientation).all(axis=1)] if orientation is not None else np.zeros((0, 4))
+    moves = len(whole) > 0 and bool(np.max(np.std(whole, axis=0)) > 1e-3)
     for column in columns:
         values = log.column(column)
         finite = values[np.isfinite(values)]
@@ -119,22 +126,28 @@ def _gyroscope_agrees(name: str, log: MotionLog, orientation: Array) -> Iterator
         yield Finding("gyroscope_frame", text)
 
 
+def _accelerometer_size(name: str, log: MotionLog) -> Finding | None:
+    """Whether the accelerometer's usual norm is gravity's."""
+    norm = np.linalg.norm(log.linear_acceleration(name), axis=1)
+    where = f"columns 'imu.{name}.linear_acceleration.*'"
+    valid = f"valid: m/s², about {GRAVITY:.2f} at rest"
+    if not np.isfinite(norm).any() or np.nanmax(norm) == 0:
+        return Finding("dead_channel", f"{where}: hold no value ({valid})", log.orientation(name) is None)
+    size = float(np.nanmedian(norm))
+    if 0.8 < size < 1.2:
+        return Finding(
+            "accelerometer_unit", f"{where}: its norm is {size:.3g}, which looks like g ({valid})", True
+        )
+    if not 0.6 * GRAVITY < size < 1.6 * GRAVITY:
+        return Finding("accelerometer_unit", f"{where}: its usual norm is {size:.3g} ({valid})")
+    return None
+
+
 def _accelerometer_agrees(name: str, log: MotionLog, orientation: Array) -> Iterator[Finding]:
-    """The accelerometer's size, then its up against the quaternion's."""
+    """The accelerometer's up against the quaternion's."""
     acceleration = log.linear_acceleration(name)
     whole = np.flatnonzero(np.isfinite(np.column_stack([orientation, acceleration])).all(axis=1))
     if whole.size < 10:
-        return
-    size = float(np.median(np.linalg.norm(acceleration[whole], axis=1)))
-    where = f"columns 'imu.{name}.linear_acceleration.*'"
-    valid = f"valid: m/s², about {GRAVITY:.2f} at rest"
-    if 0.8 < size < 1.2:
-        yield Finding(
-            "accelerometer_unit", f"{where}: its norm is {size:.3g}, which looks like g ({valid})", True
-        )
-        return
-    if not 0.6 * GRAVITY < size < 1.6 * GRAVITY:
-        yield Finding("accelerometer_unit", f"{where}: its usual norm is {size:.3g} ({valid})")
         return
     rows = whole[:: max(1, whole.size // 2000)]
     up = acceleration[rows] / np.linalg.norm(acceleration[rows], axis=1, keepdims=True)

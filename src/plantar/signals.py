@@ -12,6 +12,7 @@ from plantar.log import MotionLog
 from plantar.notes import Note
 
 GAP_PERIODS = 3.5  # a step of time longer than this many periods is a gap
+LONG_GAP = 10.0  # s: a longer gap is not spelled out sample by sample
 JITTER_SHARE = 0.25  # of a period: below it, samples count as evenly spaced
 FILTER_ORDER = 4  # Butterworth, run forth and back
 SHORTEST_RUN = 27  # samples
@@ -38,14 +39,20 @@ def sampling(log: MotionLog) -> Sampling:
 def evenly_sampled(log: MotionLog) -> MotionLog:
     """The log on an even grid of its usual period; untouched (the same object) where it already stands on one.
 
-    Values are interpolated linearly, quaternions with their signs aligned; inside a gap they are NaN.
+    Values are interpolated linearly, quaternions with their signs aligned; inside a gap they are NaN. Of a gap longer
+    than LONG_GAP only the beginning stands on the grid: a clock that jumps by days costs no memory.
     """
     period = log.period
     steps = np.diff(log.time)
     if np.all(np.abs(steps - period) < JITTER_SHARE * period):
         return log
-    count = round(log.duration / period) + 1
-    grid = log.time[0] + period * np.arange(count)
+    breaks = np.flatnonzero(steps > max(LONG_GAP, 2 * GAP_PERIODS * period))
+    starts, ends = log.time[[0, *(breaks + 1)]], log.time[[*breaks, -1]]
+    ends[:-1] += GAP_PERIODS * period
+    first, last = (np.round((times - log.time[0]) / period).astype(np.int64) for times in (starts, ends))
+    grid = log.time[0] + period * np.concatenate(
+        [np.arange(a, b + 1) for a, b in zip(first, last, strict=True)]
+    )
     columns = {
         name: interpolate(grid, log.time, values, GAP_PERIODS * period)
         for name, values in _aligned(log).items()

@@ -117,7 +117,7 @@ def _foot(recording: Recording, foot: str) -> FootSummary:
         foot=foot,
         double=period * int(np.sum(contact.support == SUPPORTS.index(DOUBLE))),
         single=period * int(np.sum(contact.support == SUPPORTS.index(SINGLE))),
-        load=float(np.nanmean(bush.force_z)),
+        load=float(np.nanmean(bush.force_z)) if np.isfinite(bush.force_z).any() else 0.0,
         serving=period * int(used.sum()),
         deflection_rms={axis: rms(bush.deflection[:, i]) for i, axis in enumerate(ROTATIONAL_AXES)},
         rate_rms={axis: rms(bush.rate[:, i]) for i, axis in enumerate(ROTATIONAL_AXES)},
