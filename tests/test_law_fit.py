@@ -10,10 +10,11 @@ import pytest
 from bush_trials import PERIOD, Rubber, campaign, largest_torque, recorded, sway, tilt, unseen
 from plantar.errors import DataError
 from plantar.estimation.law_choice import choose_law
-from plantar.estimation.law_fit import LawFit, fit_law
+from plantar.estimation.law_fit import LawFit, fit_law, refine
 from plantar.estimation.law_influence import Linearised
 from plantar.estimation.law_opening import open_unseen
-from plantar.estimation.law_trials import Trial
+from plantar.estimation.law_search import Pieces
+from plantar.estimation.law_trials import Trial, prepare_trials
 from plantar.models import LAWS, BoucWen, Elastoplastic, Hardening, KelvinVoigt, Motion
 from plantar.signals import low_pass
 
@@ -294,3 +295,32 @@ def test_nothing_to_fit_is_one_line() -> None:
         fit_law(KelvinVoigt(), [unused])
     with pytest.raises(DataError, match="no recording has a sample"):
         choose_law([unused])
+
+
+def test_wrong_starts_do_not_trap_the_refinement() -> None:
+    """Four recordings, each from its own strained state, refined from starts that are all at the upper end."""
+    rng = np.random.default_rng(9)
+    law, trials, truth = Elastoplastic(), [], rng.uniform(-0.9, 0.9, 4)
+    for place, start in enumerate(truth):
+        path = tilt(rng, 0.012) if place else sway(rng, 0.08, 0.5)
+        motion = Motion(path, np.gradient(path, PERIOD), PERIOD)
+        torque = law.columns(motion, [0.01], np.array([start])) @ [434.0, 15.89, 5.0] + rng.standard_normal()
+        used = np.ones(len(path), dtype=bool)
+        used[:60] = used[-60:] = False
+        trials.append(Trial(f"trial_{place}", motion, torque, used))
+    prepared = prepare_trials(trials, 5.0)
+    folds = [np.zeros(int(each.used.sum()), dtype=np.intp) for each in prepared]
+    pieces = Pieces.of(law, prepared, folds, np.array([[0.009], [0.0125]]), [np.ones(1)] * 4)
+    fit = refine(pieces, prepared, np.array([[0.002], [0.05]]))
+    assert fit.rms < 0.02
+    np.testing.assert_allclose(fit.values, [434.0, 15.89, 5.0], rtol=0.01)
+
+
+def test_a_gain_that_is_real_but_small_keeps_the_simpler_law() -> None:
+    """A weak cubic term is well told from nothing, yet predicts held-out motion hardly better."""
+    trials = campaign(1, Rubber(hardening=500.0))
+    choice = choose_law(trials, [KelvinVoigt(), Hardening()])
+    hardening = next(score for score in choice.ranking if score.law.name == "hardening")
+    assert hardening.refused is None
+    assert hardening.held_out_rms < choice.ranking[-1].held_out_rms
+    assert choice.fit.law.name == "kelvin_voigt"

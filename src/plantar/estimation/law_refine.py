@@ -18,7 +18,7 @@ from plantar.estimation.law_trials import Prepared, filtered_columns
 from plantar.models import Law
 
 ITERATIONS = 16
-WIDEST_SCAN, NARROWEST_SCAN, NARROWING = 0.4, 0.05, 0.25  # of the starts about where the steps came to rest
+WIDEST_SCAN, NARROWEST_SCAN, NARROWING = 1.0, 0.05, 0.2  # of the starts about where the steps came to rest
 HALVINGS = 4
 SETTLED = 1e-4  # relative fall of the squares below which the refinement has arrived
 BOLDEST = 0.4  # largest step of a shape's logarithm
