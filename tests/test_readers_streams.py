@@ -230,6 +230,37 @@ def test_topics_of_the_robot_file_go_first_and_an_unknown_one_is_named(
     assert "/ft/left" in str(caught.value)
 
 
+def test_sensors_that_no_topic_is_called_after_are_asked_for(original: MotionLog, tmp_path: Path) -> None:
+    renamed = {name.replace("wrench.left", "wrench.a").replace("wrench.right", "wrench.b"): values
+               for name, values in original.columns.items()}  # fmt: skip
+    save_log(MotionLog("log", original.time, renamed), tmp_path / "log.mcap")
+    with pytest.raises(LogError, match=r"which topic is the wrench 'left'.*/wrench/a, /wrench/b"):
+        open_log(tmp_path / "log.mcap", make_robot(tmp_path / "robot"))
+
+
+def test_a_command_does_not_fill_in_for_a_measurement(original: MotionLog, tmp_path: Path) -> None:
+    """Two topics name the same joints; what the states lack is not taken from the commands."""
+    measured = {name: values for name, values in original.columns.items() if not name.endswith(".velocity")}
+    commands = {name: values + 1 for name, values in original.columns.items() if name.startswith("joint.")}
+    save_log(MotionLog("log", original.time, measured), tmp_path / "bag" / "a.mcap")
+    save_log(MotionLog("log", original.time, commands), tmp_path / "b.mcap")
+    content = (tmp_path / "b.mcap").read_bytes().replace(b"/joint_states", b"/joint_wanted")
+    (tmp_path / "bag" / "b.mcap").write_bytes(content)  # the chunk's own bytes hold no topic
+    log = open_log(tmp_path / "bag")
+    assert not [name for name in log.columns if name.endswith(".velocity")]
+    np.testing.assert_array_equal(log.column("joint.neck.position"), original.column("joint.neck.position"))
+    assert "joint_topics" in {note.code for note in log.notes}
+
+
+def test_a_ros1_bag_that_was_never_closed(original: MotionLog, tmp_path: Path) -> None:
+    path, _ = write_ros1(original, tmp_path)
+    content = path.read_bytes()
+    (tmp_path / "open.bag.active").write_bytes(content[: int(0.6 * len(content))])
+    log = open_log(tmp_path / "open.bag.active")
+    assert 50 < len(log) < len(original)
+    assert log.name == "open"
+
+
 def test_without_a_robot_sensors_go_by_their_topics(original: MotionLog, tmp_path: Path) -> None:
     path, _ = write_mcap(original, tmp_path)
     names = {name.rsplit(".", 2)[0] for name in open_log(path).columns if not name.startswith("joint.")}

@@ -24,6 +24,7 @@ FORMATS: dict[str, str] = {
     ".mcap": "ros_bag",
     ".db3": "ros_bag",
     ".bag": "ros_bag",
+    ".bag.active": "ros_bag",
     ".bin": "mc_rtc",
     ".mat": "robot_logger",
     ".npz": "column_file",

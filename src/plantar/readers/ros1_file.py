@@ -34,10 +34,11 @@ def read_ros1(path: Path, topics: dict[str, Topic], notes: list[Note]) -> None:
             block = handle.read(max(BLOCK, scan.needed - len(rest)))
             data = rest + block if rest else block
             rest = data[scan.records(data) :]
-            if not scan.lost and ((not block and rest) or scan.needed > size):
+            ended = not block or scan.needed > size
+            if ended and rest and not scan.lost:
                 scan.cut(rest)
-                notes.append(Note("file_cut", "warning", f"{path.name} is cut; its whole records were read"))
-            if not block or scan.needed > size or scan.lost:
+                notes.append(Note("file_cut", "warning", f"{path.name} is cut; what is whole was read"))
+            if ended or scan.lost:
                 return
 
 

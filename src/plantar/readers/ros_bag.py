@@ -23,7 +23,7 @@ from plantar.readers.streams import Stream, merge
 if TYPE_CHECKING:
     from plantar.robot import RobotModel
 
-FILES = (".mcap", ".db3", ".bag")
+FILES = (".mcap", ".db3", ".bag", ".active")  # .bag.active: a ROS 1 bag that was never closed
 NO_ORIENTATION = -1.0  # orientation_covariance[0] of an IMU that has none
 
 
@@ -50,7 +50,7 @@ def bag_topics(path: Path, robot: RobotModel | None = None) -> dict[str, list[To
 def _topics(path: Path, notes: list[Note]) -> dict[str, Topic]:
     topics: dict[str, Topic] = {}
     for file in bag_files(path):
-        reader = {".mcap": read_mcap, ".db3": read_sqlite, ".bag": read_ros1}[file.suffix.lower()]
+        reader = {".mcap": read_mcap, ".db3": read_sqlite}.get(file.suffix.lower(), read_ros1)
         reader(file, topics, notes)
     return topics
 
@@ -104,9 +104,10 @@ def _streams(chosen: dict[str, list[Topic]], path: Path, notes: list[Note]) -> l
         )
     streams = []
     seen: set[str] = set()
+    owners: dict[str, str] = {}
     for (key, topic, series), clock in zip(sources, clocks, strict=True):
         columns = (
-            _joints(series, seen, topic, notes, path)
+            _joints(series, owners, topic, notes, path)
             if topic.kind == JOINT_STATE
             else _sensor(key, series, seen)
         )
@@ -130,25 +131,27 @@ def _unusable(headers: list[np.ndarray[tuple[int], np.dtype[np.int64]]], names: 
     return None
 
 
-def _joints(series: Series, seen: set[str], topic: Topic, notes: list[Note], path: Path) -> dict[str, Array]:
-    columns: dict[str, Array] = {}
-    twice = sorted({name for name in series.names if series.names.count(name) > 1})
-    if twice:
-        notes.append(
-            Note(
-                "joint_twice",
-                "warning",
-                f"{path.name}: {topic.name} names '{twice[0]}' twice; the first is used",
-            )
-        )
-    for quantity in ("position", "velocity", "effort"):
-        if quantity not in series.values:
-            continue
-        for index, joint in enumerate(series.names):
-            name = f"joint.{joint}.{quantity}"
-            if name not in seen and name not in columns:
-                columns[name] = series.column(quantity, index)
-    return columns
+def _joints(
+    series: Series, owners: dict[str, str], topic: Topic, notes: list[Note], path: Path
+) -> dict[str, Array]:
+    """A joint belongs to the best topic that names it: a command must not fill in for a measurement."""
+    twice = next((name for name in series.names if series.names.count(name) > 1), None)
+    if twice is not None:
+        text = f"{topic.name} names '{twice}' twice; the first is used"
+        notes.append(Note("joint_twice", "warning", f"{path.name}: {text}"))
+    places = {joint: series.names.index(joint) for joint in series.names if joint not in owners}
+    if len(places) < len(set(series.names)):
+        other = owners[next(joint for joint in series.names if joint in owners)]
+        if other != topic.name:
+            text = f"{topic.name} names joints that {other} holds; they are taken from the latter"
+            notes.append(Note("joint_topics", "info", f"{path.name}: {text}"))
+    owners |= dict.fromkeys(places, topic.name)
+    return {
+        f"joint.{joint}.{quantity}": series.column(quantity, index)
+        for quantity in ("position", "velocity", "effort")
+        if quantity in series.values
+        for joint, index in places.items()
+    }
 
 
 def _sensor(key: str, series: Series, seen: set[str]) -> dict[str, Array]:

@@ -163,20 +163,23 @@ def assign(
                 if sensor in wanted
                 else _guess(sensor, link, free, only=len(sensors) == 1)
             )
+            if topic is None and free:
+                names = ", ".join(other.name for other in free[:6])
+                message = f"which topic is the {prefix} '{sensor}'?"
+                raise LogError(located(message, path=path, valid=f"topics in the robot file, one of {names}"))
             if topic is None:
                 continue
             if sensor not in wanted:
-                notes.append(
-                    Note(
-                        "topic_guessed",
-                        "info",
-                        f"{path.name}: {prefix} '{sensor}' is taken from {topic.name}",
-                    )
-                )
+                text = f"{prefix} '{sensor}' is taken from {topic.name}"
+                notes.append(Note("topic_guessed", "info", f"{path.name}: {text}"))
             chosen[f"{prefix}.{sensor}"] = [topic]
             free = [other for other in free if other is not topic]
-        for topic in free:
-            chosen.setdefault(f"{prefix}.{_own_name(topic, prefix)}", []).append(topic)
+        if robot is None:
+            for topic in free:
+                chosen.setdefault(f"{prefix}.{_own_name(topic, prefix)}", []).append(topic)
+        elif free:
+            text = f"topics of no sensor in the robot file, not used: {', '.join(topic.name for topic in free[:8])}"
+            notes.append(Note("topics_ignored", "info", f"{path.name}: {text}"))
     return chosen
 
 
