@@ -6,9 +6,14 @@ import numpy as np
 import pinocchio as pin
 
 from plantar.conventions import Array
-from plantar.dynamics.base_parameters import BaseParameters, base_parameters
+from plantar.dynamics.base_parameters import BaseParameters, base_parameters, parameter_name
 from plantar.dynamics.equation import Contact, Equation, model_parameters
-from plantar.dynamics.fit import BaseParameterFit, fit_base_parameters, fit_base_parameters_chunked
+from plantar.dynamics.fit import (
+    BaseParameterFit,
+    fit_base_parameters,
+    fit_base_parameters_chunked,
+    solve_triangle,
+)
 from plantar.dynamics.motion import Motion, pinocchio_motion
 from plantar.dynamics.stream import EquationStream, RowFactor, stacked
 
@@ -24,8 +29,10 @@ __all__ = [
     "fit_base_parameters",
     "fit_base_parameters_chunked",
     "model_parameters",
+    "parameter_name",
     "pinocchio_motion",
     "regressor",
+    "solve_triangle",
     "stacked",
 ]
 

@@ -1,0 +1,171 @@
+"""Inertial parameters that a real body can have, near the CAD's, by a semidefinite fit.
+
+A link's ten parameters belong to a body of positive density exactly when its pseudo-inertia
+
+    P = [[S, h], [hᵀ, m]],   S = 1/2 tr(I) 1 - I,   h = m c
+
+is positive definite (P. Wensing, S. Kim, J.-J. Slotine, IEEE RA-L 3(1), 2018). The distance from the CAD is taken
+relative to the link's own mass and size, d² = tr(Q⁻¹ dP Q⁻¹ dP): a kilogram counts for a finger, not for a trunk.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import sparse
+
+from plantar.conventions import Array
+from plantar.dynamics.base_parameters import INERTIA_ENTRIES
+from plantar.dynamics.equation import PER_LINK
+from plantar.errors import DataError, MissingExtra
+
+ROUNDNESS = 4.0  # of the reference body: its radius of gyration squared over the link's own
+SMALLEST_RADIUS = 0.01  # m: of gyration; thinner links count as this thick
+SMALLEST_MASS = 1e-4  # kg
+FLOOR = 1e-5  # of the reference body: what every identified link keeps, so that simulators take it
+
+
+def pseudo_inertia(parameters: Array) -> Array:
+    """P of one link's ten parameters, (4, 4)."""
+    return np.asarray(np.einsum("k,kij->ij", parameters, _BASIS))
+
+
+@dataclass(frozen=True)
+class Prior:
+    """The CAD's parameters (10 n_links,) and how far each link may be from them.
+
+    widths: for each link (10, 10), so that `parameters = cad + widths @ u` with |u|² the distance; reference: Q of
+    each link, (n_links, 4, 4).
+    """
+
+    cad: Array
+    widths: Array
+    reference: Array
+
+    @classmethod
+    def around(cls, cad: Array) -> Prior:
+        """A prior around given parameters, 10 a link."""
+        links = cad.reshape(-1, PER_LINK)
+        reference = np.array([_reference(pseudo_inertia(link)) for link in links])
+        widths = []
+        for q in reference:
+            inverse = np.linalg.inv(q)
+            metric = np.einsum("ij,ajk,kl,bli->ab", inverse, _BASIS, inverse, _BASIS)
+            widths.append(np.linalg.inv(np.linalg.cholesky(metric).T))
+        return cls(cad, np.array(widths), reference)
+
+    @property
+    def spread(self) -> Array:
+        """All widths as one block-diagonal matrix, (10 n_links, 10 n_links)."""
+        size = len(self.cad)
+        matrix = np.zeros((size, size))
+        for link, width in enumerate(self.widths):
+            part = slice(PER_LINK * link, PER_LINK * (link + 1))
+            matrix[part, part] = width
+        return matrix
+
+
+@dataclass(frozen=True)
+class Normal:
+    """A least-squares problem min |regressor x - target|² in the prior's own units.
+
+    square, linear: of the problem in [u, extras / scale]; scale: of the extras (they have no prior).
+    """
+
+    square: Array
+    linear: Array
+    scale: Array
+
+    @classmethod
+    def of(cls, regressor: Array, target: Array, prior: Prior) -> Normal:
+        """regressor: (rows, 10 n_links + n_extras), inertial parameters first; target: (rows,)."""
+        size = len(prior.cad)
+        inertial = regressor[:, :size] @ prior.spread
+        extras = regressor[:, size:]
+        norm = np.linalg.norm(extras, axis=0)
+        scale = 1 / np.where(norm > 0, norm, 1.0)
+        whole = np.hstack([inertial, extras * scale])
+        return cls(whole.T @ whole, whole.T @ (target - regressor[:, :size] @ prior.cad), scale)
+
+
+def consistent_fit(normal: Normal, prior: Prior, strength: float, positive: Sequence[int] = ()) -> Array:
+    """Least squares plus `strength` times the distance from the CAD, every link's pseudo-inertia positive definite.
+
+    positive: which extras may not be negative (friction cannot drive a joint). Returns [inertial parameters, extras].
+    Raises MissingExtra without clarabel, DataError when the solver fails.
+    """
+    try:
+        import clarabel
+    except ModuleNotFoundError as error:
+        raise MissingExtra("clarabel", "inertia", "physically consistent parameters") from error
+    size, count = len(prior.cad), len(normal.linear)
+    pull = np.concatenate([np.full(size, strength), np.full(count - size, 1e-12)])
+    square = normal.square + np.diag(pull)
+    unit = max(float(np.abs(normal.linear).max(initial=0.0)), 1e-12)
+    blocks, offsets = [], []
+    for link, width in enumerate(prior.widths):
+        blocks.append(-_PACKED @ width)
+        cad = prior.cad[PER_LINK * link : PER_LINK * (link + 1)]
+        offsets.append(_PACKED @ cad - FLOOR * _pack(prior.reference[link]))
+    bodies = sparse.hstack(
+        [sparse.block_diag(blocks), sparse.csc_matrix((len(blocks) * PER_LINK, count - size))]
+    )
+    places = [size + extra for extra in positive]
+    signs = sparse.csc_matrix((-np.ones(len(places)), (range(len(places)), places)), (len(places), count))
+    settings = clarabel.DefaultSettings()
+    settings.verbose = False
+    settings.max_threads = 1
+    solution = clarabel.DefaultSolver(
+        sparse.csc_matrix(np.triu(square) / unit),
+        -normal.linear / unit,
+        sparse.csc_matrix(sparse.vstack([bodies, signs])),
+        np.concatenate([*offsets, np.zeros(len(places))]),
+        [clarabel.PSDTriangleConeT(4)] * len(blocks) + [clarabel.NonnegativeConeT(len(places))],
+        settings,
+    ).solve()
+    if str(solution.status) not in ("Solved", "AlmostSolved"):
+        raise DataError(f"the physically consistent fit did not converge ({solution.status})")
+    x = np.array(solution.x)
+    return np.concatenate([prior.cad + prior.spread @ x[:size], x[size:] * normal.scale])
+
+
+def is_consistent(parameters: Array) -> bool:
+    """Whether every link's pseudo-inertia is positive definite; parameters: 10 a link."""
+    links = parameters.reshape(-1, PER_LINK)
+    return all(np.linalg.eigvalsh(pseudo_inertia(link))[0] > 0 for link in links)
+
+
+def _basis() -> Array:
+    basis = np.zeros((PER_LINK, 4, 4))
+    basis[0, 3, 3] = 1.0
+    for k in range(3):
+        basis[1 + k, k, 3] = basis[1 + k, 3, k] = 1.0
+    for k, (i, j) in enumerate(INERTIA_ENTRIES):
+        inertia = np.zeros((3, 3))
+        inertia[i, j] = inertia[j, i] = 1.0
+        basis[4 + k, :3, :3] = 0.5 * np.trace(inertia) * np.eye(3) - inertia
+    return basis
+
+
+def _pack(matrix: Array) -> Array:
+    """The upper triangle column by column, off-diagonals times sqrt 2, as the solver's cone has it."""
+    return np.array([matrix[i, j] * (1.0 if i == j else np.sqrt(2)) for j in range(4) for i in range(j + 1)])
+
+
+def _reference(p: Array) -> Array:
+    """Q of one link: its mass and centre, its spread made round."""
+    mass = max(float(p[3, 3]), SMALLEST_MASS)
+    centre = p[:3, 3] / mass
+    spread = np.trace(p[:3, :3]) / 3 / mass - centre @ centre / 3
+    radius2 = max(ROUNDNESS * float(spread), SMALLEST_RADIUS**2)
+    q = np.empty((4, 4))
+    q[:3, :3] = mass * (radius2 * np.eye(3) + np.outer(centre, centre))
+    q[:3, 3] = q[3, :3] = mass * centre
+    q[3, 3] = mass
+    return q
+
+
+_BASIS = _basis()
+_PACKED = np.column_stack([_pack(element) for element in _BASIS])

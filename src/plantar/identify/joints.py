@@ -1,0 +1,246 @@
+"""Friction, springs, offsets and actuator inertia of the joints, with the inertias known or found together (eq. 3)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Literal
+
+import numpy as np
+import pyarrow as pa
+
+from plantar.conventions import Array
+from plantar.errors import DataError, located
+from plantar.estimation.intervals import interval95
+from plantar.identify.dynamics_result import (
+    JOINTS_SCHEMA,
+    DynamicsResult,
+    DynamicsScore,
+    JointParameter,
+    score_row,
+)
+from plantar.identify.identified_urdf import identified_urdf
+from plantar.identify.inertia import (
+    base_rows,
+    check_logs,
+    excitation_of,
+    fit_notes,
+    inertial_rows,
+    inputs_of,
+    residual_rows,
+)
+from plantar.identify.pulled_covariance import Uncertainty, uncertainty
+from plantar.identify.pulled_fit import PulledFit, PulledProblem, Samples, errors_of
+from plantar.identify.whole_body import (
+    TERM_UNITS,
+    Body,
+    Calibration,
+    DynamicsSettings,
+    Whole,
+    calibrate,
+    joint_samples,
+    prepare_whole,
+)
+from plantar.log import MotionLog
+from plantar.notes import Note, unique
+from plantar.result import Verdict
+from plantar.robot import RobotModel
+
+FRICTION = ("viscous", "coulomb", "offset")  # of a joint that the robot file does not describe
+SPRUNG = (*FRICTION, "stiffness")  # cables and covers: taken where held-out data speak for it
+POSITIVE = ("viscous", "coulomb", "stiffness", "inertia")
+USABLE_SHARE = 0.2  # half width of the interval over the value
+OFFSET_SHARE = (
+    0.05  # of the joint's rms torque: an offset known to within it is usable even where it is near zero
+)
+
+Progress = Callable[[str], None]
+
+
+def identify_joints(
+    robot: RobotModel,
+    logs: Sequence[MotionLog],
+    validate: Sequence[MotionLog] = (),
+    settings: DynamicsSettings | None = None,
+    progress: Progress = lambda _: None,
+) -> DynamicsResult:
+    """Fit the joints' own parameters to `logs`, inertias together with them, and score them, also on `validate`.
+
+    Terms are those of the robot file; a joint that it does not describe has viscous and Coulomb friction and an offset,
+    and a spring where held-out stretches of `logs` are predicted better with it. Passive joints need no effort.
+    Inertias stay physically consistent and as near to the URDF's as held-out stretches allow. Raises RobotError,
+    LogError or DataError with one line when the input cannot serve, MissingExtra without clarabel.
+    """
+    settings = settings or DynamicsSettings()
+    check_logs(logs, validate)
+    floating = robot.base == "floating"
+    body = Body.of(robot, floating=floating)
+    progress("prepare the logs")
+    fitted = [prepare_whole(body, log, settings) for log in logs]
+    unseen = [prepare_whole(body, log, settings) for log in validate]
+    calibration, notes = calibrate(body, fitted) if floating else (Calibration(np.eye(3)), [])
+    terms, fit, choice = _chosen(body, fitted, calibration, progress)
+    progress("deviations")
+    recordings = [joint_samples(body, whole, calibration, terms) for whole in fitted]
+    trust = uncertainty(fit, recordings)
+    validation, residuals = _score(body, fit, fitted, unseen, calibration, terms)
+    rank, condition, excitation = excitation_of(fit)
+    notes = [
+        *(note for whole in fitted + unseen for note in whole.notes),
+        *notes,
+        *choice,
+        *excitation,
+        *fit_notes(fit),
+    ]
+    return DynamicsResult(
+        schema=JOINTS_SCHEMA,
+        robot=robot.name,
+        inputs=inputs_of(logs, validate),
+        settings={
+            **settings.to_dict(),
+            "strength": fit.strength,
+            "terms": {k: list(v) for k, v in terms.items()},
+        },
+        rank=rank,
+        condition_number=condition,
+        base_parameters=base_rows(fit, trust),
+        inertial_parameters=inertial_rows(fit),
+        parameters=_parameters(body, fit, trust, terms, recordings),
+        validation=validation,
+        notes=unique(notes),
+        urdf=identified_urdf(robot.urdf, robot.floating_model if floating else robot.model, fit.inertial),
+        residuals=residuals,
+    )
+
+
+def _chosen(
+    body: Body, fitted: Sequence[Whole], calibration: Calibration, progress: Progress
+) -> tuple[dict[str, tuple[str, ...]], PulledFit, list[Note]]:
+    """Terms of every joint that takes part, and the fit with them."""
+    measured = _measured_joints(body, fitted)
+    described = body.robot.joints
+    fits = []
+    for default in (FRICTION, SPRUNG):
+        terms = {name: described[name].terms if name in described else default for name in measured}
+        recordings = [joint_samples(body, whole, calibration, terms) for whole in fitted]
+        fits.append((terms, PulledProblem(body.equation, body.base, body.prior, recordings).solve(progress)))
+        if all(name in described for name in measured):
+            return terms, fits[0][1], []
+    errors = [_held_out(fit, fits[0][1]) for _, fit in fits]
+    sprung = errors[1] < errors[0]
+    terms, fit = fits[sprung]
+    text = (
+        f"joints that the robot file does not describe: {', '.join(SPRUNG if sprung else FRICTION)} (held-out error "
+        f"{np.sqrt(errors[0]):.4g} without stiffness, {np.sqrt(errors[1]):.4g} with it)"
+    )
+    return terms, fit, [Note("terms", "info", text)]
+
+
+def _held_out(fit: PulledFit, reference: PulledFit) -> float:
+    """Smallest held-out error of a fit in the weights of another, so that both can be compared."""
+    if not fit.trials:
+        return float("inf")
+    ratio = np.mean([(reference.weights[row] / fit.weights[row]) ** 2 for row in fit.weights])
+    return float(errors_of(fit.trials).min() * ratio)
+
+
+def _measured_joints(body: Body, fitted: Sequence[Whole]) -> tuple[str, ...]:
+    """Joints with effort in every log, and the passive ones."""
+    names = []
+    for name in body.equation.tree.names:
+        terms = body.robot.joints.get(name)
+        if (terms is not None and terms.passive) or all(name in whole.efforts for whole in fitted):
+            names.append(name)
+    if not names:
+        valid = "joint.<joint>.effort, or passive: true in the robot file"
+        raise DataError(located("holds no joint torques", path=fitted[0].log.source, valid=valid))
+    return tuple(names)
+
+
+def _parameters(
+    body: Body,
+    fit: PulledFit,
+    trust: Uncertainty,
+    terms: Mapping[str, tuple[str, ...]],
+    recordings: Sequence[Samples],
+) -> tuple[JointParameter, ...]:
+    rows = []
+    for joint, name in enumerate(body.equation.tree.names):
+        if name not in terms:
+            continue
+        row = body.equation.first_joint_row + joint
+        torque = float(np.sqrt(np.mean(np.concatenate([one.measured[row] for one in recordings]) ** 2)))
+        still = all(np.ptp(one.motion.positions[:, joint]) < 1e-3 for one in recordings)
+        for term, value, std in zip(terms[name], fit.extras[row], trust.extras[row], strict=True):
+            interval = interval95(float(value), float(std), trust.freedom)
+            verdict, reason = _judge(term, float(value), interval, torque, still)
+            rows.append(
+                JointParameter(
+                    name, term, TERM_UNITS[term], float(value), float(std), interval, verdict, reason
+                )
+            )
+    return tuple(rows)
+
+
+def _judge(
+    term: str, value: float, interval: tuple[float, float], torque: float, still: bool
+) -> tuple[Verdict, str]:
+    half = (interval[1] - interval[0]) / 2
+    if still and term != "offset":
+        return "unidentifiable", "the joint hardly moves"
+    if term in POSITIVE and value <= 0:
+        impossible = interval[1] < 0
+        return (
+            "unidentifiable",
+            "negative, which is impossible" if impossible else "zero lies in the interval",
+        )
+    if half <= USABLE_SHARE * abs(value) or (term == "offset" and half <= OFFSET_SHARE * torque):
+        return "usable", "the interval is narrow"
+    if interval[0] <= 0 <= interval[1]:
+        return "unidentifiable", "zero lies in the interval"
+    return "weak", f"the interval is {100 * half / abs(value):.0f} % of the value to each side"
+
+
+def _score(
+    body: Body,
+    fit: PulledFit,
+    fitted: Sequence[Whole],
+    unseen: Sequence[Whole],
+    calibration: Calibration,
+    terms: Mapping[str, tuple[str, ...]],
+) -> tuple[tuple[DynamicsScore, ...], pa.Table]:
+    """Measured torque (plus what contacts carry) against predicted, joint by joint and all together."""
+    names = tuple(name for name in body.equation.tree.names if name in terms)
+    index = [body.equation.first_joint_row + body.equation.tree.names.index(name) for name in names]
+    rows: list[DynamicsScore] = []
+    tables: list[pa.Table] = []
+    means: list[Array] = []
+    kinds: tuple[tuple[Literal["direct", "cross"], Sequence[Whole]], ...] = (
+        ("direct", fitted),
+        ("cross", unseen),
+    )
+    for kind, wholes in kinds:
+        for whole in wholes:
+            missing = [name for name in names if name not in whole.efforts and not _passive(body, name)]
+            if missing:
+                raise DataError(
+                    located("is missing", path=whole.log.source, column=f"joint.{missing[0]}.effort")
+                )
+            samples = joint_samples(body, whole, calibration, terms)
+            measured = np.array([samples.measured[row] for row in index])
+            predicted = fit.predict(samples)[index]
+            cad = body.equation.inverse_dynamics(samples.motion, body.prior.cad)[index]
+            if kind == "direct":
+                means.append(measured.mean(axis=1))
+            trivial = np.mean(means, axis=0)
+            for k, name in enumerate(names):
+                parts = (measured[k], predicted[k], cad[k], trivial[k])
+                rows.append(score_row(kind, samples.name, "N.m", *parts, joint=name))
+            rows.append(
+                score_row(kind, samples.name, "N.m", measured, predicted, cad, trivial[:, None], joint="all")
+            )
+            tables.append(residual_rows(samples, kind, names, measured, predicted))
+    return tuple(rows), pa.concat_tables(tables)
+
+
+def _passive(body: Body, name: str) -> bool:
+    return name in body.robot.joints and body.robot.joints[name].passive

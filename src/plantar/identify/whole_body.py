@@ -1,0 +1,329 @@
+"""A log made ready for eq. 1: the motion of every link, the ground's wrench, the joints' torques, their terms."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+
+from plantar.conventions import TORQUE, WRENCH_AXES, Array
+from plantar.dynamics import BaseParameters, Contact, Equation, Motion, base_parameters, model_parameters
+from plantar.dynamics.base_motion import relative_motion, root_motion
+from plantar.dynamics.consistency import Prior
+from plantar.errors import DataError, RobotError, located
+from plantar.identify.pulled_fit import Samples
+from plantar.log import MotionLog
+from plantar.notes import Note
+from plantar.robot import RobotModel
+from plantar.sanity import check_log
+from plantar.signals import differentiate, evenly_sampled, low_pass, runs
+
+FEWEST_SAMPLES = 50
+COULOMB_SPEED = (
+    0.02  # rad/s: Coulomb friction is tanh(v / this); the sign alone would follow an encoder's noise
+)
+TILT_SAID = np.radians(1.0)  # a mount that is wrong by less is not mentioned
+POLARITY_GAIN = 0.75  # a reversed channel must bring its row's misfit below this share, in both halves
+POLARITY_LOSS = 1.05  # and may not raise any other row's above this one
+
+DISSIPATIVE = ("viscous", "coulomb", "inertia")  # cannot be negative; a spring may, where a pose is unstable
+
+TERM_UNITS = {
+    "viscous": "N.m.s/rad",
+    "coulomb": "N.m",
+    "offset": "N.m",
+    "stiffness": "N.m/rad",
+    "inertia": "kg.m2",
+}
+
+
+@dataclass(frozen=True)
+class DynamicsSettings:
+    """`cutoff` [Hz]: zero-phase low-pass on both sides of eq. 1, where accelerations are derived; a log that brings
+    its accelerations is taken as it is."""
+
+    cutoff: float = 3.0
+
+    def to_dict(self) -> dict[str, Any]:
+        return asdict(self)
+
+
+@dataclass(frozen=True)
+class Body:
+    """A robot as eq. 1 sees it."""
+
+    robot: RobotModel
+    equation: Equation
+    base: BaseParameters
+    prior: Prior
+
+    @classmethod
+    def of(cls, robot: RobotModel, *, floating: bool) -> Body:
+        model: pin.Model = robot.floating_model if floating else robot.model
+        equation = Equation(model)
+        return cls(robot, equation, base_parameters(equation), Prior.around(model_parameters(model)))
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """What the sensors' mounting needs: a rotation of the root motion (3, 3), and wrench channels read reversed."""
+
+    rotation: Array
+    reversed_channels: tuple[int, ...] = ()
+
+
+@dataclass(frozen=True)
+class Whole:
+    """One log on one grid, filtered: the joints' motion, the root's (N, 9), wrenches as recorded, efforts."""
+
+    log: MotionLog
+    motion: Motion
+    wrenches: Mapping[str, Array]
+    efforts: Mapping[str, Array]
+    valid: np.ndarray[tuple[int], np.dtype[np.bool_]]
+    notes: tuple[Note, ...]
+
+
+def prepare_whole(body: Body, log: MotionLog, settings: DynamicsSettings) -> Whole:
+    """Even samples, filtered, differentiated, with the root's motion.
+
+    Raises RobotError or LogError naming what is missing, DataError where a sensor reads something impossible or too
+    few samples are left.
+    """
+    robot, tree = body.robot, body.equation.tree
+    problems = [finding for finding in check_log(robot, log) if finding.fatal]
+    if problems:
+        raise DataError(located(problems[0].text, path=log.source))
+    even = evenly_sampled(log)
+    notes = [*even.notes, *log.joint_notes(robot)]
+    names = tree.names
+    moving = [name for name in names if even.has(f"joint.{name}.position")]
+    if not moving:
+        raise DataError(located("holds no joint positions", path=log.source, valid="joint.<joint>.position"))
+    given = all(even.has(f"joint.{name}.velocity", f"joint.{name}.acceleration") for name in moving)
+    period = even.period
+
+    def smooth(values: Array) -> Array:
+        return values if given else low_pass(values, period, settings.cutoff)
+
+    def stacked(quantity: str, derived: Array | None) -> Array:
+        columns = []
+        for k, name in enumerate(names):
+            values = even.joint(name, quantity) if name in moving else np.zeros(len(even))
+            columns.append(derived[:, k] if values is None and derived is not None else values)
+        return np.column_stack([np.zeros(len(even)) if c is None else c for c in columns])
+
+    q = smooth(stacked("position", None))
+    v = stacked("velocity", differentiate(q, period))
+    v = smooth(v)
+    a = stacked("acceleration", None) if given else differentiate(v, period)
+    if not given:
+        text = f"{log.name}: accelerations derived; all signals through one zero-phase low-pass at "
+        notes.append(Note("filtered", "info", text + f"{settings.cutoff:g} Hz"))
+    base = np.tile(body.equation.rest, (len(even), 1))
+    wrenches: dict[str, Array] = {}
+    if body.equation.floating:
+        base = _root(body, even, q, v, a, smooth)
+        wrenches = {name: smooth(even.wrench(foot.wrench.name)) for name, foot in robot.feet.items()}
+    efforts = {name: smooth(values) for name in names if (values := even.joint(name, "effort")) is not None}
+    motion = Motion(base, q, v, a)
+    valid = motion.finite
+    for values in (*wrenches.values(), *(effort[:, None] for effort in efforts.values())):
+        valid &= np.isfinite(values).all(axis=1)
+    edge = 0 if given else round(1 / settings.cutoff / period)
+    valid &= ~_run_ends(valid, edge)
+    left_out = int(np.sum(~valid))
+    if valid.sum() < FEWEST_SAMPLES:
+        raise DataError(
+            located(
+                f"has {valid.sum()} samples that can serve",
+                path=log.source,
+                valid=f"{FEWEST_SAMPLES} or more",
+            )
+        )
+    if left_out > 2 * edge:
+        text = f"{log.name}: {left_out} of {len(even)} samples left out (NaN, gaps and their surroundings)"
+        notes.append(Note("left_out", "info", text))
+    return Whole(even, motion, wrenches, efforts, valid, tuple(notes))
+
+
+def contacts_of(body: Body) -> dict[str, Contact]:
+    """Where each foot's sensor sits, as a contact of eq. 1."""
+    offset = 0 if body.equation.floating else -1
+    found = {}
+    for name, foot in body.robot.feet.items():
+        joint, placement = body.robot.frame(foot.wrench.placement)
+        found[name] = Contact(joint + offset, placement)
+    return found
+
+
+def carried(body: Body, whole: Whole, calibration: Calibration) -> Array:
+    """What the contacts carry, sum of K F, (n_rows, N): on top, for a floating base, the ground's total wrench."""
+    contacts = contacts_of(body)
+    wrenches = []
+    for name, foot in body.robot.feet.items():
+        wrench = foot.wrench.sign * whole.wrenches[name]
+        wrench[:, list(calibration.reversed_channels)] *= -1
+        wrenches.append(wrench)
+    still = replace(whole.motion, base=np.zeros_like(whole.motion.base))
+    return -body.equation.inverse_dynamics(still, None, list(contacts.values()), wrenches)
+
+
+def turned(motion: Motion, rotation: Array) -> Motion:
+    """The same motion with the root frame's part rotated."""
+    parts = [motion.base[:, k : k + 3] @ rotation.T for k in (0, 3, 6)]
+    return replace(motion, base=np.hstack(parts))
+
+
+def calibrate(body: Body, recordings: Sequence[Whole]) -> tuple[Calibration, list[Note]]:
+    """Mount of the IMU and polarity of the wrench channels, from Newton's law with the CAD's parameters.
+
+    The mean force of the ground lies along the mean proper acceleration: the smallest rotation that makes it so is the
+    IMU's tilt. A torque channel that contradicts Newton as recorded and agrees when reversed is read reversed. Both
+    are said in a note.
+    """
+    level = Calibration(np.eye(3))
+    predicted = [
+        body.equation.inverse_dynamics(one.motion, body.prior.cad)[:6, one.valid] for one in recordings
+    ]
+    measured = [carried(body, one, level)[:6, one.valid] for one in recordings]
+    notes: list[Note] = []
+    a, b = (np.hstack(rows)[:3].mean(axis=1) for rows in (predicted, measured))
+    if min(np.linalg.norm(a), np.linalg.norm(b)) < 1e-3 * np.linalg.norm(a):
+        raise DataError("the feet carry nothing: no ground wrench to explain (valid: a robot that stands)")
+    rotation = pin.Quaternion.FromTwoVectors(a, b).toRotationMatrix()
+    angle = pin.log3(rotation)
+    if np.linalg.norm(angle) > TILT_SAID:
+        about = ", ".join(f"{value:.2f}" for value in np.degrees(angle))
+        text = (
+            "the ground's mean force is not along the IMU's mean acceleration: taken as a tilt of the IMU's mount by "
+            f"({about}) deg about the root link's x, y, z; mend the robot file's imu.rpy or the force sensors' zeros"
+        )
+        notes.append(Note("imu_tilt", "warning", text))
+    calibration = Calibration(rotation)
+    reversed_channel = _reversed_channel(body, recordings, calibration)
+    if reversed_channel is not None:
+        channel, before, after = reversed_channel
+        row = WRENCH_AXES[channel]
+        text = (
+            f"{row} of the wrench sensors contradicts Newton's law as recorded: the CAD misses the ground's {row} "
+            f"by {before:.3g}, and by {after:.3g} with the sign reversed. It is read reversed here; "
+            "check the sensors' axes"
+        )
+        notes.append(Note("wrench_polarity", "warning", text))
+        calibration = replace(calibration, reversed_channels=(channel,))
+    return calibration, notes
+
+
+def inertial_samples(body: Body, whole: Whole, calibration: Calibration) -> Samples:
+    """The base rows: Y_BI phi_I = sum of K_B F (eq. 2)."""
+    rows = carried(body, whole, calibration)
+    motion = turned(whole.motion, calibration.rotation)
+    samples = Samples(
+        whole.log.name, whole.log.time, motion, {k: rows[k] for k in range(6)}, {}, whole.log.period
+    )
+    return samples.select(whole.valid)
+
+
+def term_columns(
+    terms: Sequence[str], position: Array, velocity: Array, acceleration: Array
+) -> tuple[Array, ...]:
+    """Y_JJ of one joint: one column (N,) a term."""
+    columns = {
+        "viscous": velocity,
+        "coulomb": np.tanh(velocity / COULOMB_SPEED),
+        "offset": np.ones_like(velocity),
+        "stiffness": position,
+        "inertia": acceleration,
+    }
+    return tuple(np.ascontiguousarray(columns[term]) for term in terms)
+
+
+def joint_samples(
+    body: Body, whole: Whole, calibration: Calibration, terms: Mapping[str, tuple[str, ...]]
+) -> Samples:
+    """The joint rows: Y_JI phi_I + Y_JJ phi_J = tau + sum of K_J F (eq. 3), with the base rows where there are feet.
+
+    terms: of each joint that takes part; one without effort is passive, its torque zero.
+    """
+    equation = body.equation
+    motion = turned(whole.motion, calibration.rotation) if equation.floating else whole.motion
+    rows = np.zeros((equation.n_rows, len(whole.log)))
+    if body.robot.feet and equation.floating:
+        rows = carried(body, whole, calibration)
+    measured = {k: rows[k] for k in range(6)} if equation.floating else {}
+    extras: dict[int, tuple[Array, ...]] = {}
+    for joint, name in enumerate(equation.tree.names):
+        if name not in terms:
+            continue
+        row = equation.first_joint_row + joint
+        measured[row] = rows[row] + whole.efforts.get(name, 0.0)
+        states = (motion.positions[:, joint], motion.velocities[:, joint], motion.accelerations[:, joint])
+        extras[row] = term_columns(terms[name], *states)
+    rows_of = {name: equation.first_joint_row + joint for joint, name in enumerate(equation.tree.names)}
+    positive = {
+        rows_of[name]: tuple(term in DISSIPATIVE for term in chosen) for name, chosen in terms.items()
+    }
+    samples = Samples(whole.log.name, whole.log.time, motion, measured, extras, whole.log.period, positive)
+    return samples.select(whole.valid)
+
+
+def _root(body: Body, log: MotionLog, q: Array, v: Array, a: Array, smooth: Any) -> Array:
+    """The root frame's motion from the IMU (N, 9)."""
+    robot = body.robot
+    if robot.imu is None:
+        raise RobotError(located("names no imu", path=robot.path, valid="imu: {name: ..., link: ...}"))
+    if not robot.feet:
+        raise RobotError(
+            located("names no feet", path=robot.path, valid="feet whose sensors carry the robot")
+        )
+    joint, placement = robot.frame(robot.imu.placement)
+    rate = smooth(log.angular_velocity(robot.imu.name))
+    acceleration = smooth(log.linear_acceleration(robot.imu.name))
+    relative = relative_motion(body.equation.tree, joint - 1, placement, q, v, a)
+    return root_motion(relative, acceleration, rate, differentiate(rate, log.period))
+
+
+def _reversed_channel(
+    body: Body, recordings: Sequence[Whole], calibration: Calibration
+) -> tuple[int, float, float] | None:
+    """The torque channel that fits the CAD's prediction better reversed; its row's misfit before and after."""
+    predicted = np.hstack(
+        [
+            body.equation.inverse_dynamics(turned(one.motion, calibration.rotation), body.prior.cad)[
+                :6, one.valid
+            ]
+            for one in recordings
+        ]
+    )
+
+    def misfit(channels: tuple[int, ...]) -> tuple[Array, Array]:
+        tried = replace(calibration, reversed_channels=channels)
+        measured = np.hstack([carried(body, one, tried)[:6, one.valid] for one in recordings])
+        error = measured - predicted
+        error = error - error.mean(axis=1, keepdims=True)
+        half = error.shape[1] // 2
+        parts = np.array([np.sqrt(np.mean(part**2, axis=1)) for part in (error[:, :half], error[:, half:])])
+        return parts, np.sqrt(np.mean(error**2, axis=1))
+
+    parts, before = misfit(())
+    best = None
+    for channel in range(TORQUE.start, TORQUE.stop):
+        tried, after = misfit((channel,))
+        clear = np.all(tried[:, channel] < POLARITY_GAIN * parts[:, channel])
+        if clear and np.all(after < POLARITY_LOSS * before) and (best is None or after.sum() < best[3]):
+            best = (channel, float(before[channel]), float(after[channel]), float(after.sum()))
+    return None if best is None else best[:3]
+
+
+def _run_ends(
+    valid: np.ndarray[tuple[int], np.dtype[np.bool_]], reach: int
+) -> np.ndarray[Any, np.dtype[np.bool_]]:
+    ends = np.zeros(len(valid), dtype=bool)
+    for run in runs(valid):
+        ends[run.start : min(run.stop, run.start + reach)] = True
+        ends[max(run.start, run.stop - reach) : run.stop] = True
+    return ends

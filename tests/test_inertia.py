@@ -1,0 +1,201 @@
+"""Eq. 2 on robots with known parameters, and on a real humanoid."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import mujoco
+import numpy as np
+import pinocchio as pin
+import pytest
+
+import small_biped
+from plantar.dynamics import base_parameters, model_parameters
+from plantar.dynamics.base_motion import relative_motion, root_motion
+from plantar.dynamics.consistency import Normal, Prior, consistent_fit, is_consistent, pseudo_inertia
+from plantar.dynamics.equation import Equation
+from plantar.errors import DataError, LogError, RobotError
+from plantar.identify.inertia import identify_inertia
+from plantar.identify.pulled_fit import Trial, chosen_strength
+from plantar.log import MotionLog
+from plantar.readers import open_log
+from plantar.robot import RobotModel, load_robot
+
+
+@pytest.fixture(scope="module")
+def robot(tmp_path_factory: pytest.TempPathFactory) -> RobotModel:
+    return small_biped.robot(tmp_path_factory.mktemp("biped"))
+
+
+@pytest.fixture(scope="module")
+def real(robot: RobotModel) -> pin.Model:
+    return small_biped.truth(robot.floating_model, 1)
+
+
+@pytest.fixture(scope="module")
+def logs(robot: RobotModel, real: pin.Model) -> list[MotionLog]:
+    return [small_biped.record(robot, real, name, seed, 25.0, 0.5) for name, seed in (("one", 1), ("two", 2))]
+
+
+@pytest.fixture(scope="module")
+def result(robot: RobotModel, logs: list[MotionLog]) -> object:
+    return identify_inertia(robot, logs[:1], logs[1:])
+
+
+def test_the_imus_motion_moves_to_the_root_through_a_moving_arm(robot: RobotModel) -> None:
+    """Against Pinocchio: a root with known motion, the IMU's readings made from it, and back."""
+    model, data = robot.floating_model, robot.floating_model.createData()
+    tree = Equation(model).tree
+    rng = np.random.default_rng(0)
+    joint, placement = robot.frame(robot.imu.placement)  # type: ignore[union-attr]
+    for _ in range(5):
+        q = pin.randomConfiguration(model, -np.ones(model.nq), np.ones(model.nq))
+        v, a = rng.normal(size=(2, model.nv))
+        pin.forwardKinematics(model, data, q, v, a)
+
+        def proper(motion: pin.Motion, slope: pin.Motion, rotation: np.ndarray) -> np.ndarray:
+            up = rotation.T @ np.array([0, 0, 9.81])
+            return slope.linear + np.cross(motion.angular, motion.linear) + up
+
+        speed, slope = placement.actInv(data.v[joint + 1]), placement.actInv(data.a[joint + 1])
+        world = (data.oMi[joint + 1] * placement).rotation
+        relative = relative_motion(tree, joint - 1, placement, q[None, 7:], v[None, 6:], a[None, 6:])
+        found = root_motion(
+            relative, proper(speed, slope, world)[None], speed.angular[None], slope.angular[None]
+        )
+        root = proper(data.v[1], data.a[1], data.oMi[1].rotation)
+        expected = np.concatenate([root, data.v[1].angular, data.a[1].angular])
+        np.testing.assert_allclose(found[0], expected, atol=1e-10)
+
+
+def test_the_held_out_wrench_is_predicted_and_the_urdf_is_not_believed(result: object) -> None:
+    for row in result.validation:  # type: ignore[attr-defined]
+        assert row.rms_error < 0.5 * row.cad_rms_error, (row.kind, row.axis)
+    assert {row.kind for row in result.validation} == {"direct", "cross"}  # type: ignore[attr-defined]
+
+
+def test_mass_and_every_link_are_those_of_a_body(result: object, real: pin.Model) -> None:
+    total = sum(inertia.mass for inertia in real.inertias)
+    assert result.mass == pytest.approx(total, rel=0.01)  # type: ignore[attr-defined]
+    values = np.array([row.value for row in result.inertial_parameters])  # type: ignore[attr-defined]
+    assert is_consistent(values)
+
+
+def test_intervals_of_base_parameters_hold_the_truth(
+    robot: RobotModel, real: pin.Model, result: object
+) -> None:
+    base = base_parameters(Equation(robot.floating_model))
+    exact = base.grouping @ model_parameters(real)
+    rows = result.base_parameters  # type: ignore[attr-defined]
+    inside = [abs(row.value - value) < 2.2 * row.std for row, value in zip(rows, exact, strict=True)]
+    assert np.mean(inside) > 0.9
+
+
+def test_the_identified_urdf_loads_with_the_same_bodies(result: object, tmp_path: Path) -> None:
+    path = result.save(tmp_path).parent / "identified.urdf"  # type: ignore[attr-defined]
+    values = np.array([row.value for row in result.inertial_parameters])  # type: ignore[attr-defined]
+    model = pin.buildModelFromXML(path.read_text(), pin.JointModelFreeFlyer())
+    np.testing.assert_allclose(model_parameters(model), values, atol=1e-12)
+    # MuJoCo takes a URDF's root for the world: give it a floating one.
+    floating = path.read_text().replace("<link ", '<link name="world"/><link ', 1)
+    joint = '<joint name="float" type="floating"><parent link="world"/><child link="trunk"/></joint>'
+    simulated = mujoco.MjModel.from_xml_string(floating.replace("</robot>", joint + "</robot>"))
+    assert simulated.body_mass.sum() == pytest.approx(values[::10].sum(), rel=1e-9)
+    assert {p.name for p in tmp_path.iterdir()} == {"identified.urdf", "residuals.parquet", "result.json"}
+
+
+def test_a_reversed_torque_channel_and_a_tilted_mount_are_found_and_said(
+    robot: RobotModel, logs: list[MotionLog]
+) -> None:
+    flipped = {
+        f"wrench.{side}.torque.x": -logs[0].column(f"wrench.{side}.torque.x") for side in ("left", "right")
+    }
+    found = identify_inertia(robot, [logs[0].with_columns(flipped)])
+    assert "wrench_polarity" in {note.code for note in found.notes}
+    assert "torque.x" in next(note.text for note in found.notes if note.code == "wrench_polarity")
+    turn = pin.exp3(np.array([0.0, 0.06, 0.0]))
+    names = [f"imu.trunk.{kind}" for kind in ("angular_velocity", "linear_acceleration")]
+    tilted = {
+        f"{name}.{axis}": (logs[0].stack(f"{name}.{a}" for a in "xyz") @ turn.T)[:, k]
+        for name in names
+        for k, axis in enumerate("xyz")
+    }
+    codes = {note.code for note in identify_inertia(robot, [logs[0].with_columns(tilted)]).notes}
+    assert "imu_tilt" in codes
+    assert "wrench_polarity" not in codes
+
+
+def test_what_stands_still_is_named_as_not_excited(robot: RobotModel, real: pin.Model) -> None:
+    log = small_biped.record(robot, real, "still", 5, 6.0, 0.1)
+    held = {f"joint.shoulder.{quantity}": np.zeros(len(log)) for quantity in ("position", "velocity")}
+    found = identify_inertia(robot, [log.with_columns(held)])
+    assert "arm." in next(note.text for note in found.notes if note.code == "unexcited")
+    assert all(np.isfinite(row.value) for row in found.inertial_parameters)
+
+
+def test_gaps_and_nan_are_left_out_with_a_note(robot: RobotModel, logs: list[MotionLog]) -> None:
+    column = logs[0].column("imu.trunk.linear_acceleration.z").copy()
+    column[1000:1040] = np.nan
+    found = identify_inertia(robot, [logs[0].with_columns({"imu.trunk.linear_acceleration.z": column})])
+    assert "left_out" in {note.code for note in found.notes}
+    assert found.mass == pytest.approx(identify_inertia(robot, logs[:1]).mass, rel=0.01)
+
+
+def test_what_cannot_serve_is_refused_in_one_line(robot: RobotModel, logs: list[MotionLog]) -> None:
+    with pytest.raises(RobotError, match="fixed"):
+        identify_inertia(replace(robot, base="fixed"), logs[:1])
+    with pytest.raises(RobotError, match="imu"):
+        identify_inertia(replace(robot, imu=None), logs[:1])
+    with pytest.raises(DataError, match="two logs are called 'one'"):
+        identify_inertia(robot, [logs[0], logs[0]])
+    with pytest.raises(DataError, match="samples that can serve"):
+        identify_inertia(robot, [logs[0].select(slice(0, 80))])
+    columns = {
+        name: values for name, values in logs[0].columns.items() if "linear_acceleration.z" not in name
+    }
+    with pytest.raises(LogError, match=r"linear_acceleration\.z"):
+        identify_inertia(robot, [MotionLog("one", logs[0].time, columns)])
+    air = {name: 0 * values for name, values in logs[0].columns.items() if name.startswith("wrench.")}
+    with pytest.raises(DataError, match="carry nothing"):
+        identify_inertia(robot, [logs[0].with_columns(air)])
+
+
+def test_consistency_bounds_what_least_squares_would_make_negative() -> None:
+    """One body whose mass the data push below zero: the fit stays a body, on its edge."""
+    prior = Prior.around(pin.Inertia.FromEllipsoid(2.0, 0.3, 0.2, 0.1).toDynamicParameters())
+    regressor = np.eye(10)
+    target = prior.cad - np.array([10 * prior.cad[0], *np.zeros(9)])
+    found = consistent_fit(Normal.of(regressor, target, prior), prior, 1e-6)
+    assert is_consistent(found)
+    assert (
+        np.linalg.eigvalsh(pseudo_inertia(found))[0]
+        < 0.05 * np.linalg.eigvalsh(pseudo_inertia(prior.cad))[-1]
+    )
+    free = consistent_fit(Normal.of(regressor, 1.05 * prior.cad, prior), prior, 1e-9)
+    np.testing.assert_allclose(free, 1.05 * prior.cad, rtol=1e-4, atol=1e-6)
+
+
+def test_the_strongest_pull_that_cannot_be_told_from_the_best_is_chosen() -> None:
+    def trial(strength: float, *errors: float) -> Trial:
+        return Trial(strength, np.array(errors))
+
+    best = trial(1.0, 1.0, 1.0, 1.0)
+    assert chosen_strength([best, trial(10.0, 1.2, 0.9, 1.0), trial(100.0, 1.2, 1.2, 1.25)]) == 10.0
+    assert chosen_strength([trial(0.1, 1.3, 1.3, 1.3), best]) == 1.0
+
+
+@pytest.mark.slow
+def test_icub_walking_is_predicted_where_the_cad_is_wrong(shared_data: Path) -> None:
+    folder = shared_data / "icub_walking"
+    icub = load_robot(folder / "robot.yaml")
+    log = open_log(folder / "walking.csv.gz", icub)
+    half = len(log) // 2
+    first = replace(log.select(slice(0, half)), name="first")
+    second = replace(log.select(slice(half, None)), name="second")
+    found = identify_inertia(icub, [first], [second])
+    assert found.score("second", "torque.x").rms_error <= 9.3
+    assert found.score("second", "torque.y").rms_error <= 2.2
+    assert found.score("second", "force.z").rms_error <= 7.8
+    assert found.mass == pytest.approx(33.9, rel=0.03)
+    assert is_consistent(np.array([row.value for row in found.inertial_parameters]))
