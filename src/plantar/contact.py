@@ -55,6 +55,11 @@ class FootContact:
         return np.asarray(self.code == 0)
 
     @property
+    def loaded(self) -> Mask:
+        """Samples in which the foot is not in the air, landing and lifting among them."""
+        return np.asarray(self.support != SUPPORTS.index(AIR))
+
+    @property
     def standing(self) -> Mask:
         """Samples in double or single support."""
         return np.asarray(self.support < SUPPORTS.index(AIR))

@@ -77,6 +77,8 @@ def interpolate(at: Array, time: Array, values: Array, longest: float) -> Array:
 
 def shifted(values: Array, period: float, delay: float) -> Array:
     """Evenly sampled `values` (N, k) as they were `delay` [s] later: undoes a sensor that reports late by `delay`."""
+    if delay == 0:
+        return values
     time: Array = period * np.arange(len(values), dtype=np.float64)
     flat = values.reshape(len(values), -1)
     moved = [interpolate(time + delay, time, column, 2 * period) for column in flat.T]

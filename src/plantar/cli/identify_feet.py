@@ -12,7 +12,8 @@ from plantar.cli.feet_tables import print_feet
 from plantar.cli.terminal import console, end_progress, progress
 from plantar.errors import PlantarError, located
 from plantar.identify.feet import identify_feet
-from plantar.identify.settings import FeetSettings, OffsetRule
+from plantar.identify.settings import AUTOMATIC, FeetSettings, OffsetRule
+from plantar.models import LAWS
 from plantar.readers import open_log
 from plantar.report import write_feet_report
 from plantar.result import dump_json
@@ -28,7 +29,10 @@ def run(
     validate: Annotated[list[Path] | None, typer.Option("--validate", help="Logs to score only.")] = None,
     offset: Annotated[str, typer.Option(help="One offset per motion, or shared by all as in the paper.",
                                         metavar="per-motion|shared")] = "per-motion",
-    model: Annotated[str, typer.Option(help="Law of the bush.")] = "kelvin_voigt",
+    model: Annotated[str, typer.Option(help=f"Law of the bush: {', '.join((AUTOMATIC, *LAWS))}. {AUTOMATIC} takes what "
+                                       "predicts held-out motions best.", metavar="LAW")] = AUTOMATIC,
+    wrench_delay: Annotated[float | None, typer.Option(help="How late the wrenches are [ms]; estimated if "
+                                                       "left out.")] = None,
     cutoff: Annotated[float, typer.Option(help="Zero-phase low-pass on both sides of the fit [Hz].", min=0.1)] = 5.0,
     window: Annotated[float | None, typer.Option(help="Largest deflection from the resting pose that serves [deg].",
                                                  min=0.01)] = None,
@@ -41,11 +45,16 @@ def run(
     """
     if offset not in OFFSETS:
         raise typer.BadParameter(f"'{offset}' is not one of {', '.join(OFFSETS)}", param_hint="--offset")
+    if model not in (AUTOMATIC, *LAWS):
+        raise typer.BadParameter(
+            f"'{model}' is not one of {', '.join((AUTOMATIC, *LAWS))}", param_hint="--model"
+        )
     if out.exists() and not out.is_dir():
         raise PlantarError(located("is a file", path=out, valid="a folder for the results"))
     step = progress(quiet)
     reach = None if window is None else float(np.radians(window))
-    settings = FeetSettings(offset=cast(OffsetRule, offset), model=model, cutoff=cutoff, window=reach)
+    late = None if wrench_delay is None else 1e-3 * wrench_delay
+    settings = FeetSettings(cast(OffsetRule, offset), model, cutoff, window=reach, wrench_delay=late)
     loaded = load_robot(robot)
     fitted, unseen = ([open_log(path, loaded) for path in paths] for paths in (logs, validate or ()))
     result = identify_feet(loaded, fitted, unseen, settings, step)

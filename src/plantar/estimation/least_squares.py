@@ -63,18 +63,6 @@ class LinearFit:
         place = 0 if self.shared_offset else list(self.offsets).index(label)
         return float(np.sqrt(self.covariance[len(self.values) + place, len(self.values) + place]))
 
-    def widened(self, effect: Array, std: float, freedom: float = np.inf) -> LinearFit:
-        """The fit with one more cause of error: something of deviation `std`, itself known with `freedom` degrees, that
-        moves `values` by `effect` (k,)."""
-        added = np.zeros(len(self.covariance))
-        added[: len(effect)] = effect * std
-        variance = np.diag(self.covariance)
-        return replace(
-            self,
-            covariance=self.covariance + np.outer(added, added),
-            freedom=pooled_freedom(np.array([variance, added**2]), np.vstack([self.freedom, np.full_like(added, freedom)])),
-        )
-
     def predict(self, regressor: Array, offset: float) -> Array:
         """Response (n,) of `regressor` (n, k) with a given offset."""
         return np.asarray(regressor @ self.values + offset)

@@ -30,7 +30,9 @@ ALIKE = 0.1  # of the compliances' sum: usual deviation of their difference betw
 UNKNOWN_COMPLIANCE = 1e-5  # m/N: of 100 kN/m, the order of soft rubber, where nothing is known
 USABLE_WIDTH, WEAK_WIDTH = 0.15, 0.5  # half width of the interval over the value
 
-ADVICE = "stand on both feet and shift the weight slowly from foot to foot, nearly all of it, for 30 s or more"
+ADVICE = (
+    "stand on both feet and shift the weight slowly from foot to foot, nearly all of it, for 30 s or more"
+)
 
 
 @dataclass(frozen=True)
@@ -64,12 +66,14 @@ class Compliances:
         gain = self.trust
         weights = np.array([0.5, 0.5 * side * gain])
         unseen = 0.25 * (1 - gain) ** 2 * (ALIKE * self.total) ** 2
-        return float(weights @ [self.total, self.difference]), float(np.sqrt(weights @ self.covariance @ weights + unseen))
+        return float(weights @ [self.total, self.difference]), float(
+            np.sqrt(weights @ self.covariance @ weights + unseen)
+        )
 
 
 @dataclass(frozen=True)
 class Height:
-    """Rows of axis z, and each foot's compliance [m/N] with its standard deviation, for the lever of eq. 6's moments."""
+    """Rows of axis z, and each foot's compliance [m/N] with its standard deviation, for eq. 6's lever."""
 
     parameters: tuple[Parameter, ...]
     notes: tuple[Note, ...]
@@ -106,7 +110,11 @@ def fit_height(recordings: Sequence[Recording], robot: RobotModel, cutoff: float
 
 def _compliances(fit: LinearFit) -> Compliances:
     return Compliances(
-        float(fit.values[0]), float(fit.values[1]), fit.covariance[:2, :2], float(fit.freedom[0]), fit.white_std[:2]
+        float(fit.values[0]),
+        float(fit.values[1]),
+        fit.covariance[:2, :2],
+        float(fit.freedom[0]),
+        fit.white_std[:2],
     )
 
 
@@ -117,7 +125,9 @@ def _block(recording: Recording, feet: tuple[str, ...], cutoff: float) -> Block 
     both &= recording.contacts[feet[0]].support == SUPPORTS.index(DOUBLE)
     height = closure(left, right).position[:, 2]
     # Along the slide for the law, and once more along the vertical for what the compression does to the height.
-    loads = np.column_stack([bush.wrench[:, 2] * np.cos(bush.deflection).prod(axis=1) for bush in (left, right)])
+    loads = np.column_stack(
+        [bush.wrench[:, 2] * np.cos(bush.deflection).prod(axis=1) for bush in (left, right)]
+    )
     values = low_pass(np.column_stack([height, loads]), recording.period, cutoff)
     both &= np.isfinite(values).all(axis=1)
     if both.sum() < FEWEST_SAMPLES:
@@ -137,7 +147,9 @@ def _row(foot: str, compliance: float, std: float, found: Compliances) -> Parame
         return _unknown_row(foot)
     value, interval = 1 / compliance, (1 / high, 1 / low)
     width = (high - low) / 2 / compliance
-    verdict: Verdict = "usable" if width < USABLE_WIDTH else "weak" if width < WEAK_WIDTH else "unidentifiable"
+    verdict: Verdict = (
+        "usable" if width < USABLE_WIDTH else "weak" if width < WEAK_WIDTH else "unidentifiable"
+    )
     reason = f"95 % interval of the compliance ±{100 * width:.2g} %"
     if not found.separable:
         verdict = "weak" if verdict == "usable" else verdict

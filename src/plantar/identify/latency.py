@@ -1,7 +1,7 @@
 """How late the force sensors are: Newton's law ties the ground's wrench to IMU and encoders without K and C.
 
-A spring-damper fit cannot see a delay: it takes C - K·delay for C. The whole body can: the wrench that eq. 1's base rows
-predict from the URDF's inertias and the motion must equal the measured one, at the same moment.
+A spring-damper fit cannot see a delay: it takes C - K·delay for C. The whole body can: the wrench that eq. 1's base
+rows predict from the URDF's inertias and the motion must equal the measured one, at the same moment.
 """
 
 from __future__ import annotations
@@ -21,8 +21,11 @@ from plantar.robot import RobotModel
 from plantar.signals import low_pass, runs
 
 CUTOFF = 8.0  # Hz: above it differentiated encoders are noise
-PRIOR_STD = 0.0075  # s: what is known of a wrench's delay before any data; drivers and filters are rarely later
-KNOWN_STD = 0.003  # s: better known than this, the delay is corrected without a warning
+PRIOR_STD = (
+    0.0075  # s: what is known of a wrench's delay before any data; drivers and filters are rarely later
+)
+KNOWN_STD = 0.001  # s: better known than this, the delay is corrected without a warning
+SIGNIFICANT = 2.5  # deviations from zero: a poorly known delay is corrected beyond, else only allowed for
 SLOW = 0.05  # Hz: below it the pair differs by postures and drifting zeros
 BASE_ROWS = slice(0, 6)
 WINDOW = 2.0  # s, in which the forces must follow from the prediction
@@ -44,6 +47,12 @@ class Latency:
         return {"wrench_delay": self.delay, "std": self.std, "measured": self.measured, "unit": "s"}
 
 
+def known_latency(delay: float) -> Latency:
+    """A delay that the user knows."""
+    text = f"wrenches taken as {1e3 * delay:+.1f} ms late, as the user says"
+    return Latency(delay, 0.0, np.inf, False, Note("delay_given", "info", text))
+
+
 def wrench_latency(robot: RobotModel, logs: Sequence[MotionLog]) -> Latency:
     """The delay common to all logs, evenly sampled, drawn towards zero by what is usual where the logs say little."""
     pairs = [pair for log in logs if (pair := _pair(robot, log)) is not None]
@@ -57,18 +66,26 @@ def wrench_latency(robot: RobotModel, logs: Sequence[MotionLog]) -> Latency:
         return Latency(0.0, PRIOR_STD, np.inf, False, Note("delay_unknown", "warning", text))
     gain = PRIOR_STD**2 / (PRIOR_STD**2 + found.std**2)
     delay, std = gain * found.value, float(np.sqrt(gain)) * found.std
-    told = f"wrenches are {1e3 * delay:+.1f} ± {1e3 * 1.96 * std:.1f} ms late (95 %) against IMU and encoders; corrected"
+    told = f"wrenches are {1e3 * delay:+.1f} ± {1e3 * 1.96 * std:.1f} ms late (95 %) against IMU and encoders"
     if std <= KNOWN_STD:
-        return Latency(delay, std, found.freedom, True, Note("delay", "info", told))
-    text = f"{told}; the logs show it poorly, which widens damping: record arm sweeps of 0.3 to 1 Hz without an operator"
-    return Latency(delay, std, found.freedom, True, Note("delay_poorly_known", "warning", text))
+        return Latency(delay, std, found.freedom, True, Note("delay", "info", f"{told}: corrected"))
+    advice = "known poorly, which widens damping: record arm sweeps of 0.3 to 1 Hz without an operator"
+    if abs(delay) > SIGNIFICANT * std:
+        note = Note("delay_poorly_known", "warning", f"{told}: corrected; {advice}")
+        return Latency(delay, std, found.freedom, True, note)
+    note = Note("delay_poorly_known", "warning", f"{told}: not corrected; {advice}")
+    return Latency(0.0, float(np.hypot(delay, std)), found.freedom, True, note)
 
 
 def _pair(robot: RobotModel, log: MotionLog) -> Pair | None:
     """Measured and predicted ground wrench in the root link's frame; None where the log lacks what it takes."""
     imu = robot.imu
     accelerometer = [f"imu.{imu.name}.linear_acceleration.{axis}" for axis in "xyz"] if imu else []
-    if imu is None or not log.has(*accelerometer) or any(foot.contact == "always" for foot in robot.feet.values()):
+    if (
+        imu is None
+        or not log.has(*accelerometer)
+        or any(foot.contact == "always" for foot in robot.feet.values())
+    ):
         return None
     motion = inertial_motion(robot, log, CUTOFF)
     wrenches = np.hstack([foot.wrench.sign * log.wrench(foot.wrench.name) for foot in robot.feet.values()])
@@ -108,4 +125,3 @@ def _band(values: Array, period: float) -> Array:
     smooth = low_pass(values, period, CUTOFF)
     slow = low_pass(values, period, SLOW)
     return smooth - slow
-

@@ -19,7 +19,7 @@ from plantar.notes import Note
 from plantar.polygon import inside_distance
 from plantar.robot import Imu, RobotModel
 from plantar.sanity import check_log
-from plantar.signals import differentiate, evenly_sampled, interpolate, low_pass, runs
+from plantar.signals import differentiate, evenly_sampled, interpolate, low_pass, runs, shifted
 
 FILTER_EDGE = 1.0  # of the filter's period, left out where a run of samples begins or ends
 WIDE_BAND = 4.0  # times the cutoff: filter of what is differentiated before the common filter
@@ -34,6 +34,7 @@ class Recording:
 
     log: MotionLog
     role: Role
+    cutoff: float
     bushes: Mapping[str, BushState]
     contacts: Mapping[str, FootContact]
     notes: tuple[Note, ...]
@@ -55,30 +56,35 @@ class Recording:
         return self.contacts[foot].used
 
 
-def prepare(robot: RobotModel, log: MotionLog, role: Role, settings: FeetSettings) -> Recording:
-    """Bush states and contact of every foot in one log.
+def checked(robot: RobotModel, log: MotionLog) -> MotionLog:
+    """The log on an even grid, with what is odd about it as notes.
 
     Raises RobotError without IMU or feet in the robot file, LogError for a missing column, DataError where a sensor
     reads something impossible (degrees for radians, a flipped sign, swapped feet; see `sanity`).
     """
-    imu = _require(robot)
+    _require(robot)
     findings = check_log(robot, log)
     problems = [finding for finding in findings if finding.fatal]
     if problems:
         raise DataError(located(problems[0].text, path=log.source))
-    notes = [
-        *log.notes,
-        *log.joint_notes(robot),
-        *(Note(f.code, f.severity, f"{log.name}: {f.text}") for f in findings),
-    ]
-    even = evenly_sampled(log)
-    notes += even.notes[len(log.notes) :]
-    period = even.period
-    velocities = _velocities(robot, even, settings.cutoff, notes)
-    orientation, rates = _attitude(even, imu, notes)
-    wrenches = {name: even.wrench(foot.wrench.name) for name, foot in robot.feet.items()}
-    raw = bush_states(robot, even.positions(robot), velocities, orientation, rates, wrenches)
-    contacts = _contacts(robot, even, raw, settings, notes)
+    odd = [Note(found.code, found.severity, f"{log.name}: {found.text}") for found in findings]
+    return evenly_sampled(log).with_columns({}, *log.joint_notes(robot), *odd)
+
+
+def prepare(
+    robot: RobotModel, log: MotionLog, role: Role, settings: FeetSettings, delay: float = 0.0
+) -> Recording:
+    """Bush states and contact of every foot in a `checked` log whose wrenches are late by `delay` [s]."""
+    imu = _require(robot)
+    notes = list(log.notes)
+    period = log.period
+    velocities = _velocities(robot, log, settings.cutoff, notes)
+    orientation, rates = _attitude(log, imu, notes)
+    wrenches = {
+        name: shifted(log.wrench(foot.wrench.name), period, delay) for name, foot in robot.feet.items()
+    }
+    raw = bush_states(robot, log.positions(robot), velocities, orientation, rates, wrenches)
+    contacts = _contacts(robot, log, raw, settings, notes)
     filtered = {name: _filtered(state, period, settings.cutoff) for name, state in raw.items()}
     for name, state in filtered.items():
         valid = np.asarray(
@@ -86,7 +92,7 @@ def prepare(robot: RobotModel, log: MotionLog, role: Role, settings: FeetSetting
         )
         contacts[name].leave_out(~valid, NOT_RECORDED)
         contacts[name].leave_out(_run_edges(valid, FILTER_EDGE / settings.cutoff / period), "filter's edge")
-    return Recording(even, role, filtered, contacts, tuple(notes))
+    return Recording(log, role, settings.cutoff, filtered, contacts, tuple(notes))
 
 
 def _require(robot: RobotModel) -> Imu:
@@ -120,7 +126,8 @@ def _velocities(robot: RobotModel, log: MotionLog, cutoff: float, notes: list[No
         if recorded is not None:
             velocities[:, place] = recorded
     if missing:
-        text = f"{log.name}: between IMU and feet, but not recorded: {', '.join(missing)}; angles are right only if they stood at 0"
+        names = ", ".join(missing)
+        text = f"{log.name}: between IMU and feet, but not recorded: {names}; angles are right only if they stood at 0"
         notes.append(Note("path_joint_missing", "warning", text))
     return velocities
 
@@ -138,7 +145,7 @@ def _attitude(log: MotionLog, imu: Imu, notes: list[Note]) -> tuple[Array, Array
     if orientation is not None:
         if log.has(*(f"imu.{name}.angular_velocity.{axis}" for axis in "xyz")):
             return orientation, log.angular_velocity(name)
-        text = f"{log.name}: no angular velocity; rates come from differentiated orientation, so damping is less certain"
+        text = f"{log.name}: no angular velocity; rates come from differentiated orientation, damping is less sure"
         notes.append(Note("gyroscope_missing", "warning", text))
         return orientation, _rates_from(orientation, log.period)
     rates, acceleration = log.angular_velocity(name), log.linear_acceleration(name)
@@ -211,8 +218,8 @@ def _filtered(state: BushState, period: float, cutoff: float) -> BushState:
 def moved_centre(recording: Recording, compliance: Mapping[str, float], cutoff: float) -> Recording:
     """The recording with torques about the bush's centre where its z slide has carried it.
 
-    Under a load F_z the slide is compressed by z = compliance·F_z, so that pitch and roll turn about a point z higher in
-    the ankle: torque' = torque - z e_z × force. Left out, K comes out too large by F_z²·compliance.
+    Under a load F_z the slide is compressed by z = compliance·F_z, so that pitch and roll turn about a point z higher
+    in the ankle: torque' = torque - z e_z × force. Left out, K comes out too large by F_z²·compliance.
     """
     bushes = {
         foot: replace(
@@ -224,7 +231,7 @@ def moved_centre(recording: Recording, compliance: Mapping[str, float], cutoff: 
 
 
 def lever_effect(bush: BushState, period: float, cutoff: float) -> Array:
-    """Change of pitch and roll torque for each m/N of vertical compliance, (N, 2) [N·m per m/N], filtered as the rest."""
+    """Change of pitch and roll torque for each m/N of vertical compliance, (N, 2) [N·m per m/N], filtered alike."""
     x, y, z = bush.wrench[:, FORCE].T
     return low_pass(np.column_stack([-z * x, np.cos(bush.deflection[:, 0]) * z * y]), period, cutoff)
 

@@ -14,11 +14,11 @@ from plantar.identify.recording import Recording
 Predictions = dict[tuple[str, str, Axis], Array]  # (motion, foot, axis) -> torque (N,)
 
 
-def residual_table(recordings: Sequence[Recording], predictions: Mapping[tuple[str, str, Axis], Array]) -> pa.Table:
+def residual_table(
+    recordings: Sequence[Recording], predictions: Mapping[tuple[str, str, Axis], Array]
+) -> pa.Table:
     """One row a sample, foot and motion; predicted torque is NaN where nothing was predicted."""
-    parts = [
-        _one(recording, foot, predictions) for recording in recordings for foot in recording.bushes
-    ]
+    parts = [_one(recording, foot, predictions) for recording in recordings for foot in recording.bushes]
     return pa.concat_tables(parts)
 
 

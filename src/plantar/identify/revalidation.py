@@ -7,15 +7,17 @@ from typing import Any
 
 import numpy as np
 
-from plantar.conventions import ROTATIONAL_AXES
+from plantar.conventions import ROTATIONAL_AXES, Axis
 from plantar.errors import DataError
-from plantar.identify.recording import moved_centre, prepare
+from plantar.identify.axis_fit import AxisFit
+from plantar.identify.preparation import check_names, leave_out_slip
+from plantar.identify.recording import checked, moved_centre, prepare
 from plantar.identify.residual_table import Predictions
 from plantar.identify.scoring import score_axis
 from plantar.identify.settings import FeetSettings
 from plantar.identify.tipping import leave_out_tipping
 from plantar.log import MotionLog
-from plantar.models import KelvinVoigt
+from plantar.models import LAWS
 from plantar.result import ValidationRow
 from plantar.robot import RobotModel
 
@@ -34,33 +36,52 @@ def validate_feet(
     strangers = sorted(feet - set(robot.feet))
     if strangers:
         raise DataError(f"the result is about a foot '{strangers[0]}' (valid: {', '.join(robot.feet)})")
-    known = {key: value for key, value in result["settings"].items() if key in FeetSettings.__dataclass_fields__}
+    check_names(logs)
+    known = {
+        key: value for key, value in result["settings"].items() if key in FeetSettings.__dataclass_fields__
+    }
     settings = FeetSettings(**known)
-    compliance = {foot: _compliance(result, foot) for foot in robot.feet}
+    delay = float(result.get("latency", {}).get("wrench_delay", 0.0))
+    compliance = {foot: float(result.get("compliance", {}).get(foot, 0.0)) for foot in robot.feet}
     recordings = []
     for log in logs:
         progress(f"prepare {log.name}")
-        recording = prepare(robot, log, "validate", settings)
+        recording = prepare(robot, checked(robot, log), "validate", settings, delay)
+        leave_out_slip(recording)
         leave_out_tipping(robot, recording, settings)
         recordings.append(moved_centre(recording, compliance, settings.cutoff))
     rows: list[ValidationRow] = []
     predictions: Predictions = {}
     for foot in sorted(feet):
         for axis in ROTATIONAL_AXES:
-            values = [_value(result, foot, axis, term) for term in KelvinVoigt().terms]
-            if None not in values:
-                rows += score_axis(recordings, foot, axis, KelvinVoigt(), np.array(values, dtype=float), {}, predictions)
+            fit = _stored_fit(result, foot, axis)
+            if fit is not None:
+                rows += score_axis(recordings, foot, axis, fit, predictions)
     if not rows:
-        raise DataError("no log has samples of a standing foot that could be scored (valid: more than 1.3 s of stance)")
+        raise DataError(
+            "no log has samples of a standing foot that could be scored (valid: more than 1.3 s of stance)"
+        )
     return rows
 
 
-def _compliance(result: Mapping[str, Any], foot: str) -> float:
-    """The foot's vertical compliance [m/N] as the fit used it; 0 where the result has none."""
-    stiffness = _value(result, foot, "z", "stiffness")
-    return 1 / stiffness if stiffness else 0.0
-
-
-def _value(result: Mapping[str, Any], foot: str, axis: str, name: str) -> float | None:
-    wanted = (foot, axis, name)
-    return next((p["value"] for p in result["parameters"] if (p["foot"], p["axis"], p["name"]) == wanted), None)
+def _stored_fit(result: Mapping[str, Any], foot: str, axis: Axis) -> AxisFit | None:
+    """The law of one axis as the result holds it, None where a number of it is missing."""
+    chosen = [row["law"] for row in result.get("laws", ()) if (row["foot"], row["axis"]) == (foot, axis)]
+    name = chosen[0] if chosen else "kelvin_voigt"
+    if name not in LAWS:
+        raise DataError(f"the result's law '{name}' is unknown (valid: {', '.join(LAWS)})")
+    law = LAWS[name]
+    stored = {
+        row["name"]: row["value"]
+        for row in result["parameters"]
+        if (row["foot"], row["axis"]) == (foot, axis)
+    }
+    numbers = [stored.get(term) for term in (*law.terms, *law.shape_terms)]
+    if any(number is None for number in numbers):
+        return None
+    values = np.array(numbers, dtype=float)
+    count, size = len(law.terms), len(values)
+    return AxisFit(
+        foot, axis, law, values[:count], values[count:], np.zeros((size, size)), np.ones(size), np.zeros(size),
+        {}, {}, {}, (values[0], values[1]), None,
+    )  # fmt: skip

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
 
-from plantar.conventions import ROTATIONAL_AXES, Array, Axis
+from plantar.conventions import ROTATIONAL_AXES, Axis
+from plantar.identify.axis_fit import AxisFit, law_columns
 from plantar.identify.recording import Recording
 from plantar.identify.residual_table import Predictions
-from plantar.models import KelvinVoigt
 from plantar.result import ValidationRow
 from plantar.validation import opening, score
 
@@ -21,24 +21,22 @@ def score_axis(
     recordings: Sequence[Recording],
     foot: str,
     axis: Axis,
-    law: KelvinVoigt,
-    values: Array,
-    offsets: Mapping[str, float],
+    fit: AxisFit,
     predictions: Predictions,
 ) -> list[ValidationRow]:
     """Rows of tables 2 and 3 for one axis; what was predicted is added to `predictions`.
 
-    `offsets` are the fit's own, by motion; a motion to validate takes its offset from its first second.
+    A motion that the fit has not seen takes its offset from its first second.
     """
     column, rows = ROTATIONAL_AXES.index(axis), []
     for recording in recordings:
-        used, bush = recording.used(foot), recording.bushes[foot]
-        torque = bush.torque[:, column]
-        reconstructed = law.regressor(bush.deflection[:, column], bush.rate[:, column]) @ values
+        used = recording.used(foot)
+        torque = recording.bushes[foot].torque[:, column]
+        reconstructed = law_columns(recording, foot, axis, fit) @ fit.values
         if recording.role == "fit":
-            if recording.name not in offsets:
+            if recording.name not in fit.offsets:
                 continue
-            scored, offset, trivial = used, offsets[recording.name], float(np.mean(torque[used]))
+            scored, offset, trivial = used, fit.offsets[recording.name], float(np.mean(torque[used]))
         else:
             first = opening(recording.time, used)
             scored = used & ~first

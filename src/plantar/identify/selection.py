@@ -12,7 +12,8 @@ from plantar.conventions import ROTATIONAL_AXES, Array
 from plantar.errors import DataError
 from plantar.estimation import fit_linear
 from plantar.estimation.intervals import cosine_covariance
-from plantar.identify.feet import blocks_of, check_names, prepare_all
+from plantar.identify.axis_fit import blocks_of
+from plantar.identify.preparation import check_names, prepare_all
 from plantar.identify.settings import FeetSettings
 from plantar.log import MotionLog
 from plantar.models import KelvinVoigt
@@ -81,7 +82,7 @@ def select_motions(
     unknown = [name for name in compare if name not in names]
     if unknown:
         raise DataError(f"no log is called '{unknown[0]}' (valid: {', '.join(names)})")
-    recordings = prepare_all(robot, logs, "fit", settings, progress)
+    recordings = prepare_all(robot, logs, (), settings, progress).fitted
     evidence: dict[tuple[str, str], dict[str, Evidence]] = {}
     values: dict[Key, float] = {}
     for foot in robot.feet:
@@ -98,7 +99,9 @@ def select_motions(
                 scores = cosine_covariance(centred * fit.residuals[block.label][:, None], block.duration)[0]
                 evidence[foot, axis][block.label] = Evidence(centred.T @ centred, scores)
     if not values:
-        raise DataError("no log has samples of a standing foot that could serve (valid: a robot that stands on its feet)")
+        raise DataError(
+            "no log has samples of a standing foot that could serve (valid: a robot that stands on its feet)"
+        )
     choices = {(name,): _promise((name,), evidence, values) for name in names}
     best = _best_sets(names, largest, lambda motions: _promise(motions, evidence, values))
     return Selection(
@@ -134,7 +137,9 @@ def _promise(
     return Choice(motions, widths, condition)
 
 
-def _best_sets(names: Sequence[str], largest: int, promise: Callable[[tuple[str, ...]], Choice]) -> list[Choice]:
+def _best_sets(
+    names: Sequence[str], largest: int, promise: Callable[[tuple[str, ...]], Choice]
+) -> list[Choice]:
     """The best set of each size: all sets where they are few, else the previous best and one more."""
     best: list[Choice] = []
     for size in range(1, min(largest, len(names)) + 1):

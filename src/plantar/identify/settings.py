@@ -6,19 +6,23 @@ from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
 OffsetRule = Literal["per-motion", "shared"]
+AUTOMATIC = "auto"
 
 
 @dataclass(frozen=True)
 class FeetSettings:
-    """`offset`: one for each recording, or one for all as in the paper. `cutoff` [Hz]: zero-phase low-pass on both
-    sides of eq. 6. `edge_margin` [m]: a centre of pressure nearer to the sole's border is left out. `window` [rad]:
-    largest deflection from the resting pose that serves; None finds the bend of the torque by itself."""
+    """`offset`: one for each recording, or one for all as in the paper. `model`: a law of the bush, or the one that
+    predicts held-out motions best. `cutoff` [Hz]: zero-phase low-pass on both sides of eq. 6. `edge_margin` [m]: a
+    centre of pressure nearer to the sole's border is left out. `window` [rad]: largest deflection from the resting pose
+    that serves; None finds the bend of the torque by itself. `wrench_delay` [s]: how late the force sensors are; None
+    estimates it."""
 
     offset: OffsetRule = "per-motion"
-    model: str = "kelvin_voigt"
+    model: str = AUTOMATIC
     cutoff: float = 5.0
     edge_margin: float = 0.005
     window: float | None = None
+    wrench_delay: float | None = None
 
     def to_dict(self) -> dict[str, Any]:
         return asdict(self)

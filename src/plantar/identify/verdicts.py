@@ -25,11 +25,12 @@ SWAY = {
 @dataclass(frozen=True)
 class Evidence:
     """What one fit shows: `seconds` that served, rms of deflection [rad], share of variance explained, and whether
-    the recordings that excite it are too few to see their differences."""
+    the damping is negative beyond doubt."""
 
     seconds: float
     excitation: float
     explained: float
+    makes_energy: bool = False
 
 
 def judge(
@@ -43,19 +44,46 @@ def judge(
     if evidence.seconds < LEAST_SECONDS:
         return "unidentifiable", f"only {evidence.seconds:.1f} s of samples serve", advice
     if value <= 0 and interval[1] <= 0:
-        return "unidentifiable", f"{term} comes out negative: something else than the bush makes this torque", advice
+        return (
+            "unidentifiable",
+            f"{term} comes out negative: something else than the bush makes this torque",
+            advice,
+        )
     if interval[0] <= 0:
         return "unidentifiable", f"the 95 % interval reaches zero; the motion gave {motion}", advice
     if evidence.explained < LEAST_EXPLAINED:
         share = f"{100 * max(evidence.explained, 0):.0f} %"
         return "unidentifiable", f"the law explains {share} of the torque's variance", advice
     if width > WEAK_WIDTH:
-        return "unidentifiable", f"the 95 % interval is ±{100 * width:.0f} %; the motion gave {motion}", advice
+        return (
+            "unidentifiable",
+            f"the 95 % interval is ±{100 * width:.0f} %; the motion gave {motion}",
+            advice,
+        )
+    if evidence.makes_energy:
+        return (
+            "weak",
+            "damping comes out negative: something else than the bush takes part in this torque",
+            advice,
+        )
     if width > USABLE_WIDTH:
         return "weak", f"the 95 % interval is ±{100 * width:.0f} %; the motion gave {motion}", advice
     if evidence.explained < GOOD_EXPLAINED:
-        return "weak", f"the law explains only {100 * evidence.explained:.0f} % of the torque's variance", advice
+        return (
+            "weak",
+            f"the law explains only {100 * evidence.explained:.0f} % of the torque's variance",
+            advice,
+        )
     return "usable", f"95 % interval ±{100 * width:.2g} %, {evidence.seconds:.0f} s served", None
+
+
+def judge_term(value: float, interval: tuple[float, float]) -> tuple[Verdict, str, str | None]:
+    """Verdict and reason for a further term of a richer law."""
+    half = (interval[1] - interval[0]) / 2
+    width = half / abs(value) if value else np.inf
+    if not interval[0] * interval[1] > 0 or not np.isfinite(width):
+        return "unidentifiable", "the 95 % interval reaches zero", None
+    return ("usable" if width < 2 * USABLE_WIDTH else "weak"), f"95 % interval ±{100 * width:.2g} %", None
 
 
 def _advice(foot: str, axis: Axis, term: str) -> str:

@@ -12,7 +12,7 @@ from plantar.contact import DOUBLE, SINGLE, SUPPORTS
 from plantar.conventions import GRAVITY, ROTATIONAL_AXES, Array
 from plantar.errors import PlantarError
 from plantar.identify.feet import identify_feet
-from plantar.identify.recording import Recording, prepare
+from plantar.identify.recording import Recording, checked, prepare
 from plantar.identify.settings import FeetSettings
 from plantar.log import MotionLog
 from plantar.notes import Finding, Note
@@ -75,7 +75,7 @@ def inspect_log(robot: RobotModel, log: MotionLog) -> LogSummary:
     try:
         findings = check_log(robot, log)
         if robot.feet and not any(finding.fatal for finding in findings):
-            recording = prepare(robot, log, "fit", FeetSettings())
+            recording = prepare(robot, checked(robot, log), "fit", FeetSettings())
             feet = tuple(_foot(recording, foot) for foot in robot.feet)
             result = identify_feet(robot, [log])
             parameters, notes = result.parameters, result.notes

@@ -1,0 +1,98 @@
+"""All logs of one identification made ready together: what is common to them is found here."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from plantar.contact import DOUBLE, SUPPORTS
+from plantar.deflection import closure
+from plantar.errors import DataError
+from plantar.identify.height import Height, fit_height
+from plantar.identify.latency import Latency, known_latency, wrench_latency
+from plantar.identify.recording import Recording, checked, moved_centre, prepare
+from plantar.identify.settings import FeetSettings
+from plantar.identify.tipping import leave_out_tipping
+from plantar.log import MotionLog
+from plantar.notes import Note, unique
+from plantar.robot import RobotModel
+from plantar.slip import sliding
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """Recordings to fit and to validate, the wrenches' delay and the bushes' vertical compliance behind them."""
+
+    fitted: tuple[Recording, ...]
+    unseen: tuple[Recording, ...]
+    latency: Latency
+    vertical: Height
+    notes: tuple[Note, ...]
+
+    @property
+    def recordings(self) -> tuple[Recording, ...]:
+        return self.fitted + self.unseen
+
+
+def prepare_all(
+    robot: RobotModel,
+    logs: Sequence[MotionLog],
+    validate: Sequence[MotionLog],
+    settings: FeetSettings,
+    progress: Progress,
+) -> Prepared:
+    """Check, put on even grids, correct for delay, leave out what cannot serve, move torques to the loaded centre.
+
+    Raises RobotError, LogError or DataError with one line where an input cannot serve.
+    """
+    check_names([*logs, *validate])
+    even = []
+    for log in (*logs, *validate):
+        progress(f"check {log.name}")
+        even.append(checked(robot, log))
+    if settings.wrench_delay is not None:
+        latency = known_latency(settings.wrench_delay)
+    else:
+        progress("estimate the wrenches' delay")
+        latency = wrench_latency(robot, even)
+    recordings = []
+    for place, log in enumerate(even):
+        progress(f"prepare {log.name}")
+        role = "fit" if place < len(logs) else "validate"
+        recording = prepare(robot, log, role, settings, latency.delay)
+        leave_out_slip(recording)
+        leave_out_tipping(robot, recording, settings)
+        recordings.append(recording)
+    progress("fit z")
+    vertical = fit_height(recordings[: len(logs)], robot, settings.cutoff)
+    moved = [moved_centre(recording, vertical.compliance, settings.cutoff) for recording in recordings]
+    notes = [*(note for one in recordings for note in one.notes), latency.note, *vertical.notes]
+    return Prepared(tuple(moved[: len(logs)]), tuple(moved[len(logs) :]), latency, vertical, unique(notes))
+
+
+def check_names(logs: Sequence[MotionLog]) -> None:
+    """DataError where two logs have one name: results name motions by them."""
+    seen: dict[str, MotionLog] = {}
+    for log in logs:
+        if log.name in seen:
+            message = f"two logs are called '{log.name}': {seen[log.name].source} and {log.source}"
+            raise DataError(f"{message} (valid: file names that differ, since results name motions by them)")
+        seen[log.name] = log
+
+
+def leave_out_slip(recording: Recording) -> None:
+    """Samples of double support in which the soles slide against each other."""
+    if len(recording.bushes) != 2:
+        return
+    first, second = recording.contacts.values()
+    both = np.asarray((first.support == SUPPORTS.index(DOUBLE)) & (second.support == SUPPORTS.index(DOUBLE)))
+    if not both.any():
+        return
+    apart = closure(*recording.bushes.values())
+    slides = sliding(apart.position[:, :2], apart.yaw, both, recording.period)
+    for contact in (first, second):
+        contact.leave_out(slides, "slip: the soles move against each other")
