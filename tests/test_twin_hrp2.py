@@ -44,7 +44,9 @@ def test_leg_limits_and_their_mirror(model: pin.Model) -> None:
         mirrored = place in (0, 1, 5)
         for side, expected in (("R", (low, high)), ("L", (-high, -low) if mirrored else (low, high))):
             index = model.joints[model.getJointId(f"{side}LEG_JOINT{place}")].idx_q
-            assert (model.lowerPositionLimit[index], model.upperPositionLimit[index]) == pytest.approx(expected)
+            assert (model.lowerPositionLimit[index], model.upperPositionLimit[index]) == pytest.approx(
+                expected
+            )
 
 
 def test_mass_centre_and_inertia_at_half_sitting(model: pin.Model, half_sitting: np.ndarray) -> None:

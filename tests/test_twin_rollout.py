@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pinocchio as pin
 import pytest
-from example_robots import TALOS
-from twin_samples import plan, roll, short, swayed, tilted
 
+from example_robots import TALOS
 from plantar.conventions import rotation_from_quaternion
 from plantar.errors import MotionError
 from plantar.motions import plan_motion
@@ -18,6 +17,7 @@ from plantar.twin.foot import cut_feet
 from plantar.twin.from_robot import describe
 from plantar.twin.physics import Physics, Slip
 from plantar.twin.rollout import Rollout, roll_out, scene_xml
+from twin_samples import plan, roll, short, swayed, tilted
 
 GRAVITY = 9.80665
 
@@ -116,7 +116,9 @@ def test_newton_and_euler_close_over_the_whole_robot() -> None:
     assert total[3:] == pytest.approx(tau[3:6], abs=0.1)
 
 
-def _configuration(model: pin.Model, rollout: Rollout, columns: dict[str, np.ndarray], row: int) -> np.ndarray:
+def _configuration(
+    model: pin.Model, rollout: Rollout, columns: dict[str, np.ndarray], row: int
+) -> np.ndarray:
     q = pin.neutral(model)
     w, x, y, z = rollout.base[row, 3:]
     q[:7] = [*rollout.base[row, :3], x, y, z, w]

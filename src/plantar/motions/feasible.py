@@ -57,6 +57,7 @@ def configurations(body: Body, plan: Plan) -> tuple[Array, Array, Array, Array]:
         twist = np.zeros((time.size, 6))
         for row in range(1, time.size - 1):
             twist[row] = pin.log6(bases[row - 1].actInv(bases[row + 1])).vector * CHECK_RATE / 2
+        twist[0], twist[-1] = twist[1], twist[-2]
         v[:, :6], a[:, :6] = twist, np.gradient(twist, 1 / CHECK_RATE, axis=0)
     return q, v, a, time
 

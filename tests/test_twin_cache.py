@@ -1,0 +1,131 @@
+"""Kept plans and rollouts: the same when nothing changed, gone when anything did."""
+
+from __future__ import annotations
+
+import os
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from plantar.errors import MotionError
+from plantar.motions import Postures
+from plantar.twin import Bush, cache, hrp2
+from plantar.twin.keep import (
+    plan_arrays,
+    plan_from,
+    plan_key,
+    rollout_arrays,
+    rollout_from,
+    rollout_key,
+)
+from plantar.twin.physics import Physics, Slip
+from plantar.twin.play import roll_all, rolled
+from twin_samples import plan, short, tilted
+
+
+@pytest.fixture(autouse=True)
+def own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("PLANTAR_CACHE", str(tmp_path / "cache"))
+    return tmp_path / "cache"
+
+
+def test_plans_come_back_whole() -> None:
+    for motion in ("Tilt3", "Manual_right_roll"):
+        first = plan(motion)
+        key = cache.key("x", motion)
+        cache.save(key, plan_arrays(first))
+        again = plan_from(motion, cache.load(key))
+        assert plan_arrays(again).keys() == plan_arrays(first).keys()
+        for name, values in plan_arrays(first).items():
+            assert np.array_equal(plan_arrays(again)[name], values)
+        assert (again.hand is None) == (first.hand is None)
+
+
+def test_rollouts_come_back_whole() -> None:
+    kept = rollout_arrays(tilted())
+    cache.save("rollout", kept)
+    again = rollout_arrays(rollout_from("Tilt3", cache.load("rollout")))
+    assert all(np.array_equal(again[name], values) for name, values in kept.items())
+
+
+def test_any_change_is_another_key() -> None:
+    base, physics = plan("Tilt3"), Physics()
+    moved = replace(base, positions=base.positions + 1e-12)
+    keys = {
+        rollout_key(base, physics, "<mujoco/>"),
+        rollout_key(moved, physics, "<mujoco/>"),
+        rollout_key(base, physics, "<mujoco />"),
+        rollout_key(base, replace(physics, slips=(Slip(1.0, 2.0, 0.1),)), "<mujoco/>"),
+        rollout_key(base, replace(physics, bushes={"left": Bush(1, 1, 1, 1), "right": Bush(1, 1, 1, 1)}), ""),
+        plan_key("Tilt3", hrp2.robot(), hrp2.postures(), {}),
+        plan_key("Tilt3", hrp2.robot(), Postures(), {}),
+        plan_key("Tilt3", hrp2.robot(), hrp2.postures(), {"sway": 0.03}),
+    }
+    assert len(keys) == 8
+    assert rollout_key(base, physics, "") == rollout_key(replace(base), Physics(), "")
+
+
+def test_changed_source_is_another_key(monkeypatch: pytest.MonkeyPatch) -> None:
+    before = cache.key("x")
+    monkeypatch.setattr(cache, "_code", lambda: "another version of the twin")
+    assert cache.key("x") != before
+
+
+def test_a_damaged_file_counts_as_none(own_folder: Path) -> None:
+    cache.save("k", {"a": np.arange(5.0)})
+    file = own_folder / "k.npz"
+    content = file.read_bytes()
+    for damage in (b"", content[: len(content) // 2], b"not a zip", content.replace(b"NUMPY", b"NUMPX")):
+        file.write_bytes(damage)
+        assert cache.load("k") is None
+
+
+def test_pickles_are_never_loaded(own_folder: Path) -> None:
+    own_folder.mkdir()
+    np.savez(own_folder / "k.npz", a=np.array([{"evil": True}], dtype=object))
+    assert cache.load("k") is None
+
+
+def test_a_folder_that_cannot_be_written_is_no_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "file").write_text("in the way")
+    monkeypatch.setenv("PLANTAR_CACHE", str(tmp_path / "file" / "below"))
+    cache.save("k", {"a": np.arange(5.0)})
+    assert cache.load("k") is None
+
+
+def test_the_oldest_go_first(own_folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cache, "LIMIT", 25_000)
+    for place, name in enumerate(("old", "older", "new")):
+        cache.save(name, {"a": np.zeros(1250)})  # about 10 kB each
+        os.utime(own_folder / f"{name}.npz", (1000 - place, 1000 - place) if name != "new" else None)
+    cache.save("newest", {"a": np.zeros(1250)})
+    assert sorted(file.stem for file in own_folder.glob("*.npz")) == ["new", "newest"]
+
+
+def test_a_second_rollout_does_not_step(monkeypatch: pytest.MonkeyPatch) -> None:
+    played, physics = short(plan("Tilt3"), 2.0, 2.3), Physics(settle=0.1)
+    first = rolled(played, hrp2.robot(), physics)
+
+    def forbidden(*_: object) -> None:
+        raise AssertionError("stepped again")
+
+    monkeypatch.setattr(sys.modules["plantar.twin.play"], "roll_out", forbidden)
+    again = rolled(played, hrp2.robot(), physics)
+    assert np.array_equal(first.efforts, again.efforts)
+    with pytest.raises(AssertionError, match="stepped again"):
+        rolled(played, hrp2.robot(), Physics(settle=0.15))
+
+
+def test_one_fall_stops_the_others() -> None:
+    soft = Bush(40.0, 2.0, 40.0, 2.0)
+    jobs = [
+        (short(plan("Tilt3"), 2.0, 6.0), Physics({"left": soft, "right": soft})),
+        (short(plan("Tilt3"), 2.0, 40.0), Physics()),
+    ]
+    seen: list[float] = []
+    with pytest.raises(MotionError, match="falls"):
+        roll_all(jobs, hrp2.robot(), lambda motion, share: seen.append(share))
+    assert max(seen, default=0.0) < 0.9

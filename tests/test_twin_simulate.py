@@ -1,0 +1,62 @@
+"""`plantar simulate`, as a user calls it."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from plantar.cli import main
+from plantar.readers import open_log
+from plantar.robot import load_robot
+
+
+@pytest.fixture(autouse=True)
+def own_cache(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PLANTAR_CACHE", str(tmp_path_factory.getbasetemp() / "simulate-cache"))
+
+
+def run(*arguments: str) -> int:
+    with pytest.raises(SystemExit) as left:
+        main(["simulate", *arguments])
+    return int(left.value.code or 0)
+
+
+def test_logs_truth_and_robot_file_appear(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run("Squat", "--out", str(tmp_path), "--preset", "sensors", "--seed", "3") == 0
+    robot = load_robot(tmp_path / "robot.yaml")
+    log = open_log(tmp_path / "Squat.parquet", robot)
+    assert log.duration == pytest.approx(20.0)
+    assert log.period == pytest.approx(0.005)
+    assert log.positions(robot).shape == (4001, 30)
+    assert json.loads((tmp_path / "Squat.truth.json").read_text())["seed"] == 3
+    said = capsys.readouterr()
+    assert "Squat" in said.out
+    assert "1 of 1 motions played" in said.err
+    # the same seed again, from the cache: the same bytes
+    before = (tmp_path / "Squat.parquet").read_bytes()
+    assert (
+        run("Squat", "--out", str(tmp_path / "again"), "--preset", "sensors", "--seed", "3", "--quiet") == 0
+    )
+    assert (tmp_path / "again" / "Squat.parquet").read_bytes() == before
+    assert capsys.readouterr().err == ""
+
+
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        (["Jump"], "unknown motion 'Jump'"),
+        (["Squat", "--preset", "odd"], "unknown preset 'odd'"),
+        (["Squat", "--bush", "1,2,x"], "--bush is not four or six numbers"),
+        (["Squat", "--robot", "missing.yaml"], "missing.yaml: cannot be read"),
+    ],
+)
+def test_what_is_wrong_is_said_in_one_line(
+    arguments: list[str], line: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(*arguments, "--out", str(tmp_path / "out")) == 1
+    said = capsys.readouterr().err
+    assert line in said
+    assert said.count("\n") == 1
+    assert not (tmp_path / "out").exists()
