@@ -324,3 +324,26 @@ def test_a_gain_that_is_real_but_small_keeps_the_simpler_law() -> None:
     assert hardening.refused is None
     assert hardening.held_out_rms < choice.ranking[-1].held_out_rms
     assert choice.fit.law.name == "kelvin_voigt"
+
+
+def test_a_bush_that_never_moves_says_nothing() -> None:
+    still = Motion(np.zeros(2000), np.zeros(2000), PERIOD)
+    noise = np.random.default_rng(0).standard_normal(2000)
+    choice = choose_law([Trial("still", still, noise, np.ones(2000, dtype=bool))])
+    assert choice.fit.law.name == "kelvin_voigt"
+    assert choice.reach == 0
+    assert choice.caution is None
+
+
+def test_many_short_runs_each_have_their_own_start() -> None:
+    """As in walking: the foot leaves the ground every 0.9 s, and nobody knows how it comes back."""
+    trials = []
+    for trial in campaign(0, JENKINS)[:2]:
+        phase = np.arange(len(trial.torque)) % 180
+        deflection = np.where(phase < 20, np.nan, trial.motion.deflection)
+        used = trial.used & (phase > 45) & (phase < 155)
+        trials.append(Trial(trial.label, replace(trial.motion, deflection=deflection), trial.torque, used))
+    fit = fit_law(Elastoplastic(), trials)
+    assert all(len(starts) == 26 for starts in fit.starts.values())
+    assert error_percent(fit, JENKINS)[0] < 1
+    assert error_percent(fit, JENKINS)[1] < 3

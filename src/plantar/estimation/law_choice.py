@@ -20,7 +20,9 @@ from plantar.estimation.law_trials import Prepared, Trial, prepare_trials
 from plantar.models import LAWS, KelvinVoigt, Law, reach
 
 LEAST_GAIN = 0.10  # of the held-out rms error
-TELLING_GAIN = 0.3  # of the held-out rms error: so much better, a law that cannot be identified is still told of
+TELLING_GAIN = (
+    0.3  # of the held-out rms error: so much better, a law that cannot be identified is still told of
+)
 FOLDS = 5  # contiguous parts that recordings are cut into where they cannot stand for one another
 SEED_REACH = 2.2  # ratio of shapes to those of a simpler law, within which a richer one is looked for
 DOMINANT = 0.5  # share of all motion in one recording, above which the others cannot stand for it

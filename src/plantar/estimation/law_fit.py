@@ -96,7 +96,8 @@ class LawFit:
         return tuple(found)
 
     def reconstruct(self, motion: Motion, starts: Array | None = None) -> Array:
-        """Torque (N,) without offset along a motion, filtered as in the fit; NaN outside its runs.
+        """Torque (N,) without offset along a motion, filtered as in the fit; NaN where no run
+        is long enough to filter.
 
         `starts` (runs of `path_runs`): where the memory begins, `Law.starts` where not given.
         """

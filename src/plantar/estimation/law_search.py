@@ -21,6 +21,9 @@ Numbers = NDArray[np.intp]
 
 NEARBY = 0.2  # how much closer starts are tried about one that is known already
 ROUNDS = 6  # of fitting parameters and starts in turn
+STILL = (
+    1e-14  # of a column's square about zero: what is left about its mean is rounding, the column is constant
+)
 RIDGE = 1e-12  # of each column's own square: keeps collinear columns solvable
 
 
@@ -180,7 +183,10 @@ def _without_offset(gram: Array) -> Array:
 def _solve(totals: Array, shared_offset: bool) -> tuple[Array, Array, Array]:
     centred = _without_offset(totals.sum(axis=0)) if shared_offset else _without_offset(totals).sum(axis=0)
     inner, right = centred[:, :-1, :-1], centred[:, :-1, -1]
-    scale = np.sqrt(np.maximum(np.einsum("gii->gi", inner), 1e-300))
+    square = np.einsum("gii->gi", inner)
+    about_zero = np.einsum("tgii->gi", totals[:, :, :-2, :-2])
+    moving = square > STILL * about_zero
+    scale = np.where(moving, np.sqrt(np.where(moving, square, 1.0)), np.inf)
     scaled = inner / (scale[:, :, None] * scale[:, None, :]) + RIDGE * np.eye(inner.shape[1])
     values = np.linalg.solve(scaled, (right / scale)[:, :, None])[:, :, 0] / scale
     squares = centred[:, -1, -1] - np.einsum("gk,gk->g", values, right)
