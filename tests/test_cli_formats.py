@@ -19,7 +19,7 @@ from plantar.log import MotionLog
 from plantar.readers import open_log
 from plantar.readers.save import save_log
 from plantar.robot import load_robot
-from plantar.robot_guess import find_ankles
+from plantar.robot_guess.feet import find_ankles
 
 
 def command(*words: object) -> int:

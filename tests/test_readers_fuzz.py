@@ -19,7 +19,6 @@ spec.loader.exec_module(fuzz)
 
 
 @pytest.mark.parametrize("name", WRITERS)
-@pytest.mark.filterwarnings("ignore::RuntimeWarning")
 def test_damaged_files_give_a_log_or_one_line(name: str, tmp_path: Path) -> None:
     outcome = fuzz.attack(name, tmp_path, iter(range(90_000, 90_060)))
     assert outcome["failures"] == []

@@ -8,6 +8,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from plantar.errors import LogError, located
 
 if TYPE_CHECKING:
@@ -44,7 +46,8 @@ def open_log(path: str | os.PathLike[str], robot: RobotModel | None = None) -> M
         raise LogError(located("does not exist", path=path))
     module = _module(path, robot)
     reader: Reader = import_module(f"plantar.readers.{module}").read
-    return reader(path, robot)
+    with np.errstate(over="ignore", invalid="ignore"):  # a damaged file may hold any number
+        return reader(path, robot)
 
 
 def _module(path: Path, robot: RobotModel | None) -> str:

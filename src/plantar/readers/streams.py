@@ -120,14 +120,11 @@ def resample(stream: Stream, time: Array) -> tuple[dict[str, Array], bool]:
         values = np.column_stack([stream.columns[name] for name in names])
         low, high = values[before], values[after]
         if len(names) == 4:  # a quaternion: q and -q are the same attitude
-            with np.errstate(over="ignore", invalid="ignore"):  # whatever a damaged file holds
-                high = np.where(np.sum(low * high, axis=1, keepdims=True) < 0, -high, high)
-        with np.errstate(over="ignore", invalid="ignore"):
-            between = low + share[:, None] * (high - low)
+            high = np.where(np.sum(low * high, axis=1, keepdims=True) < 0, -high, high)
+        between = low + share[:, None] * (high - low)
         if len(names) == 4:
-            with np.errstate(over="ignore", invalid="ignore"):
-                norm = np.linalg.norm(between, axis=1, keepdims=True)
-                between = between / np.where(norm > 0, norm, np.nan)
+            norm = np.linalg.norm(between, axis=1, keepdims=True)
+            between = between / np.where(norm > 0, norm, np.nan)
         between[~inside] = np.nan
         between[on_sample] = values[near[on_sample]]
         columns |= {name: between[:, i].copy() for i, name in enumerate(names)}
