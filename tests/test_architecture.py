@@ -20,7 +20,7 @@ ROOMS = (
     "dynamics", "models", "estimation",
     "result", "validation", "identify",
     "balance", "motions", "twin",
-    "inspection", "export", "robot_guess", "report", "cli",
+    "inspection", "export", "robot_guess", "report", "campaign", "cli",
 )  # fmt: skip
 ENTRANCES = ("__init__", "__main__")  # they name what others hold
 LONGEST = 350  # lines
