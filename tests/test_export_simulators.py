@@ -19,6 +19,7 @@ import pinocchio as pin
 import pytest
 from scipy.integrate import simpson, solve_ivp
 
+from example_robots import TALOS
 from export_robots import CENTRE, TRUTH, bush_rotation, result, write_mjcf, write_sdf, write_urdf
 from plantar.conventions import rotation_from_rpy
 from plantar.export import export
@@ -313,3 +314,29 @@ def test_drake_gives_stiffness_and_damping_back(
     assert done.returncode == 0, done.stderr[-2000:]
     for (foot, axis), answer in zip(cases, json.loads(done.stdout), strict=True):
         check(foot, axis, LOAD[axis], answer["settled"], np.array(answer["times"]), np.array(answer["decay"]))
+
+
+def test_talos_loads_in_drake_and_weighs_what_it_did(tmp_path: Path, drake_python: str) -> None:
+    made = result(TALOS, "talos")
+    for foot, entry in made["robot_model"]["feet"].items():
+        entry["ankle"] = entry["bush"]["link"] = f"leg_{foot}_6_link"
+        entry["sole"]["link"] = f"{foot}_sole_link"
+    export(made, "drake", tmp_path / "talos.sdf")
+    program = """
+import sys
+from pydrake.all import AddMultibodyPlantSceneGraph, DiagramBuilder, Parser
+builder = DiagramBuilder()
+plant, _ = AddMultibodyPlantSceneGraph(builder, 0.0)
+Parser(plant).AddModels(sys.argv[1])
+plant.Finalize()
+print(plant.CalcTotalMass(plant.CreateDefaultContext()))
+print(len(plant.GetCollisionGeometriesForBody(plant.GetBodyByName("left_bush_sole"))))
+"""
+    done = subprocess.run(
+        [drake_python, "-c", program, tmp_path / "talos.sdf"], capture_output=True, text=True, timeout=120
+    )
+    assert done.returncode == 0, done.stderr[-2000:]
+    mass, shapes = done.stdout.split()
+    model = pin.buildModelFromXML(TALOS.read_text(), pin.JointModelFreeFlyer())
+    assert float(mass) == pytest.approx(pin.computeTotalMass(model), abs=1e-6)
+    assert int(shapes) == 1

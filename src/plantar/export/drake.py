@@ -26,13 +26,14 @@ if TYPE_CHECKING:
     from plantar.export import Job
 
 EXTENDS = True
+MESHES = (".obj", ".vtk", ".gltf")  # what Drake makes collision shapes of
 URI = "http://drake.mit.edu"  # the name space of Drake's own tags
 
 
 def write(job: Job) -> tuple[str, tuple[Note, ...]]:
     """The model with its feet on bushes, as text."""
     notes: list[Note] = []
-    tree = insert_bushes(job, notes, springs=False)
+    tree = insert_bushes(job, notes, springs=False, meshes=MESHES)
     ET.register_namespace("drake", URI)
     for foot in job.feet:
         _bushing(tree, foot)

@@ -7,6 +7,7 @@ N·m·s/rad (N/m, N·s/m for prismatic joints): sdformat.org/spec, joint/axis/dy
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
+from collections.abc import Collection
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -39,12 +40,17 @@ def write(job: Job) -> tuple[str, tuple[Note, ...]]:
     return to_text(tree.root, lines), tuple(notes)
 
 
-def insert_bushes(job: Job, notes: list[Note], *, springs: bool) -> SdfTree:
-    """The job's model with a chain of bush joints in each foot; without `springs` the joints move freely."""
+def insert_bushes(
+    job: Job, notes: list[Note], *, springs: bool, meshes: Collection[str] | None = None
+) -> SdfTree:
+    """The job's model with a chain of bush joints in each foot; without `springs` the joints move freely.
+
+    `meshes`: the mesh endings that the target reads, for a model made from a URDF.
+    """
     assert job.model is not None
     ankles = tuple(foot.ankle for foot in job.feet)
     if job.model.suffix.lower() == ".urdf":
-        tree = SdfTree(sdf_from_urdf(job.model, notes), job.model, ankles)
+        tree = SdfTree(sdf_from_urdf(job.model, notes, meshes), job.model, ankles)
     else:
         tree = SdfTree.load(job.model, ankles)
     for foot in job.feet:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
+from collections.abc import Collection
 from pathlib import Path
 
 from plantar.conventions import Array
@@ -15,12 +16,17 @@ from plantar.notes import Note
 JOINT_TYPES = {"fixed", "revolute", "continuous", "prismatic"}
 
 
-def sdf_from_urdf(path: Path, notes: list[Note]) -> ET.Element:
-    """The URDF's links, joints, inertias and shapes. ExportError: a joint of another type."""
+def sdf_from_urdf(path: Path, notes: list[Note], meshes: Collection[str] | None = None) -> ET.Element:
+    """The URDF's links, joints, inertias and shapes. ExportError: a joint of another type.
+
+    `meshes`: endings of mesh files that the reader takes; shapes of others are left out with a note.
+    """
     tree = UrdfTree.load(path)
     root = ET.Element("sdf", version="1.8")
     model = ET.SubElement(root, "model", name=tree.root.get("name", "robot"))
     carriers = {tree.ends(joint)[1]: name for name, joint in tree.joints.items()}
+    if meshes is not None:
+        _drop_meshes(tree, meshes, notes)
     for name, link in tree.links.items():
         if name == "world":
             continue
@@ -45,6 +51,19 @@ def sdf_from_urdf(path: Path, notes: list[Note]) -> ET.Element:
         )
     )
     return root
+
+
+def _drop_meshes(tree: UrdfTree, meshes: Collection[str], notes: list[Note]) -> None:
+    lost = []
+    for link in tree.links.values():
+        for shape in (*link.findall("collision"), *link.findall("visual")):
+            mesh = shape.find("geometry/mesh")
+            if mesh is not None and Path(mesh.get("filename", "")).suffix.lower() not in meshes:
+                link.remove(shape)
+                lost.append(mesh.get("filename", "").rsplit("/", 1)[-1])
+    if lost:
+        text = f"{len(lost)} meshes that are not {', '.join(meshes)} left out: {', '.join(lost[:3])} ..."
+        notes.append(Note("export_mesh", "warning", text))
 
 
 def _inertial(element: ET.Element, link: ET.Element) -> None:
