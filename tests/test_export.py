@@ -223,6 +223,20 @@ def test_a_foot_of_another_name_and_no_sole_shape(tmp_path: Path, urdf: Path) ->
     assert size[:2] == pytest.approx([0.2 * c + 0.12 * s, 0.2 * s + 0.12 * c], abs=1e-6)
 
 
+@pytest.mark.parametrize("target", ["urdf", "sdf", "mjcf"])
+def test_a_bush_in_the_soles_plane_takes_the_foot_along(target: str, urdf: Path, tmp_path: Path) -> None:
+    if target == "mjcf":
+        pytest.importorskip("mujoco")
+    made = result(urdf)
+    for entry in made["robot_model"]["feet"].values():
+        entry["bush"]["xyz"] = [0.0, 0.0, SOLE_Z]
+    notes = export(made, target, tmp_path / "out")
+    moved = [note.text for note in notes if note.code == "export_moved"]
+    assert len(moved) == 2
+    assert all("_sole" in text.split("sole:")[1] for text in moved)
+    assert "export_plate" not in {note.code for note in notes}
+
+
 def _broken(feet: dict[str, Any], **changes: Any) -> dict[str, Any]:
     made = copy.deepcopy(feet)
     for row in made["parameters"]:

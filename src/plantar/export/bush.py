@@ -90,6 +90,10 @@ class FootBush:
         """How far a point of the ankle's frame lies below the bush centre, along the bush's z [m]."""
         return float(-(self.rotation[:, 2] @ (np.asarray(point) - self.centre)))
 
+    def below(self, point: Array) -> bool:
+        """Whether a frame of the ankle goes with the sole: under the bush centre, or in the sole's plane."""
+        return self.depth(point) > min(1e-4, self.sole_depth - 1e-3)
+
     @property
     def sole_depth(self) -> float:
         """How far the sole's plane lies below the bush centre [m]."""

@@ -133,7 +133,7 @@ def _move_bodies(body: ET.Element, sole: ET.Element, foot: FootBush, before: Com
         points = before.subtree_points(name, foot.ankle)
         jointed = any(element.find(tag) is not None for tag in ("joint", "freejoint"))
         low = len(points) > 0 and reaches_sole(points, foot)
-        below = foot.depth(before.body_origin(name, foot.ankle)) > 1e-4
+        below = foot.below(before.body_origin(name, foot.ankle))
         if (below and not jointed) or (below and low):
             body.remove(element)
             sole.append(element)
@@ -149,7 +149,7 @@ def _move_sites(
     moved = []
     for element in body.findall("site"):
         name = element.get("name")
-        if name and name not in sensed and foot.depth(before.site_origin(name)) > 1e-4:
+        if name and name not in sensed and foot.below(before.site_origin(name)):
             body.remove(element)
             sole.append(element)
             moved.append(f"site {name}")

@@ -67,7 +67,7 @@ def insert_bushes(
 def _insert(tree: SdfTree, foot: FootBush, notes: list[Note], springs: bool) -> None:
     ankle, bush = tree.links[foot.ankle], pose(foot.centre, rotation=foot.rotation)
     low = [(joint, child) for joint, child in tree.fixed_children(foot.ankle)
-           if foot.depth(relative(tree, child, foot.ankle)[:3, 3]) > 1e-4]  # fmt: skip
+           if foot.below(relative(tree, child, foot.ankle)[:3, 3])]  # fmt: skip
     sole = _add_chain(tree, foot, bush, springs)
     moved = []
     for joint, child in low:

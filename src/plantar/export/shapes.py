@@ -37,12 +37,13 @@ def mesh_points(path: Path | None, scale: Array) -> Array | None:
 
 
 def reaches_sole(points: Array, foot: FootBush) -> bool:
-    """Whether a shape with these points (n, 3) in the ankle's frame reaches past half way from bush to sole.
+    """Whether a shape with these points (n, 3) in the ankle's frame reaches past half way from bush to sole,
+    or to 5 mm above the sole where the bush itself is that low.
 
     Such a shape would carry the ground's force past the bush if it stayed with the ankle.
     """
     depths = (foot.centre - np.atleast_2d(points)) @ foot.rotation[:, 2]
-    return float(depths.max()) > max(0.5 * foot.sole_depth, 1e-4)
+    return float(depths.max()) > foot.sole_depth - max(0.5 * foot.sole_depth, 0.005)
 
 
 def plate(foot: FootBush) -> tuple[Array, Array]:

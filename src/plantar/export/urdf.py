@@ -110,7 +110,7 @@ def _move_fixed_links(tree: UrdfTree, foot: FootBush, bush: Array) -> list[str]:
         above, place = queue.pop()
         for joint, child in tree.fixed_children(above):
             here = place @ origin_of(joint)
-            if foot.depth(here[:3, 3]) > 1e-4:
+            if foot.below(here[:3, 3]):
                 parent = joint.find("parent")
                 assert parent is not None
                 parent.set("link", foot.sole_link)
