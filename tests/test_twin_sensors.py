@@ -152,7 +152,7 @@ def test_presets_grow_from_ideal_to_harsh() -> None:
 
 
 def test_an_unknown_preset_lists_the_known() -> None:
-    with pytest.raises(PlantarError, match="unknown preset 'odd'.*ideal, sensors, realistic, harsh"):
+    with pytest.raises(PlantarError, match=r"unknown preset 'odd'.*ideal, sensors, realistic, harsh"):
         preset_named("odd")
 
 

@@ -145,7 +145,7 @@ def _solve_masses(nominal: Description) -> Array:
 
     def residual(change: Array) -> Array:
         mass, centre, inertia = _scaled(nominal, change).mass_properties(positions)
-        return (np.array([mass, *centre, *np.diag(inertia)]) - goal) / size
+        return np.asarray((np.array([mass, *centre, *np.diag(inertia)]) - goal) / size)
 
     change: Array = np.zeros(len(_symmetric_keys(nominal)) + 6)
     for _ in range(20):
