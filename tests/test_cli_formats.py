@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +18,7 @@ from plantar.cli import main
 from plantar.export.urdf_tree import UrdfTree
 from plantar.log import MotionLog
 from plantar.readers import open_log
+from plantar.readers.column_map import apply, joint_order, ports
 from plantar.readers.save import save_log
 from plantar.robot import load_robot
 from plantar.robot_guess.feet import find_ankles
@@ -147,6 +149,24 @@ def test_a_newcomer_gets_from_a_bag_and_a_urdf_to_mujoco_in_four_commands(tmp_pa
         joint = model.joint(f"{'L' if foot == 'left' else 'R'}LEG_BUSH_{axis.upper()}")
         assert joint.stiffness[0] == pytest.approx(law.stiffness, rel=0.01)
         assert model.dof_damping[joint.dofadr[0]] == pytest.approx(law.damping, rel=0.01)
+
+
+def test_the_snippets_of_the_documentation_are_robot_files(tmp_path: Path) -> None:
+    text = (Path(__file__).resolve().parents[1] / "docs" / "formats.md").read_text()
+    snippets = [yaml.safe_load(block) for block in re.findall(r"```yaml\n(.*?)```", text, re.DOTALL)]
+    assert len(snippets) >= 3
+    for number, snippet in enumerate(snippets):
+        robot = make_robot(tmp_path / str(number), **snippet)
+        assert joint_order(robot) is None or len(joint_order(robot) or ()) > 1
+        assert all(roles for roles in ports(robot).values())
+    table = dict.fromkeys(
+        ["stamp", "hip_angle", "qx", "qy", "qz", "qw", "ax", "ay", "az", "mx", "my", "mz"], np.arange(3.0)
+    )
+    mapped = next(make_robot(tmp_path / "map", **s) for s in snippets if "time" in s.get("columns", {}))
+    time, columns = apply(table, mapped, Path("log.csv"))
+    assert time[1] == 1e-3
+    assert columns["wrench.left.torque.x"][1] == -1e-3
+    assert columns["joint.hip.position"][1] == pytest.approx(np.pi / 180)
 
 
 TALOS_LAW = {

@@ -416,7 +416,7 @@ def refusal(path: Path, robot: RobotModel) -> str:
 
 
 @given(columns=st.dictionaries(words.filter(bool), trees, max_size=4))
-@settings(max_examples=300, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_whatever_stands_in_columns(columns: dict[str, object], tmp_path: Path, robot: RobotModel) -> None:
     """A log or one line, never anything else."""
     (tmp_path / "log.csv").write_text("time,a\n0,1\n1,2\n2,3\n")
