@@ -19,6 +19,9 @@ from plantar.models import LAWS, KelvinVoigt, Law, Motion
 from plantar.signals import low_pass
 
 FEWEST_SAMPLES = 50  # of one recording, for it to take part in a fit
+LEAST_EXPLAINED = 0.5  # of the torque's variance by spring and damper: below it no law of the bush will help
+FULLY_EXPLAINED = 0.997  # above it no richer law could gain what its own parameters cost
+SHORT_STANCE = 5.0  # s: the usual stance of walking is shorter, and tells nothing of a memory
 CANDIDATES = ("kelvin_voigt", "hardening", "coulomb", "elastoplastic", "bouc_wen", "standard_linear_solid")
 
 
@@ -41,6 +44,7 @@ class AxisFit:
     starts: Mapping[str, Array]
     equivalent: tuple[float, float]
     choice: LawChoice | None
+    reason: str
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -62,11 +66,11 @@ class AxisFit:
             "foot": self.foot,
             "axis": self.axis,
             "law": self.law.name,
+            "reason": self.reason,
             "linear_equivalent": {"stiffness": stiffness, "damping": damping},
         }
         if self.choice is not None:
             content |= {
-                "reason": self.choice.reason,
                 "held_out": self.choice.held_out,
                 "ranking": [
                     {"law": score.law.name, "held_out_rms": score.held_out_rms, "parameters": score.parameters,
@@ -87,16 +91,19 @@ def fit_axis(
         return None
     linear = fit_linear(blocks, shared_offset=shared)
     if settings.model == KelvinVoigt.name:
-        return _of_linear(foot, axis, linear, None)
+        return _of_linear(foot, axis, linear, None, "asked for")
     trials = [trial_of(recording, foot, axis) for recording in recordings if recording.name in linear.offsets]
     if settings.model != AUTOMATIC:
         fit = fit_law(LAWS[settings.model], trials, settings.cutoff, shared_offset=shared)
-        return _of_law(foot, axis, fit, linear, None)
-    laws = [LAWS[name] for name in CANDIDATES]
+        return _of_law(foot, axis, fit, linear, None, "asked for")
+    explained = _explained(linear, blocks)
+    if not LEAST_EXPLAINED < explained < FULLY_EXPLAINED:
+        return _of_linear(foot, axis, linear, None, _untried(explained))
+    laws = [LAWS[name] for name in CANDIDATES if not LAWS[name].remembers or _remembers(trials)]
     choice = choose_law(trials, laws, settings.cutoff, shared_offset=shared)
     if choice.fit.law.name == KelvinVoigt.name:
-        return _of_linear(foot, axis, linear, choice)
-    return _of_law(foot, axis, choice.fit, linear, choice)
+        return _of_linear(foot, axis, linear, choice, choice.reason)
+    return _of_law(foot, axis, choice.fit, linear, choice, choice.reason)
 
 
 def blocks_of(
@@ -152,17 +159,42 @@ def trial_of(recording: Recording, foot: str, axis: Axis) -> Trial:
     return Trial(recording.name, motion_of(recording, foot, axis), torque, recording.used(foot))
 
 
-def _of_linear(foot: str, axis: Axis, fit: LinearFit, choice: LawChoice | None) -> AxisFit:
+def _explained(fit: LinearFit, blocks: Sequence[Block]) -> float:
+    """Share of the torque's variance, within recordings, that spring and damper explain."""
+    varied = sum(float(np.sum((block.response - block.response.mean()) ** 2)) for block in blocks)
+    missed = sum(float(residual @ residual) for residual in fit.residuals.values())
+    return 1 - missed / varied if varied > 0 else 0.0
+
+
+def _untried(explained: float) -> str:
+    share = f"spring and damper explain {100 * explained:.4g} % of the torque's variance"
+    if explained >= FULLY_EXPLAINED:
+        return f"{share}: no richer law is needed"
+    return f"{share}: something else than the bush makes this torque, and no richer law was tried"
+
+
+def _remembers(trials: Sequence[Trial]) -> bool:
+    """Whether stances last long enough for a law with memory: each begins with an unknown state."""
+    stances = [run for trial in trials for run in trial.motion.runs]
+    seconds = sum(
+        (run.stop - run.start) * trial.motion.period for trial in trials for run in trial.motion.runs
+    )
+    return bool(stances) and seconds / len(stances) > SHORT_STANCE
+
+
+def _of_linear(foot: str, axis: Axis, fit: LinearFit, choice: LawChoice | None, reason: str) -> AxisFit:
     size = len(fit.values)
     return AxisFit(
         foot, axis, KelvinVoigt(), fit.values, np.zeros(0), fit.covariance[:size, :size], fit.freedom[:size],
         fit.white_std, fit.offsets, {label: fit.offset_std(label) for label in fit.offsets}, {},
-        (float(fit.values[0]), float(fit.values[1])), choice,
+        (float(fit.values[0]), float(fit.values[1])), choice, reason,
     )  # fmt: skip
 
 
-def _of_law(foot: str, axis: Axis, fit: LawFit, linear: LinearFit, choice: LawChoice | None) -> AxisFit:
+def _of_law(
+    foot: str, axis: Axis, fit: LawFit, linear: LinearFit, choice: LawChoice | None, reason: str
+) -> AxisFit:
     return AxisFit(
         foot, axis, fit.law, fit.values, fit.shape, fit.covariance, fit.freedom, fit.white_std, fit.offsets,
-        fit.offset_std, fit.starts, (float(linear.values[0]), float(linear.values[1])), choice,
+        fit.offset_std, fit.starts, (float(linear.values[0]), float(linear.values[1])), choice, reason,
     )  # fmt: skip

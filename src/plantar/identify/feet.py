@@ -81,7 +81,7 @@ def identify_feet(
             for phase in contact.phases(recording.name, foot, recording.time)
         ),
         validation=tuple(sorted(rows, key=lambda row: row.kind != "direct")),
-        notes=unique([*ready.notes, *_feet_notes(robot, ready.fitted)]),
+        notes=unique([*ready.notes, *_feet_notes(robot, ready.fitted), *_law_notes(fits)]),
         robot_model=_robot_model(robot),
         extras={
             "laws": [fit.to_dict() for fit in fits],
@@ -97,6 +97,20 @@ def _model(fits: Sequence[AxisFit]) -> str:
     """The law of most axes; of equally many, the richer one."""
     counts = Counter(fit.law.name for fit in fits)
     return max(counts, key=lambda name: (counts[name], name != KelvinVoigt.name), default=KelvinVoigt.name)
+
+
+def _law_notes(fits: Sequence[AxisFit]) -> list[Note]:
+    """Laws richer than spring and damper, and what a chosen law leaves open."""
+    notes = []
+    for fit in fits:
+        where = f"{fit.foot} {fit.axis}"
+        if fit.law.name != KelvinVoigt.name:
+            stiffness, damping = fit.equivalent
+            text = f"{where}: {fit.law.name} ({fit.reason}); as spring and damper K = {stiffness:.4g}, C = {damping:.4g}"
+            notes.append(Note("law", "info", text))
+        if fit.choice is not None and fit.choice.caution is not None:
+            notes.append(Note("law_caution", "warning", f"{where}: {fit.choice.caution}"))
+    return notes
 
 
 def _offsets(fit: AxisFit) -> list[Offset]:

@@ -25,6 +25,7 @@ PRIOR_STD = (
     0.0075  # s: what is known of a wrench's delay before any data; drivers and filters are rarely later
 )
 KNOWN_STD = 0.001  # s: better known than this, the delay is corrected without a warning
+CLOCK = 0.06  # of a period: within it, nobody knows when a sample was taken
 SIGNIFICANT = 2.5  # deviations from zero: a poorly known delay is corrected beyond, else only allowed for
 SLOW = 0.05  # Hz: below it the pair differs by postures and drifting zeros
 BASE_ROWS = slice(0, 6)
@@ -65,7 +66,7 @@ def wrench_latency(robot: RobotModel, logs: Sequence[MotionLog]) -> Latency:
         )
         return Latency(0.0, PRIOR_STD, np.inf, False, Note("delay_unknown", "warning", text))
     gain = PRIOR_STD**2 / (PRIOR_STD**2 + found.std**2)
-    delay, std = gain * found.value, float(np.sqrt(gain)) * found.std
+    delay, std = gain * found.value, float(np.hypot(np.sqrt(gain) * found.std, CLOCK * logs[0].period))
     told = f"wrenches are {1e3 * delay:+.1f} ± {1e3 * 1.96 * std:.1f} ms late (95 %) against IMU and encoders"
     if std <= KNOWN_STD:
         return Latency(delay, std, found.freedom, True, Note("delay", "info", f"{told}: corrected"))

@@ -83,5 +83,5 @@ def _stored_fit(result: Mapping[str, Any], foot: str, axis: Axis) -> AxisFit | N
     count, size = len(law.terms), len(values)
     return AxisFit(
         foot, axis, law, values[:count], values[count:], np.zeros((size, size)), np.ones(size), np.zeros(size),
-        {}, {}, {}, (values[0], values[1]), None,
+        {}, {}, {}, (values[0], values[1]), None, "stored",
     )  # fmt: skip

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import ClassVar
 
 import numpy as np
-from scipy import signal
 
 from plantar.conventions import Array
 from plantar.models.law import BESIDE, Law, Motion, reach
@@ -45,6 +44,8 @@ class StandardLinearSolid(Law):
 
     def extra(self, motions: Sequence[Motion], shapes: Array, starts: Sequence[Array]) -> list[Array]:
         """Deflection of the relaxing spring, (N, 1, b), exact for a deflection linear between samples."""
+        from scipy.signal import lfilter  # half a second to import, and hardly ever needed
+
         columns = []
         for motion, start in zip(motions, starts, strict=True):
             column = np.full((len(motion), 1, len(shapes)), np.nan)
@@ -55,7 +56,7 @@ class StandardLinearSolid(Law):
                     ratio = motion.period / time
                     decay, gain = np.exp(-ratio), -np.expm1(-ratio) / ratio
                     first = start[variant, place] * scale
-                    inner, _ = signal.lfilter([gain], [1.0, -decay], step, zi=[first])
+                    inner, _ = lfilter([gain], [1.0, -decay], step, zi=[first])
                     column[run, 0, variant] = inner
             columns.append(column)
         return columns
