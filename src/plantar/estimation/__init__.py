@@ -4,4 +4,12 @@ from plantar.estimation.intervals import interval95, relative_std_percent
 from plantar.estimation.least_squares import Block, LinearFit, effect_of, fit_linear
 from plantar.estimation.triangular import TriangularFactor
 
-__all__ = ["Block", "LinearFit", "TriangularFactor", "effect_of", "fit_linear", "interval95", "relative_std_percent"]
+__all__ = [
+    "Block",
+    "LinearFit",
+    "TriangularFactor",
+    "effect_of",
+    "fit_linear",
+    "interval95",
+    "relative_std_percent",
+]

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -19,9 +20,13 @@ ROUNDS = 4  # the moment equation is linear near its solution: each round shifts
 LONGEST = 0.05  # s: later signals than this have another fault than a delay
 BAND_EDGES = (0.15, 0.4, 0.8, 1.6, 3.2, 6.4)  # Hz
 LEAST_EXPLAINED = 0.8  # share of an axis' variance in a band that the prediction must explain to take part
-LEAST_CLOSED = 0.93  # share of the forces' variance that the prediction explains as it is: less, and somebody pushes
+LEAST_CLOSED = (
+    0.93  # share of the forces' variance that the prediction explains as it is: less, and somebody pushes
+)
 GAIN_BAND = (0.8, 1.25)  # measured over predicted, of an axis that takes part
-MODEL_ERROR = 0.003  # of the amplitude, in quadrature: what any URDF and any filter get wrong; a delay of this over ω
+MODEL_ERROR = (
+    0.003  # of the amplitude, in quadrature: what any URDF and any filter get wrong; a delay of this over ω
+)
 
 
 @dataclass(frozen=True)
@@ -47,8 +52,10 @@ class Delay:
 def estimate_delay(pairs: Sequence[Pair]) -> Delay | None:
     """Delay common to all pairs, or None where in none the prediction closes, or what it says is no delay."""
     value, found = 0.0, None
+    bands = [_bands(pair) for pair in pairs]
     for _ in range(ROUNDS):
-        cells = [cell for pair in pairs if _closes(pair, value) for cell in _cells(pair, value)]
+        closed = [own for pair, own in zip(pairs, bands, strict=True) if _closes(pair, value)]
+        cells = [cell for own in closed for band in own for cell in _cells(band, value)]
         if not cells:
             return None
         found = _pooled(cells)
@@ -56,6 +63,17 @@ def estimate_delay(pairs: Sequence[Pair]) -> Delay | None:
         if abs(value) > LONGEST:
             return None
     return found and Delay(value, found.std, found.freedom, found.cells)
+
+
+def _bands(pair: Pair) -> list[Pair]:
+    """The pair in each band of frequencies."""
+    both = np.hstack([pair.measured, pair.predicted])
+    layers = [low_pass(both, pair.period, edge) for edge in BAND_EDGES if edge < 0.4 / pair.period]
+    width = pair.measured.shape[1]
+    return [
+        Pair(pair.label, (high - low)[:, :width], (high - low)[:, width:], pair.period)
+        for low, high in pairwise(layers)
+    ]
 
 
 def _pooled(cells: Sequence[Delay]) -> Delay:
@@ -77,32 +95,26 @@ def _closes(pair: Pair, delay: float) -> bool:
     return bool(np.var(m - p, axis=0).sum() <= (1 - LEAST_CLOSED) * np.var(m, axis=0).sum())
 
 
-def _cells(pair: Pair, delay: float) -> list[Delay]:
-    """What is left of the delay, by axis and band: Σ (m - g·p) ṗ = -δ Σ ṁ ṗ for m(t) = g·p(t - δ) + noise.
+def _cells(band: Pair, delay: float) -> list[Delay]:
+    """What is left of the delay, by axis: Σ (m - g·p) ṗ = -δ Σ ṁ ṗ for m(t) = g·p(t - δ) + noise.
 
     Noise is nowhere multiplied with itself, only with its own rate, so that it does not bias δ.
     """
-    measured = shifted(pair.measured, pair.period, delay)
+    measured = shifted(band.measured, band.period, delay)
     whole = np.isfinite(measured).all(axis=1)
-    both = np.hstack([measured[whole], pair.predicted[whole]])
-    duration = len(both) * pair.period
-    layers = [low_pass(both, pair.period, edge) for edge in BAND_EDGES if edge < 0.4 / pair.period]
+    measured, predicted = measured[whole], band.predicted[whole]
+    duration = len(measured) * band.period
+    rates_m, rates_p = differentiate(measured, band.period), differentiate(predicted, band.period)
     found = []
-    for low, high in zip(layers, layers[1:], strict=False):
-        band = high - low
-        rates = differentiate(band, pair.period)
-        width = both.shape[1] // 2
-        for axis in range(width):
-            m, p, rate_m, rate_p = band[:, axis], band[:, width + axis], rates[:, axis], rates[:, width + axis]
-            power = float(p @ p)
-            slope = float(rate_m @ rate_p)
-            gain = float(m @ p) / power if power > 0 else 0.0
-            rest = m - gain * p
-            explains = float(rest @ rest) < (1 - LEAST_EXPLAINED) * float(m @ m)
-            if not (explains and GAIN_BAND[0] < gain < GAIN_BAND[1] and slope > 0):
-                continue
-            step = -float(rest @ rate_p) / slope
-            variance, freedom = cosine_covariance(((rest + step * rate_m) * rate_p)[:, None], duration)
-            floor = MODEL_ERROR * np.sqrt(power / float(rate_p @ rate_p))
-            found.append(Delay(step, float(np.hypot(np.sqrt(variance[0, 0]) / slope, floor)), freedom, 1))
+    for m, p, rate_m, rate_p in zip(measured.T, predicted.T, rates_m.T, rates_p.T, strict=True):
+        power, slope = float(p @ p), float(rate_m @ rate_p)
+        gain = float(m @ p) / power if power > 0 else 0.0
+        rest = m - gain * p
+        explains = float(rest @ rest) < (1 - LEAST_EXPLAINED) * float(m @ m)
+        if not (explains and GAIN_BAND[0] < gain < GAIN_BAND[1] and slope > 0):
+            continue
+        step = -float(rest @ rate_p) / slope
+        variance, freedom = cosine_covariance(((rest + step * rate_m) * rate_p)[:, None], duration)
+        floor = MODEL_ERROR * np.sqrt(power / float(rate_p @ rate_p))
+        found.append(Delay(step, float(np.hypot(np.sqrt(variance[0, 0]) / slope, floor)), freedom, 1))
     return found

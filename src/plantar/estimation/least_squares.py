@@ -77,7 +77,9 @@ def fit_linear(blocks: Sequence[Block], *, shared_offset: bool = False) -> Linea
     places, size = _places(blocks, columns, shared_offset)
     total = _factor(blocks, places, size)
     solution = total.solve()
-    residuals = [block.response - _design(block) @ solution[own] for block, own in zip(blocks, places, strict=True)]
+    residuals = [
+        block.response - _design(block) @ solution[own] for block, own in zip(blocks, places, strict=True)
+    ]
     inverse = total.information_inverse()
     covariance, freedom = _robust(blocks, places, residuals, inverse)
     variance = total.residual_norm**2 / max(total.rows - total.rank, 1)
@@ -134,7 +136,7 @@ def _robust(
 
 
 def effect_of(blocks: Sequence[Block], changes: Sequence[Array], *, shared_offset: bool = False) -> Array:
-    """How `values` (k,) move when each block's response changes by `changes` (n,): the fit is linear in its response."""
+    """How `values` (k,) move when each block's response changes by `changes` (n,): it is linear in that."""
     changed = [replace(block, response=change) for block, change in zip(blocks, changes, strict=True)]
     columns = blocks[0].regressor.shape[1]
     places, size = _places(changed, columns, shared_offset)

@@ -106,7 +106,8 @@ def _law_notes(fits: Sequence[AxisFit]) -> list[Note]:
         where = f"{fit.foot} {fit.axis}"
         if fit.law.name != KelvinVoigt.name:
             stiffness, damping = fit.equivalent
-            text = f"{where}: {fit.law.name} ({fit.reason}); as spring and damper K = {stiffness:.4g}, C = {damping:.4g}"
+            linear = f"as spring and damper K = {stiffness:.4g}, C = {damping:.4g}"
+            text = f"{where}: {fit.law.name} ({fit.reason}); {linear}"
             notes.append(Note("law", "info", text))
         if fit.choice is not None and fit.choice.caution is not None:
             notes.append(Note("law_caution", "warning", f"{where}: {fit.choice.caution}"))

@@ -6,7 +6,7 @@ rows predict from the URDF's inertias and the motion must equal the measured one
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -54,9 +54,14 @@ def known_latency(delay: float) -> Latency:
     return Latency(delay, 0.0, np.inf, False, Note("delay_given", "info", text))
 
 
-def wrench_latency(robot: RobotModel, logs: Sequence[MotionLog]) -> Latency:
-    """The delay common to all logs, evenly sampled, drawn towards zero by what is usual where the logs say little."""
-    pairs = [pair for log in logs if (pair := _pair(robot, log)) is not None]
+def wrench_latency(
+    robot: RobotModel, logs: Sequence[MotionLog], each: Callable[..., Iterable[Pair | None]] = map
+) -> Latency:
+    """The delay common to all logs, evenly sampled, drawn towards zero by what is usual where the logs say little.
+
+    `each` maps a function over logs: a pool's map uses all cores.
+    """
+    pairs = [pair for pair in each(lambda log: _pair(robot, log), logs) if pair is not None]
     found = estimate_delay(pairs) if pairs else None
     if found is None:
         text = (

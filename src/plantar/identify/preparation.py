@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +14,7 @@ from plantar.deflection import closure
 from plantar.errors import DataError
 from plantar.identify.height import Height, fit_height
 from plantar.identify.latency import Latency, known_latency, wrench_latency
-from plantar.identify.recording import Recording, checked, moved_centre, prepare
+from plantar.identify.recording import Recording, Role, checked, moved_centre, prepare
 from plantar.identify.settings import FeetSettings
 from plantar.identify.tipping import leave_out_tipping
 from plantar.log import MotionLog
@@ -50,28 +52,34 @@ def prepare_all(
     Raises RobotError, LogError or DataError with one line where an input cannot serve.
     """
     check_names([*logs, *validate])
-    even = []
-    for log in (*logs, *validate):
-        progress(f"check {log.name}")
-        even.append(checked(robot, log))
-    if settings.wrench_delay is not None:
-        latency = known_latency(settings.wrench_delay)
-    else:
+    progress("check the logs")
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        even = list(pool.map(lambda log: checked(robot, log), [*logs, *validate]))
         progress("estimate the wrenches' delay")
-        latency = wrench_latency(robot, even)
-    recordings = []
-    for place, log in enumerate(even):
-        progress(f"prepare {log.name}")
-        role = "fit" if place < len(logs) else "validate"
-        recording = prepare(robot, log, role, settings, latency.delay)
-        leave_out_slip(recording)
-        leave_out_tipping(robot, recording, settings)
-        recordings.append(recording)
+        latency = (
+            wrench_latency(robot, even, pool.map)
+            if settings.wrench_delay is None
+            else known_latency(settings.wrench_delay)
+        )
+        progress("prepare the logs")
+        roles: list[Role] = ["fit"] * len(logs) + ["validate"] * len(validate)
+        recordings = list(
+            pool.map(lambda log, role: _recording(robot, log, role, settings, latency.delay), even, roles)
+        )
     progress("fit z")
     vertical = fit_height(recordings[: len(logs)], robot, settings.cutoff)
     moved = [moved_centre(recording, vertical.compliance, settings.cutoff) for recording in recordings]
     notes = [*(note for one in recordings for note in one.notes), latency.note, *vertical.notes]
     return Prepared(tuple(moved[: len(logs)]), tuple(moved[len(logs) :]), latency, vertical, unique(notes))
+
+
+def _recording(
+    robot: RobotModel, log: MotionLog, role: Role, settings: FeetSettings, delay: float
+) -> Recording:
+    recording = prepare(robot, log, role, settings, delay)
+    leave_out_slip(recording)
+    leave_out_tipping(robot, recording, settings)
+    return recording
 
 
 def check_names(logs: Sequence[MotionLog]) -> None:

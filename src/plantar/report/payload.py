@@ -73,7 +73,7 @@ def encode_motion(tracks: Sequence[Track], stride: int = 1) -> Payload:
                 "channels": channels,
             }
         )
-    data = base64.b64encode(zlib.compress(b"".join(blocks), 9)).decode("ascii")
+    data = base64.b64encode(zlib.compress(b"".join(blocks), 6)).decode("ascii")
     return Payload({"tracks": headers, "supports": list(SUPPORTS)}, data)
 
 
