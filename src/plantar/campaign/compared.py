@@ -1,0 +1,160 @@
+"""Tables 1 to 3 beside the paper's numbers, the paper's own way on the same logs, and the twin's truth."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from plantar.campaign.paper import TABLE_1, TABLE_2, TABLE_3
+from plantar.conventions import ROTATIONAL_AXES
+from plantar.result import FeetResult, ValidationRow
+from plantar.twin.bush import Bush, Feet
+
+
+@dataclass(frozen=True)
+class ParameterBeside:
+    """A number of table 1: as identified, as the paper's way finds it on the same logs, as it truly is, and as
+    the paper published it for its robot. Errors are in percent of the truth."""
+
+    foot: str
+    axis: str
+    name: str
+    unit: str
+    value: float | None
+    interval95: tuple[float, float] | None
+    truth: float
+    error_percent: float | None
+    covered: bool | None
+    paper_way: float | None
+    paper_way_error_percent: float | None
+    paper_way_relative_std_percent: float | None
+    published: float | None
+    published_relative_std_percent: float | None
+
+
+@dataclass(frozen=True)
+class DirectBeside:
+    """A row of table 2, over the whole composed motion [N·m]; errors in percent of the largest torque."""
+
+    foot: str
+    axis: str
+    mean_abs_error: float
+    max_abs: float
+    percent_of_max: float
+    paper_way: float | None
+    paper_way_percent_of_max: float | None
+    published: float | None
+    published_percent_of_max: float | None
+
+
+@dataclass(frozen=True)
+class CrossBeside:
+    """A cell of table 3 [N·m]; `published` is None where the paper has no such motion."""
+
+    motion: str
+    foot: str
+    axis: str
+    mean_abs_error: float
+    zero_mean_abs: float
+    paper_way: float | None
+    published: float | None
+
+
+def parameters_beside(result: FeetResult, paper_way: FeetResult, truth: Feet) -> tuple[ParameterBeside, ...]:
+    """Table 1: stiffness and damping of pitch and roll of every foot."""
+    theirs = {(row.foot, row.axis, row.name): row for row in paper_way.parameters}
+    rows = []
+    for row in result.parameters:
+        key = (row.foot, row.axis, row.name)
+        true = _true(truth[row.foot], row.axis, row.name)
+        if row.axis not in ROTATIONAL_AXES or true is None:
+            continue
+        other, published, interval = theirs.get(key), TABLE_1.get(key), row.interval95
+        their_value = other.value if other else None
+        rows.append(
+            ParameterBeside(
+                *key,
+                unit=row.unit,
+                value=row.value,
+                interval95=interval,
+                truth=true,
+                error_percent=_percent(row.value, true),
+                covered=None if interval is None else interval[0] <= true <= interval[1],
+                paper_way=their_value,
+                paper_way_error_percent=_percent(their_value, true),
+                paper_way_relative_std_percent=other.relative_std_percent if other else None,
+                published=published.value if published else None,
+                published_relative_std_percent=published.relative_std_percent if published else None,
+            )
+        )
+    return tuple(rows)
+
+
+def direct_beside(result: FeetResult, paper_way: FeetResult) -> tuple[DirectBeside, ...]:
+    """Table 2: the motions that served the fit, one after the other."""
+    theirs = dict(_composed(paper_way.validation))
+    rows = []
+    for place, (mean, largest) in _composed(result.validation):
+        other, published = theirs.get(place), TABLE_2.get(place)
+        rows.append(
+            DirectBeside(
+                *place,
+                mean_abs_error=mean,
+                max_abs=largest,
+                percent_of_max=100 * mean / largest,
+                paper_way=other[0] if other else None,
+                paper_way_percent_of_max=100 * other[0] / other[1] if other else None,
+                published=published.mean_abs_error if published else None,
+                published_percent_of_max=published.percent_of_max if published else None,
+            )
+        )
+    return tuple(rows)
+
+
+def cross_beside(result: FeetResult, paper_way: FeetResult) -> tuple[CrossBeside, ...]:
+    """Table 3: every motion that the fit has not seen, those of the paper first."""
+    unseen = [row for row in paper_way.validation if row.kind == "cross"]
+    theirs = {(row.motion, row.foot, row.axis): row.mean_abs_error for row in unseen}
+    rows = [
+        CrossBeside(
+            row.motion, row.foot, row.axis, row.mean_abs_error, row.zero_mean_abs,
+            theirs.get((row.motion, row.foot, row.axis)),
+            TABLE_3.get(row.motion, {}).get((row.foot, row.axis)),
+        )
+        for row in result.validation
+        if row.kind == "cross"
+    ]  # fmt: skip
+    order = list(TABLE_3)
+    return tuple(sorted(rows, key=lambda row: order.index(row.motion) if row.motion in order else len(order)))
+
+
+def _true(bush: Bush, axis: str, name: str) -> float | None:
+    """What the twin was given under that name; None for what it does not have."""
+    value = getattr(bush, f"{axis}_{name}", None)
+    return None if value is None else float(value)
+
+
+def _percent(value: float | None, truth: float) -> float | None:
+    return None if value is None or truth == 0 else 100 * (value - truth) / truth
+
+
+def _composed(rows: Iterable[ValidationRow]) -> list[tuple[tuple[str, str], tuple[float, float]]]:
+    """Mean error over all samples of direct validation, and the largest torque, by foot and axis."""
+    found: dict[tuple[str, str], list[ValidationRow]] = {}
+    for row in rows:
+        if row.kind == "direct":
+            found.setdefault((row.foot, row.axis), []).append(row)
+    return [(place, _pooled(group)) for place, group in found.items()]
+
+
+def _pooled(group: list[ValidationRow]) -> tuple[float, float]:
+    samples = sum(row.samples for row in group)
+    mean = sum(row.mean_abs_error * row.samples for row in group) / samples
+    return mean, max(row.max_abs for row in group)
+
+
+def comparison(name: str, result: FeetResult) -> Mapping[str, object]:
+    """The same logs under another choice, as `result.json` holds it."""
+    content = result.to_dict()
+    return {"name": name, "settings": content["settings"], "parameters": content["parameters"],
+            "validation": content["validation"]}  # fmt: skip

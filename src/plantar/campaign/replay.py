@@ -1,0 +1,172 @@
+"""Identified feet in a simulator (the paper's future work): unseen motions replayed and set beside the record.
+
+The same is done on rigid feet and on feet with the numbers that others use.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from plantar.conventions import Array, rotation_from_quaternion
+from plantar.errors import DataError, MotionError, located
+from plantar.log import MotionLog
+from plantar.motions import Hand
+from plantar.result import FeetResult
+from plantar.robot import RobotModel
+from plantar.twin.bush import GUESSES, Feet
+from plantar.twin.exact import exact_columns
+from plantar.twin.foot import cut_feet
+from plantar.twin.from_robot import describe
+from plantar.twin.play import planned, rolled
+from plantar.twin.presets import preset_named
+from plantar.twin.replay import REFERENCE, Replayed, feet_of, replay
+
+IDENTIFIED: Final = "identified"
+RIGID: Final = "rigid"
+RECORD: Final = "none: the record against the truth"
+CHEST: Final = ("chest pitch", "chest roll")
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class ReplayRow:
+    """How far the simulated robot is from the recorded one in one motion: of the chest's pitch and roll the root
+    mean square error [rad], of a foot's torque the mean absolute error [N.m]; None where the robot falls."""
+
+    feet: str
+    motion: str
+    quantity: str
+    unit: str
+    error: float | None
+
+
+@dataclass(frozen=True)
+class Score:
+    """Chest error of one kind of feet over all motions together, root mean square [rad]; None: it falls."""
+
+    feet: str
+    pitch: float | None
+    roll: float | None
+
+    @property
+    def both(self) -> float | None:
+        """Pitch and roll together [rad]."""
+        return None if self.pitch is None or self.roll is None else float(np.hypot(self.pitch, self.roll))
+
+
+def replay_motions(
+    robot: RobotModel,
+    recorded: Sequence[MotionLog],
+    feet: Mapping[str, Feet | None],
+    progress: Progress = lambda _: None,
+) -> list[Replayed]:
+    """Every recorded motion on every kind of feet; a robot that falls is missing from the list.
+
+    `recorded` are logs named like motions of the campaign: where an operator's hand leads the robot, it does so
+    again.
+    """
+    hands = {log.name: hand for log in recorded if (hand := planned(log.name, robot).hand) is not None}
+    found: list[Replayed] = []
+    for name, bushes in feet.items():
+        progress(f"replay on {name} feet")
+        try:
+            found += replay(robot, recorded, {name: bushes}, hands)
+        except MotionError:
+            found += [one for log in recorded for one in _alone(robot, log, name, bushes, hands)]
+    return found
+
+
+def candidates(result: FeetResult, guesses: Sequence[str] = tuple(GUESSES)) -> dict[str, Feet | None]:
+    """The kinds of feet to compare: identified, rigid (None), and the guesses in use elsewhere."""
+    identified = feet_of(result.to_dict())
+    return {IDENTIFIED: identified, RIGID: None} | {
+        name: dict.fromkeys(identified, GUESSES[name]) for name in guesses
+    }
+
+
+def record_rows(
+    robot: RobotModel, recorded: Sequence[MotionLog], preset: str, bushes: Feet
+) -> tuple[ReplayRow, ...]:
+    """How far the recorded attitude itself is from the truth: what no simulation can get below."""
+    physics, feet = preset_named(preset).physics(bushes), cut_feet(describe(robot), robot)
+    rows = []
+    for log in recorded:
+        columns = exact_columns(rolled(planned(log.name, robot), robot, physics), robot, feet)
+        error = _attitude(robot, log) - _attitude(robot, MotionLog(log.name, log.time, columns))
+        late = log.time >= log.time[0] + REFERENCE
+        error = error - error[~late].mean(axis=0)
+        sizes = np.sqrt(np.mean(error[late] ** 2, axis=0))
+        rows += [
+            ReplayRow(RECORD, log.name, axis, "rad", float(size))
+            for axis, size in zip(CHEST, sizes, strict=True)
+        ]
+    return tuple(rows)
+
+
+def replay_rows(
+    replays: Sequence[Replayed], motions: Sequence[str], feet: Sequence[str]
+) -> tuple[ReplayRow, ...]:
+    """One row for each kind of feet, motion and quantity, also where the robot fell."""
+    found = {(one.feet, one.motion): one for one in replays}
+    places = list(dict.fromkeys(place for one in replays for place in one.torque))
+    rows = []
+    for name in feet:
+        for motion in motions:
+            one = found.get((name, motion))
+            chest = one.chest_error() if one else (None, None)
+            rows += [
+                ReplayRow(name, motion, axis, "rad", error) for axis, error in zip(CHEST, chest, strict=True)
+            ]
+            rows += [
+                ReplayRow(
+                    name,
+                    motion,
+                    f"{foot} {axis} torque",
+                    "N.m",
+                    one.torque_error(foot, axis) if one else None,
+                )
+                for foot, axis in places
+            ]
+    return tuple(rows)
+
+
+def scores(rows: Sequence[ReplayRow]) -> tuple[Score, ...]:
+    """Chest error of each kind of feet, all motions weighing the same."""
+    names = dict.fromkeys(row.feet for row in rows)
+    return tuple(Score(name, *(_pooled(rows, name, axis) for axis in CHEST)) for name in names)
+
+
+def best_guess(rows: Sequence[ReplayRow]) -> str | None:
+    """The guess whose chest comes nearest to the recorded one; None where none was tried or all fell."""
+    known = (IDENTIFIED, RIGID, RECORD)
+    errors = {one.feet: one.both for one in scores(rows) if one.feet not in known and one.both is not None}
+    return min(errors, key=lambda name: errors[name]) if errors else None
+
+
+def _pooled(rows: Sequence[ReplayRow], feet: str, quantity: str) -> float | None:
+    errors = [row.error for row in rows if row.feet == feet and row.quantity == quantity]
+    known = [error for error in errors if error is not None]
+    return float(np.sqrt(np.mean(np.square(known)))) if known and len(known) == len(errors) else None
+
+
+def _alone(
+    robot: RobotModel, log: MotionLog, name: str, bushes: Feet | None, hands: Mapping[str, Hand]
+) -> list[Replayed]:
+    try:
+        return replay(robot, [log], {name: bushes}, hands)
+    except MotionError:
+        return []
+
+
+def _attitude(robot: RobotModel, log: MotionLog) -> Array:
+    """Pitch and roll of the IMU, (N, 2) [rad]. Raises DataError where the log holds no attitude."""
+    quaternions = log.orientation(robot.imu.name) if robot.imu is not None else None
+    if quaternions is None:
+        raise DataError(located("holds no attitude to compare with", path=log.source))
+    up = rotation_from_quaternion(quaternions)[:, 2, :]
+    return np.column_stack([-np.arcsin(up[:, 0]), np.arctan2(up[:, 1], up[:, 2])])

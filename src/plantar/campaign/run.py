@@ -1,0 +1,184 @@
+"""The campaign as one story: play, read back, identify, validate, replay, save."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+from threading import Lock
+from typing import Any, Final
+
+from plantar.campaign.compared import (
+    CrossBeside,
+    DirectBeside,
+    ParameterBeside,
+    comparison,
+    cross_beside,
+    direct_beside,
+    parameters_beside,
+)
+from plantar.campaign.paper import TABLE_3
+from plantar.campaign.replay import ReplayRow, candidates, record_rows, replay_motions, replay_rows
+from plantar.errors import MotionError
+from plantar.identify.feet import identify_feet
+from plantar.identify.settings import FeetSettings
+from plantar.log import MotionLog
+from plantar.motions import CAMPAIGN, FIT
+from plantar.notes import Note
+from plantar.readers import open_log
+from plantar.result import FeetResult
+from plantar.robot import RobotModel, load_robot
+from plantar.twin import PAPER, TwinRecording, play, play_all, write_campaign
+from plantar.twin.bush import Feet
+from plantar.twin.replay import Replayed
+
+PRESET: Final = "sensors"  # imperfections of the twin, where none is asked for
+PAPER_WAY: Final = FeetSettings(offset="shared")  # one offset for the composed motion, as in the paper
+PAPER_WAY_NAME: Final = "one shared offset, as in the paper"
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Course:
+    """Which motions serve the fit and which are kept unseen; `replayed` go through the simulator again, on feet
+    that are identified, rigid and, by name, guessed."""
+
+    fit: tuple[str, ...] = FIT
+    validate: tuple[str, ...] = tuple(name for name in CAMPAIGN if name not in FIT)
+    replayed: tuple[str, ...] = tuple(TABLE_3)
+    guesses: tuple[str, ...] | None = None  # None: all
+
+    @classmethod
+    def quick(cls) -> Course:
+        """Two short motions, to see that everything works: no numbers to lean on."""
+        return cls(("Tilt3",), ("Squat",), ("Squat",), ())
+
+    def only(self, motions: Iterable[str]) -> Course:
+        """The same without unseen motions that are not among `motions`."""
+        kept = set(motions)
+        validate, replayed = (
+            tuple(n for n in names if n in kept) for names in (self.validate, self.replayed)
+        )
+        return replace(self, validate=validate, replayed=replayed)
+
+    @property
+    def motions(self) -> tuple[str, ...]:
+        return (*self.fit, *self.validate)
+
+
+@dataclass(frozen=True)
+class Campaign:
+    """Everything a campaign found. `result` is the default pipeline's, its extras hold the rest as data."""
+
+    directory: Path
+    robot: RobotModel
+    logs: Mapping[str, MotionLog] = field(repr=False)
+    result: FeetResult = field(repr=False)
+    paper_way: FeetResult = field(repr=False)
+    parameters: tuple[ParameterBeside, ...]
+    direct: tuple[DirectBeside, ...]
+    cross: tuple[CrossBeside, ...]
+    replays: tuple[Replayed, ...] = field(repr=False)
+    replayed: tuple[ReplayRow, ...]
+
+
+def run_campaign(
+    directory: Path,
+    course: Course | None = None,
+    preset: str = PRESET,
+    seed: int = 0,
+    progress: Progress = lambda _: None,
+) -> Campaign:
+    """Play the course on the twin, identify from the files that it wrote, and save `result.json`.
+
+    Logs and robot file go to `directory`/logs; `result.json` and `residuals.parquet` into `directory`. Raises
+    PlantarError for an unknown preset or a place that cannot be written.
+    """
+    course = course or Course()
+    logs = directory / "logs"
+    recordings, notes = _played(course, preset, seed, progress)
+    robot_file = write_campaign(logs, recordings)
+    course = course.only(recording.name for recording in recordings)
+    del recordings  # what follows knows only what the files say
+    progress("read the logs")
+    robot = load_robot(robot_file)
+    loaded = {name: open_log(logs / f"{name}.parquet", robot) for name in course.motions}
+    fitted, unseen = ([loaded[name] for name in names] for names in (course.fit, course.validate))
+    result = identify_feet(robot, fitted, unseen, progress=progress)
+    result = replace(result, notes=(*result.notes, *notes))
+    paper_way = identify_feet(robot, fitted, unseen, PAPER_WAY, progress)
+    kinds = candidates(result) if course.guesses is None else candidates(result, course.guesses)
+    again = [loaded[name] for name in course.replayed]
+    replays = replay_motions(robot, again, kinds, progress)
+    replayed = replay_rows(replays, course.replayed, tuple(kinds)) + record_rows(robot, again, preset, PAPER)
+    campaign = Campaign(
+        directory, robot, loaded, result, paper_way,
+        parameters_beside(result, paper_way, PAPER), direct_beside(result, paper_way), cross_beside(result, paper_way),
+        tuple(replays), replayed,
+    )  # fmt: skip
+    progress("save the numbers")
+    extras = {
+        **result.extras,
+        "comparisons": [comparison(PAPER_WAY_NAME, paper_way)],
+        "campaign": _as_data(campaign, preset, seed, PAPER),
+    }
+    campaign = replace(campaign, result=replace(result, extras=extras))
+    campaign.result.save(directory)
+    return campaign
+
+
+def _played(
+    course: Course, preset: str, seed: int, progress: Progress
+) -> tuple[list[TwinRecording], list[Note]]:
+    """Recordings of the course; an unseen motion in which the robot falls is left out with a warning.
+
+    Raises MotionError where the robot falls in a motion that the fit needs.
+    """
+    try:
+        return play_all(course.motions, None, PAPER, preset, [seed], _shares(course, progress))[0], []
+    except MotionError:
+        recordings, notes = [], []  # what was rolled out lies in the cache
+        for name in course.motions:
+            try:
+                recordings.append(play(name, None, PAPER, preset, seed))
+            except MotionError as error:
+                if name in course.fit:
+                    raise
+                notes.append(Note("motion_left_out", "warning", f"left out: {error}"))
+        return recordings, notes
+
+
+def _as_data(campaign: Campaign, preset: str, seed: int, truth: Feet) -> dict[str, Any]:
+    """What `result.json` keeps under `campaign`."""
+    return {
+        "preset": preset,
+        "seed": seed,
+        "truth": {foot: vars(bush) for foot, bush in truth.items()},
+        "table_1": _rows(campaign.parameters),
+        "table_2": _rows(campaign.direct),
+        "table_3": _rows(campaign.cross),
+        "replay": _rows(campaign.replayed),
+    }
+
+
+def _rows(rows: Sequence[ParameterBeside | DirectBeside | CrossBeside | ReplayRow]) -> list[dict[str, Any]]:
+    return [asdict(row) for row in rows]
+
+
+def _shares(course: Course, progress: Progress) -> Callable[[str, float], None]:
+    """Progress of all motions together, in steps of five percent; called from several threads."""
+    done = dict.fromkeys(course.motions, 0.0)
+    said = -1
+    lock = Lock()
+
+    def report(motion: str, share: float) -> None:
+        nonlocal said
+        with lock:
+            done[motion] = share
+            step = int(20 * sum(done.values()) / len(done))
+            if step > said:
+                said = step
+                progress(f"play {len(done)} motions on the twin: {5 * step} %")
+
+    return report

@@ -1,0 +1,80 @@
+"""The campaign's robot in motion, with the bush angles that plantar measured, as a page to turn and zoom."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from plantar.campaign.pictures import look_of, side_of
+from plantar.campaign.run import Campaign
+from plantar.conventions import ROTATIONAL_AXES, Array
+from plantar.report.residuals import Track, read_residuals, residuals_path
+from plantar.report.scene import SceneBody, SceneFoot, SceneMotion, write_scene
+from plantar.robot import RobotModel
+from plantar.twin.description import Description
+from plantar.twin.foot import CutFoot, cut_feet
+from plantar.twin.play import planned
+
+PLATE = (
+    0.8,
+    0.014,
+    0.012,
+)  # what stands for the ankle's plate: share of the sole, thickness, above the bush [m]
+
+
+def write_campaign_scene(campaign: Campaign, path: Path) -> Path:
+    """Write the page of every motion; needs the residuals that the campaign saved."""
+    look = look_of(campaign.robot)
+    feet = cut_feet(look, campaign.robot)
+    source = residuals_path(campaign.directory)
+    tracks = read_residuals(source) if source is not None else ()
+    motions = [
+        _motion(campaign, look, name, [t for t in tracks if t.motion == name]) for name in campaign.logs
+    ]
+    title = f"{campaign.robot.name} on its bushes"
+    shown = [_foot(campaign.robot, foot) for foot in feet.values()]
+    return write_scene(path, title, _bodies(look, feet, campaign.robot), shown, motions)
+
+
+def _bodies(look: Description, feet: dict[str, CutFoot], robot: RobotModel) -> list[SceneBody]:
+    plates = {foot.place: _plate(robot, foot) for foot in feet.values()}
+    made = []
+    for place, body in enumerate(look.bodies):
+        pose = np.eye(4)
+        pose[:3, :3], pose[:3, 3] = body.rotation, body.xyz
+        boxes = (
+            (plates[place],) if place in plates else tuple((shape.xyz, shape.size) for shape in body.shapes)
+        )
+        made.append(
+            SceneBody(body.parent, pose, body.axis, body.kind == "prismatic", boxes, side_of(body.name))
+        )
+    return made
+
+
+def _plate(robot: RobotModel, foot: CutFoot) -> tuple[Array, Array]:
+    """A plate above the bush in place of the whole foot link, so that the sole is seen to move."""
+    share, thickness, above = PLATE
+    size = share * np.ptp(robot.feet[foot.name].sole.polygon, axis=0)
+    return foot.bush[:3, 3] + [0.0, 0.0, above], np.array([*size, thickness])
+
+
+def _foot(robot: RobotModel, foot: CutFoot) -> SceneFoot:
+    polygon = robot.feet[foot.name].sole.polygon
+    corners = np.column_stack([polygon, np.zeros(len(polygon))])
+    return SceneFoot(foot.name, foot.place, foot.bush, np.linalg.inv(foot.bush) @ foot.sole, corners)
+
+
+def _motion(campaign: Campaign, look: Description, name: str, tracks: Sequence[Track]) -> SceneMotion:
+    log, robot = campaign.logs[name], campaign.robot
+    order = [list(robot.joint_names).index(joint) for joint in look.joint_names]
+    bushes = {track.foot: _bush(track, log.time) for track in tracks}
+    stance = planned(name, robot).stance
+    return SceneMotion(name, log.time, log.positions(robot)[:, order], bushes, stance)
+
+
+def _bush(track: Track, time: Array) -> Array:
+    """Pitch and roll (N, 2) at `time`; zero where the foot is in the air."""
+    values = [np.nan_to_num(track.values[f"{axis}.deflection"]) for axis in ROTATIONAL_AXES]
+    return np.column_stack([np.interp(time, track.time, value) for value in values])

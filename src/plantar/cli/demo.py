@@ -1,0 +1,87 @@
+"""`plantar demo`."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from plantar.cli.terminal import console, end_progress, progress, table
+from plantar.errors import MissingExtra, PlantarError, located
+from plantar.result import dump_json
+
+if TYPE_CHECKING:
+    from plantar.campaign import Campaign
+    from plantar.report import Table
+
+MARKS = {"good": "green", "weak": "yellow", "bad": "red"}
+
+
+def run(
+    out: Annotated[Path, typer.Option("--out", help="Folder for logs, result, figures and report.")] = Path("out/demo"),
+    preset: Annotated[str | None, typer.Option(help="Imperfections: ideal, sensors, realistic or harsh.")] = None,
+    seed: Annotated[int, typer.Option(help="Of noise, biases and zeros.", min=0)] = 0,
+    quick: Annotated[bool, typer.Option("--quick", help="Two motions only: to see it run.")] = False,
+    json: Annotated[bool, typer.Option("--json", help="Print result.json instead of tables.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No tables, no progress.")] = False,
+) -> None:  # fmt: skip
+    """The paper's campaign on a robot in MuJoCo whose feet are known: play, record, identify, validate, report.
+
+    OUT gets logs/ (robot file, URDF, logs, and the truth beside them), result.json, residuals.parquet,
+    report.html, robot.html (the robot in motion) and figures/ (SVG and PDF).
+
+    Example: plantar demo --out out/demo
+    """
+    try:
+        from plantar.campaign import Course, run_campaign
+        from plantar.campaign.present import write_campaign_report
+        from plantar.campaign.run import PRESET
+    except ImportError as error:
+        raise MissingExtra(error.name or "mujoco", "all", "plantar demo") from error
+    if out.exists() and not out.is_dir():
+        raise PlantarError(located("is a file", path=out, valid="a folder for the results"))
+    step = _progress(quiet)
+    campaign = run_campaign(out, Course.quick() if quick else None, preset or PRESET, seed, step)
+    written = write_campaign_report(campaign, step)
+    end_progress(quiet)
+    if json:
+        print(dump_json(campaign.result.to_dict()), end="")
+    elif not quiet:
+        _print(campaign)
+        paths = (out / "result.json", written.report, written.scene, out / "figures")
+        console().print("\n" + "\n".join(str(path) for path in paths), markup=False)
+
+
+def _progress(quiet: bool) -> Callable[[str], None]:
+    """On a terminal every step in place, elsewhere only the steps that take long."""
+    show = progress(quiet)
+    if quiet or sys.stderr.isatty():
+        return show
+    return lambda line: show(line) if line.startswith(("play", "replay", "write")) else None
+
+
+def _print(campaign: Campaign) -> None:
+    from plantar.campaign.tables import tables
+
+    out = console()
+    for place, made in enumerate(tables(campaign)):
+        if place:
+            out.print()
+        out.print(_drawn(made))
+    for note in campaign.result.notes:
+        if note.severity == "warning":
+            out.print(f"note: {note.text}", markup=False, style="yellow")
+
+
+def _drawn(made: Table) -> object:
+    headings = [
+        f"{column.heading} [{column.unit}]" if column.unit else column.heading for column in made.columns
+    ]
+    rows = [[cell.text for cell in row] for row in made.rows]
+    styles = [
+        next((MARKS[cell.mark] for cell in row if cell.mark in ("bad", "weak")), "") for row in made.rows
+    ]
+    return table(made.caption, headings, rows, styles)

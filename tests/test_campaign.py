@@ -1,0 +1,285 @@
+"""The campaign end to end through the command line, and the parts that set results beside the paper and the truth."""
+
+from __future__ import annotations
+
+import io
+import json
+import re
+from collections.abc import Iterator
+from contextlib import redirect_stderr, redirect_stdout
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+
+from plantar.campaign.compared import cross_beside, direct_beside, parameters_beside
+from plantar.campaign.paper import TABLE_1, TABLE_2, TABLE_3
+from plantar.campaign.pictures import boxes, look_of
+from plantar.campaign.replay import IDENTIFIED, RECORD, RIGID, ReplayRow, best_guess, replay_rows, scores
+from plantar.campaign.tables import simulator_table, table_1, table_3
+from plantar.cli import main
+from plantar.files import sha256
+from plantar.result import FeetResult, Parameter, ValidationRow
+from plantar.twin import PAPER, hrp2
+from plantar.twin.play import planned
+from report_visit import Visit, launched
+
+BARS = {"stiffness": 1.0, "damping": 3.0}  # percent
+
+
+def run(*arguments: object) -> tuple[int, str, str]:
+    """Exit code, stdout and stderr of `plantar ARGUMENTS`."""
+    out, error = io.StringIO(), io.StringIO()
+    code = 0
+    with redirect_stdout(out), redirect_stderr(error):
+        try:
+            main([str(argument) for argument in arguments])
+        except SystemExit as done:
+            code = 0 if done.code is None else int(done.code)
+    return code, out.getvalue(), error.getvalue()
+
+
+@pytest.fixture(scope="module")
+def demo(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Path, str, str]]:
+    """Folder, stdout and stderr of a quick demo that found nothing in its cache."""
+    folder = tmp_path_factory.mktemp("demo")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("PLANTAR_CACHE", str(folder / "cache"))
+        code, out, error = run("demo", "--quick", "--out", folder / "out", "--preset", "sensors", "--seed", 1)
+        assert code == 0, error
+        yield folder / "out", out, error
+
+
+@pytest.fixture(scope="module")
+def content(demo: tuple[Path, str, str]) -> dict[str, Any]:
+    found: dict[str, Any] = json.loads((demo[0] / "result.json").read_text())
+    return found
+
+
+def test_the_demo_writes_what_it_says(demo: tuple[Path, str, str]) -> None:
+    folder, out, error = demo
+    for name in (
+        "logs/robot.yaml",
+        "logs/Tilt3.parquet",
+        "logs/Squat.truth.json",
+        "residuals.parquet",
+        "robot.html",
+    ):
+        assert (folder / name).is_file(), name
+    figures = {path.name for path in (folder / "figures").iterdir()}
+    wanted = ("figure03_postures", "figure04b_zmp_Tilt3", "figure07_angles_Tilt3", "figure09_direct",
+              "figure11_cross_Squat", "simulator")  # fmt: skip
+    assert figures == {f"{name}.{kind}" for name in wanted for kind in ("svg", "pdf")}
+    for heading in ("Table 1", "Table 2", "Table 3", "In a simulator"):
+        assert heading in out
+    assert str(folder / "report.html") in "".join(out.split("\n"))
+    assert "play 2 motions on the twin: 100 %" in error
+
+
+def test_the_result_is_near_the_truth_and_says_how_near(
+    content: dict[str, Any], demo: tuple[Path, str, str]
+) -> None:
+    truth = json.loads((demo[0] / "logs" / "Tilt3.truth.json").read_text())["bushes"]
+    values = {(row["foot"], row["axis"], row["name"]): row["value"] for row in content["parameters"]}
+    rows = content["campaign"]["table_1"]
+    assert len(rows) == 8
+    for row in rows:
+        true = truth[row["foot"]][f"{row['axis']}_{row['name']}"]
+        error = 100 * (values[row["foot"], row["axis"], row["name"]] - true) / true
+        assert row["error_percent"] == pytest.approx(error)
+        assert abs(error) < BARS[row["name"]]
+
+
+def test_the_paper_way_is_a_comparison_on_the_same_logs(content: dict[str, Any]) -> None:
+    (other,) = content["comparisons"]
+    assert other["settings"]["offset"] == "shared"
+    assert content["settings"]["offset"] == "per-motion"
+    keys = [(row["foot"], row["axis"], row["name"]) for row in content["parameters"]]
+    assert [(row["foot"], row["axis"], row["name"]) for row in other["parameters"]] == keys
+    theirs = {(row["foot"], row["axis"], row["name"]): row["value"] for row in other["parameters"]}
+    for row in content["campaign"]["table_1"]:
+        assert row["paper_way"] == theirs[row["foot"], row["axis"], row["name"]]
+
+
+def test_logs_are_read_back_from_their_files(content: dict[str, Any], demo: tuple[Path, str, str]) -> None:
+    logs = demo[0] / "logs"
+    assert {row["role"]: row["sha256"] for row in content["inputs"]} == {
+        "fit": sha256(logs / "Tilt3.parquet"),
+        "validate": sha256(logs / "Squat.parquet"),
+    }
+
+
+def test_the_simulated_chest_follows_the_recorded_one(content: dict[str, Any]) -> None:
+    errors = {
+        row["feet"]: row["error"] for row in content["campaign"]["replay"] if row["quantity"] == "chest pitch"
+    }
+    assert errors[IDENTIFIED] < errors[RIGID] / 3
+    assert (
+        errors[IDENTIFIED] < 1.3 * errors[RECORD] + 1e-4
+    )  # the recorded attitude drifts; the simulation is better
+
+
+def test_the_report_holds_tables_and_figures(demo: tuple[Path, str, str]) -> None:
+    page = (demo[0] / "report.html").read_text()
+    for text in (
+        "Beside the paper",
+        "one shared offset",
+        "Figure 3.",
+        "Figure 9.",
+        "Figure 11.",
+        "In a simulator",
+    ):
+        assert text in page, text
+    assert len(page) < 5_000_000
+    assert not re.search(r'(src|href)="http', page)
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    yield from launched()
+
+
+def test_the_scene_puts_the_robot_where_it_was(demo: tuple[Path, str, str], browser: Any) -> None:
+    visit = Visit(browser, demo[0] / "robot.html")
+    truth = pq.read_table(demo[0] / "logs" / "Tilt3.truth.parquet")
+    moments, root, rate = (50, 120, 300), [], 10
+    for frame in moments:
+        pose = visit.page.evaluate(
+            """frame => {
+              const scene = JSON.parse(document.getElementById("scene").textContent);
+              const motion = scene.motions[0], codes = robot.decode(motion);
+              const width = codes.length / motion.frames;
+              const values = Array.from(codes.subarray(frame * width, (frame + 1) * width), (c) => c * scene.step);
+              return robot.placed(scene, motion, values, 1).bodies[0];
+            }""",
+            frame,
+        )
+        root.append([pose[3], pose[7], pose[11]])
+    rows = np.array(moments) * 200 // rate
+    true = np.column_stack([truth.column(f"base.{axis}").to_numpy()[rows] for axis in "xyz"])
+    assert np.ptp(true[:, 0]) > 0.01  # the robot sways
+    np.testing.assert_allclose(root, true, atol=0.004)
+    drawn = (
+        "stage => stage.getContext('2d').getImageData(0, 0, stage.width, stage.height).data.some((p) => p)"
+    )
+    assert visit.page.locator("#stage").evaluate(drawn)
+    before = visit.page.locator("#stage").evaluate("stage => stage.toDataURL()")
+    visit.page.locator("#play").click()
+    visit.page.locator("#times").fill("10")
+    assert visit.page.locator("#factor").text_content() == "10 times as far"
+    assert visit.page.locator("#stage").evaluate("stage => stage.toDataURL()") != before
+    assert visit.complaints == []
+    assert visit.requests == [(demo[0] / "robot.html").as_uri()]
+
+
+def test_a_file_for_the_folder_is_refused(tmp_path: Path) -> None:
+    place = tmp_path / "taken"
+    place.write_text("")
+    code, out, error = run("demo", "--quick", "--out", place)
+    assert (code, out) == (1, "")
+    assert error.splitlines() == [f"plantar: {place}: is a file (valid: a folder for the results)"]
+
+
+def test_an_unknown_preset_is_refused_before_anything_is_played(tmp_path: Path) -> None:
+    code, out, error = run("demo", "--preset", "rosy", "--out", tmp_path / "out")
+    assert (code, out) == (1, "")
+    assert error.splitlines()[0].startswith("plantar: unknown preset 'rosy' (valid: ideal, ")
+    assert not (tmp_path / "out").exists()
+
+
+def test_the_paper_tables_agree_with_themselves() -> None:
+    assert len(TABLE_1) == 12
+    for row in TABLE_2.values():
+        assert 100 * row.mean_abs_error / row.max_abs == pytest.approx(row.percent_of_max, abs=0.06)
+    assert sum(len(cells) for cells in TABLE_3.values()) == 16
+    for foot, bush in PAPER.items():
+        for axis in ("pitch", "roll"):
+            assert TABLE_1[foot, axis, "stiffness"].value == getattr(bush, f"{axis}_stiffness")
+            assert TABLE_1[foot, axis, "damping"].value == getattr(bush, f"{axis}_damping")
+
+
+def parameter(name: str, value: float, half: float) -> Parameter:
+    interval = (value - half, value + half)
+    return Parameter("right", "pitch", name, "N.m/rad", value, half / 2, interval, 0.1, "usable", "because")
+
+
+def validation(kind: Any, motion: str, error: float, largest: float, samples: int) -> ValidationRow:
+    return ValidationRow(kind, motion, "right", "pitch", error, error, largest, 1.0, 9.0, samples)
+
+
+def result(*rows: ValidationRow, stiffness: float = 440.0) -> FeetResult:
+    parameters = (parameter("stiffness", stiffness, 5.0), parameter("damping", 15.89, 1.0))
+    return FeetResult("twin", (), {}, "kelvin_voigt", parameters, (), (), rows, ())
+
+
+def test_errors_are_signed_and_in_percent_of_the_truth() -> None:
+    stiffness, damping = parameters_beside(result(), result(stiffness=430.0), PAPER)
+    assert stiffness.error_percent == pytest.approx(100 * 6 / 434)
+    assert stiffness.paper_way_error_percent == pytest.approx(-100 * 4 / 434)
+    assert (stiffness.covered, damping.covered) == (False, True)
+    table = table_1([stiffness, damping])
+    assert [cell.mark for cell in (table.rows[0][6], table.rows[1][6])] == ["bad", "good"]
+    assert table.rows[0][11].text == "434.0 (0.20 %)"
+
+
+def test_direct_validation_weighs_motions_by_their_samples() -> None:
+    ours = result(validation("direct", "a", 1.0, 10.0, 100), validation("direct", "b", 4.0, 40.0, 300))
+    (row,) = direct_beside(ours, replace(ours, validation=()))
+    assert row.mean_abs_error == pytest.approx(3.25)
+    assert row.percent_of_max == pytest.approx(100 * 3.25 / 40)
+    assert (row.published, row.paper_way) == (6.54, None)
+
+
+def test_cross_validation_puts_the_papers_motions_first() -> None:
+    ours = result(validation("cross", "Tilt2", 0.1, 9.0, 10), validation("cross", "Squat", 0.3, 9.0, 10))
+    squat, tilt = cross_beside(ours, ours)
+    assert (squat.motion, squat.published, tilt.published) == ("Squat", 0.38, None)
+    assert [row[2].mark for row in table_3([squat, tilt]).rows] == [
+        "weak",
+        "",
+    ]  # more than half of the paper's
+
+
+def test_scores_pool_motions_and_tell_who_falls() -> None:
+    def rows(feet: str, *errors: float | None) -> list[ReplayRow]:
+        return [
+            ReplayRow(feet, motion, axis, "rad", error)
+            for motion, error in zip("ab", errors, strict=True)
+            for axis in ("chest pitch", "chest roll")
+        ]
+
+    every = [
+        *rows(IDENTIFIED, 0.0, 0.001),
+        *rows(RIGID, 0.02, 0.02),
+        *rows("soft", 0.001, None),
+        *rows("hard", 0.1, 0.1),
+    ]
+    found = {score.feet: score for score in scores(every)}
+    assert found[IDENTIFIED].pitch == pytest.approx(0.001 / np.sqrt(2))
+    assert found[RIGID].both == pytest.approx(0.02 * np.sqrt(2))
+    assert found["soft"].both is None
+    assert best_guess(every) == "hard"  # the soft one falls in a motion
+    text = {row[0].text: [cell.text for cell in row[1:]] for row in simulator_table(every).rows}
+    assert text["soft"][0] == "falls"
+    assert text["hard"][1] == "5.000"
+
+
+def test_a_robot_that_fell_keeps_its_rows() -> None:
+    assert {row.error for row in replay_rows([], ["Squat"], ["soft"])} == {None}
+
+
+def test_postures_stand_on_the_floor() -> None:
+    robot = hrp2.robot()
+    drawn = boxes(look_of(robot), planned("Manual_left_roll", robot))
+    corners = np.vstack([box.corners for box in drawn])
+    assert corners[:, 2].min() == pytest.approx(0.0, abs=1e-3)
+    assert 1.4 < corners[:, 2].max() < 1.6
+    feet = {
+        box.side: box.corners[:, 2].min()
+        for box in drawn
+        if np.ptp(box.corners[:, 0]) == pytest.approx(0.2172, abs=0.01)
+    }
+    assert feet["right"] > 0.05 > feet["left"]  # the right leg is raised
