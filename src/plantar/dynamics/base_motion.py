@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
-from plantar.conventions import Array
+from plantar.conventions import GRAVITY, Array
 from plantar.kinematics import KinematicTree
 
 
@@ -88,6 +88,14 @@ def root_motion(relative: RelativeMotion, acceleration: Array, rate: Array, rate
         - relative.acceleration
     )
     return np.hstack([origin, omega, alpha])
+
+
+def root_motion_from_sole(relative: RelativeMotion) -> Array:
+    """The root frame's motion (N, 9) where a level sole stands still (Iwasaki 2012): its frame is an IMU at rest."""
+    still = np.zeros_like(relative.position)
+    up = still.copy()
+    up[:, 2] = GRAVITY
+    return root_motion(relative, up, still, still)
 
 
 def _about(axis: Array, angle: Array) -> Array:

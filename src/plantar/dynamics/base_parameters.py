@@ -17,12 +17,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from plantar.conventions import INERTIAL_NAMES, Array, skew
+from plantar.conventions import INERTIAL_NAMES, Array
 from plantar.dynamics.equation import PER_LINK, Equation
 from plantar.dynamics.motion import Motion
 
 # (row, column) of the inertia matrix for each of its six parameters, in Pinocchio's order.
 INERTIA_ENTRIES = ((0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2))
+_ROWS, _COLUMNS = np.array(INERTIA_ENTRIES).T
 DIAGONAL = (4, 6, 9)  # Ixx, Iyy, Izz among the ten
 RANK_TOLERANCE = 1e-8  # of a column's norm: what is left of a dependent column
 PROBING_SEED = 20111  # of the pseudo-random states that find what a fixed base hides
@@ -130,7 +131,7 @@ def _handed_over(equation: Equation, joint: int) -> tuple[Array, Array]:
     else:
         spreads = [np.eye(3) - np.outer(axis, axis)]  # mass spread along the axis
         mine.append(_parameters(1.0, np.zeros(3), np.zeros((3, 3))))
-        parents.append(_parameters(1.0, origin, skew(origin).T @ skew(origin)))
+        parents.append(_parameters(1.0, origin, (origin @ origin) * np.eye(3) - np.outer(origin, origin)))
         mine.append(_parameters(0.0, axis, np.zeros((3, 3))))
         moment = rotation @ axis
         shifted = 2 * (origin @ moment) * np.eye(3) - np.outer(origin, moment) - np.outer(moment, origin)
@@ -193,4 +194,4 @@ def _symmetric(entry: tuple[int, int]) -> Array:
 
 def _parameters(mass: float, moment: Array, inertia: Array) -> Array:
     """Mass, first moment and inertia as ten numbers in Pinocchio's order."""
-    return np.concatenate([[mass], moment, [inertia[entry] for entry in INERTIA_ENTRIES]])
+    return np.array([mass, *moment, *inertia[_ROWS, _COLUMNS]])

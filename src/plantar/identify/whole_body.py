@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
 import pinocchio as pin
 
-from plantar.conventions import TORQUE, WRENCH_AXES, Array
+from plantar.conventions import GRAVITY, TORQUE, WRENCH_AXES, Array, Mask
 from plantar.dynamics import BaseParameters, Contact, Equation, Motion, base_parameters, model_parameters
-from plantar.dynamics.base_motion import relative_motion, root_motion
+from plantar.dynamics.base_motion import relative_motion, root_motion, root_motion_from_sole
 from plantar.dynamics.consistency import Prior
 from plantar.errors import DataError, RobotError, located
 from plantar.identify.pulled_fit import Samples
@@ -25,11 +25,14 @@ FEWEST_SAMPLES = 50
 COULOMB_SPEED = (
     0.02  # rad/s: Coulomb friction is tanh(v / this); the sign alone would follow an encoder's noise
 )
+STANDING_SHARE = 0.2  # of the weight, on one foot: it stands
 TILT_SAID = np.radians(1.0)  # a mount that is wrong by less is not mentioned
 POLARITY_GAIN = 0.75  # a reversed channel must bring its row's misfit below this share, in both halves
 POLARITY_LOSS = 1.05  # and may not raise any other row's above this one
 
 DISSIPATIVE = ("viscous", "coulomb", "inertia")  # cannot be negative; a spring may, where a pose is unstable
+
+Smooth = Callable[[Array], Array]
 
 TERM_UNITS = {
     "viscous": "N.m.s/rad",
@@ -83,7 +86,7 @@ class Whole:
     motion: Motion
     wrenches: Mapping[str, Array]
     efforts: Mapping[str, Array]
-    valid: np.ndarray[tuple[int], np.dtype[np.bool_]]
+    valid: Mask
     notes: tuple[Note, ...]
 
 
@@ -123,14 +126,14 @@ def prepare_whole(body: Body, log: MotionLog, settings: DynamicsSettings) -> Who
     if not given:
         text = f"{log.name}: accelerations derived; all signals through one zero-phase low-pass at "
         notes.append(Note("filtered", "info", text + f"{settings.cutoff:g} Hz"))
-    base = np.tile(body.equation.rest, (len(even), 1))
+    base, known = np.tile(body.equation.rest, (len(even), 1)), np.ones(len(even), dtype=bool)
     wrenches: dict[str, Array] = {}
     if body.equation.floating:
-        base = _root(body, even, q, v, a, smooth)
+        base, known = _root(body, even, q, v, a, smooth, notes)
         wrenches = {name: smooth(even.wrench(foot.wrench.name)) for name, foot in robot.feet.items()}
     efforts = {name: smooth(values) for name in names if (values := even.joint(name, "effort")) is not None}
     motion = Motion(base, q, v, a)
-    valid = motion.finite
+    valid = motion.finite & known
     for values in (*wrenches.values(), *(effort[:, None] for effort in efforts.values())):
         valid &= np.isfinite(values).all(axis=1)
     edge = 0 if given else round(1 / settings.cutoff / period)
@@ -271,20 +274,46 @@ def joint_samples(
     return samples.select(whole.valid)
 
 
-def _root(body: Body, log: MotionLog, q: Array, v: Array, a: Array, smooth: Any) -> Array:
-    """The root frame's motion from the IMU (N, 9)."""
-    robot = body.robot
-    if robot.imu is None:
-        raise RobotError(located("names no imu", path=robot.path, valid="imu: {name: ..., link: ...}"))
+def _root(
+    body: Body, log: MotionLog, q: Array, v: Array, a: Array, smooth: Smooth, notes: list[Note]
+) -> tuple[Array, Mask]:
+    """The root frame's motion (N, 9) and where it is known: from the IMU, else from a sole that stands still."""
+    robot, tree = body.robot, body.equation.tree
     if not robot.feet:
         raise RobotError(
             located("names no feet", path=robot.path, valid="feet whose sensors carry the robot")
         )
-    joint, placement = robot.frame(robot.imu.placement)
-    rate = smooth(log.angular_velocity(robot.imu.name))
-    acceleration = smooth(log.linear_acceleration(robot.imu.name))
-    relative = relative_motion(body.equation.tree, joint - 1, placement, q, v, a)
-    return root_motion(relative, acceleration, rate, differentiate(rate, log.period))
+    imu = robot.imu
+    kinds = ("angular_velocity", "linear_acceleration")
+    if imu is not None and log.has(*(f"imu.{imu.name}.{kind}.{axis}" for kind in kinds for axis in "xyz")):
+        joint, placement = robot.frame(imu.placement)
+        rate = smooth(log.angular_velocity(imu.name))
+        acceleration = smooth(log.linear_acceleration(imu.name))
+        relative = relative_motion(tree, joint - 1, placement, q, v, a)
+        known = np.ones(len(log), dtype=bool)
+        return root_motion(relative, acceleration, rate, differentiate(rate, log.period)), known
+    standing = {name: _stands(body, log, name) for name in robot.feet}
+    name = max(standing, key=lambda foot: int(standing[foot].sum()))
+    if standing[name].sum() < FEWEST_SAMPLES:
+        valid = "IMU columns angular_velocity and linear_acceleration, or a foot that stands still"
+        raise DataError(located("does not tell how the root link moves", path=log.source, valid=valid))
+    joint, placement = robot.frame(robot.feet[name].sole.placement)
+    text = (
+        f"{log.name}: no IMU acceleration and angular velocity; the root's motion comes from the {name} sole, taken as "
+        "level and still where it carries the robot"
+    )
+    notes.append(Note("base_from_sole", "warning", text))
+    return root_motion_from_sole(relative_motion(tree, joint - 1, placement, q, v, a)), standing[name]
+
+
+def _stands(body: Body, log: MotionLog, name: str) -> Mask:
+    """Where a foot carries a fair share of the robot, by the force along its sole's normal."""
+    foot = body.robot.feet[name]
+    _, sensor = body.robot.frame(foot.wrench.placement)
+    _, sole = body.robot.frame(foot.sole.placement)
+    normal = sensor.rotation.T @ sole.rotation[:, 2]
+    force = foot.wrench.sign * log.wrench(foot.wrench.name)[:, :3] @ normal
+    return np.asarray(force > STANDING_SHARE * GRAVITY * body.robot.mass)
 
 
 def _reversed_channel(
@@ -319,9 +348,7 @@ def _reversed_channel(
     return None if best is None else best[:3]
 
 
-def _run_ends(
-    valid: np.ndarray[tuple[int], np.dtype[np.bool_]], reach: int
-) -> np.ndarray[Any, np.dtype[np.bool_]]:
+def _run_ends(valid: Mask, reach: int) -> Mask:
     ends = np.zeros(len(valid), dtype=bool)
     for run in runs(valid):
         ends[run.start : min(run.stop, run.start + reach)] = True
