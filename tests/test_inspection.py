@@ -29,7 +29,8 @@ def test_a_healthy_log(robot: RobotModel) -> None:
         assert foot.single == 0.0
         assert foot.load == pytest.approx(WEIGHT / 2, rel=0.05)
         assert 0.005 < foot.deflection_rms["pitch"] < 0.06
-    assert {row.verdict for row in summary.parameters if row.axis != "z"} == {"usable"}
+    stiffness = [row.verdict for row in summary.parameters if row.axis != "z" and row.name == "stiffness"]
+    assert set(stiffness) == {"usable"}
     ranges = {column.name: column for column in summary.columns}
     assert set(ranges) == set(log.columns)
     force = ranges["wrench.left.force.z"]

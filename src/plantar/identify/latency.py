@@ -86,12 +86,9 @@ def wrench_latency(
 def _pair(robot: RobotModel, log: MotionLog) -> Pair | None:
     """Measured and predicted ground wrench in the root link's frame; None where the log lacks what it takes."""
     imu = robot.imu
-    accelerometer = [f"imu.{imu.name}.linear_acceleration.{axis}" for axis in "xyz"] if imu else []
-    if (
-        imu is None
-        or not log.has(*accelerometer)
-        or any(foot.contact == "always" for foot in robot.feet.values())
-    ):
+    kinds = ("linear_acceleration", "angular_velocity")
+    needed = [f"imu.{imu.name}.{kind}.{axis}" for kind in kinds for axis in "xyz"] if imu else []
+    if imu is None or not log.has(*needed) or any(foot.contact == "always" for foot in robot.feet.values()):
         return None
     motion = inertial_motion(robot, log, CUTOFF)
     wrenches = np.hstack([foot.wrench.sign * log.wrench(foot.wrench.name) for foot in robot.feet.values()])

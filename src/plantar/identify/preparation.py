@@ -61,10 +61,11 @@ def prepare_all(
             if settings.wrench_delay is None
             else known_latency(settings.wrench_delay)
         )
-        progress("prepare the logs")
         roles: list[Role] = ["fit"] * len(logs) + ["validate"] * len(validate)
         recordings = list(
-            pool.map(lambda log, role: _recording(robot, log, role, settings, latency.delay), even, roles)
+            pool.map(
+                lambda log, role: _recording(robot, log, role, settings, latency.delay, progress), even, roles
+            )
         )
     progress("fit z")
     vertical = fit_height(recordings[: len(logs)], robot, settings.cutoff)
@@ -74,8 +75,9 @@ def prepare_all(
 
 
 def _recording(
-    robot: RobotModel, log: MotionLog, role: Role, settings: FeetSettings, delay: float
+    robot: RobotModel, log: MotionLog, role: Role, settings: FeetSettings, delay: float, progress: Progress
 ) -> Recording:
+    progress(f"prepare {log.name}")
     recording = prepare(robot, log, role, settings, delay)
     leave_out_slip(recording)
     leave_out_tipping(robot, recording, settings)
