@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import argparse
 import time
-from collections import defaultdict
+from collections import Counter, defaultdict
 
 import numpy as np
 
@@ -26,30 +26,42 @@ def main() -> None:
     parser.add_argument("--presets", nargs="+", default=["sensors"])
     parser.add_argument("--seeds", type=int, default=20)
     parser.add_argument("--motions", nargs="+", default=list(FIT))
+    parser.add_argument(
+        "--others", nargs="*", default=["Myrand5"], help="motions to validate: they show the delay"
+    )
     parser.add_argument("--offset", default="per-motion")
-    parser.add_argument("--model", default="kelvin_voigt")
+    parser.add_argument("--model", default="auto")
     chosen = parser.parse_args()
     robot = hrp2.robot()
     for preset in chosen.presets:
         started = time.perf_counter()
-        campaigns = play_all(chosen.motions, robot, PAPER, preset, range(chosen.seeds))
+        campaigns = play_all([*chosen.motions, *chosen.others], robot, PAPER, preset, range(chosen.seeds))
         print(f"\n{preset}: {len(chosen.motions)} motions, {chosen.seeds} seeds, offset {chosen.offset}; "
               f"rollouts {time.perf_counter() - started:.0f} s")  # fmt: skip
         errors = defaultdict(list)
+        models: Counter[str] = Counter()
         settings = FeetSettings(offset=chosen.offset, model=chosen.model)
         for recordings in campaigns:
-            result = identify_feet(robot, [recording.log for recording in recordings], settings=settings)
+            logs = [recording.log for recording in recordings]
+            split = len(chosen.motions)
+            result = identify_feet(robot, logs[:split], logs[split:], settings)
+            models[result.model] += 1
             for row in result.parameters:
                 truth = getattr(PAPER[row.foot], f"{row.axis}_{row.name}", None)
                 if truth is not None and row.value is not None and row.interval95 is not None:
                     inside = row.interval95[0] <= truth <= row.interval95[1]
                     half = (row.interval95[1] - row.interval95[0]) / 2
-                    errors[row.foot, row.axis, row.name].append((row.value / truth - 1, inside, half / truth, row.relative_std_percent))
+                    errors[row.foot, row.axis, row.name].append(
+                        (row.value / truth - 1, inside, half / truth, row.relative_std_percent)
+                    )
+        print(f"laws chosen: {dict(models)}")
         _print(errors)
 
 
 def _print(errors: dict[tuple[str, str, str], list[tuple[float, bool, float, float]]]) -> None:
-    print(f"{'foot':6} {'axis':6} {'':2} {'mean err %':>11} {'max |err| %':>12} {'half width %':>13} {'white std %':>12} {'covered':>9}")
+    print(
+        f"{'foot':6} {'axis':6} {'':2} {'mean err %':>11} {'max |err| %':>12} {'half width %':>13} {'white std %':>12} {'covered':>9}"
+    )
     rotational = []
     for (foot, axis, name), rows in errors.items():
         relative, inside, half, white = (np.array(column, dtype=float) for column in zip(*rows, strict=True))
@@ -58,9 +70,16 @@ def _print(errors: dict[tuple[str, str, str], list[tuple[float, bool, float, flo
         if axis != "z":
             rotational += rows
     for name in ("K", "C"):
-        rows = [row for key, all_rows in errors.items() if key[1] != "z" and NAMES.get(key[2]) == name for row in all_rows]
+        rows = [
+            row
+            for key, all_rows in errors.items()
+            if key[1] != "z" and NAMES.get(key[2]) == name
+            for row in all_rows
+        ]
         print(f"{name}: {100 * np.mean([row[1] for row in rows]):.1f} % of {len(rows)} intervals cover")
-    print(f"K and C: {100 * np.mean([row[1] for row in rotational]):.1f} % of {len(rotational)} intervals cover the truth")
+    print(
+        f"K and C: {100 * np.mean([row[1] for row in rotational]):.1f} % of {len(rotational)} intervals cover the truth"
+    )
 
 
 if __name__ == "__main__":
