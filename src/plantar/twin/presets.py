@@ -17,7 +17,7 @@ SLIP_TORQUE: Final = (5.0, 2.2)  # N·m in pitch and roll: 7 to 10 % of the larg
 SLIP_ANGLE: Final = 0.01  # rad
 HARDENING: Final = 5000.0  # N·m/rad³: a tenth more torque at 0.1 rad
 SOFT_FLOOR: Final = (62500.0, 500.0)  # a contact that takes 4 ms to settle
-SLIPPERY: Final = (Slip(9.0, 10.0, 0.02), Slip(21.0, 22.0, 0.02))  # seconds of every motion
+SLIPPERY: Final = (Slip(6.0, 7.0, 0.02), Slip(14.0, 15.0, 0.02))  # seconds of every motion
 
 
 @dataclass(frozen=True)
