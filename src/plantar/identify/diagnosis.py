@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -47,4 +48,16 @@ def diagnose_axis(
         )
         found.append({"foot": row.foot, "axis": row.axis, "name": row.name, "limit": limit, "variance_shares": shares,
                       "half_width_percent": percent, "text": text})  # fmt: skip
+    return found
+
+
+def advised(rows: Sequence[Parameter], diagnosis: Sequence[Mapping[str, Any]]) -> list[Parameter]:
+    """The rows with the advice that fits what limits them: more of the same motion does not help against a delay."""
+    limits = {(each["foot"], each["axis"], each["name"]): each["limit"] for each in diagnosis}
+    found = []
+    for row in rows:
+        limit = limits.get((row.foot, row.axis, row.name))
+        if row.verdict != "usable" and limit in ("delay", "lever", "yaw torque zero"):
+            row = replace(row, reason=f"{row.reason}; nearly all of it from {limit}", advice=REMEDY[limit])
+        found.append(row)
     return found

@@ -11,7 +11,7 @@ import numpy as np
 from plantar.conventions import OFFSET_UNIT, ROTATIONAL_AXES
 from plantar.errors import DataError
 from plantar.identify.axis_fit import AxisFit, fit_axis
-from plantar.identify.diagnosis import diagnose_axis
+from plantar.identify.diagnosis import advised, diagnose_axis
 from plantar.identify.parameter_rows import axis_rows, missing_rows
 from plantar.identify.preparation import prepare_all
 from plantar.identify.recording import Recording
@@ -63,8 +63,9 @@ def identify_feet(
             wide = widened(fit, causes)
             rows += score_axis(ready.recordings, foot, axis, wide, predictions)
             found = axis_rows(wide, ready.fitted, predictions)
-            diagnosis += diagnose_axis(fit, wide, causes, found)
-            parameters += found
+            limits = diagnose_axis(fit, wide, causes, found)
+            diagnosis += limits
+            parameters += advised(found, limits)
             fits.append(wide)
     parameters += ready.vertical.parameters
     return FeetResult(

@@ -25,7 +25,9 @@ def served_shares(phases: Iterable[Mapping[str, Any]]) -> list[dict[str, Any]]:
             "foot": foot,
             "seconds": total,
             "served": served[motion, foot],
-            "reasons": "; ".join(f"{reason} ({spent:.1f} s)" for reason, spent in reasons[motion, foot].items()),
+            "reasons": "; ".join(
+                f"{reason} ({spent:.1f} s)" for reason, spent in reasons[motion, foot].items()
+            ),
         }
         for (motion, foot), total in seconds.items()
     ]
