@@ -59,16 +59,23 @@ def main() -> None:
 
 
 def _print(errors: dict[tuple[str, str, str], list[tuple[float, bool, float, float]]]) -> None:
-    print(
-        f"{'foot':6} {'axis':6} {'':2} {'mean err %':>11} {'max |err| %':>12} {'half width %':>13} {'white std %':>12} {'covered':>9}"
-    )
+    heads = ("mean err %", "max |err| %", "half width %", "white std %", "covered %")
+    print(f"{'foot':6} {'axis':6} {'':2}" + "".join(f"{head:>14}" for head in heads))
     rotational = []
     for (foot, axis, name), rows in errors.items():
         relative, inside, half, white = (np.array(column, dtype=float) for column in zip(*rows, strict=True))
-        print(f"{foot:6} {axis:6} {NAMES.get(name, name):2} {100 * relative.mean():11.3f} {100 * abs(relative).max():12.3f} "
-              f"{100 * half.mean():13.3f} {white.mean():12.3f} {100 * inside.mean():8.0f} %")  # fmt: skip
+        numbers = (
+            100 * relative.mean(),
+            100 * abs(relative).max(),
+            100 * half.mean(),
+            white.mean(),
+            100 * inside.mean(),
+        )
+        print(
+            f"{foot:6} {axis:6} {NAMES.get(name, name):2}" + "".join(f"{number:14.3f}" for number in numbers)
+        )
         if axis != "z":
-            rotational += rows
+            rotational += [row for row in rows if name in NAMES]
     for name in ("K", "C"):
         rows = [
             row

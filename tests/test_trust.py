@@ -21,7 +21,7 @@ SAMPLES = 8000
 
 
 def late_pair(delay: float, seed: int, push: float = 0.0) -> Pair:
-    """A random wrench of 0.2 to 1.5 Hz, measured `delay` late with noise on both sides; `push` is an operator's share."""
+    """A random wrench below 1.5 Hz, measured `delay` late, noise on both sides; `push`: an operator's share."""
     random = np.random.default_rng(seed)
     time = PERIOD * np.arange(SAMPLES)
     true = 300 * low_pass(random.standard_normal((SAMPLES, 6)), PERIOD, 1.5)

@@ -124,8 +124,8 @@ def cross_beside(result: FeetResult, paper_way: FeetResult) -> tuple[CrossBeside
         for row in result.validation
         if row.kind == "cross"
     ]  # fmt: skip
-    order = list(TABLE_3)
-    return tuple(sorted(rows, key=lambda row: order.index(row.motion) if row.motion in order else len(order)))
+    motions = list(dict.fromkeys((*TABLE_3, *(row.motion for row in rows))))
+    return tuple(sorted(rows, key=lambda row: motions.index(row.motion)))
 
 
 def _true(bush: Bush, axis: str, name: str) -> float | None:

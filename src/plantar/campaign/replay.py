@@ -11,17 +11,17 @@ from typing import Final
 
 import numpy as np
 
+from plantar.campaign.shares import shares
 from plantar.conventions import Array, rotation_from_quaternion
 from plantar.errors import DataError, MotionError, located
 from plantar.log import MotionLog
-from plantar.motions import Hand
 from plantar.result import FeetResult
 from plantar.robot import RobotModel
 from plantar.twin.bush import GUESSES, Feet
 from plantar.twin.exact import exact_columns
 from plantar.twin.foot import cut_feet
 from plantar.twin.from_robot import describe
-from plantar.twin.play import planned, rolled
+from plantar.twin.play import on_cores, planned, rolled
 from plantar.twin.presets import preset_named
 from plantar.twin.replay import REFERENCE, Replayed, feet_of, replay
 
@@ -71,14 +71,18 @@ def replay_motions(
     again.
     """
     hands = {log.name: hand for log in recorded if (hand := planned(log.name, robot).hand) is not None}
-    found: list[Replayed] = []
-    for name, bushes in feet.items():
-        progress(f"replay on {name} feet")
+    pairs = [(log, name) for name in feet for log in recorded]
+    report = shares(f"replay {len(pairs)} times in the simulator", len(pairs), progress)
+
+    def alone(pair: tuple[MotionLog, str]) -> list[Replayed]:
+        log, name = pair
         try:
-            found += replay(robot, recorded, {name: bushes}, hands)
+            return replay(robot, [log], {name: feet[name]}, hands, report)
         except MotionError:
-            found += [one for log in recorded for one in _alone(robot, log, name, bushes, hands)]
-    return found
+            report(f"{log.name} on {name}", 1.0)
+            return []
+
+    return [one for found in on_cores(alone, pairs) for one in found]
 
 
 def candidates(result: FeetResult, guesses: Sequence[str] = tuple(GUESSES)) -> dict[str, Feet | None]:
@@ -152,15 +156,6 @@ def _pooled(rows: Sequence[ReplayRow], feet: str, quantity: str) -> float | None
     errors = [row.error for row in rows if row.feet == feet and row.quantity == quantity]
     known = [error for error in errors if error is not None]
     return float(np.sqrt(np.mean(np.square(known)))) if known and len(known) == len(errors) else None
-
-
-def _alone(
-    robot: RobotModel, log: MotionLog, name: str, bushes: Feet | None, hands: Mapping[str, Hand]
-) -> list[Replayed]:
-    try:
-        return replay(robot, [log], {name: bushes}, hands)
-    except MotionError:
-        return []
 
 
 def _attitude(robot: RobotModel, log: MotionLog) -> Array:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from threading import Lock
 from typing import Any, Final
 
 from plantar.campaign.compared import (
@@ -19,6 +18,7 @@ from plantar.campaign.compared import (
 )
 from plantar.campaign.paper import TABLE_3
 from plantar.campaign.replay import ReplayRow, candidates, record_rows, replay_motions, replay_rows
+from plantar.campaign.shares import shares
 from plantar.errors import MotionError
 from plantar.identify.feet import identify_feet
 from plantar.identify.settings import FeetSettings
@@ -135,8 +135,10 @@ def _played(
 
     Raises MotionError where the robot falls in a motion that the fit needs.
     """
+    count = len(course.motions)
+    report = shares(f"play {count} motions on the twin", count, progress)
     try:
-        return play_all(course.motions, None, PAPER, preset, [seed], _shares(course, progress))[0], []
+        return play_all(course.motions, None, PAPER, preset, [seed], report)[0], []
     except MotionError:
         recordings, notes = [], []  # what was rolled out lies in the cache
         for name in course.motions:
@@ -164,21 +166,3 @@ def _as_data(campaign: Campaign, preset: str, seed: int, truth: Feet) -> dict[st
 
 def _rows(rows: Sequence[ParameterBeside | DirectBeside | CrossBeside | ReplayRow]) -> list[dict[str, Any]]:
     return [asdict(row) for row in rows]
-
-
-def _shares(course: Course, progress: Progress) -> Callable[[str, float], None]:
-    """Progress of all motions together, in steps of five percent; called from several threads."""
-    done = dict.fromkeys(course.motions, 0.0)
-    said = -1
-    lock = Lock()
-
-    def report(motion: str, share: float) -> None:
-        nonlocal said
-        with lock:
-            done[motion] = share
-            step = int(20 * sum(done.values()) / len(done))
-            if step > said:
-                said = step
-                progress(f"play {len(done)} motions on the twin: {5 * step} %")
-
-    return report

@@ -44,5 +44,9 @@ def run(
     for limit in dict.fromkeys(d["limit"] for d in diagnosis):
         remedy = next(d["text"].rsplit("To tighten: ", 1)[-1] for d in diagnosis if d["limit"] == limit)
         screen.print(escape(f"Against {limit}: {remedy}."))
-    cells = [(s["motion"], s["foot"], f"{s['seconds']:.1f}", f"{s['served']:.1f}", s["reasons"]) for s in served]
-    screen.print(table("\nWhat served of each log", ("motion", "foot", "seconds", "served", "left out because"), cells))
+    cells = [
+        (s["motion"], s["foot"], f"{s['seconds']:.1f}", f"{s['served']:.1f}", s["reasons"]) for s in served
+    ]
+    screen.print(
+        table("\nWhat served of each log", ("motion", "foot", "seconds", "served", "left out because"), cells)
+    )

@@ -61,7 +61,7 @@ def prepare_all(
             if settings.wrench_delay is None
             else known_latency(settings.wrench_delay)
         )
-        roles: list[Role] = ["fit"] * len(logs) + ["validate"] * len(validate)
+        roles: list[Role] = [*("fit" for _ in logs), *("validate" for _ in validate)]
         recordings = list(
             pool.map(
                 lambda log, role: _recording(robot, log, role, settings, latency.delay, progress), even, roles

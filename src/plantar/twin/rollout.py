@@ -18,7 +18,9 @@ from plantar.twin.mjcf import SERVO_TIME, Scene, mjcf_text, quaternion_from_rota
 from plantar.twin.physics import Physics
 from plantar.twin.rubber import Rubber
 
-CONTROL_RATE = 4000.0  # Hz, every step: targets that jump less often shake the links, and the accelerometer aliases it
+CONTROL_RATE = (
+    4000.0  # Hz, every step: targets that jump less often shake the links, and the accelerometer aliases it
+)
 FALLEN = 0.35  # rad: a root this far from its plan is no longer balancing
 
 
