@@ -31,7 +31,7 @@ class Box:
 
 def stances(named: Sequence[tuple[str, Sequence[Box]]]) -> Drawing:
     """Postures side by side, each from the front (above) and from its left (below), the floor at z = 0."""
-    figure, rows = panels(len(VIEWS), len(named), (2.3 * len(named), 6.4))
+    figure, rows = panels(len(VIEWS), len(named), (1.9 * len(named), 5.6))
     low, high = _extent([box.corners for _, boxes in named for box in boxes])
     for row, (view, axes, depth, label) in enumerate(VIEWS):
         for column, (name, boxes) in enumerate(named):

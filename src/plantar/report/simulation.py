@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
+import numpy as np
+
 from plantar.conventions import Array
 from plantar.report.figures import BLUE, LINE, RED, envelope, zmp
 from plantar.report.panels import panels
@@ -33,7 +35,7 @@ def replays(
 ) -> Drawing:
     """Simulated over recorded: one column a motion, one row a quantity (its name, label and factor).
 
-    Recorded red, the simulation named `first` blue and on top of the others.
+    Recorded red, the simulation named `first` blue and on top of the others, which may leave the plot.
     """
     figure, rows = panels(len(quantities), len(motions), (3.1 * len(motions), 1.9 * len(quantities)), "col")
     names = [name for name in dict.fromkeys(n for one in motions for n in one.simulated) if name != first]
@@ -52,6 +54,7 @@ def replays(
                 panel.plot(
                     *envelope(one.time, factor * one.simulated[first][quantity]), color=BLUE, linewidth=LINE
                 )
+            panel.set_ylim(*_range(factor * one.recorded[quantity]))
             if column == 0:
                 panel.set_ylabel(label)
     handles = [
@@ -61,6 +64,13 @@ def replays(
         handles, ["recorded", first, *names], frameon=False, ncols=len(handles), loc="outside upper right"
     )
     return figure
+
+
+def _range(recorded: Array) -> tuple[float, float]:
+    """The recorded range and half as much on either side: a simulation that stamps must not set the scale."""
+    low, high = float(np.nanmin(recorded)), float(np.nanmax(recorded))
+    margin = 0.5 * max(high - low, 1e-6)
+    return low - margin, high + margin
 
 
 def zmp_planned(points: Array, planned: Array, feet: Mapping[str, Array], support: Array) -> Drawing:
