@@ -48,7 +48,7 @@ def main() -> None:
             models[result.model] += 1
             for row in result.parameters:
                 truth = getattr(PAPER[row.foot], f"{row.axis}_{row.name}", None)
-                if truth is not None and row.value is not None and row.interval95 is not None:
+                if row.name in NAMES and truth and row.value is not None and row.interval95 is not None:
                     inside = row.interval95[0] <= truth <= row.interval95[1]
                     half = (row.interval95[1] - row.interval95[0]) / 2
                     errors[row.foot, row.axis, row.name].append(
@@ -75,7 +75,7 @@ def _print(errors: dict[tuple[str, str, str], list[tuple[float, bool, float, flo
             f"{foot:6} {axis:6} {NAMES.get(name, name):2}" + "".join(f"{number:14.3f}" for number in numbers)
         )
         if axis != "z":
-            rotational += [row for row in rows if name in NAMES]
+            rotational += rows
     for name in ("K", "C"):
         rows = [
             row

@@ -76,5 +76,8 @@ def _motion(campaign: Campaign, look: Description, name: str, tracks: Sequence[T
 
 def _bush(track: Track, time: Array) -> Array:
     """Pitch and roll (N, 2) at `time`; zero where the foot is in the air."""
-    values = [np.nan_to_num(track.values[f"{axis}.deflection"]) for axis in ROTATIONAL_AXES]
-    return np.column_stack([np.interp(time, track.time, value) for value in values])
+    air = track.support == "air"
+    angles = [
+        np.where(air, 0.0, np.nan_to_num(track.values[f"{axis}.deflection"])) for axis in ROTATIONAL_AXES
+    ]
+    return np.column_stack([np.interp(time, track.time, angle) for angle in angles])

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
@@ -24,6 +23,7 @@ LEAST_CLOSED = (
     0.93  # share of the forces' variance that the prediction explains as it is: less, and somebody pushes
 )
 GAIN_BAND = (0.8, 1.25)  # measured over predicted, of an axis that takes part
+SAMPLES_PER_CYCLE = 8  # of a band's upper edge, that thinning keeps
 MODEL_ERROR = (
     0.003  # of the amplitude, in quadrature: what any URDF and any filter get wrong; a delay of this over ω
 )
@@ -65,15 +65,37 @@ def estimate_delay(pairs: Sequence[Pair]) -> Delay | None:
     return found and Delay(value, found.std, found.freedom, found.cells)
 
 
-def _bands(pair: Pair) -> list[Pair]:
+@dataclass(frozen=True)
+class _Band:
+    """A pair in one band of frequencies, thinned: measured with its first and second rate, predicted with its first."""
+
+    measured: Array
+    rate: Array
+    bend: Array
+    predicted: Array
+    predicted_rate: Array
+    duration: float
+
+    def at(self, delay: float) -> tuple[Array, Array]:
+        """Measured signal and its rate as they were `delay` later: by their own rates, smooth as a band is."""
+        return self.measured + delay * self.rate + 0.5 * delay**2 * self.bend, self.rate + delay * self.bend
+
+
+def _bands(pair: Pair) -> list[_Band]:
     """The pair in each band of frequencies."""
     both = np.hstack([pair.measured, pair.predicted])
-    layers = [low_pass(both, pair.period, edge) for edge in BAND_EDGES if edge < 0.4 / pair.period]
-    width = pair.measured.shape[1]
-    return [
-        Pair(pair.label, (high - low)[:, :width], (high - low)[:, width:], pair.period)
-        for low, high in pairwise(layers)
-    ]
+    width, period = pair.measured.shape[1], pair.period
+    edges = [edge for edge in BAND_EDGES if edge < 0.4 / period]
+    layers = [low_pass(both, period, edge) for edge in edges]
+    found = []
+    for place, edge in enumerate(edges[1:]):
+        band = layers[place + 1] - layers[place]
+        rates = differentiate(band, period)
+        bends = differentiate(rates[:, :width], period)
+        thin = slice(None, None, max(1, int(1 / (SAMPLES_PER_CYCLE * edge * period))))
+        m, p = band[thin, :width], band[thin, width:]
+        found.append(_Band(m, rates[thin, :width], bends[thin], p, rates[thin, width:], len(band) * period))
+    return found
 
 
 def _pooled(cells: Sequence[Delay]) -> Delay:
@@ -95,16 +117,13 @@ def _closes(pair: Pair, delay: float) -> bool:
     return bool(np.var(m - p, axis=0).sum() <= (1 - LEAST_CLOSED) * np.var(m, axis=0).sum())
 
 
-def _cells(band: Pair, delay: float) -> list[Delay]:
+def _cells(band: _Band, delay: float) -> list[Delay]:
     """What is left of the delay, by axis: Σ (m - g·p) ṗ = -δ Σ ṁ ṗ for m(t) = g·p(t - δ) + noise.
 
     Noise is nowhere multiplied with itself, only with its own rate, so that it does not bias δ.
     """
-    measured = shifted(band.measured, band.period, delay)
-    whole = np.isfinite(measured).all(axis=1)
-    measured, predicted = measured[whole], band.predicted[whole]
-    duration = len(measured) * band.period
-    rates_m, rates_p = differentiate(measured, band.period), differentiate(predicted, band.period)
+    measured, rates_m = band.at(delay)
+    predicted, rates_p = band.predicted, band.predicted_rate
     found = []
     for m, p, rate_m, rate_p in zip(measured.T, predicted.T, rates_m.T, rates_p.T, strict=True):
         power, slope = float(p @ p), float(rate_m @ rate_p)
@@ -114,7 +133,7 @@ def _cells(band: Pair, delay: float) -> list[Delay]:
         if not (explains and GAIN_BAND[0] < gain < GAIN_BAND[1] and slope > 0):
             continue
         step = -float(rest @ rate_p) / slope
-        variance, freedom = cosine_covariance(((rest + step * rate_m) * rate_p)[:, None], duration)
+        variance, freedom = cosine_covariance(((rest + step * rate_m) * rate_p)[:, None], band.duration)
         floor = MODEL_ERROR * np.sqrt(power / float(rate_p @ rate_p))
         found.append(Delay(step, float(np.hypot(np.sqrt(variance[0, 0]) / slope, floor)), freedom, 1))
     return found

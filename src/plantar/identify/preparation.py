@@ -61,7 +61,7 @@ def prepare_all(
             if settings.wrench_delay is None
             else known_latency(settings.wrench_delay)
         )
-        roles: list[Role] = [*("fit" for _ in logs), *("validate" for _ in validate)]
+        roles = _roles("fit", logs) + _roles("validate", validate)
         recordings = list(
             pool.map(
                 lambda log, role: _recording(robot, log, role, settings, latency.delay, progress), even, roles
@@ -72,6 +72,10 @@ def prepare_all(
     moved = [moved_centre(recording, vertical.compliance, settings.cutoff) for recording in recordings]
     notes = [*(note for one in recordings for note in one.notes), latency.note, *vertical.notes]
     return Prepared(tuple(moved[: len(logs)]), tuple(moved[len(logs) :]), latency, vertical, unique(notes))
+
+
+def _roles(role: Role, logs: Sequence[MotionLog]) -> list[Role]:
+    return [role for _ in logs]
 
 
 def _recording(
