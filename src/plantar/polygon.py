@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.spatial import ConvexHull, QhullError
 
 from plantar.conventions import Array
 
 
 def convex_hull(points: Array) -> Array:
     """Corners of the convex hull of (n, 2) points, counter-clockwise; the points themselves when they span no area."""
+    from scipy.spatial import ConvexHull, QhullError  # costs start-up
+
     try:
         return np.asarray(points[ConvexHull(points).vertices])
     except (QhullError, ValueError):

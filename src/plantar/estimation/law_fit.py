@@ -12,7 +12,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from plantar.conventions import Array
 from plantar.errors import DataError
@@ -178,6 +177,8 @@ def _finished(problem: Problem, point: Point, limits: Array) -> LawFit:
 
 def _spread(torque: Array, thin: Motion, motion: Motion) -> Array:
     """A torque on the thinned samples, put back onto all samples of the motion's runs."""
+    from scipy.interpolate import CubicSpline  # only a law that was fitted to thinned samples needs it
+
     if len(thin) == len(motion):
         return torque
     result = np.full(len(motion), np.nan)

@@ -8,7 +8,6 @@ from typing import Literal
 
 import numpy as np
 
-from plantar.attitude import attitude_from_inertial
 from plantar.contact import NOT_RECORDED, FootContact, carried_weight, detect_contact
 from plantar.conventions import FORCE, GRAVITY, Array, Mask
 from plantar.deflection import BushState, bush_states
@@ -157,6 +156,8 @@ def _attitude(log: MotionLog, imu: Imu, notes: list[Note]) -> tuple[Array, Array
         for column in (*rates.T, *acceleration.T)
     ]
     bridged = np.nan_to_num(np.column_stack(filled))
+    from plantar.attitude import attitude_from_inertial  # its rotations cost start-up, and few logs need them
+
     orientation = attitude_from_inertial(bridged[:, :3], bridged[:, 3:], log.period)
     orientation[~whole] = np.nan
     text = f"{log.name}: no IMU orientation; gravity's direction blended from gyroscope and accelerometer"
