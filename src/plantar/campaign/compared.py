@@ -61,7 +61,7 @@ class CrossBeside:
 
 
 def parameters_beside(result: FeetResult, paper_way: FeetResult, truth: Feet) -> tuple[ParameterBeside, ...]:
-    """Table 1: stiffness and damping of pitch and roll of every foot."""
+    """Table 1: pitch and roll of every foot, all terms of the law that the twin has too."""
     theirs = {(row.foot, row.axis, row.name): row for row in paper_way.parameters}
     rows = []
     for row in result.parameters:
