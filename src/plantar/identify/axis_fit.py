@@ -131,12 +131,14 @@ def blocks_of(
     return blocks
 
 
-def law_columns(recording: Recording, foot: str, axis: Axis, fit: AxisFit | None) -> Array:
+def law_columns(
+    recording: Recording, foot: str, axis: Axis, fit: AxisFit | None, starts: Array | None = None
+) -> Array:
     """Regressor (N, k) of a fit's law along a recording, Kelvin-Voigt's without one; NaN in the air."""
     motion = motion_of(recording, foot, axis)
     if fit is None or isinstance(fit.law, KelvinVoigt):
         return np.column_stack([motion.deflection, motion.rate])
-    starts = fit.starts.get(recording.name)
+    starts = fit.starts.get(recording.name) if starts is None else starts
     if starts is None or len(starts) != len(motion.runs):
         starts = fit.law.starts(motion, fit.shape)
     columns = fit.law.columns(motion, fit.shape, starts)

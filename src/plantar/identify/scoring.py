@@ -9,6 +9,7 @@ import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES, Axis
 from plantar.identify.axis_fit import AxisFit, law_columns
+from plantar.identify.opening import unseen_starts
 from plantar.identify.recording import Recording
 from plantar.identify.residual_table import Predictions
 from plantar.result import ValidationRow
@@ -26,19 +27,21 @@ def score_axis(
 ) -> list[ValidationRow]:
     """Rows of tables 2 and 3 for one axis; what was predicted is added to `predictions`.
 
-    A motion that the fit has not seen takes its offset from its first second.
+    A motion that the fit has not seen takes its offset from its first second; a law with memory also finds its state
+    at the motion's start there and as long as that state matters.
     """
     column, rows = ROTATIONAL_AXES.index(axis), []
     for recording in recordings:
         used = recording.used(foot)
         torque = recording.bushes[foot].torque[:, column]
-        reconstructed = law_columns(recording, foot, axis, fit) @ fit.values
+        first = opening(recording.time, used)
+        starts = None if recording.role == "fit" else unseen_starts(fit, recording, foot, axis, first)
+        reconstructed = law_columns(recording, foot, axis, fit, starts) @ fit.values
         if recording.role == "fit":
             if recording.name not in fit.offsets:
                 continue
             scored, offset, trivial = used, fit.offsets[recording.name], float(np.mean(torque[used]))
         else:
-            first = opening(recording.time, used)
             scored = used & ~first
             if scored.sum() < FEWEST_SAMPLES:
                 continue
