@@ -12,6 +12,7 @@ from plantar.conventions import INERTIAL_NAMES, INERTIAL_UNITS, WRENCH_AXES, Arr
 from plantar.dynamics import parameter_name, solve_triangle
 from plantar.dynamics.consistency import is_consistent
 from plantar.errors import DataError, RobotError, located
+from plantar.identify.calibration import calibrate
 from plantar.identify.dynamics_result import (
     INERTIA_SCHEMA,
     BaseParameter,
@@ -28,7 +29,6 @@ from plantar.identify.whole_body import (
     Calibration,
     DynamicsSettings,
     Whole,
-    calibrate,
     inertial_samples,
     prepare_whole,
 )

@@ -11,6 +11,7 @@ import pyarrow as pa
 from plantar.conventions import Array
 from plantar.errors import DataError, located
 from plantar.estimation.intervals import interval95
+from plantar.identify.calibration import calibrate
 from plantar.identify.dynamics_result import (
     JOINTS_SCHEMA,
     DynamicsResult,
@@ -36,7 +37,6 @@ from plantar.identify.whole_body import (
     Calibration,
     DynamicsSettings,
     Whole,
-    calibrate,
     joint_samples,
     prepare_whole,
 )
