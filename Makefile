@@ -7,6 +7,7 @@ PYTHON ?= $(firstword $(foreach name,python3 python3.14 python3.13 python3.12 py
 JOBS ?= 2
 BIN := .venv/bin
 INSTALLED := .venv/.installed
+RUNNING := .venv/.running
 
 # Small problems on few cores: threads inside threads only get in each other's way.
 export OMP_NUM_THREADS ?= 1
@@ -14,7 +15,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 
 .PHONY: demo test check format clean
 
-demo: $(INSTALLED)
+demo: $(RUNNING)
 	$(BIN)/plantar demo
 
 test: $(INSTALLED)
@@ -33,6 +34,13 @@ format: $(INSTALLED)
 clean:
 	rm -rf .venv build dist out .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find src tests -name __pycache__ -prune -exec rm -rf {} +
+
+# What runs plantar, without what tests it: less to fetch.
+$(RUNNING): pyproject.toml CMakeLists.txt $(wildcard cpp/*)
+	@$(PYTHON) -c '$(NEW_ENOUGH)' || { echo "plantar needs Python >= 3.11: make PYTHON=/path/to/python3" >&2; exit 1; }
+	test -x $(BIN)/python || $(PYTHON) -m venv .venv
+	test -e $(INSTALLED) || $(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[all]'
+	touch $@
 
 $(INSTALLED): pyproject.toml CMakeLists.txt $(wildcard cpp/*)
 	@$(PYTHON) -c '$(NEW_ENOUGH)' || { echo "plantar needs Python >= 3.11: make PYTHON=/path/to/python3" >&2; exit 1; }
