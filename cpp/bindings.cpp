@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "aligned.hpp"
+#include "bindings_stepping.hpp"
 #include "kernels.hpp"
 #include "parallel.hpp"
 #include "stream.hpp"
@@ -346,4 +347,5 @@ NB_MODULE(_core, m) {
       .def("parameters", &StreamObject::parameters, nb::arg("row"));
   m.def("stacked", &stacked, nb::arg("factors"), nb::arg("onto"), nb::arg("weights"), nb::arg("n"));
   m.def("inverse_upper", &inverse_upper, nb::arg("upper"));
+  bind_stepping(m);
 }

@@ -27,7 +27,7 @@ LONGEST = 350  # lines
 
 # Who may import what is heavy, optional or has effects.
 KEEPERS = {
-    "plantar._core": {"dynamics", "deflection"},
+    "plantar._core": {"dynamics", "deflection", "twin"},
     "mujoco": {"twin", "export"},
     "pink": {"motions", "twin"},
     "qpsolvers": {"motions", "twin"},

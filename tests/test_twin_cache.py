@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import sys
 from dataclasses import replace
@@ -72,6 +73,18 @@ def test_changed_source_is_another_key(monkeypatch: pytest.MonkeyPatch) -> None:
     before = cache.key("x")
     monkeypatch.setattr(cache, "_code", lambda: "another version of the twin")
     assert cache.key("x") != before
+
+
+def test_other_native_steps_are_another_key(monkeypatch: pytest.MonkeyPatch) -> None:
+    source = Path(__file__).parents[1] / "cpp" / "stepping.hpp"
+    assert hashlib.sha256(source.read_bytes()).hexdigest() == cache.STEPPING_SOURCE  # as built
+    cache._code.cache_clear()
+    before = cache.key("x")
+    monkeypatch.setattr(cache, "STEPPING_SOURCE", "other steps")
+    cache._code.cache_clear()
+    after = cache.key("x")
+    cache._code.cache_clear()
+    assert after != before
 
 
 def test_a_damaged_file_counts_as_none(own_folder: Path) -> None:

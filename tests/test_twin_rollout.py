@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import mujoco
 import numpy as np
 import pinocchio as pin
 import pytest
@@ -11,12 +12,13 @@ from plantar.conventions import rotation_from_quaternion
 from plantar.errors import MotionError
 from plantar.motions import plan_motion
 from plantar.robot import RobotModel, load_robot
-from plantar.twin import PAPER, Bush, hrp2
+from plantar.twin import PAPER, Bush, hrp2, stepping
 from plantar.twin.exact import bush_forces, exact_columns, truth_columns
 from plantar.twin.foot import cut_feet
 from plantar.twin.from_robot import describe
 from plantar.twin.physics import Physics, Slip
 from plantar.twin.rollout import Rollout, roll_out, scene_xml
+from plantar.twin.rubber import Element
 from twin_samples import plan, roll, short, swayed, tilted
 
 GRAVITY = 9.80665
@@ -161,6 +163,38 @@ def test_rigid_feet_have_no_bush_but_a_wrench() -> None:
     columns = recorded(rollout, hrp2.robot())
     both = sum(columns[f"wrench.{side}_foot.force.z"] for side in ("left", "right"))
     assert both.mean() == pytest.approx(hrp2.robot().mass * GRAVITY, rel=0.02)
+
+
+def test_native_steps_are_the_steps_in_python(monkeypatch: pytest.MonkeyPatch) -> None:
+    bush = Bush(434.0, 15.89, 323.0, 17.53, 239018.0, 1000.0, 5000.0, 4000.0, 5.0, 2.0, 0.01, 0.008)
+    world = Physics({"right": bush, "left": bush}, settle=0.5)
+    played = short(plan("Manual_right_roll"), 10.0, 11.0)
+    assert stepping.engine_step() is not None
+    fast = roll(played, world)
+    monkeypatch.setattr(stepping, "engine_step", lambda: None)
+    slow = roll(played, world)
+    for foot in ("left", "right"):
+        assert np.ptp(slow.rubber[foot], axis=0).max() > 0
+        assert fast.rubber[foot] == pytest.approx(slow.rubber[foot], abs=1e-12)
+    assert fast.bush["right"] == pytest.approx(slow.bush["right"], abs=1e-14)
+    assert fast.sensors["imu.angular_velocity"] == pytest.approx(
+        slow.sensors["imu.angular_velocity"], abs=1e-11
+    )
+
+
+def test_native_steps_refuse_what_does_not_fit() -> None:
+    model = mujoco.MjModel.from_xml_string(
+        "<mujoco><worldbody><body><joint name='j' type='hinge'/><geom size='.1'/></body></worldbody>"
+        "<actuator><motor joint='j'/></actuator></mujoco>"
+    )
+    data, step = mujoco.MjData(model), stepping.engine_step()
+    assert step is not None
+    with pytest.raises(ValueError, match="no such place"):
+        stepping.native(model, data, [(1, 0, Element(1.0, 0.1, 0.0))], step)
+    with pytest.raises(ValueError, match="every actuator"):
+        stepping.native(model, data, [], step).run(np.zeros((3, 2)))
+    with pytest.raises(ValueError, match="address of nothing"):
+        stepping.native(model, data, [], 0)
 
 
 def test_a_slippery_second_lets_the_foot_slide() -> None:

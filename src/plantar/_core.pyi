@@ -72,3 +72,19 @@ def stacked(
     factors: Sequence[Array], onto: Sequence[Sequence[int]], weights: Sequence[float], n: int
 ) -> Array: ...
 def inverse_upper(upper: Array) -> Array: ...
+
+STEPPING_SOURCE: str
+
+class Stepping:
+    def __init__(
+        self,
+        step: int,
+        model: int,
+        data: int,
+        positions: Array,
+        applied: Array,
+        control: Array,
+        places: Sequence[tuple[int, int]],
+        laws: Sequence[tuple[float, float, float]],
+    ) -> None: ...
+    def run(self, rows: Array) -> None: ...

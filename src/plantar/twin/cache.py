@@ -17,6 +17,7 @@ import numpy as np
 import plantar.motions
 import plantar.twin
 from plantar import balance, conventions, polygon, robot
+from plantar._core import STEPPING_SOURCE
 from plantar.conventions import Array
 from plantar.errors import PlantarError
 from plantar.files import atomic_write
@@ -82,8 +83,8 @@ def _prune(files: Iterable[Path]) -> None:
 
 @cache
 def _code() -> str:
-    """Hash of the source of everything that a plan or a rollout runs through."""
-    digest = hashlib.sha256()
+    """Hash of the source of everything that a plan or a rollout runs through, the native steps among it."""
+    digest = hashlib.sha256(STEPPING_SOURCE.encode())
     for package in PACKAGES:
         digest.update(f"{package} {version(package)}\n".encode())
     for module in (plantar.motions, plantar.twin):

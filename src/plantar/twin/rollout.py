@@ -16,11 +16,8 @@ from plantar.robot import RobotModel
 from plantar.twin.description import Description
 from plantar.twin.mjcf import SERVO_TIME, Scene, mjcf_text, quaternion_from_rotation
 from plantar.twin.physics import Physics
-from plantar.twin.rubber import Rubber
+from plantar.twin.stepping import Stepper
 
-CONTROL_RATE = (
-    4000.0  # Hz, every step: targets that jump less often shake the links, and the accelerometer aliases it
-)
 FALLEN = 0.35  # rad: a root this far from its plan is no longer balancing
 
 
@@ -70,75 +67,23 @@ def roll_out(
     data = mujoco.MjData(model)
     joints = tuple(model.joint(place).name for place in range(1, model.njnt))
     joints = tuple(name for name in joints if name in plan.joints)
-    control, anchor = _targets(plan, joints)
+    control = _targets(plan, joints, physics.timestep)
     _place(data, plan, joints)
-    stepper = _Stepper(model, data, physics, robot)
-    per_control = round(1 / (CONTROL_RATE * physics.timestep))
-    controls = round(CONTROL_RATE / RATE)
-    data.ctrl[: len(joints)] = control[0]
-    if anchor is not None:
-        data.ctrl[len(joints) :] = anchor[0]
-    stepper.step(round(physics.settle / physics.timestep))
+    stepper = Stepper(model, data, physics, robot)
+    stepper.blind(np.repeat(control[:1], round(physics.settle / physics.timestep), axis=0))
     recorder = _Recorder(model, joints, robot, plan.time.size)
+    parts = control.shape[0] // plan.time.size
     for sample in range(plan.time.size):
         stepper.at(plan.time[sample])
         recorder.state(sample, data)
-        for part in range(controls):
-            data.ctrl[: len(joints)] = control[sample * controls + part]
-            if anchor is not None:
-                data.ctrl[len(joints) :] = anchor[sample * controls + part]
-            if part == 0:
-                # sensors and efforts belong to the state a step starts from
-                stepper.step(1)
-                recorder.outputs(sample, data, stepper)
-                stepper.step(per_control - 1)
-            else:
-                stepper.step(per_control)
+        rows = control[sample * parts : (sample + 1) * parts]
+        stepper.sensed(rows[0])
+        recorder.outputs(sample, data)
+        stepper.blind(rows[1:])
         _check_upright(plan, sample, data)
         if progress is not None and sample % int(RATE) == 0:
             progress(sample / plan.time.size)
     return recorder.finish(plan)
-
-
-class _Stepper:
-    """Steps the model, with the rubber and the slippery seconds that MuJoCo does not know."""
-
-    def __init__(
-        self, model: mujoco.MjModel, data: mujoco.MjData, physics: Physics, robot: RobotModel
-    ) -> None:
-        self.model, self.data, self.physics = model, data, physics
-        self.rubber: dict[str, Rubber] = {}
-        self.columns: dict[str, list[int]] = {}
-        if physics.bushes is None:
-            return
-        for foot in robot.feet:
-            self.columns[foot] = [int(model.joint(f"{foot}.{axis}").dofadr[0]) for axis in ("pitch", "roll")]
-            if not physics.bushes[foot].is_linear:
-                self.rubber[foot] = Rubber(physics.bushes[foot])
-        self.angles = {
-            foot: [int(model.joint(f"{foot}.{axis}").qposadr[0]) for axis in ("pitch", "roll")]
-            for foot in self.rubber
-        }
-
-    def at(self, time: float) -> None:
-        """Set the floor's friction for this moment."""
-        friction = self.physics.friction
-        for slip in self.physics.slips:
-            if slip.start <= time < slip.end:
-                friction = slip.friction
-        self.model.geom_friction[0, 0] = friction
-
-    def step(self, count: int) -> None:
-        if not self.rubber:
-            mujoco.mj_step(self.model, self.data, count)
-            return
-        qpos, applied = self.data.qpos, self.data.qfrc_applied
-        for _ in range(count):
-            for foot, rubber in self.rubber.items():
-                (pitch, roll), (pitch_dof, roll_dof) = self.angles[foot], self.columns[foot]
-                applied[pitch_dof] = -rubber.pitch.torque(qpos[pitch])
-                applied[roll_dof] = -rubber.roll.torque(qpos[roll])
-            mujoco.mj_step(self.model, self.data)
 
 
 class _Recorder:
@@ -156,7 +101,7 @@ class _Recorder:
     def state(self, sample: int, data: mujoco.MjData) -> None:
         self.qpos[sample], self.qvel[sample] = data.qpos, data.qvel
 
-    def outputs(self, sample: int, data: mujoco.MjData, stepper: _Stepper) -> None:
+    def outputs(self, sample: int, data: mujoco.MjData) -> None:
         self.sensors[sample], self.effort[sample] = data.sensordata, data.actuator_force
         self.applied[sample] = data.qfrc_applied
 
@@ -188,19 +133,20 @@ def _has_joint(model: mujoco.MjModel, name: str) -> bool:
     return bool(mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, name) >= 0)
 
 
-def _targets(plan: Plan, joints: tuple[str, ...]) -> tuple[Array, Array | None]:
-    """Servo targets at the control rate, (M, n), and the hand's, (M, 3) or None.
+def _targets(plan: Plan, joints: tuple[str, ...], timestep: float) -> Array:
+    """Inputs of the servos, then of the hand where there is one, at every step, (M, nu).
 
-    A servo is kp (target - q) - kv q̇; the planned rate times kv/kp on top of the target makes it follow the rate too.
+    Targets that jump less often shake the links, and the accelerometer aliases it. A servo is kp (target - q) - kv q̇;
+    the planned rate times kv/kp on top of the target makes it follow the rate too.
     """
-    fine = np.arange(plan.time.size * round(CONTROL_RATE / RATE)) / CONTROL_RATE
-    fine = np.minimum(fine, plan.time[-1])
+    steps = round(1 / (RATE * timestep))
+    fine = np.minimum(np.arange(plan.time.size * steps) * timestep, plan.time[-1])
     spline = CubicSpline(plan.time, plan.positions[:, [plan.joints.index(name) for name in joints]])
-    control = spline(fine) + SERVO_TIME * spline(fine, 1)
+    control = np.asarray(spline(fine) + SERVO_TIME * spline(fine, 1))
     if plan.hand is None:
-        return control, None
+        return control
     path = CubicSpline(plan.time, plan.hand.path)
-    return control, path(fine) + plan.hand.damper / plan.hand.spring * path(fine, 1)
+    return np.hstack([control, path(fine) + plan.hand.damper / plan.hand.spring * path(fine, 1)])
 
 
 def _place(data: mujoco.MjData, plan: Plan, joints: tuple[str, ...]) -> None:

@@ -27,9 +27,11 @@ class Element:
         return self.stiffness * elastic + self.hardening * angle * angle * angle
 
 
-class Rubber:
-    """The elements of one foot."""
-
-    def __init__(self, bush: Bush) -> None:
-        self.pitch = Element(bush.pitch_slip_torque, bush.pitch_slip_angle, bush.pitch_hardening)
-        self.roll = Element(bush.roll_slip_torque, bush.roll_slip_angle, bush.roll_hardening)
+def elements(bush: Bush) -> dict[str, Element]:
+    """The elements of one foot, by axis; none where the bush is a plain spring and damper."""
+    if bush.is_linear:
+        return {}
+    return {
+        "pitch": Element(bush.pitch_slip_torque, bush.pitch_slip_angle, bush.pitch_hardening),
+        "roll": Element(bush.roll_slip_torque, bush.roll_slip_angle, bush.roll_hardening),
+    }
