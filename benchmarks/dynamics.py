@@ -197,10 +197,10 @@ def gemm_rate() -> float:
 
 
 def flops(model: pin.Model, count: int) -> float:
-    """Least arithmetic of the base rows' fit: regressor, and Householder on the columns that a row depends on."""
+    """Least arithmetic of the base rows' fit: regressor, and products of all pairs of the columns of a row."""
     joints = model.njoints - 2
     torque, force = 10 + 7 * joints + 1, 4 + 2 * joints + 1
-    return count * (45e3 + 3 * 2 * torque**2 + 3 * 2 * force**2)
+    return count * (45e3 + 3 * torque**2 + 3 * force**2)
 
 
 def run(

@@ -237,8 +237,9 @@ nb::ndarray<nb::numpy, double> inverse_dynamics(const TreeObject& object, const 
 
 class StreamObject {
  public:
-  StreamObject(const TreeObject& tree, const std::vector<unsigned>& kept, const std::vector<std::size_t>& extras)
-      : tree_(tree), stream_(tree_.tree(), kept_masks(tree, kept), checked(tree, extras)) {}
+  StreamObject(const TreeObject& tree, const std::vector<unsigned>& kept, const std::vector<std::size_t>& extras,
+               const std::vector<std::size_t>& groups)
+      : tree_(tree), stream_(tree_.tree(), kept_masks(tree, kept), checked(tree, extras), checked(tree, groups)) {}
   StreamObject(const StreamObject&) = delete;
 
   void add(const Matrix& base, const Matrix& q, const Matrix& v, const Matrix& a,
@@ -255,31 +256,28 @@ class StreamObject {
     stream_.add(table, bound.motion, given, bound.samples, threads);
   }
 
-  nb::ndarray<nb::numpy, double> factor(std::size_t row) const {
-    const RowLayout& layout = stream_.layout(checked_row(row));
+  nb::ndarray<nb::numpy, double> factor(std::size_t group) const {
+    const RowLayout& layout = layout_of(group);
     const std::size_t n = layout.parameters.size() + layout.extras;
     std::unique_ptr<double[]> data(new double[std::max<std::size_t>(n * n, 1)]);
-    {
-      nb::gil_scoped_release release;
-      stream_.factor(kernels(""), row, data.get());
-    }
+    stream_.factor(group, data.get());
     return owned(data.release(), {n, n});
   }
 
-  std::vector<int> parameters(std::size_t row) const {
-    const std::vector<std::int32_t>& found = stream_.layout(checked_row(row)).parameters;
+  std::vector<int> parameters(std::size_t group) const {
+    const std::vector<std::int32_t>& found = layout_of(group).parameters;
     return {found.begin(), found.end()};
   }
 
  private:
-  static const std::vector<std::size_t>& checked(const TreeObject& tree, const std::vector<std::size_t>& extras) {
-    if (extras.size() != static_cast<std::size_t>(tree.tree().n_rows()))
-      throw std::invalid_argument("a number of extras for each row");
-    return extras;
+  static const std::vector<std::size_t>& checked(const TreeObject& tree, const std::vector<std::size_t>& given) {
+    if (given.size() != static_cast<std::size_t>(tree.tree().n_rows()))
+      throw std::invalid_argument("a number for each row");
+    return given;
   }
-  std::size_t checked_row(std::size_t row) const {
-    if (row >= stream_.rows() || stream_.layout(row).extras == 0) throw std::invalid_argument("no such row");
-    return row;
+  const RowLayout& layout_of(std::size_t group) const {
+    if (group >= stream_.groups()) throw std::invalid_argument("no such group of rows");
+    return stream_.layout(stream_.first_row(group));
   }
 
   TreeObject tree_;
@@ -339,12 +337,13 @@ NB_MODULE(_core, m) {
         nb::arg("frames"), nb::arg("wrenches"), nb::arg("base"), nb::arg("q"), nb::arg("v"), nb::arg("a"),
         nb::arg("threads") = 0, nb::arg("isa") = "");
   nb::class_<StreamObject>(m, "Stream")
-      .def(nb::init<const TreeObject&, const std::vector<unsigned>&, const std::vector<std::size_t>&>(),
-           nb::arg("tree"), nb::arg("kept"), nb::arg("extras"))
+      .def(nb::init<const TreeObject&, const std::vector<unsigned>&, const std::vector<std::size_t>&,
+                    const std::vector<std::size_t>&>(),
+           nb::arg("tree"), nb::arg("kept"), nb::arg("extras"), nb::arg("groups"))
       .def("add", &StreamObject::add, nb::arg("base"), nb::arg("q"), nb::arg("v"), nb::arg("a"), nb::arg("extras"),
            nb::arg("threads") = 0, nb::arg("isa") = "")
-      .def("factor", &StreamObject::factor, nb::arg("row"))
-      .def("parameters", &StreamObject::parameters, nb::arg("row"));
+      .def("factor", &StreamObject::factor, nb::arg("group"))
+      .def("parameters", &StreamObject::parameters, nb::arg("group"));
   m.def("stacked", &stacked, nb::arg("factors"), nb::arg("onto"), nb::arg("weights"), nb::arg("n"));
   m.def("inverse_upper", &inverse_upper, nb::arg("upper"));
   bind_stepping(m);

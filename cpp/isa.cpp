@@ -2,6 +2,7 @@
 #include "kernels.hpp"
 
 #include "chain_kernel.hpp"
+#include "gram_kernel.hpp"
 #include "inverse_dynamics_kernel.hpp"
 #include "qr_kernel.hpp"
 
@@ -13,6 +14,6 @@ namespace plantar::PLANTAR_ISA {
 extern const Kernels kernels;
 const Kernels kernels = {
     PLANTAR_STRING(PLANTAR_ISA), sizeof(LinkState) + sizeof(Wrench), qr_work, chain, regressor, inverse_dynamics,
-    qr_update};
+    qr_update, gram_update, cholesky};
 
 }  // namespace plantar::PLANTAR_ISA

@@ -22,6 +22,10 @@ struct Kernels {
                            std::size_t n_contacts, std::size_t begin, std::size_t end, double* const* rows,
                            double* work);
   void (*qr_update)(const Triangle&, const Block&, void* work);
+  void (*gram_update)(double* gram, std::size_t gram_stride, const double* block, std::size_t stride, std::size_t rows,
+                      std::size_t columns);
+  bool (*cholesky)(const double* gram, std::size_t gram_stride, std::size_t n, double safe, double* r,
+                   std::size_t stride, double* work);
 };
 
 // The tables that this build holds and this processor can run, best first; null ends the list.

@@ -10,6 +10,7 @@ import pytest
 from scipy import linalg
 
 import example_robots
+from plantar import _core
 from plantar.conventions import Array
 from plantar.dynamics import (
     Equation,
@@ -73,6 +74,31 @@ def test_badly_conditioned_samples_keep_the_accuracy_of_qr() -> None:
     # Normal equations would leave no digit: eps times the condition squared is above one.
     assert np.finfo(float).eps * fit.condition_number**2 > 1e-2
     np.testing.assert_allclose(fit.values, truth, atol=1e-5)
+
+
+@pytest.mark.parametrize("isa", _core.instruction_sets())
+@pytest.mark.parametrize("count", [40, 3000])  # by reflections; by products, on all cores
+def test_the_factor_is_that_of_the_dense_rows(isa: str, count: int) -> None:
+    model = example_robots.model(example_robots.G1, floating=True)
+    equation = Equation(model)
+    base = base_parameters(equation)
+    motion = pinocchio_motion(model, equation.tree, *random_motion(model, count, 6))
+    torque = np.random.default_rng(6).normal(size=(count, 3))
+    used, group = [0] * equation.n_rows, [0] * equation.n_rows
+    used[3:6] = [1, 1, 1]
+    stream = _core.Stream(equation.core, base.masks, used, group)
+    extras: list[list[Array]] = [[] for _ in range(equation.n_rows)]
+    extras[3:6] = [[column] for column in torque.T]
+    for part in (slice(0, count // 2), slice(count // 2, count)):
+        given = [[column[part] for column in columns] for columns in extras]
+        stream.add(*vars(motion.select(part)).values(), given, 0, isa)
+    rows = equation.regressor(motion, base.masks)[3:6]
+    dense = np.hstack([np.vstack([row, column]) for row, column in zip(rows, torque.T, strict=True)]).T
+    factor = stream.factor(0)
+    assert np.array_equal(factor, np.triu(factor))
+    square = dense.T @ dense
+    scale = np.maximum(np.sqrt(np.diag(square)), 1.0)
+    assert np.abs((factor.T @ factor - square) / np.outer(scale, scale)).max() < 1e-12
 
 
 def test_batches_of_any_size_give_the_same_as_one() -> None:

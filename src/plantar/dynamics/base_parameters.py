@@ -24,6 +24,7 @@ from plantar.dynamics.motion import Motion
 # (row, column) of the inertia matrix for each of its six parameters, in Pinocchio's order.
 INERTIA_ENTRIES = ((0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2))
 _ROWS, _COLUMNS = np.array(INERTIA_ENTRIES).T
+Indices = np.ndarray[tuple[int, ...], np.dtype[np.int64]]
 DIAGONAL = (4, 6, 9)  # Ixx, Iyy, Izz among the ten
 RANK_TOLERANCE = 1e-8  # of a column's norm: what is left of a dependent column
 PROBING_SEED = 20111  # of the pseudo-random states that find what a fixed base hides
@@ -91,29 +92,20 @@ def base_parameters(equation: Equation) -> BaseParameters:
     """The minimal parameters of a robot, from its structure alone; the same on every machine."""
     size = PER_LINK * len(equation.links)
     first_joint = 1 if equation.floating else 0
-    kept: list[int] = []
+    kept = list(range(PER_LINK * first_joint))
     # expressed[k]: column k of eq. 1 as a sum of the kept columns, found from the root outwards.
     expressed = np.zeros((size, size))
-    for link in range(len(equation.links)):
-        own = range(PER_LINK * link, PER_LINK * (link + 1))
-        if link < first_joint:
-            kept += own
-            expressed[own, own] = 1.0
-            continue
-        joint = link - first_joint
-        mine, parents = _handed_over(equation, joint)
-        dropped = _dropped(equation, joint)
-        remaining = [p for p in range(PER_LINK) if p not in dropped]
-        kept += [PER_LINK * link + p for p in remaining]
-        expressed[[own[p] for p in remaining], [own[p] for p in remaining]] = 1.0
-        # Y_link mine == Y_parent parents, solved for the dropped columns of Y_link.
-        parent = equation.parent_link(link)
-        shares = np.linalg.solve(mine[dropped].T, np.hstack([parents.T, -mine[remaining].T]))
-        above = np.zeros((len(dropped), size))
+    expressed[kept, kept] = 1.0
+    for joint, (dropped, remaining, onto_parent, onto_own) in enumerate(_shares(equation)):
+        start = PER_LINK * (joint + first_joint)
+        lost = expressed[start : start + PER_LINK]
+        parent = equation.parent_link(joint + first_joint)
         if parent >= 0:
-            above = shares[:, :PER_LINK] @ expressed[PER_LINK * parent : PER_LINK * (parent + 1)]
-        above[:, [own[p] for p in remaining]] = shares[:, PER_LINK:]
-        expressed[[own[p] for p in dropped]] = above
+            above = expressed[PER_LINK * parent : PER_LINK * (parent + 1)]
+            lost[dropped, : PER_LINK * (parent + 1)] = onto_parent @ above[:, : PER_LINK * (parent + 1)]
+        lost[dropped[:, None], start + remaining] = onto_own
+        lost[remaining, start + remaining] = 1.0
+        kept += (start + remaining).tolist()
     if not equation.floating:
         kept, expressed = _without_hidden(equation, kept, expressed)
     grouping = expressed[:, kept].T.copy()
@@ -121,35 +113,71 @@ def base_parameters(equation: Equation) -> BaseParameters:
     return BaseParameters(equation.links, np.array(kept, dtype=np.int64), grouping)
 
 
-def _handed_over(equation: Equation, joint: int) -> tuple[Array, Array]:
-    """Changes of a link that its joint cannot tell from changes of its parent: columns of two (10, k)."""
+def _shares(equation: Equation) -> list[tuple[Indices, Indices, Array, Array]]:
+    """For each joint: parameters of its link that go, those that stay, and the columns of the former as shares of the
+    parent's ten columns and of the latter.
+
+    Y_link mine == Y_parent parents, solved for the columns that go; all joints of a kind at once.
+    """
     tree = equation.tree
-    axis, rotation, origin = tree.axes[joint], tree.rotations[joint], tree.translations[joint]
-    mine, parents = [], []
-    if tree.slides[joint]:
-        spreads = [_symmetric(entry) for entry in INERTIA_ENTRIES]
-    else:
-        spreads = [np.eye(3) - np.outer(axis, axis)]  # mass spread along the axis
-        mine.append(_parameters(1.0, np.zeros(3), np.zeros((3, 3))))
-        parents.append(_parameters(1.0, origin, (origin @ origin) * np.eye(3) - np.outer(origin, origin)))
-        mine.append(_parameters(0.0, axis, np.zeros((3, 3))))
-        moment = rotation @ axis
-        shifted = 2 * (origin @ moment) * np.eye(3) - np.outer(origin, moment) - np.outer(moment, origin)
-        parents.append(_parameters(0.0, moment, shifted))
-    for spread in spreads:
-        mine.append(_parameters(0.0, np.zeros(3), spread))
-        parents.append(_parameters(0.0, np.zeros(3), rotation @ spread @ rotation.T))
-    return np.column_stack(mine), np.column_stack(parents)
+    shares: dict[int, tuple[Indices, Indices, Array, Array]] = {}
+    for slides in (False, True):
+        joints = np.flatnonzero(tree.slides == slides)
+        if not len(joints):
+            continue
+        mine, parents = _handed_over(
+            slides, tree.axes[joints], tree.rotations[joints], tree.translations[joints]
+        )
+        dropped = _dropped(slides, tree.axes[joints])
+        each = np.arange(len(joints))[:, None]
+        remaining = np.ones((len(joints), PER_LINK), dtype=bool)
+        remaining[each, dropped] = False
+        stay = np.nonzero(remaining)[1].reshape(len(joints), -1)
+        right = np.concatenate([parents, -mine[each, stay].transpose(0, 2, 1)], axis=2)
+        solved = np.linalg.solve(mine[each, dropped].transpose(0, 2, 1), right)
+        for k, joint in enumerate(joints.tolist()):
+            shares[joint] = (dropped[k], stay[k], solved[k, :, :PER_LINK], solved[k, :, PER_LINK:])
+    return [shares[joint] for joint in range(len(tree))]
 
 
-def _dropped(equation: Equation, joint: int) -> list[int]:
-    """Parameters of a link whose columns go: mass, first moment along the axis, one inertia across it."""
-    if equation.tree.slides[joint]:
-        return list(range(4, PER_LINK))
-    across = 1 - equation.tree.axes[joint] ** 2
-    along = int(np.argmax(np.abs(equation.tree.axes[joint])))
-    largest = max(k for k in range(3) if across[k] > across.max() - 1e-9)
-    return [0, 1 + along, DIAGONAL[largest]]
+def _handed_over(slides: bool, axis: Array, rotation: Array, origin: Array) -> tuple[Array, Array]:
+    """Changes of a link that its joint cannot tell from changes of its parent, as (n, 10, k) and (n, k, 10).
+
+    axis, origin: (n, 3); rotation: (n, 3, 3), of n joints that all slide or all turn.
+    """
+    count = len(axis)
+    if slides:
+        spreads = [np.broadcast_to(_symmetric(entry), (count, 3, 3)) for entry in INERTIA_ENTRIES]
+        mine = np.stack([_parameters(0.0, np.zeros(3), spread) for spread in spreads], axis=2)
+        turned = [rotation @ spread @ rotation.transpose(0, 2, 1) for spread in spreads]
+        return mine, np.stack([_parameters(0.0, np.zeros(3), spread) for spread in turned], axis=1)
+    spread = np.eye(3) - _outer(axis, axis)  # mass spread along the axis
+    moment = np.einsum("nij,nj->ni", rotation, axis)
+    nothing, none = np.zeros((count, 3)), np.zeros((count, 3, 3))
+    along = np.einsum("ni,ni->n", origin, moment)[:, None, None]
+    far = np.einsum("ni,ni->n", origin, origin)[:, None, None]
+    changes = [
+        _parameters(1.0, nothing, none),
+        _parameters(0.0, axis, none),
+        _parameters(0.0, nothing, spread),
+    ]
+    handed = [
+        _parameters(1.0, origin, far * np.eye(3) - _outer(origin, origin)),
+        _parameters(0.0, moment, 2 * along * np.eye(3) - _outer(origin, moment) - _outer(moment, origin)),
+        _parameters(0.0, nothing, rotation @ spread @ rotation.transpose(0, 2, 1)),
+    ]
+    return np.stack(changes, axis=2), np.stack(handed, axis=1)
+
+
+def _dropped(slides: bool, axis: Array) -> Indices:
+    """Parameters of each link whose columns go: mass, first moment along the axis, one inertia across it."""
+    count = len(axis)
+    if slides:
+        return np.tile(np.arange(4, PER_LINK), (count, 1))
+    across = 1 - axis**2
+    along = np.argmax(np.abs(axis), axis=1)
+    largest = 2 - np.argmax((across > across.max(axis=1, keepdims=True) - 1e-9)[:, ::-1], axis=1)
+    return np.column_stack([np.zeros(count, dtype=np.int64), 1 + along, np.array(DIAGONAL)[largest]])
 
 
 def _without_hidden(equation: Equation, kept: list[int], expressed: Array) -> tuple[list[int], Array]:
@@ -192,6 +220,12 @@ def _symmetric(entry: tuple[int, int]) -> Array:
     return matrix
 
 
+def _outer(a: Array, b: Array) -> Array:
+    return a[:, :, None] * b[:, None, :]
+
+
 def _parameters(mass: float, moment: Array, inertia: Array) -> Array:
-    """Mass, first moment and inertia as ten numbers in Pinocchio's order."""
-    return np.array([mass, *moment, *inertia[_ROWS, _COLUMNS]])
+    """Mass, first moments (n, 3) and inertias (n, 3, 3) as (n, 10) in Pinocchio's order."""
+    found = np.empty((len(inertia), PER_LINK))
+    found[:, 0], found[:, 1:4], found[:, 4:] = mass, moment, inertia[:, _ROWS, _COLUMNS]
+    return found

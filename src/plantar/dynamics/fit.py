@@ -96,7 +96,8 @@ def fit_base_parameters_chunked(
         raise DataError("base rows need a free-flyer at the root (valid: rows='all' for a fixed base)")
     base = base_parameters(equation)
     chosen = tuple(range(BASE_ROWS if rows == "base" else equation.n_rows))
-    stream = EquationStream(equation, base, chosen)
+    together = ((0, 1, 2), (3, 4, 5)) if equation.floating else ()
+    stream = EquationStream(equation, base, chosen, together=together)
     samples = 0
     for q, v, a, tau in chunks:
         motion = pinocchio_motion(model, equation.tree, q, v, a)
@@ -110,7 +111,8 @@ def fit_base_parameters_chunked(
         samples += len(motion)
     if samples == 0:
         raise DataError("no samples to fit (valid: at least one)")
-    triangle = stacked(list(stream.factors().values()), len(base))
+    factors = sorted(stream.factors().values(), key=lambda factor: -len(factor.columns))
+    triangle = stacked(factors, len(base))
     return _solved(model, equation, base, chosen, triangle, samples)
 
 

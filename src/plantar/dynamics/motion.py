@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
-from plantar.conventions import Array, rotation_from_quaternion
+from plantar.conventions import Array
 from plantar.errors import DataError
 from plantar.kinematics import KinematicTree
 
@@ -58,12 +58,20 @@ def pinocchio_motion(model: pin.Model, tree: KinematicTree, q: Array, v: Array, 
     base = np.zeros((len(q), 9))
     gravity = np.asarray(model.gravity.linear)
     if tree.floating:
-        x, y, z, w = q[:, 3:7].T
-        world = rotation_from_quaternion(np.column_stack([w, x, y, z]))
-        base[:, 0:3] = a[:, 0:3] + np.cross(v[:, 3:6], v[:, 0:3]) - gravity @ world
+        carried = v[:, (4, 5, 3)] * v[:, (2, 0, 1)] - v[:, (5, 3, 4)] * v[:, (1, 2, 0)]  # omega x velocity
+        base[:, 0:3] = a[:, 0:3] + carried - _seen_from_body(gravity, q[:, 3:7])
         base[:, 3:6] = v[:, 3:6]
         base[:, 6:9] = a[:, 3:6]
         v, a = v[:, 6:], a[:, 6:]
     else:
         base[:, 0:3] = -gravity
     return Motion(base, tree.joint_positions(q), v, a)
+
+
+def _seen_from_body(vector: Array, quaternion: Array) -> Array:
+    """A world vector (3,) in the axes of bodies with orientations x y z w, (N, 4), of any length > 0."""
+    u, w = quaternion[:, :3], quaternion[:, 3:]
+    square = np.einsum("ij,ij->i", u, u)[:, None]
+    twice = 2 / (square + w * w)
+    turned = w * (u @ pin.skew(vector).T) + u * (u @ vector)[:, None]
+    return np.asarray((1 - twice * square) * vector + twice * turned)

@@ -22,7 +22,7 @@ from plantar.dynamics.motion import Motion
 
 @dataclass(frozen=True)
 class RowFactor:
-    """R of one row of eq. 1 over the samples seen.
+    """R of one row of eq. 1, or of several that share their columns, over the samples seen.
 
     upper: (k, k), upper triangle of [columns, extras, measured]; columns: base parameters of its leading
     columns, increasing, (k - extras - 1,); extras: further columns given by the caller; samples: how many
@@ -39,7 +39,8 @@ class EquationStream:
     """Accumulates eq. 1's rows over the base parameters, sample batch by sample batch.
 
     rows: which rows of the equation take part; extras: how many further columns a row has (joint terms), none
-    by default.
+    by default; together: rows that depend on the same columns and are never weighted apart (the forces, the torques):
+    one factor serves all of such a set.
     """
 
     def __init__(
@@ -48,6 +49,7 @@ class EquationStream:
         base: BaseParameters,
         rows: Sequence[int],
         extras: Mapping[int, int] | None = None,
+        together: Sequence[Sequence[int]] = (),
     ) -> None:
         self.equation = equation
         self.rows = tuple(rows)
@@ -55,7 +57,17 @@ class EquationStream:
         self._n_base = len(base)
         self._samples = 0
         given = [self.extras[row] + 1 if row in self.extras else 0 for row in range(equation.n_rows)]
-        self._core = _core.Stream(equation.core, base.masks, given)
+        first = {
+            row: min(set(rows) & set(self.rows)) for rows in together for row in rows if row in self.rows
+        }
+        self._groups: dict[int, list[int]] = {}
+        for row in sorted(self.rows):
+            self._groups.setdefault(first.get(row, row), []).append(row)
+        group = [0] * equation.n_rows
+        for number, members in enumerate(self._groups.values()):
+            for row in members:
+                group[row] = number
+        self._core = _core.Stream(equation.core, base.masks, given, group)
         self._position = np.full(PER_LINK * len(equation.links), -1)
         self._position[base.kept] = np.arange(len(base))
 
@@ -79,16 +91,17 @@ class EquationStream:
         self._samples += len(motion)
 
     def factors(self) -> dict[int, RowFactor]:
-        """The R factor of each row so far."""
-        return {
-            row: RowFactor(
-                self._core.factor(row),
-                self._position[self._core.parameters(row)],
-                self.extras[row],
-                self._samples,
+        """The R factor of each row, or of each set of rows by its first, so far."""
+        found = {
+            members[0]: RowFactor(
+                self._core.factor(group),
+                self._position[self._core.parameters(group)],
+                self.extras[members[0]],
+                self._samples * len(members),
             )
-            for row in self.rows
+            for group, members in enumerate(self._groups.values())
         }
+        return {row: found[row] for row in self.rows if row in found}
 
 
 def stacked(factors: Sequence[RowFactor], n_base: int, weights: Sequence[float] | None = None) -> Array:
