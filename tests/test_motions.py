@@ -113,6 +113,15 @@ def test_sweeps_move_the_upper_limbs_and_nothing_else() -> None:
     assert not np.array_equal(first.positions, second.positions)
 
 
+def test_arms_lead_the_zmp_of_any_robot_about_a_third_of_the_way(tmp_path) -> None:
+    """Farther, and a robot on bushes falls where the sweep passes its resonance."""
+    for robot in (hrp2.robot(), load_robot(talos_file(tmp_path))):
+        played = plan("Myrand5") if robot.name == "hrp2" else plan_motion("Myrand5", robot)
+        balance = planned_balance(robot, played)
+        led = np.abs(balance.zmp - balance.zmp[0]).max(axis=0) / (np.ptp(balance.polygon, axis=0) / 2)
+        assert 0.25 < led.max() < 0.33
+
+
 def test_a_plan_starts_and_ends_at_rest() -> None:
     for motion in ("Tilt6", "Squat", "Myrand4"):
         speeds = np.gradient(plan(motion).positions, 0.005, axis=0)

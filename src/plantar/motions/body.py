@@ -23,8 +23,8 @@ STEPS = 3  # Gauss-Newton steps from one knot to the next
 class Body:
     """A robot with a floating base and frames on its soles and chest.
 
-    The chest is the link that carries the IMU, its frame that link's. Raises MotionError where the robot has no
-    IMU or fewer than two feet.
+    The chest is the link that carries the IMU; its frame there has the robot's axes, x forward and z up, when every
+    joint is at neutral. Raises MotionError where the robot has no IMU or fewer than two feet.
     """
 
     def __init__(self, robot: RobotModel) -> None:
@@ -36,9 +36,10 @@ class Body:
         self.robot = robot
         self.model = robot.floating_model.copy()
         self.chest_link = robot.imu.placement.link
-        self._add_frame(CHEST, Placement(self.chest_link, np.zeros(3), np.zeros(3)))
         for name, foot in robot.feet.items():
-            self._add_frame(self.sole(name), foot.sole.placement)
+            self._add_frame(self.sole(name), robot.frame(foot.sole.placement))
+        joint, pose = robot.frame(Placement(self.chest_link, np.zeros(3), np.zeros(3)))
+        self._add_frame(CHEST, (joint, pose * pin.SE3(self._axes_in(joint, pose), np.zeros(3))))
         self.data = self.model.createData()
 
     @staticmethod
@@ -134,7 +135,26 @@ class Body:
         joint = self.model.joints[self.model.getJointId(name)]
         q[joint.idx_q : joint.idx_q + joint.nq] = angle if joint.nq == 1 else (np.cos(angle), np.sin(angle))
 
-    def _add_frame(self, name: str, placement: Placement) -> None:
-        joint, pose = self.robot.frame(placement)
-        carrier = self.model.getJointId(self.robot.model.names[joint]) if joint else 1
-        self.model.addFrame(pin.Frame(name, carrier, 0, pose, pin.FrameType.OP_FRAME), False)
+    def _axes_in(self, joint: int, pose: pin.SE3) -> Array:
+        """The robot's axes, forward, left and up at neutral, in a frame that is fixed to a joint: (3, 3)."""
+        self.data = self.model.createData()
+        q = self.neutral()
+        yaw = self.heading(q)
+        pin.framesForwardKinematics(self.model, self.data, q)
+        frame = self.data.oMi[self._carrier(joint)] * pose
+        return np.array(frame.rotation.T @ pin.exp3(np.array([0.0, 0.0, yaw])))
+
+    def heading(self, q: Array) -> float:
+        """Angle [rad] about the world's z axis from x to where the soles point."""
+        forward = sum(
+            (self.pose(q, self.sole(name)).rotation[:, 0] for name in self.robot.feet), start=np.zeros(3)
+        )
+        return float(np.arctan2(forward[1], forward[0]))
+
+    def _carrier(self, joint: int) -> int:
+        """A joint of the robot's model in the floating one; the root link's is the free-flyer."""
+        return int(self.model.getJointId(self.robot.model.names[joint])) if joint else 1
+
+    def _add_frame(self, name: str, place: tuple[int, pin.SE3]) -> None:
+        joint, pose = place
+        self.model.addFrame(pin.Frame(name, self._carrier(joint), 0, pose, pin.FrameType.OP_FRAME), False)

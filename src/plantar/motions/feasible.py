@@ -23,14 +23,21 @@ def check(body: Body, plan: Plan) -> Balance:
     The operator's hand is a help that is not counted on: with one, the robot is led without haste (no inertia).
     """
     _check_limits(body, plan)
-    q, v, a, time = configurations(body, plan)
-    wrench = planned_wrench(body.model, q, v, a)
-    balance = Balance(
-        plan.name, time, zero_moment_point(wrench, LEAST), sole_outlines(body.robot, plan.stance)
-    )
+    motion = configurations(body, plan)
+    balance = _balance(body, plan, *motion)
     require_balance(balance)
-    _check_torques(body, plan, q, v, a, time)
+    _check_torques(body, plan, *motion)
     return balance
+
+
+def planned_zmp(body: Body, plan: Plan) -> Balance:
+    """The plan's balance by inverse dynamics, whether or not it holds."""
+    return _balance(body, plan, *configurations(body, plan))
+
+
+def _balance(body: Body, plan: Plan, q: Array, v: Array, a: Array, time: Array) -> Balance:
+    zmp = zero_moment_point(planned_wrench(body.model, q, v, a), LEAST)
+    return Balance(plan.name, time, zmp, sole_outlines(body.robot, plan.stance))
 
 
 def configurations(body: Body, plan: Plan) -> tuple[Array, Array, Array, Array]:

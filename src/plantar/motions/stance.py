@@ -56,11 +56,12 @@ def stand(
         targets[name] = pin.SE3(np.eye(3), np.array([0.0, aside, 0.0]) + step)
     _check_apart(body, targets)
     centre = sum((target.translation for target in targets.values()), start=np.zeros(3)) / len(targets)
+    over = np.mean([target.act(_middle(body, name)) for name, target in targets.items()], axis=0)
     height = -middle[2] * (KNEE_BEND if posture is None else 1.0)
     q[:3] = centre + [-middle[0] if posture is not None else 0.0, 0.0, height]
     chest = body.pose(q, CHEST)
     if posture is None:
-        over_feet = body.centre_task(np.array([centre[0], centre[1], 0.0]))
+        over_feet = body.centre_task(np.array([over[0], over[1], 0.0]))
         upright = pin.SE3(np.eye(3), chest.translation)
         keep = body.chest_task(upright)
         keep.set_position_cost([0.0, 0.0, 1.0])
@@ -118,10 +119,7 @@ def check_reached(
 
 def _facing_forward(body: Body, q: Array) -> Array:
     """Quaternion x y z w of the root that lets the soles' x axes point forward."""
-    forward = sum(
-        (body.pose(q, body.sole(name)).rotation[:, 0] for name in body.robot.feet), start=np.zeros(3)
-    )
-    yaw = -np.arctan2(forward[1], forward[0])
+    yaw = -body.heading(q)
     return np.array([0.0, 0.0, np.sin(yaw / 2), np.cos(yaw / 2)])
 
 
@@ -140,6 +138,10 @@ def _check_apart(body: Body, targets: Mapping[str, pin.SE3]) -> None:
 
 def _sole_centre(body: Body, start: Stance, foot: str) -> Array:
     """Middle of a sole's outline in the world, (3,)."""
+    return np.array(start.soles[foot].act(_middle(body, foot)))
+
+
+def _middle(body: Body, foot: str) -> Array:
+    """Middle of a sole's outline in the sole's frame, (3,)."""
     polygon = body.robot.feet[foot].sole.polygon
-    middle = np.array([*(polygon.max(axis=0) + polygon.min(axis=0)) / 2, 0.0])
-    return np.array(start.soles[foot].act(middle))
+    return np.array([*(polygon.max(axis=0) + polygon.min(axis=0)) / 2, 0.0])

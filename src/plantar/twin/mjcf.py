@@ -18,7 +18,9 @@ from plantar.twin.from_robot import describe
 from plantar.twin.urdf import numbers
 
 TIMESTEP: Final = 0.00025  # s; larger ones need a softer floor, which costs stiffness in series
-FLOOR: Final = (4e6, 4e3)  # contact stiffness and damping, each per unit of mass [1/s², 1/s]
+# Contact stiffness and damping, each per unit of mass [1/s², 1/s], and impedance. What the impedance lacks to 1 gives
+# way beneath the sole, a spring in series with the bush (0.02 % of K here); from 0.975 on this contact chatters.
+FLOOR: Final = (4e6, 4e3, 0.95)
 FRICTION: Final = 0.9
 CORNER: Final = 0.001  # radius of the sole's contact points [m]
 SERVO_ANGLE: Final = 0.01  # a position error that asks for the joint's full torque [rad]
@@ -31,11 +33,11 @@ HAND: Final = ("hand.x", "hand.y", "hand.z")
 class Scene:
     """What stands around the robot and holds it.
 
-    `floor`: contact stiffness and damping per unit of mass; `friction` of sole on floor; `held`: where an
-    operator's hand holds the robot, through `hand` = spring [N/m] and damper [N·s/m].
+    `floor`: contact stiffness and damping per unit of mass, and impedance; `friction` of sole on floor; `held`: where
+    an operator's hand holds the robot, through `hand` = spring [N/m] and damper [N·s/m].
     """
 
-    floor: tuple[float, float] = FLOOR
+    floor: tuple[float, float, float] = FLOOR
     friction: float = FRICTION
     held: Placement | None = None
     hand: tuple[float, float] = (3000.0, 150.0)
@@ -97,8 +99,13 @@ def quaternion_from_rotation(rotation: Array) -> Array:
 
 def _add_world(world: Element, scene: Scene) -> None:
     floor = {"name": "floor", "type": "plane", "size": "5 5 0.1", "rgba": "0.85 0.85 0.85 1"}
-    stiffness, damping = scene.floor
-    touch = {"contype": "0", "conaffinity": "1", "solref": f"{-stiffness:.12g} {-damping:.12g}"}
+    stiffness, damping, impedance = scene.floor
+    touch = {
+        "contype": "0",
+        "conaffinity": "1",
+        "solref": f"{-stiffness:.12g} {-damping:.12g}",
+        "solimp": f"{impedance:.12g} {impedance:.12g}",
+    }
     # priority: the floor's numbers hold, whatever the sole's are
     SubElement(
         world, "geom", floor | touch | {"friction": f"{scene.friction:.12g} 0.005 0.0001", "priority": "1"}

@@ -21,11 +21,12 @@ class Slip:
 class Physics:
     """The bushes (None: rigid feet), the floor and its slippery seconds.
 
-    `floor`: contact stiffness and damping per unit of mass [1/s², 1/s]; `settle` [s] passes before the log begins.
+    `floor`: contact stiffness and damping per unit of mass [1/s², 1/s], and impedance; `settle` [s] passes before
+    the log begins.
     """
 
     bushes: Feet | None = field(default_factory=lambda: PAPER)
-    floor: tuple[float, float] = FLOOR
+    floor: tuple[float, float, float] = FLOOR
     friction: float = FRICTION
     slips: tuple[Slip, ...] = ()
     settle: float = 3.0

@@ -16,7 +16,7 @@ from plantar.twin.sensors import DEGREE, Sensors
 SLIP_TORQUE: Final = (5.0, 2.2)  # N·m in pitch and roll: 7 to 10 % of the largest torques of the campaign
 SLIP_ANGLE: Final = 0.01  # rad
 HARDENING: Final = 5000.0  # N·m/rad³: a tenth more torque at 0.1 rad
-SOFT_FLOOR: Final = (62500.0, 500.0)  # a contact that takes 4 ms to settle
+SOFT_FLOOR: Final = (62500.0, 500.0, 0.9)  # a contact that takes 4 ms to settle
 SLIPPERY: Final = (Slip(6.0, 7.0, 0.02), Slip(14.0, 15.0, 0.02))  # seconds of every motion
 
 
@@ -32,7 +32,7 @@ class Preset:
     sensors: Sensors
     slip_torque: tuple[float, float] = (0.0, 0.0)
     hardening: float = 0.0
-    floor: tuple[float, float] = FLOOR
+    floor: tuple[float, float, float] = FLOOR
     slips: tuple[Slip, ...] = ()
 
     def physics(self, bushes: Feet | None) -> Physics:
