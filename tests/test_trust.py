@@ -8,45 +8,14 @@ import numpy as np
 import pytest
 
 from biped import TRUTH, make_robot, record, sway
-from plantar.estimation.delay import Pair, estimate_delay
 from plantar.identify.feet import identify_feet
 from plantar.identify.settings import FeetSettings
 from plantar.identify.usage import served_shares
 from plantar.robot import RobotModel
-from plantar.signals import interpolate, low_pass
 from plantar.slip import sliding
 
 PERIOD = 0.005
 SAMPLES = 8000
-
-
-def late_pair(delay: float, seed: int, push: float = 0.0) -> Pair:
-    """A random wrench below 1.5 Hz, measured `delay` late, noise on both sides; `push`: an operator's share."""
-    random = np.random.default_rng(seed)
-    time = PERIOD * np.arange(SAMPLES)
-    true = 300 * low_pass(random.standard_normal((SAMPLES, 6)), PERIOD, 1.5)
-    hand = push * 300 * low_pass(random.standard_normal((SAMPLES, 6)), PERIOD, 1.5)
-    late = np.nan_to_num(
-        np.column_stack([interpolate(time - delay, time, column, 1.0) for column in (true + hand).T])
-    )
-    measured = low_pass(late + random.standard_normal(late.shape), PERIOD, 8.0)
-    predicted = low_pass(true + random.standard_normal(true.shape), PERIOD, 8.0)
-    return Pair("sweep", measured[100:-100], predicted[100:-100], PERIOD)
-
-
-@pytest.mark.parametrize("delay", [-0.01, 0.0, 0.004, 0.01])
-def test_a_delay_is_found_whatever_its_sign(delay: float) -> None:
-    found = [estimate_delay([late_pair(delay, seed)]) for seed in range(8)]
-    assert all(each is not None for each in found)
-    values = np.array([each.value for each in found if each is not None])
-    claimed = np.array([each.std for each in found if each is not None])
-    assert abs(values - delay).max() < 0.0015
-    assert np.mean(abs(values - delay) < 2.2 * claimed) >= 0.75
-    assert claimed.max() < 0.001
-
-
-def test_nothing_is_claimed_where_somebody_pushes() -> None:
-    assert estimate_delay([late_pair(0.005, 1, push=0.6)]) is None
 
 
 def test_a_known_delay_is_taken_off_and_an_unknown_one_widens_damping(tmp_path: object) -> None:

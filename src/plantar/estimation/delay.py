@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from plantar.conventions import Array
+from plantar.conventions import FORCE, Array
 from plantar.estimation.intervals import cosine_covariance
-from plantar.signals import differentiate, low_pass, shifted
+from plantar.signals import differentiate, low_pass
 
 ROUNDS = 4  # the moment equation is linear near its solution: each round shifts and solves again
 LONGEST = 0.05  # s: later signals than this have another fault than a delay
@@ -31,10 +31,15 @@ MODEL_ERROR = (
 
 @dataclass(frozen=True)
 class Pair:
-    """Measured and predicted wrench of one recording, (n, 6) each, evenly sampled, without NaN, equally filtered."""
+    """Measured and predicted wrench of one recording, (n, 6) each, evenly sampled, without NaN, equally filtered.
+
+    `rate` (n, 6) is how `measured` changes with the moment at which the sensors are read. It is not its derivative in
+    time where sensors turn: what is late is their reading, not the frame that it is expressed in.
+    """
 
     label: str
     measured: Array
+    rate: Array
     predicted: Array
     period: float
 
@@ -52,10 +57,9 @@ class Delay:
 def estimate_delay(pairs: Sequence[Pair]) -> Delay | None:
     """Delay common to all pairs, or None where in none the prediction closes, or what it says is no delay."""
     value, found = 0.0, None
-    bands = [_bands(pair) for pair in pairs]
+    bands = [_bands(pair) for pair in pairs if _closes(pair)]
     for _ in range(ROUNDS):
-        closed = [own for pair, own in zip(pairs, bands, strict=True) if _closes(pair, value)]
-        cells = [cell for own in closed for band in own for cell in _cells(band, value)]
+        cells = [cell for own in bands for band in own for cell in _cells(band, value)]
         if not cells:
             return None
         found = _pooled(cells)
@@ -67,34 +71,35 @@ def estimate_delay(pairs: Sequence[Pair]) -> Delay | None:
 
 @dataclass(frozen=True)
 class _Band:
-    """A pair in one band of frequencies, thinned: measured with its first and second rate, predicted with its first."""
+    """A pair in one band of frequencies of `width` [Hz], thinned, with rates; `bend` is the second one of measured."""
 
     measured: Array
     rate: Array
     bend: Array
     predicted: Array
     predicted_rate: Array
+    width: float
     duration: float
 
     def at(self, delay: float) -> tuple[Array, Array]:
-        """Measured signal and its rate as they were `delay` later: by their own rates, smooth as a band is."""
+        """Measured signal and its rate as if read `delay` later: by their own rates, smooth as a band is."""
         return self.measured + delay * self.rate + 0.5 * delay**2 * self.bend, self.rate + delay * self.bend
 
 
 def _bands(pair: Pair) -> list[_Band]:
     """The pair in each band of frequencies."""
-    both = np.hstack([pair.measured, pair.predicted])
-    width, period = pair.measured.shape[1], pair.period
+    together = np.hstack([pair.measured, pair.rate, pair.predicted])
+    period = pair.period
     edges = [edge for edge in BAND_EDGES if edge < 0.4 / period]
-    layers = [low_pass(both, period, edge) for edge in edges]
+    layers = [low_pass(together, period, edge) for edge in edges]
     found = []
     for place, edge in enumerate(edges[1:]):
         band = layers[place + 1] - layers[place]
-        rates = differentiate(band, period)
-        bends = differentiate(rates[:, :width], period)
+        measured, rate, predicted = np.hsplit(band, 3)
         thin = slice(None, None, max(1, int(1 / (SAMPLES_PER_CYCLE * edge * period))))
-        m, p = band[thin, :width], band[thin, width:]
-        found.append(_Band(m, rates[thin, :width], bends[thin], p, rates[thin, width:], len(band) * period))
+        bend, predicted_rate = differentiate(rate, period)[thin], differentiate(predicted, period)[thin]
+        parts = (measured[thin], rate[thin], bend, predicted[thin], predicted_rate)
+        found.append(_Band(*parts, edge - edges[place], len(band) * period))
     return found
 
 
@@ -109,12 +114,20 @@ def _pooled(cells: Sequence[Delay]) -> Delay:
     return Delay(value, float(np.sqrt(max(1.0, disagreement) / weights.sum())), freedom, len(cells))
 
 
-def _closes(pair: Pair, delay: float) -> bool:
+def _closes(pair: Pair) -> bool:
     """Whether the forces follow from the prediction: they do not where an operator holds the robot."""
-    measured = shifted(pair.measured, pair.period, delay)[:, :3]
-    whole = np.isfinite(measured).all(axis=1)
-    m, p = measured[whole], pair.predicted[whole, :3]
-    return bool(np.var(m - p, axis=0).sum() <= (1 - LEAST_CLOSED) * np.var(m, axis=0).sum())
+    measured, rate, predicted = (
+        part[:, FORCE] - part[:, FORCE].mean(axis=0) for part in (pair.measured, pair.rate, pair.predicted)
+    )
+    missed = unexplained(measured, rate, predicted)
+    return missed <= (1 - LEAST_CLOSED) * float(np.sum(measured**2))
+
+
+def unexplained(measured: Array, rate: Array, predicted: Array) -> float:
+    """Squares that the prediction misses at the delay that suits it best."""
+    missing, power = measured - predicted, float(np.sum(rate**2))
+    delay = -float(np.sum(missing * rate)) / power if power > 0 else 0.0
+    return float(np.sum((missing + np.clip(delay, -LONGEST, LONGEST) * rate) ** 2))
 
 
 def _cells(band: _Band, delay: float) -> list[Delay]:
@@ -133,7 +146,12 @@ def _cells(band: _Band, delay: float) -> list[Delay]:
         if not (explains and GAIN_BAND[0] < gain < GAIN_BAND[1] and slope > 0):
             continue
         step = -float(rest @ rate_p) / slope
-        variance, freedom = cosine_covariance(((rest + step * rate_m) * rate_p)[:, None], band.duration)
+        scores = (rest + step * rate_m) * rate_p
+        coloured, freedom = cosine_covariance(scores[:, None], band.duration)
+        # Few cosines are small by chance now and then, and such a cell would outweigh all others: two independent
+        # signals of this band's width have scores with at least so much variance.
+        usual = len(scores) * float(scores @ scores) / (2 * band.width * band.duration)
+        noise = np.sqrt(max(float(coloured[0, 0]), usual)) / slope
         floor = MODEL_ERROR * np.sqrt(power / float(rate_p @ rate_p))
-        found.append(Delay(step, float(np.hypot(np.sqrt(variance[0, 0]) / slope, floor)), freedom, 1))
+        found.append(Delay(step, float(np.hypot(noise, floor)), freedom, 1))
     return found

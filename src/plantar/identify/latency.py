@@ -11,14 +11,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from plantar.conventions import Array
+from plantar.conventions import FORCE, Array
 from plantar.dynamics import Contact, Equation, model_parameters
 from plantar.dynamics.inertial_motion import inertial_motion
-from plantar.estimation.delay import LEAST_CLOSED, Pair, estimate_delay
+from plantar.estimation.delay import LEAST_CLOSED, Pair, estimate_delay, unexplained
 from plantar.log import MotionLog
 from plantar.notes import Note
 from plantar.robot import RobotModel
-from plantar.signals import low_pass, runs
+from plantar.signals import differentiate, low_pass, runs
 
 CUTOFF = 8.0  # Hz: above it differentiated encoders are noise
 PRIOR_STD = (
@@ -101,16 +101,24 @@ def _pair(robot: RobotModel, log: MotionLog) -> Pair | None:
     contacts = [Contact(*robot.frame(foot.wrench.placement)) for foot in robot.feet.values()]
     part = motion.select(longest)
     predicted = equation.inverse_dynamics(part, model_parameters(robot.floating_model))[BASE_ROWS].T
-    split = [np.ascontiguousarray(wrenches[longest, 6 * i : 6 * i + 6]) for i in range(len(contacts))]
-    measured = -equation.inverse_dynamics(part, None, contacts, split)[BASE_ROWS].T
-    measured, predicted = (_band(values, log.period)[edge:-edge] for values in (measured, predicted))
-    calm = _longest_closed(measured[:, :3], predicted[:, :3], log.period)
+
+    def carried(readings: Array) -> Array:
+        split = [np.ascontiguousarray(readings[:, 6 * i : 6 * i + 6]) for i in range(len(contacts))]
+        return -equation.inverse_dynamics(part, None, contacts, split)[BASE_ROWS].T
+
+    readings = wrenches[longest]
+    smooth = low_pass(readings, log.period, CUTOFF)
+    measured, rate = carried(readings), carried(differentiate(smooth, log.period))
+    measured, rate, predicted = (
+        _band(values, log.period)[edge:-edge] for values in (measured, rate, predicted)
+    )
+    calm = _longest_closed(measured[:, FORCE], rate[:, FORCE], predicted[:, FORCE], log.period)
     if (calm.stop - calm.start) * log.period < SHORTEST:
         return None
-    return Pair(log.name, measured[calm], predicted[calm], log.period)
+    return Pair(log.name, measured[calm], rate[calm], predicted[calm], log.period)
 
 
-def _longest_closed(measured: Array, predicted: Array, period: float) -> slice:
+def _longest_closed(measured: Array, rate: Array, predicted: Array, period: float) -> slice:
     """The longest stretch in which nobody pushes and nothing strikes: there the forces follow from the prediction."""
     width = round(WINDOW / period)
     count = len(measured) // width
@@ -118,7 +126,7 @@ def _longest_closed(measured: Array, predicted: Array, period: float) -> slice:
     closed = np.zeros(len(measured), dtype=bool)
     for window in (slice(i * width, (i + 1) * width) for i in range(count)):
         power = float(np.mean(np.sum(measured[window] ** 2, axis=1)))
-        missing = float(np.mean(np.sum((measured - predicted)[window] ** 2, axis=1)))
+        missing = unexplained(measured[window], rate[window], predicted[window]) / width
         closed[window] = missing < (1 - LEAST_CLOSED) * max(power, usual)
     return max(runs(closed), key=lambda run: run.stop - run.start, default=slice(0, 0))
 

@@ -1,0 +1,78 @@
+"""How late one signal is against another: found whatever its sign, and not claimed where somebody pushes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from plantar.conventions import Array
+from plantar.estimation.delay import Delay, Pair, estimate_delay
+from plantar.signals import differentiate, interpolate, low_pass
+
+PERIOD = 0.005
+SAMPLES = 8000
+
+
+def late_pair(delay: float, seed: int, push: float = 0.0) -> Pair:
+    """A random wrench below 1.5 Hz, measured `delay` late, noise on both sides; `push`: an operator's share."""
+    random = np.random.default_rng(seed)
+    time = PERIOD * np.arange(SAMPLES)
+    true = 300 * low_pass(random.standard_normal((SAMPLES, 6)), PERIOD, 1.5)
+    hand = push * 300 * low_pass(random.standard_normal((SAMPLES, 6)), PERIOD, 1.5)
+    late = np.nan_to_num(
+        np.column_stack([interpolate(time - delay, time, column, 1.0) for column in (true + hand).T])
+    )
+    measured = low_pass(late + random.standard_normal(late.shape), PERIOD, 8.0)
+    predicted = low_pass(true + random.standard_normal(true.shape), PERIOD, 8.0)
+    rate = differentiate(measured, PERIOD)
+    return Pair("sweep", measured[100:-100], rate[100:-100], predicted[100:-100], PERIOD)
+
+
+@pytest.mark.parametrize("delay", [-0.02, -0.01, 0.0, 0.004, 0.01, 0.02])
+def test_a_delay_is_found_whatever_its_sign(delay: float) -> None:
+    found = [estimate_delay([late_pair(delay, seed)]) for seed in range(8)]
+    assert all(each is not None for each in found)
+    values = np.array([each.value for each in found if each is not None])
+    claimed = np.array([each.std for each in found if each is not None])
+    assert abs(values - delay).max() < 0.0015
+    assert np.mean(abs(values - delay) < 2.2 * claimed) >= 0.75
+    assert claimed.max() < 0.001
+
+
+def test_nothing_is_claimed_where_somebody_pushes() -> None:
+    assert estimate_delay([late_pair(0.005, 1, push=0.6)]) is None
+
+
+def turning(delay: float, seed: int) -> Pair:
+    """Sensors that turn by a degree or two under a weight of 560 N, and what they read is late."""
+    random = np.random.default_rng(seed)
+    time = PERIOD * np.arange(SAMPLES)
+    angle, push = low_pass(random.standard_normal((SAMPLES, 2)), PERIOD, 1.5).T * [[0.1], [30.0]]
+    ground = np.column_stack([push + 300 * angle, np.zeros(SAMPLES), np.full(SAMPLES, 560.0)])
+
+    def turned(vectors: Array, sense: float) -> Array:
+        cos, sin = np.cos(angle), sense * np.sin(angle)
+        x, y, z = vectors.T
+        return np.column_stack([cos * x + sin * z, y, cos * z - sin * x])
+
+    readings = turned(ground, -1.0)
+    late = np.column_stack(
+        [np.nan_to_num(interpolate(time - delay, time, column, 1.0), nan=1.0) for column in readings.T]
+    )
+    still = np.zeros((SAMPLES, 3))
+    inner = slice(100, -100)
+    measured, rate = turned(late, 1.0), differentiate(late, PERIOD)
+    pair = [np.hstack([part, still])[inner] for part in (measured, turned(rate, 1.0), ground)]
+    mean = [part - part.mean(axis=0) for part in pair]
+    return Pair("turning", mean[0], mean[1], mean[2], PERIOD)
+
+
+@pytest.mark.parametrize("delay", [-0.01, 0.01, 0.02])
+def test_the_frame_of_a_turning_sensor_is_not_late(delay: float) -> None:
+    found = estimate_delay([turning(delay, 3)])
+    assert isinstance(found, Delay)
+    assert found.value == pytest.approx(delay, abs=3e-4)
+
+
+def test_no_delay_is_claimed_beyond_what_delays_are() -> None:
+    assert estimate_delay([late_pair(0.2, 0)]) is None
