@@ -18,6 +18,7 @@ from plantar.balance import (
 from plantar.errors import DataError, MotionError
 from plantar.log import MotionLog
 from plantar.motions import planned_balance
+from plantar.polygon import separation
 from plantar.robot import load_robot
 from plantar.twin import hrp2
 from plantar.twin.exact import exact_columns
@@ -128,3 +129,11 @@ def test_a_robot_in_the_air_has_no_balance(log: MotionLog) -> None:
     empty = {name: 0 * values for name, values in log.columns.items() if name.startswith("wrench.")}
     with pytest.raises(DataError, match="no foot carries"):
         measured_balance(hrp2.robot(), log.with_columns(empty))
+
+
+def test_polygons_are_apart_or_overlap_by_a_width() -> None:
+    square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+    assert separation(square, square + [1.5, 0.3]) == pytest.approx(0.5)
+    assert separation(square, square + [0.0, 0.9]) == pytest.approx(-0.1)
+    bar = (square - 0.5) * [4.0, 0.2]
+    assert separation(bar, bar[:, ::-1]) < 0  # a cross: no corner of either lies in the other

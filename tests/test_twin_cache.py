@@ -23,7 +23,8 @@ from plantar.twin.keep import (
     rollout_key,
 )
 from plantar.twin.physics import Physics, Slip
-from plantar.twin.play import roll_all, rolled
+from plantar.twin.play import roll_all, roll_each, rolled
+from plantar.twin.rollout import Rollout
 from twin_samples import plan, short, tilted
 
 
@@ -142,3 +143,17 @@ def test_one_fall_stops_the_others() -> None:
     with pytest.raises(MotionError, match="falls"):
         roll_all(jobs, hrp2.robot(), lambda motion, share: seen.append(share))
     assert max(seen, default=0.0) < 0.9
+
+
+def test_a_fall_stands_in_its_rollouts_place() -> None:
+    soft = Bush(40.0, 2.0, 40.0, 2.0)
+    jobs = [
+        (short(plan("Tilt3"), 2.0, 6.0), Physics({"left": soft, "right": soft})),
+        (short(plan("Tilt3"), 2.0, 2.5), Physics(settle=0.1)),
+    ]
+    done: set[float] = set()
+    fallen, stood = roll_each(jobs, hrp2.robot(), lambda motion, share: done.add(share))
+    assert isinstance(fallen, MotionError)
+    assert isinstance(stood, Rollout)
+    assert stood.time.size == 100
+    assert 1.0 in done

@@ -50,6 +50,10 @@ def test_logs_truth_and_robot_file_appear(tmp_path: Path, capsys: pytest.Capture
         (["Squat", "--preset", "odd"], "unknown preset 'odd'"),
         (["Squat", "--bush", "1,2,x"], "--bush is not four or six numbers"),
         (["Squat", "--robot", "missing.yaml"], "missing.yaml: cannot be read"),
+        (["Tilt1", "--sway", "nan"], "--sway is no length"),
+        (["Tilt1", "--apart", "0.1"], "the soles would stand on each other"),
+        (["Squat", "--vertical", "0.6"], "s: Squat: the chest cannot reach its place, it falls short by"),
+        (["Manual_right_roll", "--sway", "0.3"], "the zero-moment point leaves the support polygon by"),
     ],
 )
 def test_what_is_wrong_is_said_in_one_line(

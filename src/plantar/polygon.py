@@ -1,4 +1,4 @@
-"""Convex polygons in the plane: hull, and how far inside a point lies."""
+"""Convex polygons in the plane: hull, how far inside a point lies, how far two are apart."""
 
 from __future__ import annotations
 
@@ -22,8 +22,20 @@ def inside_distance(points: Array, polygon: Array) -> Array:
 
     Outside near a corner it is the distance to the nearest edge's line, which is never more than the true distance.
     """
+    return np.asarray(_depths(points, polygon).min(axis=1))
+
+
+def separation(one: Array, other: Array) -> float:
+    """Width [m] of the straight gap between two convex polygons (n, 2), (m, 2); negative: how far they overlap.
+
+    Two convex polygons are apart where an edge of either has all of the other beyond it.
+    """
+    return max(float((-_depths(b, a)).min(axis=0).max()) for a, b in ((one, other), (other, one)))
+
+
+def _depths(points: Array, polygon: Array) -> Array:
+    """Distance [m] of each point behind each edge's line of a convex polygon, (N, edges)."""
     corners = convex_hull(polygon)
     edges = np.roll(corners, -1, axis=0) - corners
     normals = np.column_stack([-edges[:, 1], edges[:, 0]]) / np.linalg.norm(edges, axis=1, keepdims=True)
-    depth = points @ normals.T - np.sum(corners * normals, axis=1)
-    return np.asarray(depth.min(axis=1))
+    return np.asarray(points @ normals.T - np.sum(corners * normals, axis=1))

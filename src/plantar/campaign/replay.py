@@ -1,42 +1,39 @@
-"""Identified feet in a simulator (the paper's future work): unseen motions replayed and set beside the record.
+"""Identified feet in a simulator (the paper's future work): whose feet are compared, and how near each comes.
 
-The same is done on rigid feet and on feet with the numbers that others use.
+The others are rigid feet and feet with the numbers that other groups use.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
-from plantar.campaign.shares import shares
-from plantar.conventions import Array, rotation_from_quaternion
-from plantar.errors import DataError, MotionError, located
 from plantar.log import MotionLog
+from plantar.motions.plan import Hand
 from plantar.result import FeetResult
 from plantar.robot import RobotModel
 from plantar.twin.bush import GUESSES, Feet
 from plantar.twin.exact import exact_columns
 from plantar.twin.foot import cut_feet
 from plantar.twin.from_robot import describe
-from plantar.twin.play import on_cores, planned, rolled
+from plantar.twin.play import planned, rolled
 from plantar.twin.presets import preset_named
-from plantar.twin.replay import REFERENCE, Replayed, feet_of, replay
+from plantar.twin.replay import Replayed, attitude_error, feet_of, pitch_and_roll
 
 IDENTIFIED: Final = "identified"
 RIGID: Final = "rigid"
 RECORD: Final = "none: the record against the truth"
 CHEST: Final = ("chest pitch", "chest roll")
 
-Progress = Callable[[str], None]
-
 
 @dataclass(frozen=True)
 class ReplayRow:
     """How far the simulated robot is from the recorded one in one motion: of the chest's pitch and roll the root
-    mean square error [rad], of a foot's torque the mean absolute error [N.m]; None where the robot falls."""
+    mean square error [rad], a straight line in time aside, of a foot's torque the mean absolute error [N.m]; None
+    where the robot falls."""
 
     feet: str
     motion: str
@@ -59,32 +56,6 @@ class Score:
         return None if self.pitch is None or self.roll is None else float(np.hypot(self.pitch, self.roll))
 
 
-def replay_motions(
-    robot: RobotModel,
-    recorded: Sequence[MotionLog],
-    feet: Mapping[str, Feet | None],
-    progress: Progress = lambda _: None,
-) -> list[Replayed]:
-    """Every recorded motion on every kind of feet; a robot that falls is missing from the list.
-
-    `recorded` are logs named like motions of the campaign: where an operator's hand leads the robot, it does so
-    again.
-    """
-    hands = {log.name: hand for log in recorded if (hand := planned(log.name, robot).hand) is not None}
-    pairs = [(log, name) for name in feet for log in recorded]
-    report = shares(f"replay {len(pairs)} times in the simulator", len(pairs), progress)
-
-    def alone(pair: tuple[MotionLog, str]) -> list[Replayed]:
-        log, name = pair
-        try:
-            return replay(robot, [log], {name: feet[name]}, hands, report)
-        except MotionError:
-            report(f"{log.name} on {name}", 1.0)
-            return []
-
-    return [one for found in on_cores(alone, pairs) for one in found]
-
-
 def candidates(result: FeetResult, guesses: Sequence[str] = tuple(GUESSES)) -> dict[str, Feet | None]:
     """The kinds of feet to compare: identified, rigid (None), and the guesses in use elsewhere."""
     identified = feet_of(result.to_dict())
@@ -93,21 +64,23 @@ def candidates(result: FeetResult, guesses: Sequence[str] = tuple(GUESSES)) -> d
     }
 
 
+def hands_of(robot: RobotModel, motions: Sequence[str]) -> dict[str, Hand]:
+    """The operator's hand in those motions of the campaign that it leads."""
+    return {name: hand for name in motions if (hand := planned(name, robot).hand) is not None}
+
+
 def record_rows(
     robot: RobotModel, recorded: Sequence[MotionLog], preset: str, bushes: Feet
 ) -> tuple[ReplayRow, ...]:
-    """How far the recorded attitude itself is from the truth: what no simulation can get below."""
+    """How far the recorded attitude itself is from the truth, by the same measure: no simulation can get below."""
     physics, feet = preset_named(preset).physics(bushes), cut_feet(describe(robot), robot)
     rows = []
     for log in recorded:
         columns = exact_columns(rolled(planned(log.name, robot), robot, physics), robot, feet)
-        error = _attitude(robot, log) - _attitude(robot, MotionLog(log.name, log.time, columns))
-        late = log.time >= log.time[0] + REFERENCE
-        error = error - error[~late].mean(axis=0)
-        sizes = np.sqrt(np.mean(error[late] ** 2, axis=0))
+        true = pitch_and_roll(robot, MotionLog(log.name, log.time, columns))
+        errors = attitude_error(pitch_and_roll(robot, log), true)
         rows += [
-            ReplayRow(RECORD, log.name, axis, "rad", float(size))
-            for axis, size in zip(CHEST, sizes, strict=True)
+            ReplayRow(RECORD, log.name, axis, "rad", error) for axis, error in zip(CHEST, errors, strict=True)
         ]
     return tuple(rows)
 
@@ -156,12 +129,3 @@ def _pooled(rows: Sequence[ReplayRow], feet: str, quantity: str) -> float | None
     errors = [row.error for row in rows if row.feet == feet and row.quantity == quantity]
     known = [error for error in errors if error is not None]
     return float(np.sqrt(np.mean(np.square(known)))) if known and len(known) == len(errors) else None
-
-
-def _attitude(robot: RobotModel, log: MotionLog) -> Array:
-    """Pitch and roll of the IMU, (N, 2) [rad]. Raises DataError where the log holds no attitude."""
-    quaternions = log.orientation(robot.imu.name) if robot.imu is not None else None
-    if quaternions is None:
-        raise DataError(located("holds no attitude to compare with", path=log.source))
-    up = rotation_from_quaternion(quaternions)[:, 2, :]
-    return np.column_stack([-np.arcsin(up[:, 0]), np.arctan2(up[:, 1], up[:, 2])])

@@ -114,10 +114,11 @@ def simulator_table(rows: Sequence[ReplayRow]) -> Table:
     columns += [Column(f"{axis} torque", "N·m") for axis in ROTATIONAL_AXES]
     motions = ", ".join(dict.fromkeys(row.motion for row in rows))
     remark = (
-        f"{motions}, played again on a fresh twin by the recorded joints alone and compared with the record after the "
-        "first second, from which zeros come: root mean square error of the chest, mean |error| of the torques. "
-        f"'{FALLS}': that robot did not stay upright. The last line is what the recorded attitude's own drift and "
-        "noise are, in which no simulation can do better."
+        f"{motions}, played again on a fresh twin by the recorded joints alone and compared with the record. Chest: "
+        "root mean square of simulated minus recorded attitude, less the straight line in time nearest to it (an IMU's "
+        "bias and slow drift are not the feet's), for every kind of feet alike. Torques: mean |error| after the first "
+        f"second, from which their zeros come. '{FALLS}': that robot did not stay upright. The last line is how far "
+        "the record itself is from the truth by the same measure."
     )
     return Table.of("In a simulator: identified, rigid and guessed feet", columns, lines, remark=remark)
 

@@ -16,6 +16,7 @@ from plantar.robot import load_robot
 if TYPE_CHECKING:
     from plantar.twin.bush import Feet
 
+LONGEST = 10.0  # m: no motion is larger
 BUSH_HELP = "Bush of every foot as K_pitch,C_pitch,K_roll,C_roll[,K_z,C_z]; the paper's table 1 if left out."
 
 
@@ -32,13 +33,26 @@ def run(
         Path | None, typer.Option(help="Robot file of a biped; the HRP-2-like one if left out.")
     ] = None,
     bush: Annotated[str | None, typer.Option(help=BUSH_HELP)] = None,
+    sway: Annotated[
+        float | None,
+        typer.Option(
+            help="How far tilts move the chest and the operator leads it [m]; as in the paper if left out."
+        ),
+    ] = None,
+    vertical: Annotated[
+        float | None, typer.Option(help="How far the chest goes down in Tilt4 to Tilt6 and Squat [m].")
+    ] = None,
+    apart: Annotated[
+        float | None, typer.Option(help="Between the soles [m]; as the robot's posture has it if left out.")
+    ] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")] = False,
 ) -> None:
     """Play motions on the twin, a robot in MuJoCo whose feet are known, and write what it records.
 
     Motions: Tilt1 to Tilt6, Manual_right_roll, Manual_right_pitch, Manual_left_roll, Manual_left_pitch,
     Manual_both_pitch, Myrand4, Myrand5, Squat. Each log MOTION.parquet has its truth in MOTION.truth.parquet
-    (bush angles, contact forces) and MOTION.truth.json (what was put in). A motion that would fall is refused.
+    (bush angles, contact forces) and MOTION.truth.json (what was put in). A motion that loses its balance or cannot be
+    reached is refused before it is played; one that falls on its bushes, as soon as it does.
 
     Example: plantar simulate Tilt3,Squat --out out/twin --preset sensors --seed 3
     """
@@ -47,13 +61,19 @@ def run(
         from plantar.twin import PAPER, play_all, write_campaign
     except ImportError as error:
         raise MissingExtra(error.name or "mujoco", "twin", "plantar simulate") from error
+    for option, size in (("--sway", sway), ("--vertical", vertical), ("--apart", apart)):
+        if size is not None and not 0 < size < LONGEST:
+            raise PlantarError(located(f"{option} is no length", value=size, valid=f"0 to {LONGEST:g} m"))
     names = list({"campaign": CAMPAIGN, "demo": DEMO}.get(motion, tuple(motion.split(","))))
     bushes = PAPER if bush is None else _bushes(bush)
     model = None if robot is None else load_robot(robot)
     if model is not None and bush is None and model.name != "hrp2_like":
         message = f"'{model.name}' stands on unknown bushes"
         raise PlantarError(located(message, valid="--bush K_pitch,C_pitch,K_roll,C_roll"))
-    (recordings,) = play_all(names, model, bushes, preset, [seed], _reporter(len(names), progress(quiet)))
+    report = _reporter(len(names), progress(quiet))
+    (recordings,) = play_all(
+        names, model, bushes, preset, [seed], report, sway=sway, vertical=vertical, apart=apart
+    )
     end_progress(quiet)
     robot_file = write_campaign(out, recordings, model)
     rows = [

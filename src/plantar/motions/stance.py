@@ -12,7 +12,7 @@ from plantar.balance import sole_outlines
 from plantar.conventions import Array
 from plantar.errors import MotionError, located
 from plantar.motions.body import CHEST, REACHED, Body
-from plantar.polygon import inside_distance
+from plantar.polygon import separation
 
 KNEE_BEND = 0.94  # of the straight leg's height, where no posture is given
 STEP_ASIDE = 0.05  # m, the right leg to the right (B)
@@ -124,13 +124,9 @@ def _facing_forward(body: Body, q: Array) -> Array:
 
 
 def _check_apart(body: Body, targets: Mapping[str, pin.SE3]) -> None:
-    """MotionError where two soles would stand on each other: no straight line passes between them."""
-    first, second = sole_outlines(
-        body.robot, {n: np.array(t.homogeneous) for n, t in targets.items()}
-    ).values()
-    gap = max(
-        float(-inside_distance(points, other).max()) for points, other in ((first, second), (second, first))
-    )
+    """MotionError where two soles would stand on each other."""
+    soles = sole_outlines(body.robot, {n: np.array(t.homogeneous) for n, t in targets.items()})
+    gap = separation(*soles.values())
     if gap <= 0:
         message = f"the soles would stand on each other, {-1e3 * gap:.0f} mm deep"
         raise MotionError(located(message, path=body.robot.name, valid="feet farther apart"))

@@ -9,6 +9,7 @@ from pathlib import Path
 from threading import Event
 from typing import TypeVar
 
+from plantar.errors import MotionError
 from plantar.motions.campaign import Postures, plan_motion
 from plantar.motions.plan import Plan
 from plantar.robot import RobotModel
@@ -21,6 +22,7 @@ from plantar.twin.recording import TwinRecording, record
 from plantar.twin.rollout import Rollout, roll_out, scene_xml
 
 Progress = Callable[[str, float], None]  # motion, share done
+Share = Callable[[float], None]
 Job = TypeVar("Job")
 Done = TypeVar("Done")
 
@@ -47,12 +49,26 @@ def play_all(
     preset: str = DEFAULT,
     seeds: Iterable[int] = (0,),
     progress: Progress | None = None,
+    *,
+    sway: float | None = None,
+    vertical: float | None = None,
+    apart: float | None = None,
 ) -> list[list[TwinRecording]]:
-    """Play motions on both cores; one list of recordings for each seed, from one rollout a motion."""
+    """Play motions on both cores; one list of recordings for each seed, from one rollout a motion.
+
+    `sway`, `vertical`, `apart`: sizes of the motions given by name, see `plan_motion`. Raises MotionError, before
+    anything is played, where one of them cannot be.
+    """
     robot, names = robot or hrp2.robot(), list(motions)
     chosen = preset_named(preset)
     physics = chosen.physics(bushes)
-    plans = on_cores(lambda motion: motion if isinstance(motion, Plan) else planned(motion, robot), names)
+
+    def plan(motion: str | Plan) -> Plan:
+        if isinstance(motion, Plan):
+            return motion
+        return planned(motion, robot, sway=sway, vertical=vertical, apart=apart)
+
+    plans = on_cores(plan, names)
     rollouts = roll_all([(plan, physics) for plan in plans], robot, progress)
     return [[record(rollout, robot, physics, chosen, seed) for rollout in rollouts] for seed in seeds]
 
@@ -61,9 +77,33 @@ def roll_all(
     played: Sequence[tuple[Plan, Physics]], robot: RobotModel, progress: Progress | None = None
 ) -> list[Rollout]:
     """Roll out plans, each in its own world, on all cores; the first error stops the others."""
+    return _rolled_on_cores(played, robot, progress, rolled)
+
+
+def roll_each(
+    played: Sequence[tuple[Plan, Physics]], robot: RobotModel, progress: Progress | None = None
+) -> list[Rollout | MotionError]:
+    """The same, but a robot that falls stops no other: its error stands in the place of its rollout."""
+
+    def tried(plan: Plan, robot: RobotModel, physics: Physics, report: Share) -> Rollout | MotionError:
+        try:
+            return rolled(plan, robot, physics, report)
+        except MotionError as error:
+            return error
+
+    return _rolled_on_cores(played, robot, progress, tried)
+
+
+def _rolled_on_cores(
+    played: Sequence[tuple[Plan, Physics]],
+    robot: RobotModel,
+    progress: Progress | None,
+    way: Callable[[Plan, RobotModel, Physics, Share], Done],
+) -> list[Done]:
+    """`way` on every job; after an error the others stop at their next second of motion."""
     stop = Event()
 
-    def roll(job: tuple[Plan, Physics]) -> Rollout:
+    def roll(job: tuple[Plan, Physics]) -> Done:
         plan, physics = job
 
         def report(share: float) -> None:
@@ -72,9 +112,9 @@ def roll_all(
             if progress is not None:
                 progress(plan.name, share)
 
-        rollout = rolled(plan, robot, physics, report)
+        done = way(plan, robot, physics, report)
         report(1.0)
-        return rollout
+        return done
 
     try:
         return on_cores(roll, played)
@@ -113,6 +153,7 @@ def postures_of(robot: RobotModel) -> Postures:
 def planned(name: str, robot: RobotModel, **options: float | None) -> Plan:
     """`plan_motion` from the robot's own postures, kept in the cache."""
     postures = postures_of(robot)
+    options = {option: size for option, size in options.items() if size is not None}
     key = plan_key(name, robot, postures, options)
     if (kept := cache.load(key)) is not None:
         return plan_from(name, kept)
@@ -121,9 +162,7 @@ def planned(name: str, robot: RobotModel, **options: float | None) -> Plan:
     return plan
 
 
-def rolled(
-    plan: Plan, robot: RobotModel, physics: Physics, progress: Callable[[float], None] | None = None
-) -> Rollout:
+def rolled(plan: Plan, robot: RobotModel, physics: Physics, progress: Share | None = None) -> Rollout:
     """`roll_out` on the scene of `physics`, kept in the cache."""
     xml = scene_xml(robot, plan, physics, hrp2.look(robot))
     key = rollout_key(plan, physics, xml)

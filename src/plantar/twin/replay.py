@@ -7,10 +7,11 @@ from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import numpy as np
+from scipy.signal import detrend
 
 from plantar.balance import LOADED, flat_soles, soles_in_root
 from plantar.conventions import GRAVITY, Array, rotation_from_quaternion
-from plantar.errors import DataError, PlantarError, located
+from plantar.errors import DataError, MotionError, PlantarError, located
 from plantar.log import MotionLog
 from plantar.motions.plan import RATE, Hand, Plan
 from plantar.robot import RobotModel
@@ -21,10 +22,10 @@ from plantar.twin.foot import cut_feet
 from plantar.twin.from_robot import describe
 from plantar.twin.mjcf import SERVO_ANGLE
 from plantar.twin.physics import Physics
-from plantar.twin.play import Progress, roll_all
+from plantar.twin.play import Progress, roll_each
 
 SMOOTH: Final = 10.0  # Hz: encoder steps are no motion
-REFERENCE: Final = 1.0  # s at the start that zeros of sensors are taken from, and that are not scored
+REFERENCE: Final = 1.0  # s at the start that zeros of force sensors are taken from, and that are not scored
 LAWS: Final = ("kelvin_voigt", "hardening", "elastoplastic")
 TERMS: Final = ("stiffness", "damping", "hardening", "slip_torque", "slip_angle")
 
@@ -33,8 +34,8 @@ TERMS: Final = ("stiffness", "damping", "hardening", "slip_torque", "slip_angle"
 class Replayed:
     """One motion on one candidate's feet beside the recording, at `time` (N,).
 
-    `torque` and `recorded_torque`: by (foot, axis), (N,) [N·m] at the bush; `chest` and `recorded_chest`: pitch and
-    roll of the IMU's link, (N, 2) [rad]. All are relative to their mean over the first second.
+    `torque` and `recorded_torque`: by (foot, axis), (N,) [N·m] at the bush, relative to their mean over the first
+    second; `chest` and `recorded_chest`: pitch and roll of the IMU's link, (N, 2) [rad].
     """
 
     motion: str
@@ -50,11 +51,29 @@ class Replayed:
         scored = self.time > self.time[0] + REFERENCE
         return float(np.mean(np.abs(self.torque[foot, axis] - self.recorded_torque[foot, axis])[scored]))
 
+    @property
+    def followed_chest(self) -> Array:
+        """The simulated chest moved onto the recorded one by a straight line in time, (N, 2) [rad]: `chest_error` is
+        what remains between the two."""
+        return self.recorded_chest + beyond_line(self.chest - self.recorded_chest)
+
     def chest_error(self) -> tuple[float, float]:
-        """Root mean square error of the chest's pitch and roll after the first second [rad]."""
-        scored = self.time > self.time[0] + REFERENCE
-        pitch, roll = np.sqrt(np.mean((self.chest - self.recorded_chest)[scored] ** 2, axis=0))
-        return float(pitch), float(roll)
+        """Root mean square error of the chest's pitch and roll [rad], a straight line in time aside."""
+        return attitude_error(self.chest, self.recorded_chest)
+
+
+def attitude_error(one: Array, other: Array) -> tuple[float, float]:
+    """Root mean square of what lies between two ways of pitch and roll, (N, 2) [rad], `beyond_line`."""
+    pitch, roll = np.sqrt(np.mean(beyond_line(one - other) ** 2, axis=0))
+    return float(pitch), float(roll)
+
+
+def beyond_line(difference: Array) -> Array:
+    """An evenly sampled difference (N, k) less the straight line in time nearest to it by least squares.
+
+    An IMU's attitude has a bias and drifts slowly; neither is the feet's, and both are straight lines.
+    """
+    return np.asarray(detrend(difference, axis=0))
 
 
 def replay(
@@ -66,28 +85,26 @@ def replay(
 ) -> list[Replayed]:
     """Play recordings open loop on each candidate's feet (None: rigid ones), on all cores.
 
-    Servos follow the recorded joints; `hands`, by motion, lead the robot where an operator did. Raises DataError
-    where a log holds no attitude, MotionError where a candidate lets the robot fall.
+    Servos follow the recorded joints; `hands`, by motion, lead the robot where an operator did. Where a candidate
+    lets the robot fall, that one is missing from the list. Raises DataError where a log holds no attitude.
     """
     plans = [plan_of(robot, log, (hands or {}).get(log.name)) for log in logs]
+    records = [_at(log, log.time[0] + plan.time) for log, plan in zip(logs, plans, strict=True)]
+    felt = [(_torques(robot, record), pitch_and_roll(robot, record)) for record in records]
+    pairs = [(place, feet) for feet in candidates for place in range(len(plans))]
     jobs = [
-        (replace(plan, name=f"{plan.name} on {feet}"), Physics(bushes=bushes))
-        for plan in plans
-        for feet, bushes in candidates.items()
+        (replace(plans[place], name=f"{plans[place].name} on {feet}"), Physics(bushes=candidates[feet]))
+        for place, feet in pairs
     ]
-    rollouts = iter(roll_all(jobs, robot, progress))
-    cut, compared = cut_feet(describe(robot), robot), []
-    for plan, log in zip(plans, logs, strict=True):
-        resampled = _at(log, log.time[0] + plan.time)
-        for feet in candidates:
-            played = MotionLog(log.name, plan.time, exact_columns(next(rollouts), robot, cut))
-            compared.append(
-                Replayed(
-                    log.name, feet, plan.time, _torques(robot, played), _torques(robot, resampled),
-                    _chest(robot, played), _chest(robot, resampled),
-                )
-            )  # fmt: skip
-    return compared
+    cut, found = cut_feet(describe(robot), robot), []
+    for (place, feet), rollout in zip(pairs, roll_each(jobs, robot, progress), strict=True):
+        if isinstance(rollout, MotionError):
+            continue
+        plan, (torques, chest) = plans[place], felt[place]
+        played = MotionLog(plan.name, plan.time, exact_columns(rollout, robot, cut))
+        mine = _torques(robot, played), pitch_and_roll(robot, played)
+        found.append(Replayed(plan.name, feet, plan.time, mine[0], torques, mine[1], chest))
+    return found
 
 
 def feet_of(result: Mapping[str, Any]) -> Feet:
@@ -164,13 +181,13 @@ def _torques(robot: RobotModel, log: MotionLog) -> dict[tuple[str, str], Array]:
     return torques
 
 
-def _chest(robot: RobotModel, log: MotionLog) -> Array:
-    """Pitch and roll of the IMU, (N, 2) [rad], less their mean over the first second; yaw does not enter."""
+def pitch_and_roll(robot: RobotModel, log: MotionLog) -> Array:
+    """Pitch and roll of the IMU, (N, 2) [rad]; yaw does not enter. Raises DataError where the log has no attitude."""
     quaternions = log.orientation(robot.imu.name) if robot.imu is not None else None
     if quaternions is None:
         raise DataError(located("holds no attitude to compare with", path=log.source))
     up = rotation_from_quaternion(quaternions)[:, 2, :]
-    return _changed(log, np.column_stack([-np.arcsin(up[:, 0]), np.arctan2(up[:, 1], up[:, 2])]))
+    return np.column_stack([-np.arcsin(up[:, 0]), np.arctan2(up[:, 1], up[:, 2])])
 
 
 def _changed(log: MotionLog, values: Array) -> Array:
