@@ -14,7 +14,9 @@ from typing import Any
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
+from scipy.spatial.transform import Rotation
 
+from plantar.campaign.choice import COMPOSED, TOGETHER, choice_rows, choice_table, explained
 from plantar.campaign.compared import cross_beside, direct_beside, parameters_beside
 from plantar.campaign.paper import TABLE_1, TABLE_2, TABLE_3
 from plantar.campaign.pictures import boxes, look_of
@@ -22,10 +24,11 @@ from plantar.campaign.replay import IDENTIFIED, RECORD, RIGID, ReplayRow, best_g
 from plantar.campaign.tables import simulator_table, table_1, table_3
 from plantar.cli import main
 from plantar.files import sha256
+from plantar.identify.selection import Choice, Selection
 from plantar.result import FeetResult, Parameter, ValidationRow
 from plantar.twin import PAPER, hrp2
 from plantar.twin.play import planned
-from plantar.twin.replay import Replayed
+from plantar.twin.replay import Replayed, moved_onto, pitch_and_roll
 from report_visit import Visit, launched
 
 BARS = {"stiffness": 1.0, "damping": 3.0}  # percent
@@ -74,7 +77,7 @@ def test_the_demo_writes_what_it_says(demo: tuple[Path, str, str]) -> None:
     wanted = ("figure03_postures", "figure04b_zmp_Tilt3", "figure07_angles_Tilt3", "figure09_direct",
               "figure11_cross_Squat", "simulator")  # fmt: skip
     assert figures == {f"{name}.{kind}" for name in wanted for kind in ("svg", "pdf")}
-    for heading in ("Table 1", "Table 2", "Table 3", "In a simulator"):
+    for heading in ("Table 1", "Table 2", "Table 3", "Which motions tell most", "In a simulator"):
         assert heading in out
     assert str(folder / "report.html") in "".join(out.split("\n"))
     assert "play 2 motions on the twin: 100 %" in error
@@ -270,21 +273,55 @@ def test_scores_pool_motions_and_tell_who_falls() -> None:
     assert text["hard"][1] == "5.000"
 
 
-def test_a_bias_and_a_slow_drift_are_not_the_feets() -> None:
+def test_bias_and_slow_drift_of_an_attitude_are_not_the_feets() -> None:
     time = np.arange(2001) / 200.0
-    middle = np.cos(2 * np.pi * (time - time.mean()))  # even about the middle: no line is in it
-    wave = np.outer(middle - middle.mean(), [0.004, 0.002])
-    recorded = np.column_stack([0.01 * np.sin(0.7 * time), 0.02 * np.cos(0.4 * time)])
-    drifted = recorded + wave + [0.003, -0.002] + np.outer(time, [1e-4, -2e-4])
-    one = Replayed("Tilt1", IDENTIFIED, time, {}, {}, drifted, recorded)
-    assert one.chest_error() == pytest.approx((0.004 / np.sqrt(2), 0.002 / np.sqrt(2)), rel=5e-3)
-    assert one.followed_chest == pytest.approx(recorded + wave, abs=1e-12)
-    still = replace(one, chest=recorded + [0.003, -0.002])
-    assert still.chest_error() == pytest.approx((0.0, 0.0), abs=1e-12)
+    turn = Rotation.from_euler(
+        "zyx", np.column_stack([0.6 * np.sin(time), 0.05 * np.cos(time), 0.1 * time / 10])
+    )
+    off = Rotation.from_rotvec(np.array([0.003, -0.002, 0.1]) + np.outer(time, [1e-4, -2e-4, 1e-3]))
+    recorded = (off * turn).as_matrix()
+    assert pitch_and_roll(moved_onto(recorded, turn.as_matrix())) == pytest.approx(
+        pitch_and_roll(recorded[:, 2, :]), abs=2e-5
+    )
+    # what else lies between the two stays
+    wave = 0.004 * np.cos(2 * np.pi * (time - time.mean()))  # even about the middle: no line is in it
+    swayed = turn * Rotation.from_rotvec(np.outer(wave, [0.0, 1.0, 0.0]))
+    left = pitch_and_roll(moved_onto(recorded, swayed.as_matrix())) - pitch_and_roll(recorded[:, 2, :])
+    assert left == pytest.approx(np.outer(wave, [1.0, 0.0]), abs=3e-4)
+
+
+def test_errors_of_a_replay() -> None:
+    time = np.arange(400) / 200.0
+    chest, place = np.tile([0.003, -0.004], (400, 1)), ("left", "roll")
+    late = np.where(time > 1.0, -2.0, 50.0)  # the first second is not scored
+    one = Replayed(
+        "Tilt1", IDENTIFIED, time, {place: late}, {place: np.zeros(400)}, chest, np.zeros((400, 2))
+    )
+    assert one.chest_error() == pytest.approx((0.003, 0.004))
+    assert one.torque_error(*place) == pytest.approx(2.0)
 
 
 def test_a_robot_that_fell_keeps_its_rows() -> None:
     assert {row.error for row in replay_rows([], ["Squat"], ["soft"])} == {None}
+
+
+def test_the_choice_of_motions_is_set_beside_the_papers() -> None:
+    def choice(width: float, *motions: str) -> Choice:
+        widths = {("left", "pitch", "stiffness"): width / 2, ("left", "roll", "damping"): 2 * width}
+        return Choice(motions, widths, 1.0)
+
+    best = (choice(3.0, "a"), choice(0.9, "a", "b"), choice(0.5, "a", "b", "c"))
+    paper = choice(1.0, "a", "c", "d")
+    found = Selection((), best, choice(0.4, *"abcd"), paper)
+    table = choice_table(found)
+    assert [row[0].text for row in table.rows] == ["best of 1", "best of 2", "best of 3", COMPOSED, TOGETHER]
+    assert [cell.text for cell in table.rows[3][1:4]] == ["a, c, d", "1.0 %", "2.0 % (C left roll)"]
+    said = "promises 1.0 %, the best set of 3 0.50 %; 2 suffice for what the composed motion promises."
+    assert explained(found).endswith(said)
+    assert explained(replace(found, compared=choice(0.5, "c", "b", "a"))).endswith(
+        "no other set of 3 promises more."
+    )
+    assert choice_rows(found)[3]["half_widths"][1]["percent"] == 2.0
 
 
 def test_postures_stand_on_the_floor() -> None:

@@ -111,14 +111,14 @@ def _simulated(found: Sequence[Replayed], guess: str | None) -> Plate:
     for motion in dict.fromkeys(one.motion for one in found):
         group = [one for one in found if one.motion == motion and one.feet in shown]
         recorded = _labelled(group[0].recorded_chest, group[0].recorded_torque)
-        simulated = {one.feet: _labelled(one.followed_chest, one.torque) for one in group}
+        simulated = {one.feet: _labelled(one.chest, one.torque) for one in group}
         motions.append(MotionReplayed(motion, group[0].time, recorded, simulated))
     rows = [(name, f"{name}\n[mrad]", MILLI) for name in CHEST]
     rows += [(f"{foot} {axis}", f"{foot} {axis}\ntorque [N·m]", 1.0) for foot, axis in found[0].torque]
     caption = (
         "Recorded, and the same joint motion in the simulator on identified feet, rigid feet and "
-        f"the best of the guesses{f' ({guess})' if guess else ''}. Each simulated chest is moved onto the recorded "
-        "one by a straight line in time (bias and drift of an attitude); zeros of the torques from the first second."
+        f"the best of the guesses{f' ({guess})' if guess else ''}. A recorded attitude's bias and slow drift, a "
+        "straight line in time, are taken out of each; zeros of the torques from the first second."
     )
     return Plate(
         "simulator", None, "The campaign in a simulator.", caption, replays(motions, rows, IDENTIFIED)

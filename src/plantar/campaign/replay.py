@@ -21,7 +21,7 @@ from plantar.twin.foot import cut_feet
 from plantar.twin.from_robot import describe
 from plantar.twin.play import planned, rolled
 from plantar.twin.presets import preset_named
-from plantar.twin.replay import Replayed, attitude_error, feet_of, pitch_and_roll
+from plantar.twin.replay import Replayed, chest_attitude, feet_of, moved_onto, pitch_and_roll
 
 IDENTIFIED: Final = "identified"
 RIGID: Final = "rigid"
@@ -32,7 +32,7 @@ CHEST: Final = ("chest pitch", "chest roll")
 @dataclass(frozen=True)
 class ReplayRow:
     """How far the simulated robot is from the recorded one in one motion: of the chest's pitch and roll the root
-    mean square error [rad], a straight line in time aside, of a foot's torque the mean absolute error [N.m]; None
+    mean square error [rad], of a foot's torque the mean absolute error [N.m]; None
     where the robot falls."""
 
     feet: str
@@ -77,10 +77,12 @@ def record_rows(
     rows = []
     for log in recorded:
         columns = exact_columns(rolled(planned(log.name, robot), robot, physics), robot, feet)
-        true = pitch_and_roll(robot, MotionLog(log.name, log.time, columns))
-        errors = attitude_error(pitch_and_roll(robot, log), true)
+        attitude = chest_attitude(robot, log)
+        true = moved_onto(attitude, chest_attitude(robot, MotionLog(log.name, log.time, columns)))
+        errors = np.sqrt(np.mean((pitch_and_roll(true) - pitch_and_roll(attitude[:, 2, :])) ** 2, axis=0))
         rows += [
-            ReplayRow(RECORD, log.name, axis, "rad", error) for axis, error in zip(CHEST, errors, strict=True)
+            ReplayRow(RECORD, log.name, axis, "rad", float(error))
+            for axis, error in zip(CHEST, errors, strict=True)
         ]
     return tuple(rows)
 

@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final
 
+from plantar.campaign.choice import choice_rows
 from plantar.campaign.compared import (
     CrossBeside,
     DirectBeside,
@@ -20,6 +21,7 @@ from plantar.campaign.replay import ReplayRow, candidates, hands_of, record_rows
 from plantar.campaign.shares import shares
 from plantar.errors import MotionError
 from plantar.identify.feet import identify_feet
+from plantar.identify.selection import Selection, select_motions
 from plantar.identify.settings import FeetSettings
 from plantar.log import MotionLog
 from plantar.motions import CAMPAIGN, FIT
@@ -29,11 +31,10 @@ from plantar.result import FeetResult
 from plantar.robot import RobotModel, load_robot
 from plantar.twin import PAPER, TwinRecording, play, play_all, write_campaign
 from plantar.twin.bush import Feet
-from plantar.twin.presets import preset_named
+from plantar.twin.presets import DEFAULT, preset_named
 from plantar.twin.replay import Replayed, replay
 
 UNSEEN: Final = ("Tilt1", "Squat", "Myrand4", "Manual_both_pitch")  # the paper's cross-validation
-PRESET: Final = "sensors"  # imperfections of the twin, where none is asked for
 # one offset for the composed motion, a spring and a damper, and sensors that are never late
 PAPER_WAY: Final = FeetSettings(offset="shared", model="kelvin_voigt", wrench_delay=0.0)
 PAPER_WAY_NAME: Final = "the paper's way: one shared offset, spring and damper, no delay"
@@ -81,6 +82,7 @@ class Campaign:
     parameters: tuple[ParameterBeside, ...]
     direct: tuple[DirectBeside, ...]
     cross: tuple[CrossBeside, ...]
+    selection: Selection = field(repr=False)
     replays: tuple[Replayed, ...] = field(repr=False)
     replayed: tuple[ReplayRow, ...]
 
@@ -88,7 +90,7 @@ class Campaign:
 def run_campaign(
     directory: Path,
     course: Course | None = None,
-    preset: str = PRESET,
+    preset: str = DEFAULT,
     seed: int = 0,
     progress: Progress = lambda _: None,
 ) -> Campaign:
@@ -110,6 +112,7 @@ def run_campaign(
     result = identify_feet(robot, fitted, unseen, progress=progress)
     result = replace(result, notes=(*result.notes, *notes))
     paper_way = identify_feet(robot, fitted, unseen, PAPER_WAY, progress)
+    selection = select_motions(robot, list(loaded.values()), course.fit, len(course.fit), progress=progress)
     truth = preset_named(preset).physics(PAPER).bushes or PAPER
     kinds = candidates(result) if course.guesses is None else candidates(result, course.guesses)
     again = [loaded[name] for name in course.replayed]
@@ -120,7 +123,7 @@ def run_campaign(
     campaign = Campaign(
         directory, robot, loaded, result, paper_way,
         parameters_beside(result, paper_way, truth), direct_beside(result, paper_way), cross_beside(result, paper_way),
-        tuple(replays), replayed,
+        selection, tuple(replays), replayed,
     )  # fmt: skip
     progress("save the numbers")
     extras = {
@@ -165,6 +168,7 @@ def _as_data(campaign: Campaign, preset: str, seed: int, truth: Feet) -> dict[st
         "table_1": _rows(campaign.parameters),
         "table_2": _rows(campaign.direct),
         "table_3": _rows(campaign.cross),
+        "selection": choice_rows(campaign.selection),
         "replay": _rows(campaign.replayed),
     }
 

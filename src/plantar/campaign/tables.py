@@ -7,6 +7,7 @@ from typing import Final
 
 import numpy as np
 
+from plantar.campaign.choice import choice_table
 from plantar.campaign.compared import CrossBeside, DirectBeside, ParameterBeside
 from plantar.campaign.replay import IDENTIFIED, RIGID, ReplayRow, scores
 from plantar.campaign.run import Campaign
@@ -22,8 +23,10 @@ FALLS: Final = "falls"
 
 
 def tables(campaign: Campaign) -> tuple[Table, ...]:
-    """Tables 1, 2 and 3 beside the paper's and the truth, then the simulator's where motions were replayed."""
+    """Tables 1, 2 and 3 beside the paper's and the truth, the choice of motions, then the simulator's where motions
+    were replayed."""
     made = [table_1(campaign.parameters), table_2(campaign.direct), table_3(campaign.cross)]
+    made.append(choice_table(campaign.selection))
     if campaign.replayed:
         made.append(simulator_table(campaign.replayed))
     return tuple(made)
@@ -115,10 +118,11 @@ def simulator_table(rows: Sequence[ReplayRow]) -> Table:
     motions = ", ".join(dict.fromkeys(row.motion for row in rows))
     remark = (
         f"{motions}, played again on a fresh twin by the recorded joints alone and compared with the record. Chest: "
-        "root mean square of simulated minus recorded attitude, less the straight line in time nearest to it (an IMU's "
-        "bias and slow drift are not the feet's), for every kind of feet alike. Torques: mean |error| after the first "
-        f"second, from which their zeros come. '{FALLS}': that robot did not stay upright. The last line is how far "
-        "the record itself is from the truth by the same measure."
+        "root mean square of simulated minus recorded attitude. The bias and slow drift of an IMU's attitude turn its "
+        "world by a straight line in time and are not the feet's: the turn nearest to the record is taken out, for "
+        "every kind of feet alike. Torques: mean |error| after the first second, from which their zeros come. "
+        f"'{FALLS}': that robot did not stay upright. The last line is how far the record itself is from the truth, by "
+        "the same measure."
     )
     return Table.of("In a simulator: identified, rigid and guessed feet", columns, lines, remark=remark)
 

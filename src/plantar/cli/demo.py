@@ -22,7 +22,7 @@ MARKS = {"good": "green", "weak": "yellow", "bad": "red"}
 
 def run(
     out: Annotated[Path, typer.Option("--out", help="Folder for logs, result, figures and report.")] = Path("out/demo"),
-    preset: Annotated[str | None, typer.Option(help="Imperfections: ideal, sensors, realistic or harsh.")] = None,
+    preset: Annotated[str, typer.Option(help="Imperfections: ideal, sensors, realistic or harsh.")] = "realistic",
     seed: Annotated[int, typer.Option(help="Of noise, biases and zeros.", min=0)] = 0,
     quick: Annotated[bool, typer.Option("--quick", help="Two motions only: to see it run.")] = False,
     json: Annotated[bool, typer.Option("--json", help="Print result.json instead of tables.")] = False,
@@ -38,13 +38,12 @@ def run(
     try:
         from plantar.campaign import Course, run_campaign
         from plantar.campaign.present import write_campaign_report
-        from plantar.campaign.run import PRESET
     except ImportError as error:
         raise MissingExtra(error.name or "mujoco", "all", "plantar demo") from error
     if out.exists() and not out.is_dir():
         raise PlantarError(located("is a file", path=out, valid="a folder for the results"))
     step = _progress(quiet)
-    campaign = run_campaign(out, Course.quick() if quick else None, preset or PRESET, seed, step)
+    campaign = run_campaign(out, Course.quick() if quick else None, preset, seed, step)
     written = write_campaign_report(campaign, step)
     end_progress(quiet)
     if json:

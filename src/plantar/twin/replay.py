@@ -35,7 +35,8 @@ class Replayed:
     """One motion on one candidate's feet beside the recording, at `time` (N,).
 
     `torque` and `recorded_torque`: by (foot, axis), (N,) [N·m] at the bush, relative to their mean over the first
-    second; `chest` and `recorded_chest`: pitch and roll of the IMU's link, (N, 2) [rad].
+    second; `chest` and `recorded_chest`: pitch and roll of the IMU's link, (N, 2) [rad], the simulated one
+    `moved_onto` the recorded.
     """
 
     motion: str
@@ -51,29 +52,36 @@ class Replayed:
         scored = self.time > self.time[0] + REFERENCE
         return float(np.mean(np.abs(self.torque[foot, axis] - self.recorded_torque[foot, axis])[scored]))
 
-    @property
-    def followed_chest(self) -> Array:
-        """The simulated chest moved onto the recorded one by a straight line in time, (N, 2) [rad]: `chest_error` is
-        what remains between the two."""
-        return self.recorded_chest + beyond_line(self.chest - self.recorded_chest)
-
     def chest_error(self) -> tuple[float, float]:
-        """Root mean square error of the chest's pitch and roll [rad], a straight line in time aside."""
-        return attitude_error(self.chest, self.recorded_chest)
+        """Root mean square error of the chest's pitch and roll [rad]."""
+        pitch, roll = np.sqrt(np.mean((self.chest - self.recorded_chest) ** 2, axis=0))
+        return float(pitch), float(roll)
 
 
-def attitude_error(one: Array, other: Array) -> tuple[float, float]:
-    """Root mean square of what lies between two ways of pitch and roll, (N, 2) [rad], `beyond_line`."""
-    pitch, roll = np.sqrt(np.mean(beyond_line(one - other) ** 2, axis=0))
-    return float(pitch), float(roll)
+def moved_onto(recorded: Array, other: Array) -> Array:
+    """Attitudes `other` (N, 3, 3), body to world, less what a record's own world is turned by; (N, 3) up in the body.
 
-
-def beyond_line(difference: Array) -> Array:
-    """An evenly sampled difference (N, k) less the straight line in time nearest to it by least squares.
-
-    An IMU's attitude has a bias and drifts slowly; neither is the feet's, and both are straight lines.
+    The bias and the slow drift of a recorded attitude (N, 3, 3) turn its world a little, by a straight line in time;
+    they are not the feet's. The turn that brings `other` nearest to the record, by least squares over all samples,
+    is taken out. Yaw does not enter.
     """
-    return np.asarray(detrend(difference, axis=0))
+    leaning = np.einsum("nij,nj->ni", recorded, other[:, 2, :])  # the other's vertical in the record's world
+    level = np.asarray(detrend(leaning[:, :2], axis=0))
+    upright = np.sqrt(1.0 - np.sum(level**2, axis=1))
+    return np.asarray(np.einsum("nji,nj->ni", recorded, np.column_stack([level, upright])))
+
+
+def pitch_and_roll(up: Array) -> Array:
+    """Pitch and roll, (N, 2) [rad], of a body that sees the world's up at `up` (N, 3)."""
+    return np.column_stack([-np.arcsin(up[:, 0]), np.arctan2(up[:, 1], up[:, 2])])
+
+
+def chest_attitude(robot: RobotModel, log: MotionLog) -> Array:
+    """The IMU's attitude, body to world, (N, 3, 3). Raises DataError where the log has none."""
+    quaternions = log.orientation(robot.imu.name) if robot.imu is not None else None
+    if quaternions is None:
+        raise DataError(located("holds no attitude to compare with", path=log.source))
+    return rotation_from_quaternion(quaternions)
 
 
 def replay(
@@ -90,7 +98,7 @@ def replay(
     """
     plans = [plan_of(robot, log, (hands or {}).get(log.name)) for log in logs]
     records = [_at(log, log.time[0] + plan.time) for log, plan in zip(logs, plans, strict=True)]
-    felt = [(_torques(robot, record), pitch_and_roll(robot, record)) for record in records]
+    felt = [(_torques(robot, record), chest_attitude(robot, record)) for record in records]
     pairs = [(place, feet) for feet in candidates for place in range(len(plans))]
     jobs = [
         (replace(plans[place], name=f"{plans[place].name} on {feet}"), Physics(bushes=candidates[feet]))
@@ -100,10 +108,11 @@ def replay(
     for (place, feet), rollout in zip(pairs, roll_each(jobs, robot, progress), strict=True):
         if isinstance(rollout, MotionError):
             continue
-        plan, (torques, chest) = plans[place], felt[place]
+        plan, (torques, attitude) = plans[place], felt[place]
         played = MotionLog(plan.name, plan.time, exact_columns(rollout, robot, cut))
-        mine = _torques(robot, played), pitch_and_roll(robot, played)
-        found.append(Replayed(plan.name, feet, plan.time, mine[0], torques, mine[1], chest))
+        chest = pitch_and_roll(moved_onto(attitude, chest_attitude(robot, played)))
+        mine, recorded = _torques(robot, played), pitch_and_roll(attitude[:, 2, :])
+        found.append(Replayed(plan.name, feet, plan.time, mine, torques, chest, recorded))
     return found
 
 
@@ -179,15 +188,6 @@ def _torques(robot: RobotModel, log: MotionLog) -> dict[tuple[str, str], Array]:
         torque = _changed(log, torque + np.cross(to_bush[:3, 3], force))
         torques[name, "pitch"], torques[name, "roll"] = torque[:, 1], torque[:, 0]
     return torques
-
-
-def pitch_and_roll(robot: RobotModel, log: MotionLog) -> Array:
-    """Pitch and roll of the IMU, (N, 2) [rad]; yaw does not enter. Raises DataError where the log has no attitude."""
-    quaternions = log.orientation(robot.imu.name) if robot.imu is not None else None
-    if quaternions is None:
-        raise DataError(located("holds no attitude to compare with", path=log.source))
-    up = rotation_from_quaternion(quaternions)[:, 2, :]
-    return np.column_stack([-np.arcsin(up[:, 0]), np.arctan2(up[:, 1], up[:, 2])])
 
 
 def _changed(log: MotionLog, values: Array) -> Array:
