@@ -1,28 +1,54 @@
-"""How often the 95 % intervals of K and C cover the truth, over noise seeds and presets of the twin.
+"""How often the 95 % intervals of K and C cover the truth, over noise seeds, presets of the twin, and two robots.
 
-    python benchmarks/coverage.py --presets sensors --seeds 20
+    python benchmarks/coverage.py --robots hrp2 talos --presets ideal sensors realistic --seeds 8
 
-One rollout a motion and preset; the sensors are drawn anew for every seed.
+One rollout a motion, preset and robot; the sensors are drawn anew for every seed. Of z the sum of both compliances is
+scored, which is what any log with moving weight shows, and each foot's where the result separates them.
 """
 
 from __future__ import annotations
 
 import argparse
+import tempfile
 import time
 from collections import Counter, defaultdict
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
+import talos
 from plantar.identify.feet import identify_feet
 from plantar.identify.settings import FeetSettings
 from plantar.motions.campaign import FIT
+from plantar.result import FeetResult
+from plantar.robot import RobotModel
 from plantar.twin import PAPER, hrp2, play_all
+from plantar.twin.bush import Feet
 
+ROBOTS: dict[str, tuple[Callable[[Path], RobotModel], Feet]] = {
+    "hrp2": (lambda _: hrp2.robot(), PAPER),
+    "talos": (talos.robot, talos.BUSHES),
+}
 NAMES = {"stiffness": "K", "damping": "C"}
+
+
+class Score(NamedTuple):
+    """One interval beside the truth: error, half width and white std, all relative to the truth."""
+
+    error: float
+    inside: bool
+    half: float
+    white: float
+
+
+Table = dict[tuple[str, str], list[Score]]  # by axis and K or C
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--robots", nargs="+", default=["hrp2"], choices=ROBOTS)
     parser.add_argument("--presets", nargs="+", default=["sensors"])
     parser.add_argument("--seeds", type=int, default=20)
     parser.add_argument("--motions", nargs="+", default=list(FIT))
@@ -32,61 +58,81 @@ def main() -> None:
     parser.add_argument("--offset", default="per-motion")
     parser.add_argument("--model", default="auto")
     chosen = parser.parse_args()
-    robot = hrp2.robot()
-    for preset in chosen.presets:
-        started = time.perf_counter()
-        campaigns = play_all([*chosen.motions, *chosen.others], robot, PAPER, preset, range(chosen.seeds))
-        print(f"\n{preset}: {len(chosen.motions)} motions, {chosen.seeds} seeds, offset {chosen.offset}; "
-              f"rollouts {time.perf_counter() - started:.0f} s")  # fmt: skip
-        errors = defaultdict(list)
-        models: Counter[str] = Counter()
-        settings = FeetSettings(offset=chosen.offset, model=chosen.model)
-        for recordings in campaigns:
-            logs = [recording.log for recording in recordings]
-            split = len(chosen.motions)
-            result = identify_feet(robot, logs[:split], logs[split:], settings)
-            models[result.model] += 1
-            for row in result.parameters:
-                truth = getattr(PAPER[row.foot], f"{row.axis}_{row.name}", None)
-                if row.name in NAMES and truth and row.value is not None and row.interval95 is not None:
-                    inside = row.interval95[0] <= truth <= row.interval95[1]
-                    half = (row.interval95[1] - row.interval95[0]) / 2
-                    errors[row.foot, row.axis, row.name].append(
-                        (row.value / truth - 1, inside, half / truth, row.relative_std_percent)
-                    )
-        print(f"laws chosen: {dict(models)}")
-        _print(errors)
-
-
-def _print(errors: dict[tuple[str, str, str], list[tuple[float, bool, float, float]]]) -> None:
-    heads = ("mean err %", "max |err| %", "half width %", "white std %", "covered %")
-    print(f"{'foot':6} {'axis':6} {'':2}" + "".join(f"{head:>14}" for head in heads))
-    rotational = []
-    for (foot, axis, name), rows in errors.items():
-        relative, inside, half, white = (np.array(column, dtype=float) for column in zip(*rows, strict=True))
-        numbers = (
-            100 * relative.mean(),
-            100 * abs(relative).max(),
-            100 * half.mean(),
-            white.mean(),
-            100 * inside.mean(),
-        )
-        print(
-            f"{foot:6} {axis:6} {NAMES.get(name, name):2}" + "".join(f"{number:14.3f}" for number in numbers)
-        )
-        if axis != "z":
-            rotational += rows
-    for name in ("K", "C"):
-        rows = [
-            row
-            for key, all_rows in errors.items()
-            if key[1] != "z" and NAMES.get(key[2]) == name
-            for row in all_rows
-        ]
-        print(f"{name}: {100 * np.mean([row[1] for row in rows]):.1f} % of {len(rows)} intervals cover")
+    settings = FeetSettings(offset=chosen.offset, model=chosen.model)
+    every: Table = defaultdict(list)
     print(
-        f"K and C: {100 * np.mean([row[1] for row in rotational]):.1f} % of {len(rotational)} intervals cover the truth"
+        f"{len(chosen.motions)} motions, {chosen.seeds} seeds, offset {chosen.offset}, model {chosen.model}"
     )
+    heads = ("mean err %", "max |err| %", "half width %", "white std %", "covered %")
+    print(f"{'':22}" + "".join(f"{head:>13}" for head in heads))
+    with tempfile.TemporaryDirectory() as folder:
+        for name in chosen.robots:
+            make, bushes = ROBOTS[name]
+            robot = make(Path(folder))
+            for preset in chosen.presets:
+                started = time.perf_counter()
+                campaigns = play_all(
+                    [*chosen.motions, *chosen.others], robot, bushes, preset, range(chosen.seeds)
+                )
+                rolled = time.perf_counter() - started
+                laws: Counter[str] = Counter()
+                table: Table = defaultdict(list)
+                for recordings in campaigns:
+                    logs, split = [one.log for one in recordings], len(chosen.motions)
+                    result = identify_feet(robot, logs[:split], logs[split:], settings)
+                    laws[result.model] += 1
+                    for key, score in [*_rotations(result, bushes), *_compliances(result, bushes)]:
+                        table[key].append(score)
+                        every[key].append(score)
+                took = time.perf_counter() - started - rolled
+                print(f"{name}, {preset}: laws {dict(laws)}; rollouts {rolled:.0f} s, fits {took:.0f} s")
+                _print(table)
+    print("all together")
+    _print(every)
+
+
+def _rotations(result: FeetResult, bushes: Feet) -> Iterator[tuple[tuple[str, str], Score]]:
+    """K and C of pitch and roll."""
+    for row in result.parameters:
+        if row.axis == "z" or row.name not in NAMES or row.value is None or row.interval95 is None:
+            continue
+        truth = getattr(bushes[row.foot], f"{row.axis}_{row.name}")
+        low, high = row.interval95
+        white = row.relative_std_percent if row.relative_std_percent is not None else np.nan
+        yield (
+            (row.axis, NAMES[row.name]),
+            Score(row.value / truth - 1, low <= truth <= high, (high - low) / 2 / truth, white / 100),
+        )
+
+
+def _compliances(result: FeetResult, bushes: Feet) -> Iterator[tuple[tuple[str, str], Score]]:
+    """The sum of both feet's compliances in z, and each foot's stiffness where its verdict is usable."""
+    rows = [row for row in result.parameters if row.axis == "z" and row.name == "stiffness"]
+    if len(rows) != 2 or any(row.value is None for row in rows):
+        return
+    total = sum(1 / row.value for row in rows if row.value)
+    true = sum(1 / bush.z_stiffness for bush in bushes.values())
+    yield ("z", "sum of 1/K"), Score(total / true - 1, True, np.nan, np.nan)
+    for row in rows:
+        if row.verdict == "usable" and row.value and row.interval95:
+            truth, (low, high) = bushes[row.foot].z_stiffness, row.interval95
+            yield (
+                ("z", "K"),
+                Score(row.value / truth - 1, low <= truth <= high, (high - low) / 2 / truth, np.nan),
+            )
+
+
+def _print(table: Table) -> None:
+    for (axis, name), scores in table.items():
+        _row(f"{axis} {name}", scores)
+    turning = [score for (axis, _), scores in table.items() if axis != "z" for score in scores]
+    _row("pitch, roll: K and C", turning)
+
+
+def _row(title: str, scores: list[Score]) -> None:
+    error, inside, half, white = (np.array(column, dtype=float) for column in zip(*scores, strict=True))
+    numbers = (error.mean(), np.abs(error).max(), half.mean(), white.mean(), inside.mean())
+    print(f"  {title:20}" + "".join(f"{100 * number:13.3f}" for number in numbers) + f"  of {len(scores)}")
 
 
 if __name__ == "__main__":

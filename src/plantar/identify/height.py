@@ -5,20 +5,20 @@ With the bushes taken as stiff in z, the kinematics put the right sole higher th
     h = z_L - z_R = F_L/K_L - F_R/K_R + const = s·(1/K_L + 1/K_R) + m·(1/K_L - 1/K_R) + const,
 
 s = (F_L - F_R)/2 and m = (F_L + F_R)/2. Moving weight from foot to foot moves s and shows the sum of the compliances;
-their difference shows only where the total m changes as well.
+their difference shows only where the total m changes as well, and by more than the force sensors' noise.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from plantar.contact import DOUBLE, SUPPORTS
 from plantar.conventions import STIFFNESS_UNIT, Array
 from plantar.deflection import closure
-from plantar.estimation import Block, LinearFit, fit_linear, interval95, relative_std_percent
+from plantar.estimation import Block, fit_linear, interval95, relative_std_percent
 from plantar.identify.recording import Recording
 from plantar.notes import Note
 from plantar.result import Parameter, Verdict
@@ -26,6 +26,7 @@ from plantar.robot import RobotModel
 from plantar.signals import low_pass
 
 FEWEST_SAMPLES = 100  # in double support, of one recording
+RELIABLE = 10.0  # times its noise's variance: that of a load from which a compliance is read
 ALIKE = 0.1  # of the compliances' sum: usual deviation of their difference between feet of one robot
 UNKNOWN_COMPLIANCE = 1e-5  # m/N: of 100 kN/m, the order of soft rubber, where nothing is known
 USABLE_WIDTH, WEAK_WIDTH = 0.15, 0.5  # half width of the interval over the value
@@ -88,7 +89,7 @@ def fit_height(recordings: Sequence[Recording], robot: RobotModel, cutoff: float
     blocks = []
     if len(feet) == 2:
         blocks = [block for recording in recordings if (block := _block(recording, feet, cutoff)) is not None]
-    found = _compliances(fit_linear(blocks)) if blocks else None
+    found = _compliances(blocks) if blocks else None
     if found is None or not found.clear:
         text = "z: no log shows the vertical compliance; K of pitch and roll may come out too large by load²·compliance"
         unknown = tuple(_unknown_row(foot) for foot in feet) if len(feet) == 2 else ()
@@ -108,18 +109,28 @@ def fit_height(recordings: Sequence[Recording], robot: RobotModel, cutoff: float
     )
 
 
-def _compliances(fit: LinearFit) -> Compliances:
-    return Compliances(
-        float(fit.values[0]),
-        float(fit.values[1]),
-        fit.covariance[:2, :2],
-        float(fit.freedom[0]),
-        fit.white_std[:2],
-    )
+def _compliances(blocks: Sequence[Block]) -> Compliances:
+    """Sum and difference; the sum alone where the total load changes in no recording."""
+    if any(block.regressor[:, 1].any() for block in blocks):
+        fit = fit_linear(blocks)
+        return Compliances(
+            float(fit.values[0]),
+            float(fit.values[1]),
+            fit.covariance[:2, :2],
+            float(fit.freedom[0]),
+            fit.white_std[:2],
+        )
+    fit = fit_linear([replace(block, regressor=block.regressor[:, :1]) for block in blocks])
+    total = float(fit.values[0])
+    unseen = np.diag([float(fit.covariance[0, 0]), total**2])
+    return Compliances(total, 0.0, unseen, float(fit.freedom[0]), np.append(fit.white_std[:1], abs(total)))
 
 
 def _block(recording: Recording, feet: tuple[str, ...], cutoff: float) -> Block | None:
-    """h over [s, m, t] in double support; t is the attitude's drift over the recording, a nuisance."""
+    """h over [s, m, t] in double support; t is the attitude's drift over the recording, a nuisance.
+
+    None where s hardly moves, m is 0 where it hardly does: a regressor of noise gives no compliance but a wrong one.
+    """
     left, right = (recording.bushes[foot] for foot in feet)
     both = recording.used(feet[0]) & recording.used(feet[1])
     both &= recording.contacts[feet[0]].support == SUPPORTS.index(DOUBLE)
@@ -129,7 +140,7 @@ def _block(recording: Recording, feet: tuple[str, ...], cutoff: float) -> Block 
         [bush.wrench[:, 2] * np.cos(bush.deflection).prod(axis=1) for bush in (left, right)]
     )
     values = low_pass(np.column_stack([height, loads]), recording.period, cutoff)
-    both &= np.isfinite(values).all(axis=1)
+    both &= np.isfinite(values).all(axis=1) & np.isfinite(loads).all(axis=1)
     if both.sum() < FEWEST_SAMPLES:
         return None
     height, left_load, right_load = values[both].T
@@ -137,6 +148,14 @@ def _block(recording: Recording, feet: tuple[str, ...], cutoff: float) -> Block 
     drift = np.column_stack([np.ones(len(height)), recording.time[both] - recording.time[both].mean()])
     joint = np.column_stack([regressor, height])
     clear = joint - drift @ np.linalg.lstsq(drift, joint, rcond=None)[0]
+    beyond = (loads[both] - values[both][:, 1:]).sum(
+        axis=1
+    ) / 2  # above the cut-off: noise, as white below it
+    noise = np.var(beyond) * cutoff / max(0.5 / recording.period - cutoff, cutoff)
+    moves = np.var(clear[:, :2], axis=0) > RELIABLE * noise
+    if not moves[0]:
+        return None
+    clear[:, 1] *= moves[1]
     return Block(recording.name, clear[:, :2], clear[:, 2], recording.period)
 
 

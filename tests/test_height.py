@@ -1,0 +1,27 @@
+"""The vertical axis: what the loads of two standing feet tell about their compliances, and what they do not."""
+
+from __future__ import annotations
+
+import pytest
+
+from biped import FEET, VERTICAL, record, sway
+from plantar.identify.feet import identify_feet
+from plantar.robot import RobotModel
+from test_identify_feet import PUNCTUAL, codes, noisy
+
+
+def test_noise_on_a_constant_total_load_tells_the_feet_not_apart(robot: RobotModel) -> None:
+    """As regressors, changes that are mere noise would split the sum of the compliances at random."""
+    for seed in range(3):
+        log = noisy(record(sway(seed=seed)), seed)
+        found = identify_feet(robot, [log], settings=PUNCTUAL)
+        rows = [found.parameter(foot, "z", "stiffness") for foot in FEET]
+        assert "z_sum_only" in codes(found)
+        assert rows[0].value == pytest.approx(rows[1].value, rel=1e-3)
+        assert sum(1 / row.value for row in rows if row.value) == pytest.approx(2 / VERTICAL, rel=0.05)
+        assert {row.verdict for row in rows} == {"weak"}
+
+
+def test_no_moving_weight_shows_no_vertical_stiffness(robot: RobotModel) -> None:
+    found = identify_feet(robot, [noisy(record(sway(shift=0.0)), 1)], settings=PUNCTUAL)
+    assert "z_unknown" in codes(found)
