@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -49,6 +50,19 @@ def test_composed_motions_follow_each_other(tracks: tuple[Track, ...]) -> None:
         assert len(sensor) == len(FIT)
         starts = [line.get_xdata()[0] for line in sensor]
         np.testing.assert_allclose(starts, 3.995 * np.arange(len(FIT)))
+
+
+def test_what_was_left_out_is_grey(tracks: tuple[Track, ...]) -> None:
+    (track,) = (t for t in tracks if (t.motion, t.foot) == ("tilt3", "left"))
+    used = np.ones(track.time.size, bool)
+    used[100:300] = False  # half a second and more
+    used[500] = False  # a single sample is no band
+    one = replace(track, used=used)
+    assert figures.left_out(one) == [(pytest.approx(track.time[100]), pytest.approx(track.time[299]))]
+    panel = figures.torques([one], ["tilt3"]).axes[0]
+    (band,) = panel.patches
+    assert band.get_x() == pytest.approx(track.time[100] - track.time[0])
+    assert band.get_width() == pytest.approx(track.time[299] - track.time[100])
 
 
 def test_the_zmp_lies_with_forward_up_and_left_on_the_left() -> None:

@@ -19,6 +19,7 @@ from plantar.errors import DataError, MissingExtra
 from plantar.files import atomic_write
 from plantar.report.content import Figure, MediaType
 from plantar.report.residuals import Track
+from plantar.signals import runs
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing
@@ -29,6 +30,9 @@ RED: Final = "#c8470a"
 BLUE: Final = "#0063b1"
 FOOT_COLOURS: Final = {"right": RED, "left": BLUE}
 LINE: Final = 0.9
+GREY: Final = "#eceff2"
+BAND: Final = 0.02
+"""Shortest stretch that gets a grey band [s]."""
 COLUMNS: Final = 900
 """Time bins of a line; each keeps its smallest and largest sample, so peaks stay and files stay small."""
 
@@ -62,7 +66,7 @@ def bush_angles(tracks: Sequence[Track], motion: str) -> Drawing:
 
 def torques(tracks: Sequence[Track], motions: Sequence[str]) -> Drawing:
     """Figures 9 to 13: reconstructed torque (blue) over the sensor's (red), one panel per foot and axis
-    [N·m].
+    [N·m]; grey where samples were left out.
 
     Several motions are set one after the other, as in the composed motion of figure 9.
     """
@@ -75,6 +79,8 @@ def torques(tracks: Sequence[Track], motions: Sequence[str]) -> Drawing:
         for track in group:
             for row, axis in enumerate(ROTATIONAL_AXES):
                 panel = rows[row, feet.index(track.foot)]
+                for first, last in left_out(track):
+                    panel.axvspan(first - start + begin, last - start + begin, color=GREY, linewidth=0)
                 for what, colour in (("torque", RED), ("predicted", BLUE)):
                     if f"{axis}.{what}" in track.values:
                         time, torque = envelope(track.time, track.values[f"{axis}.{what}"])
@@ -112,6 +118,12 @@ def zmp(points: Array, feet: Mapping[str, Array], support: Array | None = None) 
     panel.set_xlabel("y, left [m]")
     panel.set_ylabel("x, forward [m]")
     return figure
+
+
+def left_out(track: Track) -> list[tuple[float, float]]:
+    """First and last time [s] of each stretch of at least BAND of which no sample served, for grey bands."""
+    spans = [(float(track.time[run][0]), float(track.time[run][-1])) for run in runs(~track.used)]
+    return [(first, last) for first, last in spans if last - first >= BAND]
 
 
 def envelope(time: Array, values: Array, columns: int = COLUMNS) -> tuple[Array, Array]:

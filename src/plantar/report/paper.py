@@ -74,7 +74,9 @@ def _plates(tracks: Sequence[Track], only_paper: bool) -> Iterator[Plate]:
             yield Plate(
                 _name(number, f"angles_{motion}"), number, title, "Right foot red, left foot blue.", drawing
             )
-    colours = "Sensor red, reconstructed blue."
+    colours = (
+        "Sensor red, reconstructed blue; grey: left out, such as in the air or tipping over the sole's edge."
+    )
     fitted = [motion for motion, role in roles.items() if role == "fit"]
     if fitted:
         title = _title(DIRECT, "Direct validation of the composed motion")

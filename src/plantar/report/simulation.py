@@ -78,5 +78,6 @@ def zmp_planned(points: Array, planned: Array, feet: Mapping[str, Array], suppor
     figure = zmp(points, feet, support)
     (panel,) = figure.axes
     line = panel.plot(planned[:, 1], planned[:, 0], color=GREEN, linewidth=LINE, marker=".", markersize=2)[0]
-    panel.legend([panel.lines[-2], line], ["measured", "planned"], frameon=False, loc="upper right")
+    lines = [panel.lines[-2], line]
+    figure.legend(lines, ["measured", "planned"], frameon=False, ncols=2, loc="outside upper center")
     return figure

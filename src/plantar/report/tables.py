@@ -166,7 +166,7 @@ def served_table(phases: Sequence[Phase]) -> Table:
         used = sum(phase.end - phase.start for phase in mine if phase.used)
         reasons: dict[str, float] = {}
         for phase in mine:
-            if not phase.used:
+            if not phase.used and phase.end > phase.start:  # of one sample nobody needs a reason
                 why = phase.reason or phase.support
                 reasons[why] = reasons.get(why, 0.0) + phase.end - phase.start
         why_not = "; ".join(f"{why} ({number(seconds, 3)} s)" for why, seconds in reasons.items())
