@@ -15,9 +15,10 @@ from typing import TYPE_CHECKING, Any, Final, Literal
 import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES, Array
-from plantar.errors import DataError, MissingExtra
+from plantar.errors import DataError
 from plantar.files import atomic_write
 from plantar.report.content import Figure, MediaType
+from plantar.report.panels import STYLE, panels
 from plantar.report.residuals import Track
 from plantar.signals import runs
 
@@ -36,12 +37,7 @@ BAND: Final = 0.02
 COLUMNS: Final = 900
 """Time bins of a line; each keeps its smallest and largest sample, so peaks stay and files stay small."""
 
-_STYLE: Final = {
-    "font.size": 9,
-    "axes.grid": True,
-    "grid.color": "#e4e8ec",
-    "axes.spines.top": False,
-    "axes.spines.right": False,
+_STYLE: Final = STYLE | {
     "svg.hashsalt": "plantar",  # the same figure is the same file
     "svg.fonttype": "path",
     "pdf.fonttype": 42,
@@ -51,7 +47,7 @@ _STYLE: Final = {
 def bush_angles(tracks: Sequence[Track], motion: str) -> Drawing:
     """Figures 7 and 8: pitch and roll of each bush over time in one motion, right red, left blue [mrad]."""
     chosen = _of_motion(tracks, motion)
-    figure, rows = _panels(len(ROTATIONAL_AXES), 1, (6.4, 4.0))
+    figure, rows = panels(len(ROTATIONAL_AXES), 1, (6.4, 4.0), share_x=True)
     for panel, axis in zip(rows[:, 0], ROTATIONAL_AXES, strict=True):
         for track in chosen:
             if f"{axis}.deflection" in track.values:
@@ -72,7 +68,7 @@ def torques(tracks: Sequence[Track], motions: Sequence[str]) -> Drawing:
     """
     chosen = [_of_motion(tracks, motion) for motion in motions]
     feet = list(dict.fromkeys(track.foot for group in chosen for track in group))
-    figure, rows = _panels(len(ROTATIONAL_AXES), len(feet), (7.2, 4.2))
+    figure, rows = panels(len(ROTATIONAL_AXES), len(feet), (7.2, 4.2), share_x=True)
     begin = 0.0
     for group in chosen:
         start = min(float(track.time[0]) for track in group)
@@ -104,7 +100,7 @@ def zmp(points: Array, feet: Mapping[str, Array], support: Array | None = None) 
     [m], x forward, y left; forward points up in the picture. Rows of `points` that are not finite leave a
     gap.
     """
-    figure, rows = _panels(1, 1, (4.2, 4.2))
+    figure, rows = panels(1, 1, (4.2, 4.2))
     panel = rows[0, 0]
     for name, outline in feet.items():
         panel.plot(*_closed(outline), color="black", linewidth=1.0)
@@ -187,19 +183,6 @@ def _few_colours(png: BytesIO) -> bytes:
     with Image.open(png) as image:
         image.convert("RGB").quantize(48).save(small, format="png", optimize=True)
     return small.getvalue()
-
-
-def _panels(rows: int, columns: int, size: tuple[float, float]) -> tuple[Drawing, Any]:
-    """A figure that no global state knows, with (rows, columns) panels that share their x axes."""
-    try:
-        import matplotlib
-        from matplotlib.figure import Figure as Drawing
-    except ImportError as error:
-        raise MissingExtra("matplotlib", "figures", "drawing figures") from error
-    with matplotlib.rc_context(_STYLE):
-        drawing = Drawing(figsize=size, layout="constrained")
-        panels = drawing.subplots(rows, columns, squeeze=False, sharex=True)
-    return drawing, panels
 
 
 def _of_motion(tracks: Sequence[Track], motion: str) -> list[Track]:
