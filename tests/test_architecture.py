@@ -15,7 +15,7 @@ FILES = sorted(SOURCE.rglob("*.py"))
 ROOMS = (
     "conventions", "errors", "notes", "files",
     "robot_file", "robot", "log", "readers",
-    "signals", "kinematics", "attitude", "polygon", "contact", "slip", "deflection",
+    "signals", "spikes", "kinematics", "attitude", "polygon", "contact", "slip", "deflection",
     "sanity_feet", "sanity_imu", "sanity",
     "dynamics", "models", "estimation",
     "result", "validation", "identify",

@@ -16,7 +16,8 @@ from plantar.estimation.triangular import TriangularFactor
 class Block:
     """One recording's rows: `regressor` (n, k) without the offset's column, `response` (n,), `period` [s].
 
-    `nuisance` (n, m) are columns of this recording alone, fitted beside its offset and then forgotten.
+    `nuisance` (n, m) are columns of this recording alone, fitted beside its offset and then forgotten; `noise` (k,) is
+    the variance of what is noise in the regressor's columns.
     """
 
     label: str
@@ -24,6 +25,7 @@ class Block:
     response: Array
     period: float
     nuisance: Array | None = None
+    noise: Array | None = None
 
     @property
     def duration(self) -> float:
@@ -97,6 +99,12 @@ def fit_linear(blocks: Sequence[Block], *, shared_offset: bool = False) -> Linea
     )
 
 
+def factor_of(blocks: Sequence[Block], shared_offset: bool = False) -> TriangularFactor:
+    """Triangular factor of all blocks' rows: parameters in the order of `LinearFit.covariance`."""
+    places, size = _places(blocks, blocks[0].regressor.shape[1], shared_offset)
+    return _factor(blocks, places, size)
+
+
 def _places(blocks: Sequence[Block], columns: int, shared_offset: bool) -> tuple[list[Array], int]:
     """Where each block's own columns stand among all parameters: common ones, offsets, then nuisances; and how many."""
     size = columns + (1 if shared_offset else len(blocks))
@@ -138,6 +146,4 @@ def _robust(
 def effect_of(blocks: Sequence[Block], changes: Sequence[Array], *, shared_offset: bool = False) -> Array:
     """How `values` (k,) move when each block's response changes by `changes` (n,): it is linear in that."""
     changed = [replace(block, response=change) for block, change in zip(blocks, changes, strict=True)]
-    columns = blocks[0].regressor.shape[1]
-    places, size = _places(changed, columns, shared_offset)
-    return _factor(changed, places, size).solve()[:columns]
+    return factor_of(changed, shared_offset).solve()[: blocks[0].regressor.shape[1]]

@@ -3,25 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES, Array, Axis
 from plantar.estimation import Block, LinearFit, fit_linear
+from plantar.estimation.errors_in_variables import attenuation
 from plantar.estimation.law_choice import LawChoice, choose_law
 from plantar.estimation.law_fit import LawFit, fit_law
 from plantar.estimation.law_trials import Trial
 from plantar.identify.recording import Recording
 from plantar.identify.settings import AUTOMATIC, FeetSettings
 from plantar.models import LAWS, KelvinVoigt, Law, Motion
+from plantar.notes import Note
 from plantar.signals import low_pass
 
 FEWEST_SAMPLES = 50  # of one recording, for it to take part in a fit
 LEAST_EXPLAINED = 0.5  # of the torque's variance by spring and damper: below it no law of the bush will help
 FULLY_EXPLAINED = 0.997  # above it no richer law could gain what its own parameters cost
 SHORT_STANCE = 5.0  # s: the usual stance of walking is shorter, and tells nothing of a memory
+NEGLIGIBLE, TINY = 0.1, 1e-3  # of a deviation and of a value: a smaller bias is not worth a correction
+NOISE_DOUBT = 0.3  # of what noise takes off: it may not be white
 CANDIDATES = ("kelvin_voigt", "hardening", "coulomb", "elastoplastic", "bouc_wen", "standard_linear_solid")
 
 
@@ -45,6 +49,7 @@ class AxisFit:
     equivalent: tuple[float, float]
     choice: LawChoice | None
     reason: str
+    notes: tuple[Note, ...] = ()
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -84,7 +89,41 @@ class AxisFit:
 def fit_axis(
     recordings: Sequence[Recording], foot: str, axis: Axis, settings: FeetSettings
 ) -> AxisFit | None:
-    """The law asked for, or the one that predicts held-out motions; None where no recording has samples that serve."""
+    """The law asked for, or the one that predicts held-out motions; None where no recording has samples that serve.
+
+    What noise in angles and rates takes off its values is given back, where that matters.
+    """
+    fit = _fitted(recordings, foot, axis, settings)
+    return fit and _unattenuated(fit, recordings, settings.offset == "shared")
+
+
+def _unattenuated(fit: AxisFit, recordings: Sequence[Recording], shared: bool) -> AxisFit:
+    """The fit without the bias of noisy regressors; as it is where that is small."""
+    blocks = blocks_of(recordings, fit.foot, fit.axis, drift=not shared, fit=fit)
+    taken, size = attenuation(blocks, fit.values, shared_offset=shared), len(fit.values)
+    where = f"{fit.foot} {fit.axis}"
+    if taken is None:
+        text = f"{where}: angles and rates are mostly noise; stiffness and damping come out too small by any factor"
+        return replace(fit, notes=(*fit.notes, Note("noisy_regressors", "warning", text)))
+    if np.all(np.abs(taken) < np.maximum(NEGLIGIBLE * fit.std[:size], TINY * np.abs(fit.values))):
+        return fit
+    added = np.zeros(len(fit.covariance))
+    added[:size] = NOISE_DOUBT * taken
+    share = ", ".join(
+        f"{name} {100 * part / value:+.2g} %"
+        for name, part, value in zip(fit.law.terms, taken, fit.values, strict=True)
+        if value
+    )
+    text = f"{where}: noise in angles and rates had drawn values towards zero; given back: {share}"
+    return replace(
+        fit,
+        values=fit.values + taken,
+        covariance=fit.covariance + np.outer(added, added),
+        notes=(*fit.notes, Note("noisy_regressors", "info", text)),
+    )
+
+
+def _fitted(recordings: Sequence[Recording], foot: str, axis: Axis, settings: FeetSettings) -> AxisFit | None:
     shared = settings.offset == "shared"
     blocks = blocks_of(recordings, foot, axis, drift=not shared)
     if not blocks:
@@ -127,7 +166,10 @@ def blocks_of(
         time = recording.time[used]
         nuisance = (time - time.mean())[:, None] if drift else None
         regressor = law_columns(recording, foot, axis, fit)[used]
-        blocks.append(Block(recording.name, regressor, bush.torque[used, column], recording.period, nuisance))
+        noise = np.zeros(regressor.shape[1])
+        noise[:2] = recording.noise[foot][:, column]
+        torque = bush.torque[used, column]
+        blocks.append(Block(recording.name, regressor, torque, recording.period, nuisance, noise))
     return blocks
 
 

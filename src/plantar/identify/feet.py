@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from plantar.conventions import OFFSET_UNIT, ROTATIONAL_AXES
 from plantar.errors import DataError
 from plantar.identify.axis_fit import AxisFit, fit_axis
 from plantar.identify.diagnosis import advised, diagnose_axis
+from plantar.identify.outliers import fit_without_outliers
 from plantar.identify.parameter_rows import axis_rows, missing_rows
 from plantar.identify.preparation import prepare_all
 from plantar.identify.recording import Recording
@@ -53,7 +55,9 @@ def identify_feet(
     for foot in robot.feet:
         for axis in ROTATIONAL_AXES:
             progress(f"fit {foot} {axis}")
-            fit = fit_axis(ready.fitted, foot, axis, settings)
+            fit = fit_without_outliers(
+                ready.fitted, foot, axis, partial(fit_axis, ready.fitted, foot, axis, settings)
+            )
             if fit is None:
                 parameters += missing_rows(foot, axis)
                 continue
@@ -112,6 +116,7 @@ def _law_notes(fits: Sequence[AxisFit]) -> list[Note]:
             notes.append(Note("law", "info", text))
         if fit.choice is not None and fit.choice.caution is not None:
             notes.append(Note("law_caution", "warning", f"{where}: {fit.choice.caution}"))
+        notes += fit.notes
     return notes
 
 

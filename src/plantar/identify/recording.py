@@ -12,6 +12,7 @@ from plantar.contact import NOT_RECORDED, FootContact, carried_weight, detect_co
 from plantar.conventions import FORCE, GRAVITY, Array, Mask
 from plantar.deflection import BushState, bush_states
 from plantar.errors import DataError, RobotError, located
+from plantar.estimation.errors_in_variables import noise_after_filter
 from plantar.identify.settings import FeetSettings
 from plantar.log import MotionLog
 from plantar.notes import Note
@@ -19,6 +20,7 @@ from plantar.polygon import inside_distance
 from plantar.robot import Imu, RobotModel
 from plantar.sanity import check_log
 from plantar.signals import differentiate, evenly_sampled, interpolate, low_pass, runs, shifted
+from plantar.spikes import without_spikes
 
 FILTER_EDGE = 1.0  # of the filter's period, left out where a run of samples begins or ends
 WIDE_BAND = 4.0  # times the cutoff: filter of what is differentiated before the common filter
@@ -29,13 +31,17 @@ Role = Literal["fit", "validate"]
 
 @dataclass(frozen=True)
 class Recording:
-    """One log with each foot's bush state, filtered, and its contact. Arrays run over `time` (N,)."""
+    """One log with each foot's bush state, filtered, and its contact. Arrays run over `time` (N,).
+
+    `noise` (2, 2) of each foot: variance of white noise that is left in deflection and rate, of pitch and roll.
+    """
 
     log: MotionLog
     role: Role
     cutoff: float
     bushes: Mapping[str, BushState]
     contacts: Mapping[str, FootContact]
+    noise: Mapping[str, Array]
     notes: tuple[Note, ...]
 
     @property
@@ -67,7 +73,7 @@ def checked(robot: RobotModel, log: MotionLog) -> MotionLog:
     if problems:
         raise DataError(located(problems[0].text, path=log.source))
     odd = [Note(found.code, found.severity, f"{log.name}: {found.text}") for found in findings]
-    return evenly_sampled(log).with_columns({}, *log.joint_notes(robot), *odd)
+    return without_spikes(evenly_sampled(log)).with_columns({}, *log.joint_notes(robot), *odd)
 
 
 def prepare(
@@ -91,7 +97,13 @@ def prepare(
         )
         contacts[name].leave_out(~valid, NOT_RECORDED)
         contacts[name].leave_out(_run_edges(valid, FILTER_EDGE / settings.cutoff / period), "filter's edge")
-    return Recording(log, role, settings.cutoff, filtered, contacts, tuple(notes))
+    noise = {
+        name: noise_after_filter(
+            np.hstack([state.deflection, state.rate]), period, settings.cutoff
+        ).reshape(2, 2)
+        for name, state in raw.items()
+    }
+    return Recording(log, role, settings.cutoff, filtered, contacts, noise, tuple(notes))
 
 
 def _require(robot: RobotModel) -> Imu:

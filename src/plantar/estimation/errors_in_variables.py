@@ -1,0 +1,53 @@
+"""Noise in the regressors: it adds to their squares but to no product with the response, and so draws values to zero.
+
+White noise of angles and rates is measured where no motion is, far above the fit's cutoff, and followed through the
+filter; its expected share is taken off the regressor's products (W. A. Fuller, Measurement Error Models, Wiley 1987).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from plantar.conventions import Array
+from plantar.estimation.least_squares import Block, factor_of
+from plantar.signals import FILTER_ORDER, low_pass
+
+ABOVE = 4.0  # cutoffs: from there on a signal counts as noise
+NORMAL = 1.4826  # standard deviation over median absolute value, of normal noise
+MOST = 0.5  # share of a direction's square that may be noise: beyond, nothing of it is known
+
+
+def noise_after_filter(raw: Array, period: float, cutoff: float) -> Array:
+    """Variance (k,) that the white noise of unfiltered signals (N, k) has behind the filter at `cutoff` [Hz].
+
+    Zero where the samples are too slow to show any frequency without motion.
+    """
+    highest = 0.5 / period
+    if ABOVE * cutoff > 0.8 * highest:
+        return np.zeros(raw.shape[1])
+    quick = raw - low_pass(raw, period, ABOVE * cutoff)
+    whole = np.isfinite(quick).all(axis=1)
+    if not whole.any():
+        return np.zeros(raw.shape[1])
+    deviation = NORMAL * np.median(np.abs(quick[whole]), axis=0)
+    frequency = np.linspace(0.0, highest, 2000)
+
+    def gain(at: float) -> Array:
+        return np.asarray(1 / (1 + (frequency / at) ** (2 * FILTER_ORDER)))
+
+    return np.asarray(deviation**2 * np.mean(gain(cutoff) ** 2) / np.mean((1 - gain(ABOVE * cutoff)) ** 2))
+
+
+def attenuation(blocks: Sequence[Block], values: Array, *, shared_offset: bool = False) -> Array | None:
+    """What the blocks' noise has taken off `values` (k,): to be added; None where noise is most of what there is."""
+    size = len(values)
+    noise = np.diag(
+        np.sum([len(one.response) * one.noise for one in blocks if one.noise is not None], axis=0)
+        * np.ones(size)
+    )
+    information = np.linalg.inv(factor_of(blocks, shared_offset).information_inverse()[:size, :size])
+    if np.max(np.linalg.eigvals(np.linalg.solve(information, noise)).real) > MOST:
+        return None
+    return np.asarray(np.linalg.solve(information - noise, noise @ values))

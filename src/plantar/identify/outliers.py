@@ -1,0 +1,82 @@
+"""Short stretches in which the torque leaves its law as it does nowhere around them: left out, with their reason."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from plantar.conventions import ROTATIONAL_AXES, Array, Axis, Mask
+from plantar.identify.axis_fit import FEWEST_SAMPLES, AxisFit, law_columns
+from plantar.identify.recording import Recording
+from plantar.signals import runs
+
+BIN = 0.1  # s
+AROUND = 6.0  # s whose usual misfit a bin is compared with
+FAR = 6.0  # usual misfits
+WORTH = 0.03  # of the recording's spread of torque: a smaller misfit does no harm
+LONGEST = 1.0  # s: what lasts longer is not a bad sample but another law
+MOST = 0.1  # share of a recording that may be outliers
+ROUNDS = 3  # a large outlier hides smaller ones
+
+
+def fit_without_outliers(
+    recordings: Sequence[Recording], foot: str, axis: Axis, fit: Callable[[], AxisFit | None]
+) -> AxisFit | None:
+    """What `fit` makes of the recordings; where short stretches leave its law by far, again without them.
+
+    They are left out of the recordings' contacts with a reason. Clean recordings are fitted once and stay as they are.
+    """
+    found = fit()
+    for _ in range(ROUNDS):
+        if found is None or not _left_out(recordings, foot, axis, found):
+            break
+        found = fit()
+    return found
+
+
+def _left_out(recordings: Sequence[Recording], foot: str, axis: Axis, fit: AxisFit) -> bool:
+    """Leave outliers out; whether there were any."""
+    column, several = ROTATIONAL_AXES.index(axis), False
+    for recording in recordings:
+        used = recording.used(foot)
+        if recording.name not in fit.offsets or used.sum() < FEWEST_SAMPLES:
+            continue
+        torque = recording.bushes[foot].torque[:, column]
+        missed = torque - law_columns(recording, foot, axis, fit) @ fit.values
+        reach = 1 / recording.cutoff
+        off = outliers(np.where(used, missed, np.nan), float(np.std(torque[used])), recording.period, reach)
+        if off.any():
+            recording.contacts[foot].leave_out(off, f"outlier: the {axis} torque leaves its law for a moment")
+            several = True
+    return several
+
+
+def outliers(missed: Array, spread: float, period: float, reach: float) -> Mask:
+    """Samples of short stretches in which `missed` (N,), NaN where nothing serves, is far larger than around them.
+
+    `spread` is that of the torque [N·m]; `reach` [s] the filter's, by which stretches are widened.
+    """
+    width = max(1, round(BIN / period))
+    bins = -(-len(missed) // width)
+    padded = np.append(missed, np.full(bins * width - len(missed), np.nan)).reshape(bins, width)
+    served = np.isfinite(padded).sum(axis=1) > width // 2
+    none = np.zeros(len(missed), dtype=bool)
+    if served.sum() < AROUND / BIN:
+        return none
+    level = np.array([np.nanmean(row) for row in padded[served]])
+    half = round(AROUND / 2 / BIN)
+    # Over the bins that serve, the usual level around each, and the usual distance from it.
+    windows = [slice(max(0, i - half), i + half + 1) for i in range(len(level))]
+    usual = np.array([np.median(level[window]) for window in windows])
+    size = np.sqrt(np.nanmean((padded[served] - usual[:, None]) ** 2, axis=1))
+    scale = np.array([np.median(size[window]) for window in windows])
+    far = np.zeros(bins, dtype=bool)
+    far[served] = size > np.maximum(FAR * scale, WORTH * spread)
+    found = none.copy()
+    margin = round(reach / period)
+    for run in runs(far):
+        if (run.stop - run.start) * BIN <= LONGEST:
+            found[max(0, run.start * width - margin) : run.stop * width + margin] = True
+    found &= np.isfinite(missed)
+    return found if found.sum() <= MOST * np.isfinite(missed).sum() else none

@@ -1,0 +1,105 @@
+"""Noise put on angles and rates: it draws stiffness and damping towards zero, and that is given back."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from biped import TRUTH, make_robot, record, sway
+from plantar.conventions import Array
+from plantar.estimation import Block, fit_linear
+from plantar.estimation.errors_in_variables import attenuation, noise_after_filter
+from plantar.identify.feet import identify_feet
+from plantar.identify.settings import FeetSettings
+from plantar.log import MotionLog
+from plantar.signals import low_pass
+
+PERIOD, CUTOFF = 0.005, 5.0
+VALUES = np.array([400.0, 20.0])
+
+
+def signals(seed: int, samples: int = 12000) -> Array:
+    """Deflection and rate of a slow sway, (N, 2)."""
+    time = PERIOD * np.arange(samples)
+    phase = np.random.default_rng(seed).uniform(0, 2 * np.pi)
+    angle, omega = 0.02, 2 * np.pi * 0.3
+    return angle * np.column_stack([np.sin(omega * time + phase), omega * np.cos(omega * time + phase)])
+
+
+def block(seed: int, sizes: tuple[float, float]) -> Block:
+    """Torque of a known spring and damper, and a regressor with white noise, both through the filter."""
+    random = np.random.default_rng(100 + seed)
+    true = signals(seed)
+    noisy = true + random.standard_normal(true.shape) * sizes
+    torque = low_pass(true @ VALUES + 0.05 * random.standard_normal(len(true)), PERIOD, CUTOFF)
+    noise = noise_after_filter(noisy, PERIOD, CUTOFF)
+    return Block(str(seed), low_pass(noisy, PERIOD, CUTOFF), torque, PERIOD, noise=noise)
+
+
+def test_noise_is_measured_above_the_motion_and_followed_through_the_filter() -> None:
+    sizes = np.array([0.01, 0.1])
+    white = sizes * np.random.default_rng(5).standard_normal((200_000, 2))
+    expected = low_pass(white, PERIOD, CUTOFF).var(axis=0)
+    np.testing.assert_allclose(noise_after_filter(white, PERIOD, CUTOFF), expected, rtol=0.05)
+    moved = white[:12000] + signals(1)
+    np.testing.assert_allclose(noise_after_filter(moved, PERIOD, CUTOFF), expected, rtol=0.15)
+    assert not noise_after_filter(signals(1), PERIOD, CUTOFF).max() > 1e-12, "a smooth motion is no noise"
+    assert not noise_after_filter(white[::10], 10 * PERIOD, CUTOFF).any(), "too slow to tell"
+
+
+def test_what_noise_takes_is_given_back() -> None:
+    errors = []
+    for seed in range(6):
+        blocks = [block(2 * seed, (0.01, 0.08)), block(2 * seed + 1, (0.0, 0.08))]
+        fit = fit_linear(blocks)
+        taken = attenuation(blocks, fit.values)
+        assert taken is not None
+        errors.append([fit.values / VALUES - 1, (fit.values + taken) / VALUES - 1])
+    before, after = np.array(errors).swapaxes(0, 1)
+    assert (before < 0).all(), "both are drawn towards zero"
+    assert before[:, 1].max() < -0.2, "damping by far"
+    assert (np.abs(after.mean(axis=0)) < 0.2 * np.abs(before.mean(axis=0))).all()
+
+
+def test_nothing_is_given_back_where_nothing_was_taken() -> None:
+    clean = block(1, (0.0, 0.0))
+    taken = attenuation([clean], fit_linear([clean]).values)
+    assert taken is not None
+    np.testing.assert_allclose(taken, 0.0, atol=1e-6)
+
+
+def test_mostly_noise_is_said() -> None:
+    noise = block(1, (0.3, 1.0))
+    assert attenuation([noise], fit_linear([noise]).values) is None
+
+
+def gyroscope(log: MotionLog, size: float) -> MotionLog:
+    random = np.random.default_rng(len(log.name))
+    names = [name for name in log.columns if ".angular_velocity." in name]
+    return log.with_columns(
+        {name: log.column(name) + size * random.standard_normal(len(log)) for name in names}
+    )
+
+
+def test_a_noisy_gyroscope_costs_no_damping(tmp_path: Path) -> None:
+    robot, settings = make_robot(tmp_path), FeetSettings(model="kelvin_voigt", wrench_delay=0.0)
+    logs = [record(sway(name, seed=seed, duration=40.0)) for name, seed in (("one", 1), ("second", 2))]
+    quiet = identify_feet(robot, logs, settings=settings)
+    assert "noisy_regressors" not in {note.code for note in quiet.notes}
+    noisy = identify_feet(robot, [gyroscope(log, 0.05) for log in logs], settings=settings)
+    told = [note.text for note in noisy.notes if note.code == "noisy_regressors"]
+    assert any("damping +" in text for text in told)
+    inside = []
+    for (foot, axis), truth in TRUTH.items():
+        row = noisy.parameter(foot, axis, "damping")
+        assert row.interval95 is not None
+        inside.append(row.interval95[0] <= truth.damping <= row.interval95[1])
+    assert sum(inside) >= len(inside) - 1
+
+
+def test_an_ordinary_gyroscope_needs_no_correction(tmp_path: Path) -> None:
+    robot, settings = make_robot(tmp_path), FeetSettings(model="kelvin_voigt", wrench_delay=0.0)
+    logs = [gyroscope(record(sway(name, seed=seed)), 0.0013) for name, seed in (("one", 1), ("second", 2))]
+    found = identify_feet(robot, logs, settings=settings)
+    assert "noisy_regressors" not in {note.code for note in found.notes}

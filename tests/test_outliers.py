@@ -1,0 +1,148 @@
+"""Bad samples: lone spikes bridged, short bursts left out, both told; clean data stay as they are."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from biped import TRUTH, make_robot, record, sway
+from plantar.identify.feet import identify_feet
+from plantar.identify.outliers import outliers
+from plantar.identify.settings import FeetSettings
+from plantar.log import MotionLog
+from plantar.result import FeetResult
+from plantar.robot import RobotModel
+from plantar.spikes import lone_spikes, without_spikes
+
+PERIOD = 0.005
+TIME = PERIOD * np.arange(6000)
+SETTINGS = FeetSettings(wrench_delay=0.0)
+
+
+@pytest.fixture(scope="module")
+def robot(tmp_path_factory: pytest.TempPathFactory) -> RobotModel:
+    return make_robot(Path(tmp_path_factory.mktemp("robot")))
+
+
+def noisy(seed: int) -> MotionLog:
+    """A sway with white noise on wrenches (1 N, 0.1 N·m) and gyroscope."""
+    random = np.random.default_rng(seed)
+    log = record(sway(f"sway_{seed}", seed=seed, duration=30.0))
+    sizes = {"force": 1.0, "torque": 0.1, "angular_velocity": 0.0013}
+    noise = {
+        name: column + sizes[kind] * random.standard_normal(len(log))
+        for name, column in log.columns.items()
+        if (kind := name.split(".")[2]) in sizes
+    }
+    return log.with_columns(noise)
+
+
+def spoilt(log: MotionLog, where: np.ndarray, shape: str) -> MotionLog:
+    """Wrench columns with 50 times their noise at the samples `where`; `held`: all by the same amount."""
+    random = np.random.default_rng(7)
+    bad = {}
+    for name, column in log.columns.items():
+        if name.startswith("wrench."):
+            size = 50.0 if ".force." in name else 5.0
+            extra = size * (np.ones(len(log)) if shape == "held" else random.standard_normal(len(log)))
+            bad[name] = np.where(where, column + extra, column)
+    return log.with_columns(bad)
+
+
+def stretches(starts: tuple[float, ...]) -> np.ndarray:
+    return np.asarray(np.any([np.abs(TIME - start - 0.1) < 0.1 for start in starts], axis=0))
+
+
+def assert_stiffness_covered(result: FeetResult) -> None:
+    for (foot, axis), truth in TRUTH.items():
+        row = result.parameter(foot, axis, "stiffness")
+        assert row.interval95 is not None
+        low, high = row.interval95
+        slack = 1e-3 * truth.stiffness  # of the white noise's own draw
+        assert low - slack <= truth.stiffness <= high + slack, f"{foot} {axis}: {low:.2f} to {high:.2f}"
+        assert high - low < 0.02 * truth.stiffness
+
+
+def left_out(result: FeetResult) -> float:
+    """Seconds that a foot did not serve because of outliers."""
+    return sum(
+        p.end - p.start for p in result.phases if p.reason is not None and p.reason.startswith("outlier")
+    )
+
+
+@pytest.mark.parametrize(
+    "clean",
+    [
+        np.random.default_rng(0).standard_normal(6000),
+        np.sin(2 * np.pi * 0.7 * TIME),
+        np.where(TIME > 12.0, 1.0, 0.0),
+        np.round(np.sin(2 * np.pi * 0.2 * TIME) / 0.01) * 0.01,
+        np.zeros(6000),
+    ],
+    ids=["noise", "sine", "step", "coarse steps", "constant"],
+)
+def test_nothing_clean_is_a_spike(clean: np.ndarray) -> None:
+    assert not lone_spikes(clean[:, None], PERIOD).any()
+
+
+def test_lone_samples_are_found_and_an_impact_is_not() -> None:
+    random = np.random.default_rng(1)
+    signal = np.sin(2 * np.pi * TIME) + 0.01 * random.standard_normal(6000)
+    truth = np.zeros(6000, dtype=bool)
+    truth[np.arange(50, 5900, 200)] = True
+    spiked = np.where(truth, signal + 0.5, signal)
+    impact = (TIME > 20) & (TIME < 21)
+    ringing = np.where(impact, random.standard_normal(6000), 0.0)
+    found = lone_spikes((spiked + ringing)[:, None], PERIOD)[:, 0]
+    beside = (TIME > 18.5) & (TIME < 22.5)
+    assert found[truth & ~beside].all(), "every spike"
+    assert not found[~truth & ~impact].any(), "nothing else"
+    assert found[impact].sum() < 5, "what rings is no lone sample"
+
+
+def test_a_short_burst_is_an_outlier_and_another_motion_is_not() -> None:
+    random = np.random.default_rng(2)
+    missed = 0.02 * random.standard_normal(6000)
+    burst = stretches((8.0, 17.0))
+    found = outliers(np.where(burst, missed + 1.0, missed), 5.0, PERIOD, 0.2)
+    assert found[burst].all()
+    assert found.sum() <= 4 * burst.sum()
+    assert not outliers(missed, 5.0, PERIOD, 0.2).any()
+    motion = (TIME > 10) & (TIME < 14)
+    assert not outliers(np.where(motion, 20 * missed, missed), 5.0, PERIOD, 0.2).any(), (
+        "4 s are no bad sample"
+    )
+    small = np.where(burst, missed + 0.12, missed)
+    assert not outliers(small, 5.0, PERIOD, 0.2).any(), "too small to matter"
+
+
+def test_clean_logs_are_fitted_once_and_untouched(robot: RobotModel) -> None:
+    log = noisy(1)
+    assert without_spikes(log) is log
+    result = identify_feet(robot, [log, noisy(2)], settings=SETTINGS)
+    assert left_out(result) == 0.0
+    assert "spikes" not in {note.code for note in result.notes}
+
+
+def test_spikes_are_bridged_and_told(robot: RobotModel) -> None:
+    where = np.random.default_rng(3).random(len(TIME)) < 0.005
+    logs = [spoilt(noisy(seed), where[: len(noisy(seed))], "noise") for seed in (1, 2)]
+    result = identify_feet(robot, logs, settings=SETTINGS)
+    assert_stiffness_covered(result)
+    told = [note for note in result.notes if note.code == "spikes"]
+    assert len(told) == 2
+    assert told[0].severity == "warning"
+    assert "wrench.left.force.x" in told[0].text
+
+
+@pytest.mark.parametrize("shape", ["noise", "held"])
+def test_bad_stretches_are_left_out_with_their_reason(robot: RobotModel, shape: str) -> None:
+    where = stretches((6.0, 13.0, 21.0))
+    logs = [noisy(1), spoilt(noisy(2), where[: len(noisy(2))], shape)]
+    result = identify_feet(robot, logs, settings=SETTINGS)
+    assert_stiffness_covered(result)
+    if shape == "held":  # shaken ones may count as impacts
+        assert 2 * 3 * 0.2 < left_out(result) < 2 * 3 * 1.2
+        assert {p.motion for p in result.phases if p.reason and p.reason.startswith("outlier")} == {"sway_2"}
