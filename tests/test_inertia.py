@@ -16,8 +16,10 @@ from plantar.dynamics.base_motion import relative_motion, root_motion, root_moti
 from plantar.dynamics.consistency import Normal, Prior, consistent_fit, is_consistent, pseudo_inertia
 from plantar.dynamics.equation import Equation
 from plantar.errors import DataError, RobotError
+from plantar.identify.dynamics_result import DynamicsResult
 from plantar.identify.inertia import identify_inertia
 from plantar.identify.pulled_fit import Trial, chosen_strength
+from plantar.identify.whole_body import DynamicsSettings
 from plantar.log import MotionLog
 from plantar.readers import open_log
 from plantar.robot import RobotModel, load_robot
@@ -39,7 +41,7 @@ def logs(robot: RobotModel, real: pin.Model) -> list[MotionLog]:
 
 
 @pytest.fixture(scope="module")
-def result(robot: RobotModel, logs: list[MotionLog]) -> object:
+def result(robot: RobotModel, logs: list[MotionLog]) -> DynamicsResult:
     return identify_inertia(robot, logs[:1], logs[1:])
 
 
@@ -116,13 +118,13 @@ def test_a_log_without_imu_is_taken_from_its_standing_sole(robot: RobotModel, re
     assert found.score("sway", "torque.y").rms_error < 0.4 * found.score("sway", "torque.y").cad_rms_error
 
 
-def test_the_held_out_wrench_is_predicted_and_the_urdf_is_not_believed(result: object) -> None:
+def test_the_held_out_wrench_is_predicted_and_the_urdf_is_not_believed(result: DynamicsResult) -> None:
     for row in result.validation:  # type: ignore[attr-defined]
         assert row.rms_error < 0.5 * row.cad_rms_error, (row.kind, row.axis)
     assert {row.kind for row in result.validation} == {"direct", "cross"}  # type: ignore[attr-defined]
 
 
-def test_mass_and_every_link_are_those_of_a_body(result: object, real: pin.Model) -> None:
+def test_mass_and_every_link_are_those_of_a_body(result: DynamicsResult, real: pin.Model) -> None:
     total = sum(inertia.mass for inertia in real.inertias)
     assert result.mass == pytest.approx(total, rel=0.01)  # type: ignore[attr-defined]
     values = np.array([row.value for row in result.inertial_parameters])  # type: ignore[attr-defined]
@@ -130,7 +132,7 @@ def test_mass_and_every_link_are_those_of_a_body(result: object, real: pin.Model
 
 
 def test_intervals_of_base_parameters_hold_the_truth(
-    robot: RobotModel, real: pin.Model, result: object
+    robot: RobotModel, real: pin.Model, result: DynamicsResult
 ) -> None:
     base = base_parameters(Equation(robot.floating_model))
     exact = base.grouping @ model_parameters(real)
@@ -139,7 +141,7 @@ def test_intervals_of_base_parameters_hold_the_truth(
     assert np.mean(inside) > 0.9
 
 
-def test_the_identified_urdf_loads_with_the_same_bodies(result: object, tmp_path: Path) -> None:
+def test_the_identified_urdf_loads_with_the_same_bodies(result: DynamicsResult, tmp_path: Path) -> None:
     path = result.save(tmp_path).parent / "identified.urdf"  # type: ignore[attr-defined]
     values = np.array([row.value for row in result.inertial_parameters])  # type: ignore[attr-defined]
     model = pin.buildModelFromXML(path.read_text(), pin.JointModelFreeFlyer())
@@ -171,6 +173,34 @@ def test_a_reversed_torque_channel_and_a_tilted_mount_are_found_and_said(
     codes = {note.code for note in identify_inertia(robot, [logs[0].with_columns(tilted)]).notes}
     assert "imu_tilt" in codes
     assert "wrench_polarity" not in codes
+
+
+def test_crosstalk_of_a_force_channel_is_found_mended_and_said(
+    robot: RobotModel, logs: list[MotionLog], real: pin.Model
+) -> None:
+    """A lateral force that holds shares of a torque looks like a wrong torque at the base, half a metre above."""
+    shares = {"left": 6.0, "right": 4.0}
+    leaking = {
+        f"wrench.{side}.force.y": logs[0].column(f"wrench.{side}.force.y")
+        + share * logs[0].column(f"wrench.{side}.torque.x")
+        for side, share in shares.items()
+    }
+    log = logs[0].with_columns(leaking)
+    found = identify_inertia(robot, [log])
+    note = next(note.text for note in found.notes if note.code == "wrench_crosstalk")
+    assert "wrench_polarity" not in {note.code for note in found.notes}
+    assert "force.y" in note
+    assert "torque.x" in note
+    for side, share in shares.items():
+        said = float(note.split(f"{side} ")[1].split()[0].rstrip(","))
+        assert said == pytest.approx(share, rel=0.1)
+    raw = identify_inertia(robot, [log], settings=DynamicsSettings(as_recorded=True))
+    assert "left as recorded" in next(note.text for note in raw.notes if note.code == "wrench_crosstalk")
+    assert raw.score(log.name, "force.y").rms_error > 3 * found.score(log.name, "force.y").rms_error
+
+
+def test_sound_sensors_are_left_alone(result: DynamicsResult) -> None:
+    assert not {"wrench_crosstalk", "wrench_polarity", "imu_tilt"} & {note.code for note in result.notes}
 
 
 def test_what_stands_still_is_named_as_not_excited(robot: RobotModel, real: pin.Model) -> None:

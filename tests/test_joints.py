@@ -13,9 +13,9 @@ import example_robots
 import small_biped
 from plantar.dynamics import base_parameters, model_parameters
 from plantar.dynamics.equation import Equation
-from plantar.errors import DataError, LogError
+from plantar.errors import DataError, LogError, RobotError
 from plantar.identify.dynamics_result import DynamicsResult
-from plantar.identify.joints import identify_joints
+from plantar.identify.joints import Inertia, identify_joints
 from plantar.identify.whole_body import COULOMB_SPEED
 from plantar.log import MotionLog
 from plantar.readers import open_log
@@ -149,6 +149,44 @@ def test_a_floating_robots_friction_is_found_beside_its_contacts(tmp_path: Path)
     found = identify_joints(robot, [log.with_columns(columns)])
     for name in robot.joint_names:
         assert found.parameter(name, "viscous").value == pytest.approx(1.5, rel=0.05), name
+
+
+@pytest.mark.parametrize("inertia", ["together", "first", "known"])
+def test_inertias_known_found_first_or_together_give_the_joints_parameters(
+    tmp_path: Path, inertia: Inertia
+) -> None:
+    terms = "".join(
+        f"  {side}_{joint}: {{terms: [viscous, coulomb, stiffness]}}\n"
+        for side in ("left", "right")
+        for joint in ("roll", "pitch", "ankle")
+    )
+    robot = small_biped.robot(
+        tmp_path, "joints:\n  shoulder: {terms: [viscous, coulomb, stiffness]}\n" + terms
+    )
+    model = robot.floating_model
+    log = small_biped.record(
+        robot, model if inertia == "known" else small_biped.truth(model, 9), "walk", 9, 60.0, 0.2
+    )
+    columns = {}
+    for name in robot.joint_names:
+        position, velocity, effort = (
+            log.column(f"joint.{name}.{kind}") for kind in ("position", "velocity", "effort")
+        )
+        columns[f"joint.{name}.effort"] = (
+            effort + 4.0 * velocity + 5.0 * np.tanh(velocity / COULOMB_SPEED) + 40.0 * position
+        )
+    found = identify_joints(robot, [log.with_columns(columns)], inertia=inertia)
+    for name in robot.joint_names:
+        for term, value in (("viscous", 4.0), ("coulomb", 5.0), ("stiffness", 40.0)):
+            assert found.parameter(name, term).value == pytest.approx(value, rel=0.03), (name, term)
+    changed = any(row.value != row.cad for row in found.inertial_parameters)
+    assert changed == (inertia != "known")
+    assert found.settings["inertia"] == inertia
+
+
+def test_a_fixed_base_has_no_inertias_to_find_first(arm: RobotModel, real: pin.Model) -> None:
+    with pytest.raises(RobotError, match="together, known"):
+        identify_joints(arm, [record(arm, real, "one", 6)], inertia="first")
 
 
 def test_what_cannot_serve_is_refused_in_one_line(arm: RobotModel, real: pin.Model) -> None:

@@ -91,6 +91,15 @@ def runs(valid: Mask) -> list[slice]:
     return [slice(int(start), int(stop)) for start, stop in edges.reshape(-1, 2)]
 
 
+def run_ends(valid: Mask, reach: int) -> Mask:
+    """The first and last `reach` samples of every run: where a filter knew only one side."""
+    ends = np.zeros(len(valid), dtype=bool)
+    for run in runs(valid):
+        ends[run.start : min(run.stop, run.start + reach)] = True
+        ends[max(run.start, run.stop - reach) : run.stop] = True
+    return ends
+
+
 def low_pass(values: Array, period: float, cutoff: float) -> Array:
     """Zero-phase low-pass of (N,) or (N, k) at `cutoff` [Hz], each run without NaN by itself.
 

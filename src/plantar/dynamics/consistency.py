@@ -96,14 +96,32 @@ def consistent_fit(normal: Normal, prior: Prior, strength: float, positive: Sequ
     positive: which extras may not be negative (friction cannot drive a joint). Returns [inertial parameters, extras].
     Raises MissingExtra without clarabel, DataError when the solver fails.
     """
+    size, count = len(prior.cad), len(normal.linear)
+    pull = np.concatenate([np.full(size, strength), np.full(count - size, 1e-12)])
+    square = normal.square + np.diag(pull)
+    free = np.asarray(np.linalg.solve(square, normal.linear), dtype=np.float64)
+    if np.all(free[[size + extra for extra in positive]] >= 0) and _keeps_floor(prior, free[:size]):
+        x = free
+    else:
+        x = _constrained(square, normal.linear, prior, [size + extra for extra in positive])
+    return np.concatenate([prior.cad + prior.spread @ x[:size], x[size:] * normal.scale])
+
+
+def _keeps_floor(prior: Prior, u: Array) -> bool:
+    """Whether parameters `cad + widths @ u` leave every link above the floor."""
+    links = prior.cad.reshape(-1, PER_LINK) + np.einsum("nij,nj->ni", prior.widths, u.reshape(-1, PER_LINK))
+    bodies = np.einsum("nk,kij->nij", links, _BASIS) - FLOOR * prior.reference
+    return bool(np.linalg.eigvalsh(bodies)[:, 0].min(initial=0.0) >= 0)
+
+
+def _constrained(square: Array, linear: Array, prior: Prior, places: Sequence[int]) -> Array:
+    """min xᵀ square x / 2 - linearᵀ x over bodies that keep the floor, x[places] not negative."""
     try:
         import clarabel
     except ModuleNotFoundError as error:
         raise MissingExtra("clarabel", "inertia", "physically consistent parameters") from error
-    size, count = len(prior.cad), len(normal.linear)
-    pull = np.concatenate([np.full(size, strength), np.full(count - size, 1e-12)])
-    square = normal.square + np.diag(pull)
-    unit = max(float(np.abs(normal.linear).max(initial=0.0)), 1e-12)
+    size, count = len(prior.cad), len(linear)
+    unit = max(float(np.abs(linear).max(initial=0.0)), 1e-12)
     blocks, offsets = [], []
     for link, width in enumerate(prior.widths):
         blocks.append(-_PACKED @ width)
@@ -112,14 +130,13 @@ def consistent_fit(normal: Normal, prior: Prior, strength: float, positive: Sequ
     bodies = sparse.hstack(
         [sparse.block_diag(blocks), sparse.csc_matrix((len(blocks) * PER_LINK, count - size))]
     )
-    places = [size + extra for extra in positive]
     signs = sparse.csc_matrix((-np.ones(len(places)), (range(len(places)), places)), (len(places), count))
     settings = clarabel.DefaultSettings()
     settings.verbose = False
     settings.max_threads = 1
     solution = clarabel.DefaultSolver(
         sparse.csc_matrix(np.triu(square) / unit),
-        -normal.linear / unit,
+        -linear / unit,
         sparse.csc_matrix(sparse.vstack([bodies, signs])),
         np.concatenate([*offsets, np.zeros(len(places))]),
         [clarabel.PSDTriangleConeT(4)] * len(blocks) + [clarabel.NonnegativeConeT(len(places))],
@@ -127,8 +144,7 @@ def consistent_fit(normal: Normal, prior: Prior, strength: float, positive: Sequ
     ).solve()
     if str(solution.status) not in ("Solved", "AlmostSolved"):
         raise DataError(f"the physically consistent fit did not converge ({solution.status})")
-    x = np.array(solution.x)
-    return np.concatenate([prior.cad + prior.spread @ x[:size], x[size:] * normal.scale])
+    return np.array(solution.x)
 
 
 def is_consistent(parameters: Array) -> bool:

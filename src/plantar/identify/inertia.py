@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import pyarrow as pa
@@ -19,6 +19,7 @@ from plantar.identify.dynamics_result import (
     DynamicsResult,
     DynamicsScore,
     InertialParameter,
+    JointParameter,
     score_row,
 )
 from plantar.identify.identified_urdf import identified_urdf
@@ -64,32 +65,55 @@ def identify_inertia(
     progress("prepare the logs")
     fitted = [prepare_whole(body, log, settings) for log in logs]
     unseen = [prepare_whole(body, log, settings) for log in validate]
-    calibration, notes = calibrate(body, fitted)
+    calibration, notes = calibrate(body, fitted, as_recorded=settings.as_recorded)
     recordings = [inertial_samples(body, whole, calibration) for whole in fitted]
     fit = PulledProblem(body.equation, body.base, body.prior, recordings).solve(progress)
     progress("deviations")
     trust = uncertainty(fit, recordings)
     validation, residuals = _score(body, fit, fitted, unseen, calibration)
-    rank, condition, excitation = excitation_of(fit)
-    notes = [
-        *(note for whole in fitted + unseen for note in whole.notes),
-        *notes,
-        *excitation,
-        *fit_notes(fit),
-    ]
-    return DynamicsResult(
-        schema=INERTIA_SCHEMA,
-        robot=robot.name,
+    return result_of(
+        INERTIA_SCHEMA,
+        body,
+        fit,
+        trust,
         inputs=inputs_of(logs, validate),
-        settings={**settings.to_dict(), "strength": fit.strength, "weights": list(fit.weights.values())},
+        settings={**settings.to_dict(), "weights": [float(weight) for weight in fit.weights.values()]},
+        validation=validation,
+        residuals=residuals,
+        notes=[*(note for whole in fitted + unseen for note in whole.notes), *notes],
+    )
+
+
+def result_of(
+    schema: str,
+    body: Body,
+    fit: PulledFit,
+    trust: Uncertainty,
+    *,
+    inputs: tuple[Input, ...],
+    settings: dict[str, Any],
+    validation: tuple[DynamicsScore, ...],
+    residuals: pa.Table,
+    notes: Sequence[Note],
+    parameters: tuple[JointParameter, ...] = (),
+) -> DynamicsResult:
+    """What eq. 2 and eq. 3 give alike, with notes on excitation and pull after those given."""
+    robot = body.robot
+    rank, condition, excitation = excitation_of(fit)
+    model = robot.floating_model if body.equation.floating else robot.model
+    return DynamicsResult(
+        schema=schema,
+        robot=robot.name,
+        inputs=inputs,
+        settings={**settings, "strength": fit.strength},
         rank=rank,
         condition_number=condition,
         base_parameters=base_rows(fit, trust),
         inertial_parameters=inertial_rows(fit),
-        parameters=(),
+        parameters=parameters,
         validation=validation,
-        notes=unique(notes),
-        urdf=identified_urdf(robot.urdf, robot.floating_model, fit.inertial),
+        notes=unique([*notes, *excitation, *fit_notes(fit)]),
+        urdf=identified_urdf(robot.urdf, model, fit.inertial),
         residuals=residuals,
     )
 
@@ -130,6 +154,8 @@ def excitation_of(fit: PulledFit) -> tuple[int, float, list[Note]]:
 
 def fit_notes(fit: PulledFit) -> list[Note]:
     """What the choice of the pull was, and whether it was at the end of its range."""
+    if np.isinf(fit.strength):
+        return []
     if not fit.trials:
         text = "too few samples to hold any out: a gentle pull towards the URDF was assumed"
         return [Note("pull", "warning", text)]

@@ -9,7 +9,7 @@ import numpy as np
 import pyarrow as pa
 
 from plantar.conventions import Array
-from plantar.errors import DataError, located
+from plantar.errors import DataError, RobotError, located
 from plantar.estimation.intervals import interval95
 from plantar.identify.calibration import calibrate
 from plantar.identify.dynamics_result import (
@@ -19,15 +19,12 @@ from plantar.identify.dynamics_result import (
     JointParameter,
     score_row,
 )
-from plantar.identify.identified_urdf import identified_urdf
 from plantar.identify.inertia import (
-    base_rows,
     check_logs,
-    excitation_of,
     fit_notes,
-    inertial_rows,
     inputs_of,
     residual_rows,
+    result_of,
 )
 from plantar.identify.pulled_covariance import Uncertainty, uncertainty
 from plantar.identify.pulled_fit import PulledFit, PulledProblem, Samples, errors_of
@@ -37,11 +34,12 @@ from plantar.identify.whole_body import (
     Calibration,
     DynamicsSettings,
     Whole,
+    inertial_samples,
     joint_samples,
     prepare_whole,
 )
 from plantar.log import MotionLog
-from plantar.notes import Note, unique
+from plantar.notes import Note
 from plantar.result import Verdict
 from plantar.robot import RobotModel
 
@@ -54,6 +52,7 @@ OFFSET_SHARE = (
 )
 
 Progress = Callable[[str], None]
+Inertia = Literal["together", "first", "known"]
 
 
 def identify_joints(
@@ -62,67 +61,89 @@ def identify_joints(
     validate: Sequence[MotionLog] = (),
     settings: DynamicsSettings | None = None,
     progress: Progress = lambda _: None,
+    *,
+    inertia: Inertia = "together",
 ) -> DynamicsResult:
-    """Fit the joints' own parameters to `logs`, inertias together with them, and score them, also on `validate`.
+    """Fit the joints' own parameters to `logs` and score them, also on `validate`.
+
+    inertia: "together" fits the inertial parameters with them, "first" takes those of eq. 2 (floating bases), "known"
+    the URDF's.
 
     Terms are those of the robot file; a joint that it does not describe has viscous and Coulomb friction and an offset,
     and a spring where held-out stretches of `logs` are predicted better with it. Passive joints need no effort.
-    Inertias stay physically consistent and as near to the URDF's as held-out stretches allow. Raises RobotError,
+    Fitted inertias stay physically consistent and as near to the URDF's as held-out stretches allow. Raises RobotError,
     LogError or DataError with one line when the input cannot serve, MissingExtra without clarabel.
     """
     settings = settings or DynamicsSettings()
     check_logs(logs, validate)
     floating = robot.base == "floating"
+    if inertia == "first" and not floating:
+        message = "a fixed base has no base rows to identify inertias from first"
+        raise RobotError(located(message, path=robot.path, valid="inertia: together, known"))
     body = Body.of(robot, floating=floating)
     progress("prepare the logs")
     fitted = [prepare_whole(body, log, settings) for log in logs]
     unseen = [prepare_whole(body, log, settings) for log in validate]
-    calibration, notes = calibrate(body, fitted) if floating else (Calibration(np.eye(3)), [])
-    terms, fit, choice = _chosen(body, fitted, calibration, progress)
+    calibration, notes = Calibration(np.eye(3)), list[Note]()
+    if floating:
+        calibration, notes = calibrate(body, fitted, as_recorded=settings.as_recorded)
+    given, said = _given(body, fitted, calibration, inertia, progress)
+    terms, fit, choice = _chosen(body, fitted, calibration, given, progress)
     progress("deviations")
     recordings = [joint_samples(body, whole, calibration, terms) for whole in fitted]
     trust = uncertainty(fit, recordings)
     validation, residuals = _score(body, fit, fitted, unseen, calibration, terms)
-    rank, condition, excitation = excitation_of(fit)
-    notes = [
-        *(note for whole in fitted + unseen for note in whole.notes),
-        *notes,
-        *choice,
-        *excitation,
-        *fit_notes(fit),
-    ]
-    return DynamicsResult(
-        schema=JOINTS_SCHEMA,
-        robot=robot.name,
+    return result_of(
+        JOINTS_SCHEMA,
+        body,
+        fit,
+        trust,
         inputs=inputs_of(logs, validate),
         settings={
             **settings.to_dict(),
-            "strength": fit.strength,
-            "terms": {k: list(v) for k, v in terms.items()},
+            "inertia": inertia,
+            "terms": {joint: list(chosen) for joint, chosen in terms.items()},
         },
-        rank=rank,
-        condition_number=condition,
-        base_parameters=base_rows(fit, trust),
-        inertial_parameters=inertial_rows(fit),
-        parameters=_parameters(body, fit, trust, terms, recordings),
         validation=validation,
-        notes=unique(notes),
-        urdf=identified_urdf(robot.urdf, robot.floating_model if floating else robot.model, fit.inertial),
         residuals=residuals,
+        notes=[*(note for whole in fitted + unseen for note in whole.notes), *notes, *said, *choice],
+        parameters=_parameters(body, fit, trust, terms, recordings),
     )
 
 
+def _given(
+    body: Body, fitted: Sequence[Whole], calibration: Calibration, inertia: Inertia, progress: Progress
+) -> tuple[Array | None, list[Note]]:
+    """The inertial parameters that eq. 3 is to take as they are, if any: the URDF's, or those of eq. 2."""
+    if inertia == "together":
+        return None, []
+    if inertia == "known":
+        text = "inertias taken from the URDF as known: the joints' deviations leave their errors out"
+        return body.prior.cad, [Note("inertia_known", "info", text)]
+    recordings = [inertial_samples(body, whole, calibration) for whole in fitted]
+    fit = PulledProblem(body.equation, body.base, body.prior, recordings).solve(progress)
+    text = (
+        "inertias identified first, from the base rows (eq. 2): the joints' deviations leave their errors out"
+    )
+    return fit.inertial, [Note("inertia_first", "info", text), *fit_notes(fit)]
+
+
 def _chosen(
-    body: Body, fitted: Sequence[Whole], calibration: Calibration, progress: Progress
+    body: Body,
+    fitted: Sequence[Whole],
+    calibration: Calibration,
+    inertial: Array | None,
+    progress: Progress,
 ) -> tuple[dict[str, tuple[str, ...]], PulledFit, list[Note]]:
-    """Terms of every joint that takes part, and the fit with them."""
+    """Terms of every joint that takes part, and the fit with them; inertial: given parameters, if any."""
     measured = _measured_joints(body, fitted)
     described = body.robot.joints
     fits = []
     for default in (FRICTION, SPRUNG):
         terms = {name: described[name].terms if name in described else default for name in measured}
         recordings = [joint_samples(body, whole, calibration, terms) for whole in fitted]
-        fits.append((terms, PulledProblem(body.equation, body.base, body.prior, recordings).solve(progress)))
+        problem = PulledProblem(body.equation, body.base, body.prior, recordings)
+        fits.append((terms, problem.solve(progress) if inertial is None else problem.with_known(inertial)))
         if all(name in described for name in measured):
             return terms, fits[0][1], []
     errors = [_held_out(fit, fits[0][1]) for _, fit in fits]

@@ -13,6 +13,9 @@ from plantar.estimation.intervals import cosine_covariance
 from plantar.identify.pulled_fit import PulledFit, Samples
 
 CHUNK = 2048  # samples whose regressor is held at a time
+GIVEN_STRENGTH = (
+    1e12  # of the pull where the inertial parameters are given: they have no deviation of their own
+)
 
 
 @dataclass(frozen=True)
@@ -36,11 +39,13 @@ def uncertainty(fit: PulledFit, recordings: Sequence[Samples]) -> Uncertainty:
     onto = np.zeros((n_base + len(normal.scale), size + len(normal.scale)))
     onto[:n_base, :size] = fit.base.grouping @ fit.prior.spread
     onto[n_base:, size:] = np.diag(normal.scale)
-    pull = np.concatenate([np.full(size, fit.strength), np.full(len(normal.scale), 1e-9)])
+    given = np.isinf(fit.strength)
+    strength = GIVEN_STRENGTH if given else fit.strength
+    pull = np.concatenate([np.full(size, strength), np.full(len(normal.scale), 1e-9)])
     inverse = np.linalg.inv(normal.square + np.diag(pull))
     moved = np.linalg.solve(fit.prior.spread, fit.inertial - fit.prior.cad)
-    decided = max(size - fit.strength * float(np.trace(inverse[:size, :size])), 1.0)
-    error = fit.strength**2 * float(moved @ moved) / decided
+    decided = max(size - strength * float(np.trace(inverse[:size, :size])), 1.0)
+    error = 0.0 if given else strength**2 * float(moved @ moved) / decided
     meat = np.diag(np.concatenate([np.full(size, error), np.zeros(len(normal.scale))]))
     freedom = 0.0
     for samples in recordings:

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
+from scipy import optimize
 
 from plantar.conventions import Array, Mask
 from plantar.dynamics import BaseParameters, Equation, EquationStream, Motion, RowFactor, stacked
@@ -62,7 +63,8 @@ class Trial:
 
 @dataclass(frozen=True)
 class PulledFit:
-    """inertial: (10 n_links,); extras: those of each row; weights: of each row [1 / unit]; trials: see `Trial`."""
+    """inertial: (10 n_links,); extras: those of each row; weights: of each row [1 / unit]; strength: of the pull,
+    infinite where the inertial parameters were given; trials: see `Trial`."""
 
     equation: Equation
     base: BaseParameters
@@ -137,6 +139,50 @@ class PulledProblem:
             triangle=triangle,
         )
 
+    def with_known(self, inertial: Array) -> PulledFit:
+        """Only the rows' extras, the inertial parameters (10 n_links,) given: each row by itself. Strength infinite."""
+        every = range(len(self.stretches))
+        size = len(self.prior.cad)
+
+        def extras(chosen: Sequence[int]) -> Array:
+            found = [self._row_extras(chosen, row, self.base.grouping @ inertial) for row in self.rows]
+            return np.concatenate([inertial, *found])
+
+        x = extras(every)
+        weights = {row: 1 / max(np.sqrt(self._error(every, row, x)), 1e-12) for row in self.rows}
+        trials = []
+        if len(self.stretches) > 1:
+            fits = [extras([k for k in every if k != out]) for out in every]
+            errors = [self._weighted_error(out, fit, weights) for out, fit in enumerate(fits)]
+            trials.append(Trial(np.inf, np.array(errors)))
+        return PulledFit(
+            equation=self.equation,
+            base=self.base,
+            prior=self.prior,
+            inertial=inertial,
+            extras={row: x[size + start : size + stop] for row, (start, stop) in self._places().items()},
+            weights=weights,
+            strength=np.inf,
+            trials=tuple(trials),
+            triangle=self._triangle(every, weights),
+        )
+
+    def _row_extras(self, chosen: Sequence[int], row: int, base: Array) -> Array:
+        """Least squares of one row's extras beside known base parameters; some may not be negative."""
+        count = self.counts[row]
+        if count == 0:
+            return np.zeros(0)
+        factor = _pooled([self.stretches[k][row] for k in chosen])
+        own = len(factor.columns)
+        target = factor.upper[:, -1] - factor.upper[:, :own] @ base[factor.columns]
+        first = self._places()[row][0]
+        lower = [0.0 if first + k in self.positive else -np.inf for k in range(count)]
+        return np.asarray(optimize.lsq_linear(factor.upper[:, own:-1], target, (lower, np.inf)).x)
+
+    def _weighted_error(self, stretch: int, x: Array, weights: Mapping[int, float]) -> float:
+        """Mean over the rows of one stretch's mean squared errors, over their weights."""
+        return float(np.mean([self._error([stretch], row, x) * weights[row] ** 2 for row in self.rows]))
+
     def _trials(self, weights: Mapping[int, float], progress: Callable[[str], None]) -> list[Trial]:
         every = range(len(self.stretches))
         if len(self.stretches) < 2:
@@ -149,7 +195,7 @@ class PulledProblem:
             errors = []
             for out in every:
                 x = consistent_fit(normals[out], self.prior, strength, self.positive)
-                errors.append(np.mean([self._error([out], row, x) * weights[row] ** 2 for row in self.rows]))
+                errors.append(self._weighted_error(out, x, weights))
             trials.append(Trial(strength, np.array(errors)))
             if errors_of(trials)[-1] > HOPELESS * errors_of(trials).min():
                 break
@@ -166,9 +212,7 @@ class PulledProblem:
         """R of the chosen stretches, each row times its weight: base parameters, extras, measured."""
         parts = []
         for row in self.rows:
-            own = [self.stretches[k][row] for k in chosen]
-            size = len(own[0].columns) + own[0].extras + 1
-            parts.append(_pooled(own, size))
+            parts.append(_pooled([self.stretches[k][row] for k in chosen]))
         return stacked(parts, len(self.base), [weights[row] for row in self.rows])
 
     def _normal(self, triangle: Array) -> Normal:
@@ -217,9 +261,10 @@ def chosen_strength(trials: Sequence[Trial]) -> float:
     return max(tolerated)
 
 
-def _pooled(factors: Sequence[RowFactor], size: int) -> RowFactor:
+def _pooled(factors: Sequence[RowFactor]) -> RowFactor:
     """One row's factors over several stretches as one."""
     first = factors[0]
+    size = len(first.columns) + first.extras + 1
     if len(factors) == 1:
         return first
     upper = stacked([RowFactor(f.upper, np.arange(size - 1), 0, f.samples) for f in factors], size - 1)

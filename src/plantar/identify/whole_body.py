@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -19,7 +19,7 @@ from plantar.log import MotionLog
 from plantar.notes import Note
 from plantar.robot import RobotModel
 from plantar.sanity import check_log
-from plantar.signals import differentiate, evenly_sampled, low_pass, runs
+from plantar.signals import differentiate, evenly_sampled, low_pass, run_ends
 
 FEWEST_SAMPLES = 50
 COULOMB_SPEED = (
@@ -43,9 +43,10 @@ TERM_UNITS = {
 @dataclass(frozen=True)
 class DynamicsSettings:
     """`cutoff` [Hz]: zero-phase low-pass on both sides of eq. 1, where accelerations are derived; a log that brings
-    its accelerations is taken as it is."""
+    its accelerations is taken as it is. `as_recorded`: wrench channels at fault are named, not mended."""
 
     cutoff: float = 3.0
+    as_recorded: bool = False
 
     def to_dict(self) -> dict[str, Any]:
         return asdict(self)
@@ -69,18 +70,27 @@ class Body:
 
 @dataclass(frozen=True)
 class Calibration:
-    """What the sensors' mounting needs: a rotation of the root motion (3, 3), and wrench channels read reversed."""
+    """What the sensors need: a rotation of the root motion (3, 3); for each foot's sensor that is to be mended a matrix
+    (6, 6) from wrench as recorded to wrench."""
 
     rotation: Array
-    reversed_channels: tuple[int, ...] = ()
+    sensors: Mapping[str, Array] = field(default_factory=dict)
+
+    def sensor(self, foot: str) -> Array:
+        return self.sensors.get(foot, np.eye(6))
 
 
 @dataclass(frozen=True)
 class Whole:
-    """One log on one grid, filtered: the joints' motion, the root's (N, 9), wrenches as recorded, efforts."""
+    """One log on one grid, filtered: the joints' motion, the root's (N, 9), wrenches as recorded, efforts.
+
+    sense: of the joints' motion, what Coulomb friction follows, (N, n_joints): filtered after the step that it makes,
+    as the efforts are.
+    """
 
     log: MotionLog
     motion: Motion
+    sense: Array
     wrenches: Mapping[str, Array]
     efforts: Mapping[str, Array]
     valid: Mask
@@ -113,12 +123,14 @@ def prepare_whole(body: Body, log: MotionLog, settings: DynamicsSettings) -> Who
         columns = []
         for k, name in enumerate(names):
             values = even.joint(name, quantity) if name in moving else np.zeros(len(even))
-            columns.append(derived[:, k] if values is None and derived is not None else values)
-        return np.column_stack([np.zeros(len(even)) if c is None else c for c in columns])
+            if values is not None:
+                columns.append(smooth(values))
+            else:
+                columns.append(np.zeros(len(even)) if derived is None else derived[:, k])
+        return np.column_stack(columns)
 
-    q = smooth(stacked("position", None))
+    q = stacked("position", None)
     v = stacked("velocity", differentiate(q, period))
-    v = smooth(v)
     a = stacked("acceleration", None) if given else differentiate(v, period)
     if not given:
         text = f"{log.name}: accelerations derived; all signals through one zero-phase low-pass at "
@@ -130,11 +142,12 @@ def prepare_whole(body: Body, log: MotionLog, settings: DynamicsSettings) -> Who
         wrenches = {name: smooth(even.wrench(foot.wrench.name)) for name, foot in robot.feet.items()}
     efforts = {name: smooth(values) for name in names if (values := even.joint(name, "effort")) is not None}
     motion = Motion(base, q, v, a)
+    sense = np.column_stack([smooth(np.tanh(rate / COULOMB_SPEED)) for rate in v.T])
     valid = motion.finite & known
     for values in (*wrenches.values(), *(effort[:, None] for effort in efforts.values())):
         valid &= np.isfinite(values).all(axis=1)
     edge = 0 if given else round(1 / settings.cutoff / period)
-    valid &= ~_run_ends(valid, edge)
+    valid &= ~run_ends(valid, edge)
     left_out = int(np.sum(~valid))
     if valid.sum() < FEWEST_SAMPLES:
         raise DataError(
@@ -147,7 +160,7 @@ def prepare_whole(body: Body, log: MotionLog, settings: DynamicsSettings) -> Who
     if left_out > 2 * edge:
         text = f"{log.name}: {left_out} of {len(even)} samples left out (NaN, gaps and their surroundings)"
         notes.append(Note("left_out", "info", text))
-    return Whole(even, motion, wrenches, efforts, valid, tuple(notes))
+    return Whole(even, motion, sense, wrenches, efforts, valid, tuple(notes))
 
 
 def contacts_of(body: Body) -> dict[str, Contact]:
@@ -160,16 +173,28 @@ def contacts_of(body: Body) -> dict[str, Contact]:
     return found
 
 
-def carried(body: Body, whole: Whole, calibration: Calibration) -> Array:
-    """What the contacts carry, sum of K F, (n_rows, N): on top, for a floating base, the ground's total wrench."""
+def foot_wrenches(body: Body, whole: Whole, calibration: Calibration) -> dict[str, Array]:
+    """Each foot's wrench in its sensor's frame, of the environment on the robot, (N, 6)."""
+    return {
+        name: foot.wrench.sign * whole.wrenches[name] @ calibration.sensor(name).T
+        for name, foot in body.robot.feet.items()
+    }
+
+
+def carried(
+    body: Body, whole: Whole, calibration: Calibration, wrenches: Mapping[str, Array] | None = None
+) -> Array:
+    """What the contacts carry, sum of K F, (n_rows, N): on top, for a floating base, the ground's total wrench.
+
+    wrenches: other ones than those recorded, (N, 6) a foot.
+    """
     contacts = contacts_of(body)
-    wrenches = []
-    for name, foot in body.robot.feet.items():
-        wrench = foot.wrench.sign * whole.wrenches[name]
-        wrench[:, list(calibration.reversed_channels)] *= -1
-        wrenches.append(wrench)
+    if wrenches is None:
+        wrenches = foot_wrenches(body, whole, calibration)
     still = replace(whole.motion, base=np.zeros_like(whole.motion.base))
-    return -body.equation.inverse_dynamics(still, None, list(contacts.values()), wrenches)
+    return -body.equation.inverse_dynamics(
+        still, None, list(contacts.values()), [wrenches[name] for name in contacts]
+    )
 
 
 def turned(motion: Motion, rotation: Array) -> Motion:
@@ -189,12 +214,12 @@ def inertial_samples(body: Body, whole: Whole, calibration: Calibration) -> Samp
 
 
 def term_columns(
-    terms: Sequence[str], position: Array, velocity: Array, acceleration: Array
+    terms: Sequence[str], position: Array, velocity: Array, acceleration: Array, sense: Array
 ) -> tuple[Array, ...]:
-    """Y_JJ of one joint: one column (N,) a term."""
+    """Y_JJ of one joint: one column (N,) a term; sense: of the motion, as in `Whole`."""
     columns = {
         "viscous": velocity,
-        "coulomb": np.tanh(velocity / COULOMB_SPEED),
+        "coulomb": sense,
         "offset": np.ones_like(velocity),
         "stiffness": position,
         "inertia": acceleration,
@@ -221,8 +246,8 @@ def joint_samples(
             continue
         row = equation.first_joint_row + joint
         measured[row] = rows[row] + whole.efforts.get(name, 0.0)
-        states = (motion.positions[:, joint], motion.velocities[:, joint], motion.accelerations[:, joint])
-        extras[row] = term_columns(terms[name], *states)
+        states = (motion.positions, motion.velocities, motion.accelerations, whole.sense)
+        extras[row] = term_columns(terms[name], *(state[:, joint] for state in states))
     rows_of = {name: equation.first_joint_row + joint for joint, name in enumerate(equation.tree.names)}
     positive = {
         rows_of[name]: tuple(term in DISSIPATIVE for term in chosen) for name, chosen in terms.items()
@@ -271,11 +296,3 @@ def _stands(body: Body, log: MotionLog, name: str) -> Mask:
     normal = sensor.rotation.T @ sole.rotation[:, 2]
     force = foot.wrench.sign * log.wrench(foot.wrench.name)[:, :3] @ normal
     return np.asarray(force > STANDING_SHARE * GRAVITY * body.robot.mass)
-
-
-def _run_ends(valid: Mask, reach: int) -> Mask:
-    ends = np.zeros(len(valid), dtype=bool)
-    for run in runs(valid):
-        ends[run.start : min(run.stop, run.start + reach)] = True
-        ends[max(run.start, run.stop - reach) : run.stop] = True
-    return ends
