@@ -25,6 +25,7 @@ TELLING_GAIN = (
 )
 FOLDS = 5  # contiguous parts that recordings are cut into where they cannot stand for one another
 SEED_REACH = 2.2  # ratio of shapes to those of a simpler law, within which a richer one is looked for
+HOPELESS = 6.0  # times the best law's squares, at its best candidate shape: such a law's shape is not refined
 DOMINANT = 0.5  # share of all motion in one recording, above which the others cannot stand for it
 FEWEST_RECORDINGS = 3  # for whole recordings to be held out
 
@@ -87,25 +88,36 @@ def choose_law(
     rows = sum(len(fold) for fold in folds)
     scores: list[LawScore] = []
     errors: list[Array] = []
-    untried = []
+    untried: list[str] = []
     motions = [each.motion for each in prepared]
-    for law in sorted(laws, key=lambda law: law.elaborates is not None):
-        if not law.applies(motions):
-            untried.append(law.name)
-            continue
-        simpler = [score.law.name for score in scores]
+
+    def judge(contender: _Contender) -> None:
+        least = min((score.fit.rms for score in scores), default=np.inf) ** 2 * rows
+        hopeless = contender.squares > HOPELESS * least
+        fit, squares = _judge(contender, prepared, folds, whole, shared_offset, refined=not hopeless)
+        scores.append(LawScore(contender.law, float(np.sqrt(squares.sum() / rows)), fit, _refusal(fit)))
+        errors.append(squares)
+
+    untried += [law.name for law in laws if not law.applies(motions)]
+    simple = [
+        _Contender.of(law, prepared, folds, shared_offset)
+        for law in laws
+        if law.elaborates is None and law.name not in untried
+    ]
+    for contender in sorted(simple, key=lambda each: each.squares):
+        judge(contender)
+    names = [score.law.name for score in scores]
+    linear = names.index(KelvinVoigt.name)
+    for law in (each for each in laws if each.elaborates is not None and each.name not in untried):
         seed = None
-        if law.elaborates in simpler:
-            place = simpler.index(law.elaborates)
+        if law.elaborates in names:
+            place = names.index(law.elaborates)
             seed = scores[place].fit
-            if not _clear(scores, errors, simple=simpler.index(KelvinVoigt.name), rich=place):
+            if not _clear(scores, errors, simple=linear, rich=place):
                 untried.append(law.name)
                 continue
-        fit, squares = _judge(law, prepared, folds, whole, shared_offset, seed)
-        scores.append(LawScore(law, float(np.sqrt(squares.sum() / rows)), fit, _refusal(fit)))
-        errors.append(squares)
+        judge(_Contender.of(law, prepared, folds, shared_offset, seed))
     winner = _winner(scores, errors)
-    linear = next(place for place, score in enumerate(scores) if isinstance(score.law, KelvinVoigt))
     chosen = replace(scores[winner], chosen=True)
     ranking = [chosen if place == winner else score for place, score in enumerate(scores)]
     held_out = "whole recordings" if whole else f"{FOLDS} contiguous parts of each recording"
@@ -130,28 +142,51 @@ def _folds(prepared: Sequence[Prepared]) -> tuple[list[Numbers], bool]:
     return [np.arange(count, dtype=np.intp) * FOLDS // max(count, 1) for count in counts], False
 
 
+@dataclass(frozen=True)
+class _Contender:
+    """A law with its candidate shapes, their limits (2, s), and the squares that the best candidate leaves."""
+
+    law: Law
+    pieces: Pieces
+    limits: Array
+    squares: float
+
+    @classmethod
+    def of(
+        cls,
+        law: Law,
+        prepared: Sequence[Prepared],
+        folds: Sequence[Numbers],
+        shared_offset: bool,
+        seed: LawFit | None = None,
+    ) -> _Contender:
+        """`seed` is the fit of a simpler law, near whose first shape term and starts this one's are looked for."""
+        shapes = law.candidates([each.motion for each in prepared])
+        limits = np.array([shapes.min(axis=0), shapes.max(axis=0)])
+        starts = None
+        if seed is not None:
+            ratio = np.abs(np.log(shapes[:, 0] / seed.shape[0]))
+            shapes = shapes[ratio <= max(np.log(SEED_REACH), ratio.min())]
+            starts = list(seed.starts.values())
+        pieces = Pieces.of(law, prepared, folds, shapes, starts)
+        everything = np.ones(len(pieces.grams), dtype=bool)
+        squares = fit_pieces(pieces, everything, shared_offset=shared_offset).squares
+        return cls(law, pieces, limits, float(squares.min()))
+
+
 def _judge(
-    law: Law,
+    contender: _Contender,
     prepared: Sequence[Prepared],
     folds: Sequence[Numbers],
     whole: bool,
     shared_offset: bool,
-    seed: LawFit | None,
+    *,
+    refined: bool,
 ) -> tuple[LawFit, Array]:
-    """The law's fit to everything, and its squared error on each piece from fits that have not seen it.
-
-    `seed` is the fit of a simpler law, near whose first shape term and starts this one's are looked for.
-    """
-    shapes = law.candidates([each.motion for each in prepared])
-    limits = np.array([shapes.min(axis=0), shapes.max(axis=0)])
-    starts = None
-    if seed is not None:
-        ratio = np.abs(np.log(shapes[:, 0] / seed.shape[0]))
-        shapes = shapes[ratio <= max(np.log(SEED_REACH), ratio.min())]
-        starts = list(seed.starts.values())
-    pieces = Pieces.of(law, prepared, folds, shapes, starts)
-    fit = refine(pieces, prepared, limits, shared_offset=shared_offset)
-    if shapes.shape[1]:
+    """The law's fit to everything, and its squared error on each piece from fits that have not seen it."""
+    pieces = contender.pieces
+    fit = refine(pieces, prepared, contender.limits, shared_offset=shared_offset, refined=refined)
+    if pieces.shapes.shape[1] and refined:
         pieces = pieces.with_shape(fit.shape, list(fit.starts.values()), prepared, folds)
     squares = np.zeros(len(pieces.grams))
     for fold in np.unique(pieces.fold):

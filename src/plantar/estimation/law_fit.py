@@ -140,11 +140,19 @@ def fit_law(law: Law, trials: Sequence[Trial], cutoff: float = 5.0, *, shared_of
 
 
 def refine(
-    pieces: Pieces, prepared: Sequence[Prepared], limits: Array, *, shared_offset: bool = False
+    pieces: Pieces,
+    prepared: Sequence[Prepared],
+    limits: Array,
+    *,
+    shared_offset: bool = False,
+    refined: bool = True,
 ) -> LawFit:
-    """The fit that starts from the best candidate of `pieces` and keeps the shape between `limits` (2, s)."""
+    """The fit that starts from the best candidate of `pieces` and keeps the shape between `limits` (2, s).
+
+    Not `refined`, it stays at that candidate: enough to tell that a law is the wrong one.
+    """
     problem = Problem(pieces.law, prepared, shared_offset)
-    return _finished(problem, settle(problem, pieces, limits), limits)
+    return _finished(problem, settle(problem, pieces, limits, refined=refined), limits)
 
 
 def _finished(problem: Problem, point: Point, limits: Array) -> LawFit:

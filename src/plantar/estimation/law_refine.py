@@ -83,8 +83,11 @@ class Problem:
         return Linearised(designs, point.residuals, self.shared_offset, memories, runs)
 
 
-def settle(problem: Problem, pieces: Pieces, limits: Array) -> Point:
-    """The best fit reached from the best candidate of `pieces`, its shape between `limits` (2, s)."""
+def settle(problem: Problem, pieces: Pieces, limits: Array, *, refined: bool = True) -> Point:
+    """The best fit reached from the best candidate of `pieces`, its shape between `limits` (2, s).
+
+    Not `refined`: the candidate itself.
+    """
     law, shapes = pieces.law, pieces.shapes
     rough = fit_pieces(pieces, np.ones(len(pieces.grams), dtype=bool), shared_offset=problem.shared_offset)
     best = int(np.argmin(rough.squares))
@@ -95,7 +98,7 @@ def settle(problem: Problem, pieces: Pieces, limits: Array) -> Point:
             begin[trial][run - runs[trial]] = pieces.starts[trial][start, run - runs[trial]]
     point = problem.at(shapes[best], begin)
     width = WIDEST_SCAN
-    for _ in range(ITERATIONS if shapes.shape[1] or law.remembers else 0):
+    for _ in range(ITERATIONS if refined and (shapes.shape[1] or law.remembers) else 0):
         moved = _step(problem, point, limits)
         if moved is None or moved.squares > (1 - SETTLED) * point.squares:
             scanned = _scan(problem, moved or point, width) if law.remembers else None

@@ -27,6 +27,7 @@ PRIOR_STD = (
 KNOWN_STD = 0.001  # s: better known than this, the delay is corrected without a warning
 CLOCK = 0.06  # of a period: within it, nobody knows when a sample was taken
 SIGNIFICANT = 2.5  # deviations from zero: a poorly known delay is corrected beyond, else only allowed for
+KEPT_RATE = 67.0  # Hz of the samples that are kept: the cutoff is far below
 SLOW = 0.05  # Hz: below it the pair differs by postures and drifting zeros
 BASE_ROWS = slice(0, 6)
 WINDOW = 2.0  # s, in which the forces must follow from the prediction
@@ -106,16 +107,15 @@ def _pair(robot: RobotModel, log: MotionLog) -> Pair | None:
         split = [np.ascontiguousarray(readings[:, 6 * i : 6 * i + 6]) for i in range(len(contacts))]
         return -equation.inverse_dynamics(part, None, contacts, split)[BASE_ROWS].T
 
-    readings = wrenches[longest]
-    smooth = low_pass(readings, log.period, CUTOFF)
-    measured, rate = carried(readings), carried(differentiate(smooth, log.period))
-    measured, rate, predicted = (
-        _band(values, log.period)[edge:-edge] for values in (measured, rate, predicted)
-    )
-    calm = _longest_closed(measured[:, FORCE], rate[:, FORCE], predicted[:, FORCE], log.period)
-    if (calm.stop - calm.start) * log.period < SHORTEST:
+    readings = low_pass(wrenches[longest], log.period, CUTOFF)
+    stride = max(1, round(1 / (KEPT_RATE * log.period)))
+    inner, period = slice(edge, len(part) - edge, stride), stride * log.period
+    rows = np.hstack([carried(readings), carried(differentiate(readings, log.period)), predicted])[inner]
+    measured, rate, predicted = np.hsplit(rows - low_pass(rows, period, SLOW), 3)
+    calm = _longest_closed(measured[:, FORCE], rate[:, FORCE], predicted[:, FORCE], period)
+    if (calm.stop - calm.start) * period < SHORTEST:
         return None
-    return Pair(log.name, measured[calm], rate[calm], predicted[calm], log.period)
+    return Pair(log.name, measured[calm], rate[calm], predicted[calm], period)
 
 
 def _longest_closed(measured: Array, rate: Array, predicted: Array, period: float) -> slice:
@@ -129,10 +129,3 @@ def _longest_closed(measured: Array, rate: Array, predicted: Array, period: floa
         missing = unexplained(measured[window], rate[window], predicted[window]) / width
         closed[window] = missing < (1 - LEAST_CLOSED) * max(power, usual)
     return max(runs(closed), key=lambda run: run.stop - run.start, default=slice(0, 0))
-
-
-def _band(values: Array, period: float) -> Array:
-    """Zero-phase low-pass, the slow part (posture, drift of the zeros) taken off."""
-    smooth = low_pass(values, period, CUTOFF)
-    slow = low_pass(values, period, SLOW)
-    return smooth - slow

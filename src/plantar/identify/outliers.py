@@ -64,13 +64,11 @@ def outliers(missed: Array, spread: float, period: float, reach: float) -> Mask:
     none = np.zeros(len(missed), dtype=bool)
     if served.sum() < AROUND / BIN:
         return none
-    level = np.array([np.nanmean(row) for row in padded[served]])
-    half = round(AROUND / 2 / BIN)
+    level = np.nanmean(padded[served], axis=1)
     # Over the bins that serve, the usual level around each, and the usual distance from it.
-    windows = [slice(max(0, i - half), i + half + 1) for i in range(len(level))]
-    usual = np.array([np.median(level[window]) for window in windows])
+    usual = _median_around(level)
     size = np.sqrt(np.nanmean((padded[served] - usual[:, None]) ** 2, axis=1))
-    scale = np.array([np.median(size[window]) for window in windows])
+    scale = _median_around(size)
     far = np.zeros(bins, dtype=bool)
     far[served] = size > np.maximum(FAR * scale, WORTH * spread)
     found = none.copy()
@@ -80,3 +78,10 @@ def outliers(missed: Array, spread: float, period: float, reach: float) -> Mask:
             found[max(0, run.start * width - margin) : run.stop * width + margin] = True
     found &= np.isfinite(missed)
     return found if found.sum() <= MOST * np.isfinite(missed).sum() else none
+
+
+def _median_around(values: Array) -> Array:
+    """Median of the bins (n,) around each, mirrored at the ends."""
+    half = round(AROUND / 2 / BIN)
+    wide = np.pad(values, half, mode="reflect")
+    return np.asarray(np.median(np.lib.stride_tricks.sliding_window_view(wide, 2 * half + 1), axis=1))
