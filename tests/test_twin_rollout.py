@@ -165,6 +165,17 @@ def test_rigid_feet_have_no_bush_but_a_wrench() -> None:
     assert both.mean() == pytest.approx(hrp2.robot().mass * GRAVITY, rel=0.02)
 
 
+def test_a_sole_that_has_been_on_its_edge_stands_still_again() -> None:
+    """A light sole rattled from edge to edge for good, and its damper's torque reached the log."""
+    rollout = roll(short(plan("Manual_both_pitch"), 8.0, 14.0))
+    pressure = truth_columns(rollout, cut_feet(describe(hrp2.robot()), hrp2.robot()))["left.contact.cop.x"]
+    assert np.nanmax(np.abs(pressure)) > 0.1  # tips over the toes or the heel at 0.1086
+    for foot in ("left", "right"):
+        rate = rollout.bush_rates[foot][:, 2]
+        jumps = np.abs(np.diff(rate))[rollout.time[1:] > 5.0]
+        assert np.median(jumps) < 0.01  # rad/s from sample to sample; it rattled by 0.1
+
+
 def test_native_steps_are_the_steps_in_python(monkeypatch: pytest.MonkeyPatch) -> None:
     bush = Bush(434.0, 15.89, 323.0, 17.53, 239018.0, 1000.0, 5000.0, 4000.0, 5.0, 2.0, 0.01, 0.008)
     world = Physics({"right": bush, "left": bush}, settle=0.5)

@@ -66,7 +66,9 @@ def mjcf_text(robot: RobotModel, bushes: Feet | None, scene: Scene, look: Descri
     _add_world(world, scene)
     elements = _add_bodies(world, description, {foot.place: foot.ankle for foot in feet.values()})
     for foot in feet.values():
-        _add_sole(elements[foot.place], foot, bushes[foot.name] if bushes is not None else None)
+        _add_sole(
+            elements[foot.place], foot, bushes[foot.name] if bushes is not None else None, scene.timestep
+        )
     if robot.imu is not None:
         _add_site(elements, "imu", *place_of(description, robot, robot.imu.placement))
     if scene.held is not None:
@@ -150,10 +152,14 @@ def _add_inertia(element: Element, body: Body) -> None:
     )
 
 
-def _add_sole(ankle: Element, foot: CutFoot, bush: Bush | None) -> None:
+def _add_sole(ankle: Element, foot: CutFoot, bush: Bush | None, timestep: float) -> None:
     """The sole below the bush: z slide, pitch and roll in series, in one light body (none may be massless)."""
     sole = SubElement(ankle, "body", {"name": f"{foot.name}.sole"} | pose(foot.bush))
-    centre = {"pos": "0 0 0", "mass": f"{foot.mass:.12g}", "diaginertia": numbers(foot.inertia)}
+    centre = {
+        "pos": "0 0 0",
+        "mass": f"{foot.mass:.12g}",
+        "diaginertia": numbers(_sole_inertia(foot, bush, timestep)),
+    }
     SubElement(sole, "inertial", centre)
     if bush is not None:
         axes = (
@@ -174,6 +180,20 @@ def _add_sole(ankle: Element, foot: CutFoot, bush: Bush | None) -> None:
     for corner in foot.corners:
         touch = {"type": "sphere", "size": str(CORNER), "contype": "1", "conaffinity": "0", "mass": "0"}
         SubElement(sole, "geom", touch | {"pos": numbers(corner + [0, 0, CORNER]), "condim": "3"})
+
+
+def _sole_inertia(foot: CutFoot, bush: Bush | None, timestep: float) -> Array:
+    """Principal moments of the sole, (3,) [kg·m²], with which it does not rattle between its edges on a bush.
+
+    The integrator takes the bush's damping implicitly, the contact's forces are found without it: they turn a sole of
+    inertia I by I / (I + timestep C) of what they should. Below a half the contact bounces, for as long as the sole
+    stands. A sole that stands flat does not turn, so that more inertia than the real one's changes nothing else.
+    """
+    inertia = np.array(foot.inertia)
+    if bush is not None:
+        inertia[:2] = np.maximum(inertia[:2], timestep * np.array([bush.roll_damping, bush.pitch_damping]))
+        inertia[2] = max(inertia[2], abs(inertia[0] - inertia[1]))
+    return inertia
 
 
 def _add_site(elements: list[Element], name: str, place: int, matrix: Array) -> None:
