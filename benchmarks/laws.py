@@ -17,12 +17,8 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
-from bush_trials import PERIOD, Rubber, campaign, largest_torque, unseen
+from bush_trials import Rubber, campaign, largest_torque, unseen, unseen_error
 from plantar.estimation.law_choice import choose_law
-from plantar.estimation.law_fit import LawFit
-from plantar.estimation.law_opening import open_unseen
-from plantar.estimation.law_trials import Trial
-from plantar.signals import low_pass
 
 RUBBERS = ("none", "jenkins", "bouc_wen 1", "bouc_wen 2", "hardening", "coulomb")
 
@@ -40,17 +36,6 @@ def rubber(kind: str, seed: int) -> Rubber:
         "hardening": Rubber(hardening=rng.uniform(3000, 10000)),
         "coulomb": Rubber(coulomb=rng.uniform(2, 6)),
     }[kind]
-
-
-def unseen_error(fit: LawFit, trials: list[Trial]) -> float:
-    """Mean absolute error on motions outside the fit; their first second gives the offset and is not scored."""
-    errors = []
-    for trial in trials:
-        measured, served = low_pass(trial.torque, PERIOD, fit.cutoff), np.flatnonzero(trial.used)
-        first = np.zeros(len(measured), dtype=bool)
-        first[served[:200]] = True
-        errors.append(np.abs(measured - open_unseen(fit, trial, first).predicted)[served[200:]].mean())
-    return float(np.mean(errors))
 
 
 def main() -> None:

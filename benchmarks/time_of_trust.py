@@ -2,7 +2,7 @@
 
     python benchmarks/time_of_trust.py
 
-Best of several runs, in CPU seconds (of all threads: what other programs do to the clock does not count) and in seconds.
+Best of several runs, in CPU seconds (of all threads; what other programs do to the clock does not count) and seconds.
 """
 
 from __future__ import annotations

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from plantar.estimation.law_fit import LawFit
+from plantar.estimation.law_opening import open_unseen
 from plantar.estimation.law_trials import Trial
 from plantar.models import Motion
 from plantar.signals import low_pass
@@ -123,3 +125,24 @@ def unseen(seed: int, rubber: Rubber) -> list[Trial]:
 def largest_torque(trials: Sequence[Trial]) -> float:
     """Largest torque about its mean over the trials [N·m]."""
     return max(float(np.max(np.abs(trial.torque - trial.torque.mean()))) for trial in trials)
+
+
+def error_percent(fit: LawFit, rubber: Rubber) -> tuple[float, float]:
+    """Errors of stiffness and damping."""
+    return (
+        100 * abs(fit.value("stiffness") / rubber.stiffness - 1),
+        100 * abs(fit.value("damping") / rubber.damping - 1),
+    )
+
+
+def unseen_error(fit: LawFit, trials: list[Trial]) -> float:
+    """Mean absolute error after the first second, which gives the offset."""
+    errors = []
+    for trial in trials:
+        measured = low_pass(trial.torque, PERIOD, fit.cutoff)
+        served = np.flatnonzero(trial.used)
+        first = np.zeros(len(measured), dtype=bool)
+        first[served[:200]] = True
+        predicted = open_unseen(fit, trial, first)[0]
+        errors.append(np.mean(np.abs(measured - predicted)[served[200:]]))
+    return float(np.mean(errors))

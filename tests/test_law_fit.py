@@ -1,4 +1,4 @@
-"""Fits of the laws of the bush to recordings whose rubber is known, and the choice between them."""
+"""Fits of the laws of the bush to recordings whose rubber is known."""
 
 from __future__ import annotations
 
@@ -7,10 +7,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bush_trials import PERIOD, Rubber, campaign, largest_torque, recorded, sway, tilt, unseen
+from bush_trials import (
+    PERIOD,
+    Rubber,
+    campaign,
+    error_percent,
+    sway,
+    tilt,
+)
 from plantar.errors import DataError
 from plantar.estimation.law_choice import choose_law
-from plantar.estimation.law_fit import LawFit, fit_law, refine
+from plantar.estimation.law_fit import fit_law, refine
 from plantar.estimation.law_influence import Linearised
 from plantar.estimation.law_opening import open_unseen
 from plantar.estimation.law_search import Pieces
@@ -21,26 +28,6 @@ from plantar.signals import low_pass
 JENKINS = Rubber(slip_torque=5.0, slip_angle=0.01)
 
 
-def error_percent(fit: LawFit, rubber: Rubber) -> tuple[float, float]:
-    return (
-        100 * abs(fit.value("stiffness") / rubber.stiffness - 1),
-        100 * abs(fit.value("damping") / rubber.damping - 1),
-    )
-
-
-def unseen_error(fit: LawFit, trials: list[Trial]) -> float:
-    """Mean absolute error after the first second, which gives the offset."""
-    errors = []
-    for trial in trials:
-        measured = low_pass(trial.torque, PERIOD, fit.cutoff)
-        served = np.flatnonzero(trial.used)
-        first = np.zeros(len(measured), dtype=bool)
-        first[served[:200]] = True
-        predicted = open_unseen(fit, trial, first).predicted
-        errors.append(np.mean(np.abs(measured - predicted)[served[200:]]))
-    return float(np.mean(errors))
-
-
 SHAPES = {
     "coulomb": [0.02],
     "elastoplastic": [0.011],
@@ -48,6 +35,8 @@ SHAPES = {
     "bouc_wen": [0.01, 1.8],
     "standard_linear_solid": [0.6],
 }
+
+
 OWN = {
     "hardening": [6000.0],
     "coulomb": [3.0],
@@ -136,50 +125,6 @@ def test_nuisances_projected_out_are_the_same_as_fitted(shared: bool) -> None:
         np.testing.assert_allclose(change, expected[width + 2 :], atol=1e-9)
 
 
-@pytest.mark.parametrize("seed", range(4))
-def test_hysteresis_is_chosen_and_spring_and_damper_come_back(seed: int) -> None:
-    rng = np.random.default_rng(seed)
-    share, slip_angle = rng.uniform(0.07, 0.2), rng.uniform(0.005, 0.02)
-    plain = largest_torque(campaign(seed, Rubber()))
-    rubber = Rubber(slip_torque=share * plain, slip_angle=slip_angle)
-    trials = campaign(seed, rubber)
-    choice = choose_law(trials)
-    assert choice.fit.law.name in ("elastoplastic", "iwan", "bouc_wen")
-    stiffness, damping = error_percent(choice.fit, rubber)
-    assert stiffness < 1
-    assert damping < 3
-    assert error_percent(choice.equivalent, rubber)[0] > 4  # what the linear law makes of it
-    assert error_percent(choice.equivalent, rubber)[1] > 30
-    others = unseen(seed, rubber)
-    assert unseen_error(choice.fit, others) < 0.5 * unseen_error(choice.equivalent, others)
-
-
-@pytest.mark.parametrize("seed", range(4))
-def test_without_hysteresis_the_linear_law_is_kept(seed: int) -> None:
-    choice = choose_law(campaign(seed, Rubber()))
-    assert choice.fit.law.name == "kelvin_voigt"
-    assert choice.fit is choice.equivalent
-    assert choice.caution is None
-    assert sum(score.chosen for score in choice.ranking) == 1
-
-
-@pytest.mark.parametrize(
-    ("rubber", "name"),
-    [
-        (Rubber(hardening=8000.0), "hardening"),
-        (Rubber(coulomb=3.0), "coulomb"),
-        (Rubber(slip_torque=5.0, sharpness=1.0), "bouc_wen"),
-        (Rubber(slip_torque=5.0, sharpness=2.0), "bouc_wen"),
-    ],
-)
-def test_the_law_that_made_the_data_is_chosen(rubber: Rubber, name: str) -> None:
-    choice = choose_law(campaign(3, rubber))
-    assert choice.fit.law.name == name
-    stiffness, damping = error_percent(choice.fit, rubber)
-    assert stiffness < 1
-    assert damping < 3
-
-
 @pytest.mark.parametrize(
     ("law", "rubber"),
     [
@@ -198,29 +143,6 @@ def test_intervals_hold_the_truth(law: LAWS, rubber: Rubber) -> None:  # type: i
             inside[place] += low <= truth <= high
             assert high - low < 0.2 * truth
     assert np.all(inside >= 0.75 * seeds)
-
-
-def test_small_motions_never_give_a_confident_wrong_spring() -> None:
-    """Nothing slips at a third of the slip angle: the sum of both springs is all there is to see."""
-    rng = np.random.default_rng(0)
-    paths = [sway(rng, 0.0035, 0.5), sway(rng, 0.003, 0.8), tilt(rng, 0.003)]
-    trials = [recorded(rng, f"small_{i}", path, JENKINS) for i, path in enumerate(paths)]
-    fit = fit_law(Elastoplastic(), trials)
-    assert any("largest that these motions can show" in doubt for doubt in fit.doubts)
-    choice = choose_law(trials)
-    assert choice.fit.law.name == "kelvin_voigt"
-    both = JENKINS.stiffness + JENKINS.slip_torque / JENKINS.slip_angle
-    assert choice.fit.value("stiffness") == pytest.approx(both, rel=0.03)
-    assert choice.reach < JENKINS.slip_angle  # up to there it holds
-
-
-def test_motions_that_just_slip_are_told_of() -> None:
-    rng = np.random.default_rng(0)
-    paths = [sway(rng, 0.01, 0.5), sway(rng, 0.007, 0.8), tilt(rng, 0.01)]
-    choice = choose_law([recorded(rng, f"medium_{i}", path, JENKINS) for i, path in enumerate(paths)])
-    assert choice.fit.law.name == "kelvin_voigt"
-    assert choice.caution is not None
-    assert "cannot be identified" in choice.caution
 
 
 def test_gaps_and_unused_samples_change_little() -> None:
@@ -253,9 +175,10 @@ def test_a_start_that_is_not_virgin_is_found() -> None:
     assert fit.starts["strained"] == pytest.approx([-0.7], abs=0.05)
     assert fit.offsets["strained"] == pytest.approx(1.5, abs=0.2)
     first = np.arange(len(path)) < 200
-    opened = open_unseen(fit_law(law, trials), strained, first)
+    predicted, opened = open_unseen(fit_law(law, trials), strained, first)
     assert opened.starts == pytest.approx([-0.7], abs=0.1)
     assert opened.offset == pytest.approx(1.5, abs=0.5)
+    assert np.abs(predicted - torque)[200:-200].mean() < 0.2
     assert 0 < opened.settling.sum() < len(path) / 2
 
 
@@ -275,17 +198,6 @@ def test_reconstruction_is_the_fit_plus_its_residual() -> None:
         torque = fit.reconstruct(trial.motion, fit.starts[trial.label]) + fit.offsets[trial.label]
         missed = (low_pass(trial.torque, PERIOD, fit.cutoff) - torque)[trial.used]
         assert np.std(missed) == pytest.approx(np.std(fit.residuals[trial.label]), rel=0.05)
-
-
-def test_whole_recordings_are_held_out_where_they_can_stand_for_one_another() -> None:
-    rng = np.random.default_rng(8)
-    trials = [recorded(rng, f"sway_{i}", sway(rng, 0.08, 0.4 + 0.1 * i), JENKINS) for i in range(4)]
-    choice = choose_law(trials)
-    assert choice.held_out == "whole recordings"
-    assert choice.fit.law.name == "elastoplastic"
-    alone = choose_law(trials[:1])
-    assert "parts" in alone.held_out
-    assert alone.fit.law.name == "elastoplastic"
 
 
 def test_nothing_to_fit_is_one_line() -> None:
@@ -314,16 +226,6 @@ def test_wrong_starts_do_not_trap_the_refinement() -> None:
     fit = refine(pieces, prepared, np.array([[0.002], [0.05]]))
     assert fit.rms < 0.02
     np.testing.assert_allclose(fit.values, [434.0, 15.89, 5.0], rtol=0.01)
-
-
-def test_a_gain_that_is_real_but_small_keeps_the_simpler_law() -> None:
-    """A weak cubic term is well told from nothing, yet predicts held-out motion hardly better."""
-    trials = campaign(1, Rubber(hardening=500.0))
-    choice = choose_law(trials, [KelvinVoigt(), Hardening()])
-    hardening = next(score for score in choice.ranking if score.law.name == "hardening")
-    assert hardening.refused is None
-    assert hardening.held_out_rms < choice.ranking[-1].held_out_rms
-    assert choice.fit.law.name == "kelvin_voigt"
 
 
 def test_a_bush_that_never_moves_says_nothing() -> None:

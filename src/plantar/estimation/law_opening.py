@@ -3,6 +3,7 @@ part."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,55 +13,64 @@ from plantar.estimation.law_fit import LawFit
 from plantar.estimation.law_trials import Trial
 from plantar.signals import low_pass
 
-TRIED = np.linspace(-1.0, 1.0, 21)
+TRIED = np.linspace(-1.0, 1.0, 21)  # states of the memory
 FORGOTTEN = 0.02  # of the span between the extreme starts' torques: below it the start no longer matters
 
 
 @dataclass(frozen=True)
 class Opening:
-    """`predicted` torque (N,) of an unseen recording, its `offset` in it; `starts` (runs,) of the law's
-    memory.
+    """The recording's `offset`, and the state of the law's memory at the start of each run, `starts` (runs,).
 
     `settling` (N,) are the samples that told the starts: until the memory of them has faded.
     """
 
-    predicted: Array
     offset: float
     starts: Array
     settling: Mask
 
+    def of(self, every: Array, runs: Sequence[slice]) -> Array:
+        """Of torques (m, N) for each state tried, each run's from where it began, with the offset: (N,)."""
+        torque = every[len(every) // 2].copy()
+        for run, start in zip(runs, self.starts, strict=True):
+            torque[run] = every[int(np.argmin(np.abs(TRIED - start))), run]
+        return np.asarray(torque + self.offset)
 
-def open_unseen(fit: LawFit, trial: Trial, opening: Mask) -> Opening:
-    """Predict an unseen recording; its offset is the mean that is missing over the samples of `opening` (N,).
 
-    Before an element slips, its state and the sensors' offset look alike; at its first slip they part. So the
-    start of every run is the one that fits best while it still matters, and the offset follows from it.
+def open_runs(measured: Array, every: Array, runs: Sequence[slice], used: Mask, opening: Mask) -> Opening:
+    """Where the memory began in each run of an unseen recording, and the recording's offset.
+
+    `every` (m, N): the law's torque without offset for each of the states `TRIED`, filtered as `measured` (N,). Before an
+    element slips, its state and the sensors' offset look alike; at its first slip they part. So for each state the
+    offset is what is missing over the samples of `opening` (N,), and the state is the one that fits best while it
+    matters.
     """
-    motion, cutoff = trial.motion, fit.cutoff
-    measured = low_pass(trial.torque, motion.period, cutoff)
-    runs = fit.path_runs(motion)
-    count = len(runs)
-    if not (fit.law.remembers and fit.law.forgets) or count == 0:
-        torque = fit.reconstruct(motion)
-        offset = _offset(measured - torque, opening)
-        return Opening(torque + offset, offset, np.zeros(count), np.zeros(len(motion), dtype=bool))
-    every = np.array([fit.reconstruct(motion, np.full(count, start)) for start in TRIED])
     span = np.abs(every[-1] - every[0])
-    settling = trial.used & (span > FORGOTTEN * max(float(np.nanmax(span, initial=0.0)), 1e-300))
-    run_of = np.full(len(motion), -1)
+    settling = used & (span > FORGOTTEN * max(float(np.nanmax(span, initial=0.0)), 1e-300))
+    run_of = np.full(len(measured), -1)
     for place, run in enumerate(runs):
         run_of[run] = place
     first = int(run_of[np.flatnonzero(opening)[0]]) if opening.any() else 0
     offsets = np.array([_offset(measured - torque, opening & (run_of == first)) for torque in every])
-    starts = np.zeros(count)
+    starts = np.zeros(len(runs))
     chosen = _best(measured, every + offsets[:, None], settling & (run_of == first))
     starts[first], offset = TRIED[chosen], float(offsets[chosen])
-    torque = every[chosen].copy()
-    for place in set(range(count)) - {first}:
-        mine = run_of == place
-        chosen = _best(measured, every + offset, settling & mine)
-        starts[place], torque[mine] = TRIED[chosen], every[chosen][mine]
-    return Opening(torque + offset, offset, starts, settling)
+    for place in set(range(len(runs))) - {first}:
+        starts[place] = TRIED[_best(measured, every + offset, settling & (run_of == place))]
+    return Opening(offset, starts, settling)
+
+
+def open_unseen(fit: LawFit, trial: Trial, opening: Mask) -> tuple[Array, Opening]:
+    """Predicted torque (N,) of an unseen recording, and where it begins; `opening` (N,) shows its offset."""
+    motion = trial.motion
+    measured = low_pass(trial.torque, motion.period, fit.cutoff)
+    runs = fit.path_runs(motion)
+    if not (fit.law.remembers and fit.law.forgets and runs):
+        torque = fit.reconstruct(motion)
+        offset = _offset(measured - torque, opening)
+        return torque + offset, Opening(offset, np.zeros(len(runs)), np.zeros(len(motion), dtype=bool))
+    every = np.array([fit.reconstruct(motion, np.full(len(runs), start)) for start in TRIED])
+    found = open_runs(measured, every, runs, trial.used, opening)
+    return found.of(every, runs), found
 
 
 def _offset(missing: Array, opening: Mask) -> float:

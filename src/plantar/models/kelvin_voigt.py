@@ -16,10 +16,6 @@ class KelvinVoigt(Law):
 
     name: ClassVar[str] = "kelvin_voigt"
 
-    def regressor(self, deflection: Array, rate: Array) -> Array:
-        """Y_JJ without the offset's column: (n,) and (n,) -> (n, 2), `[q q̇]` of eq. 5."""
-        return np.column_stack([deflection, rate])
-
     def extra(self, motions: Sequence[Motion], shapes: Array, starts: Sequence[Array]) -> list[Array]:
         """No columns beside the two: (N, 0, b)."""
         return [np.zeros((len(motion), 0, len(shapes))) for motion in motions]
