@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from plantar.conventions import Array
+from plantar.conventions import GRAVITY, Array
 from plantar.motions.body import Body
 from plantar.motions.plan import RATE, Hand, Plan
 from plantar.motions.profile import window
@@ -21,6 +21,7 @@ ALONG, ACROSS = (
     0.9,
 )  # of the sole's half length and width: how far the operator leads the centre of mass
 ROOM = 0.008  # m, kept to the edge even by soles so narrow that the shares would leave less
+STEADIED = 520.0  # N·m, weight times height of a robot that a hand can lead so far; a heavier one less
 ASIDE = 0.2  # of the sway goes across the wanted axis: no hand moves in a plane
 TEMPOS = (0.23, 0.41, 0.67)  # Hz: slow, brisk and quick swings of one hand
 SHARES = (0.5, 0.35, 0.15)
@@ -64,4 +65,5 @@ def _reach(body: Body, start: Stance, height: float) -> Array:
     soles = [body.robot.feet[name].sole.polygon for name in start.standing]
     half = np.min([np.ptp(polygon, axis=0) / 2 for polygon in soles], axis=0)
     centre = body.centre_of_mass(start.configuration)[2]
-    return np.asarray(np.minimum([ALONG, ACROSS] * half, half - ROOM) * height / centre)
+    led = np.minimum([ALONG, ACROSS] * half, half - ROOM)
+    return np.asarray(led * min(1.0, STEADIED / (body.robot.mass * GRAVITY * centre)) * height / centre)
