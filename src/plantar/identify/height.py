@@ -34,6 +34,10 @@ USABLE_WIDTH, WEAK_WIDTH = 0.15, 0.5  # half width of the interval over the valu
 ADVICE = (
     "stand on both feet and shift the weight slowly from foot to foot, nearly all of it, for 30 s or more"
 )
+ADVICE_APART = (
+    "the total load must change to tell the feet apart: stand on both feet while somebody presses the robot down or "
+    "lifts it by 50 N or more, slowly and several times"
+)
 
 
 @dataclass(frozen=True)
@@ -170,13 +174,15 @@ def _row(foot: str, compliance: float, std: float, found: Compliances) -> Parame
         "usable" if width < USABLE_WIDTH else "weak" if width < WEAK_WIDTH else "unidentifiable"
     )
     reason = f"95 % interval of the compliance ±{100 * width:.2g} %"
+    advice = ADVICE
     if not found.separable:
+        advice = ADVICE_APART
         verdict = "weak" if verdict == "usable" else verdict
         reason += "; only the sum of both compliances shows, both feet taken as equal"
     white = relative_std_percent(found.total, float(found.white_std[0]))
     return Parameter(
         foot, "z", "stiffness", STIFFNESS_UNIT["z"], value, std * value**2, interval, white, verdict, reason,
-        None if verdict == "usable" else ADVICE,
+        None if verdict == "usable" else advice,
     )  # fmt: skip
 
 
