@@ -39,8 +39,8 @@ class Opening:
 def open_runs(measured: Array, every: Array, runs: Sequence[slice], used: Mask, opening: Mask) -> Opening:
     """Where the memory began in each run of an unseen recording, and the recording's offset.
 
-    `every` (m, N): the law's torque without offset for each of the states `TRIED`, filtered as `measured` (N,). Before an
-    element slips, its state and the sensors' offset look alike; at its first slip they part. So for each state the
+    `every` (m, N): the law's torque without offset for each of the states `TRIED`, filtered as `measured` (N,). Before
+    an element slips, its state and the sensors' offset look alike; at its first slip they part. So for each state the
     offset is what is missing over the samples of `opening` (N,), and the state is the one that fits best while it
     matters.
     """
