@@ -12,6 +12,7 @@ from plantar.conventions import INERTIAL_NAMES, INERTIAL_UNITS, WRENCH_AXES, Arr
 from plantar.dynamics import parameter_name, solve_triangle
 from plantar.dynamics.consistency import is_consistent
 from plantar.errors import DataError, RobotError, located
+from plantar.estimation.intervals import interval95, relative_std_percent
 from plantar.identify.calibration import calibrate
 from plantar.identify.dynamics_result import (
     INERTIA_SCHEMA,
@@ -178,7 +179,11 @@ def base_rows(fit: PulledFit, trust: Uncertainty) -> tuple[BaseParameter, ...]:
     values = fit.base.grouping @ fit.inertial
     return tuple(
         BaseParameter(
-            expression, float(value), float(std), 100 * float(std) / abs(float(value)) if value else None
+            expression,
+            float(value),
+            float(std),
+            interval95(float(value), float(std), trust.freedom),
+            relative_std_percent(float(value), float(std)),
         )
         for expression, value, std in zip(fit.base.expressions, values, trust.base, strict=True)
     )

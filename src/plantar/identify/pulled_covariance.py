@@ -44,7 +44,8 @@ def uncertainty(fit: PulledFit, recordings: Sequence[Samples]) -> Uncertainty:
     pull = np.concatenate([np.full(size, strength), np.full(len(normal.scale), 1e-9)])
     inverse = np.linalg.inv(normal.square + np.diag(pull))
     moved = np.linalg.solve(fit.prior.spread, fit.inertial - fit.prior.cad)
-    decided = max(size - strength * float(np.trace(inverse[:size, :size])), 1.0)
+    kept = np.eye(size) - strength * inverse[:size, :size]  # share of the truth's distance that the fit shows
+    decided = max(float(np.sum(kept * kept.T)), 1.0)
     error = 0.0 if given else strength**2 * float(moved @ moved) / decided
     meat = np.diag(np.concatenate([np.full(size, error), np.zeros(len(normal.scale))]))
     freedom = 0.0
