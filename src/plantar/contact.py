@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from plantar.conventions import Array, Mask
-from plantar.signals import runs
+from plantar.signals import low_pass, runs
 
 LANDING_SHARE = 0.10  # of the weight: a foot that carries more stands
 LIFTING_SHARE = (
@@ -17,6 +17,12 @@ LIFTING_SHARE = (
 SETTLING_TIME = 0.25  # s around landing and lifting, left out: the sole is not flat yet
 SHORTEST_STANCE = 0.5  # s: shorter contacts are steps or impacts, not stances
 
+SHAKING_BAND = 20.0  # Hz: no robot that stands is loaded on purpose so fast
+SHAKING_TIME = 0.1  # s over which shaking is judged
+SHAKING_SHARE = 0.02  # of the weight, rms: a sole that is shaken by more slaps or chatters
+SHAKING_NOISE = 7.0  # times the log's calmest shaking, which is the sensor's noise
+
+IMPACT = "impact: the force is shaken faster than the samples resolve, as by a sole that slaps the floor"
 NOT_RECORDED = "not recorded: NaN or a gap in a column that this foot needs"
 
 DOUBLE, SINGLE, AIR, TRANSITION = "double", "single", "air", "transition"
@@ -110,6 +116,38 @@ def detect_contact(
         contact.leave_out(settling, f"landing or lifting: within {SETTLING_TIME} s of a change of contact")
         contacts[foot] = contact
     return contacts
+
+
+def shaken(force: Array, weight: float, period: float) -> Mask:
+    """Samples in which a foot's force (N, 3) [N] is shaken by impacts; `weight` [N] is the robot's.
+
+    There the recorded values are aliases: of force and torque, of the accelerometer, of rates. SETTLING_TIME after an
+    impact counts to it, as after a landing.
+    """
+    quick = np.nan_to_num(force - low_pass(force, period, min(SHAKING_BAND, 0.2 / period)))
+    total = np.concatenate([[0.0], np.cumsum(np.sum(quick**2, axis=1))])
+    place, reach = np.arange(len(force)), max(1, round(SHAKING_TIME / 2 / period))
+    last, first = np.minimum(place + reach + 1, len(force)), np.maximum(place - reach, 0)
+    size = np.sqrt((total[last] - total[first]) / (last - first))
+    struck = np.asarray(size > max(SHAKING_SHARE * weight, SHAKING_NOISE * float(np.percentile(size, 10))))
+    return widened(struck, reach, round(SETTLING_TIME / period))
+
+
+def widened(samples: Mask, before: int, behind: int | None = None) -> Mask:
+    """Each true stretch made longer by `before` samples in front and `behind` (as many where None) at its end."""
+    wide, behind = samples.copy(), before if behind is None else behind
+    for run in runs(samples):
+        wide[max(0, run.start - before) : run.stop + behind] = True
+    return wide
+
+
+def joined(samples: Mask, reach: int) -> Mask:
+    """True stretches that are `reach` samples apart or less made one."""
+    whole = samples.copy()
+    for gap in runs(~samples):
+        if gap.start and gap.stop < len(samples) and gap.stop - gap.start <= reach:
+            whole[gap] = True
+    return whole
 
 
 def carried_weight(force: Mapping[str, Array]) -> float:

@@ -17,12 +17,23 @@ def convex_hull(points: Array) -> Array:
         return np.asarray(points)
 
 
+def edge_distances(points: Array, polygon: Array) -> Array:
+    """Signed distances [m] of (N, 2) points to each edge's line of a convex polygon (n, 2): (N, n), positive inside.
+
+    The edges are those of `convex_hull`, each from one corner to the next.
+    """
+    corners = convex_hull(polygon)
+    edges = np.roll(corners, -1, axis=0) - corners
+    normals = np.column_stack([-edges[:, 1], edges[:, 0]]) / np.linalg.norm(edges, axis=1, keepdims=True)
+    return np.asarray(points @ normals.T - np.sum(corners * normals, axis=1))
+
+
 def inside_distance(points: Array, polygon: Array) -> Array:
     """Signed distance [m] of (N, 2) points to the border of a convex polygon (n, 2): positive inside.
 
     Outside near a corner it is the distance to the nearest edge's line, which is never more than the true distance.
     """
-    return np.asarray(_depths(points, polygon).min(axis=1))
+    return np.asarray(edge_distances(points, polygon).min(axis=1))
 
 
 def separation(one: Array, other: Array) -> float:
@@ -30,12 +41,4 @@ def separation(one: Array, other: Array) -> float:
 
     Two convex polygons are apart where an edge of either has all of the other beyond it.
     """
-    return max(float((-_depths(b, a)).min(axis=0).max()) for a, b in ((one, other), (other, one)))
-
-
-def _depths(points: Array, polygon: Array) -> Array:
-    """Distance [m] of each point behind each edge's line of a convex polygon, (N, edges)."""
-    corners = convex_hull(polygon)
-    edges = np.roll(corners, -1, axis=0) - corners
-    normals = np.column_stack([-edges[:, 1], edges[:, 0]]) / np.linalg.norm(edges, axis=1, keepdims=True)
-    return np.asarray(points @ normals.T - np.sum(corners * normals, axis=1))
+    return max(float((-edge_distances(b, a)).min(axis=0).max()) for a, b in ((one, other), (other, one)))

@@ -7,20 +7,17 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
-import numpy as np
-
-from plantar.contact import DOUBLE, SUPPORTS
-from plantar.deflection import closure
 from plantar.errors import DataError
+from plantar.identify.edges import leave_out_edges
 from plantar.identify.height import Height, fit_height
 from plantar.identify.latency import Latency, known_latency, wrench_latency
 from plantar.identify.recording import Recording, Role, checked, moved_centre, prepare
 from plantar.identify.settings import FeetSettings
+from plantar.identify.sliding import leave_out_slip
 from plantar.identify.tipping import leave_out_tipping
 from plantar.log import MotionLog
 from plantar.notes import Note, unique
 from plantar.robot import RobotModel
-from plantar.slip import sliding
 
 Progress = Callable[[str], None]
 
@@ -67,6 +64,10 @@ def prepare_all(
                 lambda log, role: _recording(robot, log, role, settings, latency.delay, progress), even, roles
             )
         )
+    progress("look for soles that tip or slide")
+    leave_out_edges(robot, recordings, settings, latency.delay)
+    for recording in recordings:
+        leave_out_slip(robot, recording)
     progress("fit z")
     vertical = fit_height(recordings[: len(logs)], robot, settings.cutoff)
     moved = [moved_centre(recording, vertical.compliance, settings.cutoff) for recording in recordings]
@@ -83,7 +84,6 @@ def _recording(
 ) -> Recording:
     progress(f"prepare {log.name}")
     recording = prepare(robot, log, role, settings, delay)
-    leave_out_slip(recording)
     leave_out_tipping(robot, recording, settings)
     return recording
 
@@ -96,17 +96,3 @@ def check_names(logs: Sequence[MotionLog]) -> None:
             message = f"two logs are called '{log.name}': {seen[log.name].source} and {log.source}"
             raise DataError(f"{message} (valid: file names that differ, since results name motions by them)")
         seen[log.name] = log
-
-
-def leave_out_slip(recording: Recording) -> None:
-    """Samples of double support in which the soles slide against each other."""
-    if len(recording.bushes) != 2:
-        return
-    first, second = recording.contacts.values()
-    both = np.asarray((first.support == SUPPORTS.index(DOUBLE)) & (second.support == SUPPORTS.index(DOUBLE)))
-    if not both.any():
-        return
-    apart = closure(*recording.bushes.values())
-    slides = sliding(apart.position[:, :2], apart.yaw, both, recording.period)
-    for contact in (first, second):
-        contact.leave_out(slides, "slip: the soles move against each other")

@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from plantar.contact import NOT_RECORDED, FootContact, carried_weight, detect_contact
+from plantar.contact import IMPACT, NOT_RECORDED, FootContact, carried_weight, detect_contact, shaken
 from plantar.conventions import FORCE, GRAVITY, Array, Mask
 from plantar.deflection import BushState, bush_states
 from plantar.errors import DataError, RobotError, located
@@ -16,10 +16,9 @@ from plantar.estimation.errors_in_variables import noise_after_filter
 from plantar.identify.settings import FeetSettings
 from plantar.log import MotionLog
 from plantar.notes import Note
-from plantar.polygon import inside_distance
 from plantar.robot import Imu, RobotModel
 from plantar.sanity import check_log
-from plantar.signals import differentiate, evenly_sampled, interpolate, low_pass, runs, shifted
+from plantar.signals import differentiate, evenly_sampled, interpolate, low_pass, run_ends, shifted
 from plantar.spikes import without_spikes
 
 FILTER_EDGE = 1.0  # of the filter's period, left out where a run of samples begins or ends
@@ -60,6 +59,13 @@ class Recording:
         """Samples of this foot that serve."""
         return self.contacts[foot].used
 
+    def without(self, foot: str, samples: Mask) -> Recording:
+        """The same recording in which these samples of one foot do not serve; its own contact stays as it is."""
+        contact = self.contacts[foot]
+        less = FootContact(contact.support, contact.code.copy(), list(contact.reasons))
+        less.leave_out(samples, "left aside")
+        return replace(self, contacts={**self.contacts, foot: less})
+
 
 def checked(robot: RobotModel, log: MotionLog) -> MotionLog:
     """The log on an even grid, with what is odd about it as notes.
@@ -84,7 +90,7 @@ def prepare(
     notes = list(log.notes)
     period = log.period
     velocities = _velocities(robot, log, settings.cutoff, notes)
-    orientation, rates = _attitude(log, imu, notes)
+    orientation, rates = attitude(log, imu, notes)
     wrenches = {
         name: shifted(log.wrench(foot.wrench.name), period, delay) for name, foot in robot.feet.items()
     }
@@ -96,11 +102,13 @@ def prepare(
             np.isfinite(np.column_stack([state.deflection, state.rate, state.torque])).all(axis=1)
         )
         contacts[name].leave_out(~valid, NOT_RECORDED)
-        contacts[name].leave_out(_run_edges(valid, FILTER_EDGE / settings.cutoff / period), "filter's edge")
+        contacts[name].leave_out(
+            run_ends(valid, round(FILTER_EDGE / settings.cutoff / period)), "filter's edge"
+        )
     noise = {
-        name: noise_after_filter(
-            np.hstack([state.deflection, state.rate]), period, settings.cutoff
-        ).reshape(2, 2)
+        name: noise_after_filter(np.hstack([state.deflection, state.rate]), period, settings.cutoff).reshape(
+            2, 2
+        )
         for name, state in raw.items()
     }
     return Recording(log, role, settings.cutoff, filtered, contacts, noise, tuple(notes))
@@ -149,7 +157,7 @@ def _path_joints(robot: RobotModel) -> frozenset[str]:
     return frozenset().union(*(robot.joints_between(imu, foot.bush) for foot in robot.feet.values()))
 
 
-def _attitude(log: MotionLog, imu: Imu, notes: list[Note]) -> tuple[Array, Array]:
+def attitude(log: MotionLog, imu: Imu, notes: list[Note]) -> tuple[Array, Array]:
     """Orientation w x y z (N, 4) and angular velocity (N, 3) of the IMU, derived where one is missing."""
     name = imu.name
     orientation = log.orientation(name)
@@ -199,7 +207,7 @@ def _contacts(
     settings: FeetSettings,
     notes: list[Note],
 ) -> dict[str, FootContact]:
-    """Phases from the vertical forces, and the samples near the sole's edge left out."""
+    """Phases from the vertical forces, and impacts left out."""
     force = {name: low_pass(state.force_z, log.period, 2 * settings.cutoff) for name, state in bushes.items()}
     always = {name: foot.contact == "always" for name, foot in robot.feet.items()}
     carried, model_weight = carried_weight(force), robot.mass * GRAVITY
@@ -211,14 +219,8 @@ def _contacts(
     weight = carried if carried > 0.3 * model_weight else model_weight
     contacts = detect_contact(force, always, weight, log.period)
     for name, state in bushes.items():
-        if always[name]:
-            continue  # zeroed under load: its centre of pressure means nothing
-        distance = inside_distance(state.cop, robot.feet[name].sole.polygon)
-        near = _widened(distance < settings.edge_margin, round(0.05 / log.period))
-        margin = f"{1000 * settings.edge_margin:.0f} mm"
-        contacts[name].leave_out(
-            near & contacts[name].standing, f"tipping: centre of pressure within {margin} of the edge"
-        )
+        if not always[name]:  # zeroed under load: its force is no share of the weight
+            contacts[name].leave_out(shaken(state.wrench[:, FORCE], weight, log.period), IMPACT)
     return contacts
 
 
@@ -247,19 +249,3 @@ def lever_effect(bush: BushState, period: float, cutoff: float) -> Array:
     """Change of pitch and roll torque for each m/N of vertical compliance, (N, 2) [N·m per m/N], filtered alike."""
     x, y, z = bush.wrench[:, FORCE].T
     return low_pass(np.column_stack([-z * x, np.cos(bush.deflection[:, 0]) * z * y]), period, cutoff)
-
-
-def _run_edges(valid: Mask, reach: float) -> Mask:
-    edges = np.zeros(len(valid), dtype=bool)
-    for run in runs(valid):
-        edges[run.start : min(run.stop, run.start + round(reach))] = True
-        edges[max(run.start, run.stop - round(reach)) : run.stop] = True
-    return edges
-
-
-def _widened(samples: Mask, reach: int) -> Mask:
-    """Each true stretch made longer by `reach` samples at both ends."""
-    wide = samples.copy()
-    for run in runs(samples):
-        wide[max(0, run.start - reach) : run.stop + reach] = True
-    return wide

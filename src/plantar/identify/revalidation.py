@@ -10,11 +10,13 @@ import numpy as np
 from plantar.conventions import ROTATIONAL_AXES, Axis
 from plantar.errors import DataError
 from plantar.identify.axis_fit import AxisFit
-from plantar.identify.preparation import check_names, leave_out_slip
+from plantar.identify.edges import leave_out_edges
+from plantar.identify.preparation import check_names
 from plantar.identify.recording import checked, moved_centre, prepare
 from plantar.identify.residual_table import Predictions
 from plantar.identify.scoring import score_axis
 from plantar.identify.settings import FeetSettings
+from plantar.identify.sliding import leave_out_slip
 from plantar.identify.tipping import leave_out_tipping
 from plantar.log import MotionLog
 from plantar.models import LAWS
@@ -47,9 +49,12 @@ def validate_feet(
     for log in logs:
         progress(f"prepare {log.name}")
         recording = prepare(robot, checked(robot, log), "validate", settings, delay)
-        leave_out_slip(recording)
         leave_out_tipping(robot, recording, settings)
-        recordings.append(moved_centre(recording, compliance, settings.cutoff))
+        recordings.append(recording)
+    leave_out_edges(robot, recordings, settings, delay)
+    for recording in recordings:
+        leave_out_slip(robot, recording)
+    recordings = [moved_centre(recording, compliance, settings.cutoff) for recording in recordings]
     rows: list[ValidationRow] = []
     predictions: Predictions = {}
     for foot in sorted(feet):
