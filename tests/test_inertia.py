@@ -211,6 +211,16 @@ def test_what_stands_still_is_named_as_not_excited(robot: RobotModel, real: pin.
     assert all(np.isfinite(row.value) for row in found.inertial_parameters)
 
 
+def test_a_frozen_log_excites_its_weight_and_little_more(robot: RobotModel, logs: list[MotionLog]) -> None:
+    frozen = logs[0].with_columns(
+        {name: np.full(len(logs[0]), values[0]) for name, values in logs[0].columns.items()}
+    )
+    found = identify_inertia(robot, [frozen])
+    assert found.rank <= 6
+    assert "unexcited" in {note.code for note in found.notes}
+    assert all(np.isfinite(row.value) for row in found.inertial_parameters)
+
+
 def test_gaps_and_nan_are_left_out_with_a_note(robot: RobotModel, logs: list[MotionLog]) -> None:
     column = logs[0].column("imu.trunk.linear_acceleration.z").copy()
     column[1000:1040] = np.nan

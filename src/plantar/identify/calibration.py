@@ -23,6 +23,7 @@ TILT_SAID = np.radians(1.0)  # a mount that is wrong by less is not mentioned
 CLEAR_GAIN = 0.75  # a mended channel must bring its row's misfit below this share, in both halves
 HARMLESS = 1.05  # and may not raise any other row's above this one
 LEAST_MISFIT = 0.02  # of the weight: smaller misfits of a force may be the CAD's or the IMU's
+NO_MISFIT = 1e-6  # N, N.m: a robot that does not move at all leaves none
 MENDED_AT_MOST = 3  # channels; a sensor with more faults than that is not to be mended here
 
 
@@ -154,8 +155,8 @@ def _crosstalks(
 
 
 def _misfit(error: Array) -> tuple[Array, Array]:
-    """Rms of every row about its mean: (6,), and over the two halves, (2, 6)."""
+    """Rms of every row about its mean: (6,), and over the two halves, (2, 6); never below the least that counts."""
     error = error - error.mean(axis=1, keepdims=True)
     half = error.shape[1] // 2
     parts = np.array([np.sqrt(np.mean(part**2, axis=1)) for part in (error[:, :half], error[:, half:])])
-    return np.sqrt(np.mean(error**2, axis=1)), parts
+    return np.maximum(np.sqrt(np.mean(error**2, axis=1)), NO_MISFIT), np.maximum(parts, NO_MISFIT)
