@@ -22,22 +22,27 @@ MOST = 0.5  # share of a direction's square that may be noise: beyond, nothing o
 def noise_after_filter(raw: Array, period: float, cutoff: float) -> Array:
     """Variance (k,) that the white noise of unfiltered signals (N, k) has behind the filter at `cutoff` [Hz].
 
-    Zero where the samples are too slow to show any frequency without motion.
+    The lower of two densities, just below and above `ABOVE` cutoffs: what rings at one frequency is not white. Zero
+    where the samples are too slow to show any frequency without motion.
     """
     highest = 0.5 / period
     if ABOVE * cutoff > 0.8 * highest:
         return np.zeros(raw.shape[1])
-    quick = raw - low_pass(raw, period, ABOVE * cutoff)
-    whole = np.isfinite(quick).all(axis=1)
+    smooth, smoother = (low_pass(raw, period, share * cutoff) for share in (ABOVE, ABOVE / 2))
+    whole = np.isfinite(smoother).all(axis=1)
     if not whole.any():
         return np.zeros(raw.shape[1])
-    deviation = NORMAL * np.median(np.abs(quick[whole]), axis=0)
     frequency = np.linspace(0.0, highest, 2000)
 
     def gain(at: float) -> Array:
         return np.asarray(1 / (1 + (frequency / at) ** (2 * FILTER_ORDER)))
 
-    return np.asarray(deviation**2 * np.mean(gain(cutoff) ** 2) / np.mean((1 - gain(ABOVE * cutoff)) ** 2))
+    upper, lower = 1 - gain(ABOVE * cutoff), gain(ABOVE * cutoff) - gain(ABOVE / 2 * cutoff)
+    densities = [
+        (NORMAL * np.median(np.abs(part[whole]), axis=0)) ** 2 / np.mean(shape**2)
+        for part, shape in ((raw - smooth, upper), (smooth - smoother, lower))
+    ]
+    return np.asarray(np.minimum(*densities) * np.mean(gain(cutoff) ** 2))
 
 
 def attenuation(blocks: Sequence[Block], values: Array, *, shared_offset: bool = False) -> Array | None:
