@@ -16,6 +16,9 @@ from plantar.contact import (
     FootContact,
     carried_weight,
     detect_contact,
+    joined,
+    shaken,
+    widened,
 )
 from plantar.polygon import convex_hull, inside_distance
 
@@ -136,6 +139,32 @@ def test_a_first_reason_is_kept_and_others_are_added() -> None:
     assert [contact.reasons[code] for code in contact.code] == ["first", "first", "second", None]
     assert contact.reasons == [None, "first", "second"]
     np.testing.assert_array_equal(contact.used, [False, False, False, True])
+
+
+@pytest.mark.parametrize("axis", [0, 2])
+def test_an_impact_is_left_out_until_it_has_settled(axis: int) -> None:
+    """2 s of a ringing force in one direction; a noisy sensor alone is no impact, nor is a slow sway."""
+    time = np.arange(4000) * 0.005
+    random = np.random.default_rng(0)
+    force = random.normal(0, 1.0, (time.size, 3)) + [0, 0, 300]
+    force[:, axis] += 100 * np.sin(2 * np.pi * 0.5 * time)
+    assert not shaken(force, WEIGHT, 0.005).any()
+    assert not shaken(20 * force, WEIGHT, 0.005).any(), "a noise that is always there is the sensor's"
+    rings = (time > 8) & (time < 10)
+    force[rings, axis] += random.normal(0, 60, rings.sum())
+    struck = shaken(force, WEIGHT, 0.005)
+    assert struck[rings].all()
+    assert struck[(time > 10) & (time < 10.2)].all(), "settling"
+    assert not struck[(time < 7.8) | (time > 10.4)].any()
+
+
+def test_stretches_are_widened_and_joined() -> None:
+    mask = np.zeros(20, dtype=bool)
+    mask[[5, 9]] = True
+    assert np.flatnonzero(widened(mask, 1)).tolist() == [4, 5, 6, 8, 9, 10]
+    assert np.flatnonzero(widened(mask, 0, 2)).tolist() == [5, 6, 7, 9, 10, 11]
+    assert np.flatnonzero(joined(mask, 3)).tolist() == [5, 6, 7, 8, 9]
+    assert np.flatnonzero(joined(mask, 2)).tolist() == [5, 9]
 
 
 def test_the_weight_that_the_feet_carry() -> None:

@@ -26,6 +26,7 @@ LARGEST_JUMP = 0.01  # m/s: a velocity that jumps by more within an impact's tim
 SHORTEST_REST = 1.0  # s between two impacts: in less there is no telling a slide from a jump
 BAND = 20.0  # Hz: no part of a robot that stands is shaken on purpose above it
 RESISTED = 0.3  # least cosine between a slide and the friction against it: zeros and attitude turn the force
+SMOOTH = 0.02  # friction over load, below which its direction is not known
 ROBUST_STEPS = 5
 OUTLYING = 4.7  # usual deviations: Tukey's biweight forgets what lies beyond
 
@@ -119,7 +120,8 @@ def slides(velocity: Array, period: float, noise: Array | float = 0.0, friction:
     """Samples (N,) in which a velocity (N, k) [m/s] stands out of its noise and covers a way; False where NaN.
 
     noise: its deviation [m/s] where that is known to change, (N,); what the speed is as a rule counts anyway.
-    friction: the floor's horizontal force on the sole, (N, 2) [N], in the velocity's frame: it works against a slide.
+    friction: the floor's horizontal force on the sole over its load, (N, 2), in the velocity's frame: it works against
+    a slide.
     """
     speed = np.linalg.norm(velocity, axis=1)
     known = np.isfinite(speed)
@@ -138,10 +140,12 @@ def slides(velocity: Array, period: float, noise: Array | float = 0.0, friction:
 
 
 def _resisted(velocity: Array, friction: Array) -> bool:
-    """Whether friction works against a slide (n, 2), as it must."""
+    """Whether friction works against a slide (n, 2), as it must; less than SMOOTH is lost in the sensors' zeros."""
+    size = np.linalg.norm(friction, axis=1)
+    if not np.nanmean(size) > SMOOTH:
+        return True
     work = float(np.nansum(velocity * friction))
-    most = float(np.nansum(np.linalg.norm(velocity, axis=1) * np.linalg.norm(friction, axis=1)))
-    return work < -RESISTED * most
+    return work < -RESISTED * float(np.nansum(np.linalg.norm(velocity, axis=1) * size))
 
 
 def _turned(vectors: Array, angle: Array) -> Array:

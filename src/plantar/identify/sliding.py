@@ -47,10 +47,11 @@ def leave_out_slip(robot: RobotModel, recording: Recording) -> None:
 
 
 def _friction(bush: BushState) -> Array:
-    """The floor's force on a level sole along its x and y axes, (N, 2) [N]."""
+    """The floor's force on a level sole along its x and y axes over the load, (N, 2)."""
     (x, y, z), (pitch, roll) = bush.wrench[:, :3].T, bush.deflection.T
     down = np.sin(pitch) * x + np.cos(pitch) * z
-    return np.column_stack([np.cos(pitch) * x - np.sin(pitch) * z, np.cos(roll) * y + np.sin(roll) * down])
+    along = np.column_stack([np.cos(pitch) * x - np.sin(pitch) * z, np.cos(roll) * y + np.sin(roll) * down])
+    return np.asarray(along / np.where(bush.force_z > 0, bush.force_z, np.nan)[:, None])
 
 
 def _tipping(contact: FootContact, period: float) -> Mask:

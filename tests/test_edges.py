@@ -1,0 +1,72 @@
+"""A sole that leans on its edge is told from one that is flat near it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from plantar.identify.edges import leaning
+
+PERIOD = 0.005
+TIME = np.arange(2000) * PERIOD
+STIFFNESS, LOAD, EDGE = 400.0, 500.0, 0.1
+STANDS = np.ones(TIME.size, dtype=bool)
+
+
+def swayed(
+    reach: float | np.ndarray, creep: float = 0.0, zero: float = 0.0
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Excess (N, 2), depth (N,) and true lean (N,) of a sway of `reach` [rad] at 0.3 Hz over a sole that may tip.
+
+    The torque stops at LOAD·EDGE while the foot turns on; `creep` [rad] lets the excess wander with the sway, as
+    hysteresis does; `zero` [N·m] shifts the measured torque.
+    """
+    random = np.random.default_rng(0)
+    angle = reach * np.sin(2 * np.pi * 0.3 * TIME)
+    torque = np.minimum(STIFFNESS * angle, LOAD * EDGE)
+    lean = angle - torque / STIFFNESS
+    wander = creep * np.cos(2 * np.pi * 0.3 * TIME)
+    excess = np.column_stack([lean + wander, np.zeros(TIME.size)]) + random.normal(0, 1e-4, (TIME.size, 2))
+    depth = EDGE - (torque + zero) / LOAD + random.normal(0, 2e-4, TIME.size)
+    return excess, depth, lean
+
+
+def found(excess: np.ndarray, depth: np.ndarray, margin: float = 0.005) -> np.ndarray:
+    return leaning(excess, depth, np.full(TIME.size, LOAD), depth < margin, STANDS, PERIOD)
+
+
+@pytest.mark.parametrize("zero", [0.0, 1.0, -1.0])
+@pytest.mark.parametrize(("reach", "creep"), [(0.16, 0.0), (0.16, 0.01), (0.14, 0.01)])
+def test_a_lean_is_found_in_its_samples(reach: float, creep: float, zero: float) -> None:
+    """Whatever the torque's zero, and with the excess wandering by thrice the lean that counts."""
+    excess, depth, lean = swayed(reach, creep, zero)
+    tips = lean > 0.002
+    said = found(excess, depth, 0.008)
+    assert np.mean(tips[said]) > 0.9, "precision"
+    assert np.mean(said[tips]) > 0.9, "recall"
+
+
+def test_a_large_lean_shows_where_the_edge_is_and_a_small_one_is_then_found() -> None:
+    """Alone the small one drowns in an excess that wanders as far."""
+    reach = np.where(TIME < 5, 0.16, 0.132)
+    excess, depth, lean = swayed(reach, creep=0.012)
+    small = (TIME > 5) & (lean > 0.004)
+    assert 0 < lean[small].max() < 0.008
+    assert np.mean(found(excess, depth)[small]) > 0.9
+    depth[TIME < 5] = EDGE
+    assert np.mean(found(excess, depth)[small]) < 0.5
+
+
+@pytest.mark.parametrize("creep", [0.0, 0.01])
+def test_a_flat_sole_near_its_edge_serves(creep: float) -> None:
+    """The centre of pressure comes within 2 mm of the edge and goes back."""
+    excess, depth, lean = swayed(0.98 * LOAD * EDGE / STIFFNESS, creep)
+    assert lean.max() < 1e-12
+    assert (depth < 0.005).sum() > 100
+    assert not found(excess, depth).any()
+
+
+def test_without_a_flat_stretch_nothing_is_trusted() -> None:
+    excess, depth, _ = swayed(0.16)
+    said = leaning(excess, depth, np.full(TIME.size, LOAD), depth < 0.005, depth < 0.005, PERIOD)
+    assert said[depth < 0.005].all()
