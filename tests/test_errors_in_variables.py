@@ -32,20 +32,35 @@ def block(seed: int, sizes: tuple[float, float]) -> Block:
     random = np.random.default_rng(100 + seed)
     true = signals(seed)
     noisy = true + random.standard_normal(true.shape) * sizes
-    torque = low_pass(true @ VALUES + 0.05 * random.standard_normal(len(true)), PERIOD, CUTOFF)
-    noise = noise_after_filter(noisy, PERIOD, CUTOFF)
-    return Block(str(seed), low_pass(noisy, PERIOD, CUTOFF), torque, PERIOD, noise=noise)
+    torque = (true @ VALUES + 0.05 * random.standard_normal(len(true)))[:, None]
+    noise = noise_after_filter(noisy, torque, PERIOD, CUTOFF)
+    response = low_pass(torque, PERIOD, CUTOFF)[:, 0]
+    return Block(str(seed), low_pass(noisy, PERIOD, CUTOFF), response, PERIOD, noise=noise)
 
 
 def test_noise_is_measured_above_the_motion_and_followed_through_the_filter() -> None:
-    sizes = np.array([0.01, 0.1])
-    white = sizes * np.random.default_rng(5).standard_normal((200_000, 2))
+    sizes, random = np.array([0.01, 0.1]), np.random.default_rng(5)
+    white, torque = sizes * random.standard_normal((200_000, 2)), random.standard_normal((200_000, 1))
+
+    def measured(raw: Array, every: int = 1) -> Array:
+        return noise_after_filter(raw[::every], torque[: len(raw) : every], every * PERIOD, CUTOFF)
+
     expected = low_pass(white, PERIOD, CUTOFF).var(axis=0)
-    np.testing.assert_allclose(noise_after_filter(white, PERIOD, CUTOFF), expected, rtol=0.05)
-    moved = white[:12000] + signals(1)
-    np.testing.assert_allclose(noise_after_filter(moved, PERIOD, CUTOFF), expected, rtol=0.15)
-    assert not noise_after_filter(signals(1), PERIOD, CUTOFF).max() > 1e-12, "a smooth motion is no noise"
-    assert not noise_after_filter(white[::10], 10 * PERIOD, CUTOFF).any(), "too slow to tell"
+    np.testing.assert_allclose(measured(white), expected, rtol=0.05)
+    np.testing.assert_allclose(measured(white[:12000] + signals(1)), expected, rtol=0.15)
+    assert not measured(signals(1)).max() > 1e-12, "a smooth motion is no noise"
+    assert not measured(white, every=10).any(), "too slow to tell"
+
+
+def test_a_foot_that_shakes_with_its_torque_is_no_noise() -> None:
+    random = np.random.default_rng(7)
+    shaking = low_pass(random.standard_normal((40_000, 1)), PERIOD, 30.0)
+    angles = np.column_stack([shaking[:, 0], np.gradient(shaking[:, 0], PERIOD)])
+    noise = noise_after_filter(
+        angles, shaking * 5 + 0.1 * random.standard_normal(shaking.shape), PERIOD, CUTOFF
+    )
+    alone = noise_after_filter(angles, random.standard_normal(shaking.shape), PERIOD, CUTOFF)
+    assert (noise < 0.05 * alone).all()
 
 
 def test_what_noise_takes_is_given_back() -> None:

@@ -1,7 +1,8 @@
 """Noise in the regressors: it adds to their squares but to no product with the response, and so draws values to zero.
 
-White noise of angles and rates is measured where no motion is, far above the fit's cutoff, and followed through the
-filter; its expected share is taken off the regressor's products (W. A. Fuller, Measurement Error Models, Wiley 1987).
+White noise of angles and rates is measured far above the fit's cutoff, in what the torque there does not explain (a
+foot that shakes is no noise), and followed through the filter; its expected share is taken off the regressor's
+products (W. A. Fuller, Measurement Error Models, Wiley 1987).
 """
 
 from __future__ import annotations
@@ -10,27 +11,30 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from plantar.conventions import Array
+from plantar.conventions import Array, Mask
 from plantar.estimation.least_squares import Block, factor_of
 from plantar.signals import FILTER_ORDER, low_pass
 
 ABOVE = 4.0  # cutoffs: from there on a signal counts as noise
 NORMAL = 1.4826  # standard deviation over median absolute value, of normal noise
+FEWEST = 50  # samples
 MOST = 0.5  # share of a direction's square that may be noise: beyond, nothing of it is known
 
 
-def noise_after_filter(raw: Array, period: float, cutoff: float) -> Array:
+def noise_after_filter(raw: Array, response: Array, period: float, cutoff: float) -> Array:
     """Variance (k,) that the white noise of unfiltered signals (N, k) has behind the filter at `cutoff` [Hz].
 
-    The lower of two densities, just below and above `ABOVE` cutoffs: what rings at one frequency is not white. Zero
+    `response` (N, m): other sensors' unfiltered signals; what moves with them or with their rates is no noise. The
+    lower of two densities, just below and above `ABOVE` cutoffs: what rings at one frequency is not white. Zero
     where the samples are too slow to show any frequency without motion.
     """
     highest = 0.5 / period
     if ABOVE * cutoff > 0.8 * highest:
         return np.zeros(raw.shape[1])
-    smooth, smoother = (low_pass(raw, period, share * cutoff) for share in (ABOVE, ABOVE / 2))
-    whole = np.isfinite(smoother).all(axis=1)
-    if not whole.any():
+    both = np.column_stack([raw, response])
+    smooth, smoother = (low_pass(both, period, share * cutoff) for share in (ABOVE, ABOVE / 2))
+    whole = np.asarray(np.isfinite(smoother).all(axis=1) & np.isfinite(both).all(axis=1))
+    if whole.sum() < FEWEST:
         return np.zeros(raw.shape[1])
     frequency = np.linspace(0.0, highest, 2000)
 
@@ -39,10 +43,18 @@ def noise_after_filter(raw: Array, period: float, cutoff: float) -> Array:
 
     upper, lower = 1 - gain(ABOVE * cutoff), gain(ABOVE * cutoff) - gain(ABOVE / 2 * cutoff)
     densities = [
-        (NORMAL * np.median(np.abs(part[whole]), axis=0)) ** 2 / np.mean(shape**2)
-        for part, shape in ((raw - smooth, upper), (smooth - smoother, lower))
+        (NORMAL * np.median(np.abs(_unexplained(part, whole, raw.shape[1])), axis=0)) ** 2 / np.mean(shape**2)
+        for part, shape in ((both - smooth, upper), (smooth - smoother, lower))
     ]
     return np.asarray(np.minimum(*densities) * np.mean(gain(cutoff) ** 2))
+
+
+def _unexplained(band: Array, whole: Mask, count: int) -> Array:
+    """The first `count` columns of a band less what the other columns and their rates explain, the whole samples."""
+    rates = np.gradient(band[:, count:], axis=0)
+    clear = whole & np.asarray(np.isfinite(rates).all(axis=1))
+    values, explaining = band[clear, :count], np.column_stack([band[:, count:], rates])[clear]
+    return np.asarray(values - explaining @ np.linalg.lstsq(explaining, values, rcond=None)[0])
 
 
 def attenuation(blocks: Sequence[Block], values: Array, *, shared_offset: bool = False) -> Array | None:

@@ -105,13 +105,14 @@ def prepare(
         contacts[name].leave_out(
             run_ends(valid, round(FILTER_EDGE / settings.cutoff / period)), "filter's edge"
         )
-    noise = {
-        name: noise_after_filter(np.hstack([state.deflection, state.rate]), period, settings.cutoff).reshape(
-            2, 2
-        )
-        for name, state in raw.items()
-    }
+    noise = {name: _noise(state, period, settings.cutoff) for name, state in raw.items()}
     return Recording(log, role, settings.cutoff, filtered, contacts, noise, tuple(notes))
+
+
+def _noise(state: BushState, period: float, cutoff: float) -> Array:
+    """Variance (2, 2) of the noise left in deflection and rate (rows) of pitch and roll (columns)."""
+    angles = np.hstack([state.deflection, state.rate])
+    return noise_after_filter(angles, state.torque, period, cutoff).reshape(2, 2)
 
 
 def _require(robot: RobotModel) -> Imu:
