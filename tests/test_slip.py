@@ -54,8 +54,8 @@ def test_nothing_slides_but_in_double_support() -> None:
 def swaying(slide: np.ndarray, seed: int = 0, quiet: bool = True) -> dict[str, np.ndarray]:
     """A sole seen from an IMU that sways 0.9 m above it at 0.4 Hz, while the sole goes `slide` (N,) [m] along x.
 
-    The attitude is wrong by 0.15 deg and wanders by 0.06; unless `quiet`, impacts ring in the accelerometer from 13 s to
-    14 s.
+    The attitude is wrong by 0.15 deg and wanders by 0.06; unless `quiet`, impacts ring in the accelerometer for a
+    second from 13 s.
     """
     random = np.random.default_rng(seed)
     sway = 0.03 * np.sin(2 * np.pi * 0.4 * TIME)

@@ -142,7 +142,8 @@ def slides(velocity: Array, period: float, noise: Array | float = 0.0, friction:
 def _resisted(velocity: Array, friction: Array) -> bool:
     """Whether friction works against a slide (n, 2), as it must; less than SMOOTH is lost in the sensors' zeros."""
     size = np.linalg.norm(friction, axis=1)
-    if not np.nanmean(size) > SMOOTH:
+    known = size[np.isfinite(size)]
+    if not known.size or known.mean() < SMOOTH:
         return True
     work = float(np.nansum(velocity * friction))
     return work < -RESISTED * float(np.nansum(np.linalg.norm(velocity, axis=1) * size))
