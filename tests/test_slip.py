@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from plantar.slip import slides, sliding, sole_twist, sole_velocity
+from plantar.slip import slides, sliding, sole_velocity, turning
 
 PERIOD = 0.005
 TIME = np.arange(4000) * PERIOD
@@ -99,6 +99,7 @@ def test_friction_must_resist_a_slide(force: float, believed: bool) -> None:
 
 def test_a_sole_that_turns_is_seen_whatever_the_other_does() -> None:
     drift = np.radians(1.0) * TIME / TIME[-1] + np.random.default_rng(2).normal(0, 1e-4, TIME.size)
-    found = slides(sole_twist(apart(np.radians(4)) + drift, BOTH, PERIOD), PERIOD)
+    found = turning(apart(np.radians(4)) + drift, BOTH, PERIOD)
     assert found[(TIME > 8.1) & (TIME < 8.2)].all()
     assert not found[(TIME < 7.85) | (TIME > 8.45)].any()
+    assert not turning(apart(np.radians(0.8)) + drift, BOTH, PERIOD).any(), "a bush's own twist"

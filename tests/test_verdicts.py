@@ -86,6 +86,24 @@ def test_real_mats_soften_with_their_layers(shared_data: Path) -> None:
     assert stiffness[0] > stiffness[1] > stiffness[2] > 0
 
 
+@pytest.mark.parametrize("name", ["firm", "mat_1_layer", "mat_3_layers"])
+def test_real_mats_do_not_change_with_the_window(name: str, shared_data: Path) -> None:
+    """From 1 to 4 degrees: a fit of all that moves would fall tenfold."""
+    robot = load_robot(shared_data / "icub_mats" / "robot.yaml")
+    log = open_log(shared_data / "icub_mats" / f"{name}.csv", robot)
+    rows = [
+        identify_feet(robot, [log], settings=FeetSettings(window=window and np.radians(window))).parameter(
+            "right", "pitch", "stiffness"
+        )
+        for window in (None, 1.0, 2.0, 4.0)
+    ]
+    for row in rows:
+        assert row.value == pytest.approx(rows[0].value, rel=0.1)
+        assert row.interval95 is not None
+        low, high = row.interval95
+        assert 0 < low < rows[0].value < high
+
+
 def test_still_axes_are_not_judged_by_moving_ones(tmp_path: Path) -> None:
     """Pitch moves, roll hardly: roll's numbers are not called usable under noise."""
     still = sines((1e-5, 0.3, 0.0))

@@ -14,6 +14,7 @@ YAW_LEVER = 0.1  # m
 USUAL = 80  # percent of the samples are slower than the noise's usual speed, however much slides
 NOISE_FACTOR = 2.6  # times that speed
 LEAST_PATH = 0.0008  # m that a slide must cover
+ELASTIC = 0.02  # rad: a bush gives that much about z, and neither pitch nor roll feels it
 PAUSE = 0.1  # s: slides that are closer are one
 REACH = 0.02  # s by which a slide is widened: its beginning and end are slow
 DRIFT_WINDOW = (
@@ -61,6 +62,15 @@ def sole_twist(heading: Array, standing: Mask, period: float) -> Array:
     for run in runs(np.isfinite(rate)):
         rate[run] = _without_drift(rate[run], period)
     return rate[:, None]
+
+
+def turning(heading: Array, standing: Mask, period: float) -> Mask:
+    """Samples (N,) in which one sole turns on the floor, by more than a bush gives way about z."""
+    twist = sole_twist(heading, standing, period)
+    found = slides(twist, period) & standing
+    for run in runs(found):
+        found[run] = abs(np.nansum(twist[run])) * period > ELASTIC * YAW_LEVER
+    return found
 
 
 def sole_velocity(

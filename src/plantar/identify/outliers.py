@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES, Array, Axis, Mask
+from plantar.deflection import BushState
 from plantar.identify.axis_fit import FEWEST_SAMPLES, AxisFit, law_columns
 from plantar.identify.recording import Recording
 from plantar.signals import runs
@@ -17,6 +18,7 @@ FAR = 6.0  # usual misfits
 WORTH = 0.03  # of the recording's spread of torque: a smaller misfit does no harm
 LONGEST = 1.0  # s: what lasts longer is not a bad sample but another law
 MOST = 0.1  # share of a recording that may be outliers
+MOVING = 0.1  # share of the squares of both angle and torque: a stretch with so much is what the motion consists of
 ROUNDS = 3  # a large outlier hides smaller ones
 
 
@@ -46,10 +48,21 @@ def _left_out(recordings: Sequence[Recording], foot: str, axis: Axis, fit: AxisF
         missed = torque - law_columns(recording, foot, axis, fit) @ fit.values
         reach = 1 / recording.cutoff
         off = outliers(np.where(used, missed, np.nan), float(np.std(torque[used])), recording.period, reach)
+        for run in runs(off):
+            off[run] = not _moves(recording.bushes[foot], used, run)
         if off.any():
             recording.contacts[foot].leave_out(off, f"outlier: the {axis} torque leaves its law for a moment")
             several = True
     return several
+
+
+def _moves(bush: BushState, used: Mask, run: slice) -> bool:
+    """Whether the motion of either axis, of its angle and its torque, lies in one stretch for a large part."""
+    shares = []
+    for values in (bush.deflection, bush.torque):
+        squares = np.where(used[:, None], values - values[used].mean(axis=0), 0.0) ** 2
+        shares.append(squares[run].sum(axis=0) / np.maximum(squares.sum(axis=0), 1e-300))
+    return bool(np.minimum(*shares).max() > MOVING)
 
 
 def outliers(missed: Array, spread: float, period: float, reach: float) -> Mask:

@@ -10,7 +10,7 @@ from plantar.deflection import BushState, closure
 from plantar.identify.edges import TIPPING
 from plantar.identify.recording import Recording, attitude
 from plantar.robot import RobotModel
-from plantar.slip import slides, sliding, sole_twist, sole_velocity
+from plantar.slip import slides, sliding, sole_velocity, turning
 
 APART = "slip: the soles move against each other"
 AFTER = 0.05  # s
@@ -33,7 +33,7 @@ def leave_out_slip(robot: RobotModel, recording: Recording) -> None:
     period, acceleration = recording.period, _acceleration(robot, recording)
     turns, moves = {}, {}
     for foot, bush in recording.bushes.items():
-        turns[foot] = slides(sole_twist(bush.heading, flat[foot], period), period) & flat[foot]
+        turns[foot] = turning(bush.heading, flat[foot], period)
         moves[foot] = np.zeros(len(recording.time), dtype=bool)
         if acceleration is not None:
             place = bush.sole_position[:, :2]
