@@ -13,6 +13,7 @@ from plantar.conventions import FORCE, GRAVITY, Array, Mask
 from plantar.deflection import BushState, bush_states
 from plantar.errors import DataError, RobotError, located
 from plantar.estimation.errors_in_variables import noise_after_filter
+from plantar.identify.attitude_pull import right_attitude
 from plantar.identify.settings import FeetSettings
 from plantar.log import MotionLog
 from plantar.notes import Note
@@ -33,6 +34,7 @@ class Recording:
     """One log with each foot's bush state, filtered, and its contact. Arrays run over `time` (N,).
 
     `noise` (2, 2) of each foot: variance of white noise that is left in deflection and rate, of pitch and roll.
+    `places` (N, 2) of each foot: of the sole from the IMU [m] in the attitude as recorded, which slides are judged by.
     """
 
     log: MotionLog
@@ -41,6 +43,7 @@ class Recording:
     bushes: Mapping[str, BushState]
     contacts: Mapping[str, FootContact]
     noise: Mapping[str, Array]
+    places: Mapping[str, Array]
     notes: tuple[Note, ...]
 
     @property
@@ -96,6 +99,10 @@ def prepare(
     }
     raw = bush_states(robot, log.positions(robot), velocities, orientation, rates, wrenches)
     contacts = _contacts(robot, log, raw, settings, notes)
+    places = {name: state.sole_position[:, :2] for name, state in raw.items()}
+    if (right := right_attitude(log, imu, orientation, rates, raw, contacts)) is not None:
+        raw = bush_states(robot, log.positions(robot), velocities, right[0], rates, wrenches)
+        notes.append(right[1])
     filtered = {name: _filtered(state, period, settings.cutoff) for name, state in raw.items()}
     for name, state in filtered.items():
         valid = np.asarray(
@@ -106,7 +113,7 @@ def prepare(
             run_ends(valid, round(FILTER_EDGE / settings.cutoff / period)), "filter's edge"
         )
     noise = {name: _noise(state, period, settings.cutoff) for name, state in raw.items()}
-    return Recording(log, role, settings.cutoff, filtered, contacts, noise, tuple(notes))
+    return Recording(log, role, settings.cutoff, filtered, contacts, noise, places, tuple(notes))
 
 
 def _noise(state: BushState, period: float, cutoff: float) -> Array:

@@ -36,7 +36,7 @@ def leave_out_slip(robot: RobotModel, recording: Recording) -> None:
         turns[foot] = turning(bush.heading, flat[foot], period)
         moves[foot] = np.zeros(len(recording.time), dtype=bool)
         if acceleration is not None:
-            place = bush.sole_position[:, :2]
+            place = recording.places[foot]
             velocity, noise = sole_velocity(place, bush.heading, acceleration, bush.rate, flat[foot], period)
             moves[foot] = slides(velocity, period, noise, _friction(bush)) & flat[foot]
     for found, reason in ((turns, TWIST), (moves, ALONE)):

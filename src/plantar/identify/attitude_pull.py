@@ -1,0 +1,152 @@
+"""An IMU's attitude that follows its accelerometer, put right by a sole that stands.
+
+A causal filter corrects the integrated gyroscope towards the measured proper acceleration, at k [1/s]. A robot that
+sways accelerates, so that the believed vertical leans by k·v/g, v the velocity of the IMU: in phase with the rate of
+the bush, it goes into the damping as K·h·k/g, h the IMU's height: two thirds of C at k = 0.2. A standing sole tells the
+truth: the IMU's acceleration is the opposite of the sole's as seen from the IMU. An attitude wrong by a small angle δ
+leaves, with f the proper acceleration, p the sole's place in the IMU's frame and R the believed attitude,
+
+    horizontal (R f + d²(R p)/dt²) = g δ - h d²δ/dt², which is (g + h ω²) δ at the frequency ω.
+
+What does not change with time stays: the fit has an offset.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from scipy import fft
+
+from plantar.contact import FootContact
+from plantar.conventions import GRAVITY, Array, rotation_from_quaternion
+from plantar.deflection import BushState
+from plantar.log import MotionLog
+from plantar.notes import Note
+from plantar.robot import Imu
+from plantar.signals import differentiate, low_pass, runs
+
+BAND = 2.0  # Hz: a filter's pull shows below it
+LEAST_PULL = 0.01  # 1/s: of less no damping suffers
+EXPLAINED = 0.3  # of what attitude and gyroscope disagree about, by the pull, for it to be believed
+CORRECTED = 1.5  # Hz, up to which the attitude is put right
+DERIVED = 5.0  # Hz: filter of what is differentiated twice
+SHORTEST_STANCE = 5.0  # s on the same feet
+PADDING = 2.0  # s
+
+
+def right_attitude(
+    log: MotionLog,
+    imu: Imu,
+    orientation: Array,
+    rates: Array,
+    bushes: Mapping[str, BushState],
+    contacts: Mapping[str, FootContact],
+) -> tuple[Array, Note] | None:
+    """The log's orientation (N, 4) without what its filter took from the accelerometer, and a note that says so.
+
+    None where it took nothing that shows, or the log has not all of attitude, gyroscope and accelerometer.
+    """
+    columns = [
+        f"imu.{imu.name}.{kind}.{axis}"
+        for kind in ("angular_velocity", "linear_acceleration")
+        for axis in "xyz"
+    ]
+    if log.orientation(imu.name) is None or not log.has(*columns):
+        return None
+    length = np.linalg.norm(orientation, axis=1, keepdims=True)
+    unit = orientation / np.where(length > 0, length, np.nan)
+    acceleration = log.linear_acceleration(imu.name)
+    pull = attitude_pull(unit, rates, acceleration, log.period)
+    if pull == 0:
+        return None
+    text = (
+        f"{log.name}: the IMU's attitude follows its accelerometer (as at {pull:.2g} 1/s), so that motion tilts it; "
+        "put right by the soles that stand"
+    )
+    right = put_right(unit, acceleration, bushes, contacts, log.period)
+    return right, Note("attitude_pulled", "info", text)
+
+
+def attitude_pull(orientation: Array, rates: Array, acceleration: Array, period: float) -> float:
+    """How fast an attitude follows its accelerometer, k [1/s]; 0 where that does not explain its own rate.
+
+    A gyroscope that is late by τ beside the attitude counts as a pull of about g τ/h: as good a reason to put it right.
+
+    orientation: unit quaternions w x y z, IMU to world, (N, 4); rates, proper acceleration: the IMU's, (N, 3).
+    """
+    up = rotation_from_quaternion(orientation)[:, 2, :]
+    believed = low_pass(up, period, BAND)
+    # World's up in the body: d(up)/dt = -(ω + k (a × up)) × up, a the direction of the acceleration.
+    size = np.linalg.norm(acceleration, axis=1, keepdims=True)
+    direction = acceleration / np.where(size > 0, size, np.nan)
+    turned = low_pass(np.cross(rates, up), period, BAND)
+    pulled = low_pass(-np.cross(np.cross(direction, up), up), period, BAND)
+    error = differentiate(believed, period) + turned
+    known = np.isfinite(np.column_stack([error, pulled])).all(axis=1)
+    if known.sum() * period < SHORTEST_STANCE:
+        return 0.0
+    error, pulled = (part[known] - part[known].mean(axis=0) for part in (error, pulled))
+    moved = float(np.sum(pulled**2))
+    pull = float(np.sum(error * pulled)) / moved if moved > 0 else 0.0
+    explained = pull * float(np.sum(error * pulled)) / max(float(np.sum(error**2)), 1e-30)
+    return pull if pull > LEAST_PULL and explained > EXPLAINED else 0.0
+
+
+def put_right(
+    orientation: Array,
+    acceleration: Array,
+    bushes: Mapping[str, BushState],
+    contacts: Mapping[str, FootContact],
+    period: float,
+) -> Array:
+    """The orientation (N, 4) as the soles that stand have it; unchanged where none stands for SHORTEST_STANCE.
+
+    acceleration: proper, in the IMU's frame, (N, 3); bushes: computed with this orientation.
+    """
+    from scipy.spatial.transform import Rotation  # costs start-up
+
+    push = np.einsum("nij,nj->ni", rotation_from_quaternion(orientation)[:, :2], acceleration)
+    standing = np.array([contacts[foot].standing for foot in bushes])
+    pattern = (1 << np.arange(len(standing))) @ standing
+    finite = np.isfinite(push).all(axis=1)
+    for bush in bushes.values():
+        finite &= np.isfinite(bush.sole_position).all(axis=1)
+    lean = np.full((len(push), 2), np.nan)
+    for which in np.unique(pattern[pattern > 0]):
+        feet = [
+            bush
+            for bush, stands in zip(bushes.values(), standing, strict=True)
+            if stands[pattern == which].all()
+        ]
+        for run in runs(np.asarray(finite & (pattern == which))):
+            if (run.stop - run.start) * period >= SHORTEST_STANCE:
+                place = np.mean([bush.sole_position[run] for bush in feet], axis=0)
+                lean[run] = _lean(push[run], place, period)
+    known = np.isfinite(lean).all(axis=1)
+    if not known.any():
+        return orientation
+    # The accelerometer's zero is no lean; it is one for the whole recording.
+    lean = np.where(known[:, None], lean - np.median(lean[known], axis=0), 0.0)
+    back = Rotation.from_rotvec(np.column_stack([lean[:, 1], -lean[:, 0], np.zeros(len(lean))]))
+    right = orientation.copy()
+    right[finite] = (back[finite] * Rotation.from_quat(orientation[finite], scalar_first=True)).as_quat(
+        scalar_first=True
+    )
+    return right
+
+
+def _lean(push: Array, place: Array, period: float) -> Array:
+    """How far the believed vertical leans along x and y, (n, 2) [rad], over one stance.
+
+    push: horizontal acceleration of the IMU in the believed world, (n, 2); place: of the sole from the IMU, (n, 3).
+    """
+    smooth = low_pass(np.column_stack([push, place[:, :2]]), period, DERIVED)
+    left = smooth[:, :2] + differentiate(differentiate(smooth[:, 2:], period), period)
+    padding = min(round(PADDING / period), len(left) - 1)
+    mirrored = np.vstack([left[padding:0:-1], left, left[-2 : -padding - 2 : -1]])
+    frequency = fft.rfftfreq(len(mirrored), period)
+    height = -float(np.median(place[:, 2]))
+    gain = 1 / (GRAVITY + height * (2 * np.pi * frequency) ** 2) / (1 + (frequency / CORRECTED) ** 8)
+    lean = fft.irfft(fft.rfft(mirrored, axis=0) * gain[:, None], len(mirrored), axis=0)
+    return np.asarray(lean[padding : padding + len(left)])

@@ -1,0 +1,70 @@
+"""An attitude that follows its accelerometer is noticed, and a standing sole puts it right."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from biped import TRUTH, make_robot, record, sway
+from plantar.identify.attitude_pull import attitude_pull
+from plantar.identify.feet import identify_feet
+from plantar.identify.settings import FeetSettings
+from plantar.log import MotionLog
+from plantar.twin.attitude_filter import filtered_attitude
+
+PULL = 0.2  # 1/s, of the filter below
+KNOWN = FeetSettings(model="kelvin_voigt", wrench_delay=0.0)
+
+
+def parts(log: MotionLog) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Orientation, rates and proper acceleration of the IMU."""
+    orientation = log.orientation("chest")
+    assert orientation is not None
+    return orientation, log.angular_velocity("chest"), log.linear_acceleration("chest")
+
+
+def filtered(log: MotionLog) -> MotionLog:
+    """The log with the attitude that a causal filter makes of its gyroscope and accelerometer."""
+    orientation, rates, acceleration = parts(log)
+    believed = filtered_attitude(orientation[0], rates, acceleration, log.period)
+    return log.with_columns(
+        {f"imu.chest.orientation.{axis}": believed[:, place] for place, axis in enumerate("wxyz")}
+    )
+
+
+def test_a_pull_is_noticed_and_a_true_attitude_has_none() -> None:
+    log = record(sway(duration=30.0))
+    assert attitude_pull(*parts(log), log.period) == 0.0
+    random = np.random.default_rng(0)
+    orientation, rates, acceleration = parts(log)
+    noisy = orientation + random.normal(0, 5e-5, orientation.shape)
+    noisy /= np.linalg.norm(noisy, axis=1, keepdims=True)
+    shaken = rates + random.normal(0, 2e-3, rates.shape)
+    assert attitude_pull(noisy, shaken, acceleration, log.period) == 0.0
+    assert PULL / 2 < attitude_pull(*parts(filtered(log)), log.period) < 2 * PULL
+
+
+def test_damping_survives_a_filtered_attitude(tmp_path: Path) -> None:
+    robot = make_robot(tmp_path)
+    logs = [filtered(record(sway(f"sway_{seed}", seed=seed, duration=30.0))) for seed in (1, 2)]
+    found = identify_feet(robot, logs, settings=KNOWN)
+    assert sum(note.code == "attitude_pulled" for note in found.notes) == 2
+    left = identify_feet(robot, [without_accelerometer(log) for log in logs], settings=KNOWN)
+    missed = []
+    for (foot, axis), law in TRUTH.items():
+        error, uncorrected = (
+            abs(one.parameter(foot, axis, "damping").value / law.damping - 1) for one in (found, left)
+        )
+        assert error < 0.02
+        missed.append(uncorrected)
+        assert found.parameter(foot, axis, "stiffness").value == pytest.approx(law.stiffness, rel=0.01)
+    assert min(missed) > 0.02
+    assert max(missed) > 0.07
+
+
+def without_accelerometer(log: MotionLog) -> MotionLog:
+    """Without it there is nothing to put the attitude right by."""
+    return replace(log, columns={k: v for k, v in log.columns.items() if "linear_acceleration" not in k})
