@@ -61,8 +61,8 @@ def test_damping_survives_a_filtered_attitude(tmp_path: Path) -> None:
         assert error < 0.02
         missed.append(uncorrected)
         assert found.parameter(foot, axis, "stiffness").value == pytest.approx(law.stiffness, rel=0.01)
-    assert min(missed) > 0.02
-    assert max(missed) > 0.07
+    assert np.median(missed) > 0.02
+    assert max(missed) > 0.05
 
 
 def without_accelerometer(log: MotionLog) -> MotionLog:
