@@ -20,21 +20,20 @@ struct ColumnWriter {
 
   PLANTAR_INLINE void put(std::int32_t row, std::int32_t slot, Lanes x) const {
     const RowSink& sink = sinks[row];
+    if (sink.data == nullptr) return;
     scatter(sink.data + (sink.first_column[link] + slot) * sink.stride + offset, x, count);
   }
 
   PLANTAR_INLINE void write(std::int32_t slot, std::int32_t force_slot, const Wrench& w, bool has_force) const {
     if (tree.floating) {
-      if (has_force && sinks[0].data != nullptr) {
+      if (has_force) {
         put(0, force_slot, w.force.x);
         put(1, force_slot, w.force.y);
         put(2, force_slot, w.force.z);
       }
-      if (sinks[3].data != nullptr) {
-        put(3, slot, w.torque.x);
-        put(4, slot, w.torque.y);
-        put(5, slot, w.torque.z);
-      }
+      put(3, slot, w.torque.x);
+      put(4, slot, w.torque.y);
+      put(5, slot, w.torque.z);
     }
     if (!joints) return;
     for (std::int32_t k = link; k >= tree.first_joint(); k = tree.links[k].parent) {
