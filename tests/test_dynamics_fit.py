@@ -108,14 +108,18 @@ def test_rows_that_products_cannot_serve_go_by_reflections_alone(exact: int) -> 
     base = base_parameters(equation)
     motion = pinocchio_motion(model, equation.tree, *random_motion(model, 1500, 8))
     wrench = np.random.default_rng(8).normal(size=(6, len(motion)))
-    wrench[exact] = equation.inverse_dynamics(motion, model_parameters(model))[exact]  # nothing of it is left over
+    wrench[exact] = equation.inverse_dynamics(motion, model_parameters(model))[
+        exact
+    ]  # nothing of it is left over
     stream = EquationStream(equation, base, range(6))
     stream.add(motion, dict(enumerate(wrench)))
     rows = equation.regressor(motion, base.masks)
     for row, factor in stream.factors().items():
         dense = np.vstack([rows[row][factor.columns], wrench[row]])
         square, scale = dense @ dense.T, np.linalg.norm(dense, axis=1)
-        np.testing.assert_allclose(factor.upper.T @ factor.upper, square, atol=1e-10 * float(scale.max()) ** 2)
+        np.testing.assert_allclose(
+            factor.upper.T @ factor.upper, square, atol=1e-10 * float(scale.max()) ** 2
+        )
 
 
 def test_batches_of_any_size_give_the_same_as_one() -> None:
