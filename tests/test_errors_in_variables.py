@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,10 +10,11 @@ import numpy as np
 from biped import TRUTH, make_robot, record, sway
 from plantar.conventions import Array
 from plantar.estimation import Block, fit_linear
-from plantar.estimation.errors_in_variables import attenuation, noise_after_filter
+from plantar.estimation.errors_in_variables import attenuation, noise_after_filter, offsets_moved
 from plantar.identify.feet import identify_feet
 from plantar.identify.settings import FeetSettings
 from plantar.log import MotionLog
+from plantar.result import FeetResult
 from plantar.signals import low_pass
 
 PERIOD, CUTOFF = 0.005, 5.0
@@ -84,6 +86,30 @@ def test_nothing_is_given_back_where_nothing_was_taken() -> None:
     np.testing.assert_allclose(taken, 0.0, atol=1e-6)
 
 
+def test_offsets_follow_what_is_given_back() -> None:
+    blocks = [block(seed, (0.01, 0.08)) for seed in (1, 2)]
+    leaning = [replace(one, regressor=one.regressor + [0.1 * k, 0.0]) for k, one in enumerate(blocks, 1)]
+    for shared in (False, True):
+        fit = fit_linear(leaning, shared_offset=shared)
+        taken = attenuation(leaning, fit.values, shared_offset=shared)
+        assert taken is not None
+        moved = offsets_moved(leaning, taken, shared_offset=shared)
+        missed = [
+            one.response - one.regressor @ (fit.values + taken) - fit.offsets[one.label] - moved[one.label]
+            for one in leaning
+        ]
+        means = [float(np.mean(part)) for part in ([np.concatenate(missed)] if shared else missed)]
+        np.testing.assert_allclose(means, 0.0, atol=1e-9)
+        assert max(map(abs, moved.values())) > 1e-3, "left where they were, they would miss by as much"
+
+
+def test_a_bush_that_does_not_turn_at_all_gets_nothing_back() -> None:
+    still = replace(block(1, (0.0, 0.0)), regressor=np.zeros((12000, 2)), noise=np.zeros(2))
+    taken = attenuation([still], fit_linear([still]).values)
+    assert taken is not None
+    assert not taken.any()
+
+
 def test_mostly_noise_is_said() -> None:
     noise = block(1, (0.3, 1.0))
     assert attenuation([noise], fit_linear([noise]).values) is None
@@ -97,6 +123,15 @@ def gyroscope(log: MotionLog, size: float) -> MotionLog:
     )
 
 
+def residuals(result: FeetResult, motion: str, foot: str, axis: str) -> Array:
+    """What the fit leaves of the torque, where it served."""
+    assert result.residuals is not None
+    table = result.residuals
+    rows = np.array(table["motion"]) == motion
+    rows &= (np.array(table["foot"]) == foot) & np.array(table["used"])
+    return np.asarray((np.array(table[f"{axis}.torque"]) - np.array(table[f"{axis}.predicted"]))[rows])
+
+
 def test_a_noisy_gyroscope_costs_no_damping(tmp_path: Path) -> None:
     robot, settings = make_robot(tmp_path), FeetSettings(model="kelvin_voigt", wrench_delay=0.0)
     logs = [record(sway(name, seed=seed, duration=40.0)) for name, seed in (("one", 1), ("second", 2))]
@@ -105,6 +140,10 @@ def test_a_noisy_gyroscope_costs_no_damping(tmp_path: Path) -> None:
     noisy = identify_feet(robot, [gyroscope(log, 0.05) for log in logs], settings=settings)
     told = [note.text for note in noisy.notes if note.code == "noisy_regressors"]
     assert any("damping +" in text for text in told)
+    for foot, axis in TRUTH:
+        for name in ("one", "second"):
+            missed = residuals(noisy, name, foot, axis)
+            assert abs(missed.mean()) < 1e-6 * missed.std(), "offsets follow what is given back"
     inside = []
     for (foot, axis), truth in TRUTH.items():
         row = noisy.parameter(foot, axis, "damping")

@@ -64,7 +64,16 @@ def attenuation(blocks: Sequence[Block], values: Array, *, shared_offset: bool =
         np.sum([len(one.response) * one.noise for one in blocks if one.noise is not None], axis=0)
         * np.ones(size)
     )
-    information = np.linalg.inv(factor_of(blocks, shared_offset).information_inverse()[:size, :size])
-    if np.max(np.linalg.eigvals(np.linalg.solve(information, noise)).real) > MOST:
+    inverse = factor_of(blocks, shared_offset).information_inverse()[:size, :size]
+    share = inverse @ noise  # nothing along a direction that no block excites
+    if np.max(np.linalg.eigvals(share).real) > MOST:
         return None
-    return np.asarray(np.linalg.solve(information - noise, noise @ values))
+    return np.asarray(np.linalg.solve(np.eye(size) - share, share @ values))
+
+
+def offsets_moved(blocks: Sequence[Block], change: Array, *, shared_offset: bool = False) -> dict[str, float]:
+    """How each block's offset follows values that move by `change` (k,): its mean response stays explained."""
+    means = {one.label: one.regressor.mean(axis=0) for one in blocks}
+    if shared_offset:
+        means = dict.fromkeys(means, np.concatenate([one.regressor for one in blocks]).mean(axis=0))
+    return {label: -float(mean @ change) for label, mean in means.items()}

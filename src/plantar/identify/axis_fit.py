@@ -10,7 +10,7 @@ import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES, Array, Axis
 from plantar.estimation import Block, LinearFit, fit_linear
-from plantar.estimation.errors_in_variables import attenuation
+from plantar.estimation.errors_in_variables import attenuation, offsets_moved
 from plantar.estimation.law_choice import LawChoice, choose_law
 from plantar.estimation.law_fit import LawFit, fit_law
 from plantar.estimation.law_trials import Trial
@@ -109,16 +109,24 @@ def _unattenuated(fit: AxisFit, recordings: Sequence[Recording], shared: bool) -
         return fit
     added = np.zeros(len(fit.covariance))
     added[:size] = NOISE_DOUBT * taken
+    moved = offsets_moved(blocks, taken, shared_offset=shared)
     share = ", ".join(
         f"{name} {100 * part / value:+.2g} %"
         for name, part, value in zip(fit.law.terms, taken, fit.values, strict=True)
         if value
     )
     text = f"{where}: noise in angles and rates had drawn values towards zero; given back: {share}"
+    values = fit.values + taken
+    linear = isinstance(fit.law, KelvinVoigt)
     return replace(
         fit,
-        values=fit.values + taken,
+        values=values,
         covariance=fit.covariance + np.outer(added, added),
+        offsets={label: offset + moved[label] for label, offset in fit.offsets.items()},
+        offset_std={
+            label: float(np.hypot(std, NOISE_DOUBT * moved[label])) for label, std in fit.offset_std.items()
+        },
+        equivalent=(float(values[0]), float(values[1])) if linear else fit.equivalent,
         notes=(*fit.notes, Note("noisy_regressors", "info", text)),
     )
 
