@@ -406,6 +406,18 @@ def test_a_robot_that_stands_still_identifies_nothing(robot: RobotModel) -> None
                 assert row.advice
 
 
+def test_columns_that_never_change_identify_nothing(robot: RobotModel) -> None:
+    log = record(sway())
+    odd = np.arange(len(log)) % 2 == 1
+    for towards in (None, np.inf):
+        frozen = {}
+        for name in log.columns:
+            first = np.full(len(log), log.column(name)[0])
+            frozen[name] = first if towards is None else np.where(odd, np.nextafter(first, towards), first)
+        for row in identify_feet(robot, [log.with_columns(frozen)]).parameters:
+            assert row.verdict == "unidentifiable"
+
+
 def test_the_result_keeps_the_contract(result: FeetResult, tmp_path: Path) -> None:
     path = result.save(tmp_path / "out")
     content = json.loads(path.read_text())

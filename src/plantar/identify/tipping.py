@@ -12,6 +12,7 @@ from plantar.robot import RobotModel
 SHELLS = 60  # into which the angles from the resting pose are sorted
 BENT = 0.5  # of the first slope: below it for good, the torque has stopped growing
 LEAST_SHELL = np.radians(0.02)  # rad: narrower shells hold noise
+BIN = np.radians(0.25)  # rad
 
 
 def leave_out_tipping(robot: RobotModel, recording: Recording, settings: FeetSettings) -> None:
@@ -37,7 +38,10 @@ def leave_out_tipping(robot: RobotModel, recording: Recording, settings: FeetSet
 
 def _resting(angles: Array) -> float:
     """The pose in which the foot spends most of its time: the fullest of narrow bins."""
-    counts, edges = np.histogram(angles, bins=max(20, round(np.ptp(angles) / np.radians(0.25))))
+    spread = float(np.ptp(angles))
+    if spread < LEAST_SHELL:  # it does not turn: bins of rounding errors do not exist
+        return float(np.median(angles))
+    counts, edges = np.histogram(angles, bins=max(20, round(spread / BIN)))
     fullest = int(np.argmax(counts))
     return float((edges[fullest] + edges[fullest + 1]) / 2)
 
