@@ -287,3 +287,19 @@ def test_icub_walking_is_predicted_where_the_cad_is_wrong(shared_data: Path) -> 
     assert found.score("second", "force.z").rms_error <= 7.8
     assert found.mass == pytest.approx(33.9, rel=0.03)
     assert is_consistent(np.array([row.value for row in found.inertial_parameters]))
+
+
+def test_rows_that_are_exactly_zero_leave_the_others_their_weight(
+    robot: RobotModel, logs: list[MotionLog]
+) -> None:
+    """A simulator's log of a robot at rest: nothing lateral at all, nothing missed, and still a fit."""
+    still = {name: np.zeros(len(logs[0])) for name in logs[0].columns}
+    for name in still:
+        if name.endswith(("linear_acceleration.z", "force.z")):
+            still[name] += float(logs[0].column(name).mean())
+        if name.endswith("orientation.w"):
+            still[name] += 1.0
+    found = identify_inertia(robot, [logs[0].with_columns(still)])
+    assert "unexcited" in {note.code for note in found.notes}
+    values = np.array([[row.value, row.cad] for row in found.inertial_parameters])
+    assert np.isfinite(values).all()

@@ -23,6 +23,7 @@ STRENGTHS = tuple(float(strength) for strength in 10.0 ** np.arange(-1.0, 6.5))
 WEIGHTING_ROUNDS = 2
 HOPELESS = 3.0  # times the smallest held-out error: stronger pulls are not tried any more
 FIRST_STRENGTH = 10.0  # of the fit that gives the first weights
+LEAST_ERROR = 1e-5  # N, N.m: what a row misses by less is rounding, and its weight would drown all others
 
 
 @dataclass(frozen=True)
@@ -119,7 +120,7 @@ class PulledProblem:
         for _ in range(WEIGHTING_ROUNDS):
             progress("weigh the rows")
             x = self._fit(self._triangle(every, weights), strength)
-            weights = {row: 1 / max(np.sqrt(self._error(every, row, x)), 1e-12) for row in self.rows}
+            weights = self._weights(x)
             strength = FIRST_STRENGTH
         trials = self._trials(weights, progress)
         strength = chosen_strength(trials)
@@ -149,7 +150,7 @@ class PulledProblem:
             return np.concatenate([inertial, *found])
 
         x = extras(every)
-        weights = {row: 1 / max(np.sqrt(self._error(every, row, x)), 1e-12) for row in self.rows}
+        weights = self._weights(x)
         trials = []
         if len(self.stretches) > 1:
             fits = [extras([k for k in every if k != out]) for out in every]
@@ -166,6 +167,11 @@ class PulledProblem:
             trials=tuple(trials),
             triangle=self._triangle(every, weights),
         )
+
+    def _weights(self, x: Array) -> dict[int, float]:
+        """One over what each row misses, rms over everything."""
+        every = range(len(self.stretches))
+        return {row: 1 / max(float(np.sqrt(self._error(every, row, x))), LEAST_ERROR) for row in self.rows}
 
     def _row_extras(self, chosen: Sequence[int], row: int, base: Array) -> Array:
         """Least squares of one row's extras beside known base parameters; some may not be negative."""
