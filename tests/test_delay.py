@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+from biped import make_robot
 from plantar.conventions import Array
 from plantar.estimation.delay import Delay, Pair, estimate_delay
+from plantar.identify.latency import CLOCK, wrench_latency
+from plantar.log import MotionLog
 from plantar.signals import differentiate, interpolate, low_pass
 
 PERIOD = 0.005
@@ -76,3 +81,13 @@ def test_the_frame_of_a_turning_sensor_is_not_late(delay: float) -> None:
 
 def test_no_delay_is_claimed_beyond_what_delays_are() -> None:
     assert estimate_delay([late_pair(0.2, 0)]) is None
+
+
+@pytest.mark.parametrize("slow_first", [True, False])
+def test_the_slowest_clock_bounds_what_is_known(slow_first: bool, tmp_path: Path) -> None:
+    """Whichever log comes first; one that says nothing of the delay does not count."""
+    periods = [0.02, PERIOD] if slow_first else [PERIOD, 0.02]
+    logs = [MotionLog(str(period), period * np.arange(100), {}) for period in (*periods, 0.1)]
+    pairs = [late_pair(0.01, 1), late_pair(0.01, 2), None]
+    found = wrench_latency(make_robot(tmp_path), logs, lambda *_: pairs)
+    assert CLOCK * 0.02 <= found.std < CLOCK * 0.1

@@ -62,7 +62,8 @@ def wrench_latency(
 
     `each` maps a function over logs: a pool's map uses all cores.
     """
-    pairs = [pair for pair in each(lambda log: _pair(robot, log), logs) if pair is not None]
+    tried = list(each(lambda log: _pair(robot, log), logs))
+    pairs = [pair for pair in tried if pair is not None]
     found = estimate_delay(pairs) if pairs else None
     if found is None:
         text = (
@@ -72,7 +73,8 @@ def wrench_latency(
         )
         return Latency(0.0, PRIOR_STD, np.inf, False, Note("delay_unknown", "warning", text))
     gain = PRIOR_STD**2 / (PRIOR_STD**2 + found.std**2)
-    delay, std = gain * found.value, float(np.hypot(np.sqrt(gain) * found.std, CLOCK * logs[0].period))
+    slowest = max(log.period for log, pair in zip(logs, tried, strict=True) if pair is not None)
+    delay, std = gain * found.value, float(np.hypot(np.sqrt(gain) * found.std, CLOCK * slowest))
     told = f"wrenches are {1e3 * delay:+.1f} ± {1e3 * 1.96 * std:.1f} ms late (95 %) against IMU and encoders"
     if std <= KNOWN_STD:
         return Latency(delay, std, found.freedom, True, Note("delay", "info", f"{told}: corrected"))
