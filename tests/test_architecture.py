@@ -16,7 +16,7 @@ ROOMS = (
     "conventions", "errors", "notes", "files",
     "robot_file", "robot", "log", "readers",
     "signals", "spikes", "kinematics", "attitude", "polygon", "contact", "slip", "deflection",
-    "sanity_feet", "sanity_imu", "sanity",
+    "sanity_channels", "sanity_feet", "sanity_imu", "sanity",
     "dynamics", "models", "estimation",
     "result", "validation", "identify",
     "balance", "motions", "twin",

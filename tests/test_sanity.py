@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from biped import FEET, WEIGHT, Frame, Motion, Mounting, make_robot, record, sines, sway
 from plantar.errors import DataError
@@ -80,6 +81,16 @@ def joints_in_degrees(log: MotionLog) -> MotionLog:
     return scaled(names, 180 / np.pi)(log)
 
 
+def leaning_imu(log: MotionLog) -> MotionLog:
+    """An IMU mounted a quarter turn about x from where the robot file has it, all of its readings alike."""
+    turn = Rotation.from_euler("x", 90, degrees=True)
+    quaternion = Rotation.from_quat(log.stack(QUATERNION), scalar_first=True) * turn
+    columns = dict(zip(QUATERNION, quaternion.as_quat(scalar_first=True).T, strict=True))
+    for names in (GYROSCOPE, ACCELEROMETER):
+        columns |= dict(zip(names, turn.inv().apply(log.stack(names)).T, strict=True))
+    return log.with_columns(columns)
+
+
 FAULTS: dict[str, tuple[Fault, str, str]] = {
     "joint in degrees": (constant("joint.neck.position", 45.0), "degrees", "joint.neck.position"),
     "gyroscope in degrees": (scaled(GYROSCOPE, 180 / np.pi), "degrees", "angular_velocity"),
@@ -92,6 +103,8 @@ FAULTS: dict[str, tuple[Fault, str, str]] = {
     "force in kgf": (scaled(WRENCH["left"] + WRENCH["right"], 1 / 9.80665), "force_unit", "kgf"),
     "feet swapped": (swapped, "swapped_feet", "swapped"),
     "gyroscope dead": (constant("imu.chest.angular_velocity.y"), "dead_channel", "angular_velocity.y"),
+    "gyroscope's axis reversed": (scaled(GYROSCOPE[1:2], -1.0), "sign", "angular_velocity.y"),
+    "IMU's orientation leans": (leaning_imu, "force_leans", "leans"),
     "torque dead": (constant("wrench.left.torque.y"), "dead_channel", "wrench.left.torque.y"),
     "force dead": (constant("wrench.right.force.z"), "dead_channel", "wrench.right.force.z"),
     "time in milliseconds": (milliseconds, "time_unit", "'time'"),

@@ -10,7 +10,8 @@ from plantar.conventions import GRAVITY
 from plantar.log import MotionLog
 from plantar.notes import Finding
 from plantar.robot import RobotModel
-from plantar.sanity_feet import swapped_feet
+from plantar.sanity_channels import check_channels
+from plantar.sanity_feet import check_balance
 from plantar.sanity_imu import check_imu
 
 DEGREES = 180 / np.pi
@@ -19,9 +20,10 @@ SHORTEST = 0.5  # s of a log from which anything can be said
 
 
 def check_log(robot: RobotModel, log: MotionLog) -> list[Finding]:
-    """Every finding about one log, in the order time, joints, IMU, wrenches."""
+    """Every finding about one log, in the order time, joints, IMU, wrenches, stuck channels."""
     imu = check_imu(robot.imu.name, log) if robot.imu is not None else ()
-    return [*_time(log), *_joints(robot, log), *imu, *_wrenches(robot, log)]
+    channels = check_channels(robot, log)
+    return [*_time(log), *_joints(robot, log), *imu, *_wrenches(robot, log), *channels]
 
 
 def _time(log: MotionLog) -> Iterator[Finding]:
@@ -110,6 +112,5 @@ def _wrenches(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         if 0.07 < carried / weight < 0.14:
             text = f"columns 'wrench.*.force.z': the feet carry {carried:.4g}, which looks like kgf"
             yield Finding("force_unit", f"{text} (valid: N, about {weight:.0f})", True)
-        elif swapped_feet(robot, log):
-            text = "the feet's wrenches look swapped: exchanged, they balance gravity far better"
-            yield Finding("swapped_feet", f"{text} (check the sensors' names)", True)
+        else:
+            yield from check_balance(robot, log)

@@ -1,30 +1,186 @@
-"""Swapped feet: do the wrenches balance gravity better when left and right are exchanged?"""
+"""Do the feet's wrenches balance gravity, and if not: what exchanged or reversed makes them do it?"""
 
 from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pinocchio as pin
 
 from plantar.conventions import GRAVITY, Array, rotation_from_quaternion
 from plantar.log import MotionLog
-from plantar.robot import RobotModel
+from plantar.notes import Finding
+from plantar.robot import Imu, RobotModel
 
 SAMPLES = 50  # spread over the log: enough to tell
-BETTER = 0.5  # share of the misfit that must be left after the exchange
+BETTER = 0.5  # share of the misfit that must be left after the change
 NOTABLE = 0.02  # m: a lever below it is within the model's own error
+ALIKE = 0.1  # of the misfit: changes that do as well as the best are named with it
+CERTAIN_LEVER, CERTAIN = (
+    0.05,
+    0.1,
+)  # m, and share left: no error of masses or mounting is undone so well by chance
+UNEXPLAINED = 0.12  # m: beyond any sole; masses, encoder zeros or the sensors' places are off
+LEANING = np.radians(
+    3.5
+)  # between the ground's usual force and the IMU's up: more than zeros of sensors make
+LEAST_TILT = np.radians(0.5)  # usual: less of it is noise of the forces
+SIMILAR, COHERENT = (
+    1.5,
+    0.9,
+)  # ratio of two tilts, and their correlation whatever the direction, to be compared
+TURNED = np.radians(10)  # accelerations turn the force by some degrees too
+IMPOSSIBLE = np.radians(30)  # no mounting, zero or push is that far off
+MOST_NAMED = 3
+COMPONENTS = ("force.x", "force.y", None, "torque.x", "torque.y", None)  # force.z is judged by its own sign
 
 
-def swapped_feet(robot: RobotModel, log: MotionLog) -> bool:
-    """Whether two feet's wrenches, exchanged, put the centre of pressure under the centre of mass far better.
+@dataclass(frozen=True)
+class _Sides:
+    """What a stance weighs against each other, in the root link's frame.
 
-    Quasi-static: the moment of both wrenches about the centre of mass, over the weight, as a lever [m].
+    `levers` (n, feet, 6, 3) [m]: level moment about the centre of mass of each component of each foot's wrench, over
+    the load; their sum is zero while the robot stands or sways. `up` (n, 3) as IMU and joints have it, `push` (n, 3)
+    the ground's force, both of unit length: on average alike.
     """
+
+    levers: Array
+    up: Array
+    push: Array
+
+    @property
+    def misfit(self) -> float:
+        return _usual(self.levers.sum(axis=(1, 2)))
+
+    @property
+    def lean(self) -> float:
+        """Angle between the ground's usual force and up [rad]."""
+        apart = float(np.linalg.norm(np.median(self.push - self.up, axis=0)))
+        return 2 * float(np.arcsin(min(1.0, apart / 2)))
+
+    @property
+    def turn(self) -> tuple[float, float]:
+        """Angle by which up's changes must be turned about the vertical to be the force's, and its deviation [rad]."""
+        parts = [side - side.mean(axis=0) for side in (self.up, self.push)]
+        axis = self.push.mean(axis=0)
+        axis /= max(float(np.linalg.norm(axis)), 1e-9)
+        up, push = (part - np.outer(part @ axis, axis) for part in parts)
+        along, across = float(np.sum(up * push)), float(np.sum(np.cross(up, push) @ axis))
+        sizes = float(np.sqrt(np.sum(up**2) * np.sum(push**2)))
+        # A swaying robot's forces also accelerate it, which is no tilt: only what is as large as the tilt counts.
+        if _usual(up) < LEAST_TILT or not 1 / SIMILAR < _usual(push) / _usual(up) < SIMILAR:
+            return 0.0, np.inf
+        alike = min(1.0, float(np.hypot(along, across)) / sizes)
+        spread = np.sqrt((1 - alike**2) / len(up)) / alike if alike > COHERENT else np.inf
+        return float(np.arctan2(across, along)), float(spread)
+
+
+@dataclass(frozen=True)
+class _Stance:
+    """Some samples of a loaded robot: attitude of the IMU (n, 4), joints (n, n_joints), wrench of each foot (n, 6)."""
+
+    robot: RobotModel
+    imu: Imu
+    orientation: Array
+    positions: Array
+    wrenches: list[Array]
+
+    def sides(self) -> _Sides:
+        data = self.robot.model.createData()
+        levers, ups, forces = zip(*(self._sample(data, i) for i in range(len(self.positions))), strict=True)
+        return _Sides(np.array(levers), np.array(ups), np.array(forces))
+
+    def reversed_joint(self, joint: int) -> _Stance:
+        positions = self.positions.copy()
+        positions[:, joint] *= -1
+        return replace(self, positions=positions)
+
+    def exchanged(self) -> _Stance:
+        return replace(self, wrenches=self.wrenches[::-1])
+
+    def _sample(self, data: pin.Data, sample: int) -> tuple[Array, Array, Array]:
+        robot, model = self.robot, self.robot.model
+        configuration = pin.neutral(model)
+        for joint, angle in enumerate(self.positions[sample], start=1):
+            at = model.idx_qs[joint]
+            if model.nqs[joint] == 1:
+                configuration[at] = angle
+            else:
+                configuration[at : at + 2] = np.cos(angle), np.sin(angle)
+        # The root link is fixed in `model`, and Pinocchio leaves what does not move out of the centre of mass.
+        root, moving = model.inertias[0], robot.mass - model.inertias[0].mass
+        centre = (root.mass * root.lever + moving * pin.centerOfMass(model, data, configuration)) / robot.mass
+        carrier, in_carrier = robot.frame(self.imu.placement)
+        attitude = rotation_from_quaternion(self.orientation[sample][None])[0]
+        up = (data.oMi[carrier] * in_carrier).rotation @ attitude[2]
+        level = np.eye(3) - np.outer(up, up)
+        found, force = np.zeros((len(robot.feet), 6, 3)), np.zeros(3)
+        for k, foot in enumerate(robot.feet.values()):
+            carrier, placement = robot.frame(foot.wrench.placement)
+            frame, wrench = data.oMi[carrier] * placement, self.wrenches[k][sample]
+            axes = frame.rotation.T
+            found[k, :3] = np.cross(frame.translation - centre, axes) * wrench[:3, None]
+            found[k, 3:] = axes * wrench[3:, None]
+            force += axes.T @ wrench[:3]
+        size = max(float(np.linalg.norm(force)), 1.0)
+        return np.asarray(found @ level / size), np.asarray(up), force / size
+
+
+def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
+    """Exchanged wrenches, reversed signs of a wrench's component or a joint, or a misfit that none of them explains.
+
+    The moment of the feet's wrenches about the centre of mass, over the load, is a lever [m] that stays small while the
+    robot stands or sways; an operator's push adds centimetres.
+    """
+    stance = _stance(robot, log)
+    if stance is None:
+        return
+    sides = stance.sides()
+    as_is = sides.misfit
+    if as_is <= NOTABLE and sides.lean <= LEANING:
+        yield from _turned(stance, sides)
+        return
+    exchanged = stance.exchanged().sides().misfit
+    left = {**_reversed_joints(stance, sides), **_reversed_components(stance, sides)}
+    best = min(left.values(), default=np.inf)
+    if as_is > NOTABLE and exchanged < BETTER * as_is and exchanged < best + ALIKE * as_is:
+        text = "the feet's wrenches look swapped: exchanged, they balance gravity far better"
+        yield Finding("swapped_feet", f"{text} (check the sensors' names)", True)
+    elif as_is > NOTABLE and best < BETTER * as_is:
+        alike = sorted((name for name in left if left[name] < best + ALIKE * as_is), key=left.__getitem__)
+        text = f"{' or '.join(alike[:MOST_NAMED])}: reversed, the wrenches balance gravity to {100 * best:.1f} cm"
+        certain = as_is > CERTAIN_LEVER and best < CERTAIN * as_is and "'joint." in alike[0]
+        valid = "valid: the signs of URDF and robot file"
+        yield Finding("sign", f"{text} instead of {100 * as_is:.1f} cm ({valid})", certain)
+    elif sides.lean > LEANING:
+        text = f"columns 'imu.{stance.imu.name}.*': the ground's force leans {np.degrees(sides.lean):.1f} deg from up"
+        where = "check the IMU's rpy, the joints above the feet, the wrenches' zeros"
+        valid = f"valid: below {np.degrees(LEANING):.1f} deg; {where}"
+        yield Finding("force_leans", f"{text} ({valid})", bool(sides.lean > IMPOSSIBLE))
+    elif as_is > UNEXPLAINED:
+        text = f"columns 'wrench.*': balance gravity only to {100 * as_is:.1f} cm about the URDF's centre of mass"
+        where = "check the encoders' zeros, where the wrenches are measured, and the masses"
+        yield Finding("balance", f"{text} (valid: below {100 * NOTABLE:.0f} cm; {where})")
+    else:
+        yield from _turned(stance, sides)
+
+
+def _turned(stance: _Stance, sides: _Sides) -> Iterator[Finding]:
+    """An IMU that is turned about the vertical: its tilts are not those that the ground's force shows."""
+    turn, spread = sides.turn
+    if abs(turn) > max(TURNED, 3 * spread):
+        text = f"columns 'imu.{stance.imu.name}.*': tilts another way than the ground's force in the robot, turned by "
+        valid = f"valid: within {np.degrees(TURNED):.0f} deg; check the IMU's rpy"
+        yield Finding("imu_turned", f"{text}{np.degrees(turn):.0f} deg about the vertical ({valid})")
+
+
+def _stance(robot: RobotModel, log: MotionLog) -> _Stance | None:
+    """Samples in which the feet carry the robot, or None where there are too few."""
     imu = robot.imu
-    if imu is None or len(robot.feet) != 2:
-        return False
-    orientation = log.orientation(imu.name)
-    if orientation is None:
-        return False
+    orientation = log.orientation(imu.name) if imu is not None else None
+    if imu is None or orientation is None or len(robot.feet) != 2:
+        return None
     wrenches = [foot.wrench.sign * log.wrench(foot.wrench.name) for foot in robot.feet.values()]
     positions = log.positions(robot)
     whole = np.isfinite(np.column_stack([orientation, positions, *wrenches])).all(axis=1)
@@ -32,44 +188,52 @@ def swapped_feet(robot: RobotModel, log: MotionLog) -> bool:
     loaded = whole & (sum(np.abs(w[:, 2]) for w in wrenches) > 0.3 * robot.mass * GRAVITY)
     rows = np.flatnonzero(loaded)[:: max(1, int(loaded.sum() // SAMPLES))]
     if rows.size < 10:
-        return False
-    data = robot.model.createData()
-    levers = np.array(
-        [_levers(robot, data, positions[i], orientation[i], [w[i] for w in wrenches]) for i in rows]
+        return None
+    return _Stance(robot, imu, orientation[rows], positions[rows], [wrench[rows] for wrench in wrenches])
+
+
+def _reversed_joints(stance: _Stance, sides: _Sides) -> dict[str, float]:
+    """What is left of the misfit [m] with one joint between IMU and feet reversed, by the joint's column.
+
+    Where the force then leans from up still, the joint does not explain what is wrong.
+    """
+    robot = stance.robot
+    path = frozenset().union(
+        *(robot.joints_between(stance.imu.placement, foot.bush) for foot in robot.feet.values())
     )
-    as_is, exchanged = np.sqrt(np.mean(levers**2, axis=0))
-    return bool(as_is > NOTABLE and exchanged < BETTER * as_is)
+    tried = {
+        f"column 'joint.{name}.position'": stance.reversed_joint(k).sides()
+        for k, name in enumerate(robot.joint_names)
+        if name in path and np.any(stance.positions[:, k])
+    }
+    allowed = max(LEANING, BETTER * sides.lean)
+    return {name: trial.misfit for name, trial in tried.items() if trial.lean < allowed}
 
 
-def _levers(
-    robot: RobotModel, data: pin.Data, position: Array, orientation: Array, wrenches: list[Array]
-) -> tuple[float, float]:
-    """Lever of the total wrench about the centre of mass, as recorded and with the feet exchanged [m]."""
-    model = robot.model
-    configuration = pin.neutral(model)
-    for joint, angle in enumerate(position, start=1):
-        at = model.idx_qs[joint]
-        if model.nqs[joint] == 1:
-            configuration[at] = angle
-        else:
-            configuration[at : at + 2] = np.cos(angle), np.sin(angle)
-    # The root link is fixed in `model`, and Pinocchio leaves what does not move out of the centre of mass.
-    root, moving = model.inertias[0], robot.mass - model.inertias[0].mass
-    centre = (root.mass * root.lever + moving * pin.centerOfMass(model, data, configuration)) / robot.mass
-    assert robot.imu is not None
-    joint, in_joint = robot.frame(robot.imu.placement)
-    up = (data.oMi[joint] * in_joint).rotation @ rotation_from_quaternion(orientation[None])[0][2]
-    frames = []
-    for foot in robot.feet.values():
-        carrier, placement = robot.frame(foot.wrench.placement)
-        frames.append(data.oMi[carrier] * placement)
-    found = []
-    for order in (wrenches, wrenches[::-1]):
-        force, moment = np.zeros(3), np.zeros(3)
-        for frame, wrench in zip(frames, order, strict=True):
-            push = frame.rotation @ wrench[:3]
-            force += push
-            moment += frame.rotation @ wrench[3:] + np.cross(frame.translation - centre, push)
-        level = moment - up * (moment @ up)
-        found.append(float(np.linalg.norm(level) / max(abs(force @ up), 1.0)))
-    return found[0], found[1]
+def _reversed_components(stance: _Stance, sides: _Sides) -> dict[str, float]:
+    """The same with a component of one or both wrenches reversed, where it also follows the motion far better: a
+    sensor's zero or a mass in the wrong place is no reversed sign."""
+    levers = sides.levers
+    total = levers.sum(axis=(1, 2))
+    moving = _usual(total - np.median(total, axis=0))
+    left: dict[str, float] = {}
+    sensors = [foot.wrench.name for foot in stance.robot.feet.values()]
+    for component, part in enumerate(COMPONENTS):
+        if part is None:
+            continue
+        each = [total - 2 * levers[:, k, component] for k in range(len(sensors))]
+        both = total - 2 * levers[:, :, component].sum(axis=1)
+        names = [f"column 'wrench.{sensor}.{part}'" for sensor in sensors]
+        trials = dict(zip(names, each, strict=True))
+        # A foot without load has nothing to reverse: the pair counts only where both take part.
+        if _usual(both) < 0.8 * min(_usual(one) for one in each):
+            trials[f"columns 'wrench.*.{part}'"] = both
+        for name, trial in trials.items():
+            if _usual(trial - np.median(trial, axis=0)) < BETTER * moving:
+                left[name] = _usual(trial)
+    return left
+
+
+def _usual(vectors: Array) -> float:
+    """Usual length of vectors (n, 3): the median, which a few bad samples do not move."""
+    return float(np.median(np.linalg.norm(vectors, axis=1)))

@@ -17,6 +17,7 @@ WINDOW = 0.5  # s over which the orientation's turn is compared with the gyrosco
 LEAST_TURN = np.radians(0.5)  # in one window: smaller ones hold noise
 FEWEST_WINDOWS = 20
 WRONG_TURN, RIGHT_TURN = 0.8, 0.3  # difference of the two turns over the turn itself
+REVERSED = -0.9  # correlation, and slope within a factor of two, of an axis that reads the opposite
 
 
 def check_imu(name: str, log: MotionLog) -> Iterator[Finding]:
@@ -112,6 +113,13 @@ def _gyroscope_agrees(name: str, log: MotionLog, orientation: Array) -> Iterator
             "gyroscope_scale", f"{where}: {ratio:.2g} times the orientation's rate (valid: about 1)"
         )
         return
+    if not _upside_down(name, log, orientation):
+        opposite = _reversed_axes(integral, turns["as it is"])
+        if opposite:
+            names = " and ".join(f"'imu.{name}.angular_velocity.{axis}'" for axis in opposite)
+            text = f"column {names}: turns against the orientation, which the accelerometer's up does not contradict"
+            yield Finding("sign", f"{text} (valid: right-handed about the IMU's axes)", True)
+            return
     apart = {
         reading: float(np.median(np.linalg.norm(turn[moving] - integral[moving], axis=1) / size[moving]))
         for reading, turn in turns.items()
@@ -124,6 +132,40 @@ def _gyroscope_agrees(name: str, log: MotionLog, orientation: Array) -> Iterator
     else:
         text = f"{where}: turns about other axes than the orientation (valid: both in the IMU's own frame)"
         yield Finding("gyroscope_frame", text)
+
+
+def _reversed_axes(integral: Array, turn: Array) -> str:
+    """The gyroscope's axes that read the opposite; none where one axis agrees with nothing, as in another frame."""
+    opposite = ""
+    for axis, integrated, turned in zip("xyz", integral.T, turn.T, strict=True):
+        if (np.abs(turned) > LEAST_TURN).sum() < FEWEST_WINDOWS:
+            continue
+        apart = float(np.std(integrated) * np.std(turned))
+        alike = float(np.mean((integrated - integrated.mean()) * (turned - turned.mean()))) / max(
+            apart, 1e-12
+        )
+        slope = float(integrated @ turned / (turned @ turned))
+        if alike < REVERSED and -2 < slope < -0.5:
+            opposite += axis
+        elif not alike > -REVERSED:
+            return ""
+    return opposite
+
+
+def _upside_down(name: str, log: MotionLog, orientation: Array) -> bool:
+    """Whether the accelerometer leans against the orientation, or there is no telling: then it may be the wrong one."""
+    columns = [f"imu.{name}.linear_acceleration.{axis}" for axis in "xyz"]
+    if not log.has(*columns):
+        return True
+    acceleration = log.linear_acceleration(name)
+    whole = np.flatnonzero(np.isfinite(np.column_stack([orientation, acceleration])).all(axis=1))
+    if whole.size < 10:
+        return True
+    rows = whole[:: max(1, whole.size // 2000)]
+    up = Rotation.from_quat(orientation[rows], scalar_first=True).inv().apply(np.array([0.0, 0.0, 1.0]))
+    felt = acceleration[rows] / GRAVITY
+    up, felt = up - up.mean(axis=0), felt - felt.mean(axis=0)
+    return bool(np.sum(up * felt) < 0.5 * np.sum(up**2))
 
 
 def _accelerometer_size(name: str, log: MotionLog) -> Finding | None:

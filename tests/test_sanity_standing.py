@@ -1,0 +1,106 @@
+"""Signs, mountings and stuck channels, found in a few seconds of a robot that obeys Newton: the twin's."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from plantar.log import MotionLog
+from plantar.notes import Finding
+from plantar.sanity import check_log
+from plantar.twin import PAPER, PRESETS, hrp2
+from plantar.twin.recording import record
+from twin_samples import swayed, tilted
+
+SENSORS = PRESETS["sensors"]
+
+
+@pytest.fixture(scope="module")
+def sway() -> MotionLog:
+    """The right foot alone, rolled by an operator."""
+    return record(swayed(), hrp2.robot(), SENSORS.physics(PAPER), SENSORS, 0).log
+
+
+@pytest.fixture(scope="module")
+def tilt() -> MotionLog:
+    """Both feet, nobody near."""
+    return record(tilted(), hrp2.robot(), SENSORS.physics(PAPER), SENSORS, 0).log
+
+
+def reversed_(log: MotionLog, *names: str) -> MotionLog:
+    return log.with_columns({name: -log.column(name) for name in names})
+
+
+def found(log: MotionLog) -> list[Finding]:
+    return check_log(hrp2.robot(), log)
+
+
+def test_a_robot_as_it_should_be_raises_no_alarm(sway: MotionLog, tilt: MotionLog) -> None:
+    assert [finding for log in (sway, tilt) for finding in found(log) if finding.severity == "warning"] == []
+
+
+def test_a_reversed_torque_is_named(sway: MotionLog) -> None:
+    (finding,) = [one for one in found(reversed_(sway, "wrench.right_foot.torque.x")) if one.code == "sign"]
+    assert "wrench.right_foot.torque.x" in finding.text
+    assert not finding.fatal
+
+
+def test_a_reversed_joint_is_named_and_refused_instead_of_swapped_feet(sway: MotionLog) -> None:
+    robot = hrp2.robot()
+    assert robot.imu is not None
+    legs = robot.joints_between(robot.imu.placement, robot.feet["right"].bush)
+    largest = max(legs, key=lambda name: abs(np.median(sway.column(f"joint.{name}.position"))))
+    findings = found(reversed_(sway, f"joint.{largest}.position"))
+    assert [one.code for one in findings if one.fatal] == ["sign"]
+    assert any(f"joint.{largest}.position" in one.text for one in findings if one.fatal)
+
+
+def test_a_few_absurd_samples_reverse_nothing(tilt: MotionLog) -> None:
+    torque = tilt.column("wrench.left_foot.torque.y").copy()
+    torque[:3] = 1e5
+    assert not any(
+        one.code == "sign" for one in found(tilt.with_columns({"wrench.left_foot.torque.y": torque}))
+    )
+
+
+@pytest.mark.parametrize("rpy", [(0.15, 0.0, 0.0), (0.0, -0.15, 0.0), (np.pi / 2, 0.0, 0.0)])
+def test_an_imu_mounted_otherwise_shows_in_the_ground_s_force(
+    tilt: MotionLog, rpy: tuple[float, float, float]
+) -> None:
+    robot = hrp2.robot()
+    assert robot.imu is not None
+    placement = replace(robot.imu.placement, rpy=robot.imu.placement.rpy + np.array(rpy))
+    wrong = replace(robot, imu=replace(robot.imu, placement=placement))
+    (finding,) = [one for one in check_log(wrong, tilt) if one.code == "force_leans"]
+    assert float(finding.text.split("leans ")[1].split(" deg")[0]) == pytest.approx(
+        np.degrees(max(map(abs, rpy))), abs=1.5
+    )
+    assert finding.fatal == (max(rpy) > 1)
+
+
+def test_a_turned_imu_is_told(sway: MotionLog) -> None:
+    robot = hrp2.robot()
+    assert robot.imu is not None
+    placement = replace(robot.imu.placement, rpy=robot.imu.placement.rpy + np.array([0.0, 0.0, np.pi]))
+    wrong = replace(robot, imu=replace(robot.imu, placement=placement))
+    (finding,) = [one for one in check_log(wrong, sway) if one.code in ("imu_turned", "force_leans")]
+    assert "check the IMU's rpy" in finding.text
+
+
+@pytest.mark.parametrize(
+    "column", ["imu.chest.angular_velocity.y", "imu.chest.orientation.x", "wrench.right_foot.torque.x"]
+)
+def test_a_channel_that_stops_is_told_with_its_time(sway: MotionLog, column: str) -> None:
+    values = sway.column(column).copy()
+    values[400:] = values[400]
+    (finding,) = [one for one in found(sway.with_columns({column: values})) if one.code == "stuck_channel"]
+    assert f"column '{column}', t = {sway.time[400]:g} to {sway.time[-1]:g} s" in finding.text
+
+
+def test_a_force_at_full_scale_is_told(sway: MotionLog) -> None:
+    torque = sway.column("wrench.right_foot.torque.x")
+    full = 0.6 * float(np.max(np.abs(torque)))
+    clipped = sway.with_columns({"wrench.right_foot.torque.x": np.clip(torque, -full, full)})
+    assert any(one.code == "stuck_channel" and "torque.x" in one.text for one in found(clipped))
