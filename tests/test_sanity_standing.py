@@ -65,6 +65,12 @@ def test_a_few_absurd_samples_reverse_nothing(tilt: MotionLog) -> None:
     )
 
 
+def test_torques_in_newton_millimetres_are_refused(sway: MotionLog, tilt: MotionLog) -> None:
+    for log in (sway, tilt):
+        torques = {name: 1000 * values for name, values in log.columns.items() if ".torque." in name}
+        assert [one.code for one in found(log.with_columns(torques)) if one.fatal] == ["torque_unit"]
+
+
 @pytest.mark.parametrize("rpy", [(0.15, 0.0, 0.0), (0.0, -0.15, 0.0), (np.pi / 2, 0.0, 0.0)])
 def test_an_imu_mounted_otherwise_shows_in_the_ground_s_force(
     tilt: MotionLog, rpy: tuple[float, float, float]

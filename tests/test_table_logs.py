@@ -129,6 +129,17 @@ def test_time_that_does_not_increase(tmp_path: Path) -> None:
     assert "time" in refusal(tmp_path, "time,joint.a.position\n3,1\n2,2\n1,3\n")
 
 
+@pytest.mark.parametrize("clock", ["1e300", "-1e300", "1e25"])
+def test_a_time_that_no_clock_shows_is_a_stray(tmp_path: Path, clock: str) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text(
+        "time,joint.a.position\n" + "".join(f"{0.1 * i:.1f},{i}\n" for i in range(200)) + f"{clock},3\n"
+    )
+    log = open_log(path)
+    assert log.time[-1] == pytest.approx(19.9)
+    assert [note.code for note in log.notes] == ["time_order"]
+
+
 def test_a_stray_time_is_left_out_with_a_note(tmp_path: Path) -> None:
     rows = [f"{0.01 * i:.2f},{i}" for i in range(300)]
     rows[100] = "0.00,100"

@@ -22,6 +22,7 @@ CERTAIN_LEVER, CERTAIN = (
     0.1,
 )  # m, and share left: no error of masses or mounting is undone so well by chance
 UNEXPLAINED = 0.12  # m: beyond any sole; masses, encoder zeros or the sensors' places are off
+FARTHEST = 1.5  # m: no posture and no mass is that far off
 LEANING = np.radians(
     3.5
 )  # between the ground's usual force and the IMU's up: more than zeros of sensors make
@@ -140,6 +141,14 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     as_is = sides.misfit
     if as_is <= NOTABLE and sides.lean <= LEANING:
         yield from _turned(stance, sides)
+        return
+    in_metres = sides.levers.copy()
+    in_metres[:, :, 3:] /= 1000
+    if as_is > FARTHEST:
+        text = f"columns 'wrench.*': balance gravity only to {as_is:.3g} m about the centre of mass"
+        millimetres = _usual(in_metres.sum(axis=(1, 2))) < 0.1 * as_is
+        valid = "valid: torques in N·m; these look like N·mm" if millimetres else "valid: below 0.02 m"
+        yield Finding("torque_unit" if millimetres else "balance", f"{text} ({valid})", True)
         return
     exchanged = stance.exchanged().sides().misfit
     left = {**_reversed_joints(stance, sides), **_reversed_components(stance, sides)}

@@ -19,6 +19,7 @@ from plantar.readers import motion_name
 from plantar.robot import RobotModel
 
 SIZE_LIMIT = 4 * 2**30  # bytes of text, after decompression
+LATEST = 1e20  # in any unit, nanoseconds since 1970 among them: what no clock shows
 STRAY_ROWS = 0.01  # share of rows whose time may step back before the file is refused
 
 
@@ -161,7 +162,7 @@ def _numbers(table: pa.Table, name: str, time: Array | None, path: Path) -> Arra
 
 def _increasing(time: Array, path: Path, notes: list[Note]) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
     """Which rows to keep so that time increases: a few strays go with a note, more is an error."""
-    finite = np.isfinite(time)
+    finite = np.isfinite(time) & (np.abs(time) < LATEST)
     latest = np.maximum.accumulate(np.where(finite, time, -np.inf))
     keep = finite.copy()
     keep[1:] &= time[1:] > latest[:-1]
