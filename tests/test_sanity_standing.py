@@ -110,3 +110,22 @@ def test_a_force_at_full_scale_is_told(sway: MotionLog) -> None:
     full = 0.6 * float(np.max(np.abs(torque)))
     clipped = sway.with_columns({"wrench.right_foot.torque.x": np.clip(torque, -full, full)})
     assert any(one.code == "stuck_channel" and "torque.x" in one.text for one in found(clipped))
+
+
+@pytest.mark.parametrize(
+    ("kind", "late"), [("angular_velocity", 0.02), ("orientation", 0.02), ("orientation", 0.0)]
+)
+def test_a_gyroscope_and_an_orientation_of_different_moments_are_told(
+    sway: MotionLog, kind: str, late: float
+) -> None:
+    rows = round(late / sway.period)
+    columns = {name: np.roll(values, rows) for name, values in sway.columns.items() if f".{kind}." in name}
+    findings = [
+        one for one in found(sway.with_columns(columns).select(slice(rows, None))) if one.code == "imu_late"
+    ]
+    if late == 0:
+        assert findings == []
+    else:
+        (finding,) = findings
+        told = "gyroscope" if kind == "angular_velocity" else "orientation"
+        assert f"the {told} is 20 ms behind" in finding.text or f"the {told} is 19 ms behind" in finding.text

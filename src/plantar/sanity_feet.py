@@ -159,9 +159,10 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     elif as_is > NOTABLE and best < BETTER * as_is:
         alike = sorted((name for name in left if left[name] < best + ALIKE * as_is), key=left.__getitem__)
         text = f"{' or '.join(alike[:MOST_NAMED])}: reversed, the wrenches balance gravity to {100 * best:.1f} cm"
-        certain = as_is > CERTAIN_LEVER and best < CERTAIN * as_is and "'joint." in alike[0]
+        joint = "'joint." in alike[0]
+        certain = (as_is > CERTAIN_LEVER and best < CERTAIN * as_is) or sides.lean > IMPOSSIBLE
         valid = "valid: the signs of URDF and robot file"
-        yield Finding("sign", f"{text} instead of {100 * as_is:.1f} cm ({valid})", certain)
+        yield Finding("sign", f"{text} instead of {100 * as_is:.1f} cm ({valid})", joint and certain)
     elif sides.lean > LEANING:
         text = f"columns 'imu.{stance.imu.name}.*': the ground's force leans {np.degrees(sides.lean):.1f} deg from up"
         where = "check the IMU's rpy, the joints above the feet, the wrenches' zeros"

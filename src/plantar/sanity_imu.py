@@ -7,9 +7,10 @@ from collections.abc import Iterator
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from plantar.conventions import GRAVITY, Array
+from plantar.conventions import GRAVITY, Array, Mask
 from plantar.log import MotionLog
 from plantar.notes import Finding
+from plantar.signals import differentiate, low_pass, runs
 
 WRONG_ANGLE = np.radians(25)  # between the accelerometer's up and the quaternion's: more is not noise
 RIGHT_ANGLE = np.radians(8)
@@ -17,6 +18,8 @@ WINDOW = 0.5  # s over which the orientation's turn is compared with the gyrosco
 LEAST_TURN = np.radians(0.5)  # in one window: smaller ones hold noise
 FEWEST_WINDOWS = 20
 WRONG_TURN, RIGHT_TURN = 0.8, 0.3  # difference of the two turns over the turn itself
+LATE, SURE, EXPLAINED = 0.005, 6.0, 0.1  # s, deviations, share: of a delay between gyroscope and orientation
+BAND = 8.0  # Hz, in which it is looked for
 REVERSED = -0.9  # correlation, and slope within a factor of two, of an axis that reads the opposite
 
 
@@ -120,6 +123,7 @@ def _gyroscope_agrees(name: str, log: MotionLog, orientation: Array) -> Iterator
             text = f"column {names}: turns against the orientation, which the accelerometer's up does not contradict"
             yield Finding("sign", f"{text} (valid: right-handed about the IMU's axes)", True)
             return
+    yield from _late(name, log, orientation)
     apart = {
         reading: float(np.median(np.linalg.norm(turn[moving] - integral[moving], axis=1) / size[moving]))
         for reading, turn in turns.items()
@@ -132,6 +136,34 @@ def _gyroscope_agrees(name: str, log: MotionLog, orientation: Array) -> Iterator
     else:
         text = f"{where}: turns about other axes than the orientation (valid: both in the IMU's own frame)"
         yield Finding("gyroscope_frame", text)
+
+
+def _late(name: str, log: MotionLog, orientation: Array) -> Iterator[Finding]:
+    """Whether orientation and gyroscope tell of the same turn at different times: rates and angles then disagree."""
+    period, edge = log.period, round(0.5 / log.period)
+    rates = log.angular_velocity(name)
+    whole: Mask = np.asarray(np.isfinite(np.column_stack([orientation, rates])).all(axis=1))
+    whole[1:] &= np.diff(log.time) < 1.5 * period
+    run = max(runs(whole), key=lambda part: part.stop - part.start, default=slice(0, 0))
+    if run.stop - run.start < 10 * edge:
+        return
+    attitude = Rotation.from_quat(orientation[run], scalar_first=True)
+    turned = (attitude[:-1].inv() * attitude[1:]).as_rotvec() / period
+    measured = (rates[run][1:] + rates[run][:-1]) / 2
+    apart = low_pass(measured - turned, period, BAND)[edge:-edge]
+    change = differentiate(low_pass(measured, period, BAND), period)[edge:-edge]
+    apart = apart - apart.mean(axis=0)
+    power, total = float(np.sum(change**2)), float(np.sum(apart**2))
+    if power == 0 or total == 0:
+        return
+    late = -float(np.sum(apart * change)) / power
+    left = float(np.sum((apart + late * change) ** 2))
+    deviation = np.sqrt(left / power / (6 * BAND * period * len(apart)))
+    if abs(late) > max(LATE, SURE * deviation) and left < (1 - EXPLAINED) * total:
+        later, other = ("gyroscope", "orientation") if late > 0 else ("orientation", "gyroscope")
+        text = f"columns 'imu.{name}.*': the {later} is {1e3 * abs(late):.0f} ms behind the {other} in this motion"
+        cause = "late, or filtered towards the accelerometer; damping is less sure"
+        yield Finding("imu_late", f"{text}: {cause} (valid: both of one moment)")
 
 
 def _reversed_axes(integral: Array, turn: Array) -> str:
