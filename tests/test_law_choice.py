@@ -55,6 +55,8 @@ def test_without_hysteresis_the_linear_law_is_kept(seed: int) -> None:
     [
         (Rubber(hardening=8000.0), "hardening"),
         (Rubber(coulomb=3.0), "coulomb"),
+        (JENKINS, "elastoplastic"),
+        (Rubber(slip_torque=5.0, slip_angle=0.01, hardening=8000.0), "hardening_elastoplastic"),
         (Rubber(slip_torque=5.0, sharpness=1.0), "bouc_wen"),
         (Rubber(slip_torque=5.0, sharpness=2.0), "bouc_wen"),
     ],

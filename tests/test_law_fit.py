@@ -31,6 +31,7 @@ JENKINS = Rubber(slip_torque=5.0, slip_angle=0.01)
 SHAPES = {
     "coulomb": [0.02],
     "elastoplastic": [0.011],
+    "hardening_elastoplastic": [0.011],
     "iwan": [0.009],
     "bouc_wen": [0.01, 1.8],
     "standard_linear_solid": [0.6],
@@ -41,6 +42,7 @@ OWN = {
     "hardening": [6000.0],
     "coulomb": [3.0],
     "elastoplastic": [5.0],
+    "hardening_elastoplastic": [5.0, 6000.0],
     "iwan": [5.0],
     "bouc_wen": [5.0],
     "standard_linear_solid": [150.0],

@@ -20,12 +20,13 @@ EXAMPLES: dict[str, tuple[tuple[float, ...], tuple[float, ...]]] = {
     "hardening": ((), (430.0, 16.0, 5000.0)),
     "coulomb": ((0.02,), (430.0, 16.0, 3.0)),
     "elastoplastic": ((0.012,), (430.0, 16.0, 5.0)),
+    "hardening_elastoplastic": ((0.012,), (430.0, 16.0, 5.0, 5000.0)),
     "iwan": ((0.008,), (430.0, 16.0, 5.0)),
     "bouc_wen": ((0.01, 1.7), (430.0, 16.0, 5.0)),
     "standard_linear_solid": ((0.4,), (430.0, 16.0, 120.0)),
     "coupled": ((), (430.0, 16.0, 25.0, 2.0)),
 }
-HYSTERETIC = ("elastoplastic", "iwan", "bouc_wen")
+HYSTERETIC = ("elastoplastic", "hardening_elastoplastic", "iwan", "bouc_wen")
 
 
 def path(seed: int = 0, seconds: float = 12.0, size: float = 0.05) -> np.ndarray:

@@ -25,6 +25,7 @@ TELLING_GAIN = (
 )
 FOLDS = 5  # contiguous parts that recordings are cut into where they cannot stand for one another
 SEED_REACH = 2.2  # ratio of shapes to those of a simpler law, within which a richer one is looked for
+TOLD = 4.0  # deviations from zero of a term that a law adds to a simpler one
 HOPELESS = 6.0  # times the best law's squares, at its best candidate shape: such a law's shape is not refined
 DOMINANT = 0.5  # share of all motion in one recording, above which the others cannot stand for it
 FEWEST_RECORDINGS = 3  # for whole recordings to be held out
@@ -52,7 +53,7 @@ class LawChoice:
     """The chosen law's fit, the linear equivalent (K, C of Kelvin-Voigt over the same motions), and the
     ranking.
 
-    `untried` are laws that elaborate one which gained nothing, or need what the motions do not hold. What
+    `untried` are laws that elaborate one which gained nothing, add nothing to it, or need what the motions lack. What
     holds, holds for deflections up to `reach` [rad] from the middle: an element that none of these motions
     made slip counts as part of the spring. `caution` says so where the motions show that there is one.
     """
@@ -117,6 +118,9 @@ def choose_law(
                 untried.append(law.name)
                 continue
         judge(_Contender.of(law, prepared, folds, shared_offset, seed))
+        if seed is not None and not _adds(scores[-1].fit, seed):
+            untried.append(scores.pop().law.name)
+            errors.pop()
     winner = _winner(scores, errors)
     chosen = replace(scores[winner], chosen=True)
     ranking = [chosen if place == winner else score for place, score in enumerate(scores)]
@@ -203,6 +207,12 @@ def _refusal(fit: LawFit) -> str | None:
     if not fit.law.possible(fit.values):
         return "would make energy of its own"
     return "; ".join(fit.doubts) or None
+
+
+def _adds(fit: LawFit, simpler: LawFit) -> bool:
+    """Whether every term that a law adds to the one it elaborates is told from zero."""
+    added = range(len(simpler.law.terms), len(fit.law.terms))
+    return all(abs(fit.values[k]) > TOLD * np.sqrt(fit.covariance[k, k]) for k in added)
 
 
 def _winner(scores: Sequence[LawScore], errors: Sequence[Array]) -> int:

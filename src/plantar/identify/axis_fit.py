@@ -26,7 +26,10 @@ FULLY_EXPLAINED = 0.997  # above it no richer law could gain what its own parame
 SHORT_STANCE = 5.0  # s: the usual stance of walking is shorter, and tells nothing of a memory
 NEGLIGIBLE, TINY = 0.1, 1e-3  # of a deviation and of a value: a smaller bias is not worth a correction
 NOISE_DOUBT = 0.3  # of what noise takes off: it may not be white
-CANDIDATES = ("kelvin_voigt", "hardening", "coulomb", "elastoplastic", "bouc_wen", "standard_linear_solid")
+CANDIDATES = (
+    "kelvin_voigt", "hardening", "coulomb", "elastoplastic", "hardening_elastoplastic", "bouc_wen",
+    "standard_linear_solid",
+)  # fmt: skip
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from plantar.models.coulomb import Coulomb
 from plantar.models.coupled import Coupled
 from plantar.models.elastoplastic import Elastoplastic
 from plantar.models.hardening import Hardening
+from plantar.models.hardening_elastoplastic import HardeningElastoplastic
 from plantar.models.iwan import Iwan
 from plantar.models.kelvin_voigt import KelvinVoigt
 from plantar.models.law import BESIDE, Law, Motion, reach
@@ -17,6 +18,7 @@ LAWS: dict[str, Law] = {
         Hardening(),
         Coulomb(),
         Elastoplastic(),
+        HardeningElastoplastic(),
         Iwan(),
         BoucWen(),
         StandardLinearSolid(),
@@ -32,6 +34,7 @@ __all__ = [
     "Coupled",
     "Elastoplastic",
     "Hardening",
+    "HardeningElastoplastic",
     "Iwan",
     "KelvinVoigt",
     "Law",

@@ -26,7 +26,7 @@ from plantar.twin.play import Progress, roll_each
 
 SMOOTH: Final = 10.0  # Hz: encoder steps are no motion
 REFERENCE: Final = 1.0  # s at the start that zeros of force sensors are taken from, and that are not scored
-LAWS: Final = ("kelvin_voigt", "hardening", "elastoplastic")
+LAWS: Final = ("kelvin_voigt", "hardening", "elastoplastic", "hardening_elastoplastic")
 TERMS: Final = ("stiffness", "damping", "hardening", "slip_torque", "slip_angle")
 
 

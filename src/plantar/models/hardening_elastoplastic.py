@@ -1,0 +1,34 @@
+"""Rubber that both stiffens and slips: a cube beside the Jenkins element."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import ClassVar
+
+import numpy as np
+
+from plantar.conventions import Array
+from plantar.models.elastoplastic import Elastoplastic
+from plantar.models.hardening import Hardening
+from plantar.models.law import Motion
+
+
+class HardeningElastoplastic(Elastoplastic):
+    """torque = K·q + C·q̇ + slip_torque·z + hardening·q³ + offset; K is the slope of the spring at zero deflection.
+
+    The cube is taken about the recorded zero: a run's start is the state z here, and leaves no room for an error of
+    the zero as `Hardening` has it.
+    """
+
+    name: ClassVar[str] = "hardening_elastoplastic"
+    terms: ClassVar[tuple[str, ...]] = (*Elastoplastic.terms, "hardening")
+    elaborates: ClassVar[str | None] = Elastoplastic.name
+    units: ClassVar[dict[str, tuple[str, str]]] = {**Elastoplastic.units, **Hardening.units}
+
+    def extra(self, motions: Sequence[Motion], shapes: Array, starts: Sequence[Array]) -> list[Array]:
+        """The state z and the cube, (N, 2, b)."""
+        columns = []
+        for motion, slip in zip(motions, super().extra(motions, shapes, starts), strict=True):
+            cube = np.where(np.isfinite(slip), (motion.deflection**3)[:, None, None], np.nan)
+            columns.append(np.concatenate([slip, cube], axis=1))
+        return columns
