@@ -336,6 +336,18 @@ def test_missing_values_are_left_out_with_a_reason(
     )
 
 
+def test_a_slower_sensor_in_the_table_is_no_hole(robot: RobotModel, logs: list[MotionLog]) -> None:
+    """Wrenches at a third of the rate, NaN in the rows between."""
+    sparse = []
+    for log in logs[:2]:
+        between = np.arange(len(log)) % 3 != 0
+        names = [name for name in log.columns if name.startswith("wrench.")]
+        sparse.append(log.with_columns({n: np.where(between, np.nan, log.column(n)) for n in names}))
+    found = identify_feet(robot, sparse, settings=PUNCTUAL)
+    assert_truth(found, 3e-3)
+    assert "holes_filled" in codes(found)
+
+
 def test_gaps_are_left_out(robot: RobotModel) -> None:
     motion = sway("gap")
     time = times(motion)

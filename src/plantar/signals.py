@@ -12,6 +12,7 @@ from plantar.log import MotionLog
 from plantar.notes import Note
 
 GAP_PERIODS = 3.5  # a step of time longer than this many periods is a gap
+BRIDGED = 0.04  # s: no motion that a fit uses is as short
 LONG_GAP = 10.0  # s: a longer gap is not spelled out sample by sample
 JITTER_SHARE = 0.25  # of a period: below it, samples count as evenly spaced
 FILTER_ORDER = 4  # Butterworth, run forth and back
@@ -60,6 +61,27 @@ def evenly_sampled(log: MotionLog) -> MotionLog:
     text = f"{log.name}: sampled unevenly or with gaps; put on an even grid of {1 / period:.4g} Hz, gaps kept as gaps"
     note = Note("resampled", "info", text)
     return MotionLog(log.name, grid, columns, log.path, log.sha256, (*log.notes, note))
+
+
+def without_holes(log: MotionLog) -> MotionLog:
+    """The log with short holes in its columns filled by straight lines; the same object where it has none.
+
+    A slower sensor in a table of faster ones leaves such holes at every row but its own. Longer than BRIDGED they stay.
+    """
+    filled, longest = {}, max(BRIDGED, 2.5 * log.period)
+    for name, values in log.columns.items():
+        if not np.isnan(values).any():
+            continue
+        if ".orientation." in name:
+            values = _aligned(log)[name]
+        there = interpolate(log.time, log.time, values, longest)
+        if np.isfinite(there).sum() > np.isfinite(values).sum():
+            filled[name] = there
+    if not filled:
+        return log
+    some = ", ".join(list(filled)[:3]) + (f" and {len(filled) - 3} more" if len(filled) > 3 else "")
+    text = f"{log.name}: holes of at most {1e3 * longest:.0f} ms filled by straight lines: {some}"
+    return log.with_columns(filled, Note("holes_filled", "info", text))
 
 
 def interpolate(at: Array, time: Array, values: Array, longest: float) -> Array:
@@ -154,7 +176,8 @@ def _aligned(log: MotionLog) -> dict[str, Array]:
         names = [f"{imu}.orientation.{axis}" for axis in "wxyz"]
         if log.has(*names):
             quaternion = log.stack(names)
-            dots = np.sum(quaternion[1:] * quaternion[:-1], axis=1)
-            signs = np.concatenate([[1.0], np.cumprod(np.where(dots < 0, -1.0, 1.0))])
+            signs, known = np.ones(len(log)), np.isfinite(quaternion).all(axis=1)
+            dots = np.sum(quaternion[known][1:] * quaternion[known][:-1], axis=1)
+            signs[known] = np.cumprod(np.append(1.0, np.where(dots < 0, -1.0, 1.0)))[: known.sum()]
             columns.update(zip(names, (quaternion * signs[:, None]).T, strict=True))
     return columns

@@ -19,7 +19,15 @@ from plantar.log import MotionLog
 from plantar.notes import Note
 from plantar.robot import Imu, RobotModel
 from plantar.sanity import check_log
-from plantar.signals import differentiate, evenly_sampled, interpolate, low_pass, run_ends, shifted
+from plantar.signals import (
+    differentiate,
+    evenly_sampled,
+    interpolate,
+    low_pass,
+    run_ends,
+    shifted,
+    without_holes,
+)
 from plantar.spikes import without_spikes
 
 FILTER_EDGE = 1.0  # of the filter's period, left out where a run of samples begins or ends
@@ -82,7 +90,7 @@ def checked(robot: RobotModel, log: MotionLog) -> MotionLog:
     if problems:
         raise DataError(located(problems[0].text, path=log.source))
     odd = [Note(found.code, found.severity, f"{log.name}: {found.text}") for found in findings]
-    return without_spikes(evenly_sampled(log)).with_columns({}, *log.joint_notes(robot), *odd)
+    return without_spikes(without_holes(evenly_sampled(log))).with_columns({}, *log.joint_notes(robot), *odd)
 
 
 def prepare(
