@@ -28,8 +28,7 @@ from plantar.signals import differentiate, low_pass, runs
 
 BAND = 2.0  # Hz: a filter's pull shows below it
 LEAST_PULL = 0.01  # 1/s: of less no damping suffers
-SURE = 5.0  # of its own deviations that a pull must be
-PIECE = 2.0  # s, over which disagreements are taken as one draw
+EXPLAINED = 0.3  # of what attitude and gyroscope disagree about, by the pull, for it to be believed
 CORRECTED = 1.5  # Hz, up to which the attitude is put right
 DERIVED = 5.0  # Hz: filter of what is differentiated twice
 SHORTEST_STANCE = 5.0  # s on the same feet
@@ -70,7 +69,7 @@ def right_attitude(
 
 
 def attitude_pull(orientation: Array, rates: Array, acceleration: Array, period: float) -> float:
-    """How fast an attitude follows its accelerometer, k [1/s]; 0 where that is not told from nothing.
+    """How fast an attitude follows its accelerometer, k [1/s]; 0 where that does not explain its own rate.
 
     A gyroscope that is late by τ beside the attitude counts as a pull of about g τ/h: as good a reason to put it right.
 
@@ -88,16 +87,10 @@ def attitude_pull(orientation: Array, rates: Array, acceleration: Array, period:
     if known.sum() * period < SHORTEST_STANCE:
         return 0.0
     error, pulled = (part[known] - part[known].mean(axis=0) for part in (error, pulled))
-    pieces = max(1, round(len(error) * period / PIECE))
-    along, moved = (
-        np.array([part.sum() for part in np.array_split((product * pulled).sum(axis=1), pieces)])
-        for product in (error, pulled)
-    )
-    if moved.sum() == 0:
-        return 0.0
-    pull = float(along.sum() / moved.sum())
-    deviation = float(np.linalg.norm(along - pull * moved) / moved.sum())
-    return pull if pull > max(LEAST_PULL, SURE * deviation) else 0.0
+    moved = float(np.sum(pulled**2))
+    pull = float(np.sum(error * pulled)) / moved if moved > 0 else 0.0
+    explained = pull * float(np.sum(error * pulled)) / max(float(np.sum(error**2)), 1e-30)
+    return pull if pull > LEAST_PULL and explained > EXPLAINED else 0.0
 
 
 def put_right(
