@@ -28,7 +28,8 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 
-from biped import make_robot, record, sway
+from biped import record, sway
+from biped_robot import make_robot
 from log_formats import WRITERS
 from plantar.errors import PlantarError
 from plantar.log import MotionLog

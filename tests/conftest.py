@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from biped import make_robot
+from biped_robot import make_robot
 from plantar.robot import RobotModel
 
 

@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from biped import record, sway, write_robot
+from biped import record, sway
+from biped_robot import write_robot
 from plantar import __version__
 from plantar.cli import COMMANDS, main
 from plantar.log import MotionLog

@@ -11,7 +11,8 @@ import pinocchio as pin
 import pytest
 import yaml
 
-from biped import TRUTH, Frame, Mounting, make_robot, record, sway, write_robot
+from biped import TRUTH, record, sway
+from biped_robot import Frame, Mounting, make_robot, write_robot
 from example_robots import G1, ICUB, TALOS
 from log_formats import write_hrpsys, write_mcap
 from plantar.cli import main

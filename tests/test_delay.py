@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from biped import make_robot
+from biped_robot import make_robot
 from plantar.conventions import Array
 from plantar.estimation.delay import Delay, Pair, estimate_delay
 from plantar.identify.latency import CLOCK, wrench_latency

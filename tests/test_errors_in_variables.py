@@ -7,7 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from biped import TRUTH, make_robot, record, sway
+from biped import TRUTH, record, sway
+from biped_robot import make_robot
 from plantar.conventions import Array
 from plantar.estimation import Block, fit_linear
 from plantar.estimation.errors_in_variables import attenuation, noise_after_filter, offsets_moved

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from biped import FEET, VERTICAL, record, sway
+from biped import VERTICAL, record, sway
+from biped_robot import FEET
+from feet_trials import PUNCTUAL, codes, noisy
 from plantar.identify.feet import identify_feet
 from plantar.robot import RobotModel
-from test_identify_feet import PUNCTUAL, codes, noisy
 
 
 def test_noise_on_a_constant_total_load_tells_the_feet_not_apart(robot: RobotModel) -> None:

@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from biped import FEET, MASS, WEIGHT, make_robot, record, sway, times
+from biped import MASS, WEIGHT, record, sway, times
+from biped_robot import FEET, make_robot
 from plantar.inspection import inspect_log
 from plantar.readers import open_log
 from plantar.result import dump_json

@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from biped import TRUTH, make_robot, record, sway
+from biped import TRUTH, record, sway
+from biped_robot import make_robot
 from plantar.identify.feet import identify_feet
 from plantar.identify.outliers import outliers
 from plantar.identify.settings import FeetSettings

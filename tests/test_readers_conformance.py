@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import plantar
-from biped import make_robot, record, sway
+from biped import record, sway
+from biped_robot import make_robot
 from log_formats import WRITERS
 from plantar.identify.settings import FeetSettings
 from plantar.log import MotionLog

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import yaml
 
-from biped import URDF, Frame, Mounting, make_robot, robot_entry, write_robot
+from biped_robot import URDF, Frame, Mounting, make_robot, robot_entry, write_robot
 from plantar.errors import RobotError
 from plantar.robot import load_robot
 

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from biped import FEET, WEIGHT, Frame, Motion, Mounting, make_robot, record, sines, sway
+from biped import WEIGHT, Motion, record, sines, sway
+from biped_robot import FEET, Frame, Mounting, make_robot
 from plantar.errors import DataError
 from plantar.identify.feet import identify_feet
 from plantar.log import MotionLog

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from biped import TRUTH, make_robot, record, sway
+from biped import TRUTH, record, sway
+from biped_robot import make_robot
 from plantar.identify.feet import identify_feet
 from plantar.identify.settings import FeetSettings
 from plantar.identify.usage import served_shares

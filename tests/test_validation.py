@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from biped import make_robot, record, robot_entry, sway
+from biped import record, sway
+from biped_robot import make_robot, robot_entry
 from plantar.errors import DataError, PlantarError
 from plantar.identify.feet import identify_feet
 from plantar.identify.revalidation import validate_feet

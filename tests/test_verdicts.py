@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from biped import FEET, make_robot, record, robot_entry, sines, sway
+from biped import record, sines, sway
+from biped_robot import FEET, make_robot, robot_entry
 from plantar.identify.feet import identify_feet
 from plantar.identify.settings import FeetSettings
 from plantar.identify.verdicts import Evidence, judge

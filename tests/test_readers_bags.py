@@ -1,0 +1,203 @@
+"""Bags: what is saved reads back, cut ones give what they have, bombs are left out."""
+
+from __future__ import annotations
+
+import struct
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from biped import record, sway
+from biped_robot import make_robot
+from log_formats import write_mcap, write_ros1
+from plantar.errors import LogError
+from plantar.log import MotionLog
+from plantar.readers import compressed, open_log
+from plantar.readers.save import save_log
+
+
+@pytest.fixture(scope="module")
+def original() -> MotionLog:
+    return record(sway("log", duration=2.0))
+
+
+@pytest.fixture(scope="module")
+def bag(original: MotionLog, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("bag")
+    save_log(original, folder / "log.mcap")
+    return folder / "log.mcap"
+
+
+def test_what_is_saved_reads_back_bit_for_bit(original: MotionLog, bag: Path, tmp_path: Path) -> None:
+    for path in (bag, tmp_path / "log.csv", tmp_path / "log.parquet"):
+        if path is not bag:
+            save_log(original, path)
+        log = open_log(path)
+        assert set(log.columns) == set(original.columns)
+        np.testing.assert_allclose(log.time, original.time, rtol=0, atol=1e-9)
+        for name, values in original.columns.items():
+            np.testing.assert_array_equal(log.columns[name], values, err_msg=f"{path} {name}")
+
+
+def test_a_saved_bag_is_read_by_rosbags(original: MotionLog, bag: Path) -> None:
+    highlevel = pytest.importorskip("rosbags.highlevel")
+    with highlevel.AnyReader([bag]) as reader:
+        for connection, _, raw in reader.messages():
+            message = reader.deserialize(raw, connection.msgtype)
+            if connection.topic == "/imu/chest":
+                first = original.orientation("chest")
+                assert first is not None
+                assert message.orientation.w == first[0, 0]
+                assert message.header.frame_id == "chest"
+                break
+
+
+def test_a_bag_cut_anywhere_gives_its_whole_records(bag: Path, tmp_path: Path, original: MotionLog) -> None:
+    content = bag.read_bytes()
+    seen = []
+    for share in (0.3, 0.5, 0.7, 0.9, 0.99):
+        path = tmp_path / "cut.mcap"
+        path.write_bytes(content[: int(share * len(content))])
+        log = open_log(path)
+        seen.append(len(log))
+        assert "file_cut" in {note.code for note in log.notes} or len(log) == len(original)
+        for name, values in log.columns.items():
+            np.testing.assert_array_equal(values, original.columns[name][: len(log)])
+    assert seen == sorted(seen)
+    assert 10 < seen[0] < seen[-2] < len(original)
+
+
+def test_topics_of_the_robot_file_go_first_and_an_unknown_one_is_named(
+    original: MotionLog, tmp_path: Path
+) -> None:
+    path, _ = write_mcap(original, tmp_path)
+    swapped = make_robot(tmp_path / "swapped", topics={"left": "/ft/right", "right": "/ft/left"})
+    log = open_log(path, swapped)
+    np.testing.assert_array_equal(
+        log.columns["wrench.left.force.z"], original.columns["wrench.right.force.z"]
+    )
+    wrong = make_robot(tmp_path / "wrong", topics={"left": "/ft/nowhere"})
+    with pytest.raises(LogError, match="/ft/nowhere") as caught:
+        open_log(path, wrong)
+    assert "/ft/left" in str(caught.value)
+
+
+def test_sensors_that_no_topic_is_called_after_are_asked_for(original: MotionLog, tmp_path: Path) -> None:
+    renamed = {name.replace("wrench.left", "wrench.a").replace("wrench.right", "wrench.b"): values
+               for name, values in original.columns.items()}  # fmt: skip
+    save_log(MotionLog("log", original.time, renamed), tmp_path / "log.mcap")
+    with pytest.raises(LogError, match=r"which topic is the wrench 'left'.*/wrench/a, /wrench/b"):
+        open_log(tmp_path / "log.mcap", make_robot(tmp_path / "robot"))
+
+
+def test_a_command_does_not_fill_in_for_a_measurement(original: MotionLog, tmp_path: Path) -> None:
+    """Two topics name the same joints; what the states lack is not taken from the commands."""
+    measured = {name: values for name, values in original.columns.items() if not name.endswith(".velocity")}
+    commands = {name: values + 1 for name, values in original.columns.items() if name.startswith("joint.")}
+    save_log(MotionLog("log", original.time, measured), tmp_path / "bag" / "a.mcap")
+    save_log(MotionLog("log", original.time, commands), tmp_path / "b.mcap")
+    content = (tmp_path / "b.mcap").read_bytes().replace(b"/joint_states", b"/joint_wanted")
+    (tmp_path / "bag" / "b.mcap").write_bytes(content)  # the chunk's own bytes hold no topic
+    log = open_log(tmp_path / "bag")
+    assert not [name for name in log.columns if name.endswith(".velocity")]
+    np.testing.assert_array_equal(log.column("joint.neck.position"), original.column("joint.neck.position"))
+    assert "joint_topics" in {note.code for note in log.notes}
+
+
+def test_a_ros1_bag_that_was_never_closed(original: MotionLog, tmp_path: Path) -> None:
+    path, _ = write_ros1(original, tmp_path)
+    content = path.read_bytes()
+    (tmp_path / "open.bag.active").write_bytes(content[: int(0.6 * len(content))])
+    log = open_log(tmp_path / "open.bag.active")
+    assert 50 < len(log) < len(original)
+    assert log.name == "open"
+
+
+def test_without_a_robot_sensors_go_by_their_topics(original: MotionLog, tmp_path: Path) -> None:
+    path, _ = write_mcap(original, tmp_path)
+    names = {name.rsplit(".", 2)[0] for name in open_log(path).columns if not name.startswith("joint.")}
+    assert {"wrench.left", "wrench.right"} < names
+    assert any(name.startswith("imu.sensors_torso") for name in names)
+
+
+def test_stamps_that_are_not_set_fall_back_to_times_of_receipt(original: MotionLog, tmp_path: Path) -> None:
+    pytest.importorskip("rosbags")
+    import log_bags
+
+    real = log_bags.ros_messages
+
+    def without_stamps(log, store, ros1):  # type: ignore[no-untyped-def]
+        for topic, kind, stamp, message in real(log, store, ros1):
+            message.header.stamp.sec = message.header.stamp.nanosec = 0
+            yield topic, kind, stamp, message
+
+    log_bags.ros_messages = without_stamps
+    try:
+        path, _ = write_ros1(original, tmp_path)
+    finally:
+        log_bags.ros_messages = real
+    log = open_log(path)
+    assert "receive_time" in {note.code for note in log.notes}
+    np.testing.assert_allclose(log.time, original.time, atol=1e-8)
+
+
+def test_an_imu_without_attitude_has_no_such_columns(original: MotionLog, tmp_path: Path) -> None:
+    bare = {name: values for name, values in original.columns.items() if ".orientation." not in name}
+    save_log(MotionLog("bare", original.time, bare), tmp_path / "bare.mcap")
+    assert set(open_log(tmp_path / "bare.mcap").columns) == set(bare)
+
+
+def test_epoch_stamps_keep_their_digits(original: MotionLog, tmp_path: Path) -> None:
+    late = MotionLog("late", original.time + 1_700_000_000, original.columns)
+    save_log(late, tmp_path / "late.mcap")
+    log = open_log(tmp_path / "late.mcap")
+    np.testing.assert_allclose(np.diff(log.time), np.diff(late.time), atol=1e-6)
+    assert 0 <= log.time[0] < 1
+    assert any("1700000000" in note.text for note in log.notes)
+
+
+def test_files_of_another_kind_are_refused_in_one_line(tmp_path: Path) -> None:
+    for name, content in (
+        ("a.mcap", b"PK\3\4"), ("b.bag", b"#ROSBAG V1.2\n"), ("c.db3", b"SQLite format 3\0garbage"), ("d.bin", b"ANNE"),
+        ("e.bin", b"\x7fELF"), ("f.mat", b"MATLAB 5.0 MAT-file"), ("g.npz", b""), ("h.log", b""), ("i.log", b"a b c\n"),
+        ("j.mcap", b"\x89MCAP0\r\n"), ("k.walk", b"1 2 3\n"), ("l.sh_q", b"words only\n"),
+    ):  # fmt: skip
+        (tmp_path / name).write_bytes(content)
+        with pytest.raises(LogError) as caught:
+            open_log(tmp_path / name)
+        assert name in str(caught.value)
+        assert "\n" not in str(caught.value)
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(LogError, match="directory without logs"):
+        open_log(tmp_path / "empty")
+
+
+def test_a_decompression_bomb_is_left_out(tmp_path: Path) -> None:
+    zstandard = pytest.importorskip("zstandard")
+    packed = zstandard.ZstdCompressor().compress(bytes(200 * 2**20))
+
+    def text(word: bytes) -> bytes:
+        return struct.pack("<I", len(word)) + word
+
+    def record_of(code: int, body: bytes) -> bytes:
+        return struct.pack("<BQ", code, len(body)) + body
+
+    for claimed in (1000, 200 * 2**20, 2**60):
+        chunk = (
+            struct.pack("<QQQI", 0, 0, claimed, 0) + text(b"zstd") + struct.pack("<Q", len(packed)) + packed
+        )
+        (tmp_path / "bomb.mcap").write_bytes(b"\x89MCAP0\r\n" + record_of(6, chunk))
+        with pytest.raises(LogError, match="no message"):
+            open_log(tmp_path / "bomb.mcap")
+
+
+def test_a_bag_of_many_bombs_is_stopped_by_its_own_size(
+    original: MotionLog, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path, _ = write_mcap(original, tmp_path)
+    assert open_log(path).columns
+    monkeypatch.setattr(compressed, "SMALL", 1000)
+    monkeypatch.setattr(compressed, "RATIO", 0)
+    with pytest.raises(LogError, match="no message"):
+        open_log(path)

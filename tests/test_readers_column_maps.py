@@ -1,0 +1,87 @@
+"""Foreign columns: what a map or a port may get wrong."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from biped_robot import make_robot
+from plantar.errors import LogError
+from plantar.readers import open_log
+from plantar.robot import RobotModel
+
+
+@pytest.mark.parametrize(
+    ("columns", "expected"),
+    [
+        ({"joint.neck.position": {"from": "nick", "unit": "deg"}}, "neck_deg"),
+        ({"joint.neck.position": {"from": "neck_deg", "unit": "N"}}, "deg"),
+        ({"joint.neck.angle": "neck_deg"}, "no column of plantar"),
+        ({"imu.chest.orientation": {"from": ["neck_deg"] * 4, "order": "zyxw"}}, "wxyz"),
+        ({"wrench.left.force": ["neck_deg"]}, "three sources"),
+        ({"joint.neck.position": {"from": "neck_deg", "sign": 2}}, "1 or -1"),
+        ({"joint.neck.position": {"of": "neck_deg"}}, "from"),
+        ({"joint.neck.position": 7}, "no column 7"),
+    ],
+)
+def test_a_map_that_cannot_hold_is_one_clear_line(
+    columns: dict[str, object], expected: str, tmp_path: Path
+) -> None:
+    (tmp_path / "log.csv").write_text("time,neck_deg\n0,1\n1,2\n2,3\n")
+    robot = make_robot(tmp_path / "robot", columns=columns)
+    with pytest.raises(LogError, match=expected) as caught:
+        open_log(tmp_path / "log.csv", robot)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_joint_vector_of_another_length_or_without_names_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "walk.sh_q").write_text("0.0 1 2 3\n0.1 1 2 3\n0.2 1 2 3\n")
+    with pytest.raises(LogError, match=r"columns\.joints"):
+        open_log(tmp_path / "walk.sh_q")
+    robot = make_robot(tmp_path / "robot", columns={"joints": ["neck"]})
+    with pytest.raises(LogError, match="3 values a sample, not 1"):
+        open_log(tmp_path / "walk.sh_q", robot)
+
+
+def test_a_text_log_with_broken_lines_keeps_the_good_ones(tmp_path: Path) -> None:
+    lines = [f"{0.01 * i:.2f} {i}" for i in range(400)]
+    lines[200] = "2.00 oops"
+    (tmp_path / "walk.sh_q").write_text("\n".join(lines) + "\n4.0")
+    log = open_log(tmp_path / "walk.sh_q", make_robot(tmp_path / "robot", columns={"joints": ["neck"]}))
+    assert len(log) == 399
+    assert {"lines_broken", "file_cut"} <= {note.code for note in log.notes}
+
+
+words = st.sampled_from([
+    "time", "a", "joint.neck.position", "imu.chest.orientation", "wrench.left.force", "joints", "ports", "from", "unit",
+    "order", "sign", "deg", "N", "wxyz", "rpy", "role", "joints.position", "take", "",
+])  # fmt: skip
+scalars = st.none() | st.booleans() | st.integers(-3, 5) | st.floats(allow_nan=False) | words
+trees = st.recursive(
+    scalars,
+    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(words, inner, max_size=4),
+    max_leaves=8,
+)
+
+
+def refusal(path: Path, robot: RobotModel) -> str:
+    """Why a log is refused, or nothing."""
+    try:
+        open_log(path, robot)
+    except LogError as error:
+        return str(error)
+    return ""
+
+
+@given(columns=st.dictionaries(words.filter(bool), trees, max_size=4))
+@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_whatever_stands_in_columns(columns: dict[str, object], tmp_path: Path, robot: RobotModel) -> None:
+    """A log or one line, never anything else."""
+    (tmp_path / "log.csv").write_text("time,a\n0,1\n1,2\n2,3\n")
+    (tmp_path / "log.sh_q").write_text("0 1\n1 2\n2 3\n")
+    for name in ("log.csv", "log.sh_q"):
+        assert "\n" not in refusal(tmp_path / name, replace(robot, columns=columns))

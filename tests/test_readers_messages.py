@@ -1,0 +1,63 @@
+"""ROS messages read by their layout: byte orders, alignments, lengths that lie."""
+
+from __future__ import annotations
+
+import struct
+
+import numpy as np
+import pytest
+
+from plantar.readers.ros_layouts import IMU, JOINT_STATE, WRENCH, BrokenMessage, layout_of
+
+
+def cdr_joint_state(
+    names: list[str], position: list[float], order: str = "<", frame: str = "b", wide: int = 8
+) -> bytes:
+    """A JointState serialised by hand, in either byte order; `wide` is the largest alignment."""
+    kind = {"<8": b"\0\1", ">8": b"\0\0", "<4": b"\0\7", ">4": b"\0\6"}[f"{order}{wide}"]
+    body = struct.pack(f"{order}iI", 12, 345)
+
+    def aligned(size: int) -> bytes:
+        return body + bytes(-len(body) % min(size, wide))
+
+    def text(word: str) -> bytes:
+        return struct.pack(f"{order}I", len(word) + 1) + word.encode() + b"\0"
+
+    body = aligned(4) + text(frame)
+    body = aligned(4) + struct.pack(f"{order}I", len(names))
+    for name in names:
+        body = aligned(4) + text(name)
+    for values in (position, [], []):
+        body = aligned(4) + struct.pack(f"{order}I", len(values))
+        if values:
+            body = aligned(8) + struct.pack(f"{order}{len(values)}d", *values)
+    return kind + b"\0\0" + body
+
+
+@pytest.mark.parametrize("order", ["<", ">"])
+@pytest.mark.parametrize("wide", [8, 4])
+@pytest.mark.parametrize("frame", ["", "b", "base", "a_longer_frame"])
+def test_layouts_of_both_byte_orders_and_alignments(order: str, wide: int, frame: str) -> None:
+    data = cdr_joint_state(["hip", "knee", "ankle_roll"], [1.5, -2.5, 3.5], order, frame, wide)
+    layout = layout_of(JOINT_STATE, "cdr", data)
+    rows = np.frombuffer(data * 3, np.uint8).reshape(3, -1)
+    assert layout.names == ("hip", "knee", "ankle_roll")
+    assert layout.frame == frame
+    assert layout.matches(rows).all()
+    assert layout.stamps(rows).tolist() == [12_000_000_345] * 3
+    assert layout.values(rows, layout.fields[0]).tolist() == [[1.5, -2.5, 3.5]] * 3
+
+
+def test_a_message_of_the_same_size_with_other_names_is_another_layout() -> None:
+    one, two = (cdr_joint_state([name, "b"], [1.0, 2.0]) for name in ("left", "lift"))
+    assert len(one) == len(two)
+    rows = np.stack([np.frombuffer(one, np.uint8), np.frombuffer(two, np.uint8)])
+    assert layout_of(JOINT_STATE, "cdr", one).matches(rows).tolist() == [True, False]
+
+
+@pytest.mark.parametrize("kind", [JOINT_STATE, IMU, WRENCH])
+@pytest.mark.parametrize("encoding", ["cdr", "ros1"])
+def test_lengths_that_lie_are_broken_messages(kind: str, encoding: str) -> None:
+    for data in (b"", b"\0\1\0\0", b"\0\1\0\0" + b"\xff" * 60, b"\0\1\0\0" + bytes(11)):
+        with pytest.raises(BrokenMessage):
+            layout_of(kind, encoding, data)  # type: ignore[arg-type]
