@@ -14,6 +14,7 @@ What does not change with time stays: the fit has an offset.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 from scipy import fft
@@ -35,43 +36,86 @@ SHORTEST_STANCE = 5.0  # s on the same feet
 PADDING = 2.0  # s
 
 
-def right_attitude(
-    log: MotionLog,
-    imu: Imu,
-    orientation: Array,
-    rates: Array,
-    bushes: Mapping[str, BushState],
-    contacts: Mapping[str, FootContact],
-) -> tuple[Array, Note] | None:
-    """The log's orientation (N, 4) without what its filter took from the accelerometer, and a note that says so.
+@dataclass(frozen=True)
+class Pull:
+    """What attitude and gyroscope disagree about, beside what a pull of 1 1/s would make: integrals that add up.
 
-    None where it took nothing that shows, or the log has not all of attitude, gyroscope and accelerometer.
+    `error` and `pulled`: of both squared [rad²/s]; `product`: of one times the other. A filter belongs to the IMU, so
+    that the sum over recordings tells what a quiet one alone cannot.
     """
+
+    product: float = 0.0
+    pulled: float = 0.0
+    error: float = 0.0
+
+    def __add__(self, other: Pull) -> Pull:
+        return Pull(self.product + other.product, self.pulled + other.pulled, self.error + other.error)
+
+    @property
+    def rate(self) -> float:
+        """How fast the attitude follows the accelerometer, k [1/s]."""
+        return self.product / self.pulled if self.pulled > 0 else 0.0
+
+    @property
+    def believed(self) -> bool:
+        """Whether it explains enough of the disagreement, and matters.
+
+        A gyroscope that is late by τ beside the attitude counts as a pull of about g τ/h: as good a reason to put the
+        attitude right.
+        """
+        return self.rate > LEAST_PULL and self.rate * self.product > EXPLAINED * self.error
+
+
+NO_PULL = Pull()
+
+
+def log_pull(log: MotionLog, imu: Imu) -> Pull:
+    """The pull that one log shows; of zeros where it has not all of attitude, gyroscope and accelerometer."""
     columns = [
         f"imu.{imu.name}.{kind}.{axis}"
         for kind in ("angular_velocity", "linear_acceleration")
         for axis in "xyz"
     ]
-    if log.orientation(imu.name) is None or not log.has(*columns):
-        return None
-    length = np.linalg.norm(orientation, axis=1, keepdims=True)
-    unit = orientation / np.where(length > 0, length, np.nan)
-    acceleration = log.linear_acceleration(imu.name)
-    pull = attitude_pull(unit, rates, acceleration, log.period)
-    if pull == 0:
+    orientation = log.orientation(imu.name)
+    if orientation is None or not log.has(*columns):
+        return NO_PULL
+    rates, acceleration = log.angular_velocity(imu.name), log.linear_acceleration(imu.name)
+    return attitude_pull(unit_quaternions(orientation), rates, acceleration, log.period)
+
+
+def right_attitude(
+    log: MotionLog,
+    imu: Imu,
+    orientation: Array,
+    pull: Pull,
+    bushes: Mapping[str, BushState],
+    contacts: Mapping[str, FootContact],
+) -> tuple[Array, Note] | None:
+    """The log's orientation (N, 4) without what its filter took from the accelerometer, and a note that says so.
+
+    None where neither this log nor all together (`pull`) show that it took any, or this log has not the sensors.
+    """
+    own = log_pull(log, imu)
+    found = own if own.believed else pull
+    if not found.believed or own.pulled == 0:
         return None
     text = (
-        f"{log.name}: the IMU's attitude follows its accelerometer (as at {pull:.2g} 1/s), so that motion tilts it; "
-        "put right by the soles that stand"
+        f"{log.name}: the IMU's attitude follows its accelerometer (as at {found.rate:.2g} 1/s), so that motion tilts "
+        "it; put right by the soles that stand"
     )
-    right = put_right(unit, acceleration, bushes, contacts, log.period)
+    unit = unit_quaternions(orientation)
+    right = put_right(unit, log.linear_acceleration(imu.name), bushes, contacts, log.period)
     return right, Note("attitude_pulled", "info", text)
 
 
-def attitude_pull(orientation: Array, rates: Array, acceleration: Array, period: float) -> float:
-    """How fast an attitude follows its accelerometer, k [1/s]; 0 where that does not explain its own rate.
+def unit_quaternions(orientation: Array) -> Array:
+    """Quaternions (N, 4) of length 1; NaN for those of none."""
+    length = np.linalg.norm(orientation, axis=1, keepdims=True)
+    return np.asarray(orientation / np.where(length > 0, length, np.nan))
 
-    A gyroscope that is late by τ beside the attitude counts as a pull of about g τ/h: as good a reason to put it right.
+
+def attitude_pull(orientation: Array, rates: Array, acceleration: Array, period: float) -> Pull:
+    """How an attitude follows its accelerometer; of zeros where too little is known.
 
     orientation: unit quaternions w x y z, IMU to world, (N, 4); rates, proper acceleration: the IMU's, (N, 3).
     """
@@ -85,12 +129,11 @@ def attitude_pull(orientation: Array, rates: Array, acceleration: Array, period:
     error = differentiate(believed, period) + turned
     known = np.isfinite(np.column_stack([error, pulled])).all(axis=1)
     if known.sum() * period < SHORTEST_STANCE:
-        return 0.0
+        return NO_PULL
     error, pulled = (part[known] - part[known].mean(axis=0) for part in (error, pulled))
-    moved = float(np.sum(pulled**2))
-    pull = float(np.sum(error * pulled)) / moved if moved > 0 else 0.0
-    explained = pull * float(np.sum(error * pulled)) / max(float(np.sum(error**2)), 1e-30)
-    return pull if pull > LEAST_PULL and explained > EXPLAINED else 0.0
+    return Pull(
+        *(period * float(np.sum(a * b)) for a, b in ((error, pulled), (pulled, pulled), (error, error)))
+    )
 
 
 def put_right(

@@ -9,7 +9,6 @@ the edge, so it is looked for where the centre of pressure stopped while the lea
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -17,7 +16,7 @@ from plantar.contact import joined, widened
 from plantar.conventions import ROTATIONAL_AXES, Array, Mask
 from plantar.estimation import fit_linear
 from plantar.identify.axis_fit import blocks_of
-from plantar.identify.recording import Recording, prepare
+from plantar.identify.recording import Recording, filtered
 from plantar.identify.settings import FeetSettings
 from plantar.polygon import edge_distances
 from plantar.robot import RobotModel
@@ -45,10 +44,8 @@ SMEARED = "filter's edge: beside a sole that tips"
 TIPPING = (LEANS, OUTSIDE, UNKNOWN)
 
 
-def leave_out_edges(
-    robot: RobotModel, recordings: Sequence[Recording], settings: FeetSettings, delay: float
-) -> None:
-    """Leave out where a sole leans on its edge; what is near the edge and flat serves. `delay` as in `prepare`.
+def leave_out_edges(robot: RobotModel, recordings: Sequence[Recording], settings: FeetSettings) -> None:
+    """Leave out where a sole leans on its edge; what is near the edge and flat serves.
 
     Feet with `contact: always` are left as they are: their centre of pressure means nothing.
     """
@@ -76,10 +73,7 @@ def leave_out_edges(
                 contact.leave_out(edge, UNKNOWN)
                 continue
             stiffness, damping, zero = law
-            quick = prepare(
-                robot, recording.log, recording.role, replace(settings, cutoff=QUICK_CUTOFF), delay
-            )
-            bush = quick.bushes[name]
+            bush = filtered(recording.raw[name], recording.period, QUICK_CUTOFF)
             load = np.maximum(bush.force_z, 1.0)
             excess = bush.deflection - (bush.torque - damping * bush.rate) / stiffness
             outside = (depth < -settings.edge_margin - (zero / load)[:, None]).any(axis=1)

@@ -8,6 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 from plantar.errors import DataError
+from plantar.identify.attitude_pull import NO_PULL, Pull, log_pull
 from plantar.identify.edges import leave_out_edges
 from plantar.identify.height import Height, fit_height
 from plantar.identify.latency import Latency, known_latency, wrench_latency
@@ -58,14 +59,17 @@ def prepare_all(
             if settings.wrench_delay is None
             else known_latency(settings.wrench_delay)
         )
+        pull = common_pull(robot, even)
         roles = _roles("fit", logs) + _roles("validate", validate)
         recordings = list(
             pool.map(
-                lambda log, role: _recording(robot, log, role, settings, latency.delay, progress), even, roles
+                lambda log, role: recorded(robot, log, role, settings, latency.delay, pull, progress),
+                even,
+                roles,
             )
         )
     progress("look for soles that tip or slide")
-    leave_out_edges(robot, recordings, settings, latency.delay)
+    leave_out_edges(robot, recordings, settings)
     for recording in recordings:
         leave_out_slip(robot, recording)
     progress("fit z")
@@ -79,11 +83,23 @@ def _roles(role: Role, logs: Sequence[MotionLog]) -> list[Role]:
     return [role for _ in logs]
 
 
-def _recording(
-    robot: RobotModel, log: MotionLog, role: Role, settings: FeetSettings, delay: float, progress: Progress
+def common_pull(robot: RobotModel, logs: Sequence[MotionLog]) -> Pull:
+    """The pull of the IMU's filter that all logs together show."""
+    return sum((log_pull(log, robot.imu) for log in logs if robot.imu), NO_PULL)
+
+
+def recorded(
+    robot: RobotModel,
+    log: MotionLog,
+    role: Role,
+    settings: FeetSettings,
+    delay: float,
+    pull: Pull,
+    progress: Progress,
 ) -> Recording:
+    """A `checked` log as `prepare` makes it ready, without what is sure to be beyond the sole."""
     progress(f"prepare {log.name}")
-    recording = prepare(robot, log, role, settings, delay)
+    recording = prepare(robot, log, role, settings, delay, pull)
     leave_out_tipping(robot, recording, settings)
     return recording
 

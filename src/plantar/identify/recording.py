@@ -13,7 +13,8 @@ from plantar.conventions import FORCE, GRAVITY, Array, Mask
 from plantar.deflection import BushState, bush_states
 from plantar.errors import DataError, RobotError, located
 from plantar.estimation.errors_in_variables import noise_after_filter
-from plantar.identify.attitude_pull import right_attitude
+from plantar.identify.attitude_pull import NO_PULL, Pull, right_attitude
+from plantar.identify.orientation import attitude
 from plantar.identify.settings import FeetSettings
 from plantar.log import MotionLog
 from plantar.notes import Note
@@ -22,7 +23,6 @@ from plantar.sanity import check_log
 from plantar.signals import (
     differentiate,
     evenly_sampled,
-    interpolate,
     low_pass,
     run_ends,
     shifted,
@@ -39,7 +39,7 @@ Role = Literal["fit", "validate"]
 
 @dataclass(frozen=True)
 class Recording:
-    """One log with each foot's bush state, filtered, and its contact. Arrays run over `time` (N,).
+    """One log with each foot's bush state, as measured and filtered, and its contact. Arrays run over `time` (N,).
 
     `noise` (2, 2) of each foot: variance of white noise that is left in deflection and rate, of pitch and roll.
     `places` (N, 2) of each foot: of the sole from the IMU [m] in the attitude as recorded, which slides are judged by.
@@ -48,6 +48,7 @@ class Recording:
     log: MotionLog
     role: Role
     cutoff: float
+    raw: Mapping[str, BushState]
     bushes: Mapping[str, BushState]
     contacts: Mapping[str, FootContact]
     noise: Mapping[str, Array]
@@ -94,9 +95,17 @@ def checked(robot: RobotModel, log: MotionLog) -> MotionLog:
 
 
 def prepare(
-    robot: RobotModel, log: MotionLog, role: Role, settings: FeetSettings, delay: float = 0.0
+    robot: RobotModel,
+    log: MotionLog,
+    role: Role,
+    settings: FeetSettings,
+    delay: float = 0.0,
+    pull: Pull = NO_PULL,
 ) -> Recording:
-    """Bush states and contact of every foot in a `checked` log whose wrenches are late by `delay` [s]."""
+    """Bush states and contact of every foot in a `checked` log whose wrenches are late by `delay` [s].
+
+    pull: of the attitude towards the accelerometer, from all logs of this IMU.
+    """
     imu = _require(robot)
     notes = list(log.notes)
     period = log.period
@@ -108,11 +117,11 @@ def prepare(
     raw = bush_states(robot, log.positions(robot), velocities, orientation, rates, wrenches)
     contacts = _contacts(robot, log, raw, settings, notes)
     places = {name: state.sole_position[:, :2] for name, state in raw.items()}
-    if (right := right_attitude(log, imu, orientation, rates, raw, contacts)) is not None:
+    if (right := right_attitude(log, imu, orientation, pull, raw, contacts)) is not None:
         raw = bush_states(robot, log.positions(robot), velocities, right[0], rates, wrenches)
         notes.append(right[1])
-    filtered = {name: _filtered(state, period, settings.cutoff) for name, state in raw.items()}
-    for name, state in filtered.items():
+    smooth = {name: filtered(state, period, settings.cutoff) for name, state in raw.items()}
+    for name, state in smooth.items():
         valid = np.asarray(
             np.isfinite(np.column_stack([state.deflection, state.rate, state.torque])).all(axis=1)
         )
@@ -121,7 +130,7 @@ def prepare(
             run_ends(valid, round(FILTER_EDGE / settings.cutoff / period)), "filter's edge"
         )
     noise = {name: _noise(state, period, settings.cutoff) for name, state in raw.items()}
-    return Recording(log, role, settings.cutoff, filtered, contacts, noise, places, tuple(notes))
+    return Recording(log, role, settings.cutoff, raw, smooth, contacts, noise, places, tuple(notes))
 
 
 def _noise(state: BushState, period: float, cutoff: float) -> Array:
@@ -173,49 +182,6 @@ def _path_joints(robot: RobotModel) -> frozenset[str]:
     return frozenset().union(*(robot.joints_between(imu, foot.bush) for foot in robot.feet.values()))
 
 
-def attitude(log: MotionLog, imu: Imu, notes: list[Note]) -> tuple[Array, Array]:
-    """Orientation w x y z (N, 4) and angular velocity (N, 3) of the IMU, derived where one is missing."""
-    name = imu.name
-    orientation = log.orientation(name)
-    if orientation is not None:
-        if log.has(*(f"imu.{name}.angular_velocity.{axis}" for axis in "xyz")):
-            return orientation, log.angular_velocity(name)
-        text = f"{log.name}: no angular velocity; rates come from differentiated orientation, damping is less sure"
-        notes.append(Note("gyroscope_missing", "warning", text))
-        return orientation, _rates_from(orientation, log.period)
-    rates, acceleration = log.angular_velocity(name), log.linear_acceleration(name)
-    whole = np.isfinite(np.column_stack([rates, acceleration])).all(axis=1)
-    if not whole.any():
-        raise DataError(located(f"imu '{name}' has no sample with all values", path=log.source))
-    filled = [
-        interpolate(log.time, log.time[whole], column[whole], np.inf)
-        for column in (*rates.T, *acceleration.T)
-    ]
-    bridged = np.nan_to_num(np.column_stack(filled))
-    from plantar.attitude import attitude_from_inertial  # its rotations cost start-up, and few logs need them
-
-    orientation = attitude_from_inertial(bridged[:, :3], bridged[:, 3:], log.period)
-    orientation[~whole] = np.nan
-    text = f"{log.name}: no IMU orientation; gravity's direction blended from gyroscope and accelerometer"
-    notes.append(Note("attitude_derived", "warning", text))
-    return orientation, rates
-
-
-def _rates_from(orientation: Array, period: float) -> Array:
-    """Angular velocity in the body frame, (N, 3), from quaternions w x y z by central differences."""
-    norm = np.linalg.norm(orientation, axis=1, keepdims=True)
-    unit = orientation / norm
-    unit = (
-        unit
-        * np.concatenate([[1.0], np.cumprod(np.where(np.sum(unit[1:] * unit[:-1], axis=1) < 0, -1.0, 1.0))])[
-            :, None
-        ]
-    )
-    slope = differentiate(unit, period)
-    w, vector, dw, dvector = unit[:, :1], unit[:, 1:], slope[:, :1], slope[:, 1:]
-    return np.asarray(2 * (w * dvector - dw * vector - np.cross(vector, dvector)))
-
-
 def _contacts(
     robot: RobotModel,
     log: MotionLog,
@@ -240,7 +206,7 @@ def _contacts(
     return contacts
 
 
-def _filtered(state: BushState, period: float, cutoff: float) -> BushState:
+def filtered(state: BushState, period: float, cutoff: float) -> BushState:
     """The state with angles, rates and torques through one zero-phase filter: the law between them stays."""
     values = low_pass(np.column_stack([state.deflection, state.rate, state.torque]), period, cutoff)
     return replace(state, deflection=values[:, 0:2], rate=values[:, 2:4], torque=values[:, 4:6])

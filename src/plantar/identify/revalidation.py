@@ -11,13 +11,12 @@ from plantar.conventions import ROTATIONAL_AXES, Axis
 from plantar.errors import DataError
 from plantar.identify.axis_fit import AxisFit
 from plantar.identify.edges import leave_out_edges
-from plantar.identify.preparation import check_names
-from plantar.identify.recording import checked, moved_centre, prepare
+from plantar.identify.preparation import check_names, common_pull, recorded
+from plantar.identify.recording import checked, moved_centre
 from plantar.identify.residual_table import Predictions
 from plantar.identify.scoring import score_axis
 from plantar.identify.settings import FeetSettings
 from plantar.identify.sliding import leave_out_slip
-from plantar.identify.tipping import leave_out_tipping
 from plantar.log import MotionLog
 from plantar.models import LAWS
 from plantar.result import ValidationRow
@@ -45,13 +44,10 @@ def validate_feet(
     settings = FeetSettings(**known)
     delay = float(result.get("latency", {}).get("wrench_delay", 0.0))
     compliance = {foot: float(result.get("compliance", {}).get(foot, 0.0)) for foot in robot.feet}
-    recordings = []
-    for log in logs:
-        progress(f"prepare {log.name}")
-        recording = prepare(robot, checked(robot, log), "validate", settings, delay)
-        leave_out_tipping(robot, recording, settings)
-        recordings.append(recording)
-    leave_out_edges(robot, recordings, settings, delay)
+    even = [checked(robot, log) for log in logs]
+    pull = common_pull(robot, even)
+    recordings = [recorded(robot, log, "validate", settings, delay, pull, progress) for log in even]
+    leave_out_edges(robot, recordings, settings)
     for recording in recordings:
         leave_out_slip(robot, recording)
     recordings = [moved_centre(recording, compliance, settings.cutoff) for recording in recordings]

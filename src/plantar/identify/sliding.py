@@ -8,7 +8,8 @@ from plantar.contact import DOUBLE, SUPPORTS, FootContact, widened
 from plantar.conventions import Array, Mask, rotation_from_quaternion
 from plantar.deflection import BushState, closure
 from plantar.identify.edges import TIPPING
-from plantar.identify.recording import Recording, attitude
+from plantar.identify.orientation import attitude
+from plantar.identify.recording import Recording
 from plantar.robot import RobotModel
 from plantar.slip import slides, sliding, sole_velocity, turning
 
