@@ -5,15 +5,19 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
+from typing import get_type_hints
 
 import numpy as np
 import pytest
+from rich.markup import render
 
 from biped import record, sway
 from biped_robot import write_robot
 from plantar import __version__
 from plantar.cli import COMMANDS, main
+from plantar.cli.terminal import console, table
 from plantar.log import MotionLog
 
 
@@ -201,6 +205,7 @@ def test_bad_robot_files_and_places(
         capsys, "inspect", campaign / "robot.yaml", tmp_path / "none.csv", "-q"
     )
     assert "is a file" in refused(capsys, "identify", "feet", campaign / "robot.yaml", log, "--out", robot)
+    assert "is a file" in refused(capsys, "simulate", "Tilt3", "--out", robot)
     twice = ["identify", "feet", campaign / "robot.yaml", log, log, "--out", tmp_path / "out"]
     assert "two logs are called 'first'" in refused(capsys, *twice)
     assert "not such a result" in refused(
@@ -233,6 +238,22 @@ def test_wrong_usage_is_2(arguments: list[str], capsys: pytest.CaptureFixture[st
     assert run(*arguments) == 2
     captured = capsys.readouterr()
     assert "Traceback" not in captured.err + captured.out
+
+
+def test_units_in_brackets_are_text_not_markup(capsys: pytest.CaptureFixture[str]) -> None:
+    console().print(table("Sway [deg]", ("mass [kg]", "of"), [("3", "[red]")]))
+    shown = capsys.readouterr().out
+    for text in ("Sway [deg]", "mass [kg]", "[red]"):
+        assert text in shown
+
+
+@pytest.mark.parametrize("verb", COMMANDS)
+def test_no_help_loses_a_unit_to_markup(verb: str) -> None:
+    """`[ms]` in a help text is a tag to the one who prints it, and vanishes."""
+    run = import_module(f"plantar.cli.{COMMANDS[verb][0]}").run
+    annotations = get_type_hints(run, include_extras=True).values()
+    options = [option for annotation in annotations for option in getattr(annotation, "__metadata__", ())]
+    assert all(render(option.help or "").plain == option.help for option in options)
 
 
 def test_version(capsys: pytest.CaptureFixture[str]) -> None:

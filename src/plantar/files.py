@@ -45,6 +45,12 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
         handle.write(text.encode())
 
 
+def refuse_file(folder: Path) -> None:
+    """PlantarError where a file stands in the place of a folder for results: said before the work, not after it."""
+    if folder.exists() and not folder.is_dir():
+        raise PlantarError(located("is a file", path=folder, valid="a folder for the results"))
+
+
 def sha256(path: str | os.PathLike[str]) -> str:
     """The file's SHA-256 as lower-case hex."""
     with open(path, "rb") as handle:

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from plantar.cli.terminal import console, end_progress, progress, table
-from plantar.errors import MissingExtra, PlantarError, located
+from plantar.errors import MissingExtra
+from plantar.files import refuse_file
 from plantar.result import dump_json
 
 if TYPE_CHECKING:
@@ -40,8 +41,7 @@ def run(
         from plantar.campaign.present import write_campaign_report
     except ImportError as error:
         raise MissingExtra(error.name or "mujoco", "all", "plantar demo") from error
-    if out.exists() and not out.is_dir():
-        raise PlantarError(located("is a file", path=out, valid="a folder for the results"))
+    refuse_file(out)
     step = _progress(quiet)
     campaign = run_campaign(out, Course.quick() if quick else None, preset, seed, step)
     written = write_campaign_report(campaign, step)

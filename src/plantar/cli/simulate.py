@@ -11,6 +11,7 @@ import typer
 
 from plantar.cli.terminal import console, end_progress, number, progress, table
 from plantar.errors import MissingExtra, PlantarError, located
+from plantar.files import refuse_file
 from plantar.robot import load_robot
 
 if TYPE_CHECKING:
@@ -36,14 +37,14 @@ def run(
     sway: Annotated[
         float | None,
         typer.Option(
-            help="How far tilts move the chest and the operator leads it [m]; as in the paper if left out."
+            help="How far tilts move the chest and the operator leads it, in m; as in the paper if left out."
         ),
     ] = None,
     vertical: Annotated[
-        float | None, typer.Option(help="How far the chest goes down in Tilt4 to Tilt6 and Squat [m].")
+        float | None, typer.Option(help="How far the chest goes down in Tilt4 to Tilt6 and Squat, in m.")
     ] = None,
     apart: Annotated[
-        float | None, typer.Option(help="Between the soles [m]; as the robot's posture has it if left out.")
+        float | None, typer.Option(help="Between the soles, in m; as the robot's posture has it if left out.")
     ] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")] = False,
 ) -> None:
@@ -61,6 +62,7 @@ def run(
         from plantar.twin import PAPER, play_all, write_campaign
     except ImportError as error:
         raise MissingExtra(error.name or "mujoco", "twin", "plantar simulate") from error
+    refuse_file(out)
     for option, size in (("--sway", sway), ("--vertical", vertical), ("--apart", apart)):
         if size is not None and not 0 < size < LONGEST:
             raise PlantarError(located(f"{option} is no length", value=size, valid=f"0 to {LONGEST:g} m"))

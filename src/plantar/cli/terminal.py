@@ -37,12 +37,12 @@ def end_progress(quiet: bool) -> None:
 def table(
     title: str, columns: Sequence[str], rows: Iterable[Sequence[str]], styles: Sequence[str] = ()
 ) -> Table:
-    """A table of text cells; numbers to the right, hostile markup escaped. `styles` colours whole rows."""
-    drawn = Table(title=title, title_justify="left", header_style="bold", box=None, pad_edge=False)
+    """A table of text cells; numbers to the right, markup in any text escaped. `styles` colours whole rows."""
+    drawn = Table(title=escape(title), title_justify="left", header_style="bold", box=None, pad_edge=False)
     cells = [[escape(str(cell)) for cell in row] for row in rows]
     for place, name in enumerate(columns):
         numeric = bool(cells) and all(_numeric(row[place]) for row in cells)
-        drawn.add_column(name, justify="right" if numeric else "left", no_wrap=numeric)
+        drawn.add_column(escape(name), justify="right" if numeric else "left", no_wrap=numeric)
     for place, row in enumerate(cells):
         drawn.add_row(*row, style=styles[place] if place < len(styles) else None)
     return drawn

@@ -20,6 +20,7 @@ from plantar.result import Input, Verdict, dump_json, finite
 
 INERTIA_SCHEMA: Final = "plantar.inertia/1"
 JOINTS_SCHEMA: Final = "plantar.joints/1"
+URDF: Final = "identified.urdf"  # beside result.json: the robot with the inertias found
 
 
 @dataclass(frozen=True)
@@ -148,7 +149,7 @@ class DynamicsResult:
         """Write `residuals.parquet`, `identified.urdf` and `result.json`; returns the latter's path."""
         with atomic_write(directory / "residuals.parquet") as handle:
             pa_parquet.write_table(self.residuals, handle, compression="zstd")
-        write_text(directory / "identified.urdf", self.urdf)
+        write_text(directory / URDF, self.urdf)
         path = directory / "result.json"
         write_text(path, dump_json(self.to_dict()))
         return path
