@@ -16,7 +16,8 @@ import pinocchio as pin
 
 from plantar.conventions import FORCE, GRAVITY, TORQUE, WRENCH_AXES, Array
 from plantar.errors import DataError
-from plantar.identify.whole_body import Body, Calibration, Whole, carried, foot_wrenches, turned
+from plantar.identify.equation_rows import Calibration, carried, foot_wrenches, turned
+from plantar.identify.whole_body import Body, Whole
 from plantar.notes import Note
 
 TILT_SAID = np.radians(1.0)  # a mount that is wrong by less is not mentioned

@@ -8,12 +8,10 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, Final, Literal
 
-import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pa_parquet
 
 from plantar import __version__
-from plantar.conventions import Array
 from plantar.files import atomic_write, write_text
 from plantar.notes import Note
 from plantar.result import Input, Verdict, dump_json, finite
@@ -153,37 +151,3 @@ class DynamicsResult:
         path = directory / "result.json"
         write_text(path, dump_json(self.to_dict()))
         return path
-
-
-def score_row(
-    kind: Literal["direct", "cross"],
-    motion: str,
-    unit: str,
-    measured: Array,
-    predicted: Array,
-    cad: Array,
-    trivial: Array | float,
-    *,
-    axis: str | None = None,
-    joint: str | None = None,
-) -> DynamicsScore:
-    """Errors of one axis or joint (N,), or of all joints together (k, N)."""
-    error = measured - predicted
-    largest = float(np.max(np.abs(measured)))
-    size = float(np.linalg.norm(measured))
-    mean_abs = float(np.mean(np.abs(error)))
-    return DynamicsScore(
-        kind=kind,
-        motion=motion,
-        unit=unit,
-        mean_abs_error=mean_abs,
-        rms_error=float(np.sqrt(np.mean(error**2))),
-        max_abs=largest,
-        percent_of_max=100 * mean_abs / largest if largest > 0 else None,
-        zero_mean_abs=float(np.mean(np.abs(measured - trivial))),
-        cad_rms_error=float(np.sqrt(np.mean((measured - cad) ** 2))),
-        samples=int(measured.shape[-1]),
-        relative_error_percent=100 * float(np.linalg.norm(error)) / size if size > 0 else None,
-        axis=axis,
-        joint=joint,
-    )

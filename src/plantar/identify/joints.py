@@ -2,42 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Literal
 
 import numpy as np
-import pyarrow as pa
 
 from plantar.conventions import Array
 from plantar.errors import DataError, RobotError, located
 from plantar.estimation.intervals import interval95
-from plantar.identify.calibration import calibrate
-from plantar.identify.dynamics_result import (
-    JOINTS_SCHEMA,
-    DynamicsResult,
-    DynamicsScore,
-    JointParameter,
-    score_row,
-)
-from plantar.identify.inertia import (
-    check_logs,
-    fit_notes,
-    inputs_of,
-    residual_rows,
-    result_of,
-)
+from plantar.identify.dynamics_result import JOINTS_SCHEMA, DynamicsResult, JointParameter
+from plantar.identify.dynamics_scores import Place
+from plantar.identify.equation_rows import TERM_UNITS, inertial_samples, joint_samples
 from plantar.identify.pulled_covariance import Uncertainty, uncertainty
-from plantar.identify.pulled_fit import PulledFit, PulledProblem, Samples, errors_of
-from plantar.identify.whole_body import (
-    TERM_UNITS,
-    Body,
-    Calibration,
-    DynamicsSettings,
-    Whole,
-    inertial_samples,
-    joint_samples,
-    prepare_whole,
-)
+from plantar.identify.pulled_fit import PulledFit, PulledProblem, errors_of
+from plantar.identify.pulled_result import fit_notes, result_of
+from plantar.identify.stretches import Samples
+from plantar.identify.whole_body import DynamicsSettings
+from plantar.identify.whole_logs import Progress, WholeLogs, prepare_logs
 from plantar.log import MotionLog
 from plantar.notes import Note
 from plantar.result import Verdict
@@ -51,7 +32,6 @@ OFFSET_SHARE = (
     0.05  # of the joint's rms torque: an offset known to within it is usable even where it is near zero
 )
 
-Progress = Callable[[str], None]
 Inertia = Literal["together", "first", "known"]
 
 
@@ -75,52 +55,45 @@ def identify_joints(
     LogError or DataError with one line when the input cannot serve, MissingExtra without clarabel.
     """
     settings = settings or DynamicsSettings()
-    check_logs(logs, validate)
-    floating = robot.base == "floating"
-    if inertia == "first" and not floating:
+    if inertia == "first" and robot.base == "fixed":
         message = "a fixed base has no base rows to identify inertias from first"
         raise RobotError(located(message, path=robot.path, valid="inertia: together, known"))
-    body = Body.of(robot, floating=floating)
-    progress("prepare the logs")
-    fitted = [prepare_whole(body, log, settings) for log in logs]
-    unseen = [prepare_whole(body, log, settings) for log in validate]
-    calibration, notes = Calibration(np.eye(3)), list[Note]()
-    if floating:
-        calibration, notes = calibrate(body, fitted, as_recorded=settings.as_recorded)
-    given, said = _given(body, fitted, calibration, inertia, progress)
-    terms, fit, choice = _chosen(body, fitted, calibration, given, progress)
+    made = prepare_logs(robot, logs, validate, settings, progress)
+    body = made.body
+    given, said = _given(made, inertia, progress)
+    terms, fit, choice = _chosen(made, given, progress)
     progress("deviations")
-    recordings = [joint_samples(body, whole, calibration, terms) for whole in fitted]
-    trust = uncertainty(fit, recordings)
-    validation, residuals = _score(body, fit, fitted, unseen, calibration, terms)
+    fitted, unseen = (
+        [joint_samples(body, whole, made.calibration, terms) for whole in wholes]
+        for wholes in (made.fitted, made.unseen)
+    )
+    trust = uncertainty(fit, fitted)
+    chosen = {
+        **settings.to_dict(),
+        "inertia": inertia,
+        "terms": {joint: list(names) for joint, names in terms.items()},
+    }
+    places = [
+        Place(body.equation.first_joint_row + joint, "N.m", joint=name)
+        for joint, name in enumerate(body.equation.tree.names)
+        if name in terms
+    ]
+    parameters = _parameters(fit, trust, terms, fitted)
+    notes = [*said, *choice]
     return result_of(
-        JOINTS_SCHEMA,
-        body,
-        fit,
-        trust,
-        inputs=inputs_of(logs, validate),
-        settings={
-            **settings.to_dict(),
-            "inertia": inertia,
-            "terms": {joint: list(chosen) for joint, chosen in terms.items()},
-        },
-        validation=validation,
-        residuals=residuals,
-        notes=[*(note for whole in fitted + unseen for note in whole.notes), *notes, *said, *choice],
-        parameters=_parameters(body, fit, trust, terms, recordings),
+        JOINTS_SCHEMA, made, fit, trust, fitted, unseen, places, chosen, parameters=parameters, notes=notes
     )
 
 
-def _given(
-    body: Body, fitted: Sequence[Whole], calibration: Calibration, inertia: Inertia, progress: Progress
-) -> tuple[Array | None, list[Note]]:
+def _given(made: WholeLogs, inertia: Inertia, progress: Progress) -> tuple[Array | None, list[Note]]:
     """The inertial parameters that eq. 3 is to take as they are, if any: the URDF's, or those of eq. 2."""
+    body = made.body
     if inertia == "together":
         return None, []
     if inertia == "known":
         text = "inertias taken from the URDF as known: the joints' deviations leave their errors out"
         return body.prior.cad, [Note("inertia_known", "info", text)]
-    recordings = [inertial_samples(body, whole, calibration) for whole in fitted]
+    recordings = [inertial_samples(body, whole, made.calibration) for whole in made.fitted]
     fit = PulledProblem(body.equation, body.base, body.prior, recordings).solve(progress)
     text = (
         "inertias identified first, from the base rows (eq. 2): the joints' deviations leave their errors out"
@@ -129,19 +102,16 @@ def _given(
 
 
 def _chosen(
-    body: Body,
-    fitted: Sequence[Whole],
-    calibration: Calibration,
-    inertial: Array | None,
-    progress: Progress,
+    made: WholeLogs, inertial: Array | None, progress: Progress
 ) -> tuple[dict[str, tuple[str, ...]], PulledFit, list[Note]]:
     """Terms of every joint that takes part, and the fit with them; inertial: given parameters, if any."""
-    measured = _measured_joints(body, fitted)
+    body = made.body
+    measured = _measured_joints(made)
     described = body.robot.joints
     fits = []
     for default in (FRICTION, SPRUNG):
         terms = {name: described[name].terms if name in described else default for name in measured}
-        recordings = [joint_samples(body, whole, calibration, terms) for whole in fitted]
+        recordings = [joint_samples(body, whole, made.calibration, terms) for whole in made.fitted]
         problem = PulledProblem(body.equation, body.base, body.prior, recordings)
         fits.append((terms, problem.solve(progress) if inertial is None else problem.with_known(inertial)))
         if all(name in described for name in measured):
@@ -164,31 +134,33 @@ def _held_out(fit: PulledFit, reference: PulledFit) -> float:
     return float(errors_of(fit.trials).min() * ratio)
 
 
-def _measured_joints(body: Body, fitted: Sequence[Whole]) -> tuple[str, ...]:
-    """Joints with effort in every log, and the passive ones."""
-    names = []
-    for name in body.equation.tree.names:
-        terms = body.robot.joints.get(name)
-        if (terms is not None and terms.passive) or all(name in whole.efforts for whole in fitted):
-            names.append(name)
+def _measured_joints(made: WholeLogs) -> tuple[str, ...]:
+    """Passive joints, and those with effort in every log to fit; what is fitted must also be there to be scored."""
+    joints = made.body.robot.joints
+    passive = {name for name, joint in joints.items() if joint.passive}
+    names = tuple(
+        name
+        for name in made.body.equation.tree.names
+        if name in passive or all(name in whole.efforts for whole in made.fitted)
+    )
     if not names:
         valid = "joint.<joint>.effort, or passive: true in the robot file"
-        raise DataError(located("holds no joint torques", path=fitted[0].log.source, valid=valid))
-    return tuple(names)
+        raise DataError(located("holds no joint torques", path=made.fitted[0].log.source, valid=valid))
+    for whole in made.unseen:
+        for name in names:
+            if name not in passive and name not in whole.efforts:
+                raise DataError(located("is missing", path=whole.log.source, column=f"joint.{name}.effort"))
+    return names
 
 
 def _parameters(
-    body: Body,
-    fit: PulledFit,
-    trust: Uncertainty,
-    terms: Mapping[str, tuple[str, ...]],
-    recordings: Sequence[Samples],
+    fit: PulledFit, trust: Uncertainty, terms: Mapping[str, tuple[str, ...]], recordings: Sequence[Samples]
 ) -> tuple[JointParameter, ...]:
     rows = []
-    for joint, name in enumerate(body.equation.tree.names):
+    for joint, name in enumerate(fit.equation.tree.names):
         if name not in terms:
             continue
-        row = body.equation.first_joint_row + joint
+        row = fit.equation.first_joint_row + joint
         torque = float(np.sqrt(np.mean(np.concatenate([one.measured[row] for one in recordings]) ** 2)))
         still = all(np.ptp(one.motion.positions[:, joint]) < 1e-3 for one in recordings)
         for term, value, std in zip(terms[name], fit.extras[row], trust.extras[row], strict=True):
@@ -219,49 +191,3 @@ def _judge(
     if interval[0] <= 0 <= interval[1]:
         return "unidentifiable", "zero lies in the interval"
     return "weak", f"the interval is {100 * half / abs(value):.0f} % of the value to each side"
-
-
-def _score(
-    body: Body,
-    fit: PulledFit,
-    fitted: Sequence[Whole],
-    unseen: Sequence[Whole],
-    calibration: Calibration,
-    terms: Mapping[str, tuple[str, ...]],
-) -> tuple[tuple[DynamicsScore, ...], pa.Table]:
-    """Measured torque (plus what contacts carry) against predicted, joint by joint and all together."""
-    names = tuple(name for name in body.equation.tree.names if name in terms)
-    index = [body.equation.first_joint_row + body.equation.tree.names.index(name) for name in names]
-    rows: list[DynamicsScore] = []
-    tables: list[pa.Table] = []
-    means: list[Array] = []
-    kinds: tuple[tuple[Literal["direct", "cross"], Sequence[Whole]], ...] = (
-        ("direct", fitted),
-        ("cross", unseen),
-    )
-    for kind, wholes in kinds:
-        for whole in wholes:
-            missing = [name for name in names if name not in whole.efforts and not _passive(body, name)]
-            if missing:
-                raise DataError(
-                    located("is missing", path=whole.log.source, column=f"joint.{missing[0]}.effort")
-                )
-            samples = joint_samples(body, whole, calibration, terms)
-            measured = np.array([samples.measured[row] for row in index])
-            predicted = fit.predict(samples)[index]
-            cad = body.equation.inverse_dynamics(samples.motion, body.prior.cad)[index]
-            if kind == "direct":
-                means.append(measured.mean(axis=1))
-            trivial = np.mean(means, axis=0)
-            for k, name in enumerate(names):
-                parts = (measured[k], predicted[k], cad[k], trivial[k])
-                rows.append(score_row(kind, samples.name, "N.m", *parts, joint=name))
-            rows.append(
-                score_row(kind, samples.name, "N.m", measured, predicted, cad, trivial[:, None], joint="all")
-            )
-            tables.append(residual_rows(samples, kind, names, measured, predicted))
-    return tuple(rows), pa.concat_tables(tables)
-
-
-def _passive(body: Body, name: str) -> bool:
-    return name in body.robot.joints and body.robot.joints[name].passive

@@ -10,7 +10,8 @@ import numpy as np
 from plantar.conventions import Array
 from plantar.dynamics.consistency import Normal
 from plantar.estimation.intervals import cosine_covariance
-from plantar.identify.pulled_fit import PulledFit, Samples
+from plantar.identify.pulled_fit import PulledFit
+from plantar.identify.stretches import Samples
 
 CHUNK = 2048  # samples whose regressor is held at a time
 GIVEN_STRENGTH = (

@@ -1,0 +1,133 @@
+"""Recordings cut into stretches, each an R factor for every row of eq. 1 that is measured."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+import numpy as np
+from scipy import optimize
+
+from plantar.conventions import Array, Mask
+from plantar.dynamics import BaseParameters, Equation, EquationStream, Motion, RowFactor, stacked
+
+STRETCHES = 6  # over all recordings
+
+
+@dataclass(frozen=True)
+class Samples:
+    """One recording ready for eq. 1: finite samples only.
+
+    measured: right side of each row, (N,); extras: further columns of a row, (N,) each; period [s]; positive: which of
+    a row's extras have coefficients that may not be negative.
+    """
+
+    name: str
+    time: Array
+    motion: Motion
+    measured: Mapping[int, Array]
+    extras: Mapping[int, tuple[Array, ...]]
+    period: float
+    positive: Mapping[int, tuple[bool, ...]] = field(default_factory=dict)
+
+    def select(self, rows: slice | Mask) -> Samples:
+        return Samples(
+            self.name,
+            self.time[rows],
+            self.motion.select(rows),
+            {row: values[rows] for row, values in self.measured.items()},
+            {row: tuple(column[rows] for column in columns) for row, columns in self.extras.items()},
+            self.period,
+            self.positive,
+        )
+
+
+class Stretches:
+    """The stretches' factors. Solutions x are the inertial parameters (10 n_links,), then the extras row by row."""
+
+    def __init__(self, equation: Equation, base: BaseParameters, recordings: Sequence[Samples]) -> None:
+        self.base = base
+        self.rows = tuple(recordings[0].measured)
+        self.counts = {row: len(recordings[0].extras.get(row, ())) for row in self.rows}
+        flags = [
+            flag for row in self.rows for flag in recordings[0].positive.get(row, (False,) * self.counts[row])
+        ]
+        self.positive = tuple(place for place, flag in enumerate(flags) if flag)
+        self.factors: list[dict[int, RowFactor]] = []
+        each = max(1, -(-STRETCHES // len(recordings)))
+        for samples in recordings:
+            bounds = np.linspace(0, len(samples.time), each + 1).astype(int)
+            for start, stop in pairwise(bounds):
+                if stop > start:
+                    stream = EquationStream(equation, base, self.rows, self.counts)
+                    part = samples.select(slice(start, stop))
+                    stream.add(part.motion, part.measured, part.extras)
+                    self.factors.append(stream.factors())
+
+    def __len__(self) -> int:
+        return len(self.factors)
+
+    def but(self, out: int) -> list[int]:
+        """Every stretch but one."""
+        return [k for k in range(len(self)) if k != out]
+
+    def extras_of(self, x: Array) -> dict[int, Array]:
+        """Each row's extras in a solution."""
+        size = self.base.grouping.shape[1]
+        return {row: x[size + start : size + stop] for row, (start, stop) in self._places().items()}
+
+    def triangle(self, chosen: Sequence[int], weights: Mapping[int, float]) -> Array:
+        """R of the chosen stretches, each row times its weight: base parameters, extras, measured."""
+        parts = [_pooled([self.factors[k][row] for k in chosen]) for row in self.rows]
+        return stacked(parts, len(self.base), [weights[row] for row in self.rows])
+
+    def error(self, chosen: Sequence[int], row: int, x: Array) -> float:
+        """Mean squared error of a row over the chosen stretches."""
+        base = self.base.grouping @ x[: self.base.grouping.shape[1]]
+        extras = self.extras_of(x)[row]
+        total, samples = 0.0, 0
+        for k in chosen:
+            factor = self.factors[k][row]
+            solution = np.concatenate([base[factor.columns], extras, [-1.0]])
+            total += float(np.sum((factor.upper @ solution) ** 2))
+            samples += factor.samples
+        return total / max(samples, 1)
+
+    def weighted_error(self, chosen: Sequence[int], x: Array, weights: Mapping[int, float]) -> float:
+        """Mean over the rows of the chosen stretches' mean squared errors, over their weights."""
+        return float(np.mean([self.error(chosen, row, x) * weights[row] ** 2 for row in self.rows]))
+
+    def with_known(self, chosen: Sequence[int], inertial: Array) -> Array:
+        """Solution with given inertial parameters: least squares of each row's extras by itself."""
+        base = self.base.grouping @ inertial
+        return np.concatenate([inertial, *(self._row_extras(chosen, row, base) for row in self.rows)])
+
+    def _row_extras(self, chosen: Sequence[int], row: int, base: Array) -> Array:
+        """One row's extras beside known base parameters; some may not be negative."""
+        count = self.counts[row]
+        if count == 0:
+            return np.zeros(0)
+        factor = _pooled([self.factors[k][row] for k in chosen])
+        own = len(factor.columns)
+        target = factor.upper[:, -1] - factor.upper[:, :own] @ base[factor.columns]
+        first = self._places()[row][0]
+        lower = [0.0 if first + k in self.positive else -np.inf for k in range(count)]
+        return np.asarray(optimize.lsq_linear(factor.upper[:, own:-1], target, (lower, np.inf)).x)
+
+    def _places(self) -> dict[int, tuple[int, int]]:
+        places, start = {}, 0
+        for row in self.rows:
+            places[row] = (start, start + self.counts[row])
+            start += self.counts[row]
+        return places
+
+
+def _pooled(factors: Sequence[RowFactor]) -> RowFactor:
+    """One row's factors over several stretches as one."""
+    first = factors[0]
+    size = len(first.columns) + first.extras + 1
+    if len(factors) == 1:
+        return first
+    upper = stacked([RowFactor(f.upper, np.arange(size - 1), 0, f.samples) for f in factors], size - 1)
+    return RowFactor(upper, first.columns, first.extras, sum(f.samples for f in factors))
