@@ -1,7 +1,6 @@
 """Bush deflection of both feet of TALOS: the native batch against Pinocchio, sample by sample.
 
-Prints times per foot-sample and their ratio; both compute pitch, roll and their rates, and must agree to
-1e-10.
+Prints times per foot-sample and their ratio; both compute pitch, roll and their rates, and must agree to 1e-10.
 
     python benchmarks/deflection.py [samples]
 """

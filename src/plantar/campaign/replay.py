@@ -31,9 +31,8 @@ CHEST: Final = ("chest pitch", "chest roll")
 
 @dataclass(frozen=True)
 class ReplayRow:
-    """How far the simulated robot is from the recorded one in one motion: of the chest's pitch and roll the root
-    mean square error [rad], of a foot's torque the mean absolute error [N.m]; None
-    where the robot falls."""
+    """How far the simulated robot is from the recorded one in one motion: of the chest's pitch and roll the root mean
+    square error [rad], of a foot's torque the mean absolute error [N.m]; None where the robot falls."""
 
     feet: str
     motion: str

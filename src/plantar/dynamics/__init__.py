@@ -40,9 +40,8 @@ __all__ = [
 def regressor(model: pin.Model, q: Array, v: Array, a: Array, threads: int = 0) -> Array:
     """Y_BI and Y_JI of eq. 1, dense: (N, nv, 10 n_links), for small N.
 
-    q: (N, nq); v, a: (N, nv) in Pinocchio's conventions; equal to its `computeJointTorqueRegressor`. Raises
-    RobotError for a joint type that is not supported, DataError for wrong shapes or values that are not
-    finite.
+    q: (N, nq); v, a: (N, nv) in Pinocchio's conventions; equal to its `computeJointTorqueRegressor`. Raises RobotError
+    for a joint type that is not supported, DataError for wrong shapes or values that are not finite.
     """
     equation = Equation(model)
     return np.moveaxis(

@@ -1,14 +1,12 @@
 """Which combinations of inertial parameters move the robot at all: the minimal (base) parameters.
 
-Found from the structure of the tree alone. What a joint cannot tell apart from a change of its parent is
-handed to the parent: behind a revolute joint the mass, the first moment along the axis and one moment of
-inertia; behind a prismatic joint the whole inertia. For a floating base nothing else is lost. Joints near a
-fixed base move too little for the rest: a first axis along gravity, parallel axes. Those columns are found by
-the rank of eq. 1 over a fixed sequence of pseudo-random states, the same on every machine, never over a
-recording.
+Found from the structure of the tree alone. What a joint cannot tell apart from a change of its parent is handed to the
+parent: behind a revolute joint the mass, the first moment along the axis and one moment of inertia; behind a prismatic
+joint the whole inertia. For a floating base nothing else is lost. Joints near a fixed base move too little for the
+rest: a first axis along gravity, parallel axes. Those columns are found by the rank of eq. 1 over a fixed sequence of
+pseudo-random states, the same on every machine, never over a recording.
 
-A base parameter is one parameter of one link (a column of eq. 1 that is kept) plus the shares of those handed
-to it.
+A base parameter is one parameter of one link (a column of eq. 1 that is kept) plus the shares of those handed to it.
 """
 
 from __future__ import annotations

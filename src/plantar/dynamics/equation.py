@@ -28,9 +28,7 @@ ALL_PARAMETERS: Final = (1 << PER_LINK) - 1
 
 @dataclass(frozen=True)
 class Contact:
-    """Where a wrench acts: `link`, an index into `Equation.links`, and the placement of its frame in that
-    link.
-    """
+    """Where a wrench acts: `link`, an index into `Equation.links`, and the placement of its frame in that link."""
 
     link: int
     placement: pin.SE3

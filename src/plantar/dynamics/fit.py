@@ -32,10 +32,9 @@ Samples = tuple[Array, Array, Array, Array]
 class BaseParameterFit:
     """Least-squares base parameters.
 
-    values: (n_base,), where some are not excited the smallest that fit; std: (n_base,), for white residuals
-    of one size in all rows, infinite for a parameter that is not excited; rank: excited directions; names,
-    expressions: of the parameters; samples; residual_rms: over all rows [N and N·m]; notes: what is not
-    excited.
+    values: (n_base,), where some are not excited the smallest that fit; std: (n_base,), for white residuals of one size
+    in all rows, infinite for a parameter that is not excited; rank: excited directions; names, expressions: of the
+    parameters; samples; residual_rms: over all rows [N and N·m]; notes: what is not excited.
     """
 
     equation: Equation = field(repr=False)
@@ -77,9 +76,8 @@ def fit_base_parameters(
 ) -> BaseParameterFit:
     """Base parameters of a Pinocchio model by least squares.
 
-    q: (N, nq); v, a, tau: (N, nv) in Pinocchio's conventions. rows: "base" uses the six rows of the
-    free-flyer (eq. 2, no joint torque is read), "all" every row. threads: 0 for as many as are worth
-    starting.
+    q: (N, nq); v, a, tau: (N, nv) in Pinocchio's conventions. rows: "base" uses the six rows of the free-flyer (eq. 2,
+    no joint torque is read), "all" every row. threads: 0 for as many as are worth starting.
 
     Raises RobotError for a joint type that is not supported, DataError for wrong shapes, values that are not
     finite, or base rows asked of a model without free-flyer.

@@ -1,9 +1,8 @@
 """Eq. 1 over any number of samples in constant memory: an R factor for each of its rows.
 
-The rows of many samples are never stacked. Each component of the base wrench and each joint has its own upper
-triangle R, with RᵀR the sum of its rows' squares, over the columns it depends on and the measured side.
-Afterwards any choice of rows and of weights for them is a small problem: stack the weighted triangles and
-triangularise again.
+The rows of many samples are never stacked. Each component of the base wrench and each joint has its own upper triangle
+R, with RᵀR the sum of its rows' squares, over the columns it depends on and the measured side. Afterwards any choice of
+rows and of weights for them is a small problem: stack the weighted triangles and triangularise again.
 """
 
 from __future__ import annotations
@@ -24,9 +23,8 @@ from plantar.dynamics.motion import Motion
 class RowFactor:
     """R of one row of eq. 1, or of several that share their columns, over the samples seen.
 
-    upper: (k, k), upper triangle of [columns, extras, measured]; columns: base parameters of its leading
-    columns, increasing, (k - extras - 1,); extras: further columns given by the caller; samples: how many
-    rows went in.
+    upper: (k, k), upper triangle of [columns, extras, measured]; columns: base parameters of its leading columns,
+    increasing, (k - extras - 1,); extras: further columns given by the caller; samples: how many rows went in.
     """
 
     upper: Array
@@ -54,7 +52,6 @@ class EquationStream:
         self.equation = equation
         self.rows = tuple(rows)
         self.extras = {row: (extras or {}).get(row, 0) for row in self.rows}
-        self._n_base = len(base)
         self._samples = 0
         given = [self.extras[row] + 1 if row in self.extras else 0 for row in range(equation.n_rows)]
         first = {
@@ -80,8 +77,7 @@ class EquationStream:
     ) -> None:
         """Take in a batch of finite samples.
 
-        measured: the right side of eq. 1, (N,) for each of the rows; extras: a row's further columns, (N,)
-        each.
+        measured: the right side of eq. 1, (N,) for each of the rows; extras: a row's further columns, (N,) each.
         """
         given: list[list[Array]] = [[] for _ in range(self.equation.n_rows)]
         for row in self.rows:
@@ -105,8 +101,7 @@ class EquationStream:
 
 
 def stacked(factors: Sequence[RowFactor], n_base: int, weights: Sequence[float] | None = None) -> Array:
-    """One triangle for several rows' factors, each row times its weight: (n + 1, n + 1), the measured side
-    last.
+    """One triangle for several rows' factors, each row times its weight: (n + 1, n + 1), the measured side last.
 
     Columns: the base parameters, then each factor's own extras in the order given.
     """

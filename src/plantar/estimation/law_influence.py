@@ -1,8 +1,7 @@
 """A linear problem with nuisances projected out: one offset each recording, one start of the memory each run.
 
-Columns that live in one run or one recording only are eliminated there (Frisch, Waugh and Lovell), so that
-hundreds of runs cost nothing; what is left are the columns of the law's own parameters, and each sample's
-influence on them.
+Columns that live in one run or one recording only are eliminated there (Frisch, Waugh and Lovell), so that hundreds of
+runs cost nothing; what is left are the columns of the law's own parameters, and each sample's influence on them.
 """
 
 from __future__ import annotations
@@ -106,8 +105,7 @@ class Linearised:
         return np.asarray(np.diag(self._factor.information_inverse())[: self._width])
 
     def influences(self) -> list[Array]:
-        """What each sample's response adds to parameters and offsets, (n, p + recordings) for every
-        recording."""
+        """What each sample's response adds to parameters and offsets, (n, p + recordings) for every recording."""
         inverse = self._factor.information_inverse()
         result, count = [], len(self.columns)
         slopes = []
@@ -130,8 +128,7 @@ class Linearised:
 def robust_covariance(
     linear: Linearised, residuals: Sequence[Array], durations: Sequence[float]
 ) -> tuple[Array, Array]:
-    """Covariance (p + recordings, same) of parameters and offsets with coloured residuals, and degrees of
-    freedom."""
+    """Covariance (p + recordings, same) of parameters and offsets with coloured residuals, and degrees of freedom."""
     parts, freedoms = [], []
     for influence, residual, duration in zip(linear.influences(), residuals, durations, strict=True):
         part, freedom = cosine_covariance(influence * residual[:, None], duration)

@@ -1,5 +1,4 @@
-"""From the best candidate to the best fit: the shape, and the start of the memory in every run, refined
-together.
+"""From the best candidate to the best fit: the shape, and the start of the memory in every run, refined together.
 
 Gauss-Newton on the variable projection: at each point the linear parameters are those that fit best there.
 """
@@ -58,8 +57,7 @@ class Problem:
         return Point(shape, starts, values, offsets, residuals, float(sum(r @ r for r in residuals)))
 
     def linearised(self, point: Point) -> Linearised:
-        """Columns of values and log shape about a point, residuals as response, starts to be projected
-        out."""
+        """Columns of values and log shape about a point, residuals as response, starts to be projected out."""
         law, shape, count = self.law, point.shape, len(point.shape)
         shapes = np.repeat(shape[None, :], 3 + 2 * count, axis=0)
         for place in range(count):

@@ -1,8 +1,7 @@
 """Where a law's shape roughly lies, and how well it predicts held-out pieces, from sums of products alone.
 
-Every piece of every recording leaves its Gram matrix for each candidate shape and start of the memory. Fits
-with any pieces left out are then sums of small matrices, so cross-validation costs no more than one pass over
-the samples.
+Every piece of every recording leaves its Gram matrix for each candidate shape and start of the memory. Fits with any
+pieces left out are then sums of small matrices, so cross-validation costs no more than one pass over the samples.
 """
 
 from __future__ import annotations
@@ -29,8 +28,7 @@ RIDGE = 1e-12  # of each column's own square: keeps collinear columns solvable
 
 @dataclass(frozen=True)
 class Pieces:
-    """Grams (pieces, g, c, k + 2, k + 2) of [columns, 1, response], for g shapes and c starts (c, runs) of
-    each trial.
+    """Grams (pieces, g, c, k + 2, k + 2) of [columns, 1, response], for g shapes and c starts (c, runs) of each trial.
 
     `trial`, `run` and `fold` (pieces,) say what each piece is part of; runs are numbered through all trials.
     `rows` (pieces,) are the samples in each.
@@ -93,8 +91,7 @@ class Pieces:
     def with_shape(
         self, shape: Array, starts: Sequence[Array], prepared: Sequence[Prepared], folds: Sequence[Numbers]
     ) -> Pieces:
-        """The same pieces with one more candidate shape (s,), whose starts are tried around the given ones
-        (runs,)."""
+        """The same pieces with one more candidate shape (s,), whose starts are tried around the given ones (runs,)."""
         more = Pieces.of(self.law, prepared, folds, shape[None, :], starts)
         shapes, grams = (
             np.vstack([self.shapes, more.shapes]),
@@ -115,8 +112,7 @@ class Fits:
 
 
 def fit_pieces(pieces: Pieces, chosen: Mask, *, shared_offset: bool = False) -> Fits:
-    """Least squares for every shape over the `chosen` pieces (pieces,), with the best start of each run's
-    memory."""
+    """Least squares for every shape over the `chosen` pieces (pieces,), with the best start of each run's memory."""
     shapes, count = pieces.grams.shape[1:3]
     starts = np.full((len(pieces.grams), shapes), count // 2, dtype=np.intp)
     runs = np.unique(pieces.run[chosen])

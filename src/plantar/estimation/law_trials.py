@@ -1,5 +1,4 @@
-"""One recording of one axis, ready for any law: paths thinned out to what the filter leaves, both sides
-filtered alike."""
+"""One recording of one axis, ready for any law: thinned out to what the filter leaves, both sides filtered alike."""
 
 from __future__ import annotations
 
@@ -19,8 +18,7 @@ THIN_BAND = 4.0  # cutoffs, that survive thinning
 
 @dataclass(frozen=True)
 class Trial:
-    """One axis of one foot over one recording: wide-band `motion` and `torque` (N,), and the samples that
-    serve.
+    """One axis of one foot over one recording: wide-band `motion` and `torque` (N,), and the samples that serve.
 
     Both sides unfiltered, or filtered alike well above the fit's cutoff.
     """
@@ -53,10 +51,9 @@ class Trial:
 class Prepared:
     """A trial through the fit's filter: `motion`, `response` (N,) and the samples that serve.
 
-    A law with memory does not commute with a filter: its state follows the path, and its columns then go
-    through the filter that the torque went through. The path itself is filtered too: jitter of the measured
-    angle would wear the state down at every turn (a Bouc-Wen element forgets under dither), which the rubber,
-    not shaken, does not do.
+    A law with memory does not commute with a filter: its state follows the path, and its columns then go through the
+    filter that the torque went through. The path itself is filtered too: jitter of the measured angle would wear the
+    state down at every turn (a Bouc-Wen element forgets under dither), which the rubber, not shaken, does not do.
     """
 
     label: str

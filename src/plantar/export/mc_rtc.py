@@ -1,9 +1,8 @@
 """mc_rtc: the `flexibilities` of a robot module.
 
-mc_rbdyn::Flexibility (jointName, K, C, O) stands for torque = -K q - C q̇ - O in the flexible joint, and
-RobotModule's JSON reads a list of them under `flexibilities` (mc_rtc, mc_rbdyn/Flexibility.h and
-configuration_io.cpp). The joint pushes back what the ground puts on the sole, so K, C and O are the
-identified ones.
+mc_rbdyn::Flexibility (jointName, K, C, O) stands for torque = -K q - C q̇ - O in the flexible joint, and RobotModule's
+JSON reads a list of them under `flexibilities` (mc_rtc, mc_rbdyn/Flexibility.h and configuration_io.cpp). The joint
+pushes back what the ground puts on the sole, so K, C and O are the identified ones.
 """
 
 from __future__ import annotations

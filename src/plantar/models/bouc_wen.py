@@ -21,8 +21,7 @@ SHARPNESS = (1.0, 2.0, 4.0)  # tried by the search; 1 is Dahl's friction, large 
 class BoucWen(Hysteretic):
     """slip_torque·z with dz = (dq / slip_angle)·(1 - sign(dq)·z·|z|^(sharpness - 1)).
 
-    Bouc-Wen's equation with β = 1 / slip_angle, γ = 0, scaled so that z ends at ±1: passive for every
-    sharpness ≥ 1.
+    Bouc-Wen's equation with β = 1 / slip_angle, γ = 0, scaled so that z ends at ±1: passive for every sharpness ≥ 1.
     """
 
     name: ClassVar[str] = "bouc_wen"
@@ -58,8 +57,7 @@ class BoucWen(Hysteretic):
 class BranchCurve:
     """The one curve that z follows from -1 to 1, over the place p = 1 - exp(-sharpness·way / slip_angle).
 
-    In p the curve and the turn (z -> -z) have finite slopes at both ends, so a table with linear steps
-    serves.
+    In p the curve and the turn (z -> -z) have finite slopes at both ends, so a table with linear steps serves.
     """
 
     def __init__(self, sharpness: float) -> None:

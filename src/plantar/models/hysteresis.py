@@ -23,12 +23,10 @@ LARGEST_SLIP_ANGLE = 0.8  # of the reach: an element that hardly slips looks lik
 
 @dataclass(frozen=True)
 class Branches:
-    """Runs of deflection cut at their turning points, packed side by side; T branches at most, r runs, n
-    samples.
+    """Runs of deflection cut at their turning points, packed side by side; T branches at most, r runs, n samples.
 
-    `direction` (T, r) is ±1 in turn; `length` (T, r) the way from turning point to turning point [rad], zero
-    after the last. For each sample of each run, `branch` (n, r) and `travelled` (n, r), the way since that
-    branch began.
+    `direction` (T, r) is ±1 in turn; `length` (T, r) the way from turning point to turning point [rad], zero after the
+    last. For each sample of each run, `branch` (n, r) and `travelled` (n, r), the way since that branch began.
     """
 
     direction: Array
@@ -54,8 +52,7 @@ class Branches:
 
 
 def _turning_points(path: Array) -> tuple[NDArray[np.intp], float]:
-    """Where each monotonic branch begins, and the first branch's direction. A pause belongs to the branch
-    before."""
+    """Where each monotonic branch begins, and the first branch's direction. A pause belongs to the branch before."""
     step = np.sign(np.diff(path))
     moving = np.flatnonzero(step)
     if moving.size == 0:
@@ -65,8 +62,7 @@ def _turning_points(path: Array) -> tuple[NDArray[np.intp], float]:
 
 
 class Hysteretic(Law):
-    """torque = K·q + C·q̇ + slip_torque·z + offset: an element beside the spring that yields around
-    `slip_angle`.
+    """torque = K·q + C·q̇ + slip_torque·z + offset: an element beside the spring that yields around `slip_angle`.
 
     Before it yields it is a spring of slip_torque / slip_angle. The start of a run is its state z there.
     """
@@ -84,8 +80,7 @@ class Hysteretic(Law):
         """z (n, r, b) along r runs, for b variants of shape (b, s) and start (r, b)."""
 
     def candidates(self, motions: Sequence[Motion]) -> Array:
-        """Slip angles in equal ratios, from what looks like dry friction to what hardly slips in these
-        motions."""
+        """Slip angles in equal ratios, from what looks like dry friction to what hardly slips in these motions."""
         size = reach(motions) or 1.0
         return np.geomspace(SMALLEST_SLIP_ANGLE * size, LARGEST_SLIP_ANGLE * size, 12)[:, None]
 

@@ -14,12 +14,10 @@ ELEMENTS = 8
 
 
 class Iwan(Hysteretic):
-    """slip_torque·z, z the mean of elements of equal stiffness whose slip angles spread evenly from 0 to
-    2·slip_angle.
+    """slip_torque·z, z the mean of elements of equal stiffness whose slip angles spread evenly from 0 to 2·slip_angle.
 
-    The stiffness before any slips is slip_torque / slip_angle, as for one element; it bends over in a
-    parabola until the last slips at 2·slip_angle. In a run's first part all elements start from the same
-    state.
+    The stiffness before any slips is slip_torque / slip_angle, as for one element; it bends over in a parabola until
+    the last slips at 2·slip_angle. In a run's first part all elements start from the same state.
     """
 
     name: ClassVar[str] = "iwan"

@@ -1,7 +1,6 @@
 """MCAP (mcap.dev/spec): records read in order, so that a file cut at any byte gives its whole records.
 
-The index at the end is not needed and not trusted. Files are read in blocks; messages are decoded where they
-lie.
+The index at the end is not needed and not trusted. Files are read in blocks; messages are decoded where they lie.
 """
 
 from __future__ import annotations

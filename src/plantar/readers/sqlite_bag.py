@@ -13,7 +13,6 @@ from plantar.readers.mcap_file import READ
 from plantar.readers.ros_topics import Topic
 
 BATCH = 2000  # messages decoded at a time
-STEPS = 5_000_000  # SQLite's own steps between two looks at the clock
 MESSAGE_LIMIT = 64 * 2**20  # bytes
 
 

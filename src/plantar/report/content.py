@@ -5,19 +5,10 @@ from __future__ import annotations
 import base64
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
-from typing import Final, Literal
-
-from plantar.errors import PlantarError, located
-from plantar.files import read_bounded
+from typing import Literal
 
 MediaType = Literal["image/svg+xml", "image/png"]
 Mark = Literal["", "good", "weak", "bad"]
-
-PICTURE_LIMIT: Final = 20_000_000
-"""Largest picture that is embedded [bytes]."""
-
-_MEDIA: Final[dict[str, MediaType]] = {".svg": "image/svg+xml", ".png": "image/png"}
 
 
 @dataclass(frozen=True)
@@ -33,14 +24,6 @@ class Figure:
     content: bytes = field(repr=False)
     media_type: MediaType = "image/svg+xml"
     description: str = ""
-
-    @classmethod
-    def from_file(cls, path: Path, title: str, caption: str, description: str = "") -> Figure:
-        """The picture in an `.svg` or `.png` file; `PlantarError` for another ending or no file."""
-        media = _MEDIA.get(path.suffix.lower())
-        if media is None:
-            raise PlantarError(located("is not a picture for a report", path=path, valid=".svg or .png"))
-        return cls(title, caption, read_bounded(path, PICTURE_LIMIT), media, description)
 
     @property
     def data_uri(self) -> str:

@@ -27,10 +27,9 @@ def write_feet_report(
 ) -> Path:
     """Write `report.html` beside a `result.json` (or to `out`) and return its path.
 
-    `result` is the file or its directory. The residuals beside it (`residuals.parquet`, `.csv` or `.csv.gz`)
-    give the plots; without them the page has none and says so. `sections` come after the tables, `figures`
-    after the plots. The page is one file that needs no network. Raises `PlantarError` for a result or
-    residuals that cannot be read.
+    `result` is the file or its directory. The residuals beside it (`residuals.parquet`, `.csv` or `.csv.gz`) give the
+    plots; without them the page has none and says so. `sections` come after the tables, `figures` after the plots. The
+    page is one file that needs no network. Raises `PlantarError` for a result or residuals that cannot be read.
     """
     path = result_path(Path(result))
     content = checked(read_result(path, FEET_SCHEMA), FeetResult, FEET_SCHEMA, path)

@@ -93,12 +93,10 @@ def torques(tracks: Sequence[Track], motions: Sequence[str]) -> Drawing:
 
 
 def zmp(points: Array, feet: Mapping[str, Array], support: Array | None = None) -> Drawing:
-    """Figures 4 and 6: the ZMP's way (red) over the traces of the feet (black) and the support polygon
-    (blue).
+    """Figures 4 and 6: the ZMP's way (red) over the traces of the feet (black) and the support polygon (blue).
 
-    `points` (N, 2), each foot's outline (n, 2) and the `support` polygon (m, 2) in the same horizontal frame
-    [m], x forward, y left; forward points up in the picture. Rows of `points` that are not finite leave a
-    gap.
+    `points` (N, 2), each foot's outline (n, 2) and the `support` polygon (m, 2) in the same horizontal frame [m], x
+    forward, y left; forward points up in the picture. Rows of `points` that are not finite leave a gap.
     """
     figure, rows = panels(1, 1, (4.2, 4.2))
     panel = rows[0, 0]
@@ -123,8 +121,7 @@ def left_out(track: Track) -> list[tuple[float, float]]:
 
 
 def envelope(time: Array, values: Array, columns: int = COLUMNS) -> tuple[Array, Array]:
-    """At most `4·columns` of the samples, (N,): in each of `columns` bins the first, smallest, largest and
-    last.
+    """At most `4·columns` of the samples, (N,): in each of `columns` bins the first, smallest, largest and last.
 
     A gap (NaN) stays a gap: one of its samples is kept in each bin.
     """
@@ -153,9 +150,7 @@ def picture(drawing: Drawing, title: str, caption: str, media: MediaType = "imag
 def save(
     drawing: Drawing, directory: Path, name: str, formats: Sequence[Format] = ("svg", "pdf")
 ) -> list[Path]:
-    """Write `<name>.svg` and `.pdf` (or the formats asked for), each whole or not at all; returns their
-    paths.
-    """
+    """Write `<name>.svg` and `.pdf` (or the formats asked for), each whole or not at all; returns their paths."""
     paths = []
     for kind in formats:
         path = directory / f"{name}.{kind}"

@@ -1,6 +1,4 @@
-"""One HTML file that needs nothing else: scripts and styles inside, allowed by their hash, the network
-forbidden.
-"""
+"""One HTML file that needs nothing else: scripts and styles inside, allowed by their hash, the network forbidden."""
 
 from __future__ import annotations
 

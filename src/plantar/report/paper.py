@@ -24,9 +24,7 @@ DIRECT: Final = 9
 
 @dataclass(frozen=True)
 class Plate:
-    """A drawing with its file name, title and caption; `number` is the paper's figure, None where it has
-    none.
-    """
+    """A drawing with its file name, title and caption; `number` is the paper's figure, None where it has none."""
 
     name: str
     number: int | None
@@ -40,8 +38,7 @@ class Plate:
 
 
 def plates(tracks: Sequence[Track], only_paper: bool = False) -> list[Plate]:
-    """Bush angles of each motion, direct validation of the composed motion, cross-validation of each unseen
-    motion.
+    """Bush angles of each motion, direct validation of the composed motion, cross-validation of each unseen motion.
 
     Ordered by the paper's figure number, then those that the paper lacks; `only_paper` leaves these out.
     """
