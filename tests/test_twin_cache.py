@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import hashlib
 import os
 import sys
@@ -70,6 +71,33 @@ def test_any_change_is_another_key() -> None:
     assert rollout_key(base, physics, "") == rollout_key(replace(base), Physics(), "")
 
 
+def test_a_sensor_moved_by_less_than_numpy_prints_is_another_key() -> None:
+    robot = hrp2.robot()
+    assert robot.imu is not None
+    place = robot.imu.placement
+    moved = replace(robot, imu=replace(robot.imu, placement=replace(place, xyz=place.xyz + 1e-12)))
+    keys = {plan_key("Tilt3", each, hrp2.postures(), {}) for each in (robot, moved)}
+    assert len(keys) == 2
+
+
+def test_every_package_that_plans_or_steps_is_in_the_key() -> None:
+    """Solvers too: another version plans another motion. Those that only write files change no number."""
+    source = Path(cache.__file__).parents[1]
+    imported = set()
+    for file in (*(source / "motions").glob("*.py"), *(source / "twin").glob("*.py")):
+        for node in ast.walk(ast.parse(file.read_text())):
+            if isinstance(node, ast.Import | ast.ImportFrom):
+                names = (
+                    [alias.name for alias in node.names] if isinstance(node, ast.Import) else [node.module]
+                )
+                imported |= {str(name).split(".")[0] for name in names}
+            if isinstance(node, ast.keyword) and node.arg == "solver":
+                imported.add(ast.literal_eval(node.value))
+    named = {"pinocchio": "pin", "pink": "pin-pink"}
+    foreign = imported - set(sys.stdlib_module_names) - {"plantar", "pyarrow", "yaml"}
+    assert {named.get(name, name) for name in foreign} | {"qpsolvers"} == set(cache.PACKAGES)
+
+
 def test_changed_source_is_another_key(monkeypatch: pytest.MonkeyPatch) -> None:
     before = cache.key("x")
     monkeypatch.setattr(cache, "_code", lambda: "another version of the twin")
@@ -77,8 +105,9 @@ def test_changed_source_is_another_key(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_other_native_steps_are_another_key(monkeypatch: pytest.MonkeyPatch) -> None:
-    source = Path(__file__).parents[1] / "cpp" / "stepping.hpp"
-    assert hashlib.sha256(source.read_bytes()).hexdigest() == cache.STEPPING_SOURCE  # as built
+    sources = [Path(__file__).parents[1] / "cpp" / name for name in ("stepping.hpp", "bindings_stepping.cpp")]
+    hashes = [hashlib.sha256(source.read_bytes()).hexdigest() for source in sources]
+    assert "".join(hashes) == cache.STEPPING_SOURCE  # as built
     cache._code.cache_clear()
     before = cache.key("x")
     monkeypatch.setattr(cache, "STEPPING_SOURCE", "other steps")

@@ -23,7 +23,7 @@ from plantar.errors import PlantarError
 from plantar.files import atomic_write
 
 LIMIT = 2 * 2**30  # bytes in the folder: the oldest files go first
-PACKAGES = ("mujoco", "pin", "pin-pink", "numpy", "scipy")
+PACKAGES = ("mujoco", "pin", "pin-pink", "qpsolvers", "daqp", "numpy", "scipy")
 
 
 def folder() -> Path:

@@ -40,10 +40,9 @@ def exact_columns(rollout: Rollout, robot: RobotModel, feet: dict[str, CutFoot])
 def truth_columns(rollout: Rollout, feet: dict[str, CutFoot]) -> Columns:
     """Bush states and torques, contact forces and the root's pose: what only the twin knows.
 
-    `<foot>.deflection.*` [m, rad], `<foot>.rate.*`, `<foot>.torque.*` (generalised, of the whole bush; z is a
-    force), `<foot>.beside.*` (the part that is no linear spring or damper), `<foot>.contact.*` (force of the floor
-    in the world, and centre of pressure in the sole's frame, NaN in the air), `<foot>.sole.*` (place in the
-    world), `base.*`.
+    `<foot>.deflection.*` [m, rad], `<foot>.rate.*`, `<foot>.torque.*` (generalised, of the whole bush; z is a force),
+    `<foot>.beside.*` (the part that is no linear spring or damper), `<foot>.contact.*` (force of the floor in the
+    world, and centre of pressure in the sole's frame, NaN in the air), `<foot>.sole.*` (place in the world), `base.*`.
     """
     columns = labelled("base", ("x", "y", "z", "qw", "qx", "qy", "qz"), rollout.base)
     for name, foot in feet.items():
