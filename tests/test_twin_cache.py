@@ -75,7 +75,7 @@ def test_a_sensor_moved_by_less_than_numpy_prints_is_another_key() -> None:
     robot = hrp2.robot()
     assert robot.imu is not None
     place = robot.imu.placement
-    moved = replace(robot, imu=replace(robot.imu, placement=replace(place, xyz=place.xyz + 1e-12)))
+    moved = replace(robot, imu=replace(robot.imu, placement=replace(place, xyz=place.xyz * (1 + 1e-12))))
     keys = {plan_key("Tilt3", each, hrp2.postures(), {}) for each in (robot, moved)}
     assert len(keys) == 2
 
