@@ -25,11 +25,16 @@ Signal = Callable[[np.ndarray], np.ndarray]
 
 @dataclass(frozen=True)
 class Law:
-    """Stiffness [N·m/rad], damping [N·m·s/rad], offset [N·m]."""
+    """Stiffness [N·m/rad], damping [N·m·s/rad], offset [N·m]; hardening [N·m/rad³]."""
 
     stiffness: float
     damping: float
     offset: float
+    hardening: float = 0.0
+
+    def torque(self, deflection: np.ndarray, rate: np.ndarray) -> np.ndarray:
+        spring = self.stiffness * deflection + self.hardening * deflection**3
+        return spring + self.damping * rate + self.offset
 
 
 TRUTH = {
@@ -169,9 +174,7 @@ def bush_torque(motion: Motion, mounting: Mounting, foot: str, t: np.ndarray) ->
     """The law's generalised torques in pitch and roll, (N, 2)."""
     q, v = deflection(motion, mounting, foot, t), deflection_rate(motion, mounting, foot, t)
     laws = [motion.truth[foot, axis] for axis in ("pitch", "roll")]
-    return np.column_stack(
-        [law.stiffness * q[:, i] + law.damping * v[:, i] + law.offset for i, law in enumerate(laws)]
-    )
+    return np.column_stack([law.torque(q[:, i], v[:, i]) for i, law in enumerate(laws)])
 
 
 def sensor_wrench(motion: Motion, mounting: Mounting, foot: str, t: np.ndarray) -> np.ndarray:

@@ -227,7 +227,12 @@ def _winner(scores: Sequence[LawScore], errors: Sequence[Array]) -> int:
 
 
 def _clear(scores: Sequence[LawScore], errors: Sequence[Array], *, simple: int, rich: int) -> bool:
-    """Whether the richer law's gain over the simpler one is clear."""
+    """Whether the richer law's gain over the simpler one is clear.
+
+    What a law adds to the one that it elaborates has been told from zero before: it only must not predict worse.
+    """
+    if scores[rich].law.elaborates == scores[simple].law.name:
+        return scores[rich].held_out_rms < scores[simple].held_out_rms
     fall = errors[simple] - errors[rich]
     standard_error = float(np.std(fall) * np.sqrt(len(fall)))
     enough = scores[rich].held_out_rms < (1 - LEAST_GAIN) * scores[simple].held_out_rms

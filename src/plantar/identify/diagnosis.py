@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from plantar.identify.axis_fit import AxisFit
+from plantar.identify.axis import AxisFit
 from plantar.identify.systematic import Cause
 from plantar.result import Parameter
 
@@ -17,6 +17,7 @@ REMEDY = {
     "delay": "add a recording of arm sweeps at 0.3 to 1 Hz without an operator: it shows the wrenches' delay",
     "lever": "add a slow shift of the weight from foot to foot: it shows the vertical compliance",
     "yaw torque zero": "zero the force sensors with the feet in the air before recording",
+    "hardening": "record larger motions, or ask for --model hardening: the spring stiffens, and the law leaves it out",
     "model": "more of the same will not help: the law misses what the rubber does; try --model auto or other motions",
     "excitation": "move further: twice the amplitude halves it",
 }
@@ -57,7 +58,7 @@ def advised(rows: Sequence[Parameter], diagnosis: Sequence[Mapping[str, Any]]) -
     found = []
     for row in rows:
         limit = limits.get((row.foot, row.axis, row.name))
-        if row.verdict != "usable" and limit in ("delay", "lever", "yaw torque zero"):
+        if row.verdict != "usable" and limit in ("delay", "lever", "hardening", "yaw torque zero"):
             row = replace(row, reason=f"{row.reason}; nearly all of it from {limit}", advice=REMEDY[limit])
         found.append(row)
     return found

@@ -15,7 +15,7 @@ import numpy as np
 from plantar.contact import joined, widened
 from plantar.conventions import ROTATIONAL_AXES, Array, Mask
 from plantar.estimation import fit_linear
-from plantar.identify.axis_fit import blocks_of
+from plantar.identify.axis_blocks import blocks_of
 from plantar.identify.recording import Recording, filtered
 from plantar.identify.settings import FeetSettings
 from plantar.polygon import edge_distances

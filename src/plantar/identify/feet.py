@@ -11,7 +11,8 @@ import numpy as np
 
 from plantar.conventions import OFFSET_UNIT, ROTATIONAL_AXES
 from plantar.errors import DataError
-from plantar.identify.axis_fit import AxisFit, fit_axis
+from plantar.identify.axis import AxisFit
+from plantar.identify.axis_fit import fit_axis
 from plantar.identify.diagnosis import advised, diagnose_axis
 from plantar.identify.outliers import fit_without_outliers
 from plantar.identify.parameter_rows import axis_rows, missing_rows

@@ -6,7 +6,8 @@ import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES, Array, Axis, Mask
 from plantar.estimation.law_opening import TRIED, open_runs
-from plantar.identify.axis_fit import AxisFit, motion_of
+from plantar.identify.axis import AxisFit
+from plantar.identify.axis_blocks import motion_of
 from plantar.identify.recording import Recording
 from plantar.signals import low_pass
 

@@ -8,7 +8,8 @@ import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES, Array, Axis, Mask
 from plantar.deflection import BushState
-from plantar.identify.axis_fit import FEWEST_SAMPLES, AxisFit, law_columns
+from plantar.identify.axis import AxisFit
+from plantar.identify.axis_blocks import FEWEST_SAMPLES, law_columns
 from plantar.identify.recording import Recording
 from plantar.signals import runs
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES, Axis
 from plantar.estimation import interval95, relative_std_percent
-from plantar.identify.axis_fit import AxisFit
+from plantar.identify.axis import AxisFit
 from plantar.identify.recording import Recording
 from plantar.identify.residual_table import Predictions
 from plantar.identify.verdicts import Evidence, judge, judge_term

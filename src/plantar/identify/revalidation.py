@@ -9,7 +9,7 @@ import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES, Axis
 from plantar.errors import DataError
-from plantar.identify.axis_fit import AxisFit
+from plantar.identify.axis import AxisFit
 from plantar.identify.edges import leave_out_edges
 from plantar.identify.preparation import check_names, common_pull, recorded
 from plantar.identify.recording import checked, moved_centre

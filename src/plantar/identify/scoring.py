@@ -8,7 +8,8 @@ from typing import Literal
 import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES, Axis
-from plantar.identify.axis_fit import AxisFit, law_columns
+from plantar.identify.axis import AxisFit
+from plantar.identify.axis_blocks import law_columns
 from plantar.identify.opening import unseen_starts
 from plantar.identify.recording import Recording
 from plantar.identify.residual_table import Predictions

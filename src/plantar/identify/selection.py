@@ -12,7 +12,7 @@ from plantar.conventions import ROTATIONAL_AXES, Array
 from plantar.errors import DataError
 from plantar.estimation import fit_linear
 from plantar.estimation.intervals import cosine_covariance
-from plantar.identify.axis_fit import blocks_of
+from plantar.identify.axis_blocks import blocks_of
 from plantar.identify.preparation import check_names, prepare_all
 from plantar.identify.settings import FeetSettings
 from plantar.log import MotionLog

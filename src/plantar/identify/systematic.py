@@ -8,13 +8,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES, Array
-from plantar.estimation import effect_of
+from plantar.estimation import Block, effect_of, fit_linear
 from plantar.estimation.intervals import pooled_freedom
-from plantar.identify.axis_fit import AxisFit, blocks_of
+from plantar.identify.axis import AxisFit
+from plantar.identify.axis_blocks import blocks_of
 from plantar.identify.height import Height
 from plantar.identify.latency import Latency
 from plantar.identify.recording import Recording, lever_effect
 from plantar.signals import differentiate
+
+SUSPECTED = 2.0  # deviations of a term that the law leaves out
+SINGULAR = 1e6  # condition of the fit beyond which nothing moves enough to tell
+KNOWN = 0.2  # of the stiffness: less sure beside such a term, the motions cannot tell one from the other
 
 
 @dataclass(frozen=True)
@@ -50,6 +55,7 @@ def systematic_causes(
         Cause("delay", moved_by([np.nan_to_num(rate) for rate in rates]), latency.std, latency.freedom),
         Cause("lever", moved_by(levers), vertical.compliance_std[foot], vertical.freedom),
     ]
+    causes += _suspected_hardening(fit, blocks, shared)
     if fit.axis == "roll":
         # Roll's torque is cos(pitch)·τ_x - sin(pitch)·τ_z: the zero of τ_z, as large as the others', does not stay a
         # constant. Each recording has its own.
@@ -60,6 +66,37 @@ def systematic_causes(
         )
         causes.append(Cause("yaw torque zero", np.sqrt(np.sum(effects**2, axis=0)), usual))
     return causes
+
+
+def _suspected_hardening(fit: AxisFit, blocks: Sequence[Block], shared: bool) -> list[Cause]:
+    """A cube that the law leaves out and the motions show, though no held-out motion asked for it.
+
+    It hardly matters to the torque, but the spring's slope at zero is not its mean slope. Empty where the motions are
+    too small to tell the two apart.
+    """
+    if any("hardening" in term for term in fit.law.terms):
+        return []
+    size, extended = len(fit.values), []
+    reach = max(float(np.abs(block.regressor[:, 0]).max()) for block in blocks) or 1.0
+    for block in blocks:
+        cube, square = (reach * (block.regressor[:, 0] / reach) ** power for power in (3, 2))
+        kept = [] if block.nuisance is None else [block.nuisance]
+        extended.append(
+            replace(
+                block,
+                regressor=np.column_stack([block.regressor, cube]),
+                nuisance=np.column_stack([*kept, square - square.mean()]),
+                noise=None,
+            )
+        )
+    found = fit_linear(extended, shared_offset=shared)
+    if found.condition_number > SINGULAR:
+        return []
+    hardening, std = float(found.values[size]), float(found.std[size])
+    known = bool(found.std[0] < KNOWN * abs(fit.values[0]))
+    if not (known and abs(hardening) > SUSPECTED * std):
+        return []
+    return [Cause("hardening", (found.values[:size] - fit.values) / hardening, abs(hardening))]
 
 
 def widened(fit: AxisFit, causes: Sequence[Cause]) -> AxisFit:

@@ -17,11 +17,12 @@ class HardeningElastoplastic(Elastoplastic):
     """torque = K·q + C·q̇ + slip_torque·z + hardening·q³ + offset; K is the slope of the spring at zero deflection.
 
     The cube is taken about the recorded zero: a run's start is the state z here, and leaves no room for an error of
-    the zero as `Hardening` has it.
+    the zero as `Hardening` has it. A fit has to allow for one.
     """
 
     name: ClassVar[str] = "hardening_elastoplastic"
     terms: ClassVar[tuple[str, ...]] = (*Elastoplastic.terms, "hardening")
+    zero_matters: ClassVar[bool] = True
     elaborates: ClassVar[str | None] = Elastoplastic.name
     units: ClassVar[dict[str, tuple[str, str]]] = {**Elastoplastic.units, **Hardening.units}
 

@@ -64,6 +64,9 @@ class Law(ABC):
     blind_ends: ClassVar[frozenset[tuple[str, str]]] = (
         frozenset()
     )  # (shape term, "low" or "high"): see `candidates`
+    zero_matters: ClassVar[bool] = (
+        False  # an error of the deflection's zero is more than an offset, and no start
+    )
     dissipative_terms: ClassVar[tuple[str, ...]] = ()  # below zero they would make energy
     units: ClassVar[dict[str, tuple[str, str]]] = {}  # of extra and shape terms: rotational, vertical
 

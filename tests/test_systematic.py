@@ -1,0 +1,54 @@
+"""What no residual shows widens an interval by as much as it moves the number, and no further."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from biped import TRUTH, Motion, record, sway
+from biped_robot import FEET
+from feet_trials import AXES, PUNCTUAL, noisy
+from plantar.identify.feet import identify_feet
+from plantar.result import FeetResult
+from plantar.robot import RobotModel
+
+SPRING_AND_DAMPER = replace(PUNCTUAL, model="kelvin_voigt")
+
+
+def stiffening(hardening: float) -> list[Motion]:
+    """Two sways on bushes that stiffen (or soften) with deflection."""
+    truth = {key: replace(law, hardening=hardening) for key, law in TRUTH.items()}
+    return [sway(f"sway_{seed}", seed, duration=40.0, truth=truth) for seed in (3, 4)]
+
+
+def identified(robot: RobotModel, hardening: float) -> FeetResult:
+    logs = [noisy(record(motion), seed) for seed, motion in enumerate(stiffening(hardening))]
+    return identify_feet(robot, logs, settings=SPRING_AND_DAMPER)
+
+
+@pytest.mark.parametrize("hardening", [20000.0, -20000.0])
+def test_a_spring_that_stiffens_widens_the_stiffness_of_a_law_that_does_not(
+    robot: RobotModel, hardening: float
+) -> None:
+    found, plain = identified(robot, hardening), identified(robot, 0.0)
+    for foot in FEET:
+        for axis in AXES:
+            row, clean = (one.parameter(foot, axis, "stiffness") for one in (found, plain))
+            truth = TRUTH[foot, axis].stiffness
+            assert (row.value - truth) * hardening > 0  # mean slope, not the slope at zero
+            assert abs(row.value - truth) > 2 * clean.std
+            low, high = row.interval95
+            assert low < truth < high
+            assert row.std < 1.5 * abs(row.value - truth)
+
+
+def test_a_spring_that_does_not_stiffen_is_not_widened(robot: RobotModel) -> None:
+    shares = [
+        each["variance_shares"].get("hardening", 0.0)
+        for each in identified(robot, 0.0).extras["diagnosis"]
+        if each["name"] == "stiffness"
+    ]
+    assert len(shares) == 4
+    assert np.median(shares) == 0.0
