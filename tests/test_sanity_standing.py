@@ -105,6 +105,22 @@ def test_a_channel_that_stops_is_told_with_its_time(sway: MotionLog, column: str
     assert f"column '{column}', t = {sway.time[400]:g} to {sway.time[-1]:g} s" in finding.text
 
 
+def test_a_wrench_that_stops_is_one_finding(sway: MotionLog) -> None:
+    """A frozen sensor is one fault, not six."""
+    parts = [name for name in sway.columns if name.startswith("wrench.right_foot.")]
+    for first, said in ((400, "stand still"), (0, "never change")):
+        columns = {name: sway.column(name).copy() for name in parts}
+        for values in columns.values():
+            values[first:] = values[first]
+        codes = ("stuck_channel", "dead_channel")
+        (finding,) = [one for one in found(sway.with_columns(columns)) if one.code in codes]
+        assert finding.text.startswith("columns 'wrench.right_foot.*'")
+        assert said in finding.text
+    some = {name: values for name, values in columns.items() if name.endswith(("torque.x", "torque.y"))}
+    (finding,) = [one for one in found(sway.with_columns(some)) if one.code == "dead_channel"]
+    assert "'wrench.right_foot.torque.x', 'wrench.right_foot.torque.y'" in finding.text
+
+
 def test_a_force_at_full_scale_is_told(sway: MotionLog) -> None:
     torque = sway.column("wrench.right_foot.torque.x")
     full = 0.6 * float(np.max(np.abs(torque)))

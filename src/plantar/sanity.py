@@ -10,7 +10,7 @@ from plantar.conventions import GRAVITY
 from plantar.log import MotionLog
 from plantar.notes import Finding
 from plantar.robot import RobotModel
-from plantar.sanity_channels import check_channels
+from plantar.sanity_channels import check_channels, named
 from plantar.sanity_feet import check_balance
 from plantar.sanity_imu import check_imu
 
@@ -97,14 +97,13 @@ def _wrenches(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         alive = (
             spans.any() or np.nanmax(np.abs(wrench)) > 0.1 * robot.mass * GRAVITY or foot.contact == "always"
         )
-        for span, part in zip(
-            spans, (f"{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz"), strict=True
-        ):
-            if alive and span == 0:
-                yield Finding(
-                    "dead_channel",
-                    f"column 'wrench.{sensor.name}.{part}': never changes; is the channel dead?",
-                )
+        parts = [f"wrench.{sensor.name}.{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz"]
+        dead = [part for span, part in zip(spans, parts, strict=True) if alive and span == 0]
+        if dead:
+            text = (
+                f"{named(dead, f'wrench.{sensor.name}.', len(parts))}: never change{'s' * (len(dead) == 1)}"
+            )
+            yield Finding("dead_channel", f"{text}; is the {'channel' if len(dead) == 1 else 'sensor'} dead?")
     weight = robot.mass * GRAVITY
     automatic = bool(loads) and all(foot.contact == "auto" for foot in robot.feet.values())
     if automatic and len(loads) == len(robot.feet):

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -20,7 +21,8 @@ NOTABLE = 0.005  # share of the log
 def check_channels(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     """Columns of the IMU and of the wrenches that stand at one value for a while, joints between them that never move.
 
-    Encoders read in steps: of one that stands for a while nothing can be said.
+    Columns of one sensor that stop together are one finding. Encoders read in steps: of one that stands for a while
+    nothing can be said.
     """
     if robot.imu is None:
         return
@@ -29,16 +31,24 @@ def check_channels(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     joints = [f"joint.{name}.position" for name in sorted(path) if log.has(f"joint.{name}.position")]
     still = [name for name in joints if not _moves(log.column(name))]
     if still and 2 * len(still) < len(joints):
-        several = len(still) > 1
-        text = f"column{'s' * several} {', '.join(map(repr, still))}: never change{'s' * (not several)}"
+        text = f"{named(still)}: never change{'s' * (len(still) == 1)}"
         yield Finding(
             "still_joint",
             f"{text}; right if the joint stood still, else the channel is dead",
             severity="info",
         )
-    sensors = (f"imu.{robot.imu.name}.", *(f"wrench.{foot.wrench.name}." for foot in robot.feet.values()))
-    for name in (column for column in log.columns if column.startswith(sensors)):
-        yield from _stuck(name, log)
+    for sensor in (
+        f"imu.{robot.imu.name}.",
+        *(f"wrench.{foot.wrench.name}." for foot in robot.feet.values()),
+    ):
+        yield from _stuck(sensor, log)
+
+
+def named(columns: Sequence[str], sensor: str | None = None, of: int = 0) -> str:
+    """Columns as a finding names them: one, several, or all `of` a sensor, which its columns begin with."""
+    if sensor is not None and len(columns) == of > 1:
+        return f"columns '{sensor}*'"
+    return f"column{'s' * (len(columns) > 1)} {', '.join(map(repr, columns))}"
 
 
 def _carries(robot: RobotModel, foot: Foot, log: MotionLog) -> bool:
@@ -52,23 +62,44 @@ def _moves(values: Array) -> bool:
     return finite.size == 0 or bool(np.ptp(finite) > 0)
 
 
-def _stuck(name: str, log: MotionLog) -> Iterator[Finding]:
-    values = log.column(name)
+def _stuck(sensor: str, log: MotionLog) -> Iterator[Finding]:
+    """A finding for each stretch over which columns of this sensor stand still while they change elsewhere."""
+    columns = [column for column in log.columns if column.startswith(sensor)]
+    together: defaultdict[tuple[int, int], list[tuple[str, float]]] = defaultdict(list)
+    for column in columns:
+        values = log.column(column)
+        held = _held(values, log.period)
+        if held:
+            longest = max(held, key=lambda run: run.stop - run.start)
+            share = sum(run.stop - run.start for run in held) / len(log)
+            together[longest.start, longest.stop].append((column, share))
+    for (start, stop), found in together.items():
+        stopped = [column for column, _ in found]
+        several = len(stopped) > 1
+        when = f"t = {log.time[start]:g} to {log.time[stop]:g} s"
+        value = "" if several else f", value {log.column(stopped[0])[start]:.6g}"
+        still = "stand still while they change" if several else "stands still while it changes"
+        share = f"{100 * max(share for _, share in found):.0f} % of the log"
+        asked = (
+            "is the sensor dead or at its full scale?"
+            if several
+            else "is the channel dead or at its full scale?"
+        )
+        text = f"{named(stopped, sensor, len(columns))}, {when}{value}: {still} elsewhere, {share}; {asked}"
+        yield Finding("stuck_channel", f"{text} (valid: leave such cells empty)")
+
+
+def _held(values: Array, period: float) -> list[slice]:
+    """Stretches at one value, as slices of the steps between samples, where they are no chance and no coarse scale."""
     steps = np.diff(values)
     still = (steps == 0) & (values[1:] != 0)  # a foot in the air may read zero
-    least = max(FEWEST, round(SHORTEST / log.period))
+    least = max(FEWEST, round(SHORTEST / period))
     held = [run for run in runs(still) if run.stop - run.start >= least]
     count = sum(run.stop - run.start for run in held)
-    if not NOTABLE * len(log) < count < len(steps):
-        return
+    if not NOTABLE * len(values) < count < len(steps):
+        return []
     inside = np.zeros(len(steps), dtype=bool)
     for run in held:
         inside[run] = True
     others = steps[~inside & np.isfinite(steps)]
-    if others.size < least or np.mean(others != 0) < LIVELY:
-        return
-    longest = max(held, key=lambda run: run.stop - run.start)
-    first, last = log.time[longest.start], log.time[longest.stop]
-    text = f"column '{name}', t = {first:g} to {last:g} s, value {values[longest.start]:.6g}: stands still while it"
-    share = f"{100 * count / len(log):.0f} % of the log; is the channel dead or at its full scale?"
-    yield Finding("stuck_channel", f"{text} changes elsewhere, {share} (valid: leave such cells empty)")
+    return [] if others.size < least or np.mean(others != 0) < LIVELY else held
