@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from plantar.estimation.law_fit import LawFit
-from plantar.estimation.law_opening import open_unseen
+from plantar.estimation.law_opening import opening_states
 from plantar.estimation.law_trials import Trial
 from plantar.models import Motion
 from plantar.signals import low_pass
@@ -135,14 +135,40 @@ def error_percent(fit: LawFit, rubber: Rubber) -> tuple[float, float]:
     )
 
 
+def filtered(trial: Trial, cutoff: float) -> tuple[Motion, np.ndarray]:
+    """Motion and torque as an identification has them."""
+    deflection, rate, torque = (
+        low_pass(values, PERIOD, cutoff)
+        for values in (trial.motion.deflection, trial.motion.rate, trial.torque)
+    )
+    return Motion(deflection, rate, PERIOD), torque
+
+
+def reconstructed(fit: LawFit, motion: Motion, starts: np.ndarray | None) -> np.ndarray:
+    """Torque of a fitted law along a filtered motion, without offset."""
+    columns = fit.law.columns(motion, fit.shape, starts)
+    columns[:, 2:] = low_pass(columns[:, 2:], PERIOD, fit.cutoff)
+    return np.asarray(columns @ fit.values)
+
+
+def opened(fit: LawFit, trial: Trial, first: np.ndarray) -> tuple[np.ndarray, float, np.ndarray | None]:
+    """Predicted torque of an unseen recording whose samples `first` give its offset, that offset, and its start."""
+    motion, torque = filtered(trial, fit.cutoff)
+    starts = None
+    if fit.law.remembers:
+        starts = opening_states(fit.law, fit.values, fit.shape, motion, torque, trial.used, first, fit.cutoff)
+    predicted = reconstructed(fit, motion, starts)
+    offset = float(np.mean((torque - predicted)[first]))
+    return predicted + offset, offset, starts
+
+
 def unseen_error(fit: LawFit, trials: list[Trial]) -> float:
     """Mean absolute error after the first second, which gives the offset."""
     errors = []
     for trial in trials:
-        measured = low_pass(trial.torque, PERIOD, fit.cutoff)
         served = np.flatnonzero(trial.used)
-        first = np.zeros(len(measured), dtype=bool)
+        first = np.zeros(len(trial.torque), dtype=bool)
         first[served[:200]] = True
-        predicted = open_unseen(fit, trial, first)[0]
-        errors.append(np.mean(np.abs(measured - predicted)[served[200:]]))
+        missed = filtered(trial, fit.cutoff)[1] - opened(fit, trial, first)[0]
+        errors.append(np.mean(np.abs(missed)[served[200:]]))
     return float(np.mean(errors))

@@ -19,8 +19,8 @@ from plantar.estimation.intervals import interval95
 from plantar.estimation.law_influence import robust_covariance
 from plantar.estimation.law_refine import Point, Problem, settle
 from plantar.estimation.law_search import Pieces
-from plantar.estimation.law_trials import Prepared, Trial, filtered_columns, prepare_trials
-from plantar.models import BESIDE, Law, Motion
+from plantar.estimation.law_trials import Prepared, Trial, prepare_trials
+from plantar.models import BESIDE, Law
 
 AT_LIMIT = 0.02  # of a shape: so near to its range's end it counts as there
 HARDLY_KNOWN = 0.5  # a standard deviation beyond this share of the value
@@ -94,33 +94,6 @@ class LawFit:
             found.append(f"not told from nothing: {', '.join(known)}")
         return tuple(found)
 
-    def reconstruct(self, motion: Motion, starts: Array | None = None) -> Array:
-        """Torque (N,) without offset along a motion, filtered as in the fit; NaN where no run
-        is long enough to filter.
-
-        `starts` (runs of `path_runs`): where the memory begins, `Law.starts` where not given.
-        """
-        prepared = self._path(motion)
-        path = prepared.motion
-        if not path.runs:
-            return np.full(len(motion), np.nan)
-        starts = self.law.starts(path, self.shape) if starts is None else starts
-        extra = filtered_columns(self.law, [prepared], self.shape[None, :], [starts[None, :]])[0]
-        torque = np.full(len(path), np.nan)
-        torque[prepared.used] = np.column_stack([prepared.base, extra[:, :, 0]]) @ self.values
-        return _spread(torque, path, motion)
-
-    def path_runs(self, motion: Motion) -> list[slice]:
-        """The motion's runs that are long enough to filter, as slices of its own samples."""
-        path = self._path(motion).motion
-        stride = round(path.period / motion.period)
-        return [slice(run.start * stride, min(run.stop * stride, len(motion))) for run in path.runs]
-
-    def _path(self, motion: Motion) -> Prepared:
-        everywhere = np.ones(len(motion), dtype=bool)
-        trial = Trial("", motion, np.zeros(len(motion)), everywhere)
-        return Prepared.of(trial.thinned(self.cutoff), self.cutoff)
-
 
 def fit_law(law: Law, trials: Sequence[Trial], cutoff: float = 5.0, *, shared_offset: bool = False) -> LawFit:
     """Least squares of the trials' torques under `law`, both sides filtered at `cutoff` [Hz].
@@ -181,18 +154,3 @@ def _finished(problem: Problem, point: Point, limits: Array) -> LawFit:
         cutoff=problem.prepared[0].cutoff,
         shared_offset=problem.shared_offset,
     )
-
-
-def _spread(torque: Array, thin: Motion, motion: Motion) -> Array:
-    """A torque on the thinned samples, put back onto all samples of the motion's runs."""
-    from scipy.interpolate import CubicSpline  # only a law that was fitted to thinned samples needs it
-
-    if len(thin) == len(motion):
-        return torque
-    result = np.full(len(motion), np.nan)
-    at, dense = thin.period * np.arange(len(thin)), motion.period * np.arange(len(motion))
-    for run in motion.runs:
-        inside = np.isfinite(torque) & (at >= dense[run.start] - 1e-9) & (at <= dense[run.stop - 1] + 1e-9)
-        if inside.sum() >= 4:
-            result[run] = CubicSpline(at[inside], torque[inside])(dense[run])
-    return result

@@ -1,47 +1,47 @@
-"""Where an unseen recording begins: its sensors' offset, and the state of the bush's memory, from its first
-part."""
+"""Where an unseen recording begins under a law with memory: the bush's inner state, from the recording's first part."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from plantar.conventions import Array, Mask
-from plantar.estimation.law_fit import LawFit
-from plantar.estimation.law_trials import Trial
+from plantar.models import BESIDE, Law, Motion
 from plantar.signals import low_pass
 
 TRIED = np.linspace(-1.0, 1.0, 21)  # states of the memory
 FORGOTTEN = 0.02  # of the span between the extreme starts' torques: below it the start no longer matters
 
 
-@dataclass(frozen=True)
-class Opening:
-    """The recording's `offset`, and the state of the law's memory at the start of each run, `starts` (runs,).
+def opening_states(
+    law: Law,
+    values: Array,
+    shape: Array,
+    motion: Motion,
+    measured: Array,
+    used: Mask,
+    opening: Mask,
+    cutoff: float,
+) -> Array:
+    """The state (runs,) at the start of each run of an unseen motion under a law with parameters (k,) and shape (s,).
 
-    `settling` (N,) are the samples that told the starts: until the memory of them has faded.
+    `motion` and `measured` torque (N,) are filtered at `cutoff` [Hz]; `used` (N,) serve, those of `opening` (N,) show
+    the sensors' offset.
     """
-
-    offset: float
-    starts: Array
-    settling: Mask
-
-    def of(self, every: Array, runs: Sequence[slice]) -> Array:
-        """Of torques (m, N) for each state tried, each run's from where it began, with the offset: (N,)."""
-        torque = every[len(every) // 2].copy()
-        for run, start in zip(runs, self.starts, strict=True):
-            torque[run] = every[int(np.argmin(np.abs(TRIED - start))), run]
-        return np.asarray(torque + self.offset)
+    tried = np.repeat(TRIED[:, None], len(motion.runs), axis=1)
+    extra = law.extra([motion], np.repeat(shape[None, :], len(TRIED), axis=0), [tried])[0]
+    own = len(BESIDE)
+    memory = low_pass(np.einsum("neb,e->nb", extra, values[own:]), motion.period, cutoff)
+    every = memory.T + np.column_stack([motion.deflection, motion.rate]) @ values[:own]
+    return _best_starts(measured, every, motion.runs, used, opening)
 
 
-def open_runs(measured: Array, every: Array, runs: Sequence[slice], used: Mask, opening: Mask) -> Opening:
-    """Where the memory began in each run of an unseen recording, and the recording's offset.
+def _best_starts(measured: Array, every: Array, runs: Sequence[slice], used: Mask, opening: Mask) -> Array:
+    """Of the torques `every` (m, N), without offset, of the states `TRIED`: which state fits each run best.
 
-    `every` (m, N): the law's torque without offset for each of the states `TRIED`, filtered as `measured` (N,). Before
-    an element slips, its state and the sensors' offset look alike; at its first slip they part. So for each state the
-    offset is what is missing over the samples of `opening` (N,), and the state is the one that fits best while it
+    Before an element slips, its state and the sensors' offset look alike; at its first slip they part. So for each
+    state the offset is what is missing over the samples of `opening`, and the state is the one that fits best while it
     matters.
     """
     span = np.abs(every[-1] - every[0])
@@ -56,21 +56,7 @@ def open_runs(measured: Array, every: Array, runs: Sequence[slice], used: Mask, 
     starts[first], offset = TRIED[chosen], float(offsets[chosen])
     for place in set(range(len(runs))) - {first}:
         starts[place] = TRIED[_best(measured, every + offset, settling & (run_of == place))]
-    return Opening(offset, starts, settling)
-
-
-def open_unseen(fit: LawFit, trial: Trial, opening: Mask) -> tuple[Array, Opening]:
-    """Predicted torque (N,) of an unseen recording, and where it begins; `opening` (N,) shows its offset."""
-    motion = trial.motion
-    measured = low_pass(trial.torque, motion.period, fit.cutoff)
-    runs = fit.path_runs(motion)
-    if not (fit.law.remembers and fit.law.forgets and runs):
-        torque = fit.reconstruct(motion)
-        offset = _offset(measured - torque, opening)
-        return torque + offset, Opening(offset, np.zeros(len(runs)), np.zeros(len(motion), dtype=bool))
-    every = np.array([fit.reconstruct(motion, np.full(len(runs), start)) for start in TRIED])
-    found = open_runs(measured, every, runs, trial.used, opening)
-    return found.of(every, runs), found
+    return starts
 
 
 def _offset(missing: Array, opening: Mask) -> float:
