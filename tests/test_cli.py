@@ -247,6 +247,11 @@ def test_units_in_brackets_are_text_not_markup(capsys: pytest.CaptureFixture[str
         assert text in shown
 
 
+def test_numbers_stand_to_the_right_and_sentences_to_the_left() -> None:
+    drawn = table("", ("value", "why"), [("4.1 ± 0.5", "95 % interval ±1 %, 44 s served"), ("1e+05", "")])
+    assert [column.justify for column in drawn.columns] == ["right", "left"]
+
+
 @pytest.mark.parametrize("verb", COMMANDS)
 def test_no_help_loses_a_unit_to_markup(verb: str) -> None:
     """`[ms]` in a help text is a tag to the one who prints it, and vanishes."""

@@ -154,6 +154,22 @@ def test_the_identified_urdf_loads_with_the_same_bodies(result: DynamicsResult, 
     assert {p.name for p in tmp_path.iterdir()} == {"identified.urdf", "residuals.parquet", "result.json"}
 
 
+def test_the_trivial_predictor_is_the_mean_of_all_fitted_motions(
+    robot: RobotModel, logs: list[MotionLog]
+) -> None:
+    """Also for the first one: by its own mean alone it would look harder to beat than the others."""
+    found = identify_inertia(robot, logs)
+    columns = found.residuals.to_pydict()
+    force = {
+        log.name: np.array(columns["force.x.measured"])[np.array(columns["motion"]) == log.name]
+        for log in logs
+    }
+    trivial = np.mean([values.mean() for values in force.values()])
+    for name, values in force.items():
+        expected = np.mean(np.abs(values - trivial))
+        assert found.score(name, "force.x").zero_mean_abs == pytest.approx(expected, rel=1e-9)
+
+
 def test_a_reversed_torque_channel_and_a_tilted_mount_are_found_and_said(
     robot: RobotModel, logs: list[MotionLog]
 ) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Callable, Iterable, Sequence
 
@@ -12,6 +13,7 @@ from rich.table import Table
 VERDICT_STYLE = {"usable": "green", "weak": "yellow", "unidentifiable": "red"}
 SEVERITY_STYLE = {"info": "dim", "warning": "yellow"}
 PIPE_WIDTH = 150  # columns where stdout is not a terminal
+WORD = re.compile(r"[^\W\d_]{3}")
 
 
 def console() -> Console:
@@ -54,4 +56,5 @@ def number(value: float | None, digits: int = 4) -> str:
 
 
 def _numeric(cell: str) -> bool:
-    return cell[:1] in "0123456789-+–±." or not cell
+    """Whether a cell is numbers and their units, not a sentence that begins with a number."""
+    return not cell or (cell[0] in "0123456789-+–±." and not WORD.search(cell))

@@ -38,15 +38,12 @@ def scored(
     index = [place.row for place in places]
     rows: list[DynamicsScore] = []
     tables: list[pa.Table] = []
-    means: list[Array] = []
+    trivial = np.mean([[samples.measured[row].mean() for row in index] for samples in fitted], axis=0)
     kinds: tuple[tuple[Kind, Sequence[Samples]], ...] = (("direct", fitted), ("cross", unseen))
     for kind, samples in ((kind, samples) for kind, recordings in kinds for samples in recordings):
         measured = np.array([samples.measured[row] for row in index])
         predicted = fit.predict(samples)[index]
         cad = fit.equation.inverse_dynamics(samples.motion, fit.prior.cad)[index]
-        if kind == "direct":
-            means.append(measured.mean(axis=1))
-        trivial = np.mean(means, axis=0)
         for place, *parts in zip(places, measured, predicted, cad, trivial, strict=True):
             rows.append(_score(kind, samples.name, place.unit, *parts, axis=place.axis, joint=place.joint))
         if places[0].joint is not None:

@@ -29,8 +29,9 @@ def guess_robot_file(urdf: Path, logs: Sequence[Path], out: Path) -> str:
     tree = UrdfTree.load(urdf)
     sensors = look_at(logs)
     ankles = find_ankles(tree, model)
+    count = "1 log" if len(logs) == 1 else f"{len(logs)} logs"
     lines = [
-        f"# Written by plantar init from {urdf.name} and {len(logs)} logs. Lines marked GUESS want a look.",
+        f"# Written by plantar init from {urdf.name} and {count}. Lines marked GUESS want a look.",
         f"name: {_text(tree.root.get('name') or urdf.stem)}",
         f"urdf: {_text(_relative(urdf, out))}",
         *_imu_lines(sensors, tree),
