@@ -120,6 +120,7 @@ def test_a_joint_that_stands_still_is_unidentifiable(arm: RobotModel, real: pin.
     }
     found = identify_joints(arm, [log.with_columns(held)])
     assert found.parameter(name, "viscous").verdict == "unidentifiable"
+    assert "of the joints' terms" in next(note.text for note in found.notes if note.code == "unexcited")
     assert "moves" in found.parameter(name, "viscous").reason
 
 

@@ -71,13 +71,14 @@ def excitation_of(fit: PulledFit) -> tuple[int, float, list[Note]]:
     condition = float(singular[0] / singular[solution.rank - 1]) if solution.rank else float("inf")
     if solution.full:
         return solution.rank, condition, []
-    n_base = len(fit.base)
+    n_base, said = len(fit.base), []
     names = [fit.base.names[k] for k in np.flatnonzero(~solution.excited[:n_base])]
-    listed = ", ".join(names[:NAMED]) + (f" and {len(names) - NAMED} more" if len(names) > NAMED else "")
-    text = (
-        f"the motions excite {solution.rank} of {len(solution.values)} directions; from the URDF, not from the data: "
-        + listed
-    )
+    if names:
+        listed = ", ".join(names[:NAMED]) + (f" and {len(names) - NAMED} more" if len(names) > NAMED else "")
+        said.append(f"from the URDF, not from the data: {listed}")
+    if terms := int(np.sum(~solution.excited[n_base:])):
+        said.append(f"of the joints' terms {terms} are not told apart")
+    text = f"the motions excite {solution.rank} of {len(solution.values)} directions; {'; '.join(said)}"
     return solution.rank, condition, [Note("unexcited", "warning", text)]
 
 
