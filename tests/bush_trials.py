@@ -1,5 +1,4 @@
-"""Recordings of one foot axis with a known bush, made without plantar's laws: the state is stepped sample by
-sample."""
+"""Recordings of one foot axis with a known bush, made without plantar's laws: the state is stepped sample by sample."""
 
 from __future__ import annotations
 
@@ -19,8 +18,7 @@ PERIOD = 0.005
 
 @dataclass(frozen=True)
 class Rubber:
-    """The truth: spring, damper, and beside them an element that slips (sharpness None: Jenkins), a cubic
-    term."""
+    """The truth: spring, damper, and beside them an element that slips (sharpness None: Jenkins), a cubic term."""
 
     stiffness: float = 434.0
     damping: float = 15.89
@@ -85,8 +83,7 @@ def tilt(
 def recorded(
     rng: np.random.Generator, label: str, path: np.ndarray, rubber: Rubber, *, noise: float = 1.0
 ) -> Trial:
-    """What the sensors say: attitude bias and drift, gyroscope and wrench noise, zeros drawn per
-    recording."""
+    """What the sensors say: attitude bias and drift, gyroscope and wrench noise, zeros drawn per recording."""
     time = PERIOD * np.arange(len(path))
     rate = np.gradient(path, PERIOD)
     drift = np.radians(0.03) * rng.standard_normal() * time / time[-1]

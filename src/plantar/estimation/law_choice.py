@@ -33,8 +33,7 @@ FEWEST_RECORDINGS = 3  # for whole recordings to be held out
 
 @dataclass(frozen=True)
 class LawScore:
-    """One law: error on held-out pieces [N·m rms], fit, and why it could not be chosen (None where it
-    could)."""
+    """One law: error on held-out pieces [N·m rms], fit, and why it could not be chosen (None where it could)."""
 
     law: Law
     held_out_rms: float
@@ -50,8 +49,7 @@ class LawScore:
 
 @dataclass(frozen=True)
 class LawChoice:
-    """The chosen law's fit, the linear equivalent (K, C of Kelvin-Voigt over the same motions), and the
-    ranking.
+    """The chosen law's fit, the linear equivalent (K, C of Kelvin-Voigt over the same motions), and the ranking.
 
     `untried` are laws that elaborate one which gained nothing, add nothing to it, or need what the motions lack. What
     holds, holds for deflections up to `reach` [rad] from the middle: an element that none of these motions

@@ -1,9 +1,7 @@
-"""Fit of a law of the bush that is linear in all but its shape: the shape outside, linear least squares
-inside.
+"""Fit of a law of the bush that is linear in all but its shape: the shape outside, linear least squares inside.
 
-The search over the shape is in `law_search`; here it is refined together with the unknown start of the law's
-memory in every run (Gauss-Newton on the variable projection), and everything that had to be estimated enters
-the intervals.
+The search over the shape is in `law_search`; here it is refined together with the unknown start of the law's memory in
+every run (Gauss-Newton on the variable projection), and everything that had to be estimated enters the intervals.
 """
 
 from __future__ import annotations
@@ -30,11 +28,10 @@ HARDLY_KNOWN = 0.5  # a standard deviation beyond this share of the value
 class LawFit:
     """A law fitted to several recordings.
 
-    `values` (k,) as `law.terms`, `shape` (s,) as `law.shape_terms`, `covariance` (k + s, same) of both with
-    coloured residuals, the shape's and the starts' uncertainty inside; `freedom` (k + s,) goes with it,
-    `white_std` (k + s,) is the paper's. `offsets`, `offset_std`, `starts` (runs,) and `residuals` (of the
-    thinned samples that served) by recording. `limits` (2, s) is the range that the motions let the shape be
-    looked for in.
+    `values` (k,) as `law.terms`, `shape` (s,) as `law.shape_terms`, `covariance` (k + s, same) of both with coloured
+    residuals, the shape's and the starts' uncertainty inside; `freedom` (k + s,) goes with it, `white_std` (k + s,) is
+    the paper's. `offsets`, `offset_std`, `starts` (runs,) and `residuals` (of the thinned samples that served) by
+    recording. `limits` (2, s) is the range that the motions let the shape be looked for in.
     """
 
     law: Law
@@ -98,8 +95,7 @@ class LawFit:
 def fit_law(law: Law, trials: Sequence[Trial], cutoff: float = 5.0, *, shared_offset: bool = False) -> LawFit:
     """Least squares of the trials' torques under `law`, both sides filtered at `cutoff` [Hz].
 
-    One offset for each recording, or with `shared_offset` one for all. Raises DataError where no sample
-    serves.
+    One offset for each recording, or with `shared_offset` one for all. Raises DataError where no sample serves.
     """
     prepared = prepare_trials(trials, cutoff)
     if not prepared:

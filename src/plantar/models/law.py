@@ -1,5 +1,4 @@
-"""What every law of the bush offers: torque from the history of deflection and rate, linear in all but its
-shape.
+"""What every law of the bush offers: torque from the history of deflection and rate, linear in all but its shape.
 
     torque = stiffness·deflection + damping·rate + Σ parameter·column(history; shape) + offset
 
@@ -24,12 +23,10 @@ BESIDE: Final = ("stiffness", "damping")  # the spring and damper of every law, 
 
 @dataclass(frozen=True)
 class Motion:
-    """One axis of one foot over one recording, at an even period [s]; NaN where nothing is known (a gap, the
-    air).
+    """One axis of one foot over one recording, at an even period [s]; NaN where nothing is known (a gap, the air).
 
-    `deflection` [rad] and `rate` [rad/s] are (N,), wide-band: a law that does not commute with a filter needs
-    the path itself. `across` and `across_rate` are (N, m): the same foot's other axes, for laws that couple
-    them.
+    `deflection` [rad] and `rate` [rad/s] are (N,), wide-band: a law that does not commute with a filter needs the path
+    itself. `across` and `across_rate` are (N, m): the same foot's other axes, for laws that couple them.
     """
 
     deflection: Array
@@ -48,8 +45,7 @@ class Motion:
 
 
 class Law(ABC):
-    """A law of the bush. Linear `terms` first stiffness and damping; `shape_terms` are its nonlinear
-    parameters.
+    """A law of the bush. Linear `terms` first stiffness and damping; `shape_terms` are its nonlinear parameters.
 
     A law that `remembers` has an inner state of unknown value where a run begins: its start, in [-1, 1].
     """
@@ -115,8 +111,7 @@ class Law(ABC):
         return columns
 
     def starts(self, motion: Motion, shape: Array) -> Array:
-        """Inner state (runs,) at the start of each run, if the bush was loaded there from rest without
-        turning back."""
+        """Inner state (runs,) at the start of each run, if the bush was loaded there from rest without turning back."""
         return np.zeros(len(motion.runs))
 
     def possible(self, values: Array) -> bool:
@@ -125,8 +120,7 @@ class Law(ABC):
 
 
 def reach(motions: Sequence[Motion]) -> float:
-    """Largest deflection from the middle, over the motions' runs: half of the widest swing [rad], 1 % cut
-    off."""
+    """Largest deflection from the middle, over the motions' runs: half of the widest swing [rad], 1 % cut off."""
     widest = 0.0
     for motion in motions:
         for run in motion.runs:
