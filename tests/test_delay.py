@@ -10,6 +10,7 @@ import pytest
 from biped_robot import make_robot
 from plantar.conventions import Array
 from plantar.estimation.delay import Delay, Pair, estimate_delay
+from plantar.identify.closure import Closure
 from plantar.identify.latency import CLOCK, wrench_latency
 from plantar.log import MotionLog
 from plantar.signals import differentiate, interpolate, low_pass
@@ -83,11 +84,18 @@ def test_no_delay_is_claimed_beyond_what_delays_are() -> None:
     assert estimate_delay([late_pair(0.2, 0)]) is None
 
 
+def closed(pair: Pair) -> Closure:
+    """The pair as one foot's closure, under still joints."""
+    return Closure(
+        pair.label, pair.measured[None], pair.rate[None], pair.predicted, 0 * pair.predicted, pair.period
+    )
+
+
 @pytest.mark.parametrize("slow_first", [True, False])
 def test_the_slowest_clock_bounds_what_is_known(slow_first: bool, tmp_path: Path) -> None:
     """Whichever log comes first; one that says nothing of the delay does not count."""
     periods = [0.02, PERIOD] if slow_first else [PERIOD, 0.02]
     logs = [MotionLog(str(period), period * np.arange(100), {}) for period in (*periods, 0.1)]
-    pairs = [late_pair(0.01, 1), late_pair(0.01, 2), None]
-    found = wrench_latency(make_robot(tmp_path), logs, lambda *_: pairs)
+    closures = [closed(late_pair(0.01, 1)), closed(late_pair(0.01, 2)), None]
+    found = wrench_latency(make_robot(tmp_path), logs, lambda *_: closures)
     assert CLOCK * 0.02 <= found.std < CLOCK * 0.1

@@ -8,19 +8,20 @@ from plantar.errors import RobotError, located
 from plantar.kinematics import KinematicTree
 from plantar.log import MotionLog
 from plantar.robot import RobotModel
-from plantar.signals import differentiate, low_pass
+from plantar.signals import differentiate, low_pass, shifted
 
 
-def inertial_motion(robot: RobotModel, log: MotionLog, cutoff: float) -> Motion:
+def inertial_motion(robot: RobotModel, log: MotionLog, cutoff: float, late: float = 0.0) -> Motion:
     """Motion of root and joints from proper acceleration, angular velocity and joint positions.
 
     Everything is filtered at `cutoff` [Hz] without lag; velocities and accelerations are differences of the filtered
-    positions. Raises RobotError without an IMU, LogError where its columns are missing.
+    positions, which the encoders report `late` by so much [s]. Raises RobotError without an IMU, LogError where its
+    columns are missing.
     """
     if robot.imu is None:
         raise RobotError(located("names no imu", path=robot.path, valid="imu: {name: ..., link: ...}"))
     period = log.period
-    positions = low_pass(log.positions(robot), period, cutoff)
+    positions = shifted(low_pass(log.positions(robot), period, cutoff), period, late)
     velocities = differentiate(positions, period)
     accelerations = differentiate(velocities, period)
     rate = low_pass(log.angular_velocity(robot.imu.name), period, cutoff)

@@ -57,7 +57,7 @@ class Delay:
 def estimate_delay(pairs: Sequence[Pair]) -> Delay | None:
     """Delay common to all pairs, or None where in none the prediction closes, or what it says is no delay."""
     value, found = 0.0, None
-    bands = [_bands(pair) for pair in pairs if _closes(pair)]
+    bands = [_bands(pair) for pair in pairs if closes(pair)]
     for _ in range(ROUNDS):
         cells = [cell for own in bands for band in own for cell in _cells(band, value)]
         if not cells:
@@ -114,7 +114,7 @@ def _pooled(cells: Sequence[Delay]) -> Delay:
     return Delay(value, float(np.sqrt(max(1.0, disagreement) / weights.sum())), freedom, len(cells))
 
 
-def _closes(pair: Pair) -> bool:
+def closes(pair: Pair) -> bool:
     """Whether the forces follow from the prediction: they do not where an operator holds the robot."""
     measured, rate, predicted = (
         part[:, FORCE] - part[:, FORCE].mean(axis=0) for part in (pair.measured, pair.rate, pair.predicted)

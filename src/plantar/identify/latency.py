@@ -1,52 +1,80 @@
-"""How late the force sensors are: Newton's law ties the ground's wrench to IMU and encoders without K and C.
+"""How late the force sensors are, and the encoders: Newton's law ties them to the IMU without K and C.
 
 A spring-damper fit cannot see a delay: it takes C - K·delay for C. The whole body can: the wrench that eq. 1's base
-rows predict from the URDF's inertias and the motion must equal the measured one, at the same moment.
+rows predict from the URDF's inertias and the motion must equal the measured one, at the same moment. One delay common
+to all force sensors is the rule, with encoders and IMU read together; where feet or encoders clearly have delays of
+their own, each gets its own.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
-from plantar.conventions import FORCE, Array
-from plantar.dynamics import Contact, Equation, model_parameters
-from plantar.dynamics.inertial_motion import inertial_motion
-from plantar.estimation.delay import LEAST_CLOSED, Pair, estimate_delay, unexplained
+from plantar.conventions import Array
+from plantar.estimation.delay import LONGEST, closes, estimate_delay
+from plantar.estimation.delays_apart import Balance, estimate_delays
+from plantar.identify.closure import Closure, closure_of
 from plantar.log import MotionLog
 from plantar.notes import Note
 from plantar.robot import RobotModel
-from plantar.signals import differentiate, low_pass, runs
+from plantar.signals import shifted
 
-CUTOFF = 8.0  # Hz: above it differentiated encoders are noise
 PRIOR_STD = (
     0.0075  # s: what is known of a wrench's delay before any data; drivers and filters are rarely later
 )
 KNOWN_STD = 0.001  # s: better known than this, the delay is corrected without a warning
 CLOCK = 0.06  # of a period: within it, nobody knows when a sample was taken
 SIGNIFICANT = 2.5  # deviations from zero: a poorly known delay is corrected beyond, else only allowed for
-KEPT_RATE = 67.0  # Hz of the samples that are kept: the cutoff is far below
-SLOW = 0.05  # Hz: below it the pair differs by postures and drifting zeros
-BASE_ROWS = slice(0, 6)
-WINDOW = 2.0  # s, in which the forces must follow from the prediction
-SHORTEST = 8.0  # s that a log must offer without a push or a blow
-EDGE = 0.3  # s at both ends of a run, where the filter is unsure
+APART = 4.0  # deviations by which sensors must differ to have delays of their own
+LEAST_APART = 0.0015  # s, and by so much
+APART_STD = 0.0003  # s: what is left of a delay of its own, in quadrature
 
 
 @dataclass(frozen=True)
 class Latency:
-    """Delay of the wrenches [s], > 0: late; `std` [s]; `measured` whether any log showed it."""
+    """Delay of the wrenches against the IMU [s], > 0: late; `std` [s]; `measured` whether any log showed it.
+
+    `feet` has each foot's own delay where they differ, `encoders` that of the joints' positions; both are usually
+    empty and zero.
+    """
 
     delay: float
     std: float
     freedom: float
     measured: bool
     note: Note
+    feet: Mapping[str, float] = field(default_factory=dict)
+    encoders: float = 0.0
 
     def to_dict(self) -> dict[str, object]:
-        return {"wrench_delay": self.delay, "std": self.std, "measured": self.measured, "unit": "s"}
+        content = {"wrench_delay": self.delay, "std": self.std, "measured": self.measured, "unit": "s"}
+        return content | {"feet": dict(self.feet), "encoder_delay": self.encoders}
+
+
+def latency_of(result: Mapping[str, Any]) -> Latency:
+    """The latency that a `plantar.feet/1` result was corrected for; none where it names none."""
+    stored = result.get("latency", {})
+    delay, feet = float(stored.get("wrench_delay", 0.0)), stored.get("feet", {})
+    note = Note("delay_given", "info", f"wrenches taken as {1e3 * delay:+.1f} ms late, as in the result")
+    own = {str(foot): float(late) for foot, late in feet.items()}
+    return Latency(delay, 0.0, np.inf, False, note, own, float(stored.get("encoder_delay", 0.0)))
+
+
+def in_time(robot: RobotModel, log: MotionLog, latency: Latency) -> MotionLog:
+    """The log with wrenches and joint positions as they were at the moments of the IMU's samples."""
+    moved: dict[str, Array] = {}
+    for name, foot in robot.feet.items():
+        columns = [column for column in log.columns if column.startswith(f"wrench.{foot.wrench.name}.")]
+        late = latency.feet.get(name, latency.delay)
+        moved |= dict(zip(columns, shifted(log.stack(columns), log.period, late).T, strict=True))
+    if latency.encoders:
+        columns = [column for column in log.columns if column.startswith("joint.")]
+        moved |= dict(zip(columns, shifted(log.stack(columns), log.period, latency.encoders).T, strict=True))
+    return log.with_columns(moved)
 
 
 def known_latency(delay: float) -> Latency:
@@ -56,15 +84,18 @@ def known_latency(delay: float) -> Latency:
 
 
 def wrench_latency(
-    robot: RobotModel, logs: Sequence[MotionLog], each: Callable[..., Iterable[Pair | None]] = map
+    robot: RobotModel, logs: Sequence[MotionLog], each: Callable[..., Iterable[Closure | None]] = map
 ) -> Latency:
     """The delay common to all logs, evenly sampled, drawn towards zero by what is usual where the logs say little.
 
     `each` maps a function over logs: a pool's map uses all cores.
     """
-    tried = list(each(lambda log: _pair(robot, log), logs))
-    pairs = [pair for pair in tried if pair is not None]
-    found = estimate_delay(pairs) if pairs else None
+    tried = list(each(lambda log: closure_of(robot, log), logs))
+    closures = [closure for closure in tried if closure is not None and closes(closure.pair)]
+    apart = _apart(list(robot.feet), [closure.balance for closure in closures])
+    if apart is not None:
+        return apart
+    found = estimate_delay([closure.pair for closure in closures]) if closures else None
     if found is None:
         text = (
             "delay of the wrenches unknown: no log in which the ground's wrench follows from IMU, encoders and URDF; "
@@ -73,7 +104,7 @@ def wrench_latency(
         )
         return Latency(0.0, PRIOR_STD, np.inf, False, Note("delay_unknown", "warning", text))
     gain = PRIOR_STD**2 / (PRIOR_STD**2 + found.std**2)
-    slowest = max(log.period for log, pair in zip(logs, tried, strict=True) if pair is not None)
+    slowest = max(log.period for log, closure in zip(logs, tried, strict=True) if closure is not None)
     delay, std = gain * found.value, float(np.hypot(np.sqrt(gain) * found.std, CLOCK * slowest))
     told = f"wrenches are {1e3 * delay:+.1f} ± {1e3 * 1.96 * std:.1f} ms late (95 %) against IMU and encoders"
     if std <= KNOWN_STD:
@@ -86,48 +117,34 @@ def wrench_latency(
     return Latency(0.0, float(np.hypot(delay, std)), found.freedom, True, note)
 
 
-def _pair(robot: RobotModel, log: MotionLog) -> Pair | None:
-    """Measured and predicted ground wrench in the root link's frame; None where the log lacks what it takes."""
-    imu = robot.imu
-    kinds = ("linear_acceleration", "angular_velocity")
-    needed = [f"imu.{imu.name}.{kind}.{axis}" for kind in kinds for axis in "xyz"] if imu else []
-    if imu is None or not log.has(*needed) or any(foot.contact == "always" for foot in robot.feet.values()):
+def _apart(names: Sequence[str], balances: Sequence[Balance]) -> Latency | None:
+    """Delays of each foot and of the encoders, those that clearly differ; None where one common delay will do."""
+    found = estimate_delays(balances) if balances else None
+    if found is None:
         return None
-    motion = inertial_motion(robot, log, CUTOFF)
-    wrenches = np.hstack([foot.wrench.sign * log.wrench(foot.wrench.name) for foot in robot.feet.values()])
-    whole = motion.finite & np.isfinite(wrenches).all(axis=1)
-    longest = max(runs(whole), key=lambda run: run.stop - run.start, default=slice(0, 0))
-    edge = round(EDGE / log.period)
-    if longest.stop - longest.start < 4 * edge + 400:
+    feet = len(names)
+    # How far each foot is from the mean of all, and the encoders from the IMU.
+    contrasts = np.zeros((feet + 1, feet + 1))
+    contrasts[:feet, :feet] = np.eye(feet) - 1 / feet
+    contrasts[feet, feet] = 1.0
+    apart = contrasts @ found.values
+    spread = np.sqrt(np.diag(contrasts @ found.covariance @ contrasts.T) + APART_STD**2)
+    differ = (np.abs(apart) > np.maximum(APART * spread, LEAST_APART)) & (spread < KNOWN_STD)
+    if not differ.any():
         return None
-    equation = Equation(robot.floating_model)
-    contacts = [Contact(*robot.frame(foot.wrench.placement)) for foot in robot.feet.values()]
-    part = motion.select(longest)
-    predicted = equation.inverse_dynamics(part, model_parameters(robot.floating_model))[BASE_ROWS].T
-
-    def carried(readings: Array) -> Array:
-        split = [np.ascontiguousarray(readings[:, 6 * i : 6 * i + 6]) for i in range(len(contacts))]
-        return -equation.inverse_dynamics(part, None, contacts, split)[BASE_ROWS].T
-
-    readings = low_pass(wrenches[longest], log.period, CUTOFF)
-    stride = max(1, round(1 / (KEPT_RATE * log.period)))
-    inner, period = slice(edge, len(part) - edge, stride), stride * log.period
-    rows = np.hstack([carried(readings), carried(differentiate(readings, log.period)), predicted])[inner]
-    measured, rate, predicted = np.hsplit(rows - low_pass(rows, period, SLOW), 3)
-    calm = _longest_closed(measured[:, FORCE], rate[:, FORCE], predicted[:, FORCE], period)
-    if (calm.stop - calm.start) * period < SHORTEST:
+    differ[:feet] = differ[:feet].any()
+    settled = estimate_delays(balances, contrasts[~differ])
+    if settled is None or np.abs(settled.values).max() > LONGEST:
         return None
-    return Pair(log.name, measured[calm], rate[calm], predicted[calm], period)
-
-
-def _longest_closed(measured: Array, rate: Array, predicted: Array, period: float) -> slice:
-    """The longest stretch in which nobody pushes and nothing strikes: there the forces follow from the prediction."""
-    width = round(WINDOW / period)
-    count = len(measured) // width
-    usual = float(np.mean(np.sum(measured**2, axis=1)))
-    closed = np.zeros(len(measured), dtype=bool)
-    for window in (slice(i * width, (i + 1) * width) for i in range(count)):
-        power = float(np.mean(np.sum(measured[window] ** 2, axis=1)))
-        missing = unexplained(measured[window], rate[window], predicted[window]) / width
-        closed[window] = missing < (1 - LEAST_CLOSED) * max(power, usual)
-    return max(runs(closed), key=lambda run: run.stop - run.start, default=slice(0, 0))
+    delays = dict(zip(names, settled.values[:feet].tolist(), strict=True)) if differ[:feet].any() else {}
+    mean = float(np.mean(settled.values[:feet]))
+    encoders = float(settled.values[feet])
+    std = float(np.hypot(np.sqrt(np.diag(settled.covariance).max()), APART_STD))
+    each = ", ".join(f"{name} {1e3 * delay:+.1f}" for name, delay in delays.items()) or f"{1e3 * mean:+.1f}"
+    text = (
+        f"sensors are late by different delays against the IMU: wrenches {each} ms, encoders {1e3 * encoders:+.1f} ms "
+        f"(± {1e3 * 1.96 * std:.1f} ms, 95 %): corrected"
+    )
+    return Latency(
+        mean, std, float(settled.cells), True, Note("delays_apart", "warning", text), delays, encoders
+    )

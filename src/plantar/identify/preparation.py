@@ -11,7 +11,7 @@ from plantar.errors import DataError
 from plantar.identify.attitude_pull import NO_PULL, Pull, log_pull
 from plantar.identify.edges import leave_out_edges
 from plantar.identify.height import Height, fit_height
-from plantar.identify.latency import Latency, known_latency, wrench_latency
+from plantar.identify.latency import Latency, in_time, known_latency, wrench_latency
 from plantar.identify.recording import Recording, Role, checked, moved_centre, prepare
 from plantar.identify.settings import FeetSettings
 from plantar.identify.sliding import leave_out_slip
@@ -53,17 +53,18 @@ def prepare_all(
     progress("check the logs")
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         even = list(pool.map(lambda log: checked(robot, log), [*logs, *validate]))
-        progress("estimate the wrenches' delay")
+        progress("estimate the sensors' delays")
         latency = (
             wrench_latency(robot, even, pool.map)
             if settings.wrench_delay is None
             else known_latency(settings.wrench_delay)
         )
+        even = [in_time(robot, log, latency) for log in even]
         pull = common_pull(robot, even)
         roles = _roles("fit", logs) + _roles("validate", validate)
         recordings = list(
             pool.map(
-                lambda log, role: recorded(robot, log, role, settings, latency.delay, pull, progress),
+                lambda log, role: recorded(robot, log, role, settings, pull, progress),
                 even,
                 roles,
             )
@@ -93,13 +94,12 @@ def recorded(
     log: MotionLog,
     role: Role,
     settings: FeetSettings,
-    delay: float,
     pull: Pull,
     progress: Progress,
 ) -> Recording:
-    """A `checked` log as `prepare` makes it ready, without what is sure to be beyond the sole."""
+    """A `checked` log `in_time` as `prepare` makes it ready, without what is sure to be beyond the sole."""
     progress(f"prepare {log.name}")
-    recording = prepare(robot, log, role, settings, delay, pull)
+    recording = prepare(robot, log, role, settings, pull)
     leave_out_tipping(robot, recording, settings)
     return recording
 

@@ -25,7 +25,6 @@ from plantar.signals import (
     evenly_sampled,
     low_pass,
     run_ends,
-    shifted,
     without_holes,
 )
 from plantar.spikes import without_spikes
@@ -99,10 +98,9 @@ def prepare(
     log: MotionLog,
     role: Role,
     settings: FeetSettings,
-    delay: float = 0.0,
     pull: Pull = NO_PULL,
 ) -> Recording:
-    """Bush states and contact of every foot in a `checked` log whose wrenches are late by `delay` [s].
+    """Bush states and contact of every foot in a `checked` log whose sensors were read together.
 
     pull: of the attitude towards the accelerometer, from all logs of this IMU.
     """
@@ -111,9 +109,7 @@ def prepare(
     period = log.period
     velocities = _velocities(robot, log, settings.cutoff, notes)
     orientation, rates = attitude(log, imu, notes)
-    wrenches = {
-        name: shifted(log.wrench(foot.wrench.name), period, delay) for name, foot in robot.feet.items()
-    }
+    wrenches = {name: log.wrench(foot.wrench.name) for name, foot in robot.feet.items()}
     raw = bush_states(robot, log.positions(robot), velocities, orientation, rates, wrenches)
     contacts = _contacts(robot, log, raw, settings, notes)
     places = {name: state.sole_position[:, :2] for name, state in raw.items()}

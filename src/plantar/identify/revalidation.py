@@ -11,6 +11,7 @@ from plantar.conventions import ROTATIONAL_AXES, Axis
 from plantar.errors import DataError
 from plantar.identify.axis import AxisFit
 from plantar.identify.edges import leave_out_edges
+from plantar.identify.latency import in_time, latency_of
 from plantar.identify.preparation import check_names, common_pull, recorded
 from plantar.identify.recording import checked, moved_centre
 from plantar.identify.residual_table import Predictions
@@ -42,11 +43,11 @@ def validate_feet(
         key: value for key, value in result["settings"].items() if key in FeetSettings.__dataclass_fields__
     }
     settings = FeetSettings(**known)
-    delay = float(result.get("latency", {}).get("wrench_delay", 0.0))
     compliance = {foot: float(result.get("compliance", {}).get(foot, 0.0)) for foot in robot.feet}
-    even = [checked(robot, log) for log in logs]
+    latency = latency_of(result)
+    even = [in_time(robot, checked(robot, log), latency) for log in logs]
     pull = common_pull(robot, even)
-    recordings = [recorded(robot, log, "validate", settings, delay, pull, progress) for log in even]
+    recordings = [recorded(robot, log, "validate", settings, pull, progress) for log in even]
     leave_out_edges(robot, recordings, settings)
     for recording in recordings:
         leave_out_slip(robot, recording)

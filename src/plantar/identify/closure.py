@@ -1,0 +1,115 @@
+"""Newton's law along one log: the ground's wrench as measured, and as IMU, encoders and URDF predict it (eq. 1)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from plantar.conventions import FORCE, Array
+from plantar.dynamics import Contact, Equation, model_parameters
+from plantar.dynamics.inertial_motion import inertial_motion
+from plantar.estimation.delay import LEAST_CLOSED, Pair, unexplained
+from plantar.estimation.delays_apart import Balance
+from plantar.log import MotionLog
+from plantar.robot import RobotModel
+from plantar.signals import differentiate, low_pass, runs
+
+CUTOFF = 8.0  # Hz: above it differentiated encoders are noise
+KEPT_RATE = 67.0  # Hz of the samples that are kept: the cutoff is far below
+SLOW = 0.05  # Hz: below it both sides differ by postures and drifting zeros
+BASE_ROWS = slice(0, 6)
+WINDOW = 2.0  # s, in which the forces must follow from the prediction
+SHORTEST = 8.0  # s that a log must offer without a push or a blow
+EDGE = 0.3  # s at both ends of a run, where the filter is unsure
+
+
+@dataclass(frozen=True)
+class Closure:
+    """Both sides of Newton's law in the root link's frame over the longest calm stretch of a log.
+
+    `measured` and `rates` (feet, n, 6): each foot's wrench, and how it changes with the moment at which its sensor is
+    read; `predicted` (n, 6), and `by_encoders` (n, 6), how it changes with the moment at which the encoders are.
+    """
+
+    label: str
+    measured: Array
+    rates: Array
+    predicted: Array
+    by_encoders: Array
+    period: float
+
+    @property
+    def pair(self) -> Pair:
+        """All feet together, for a delay that is common to them."""
+        return Pair(
+            self.label, self.measured.sum(axis=0), self.rates.sum(axis=0), self.predicted, self.period
+        )
+
+    @property
+    def balance(self) -> Balance:
+        """Feet and encoders apart: delays of each foot, then of the encoders, all against the IMU."""
+        return Balance(
+            self.predicted, self.measured, np.concatenate([self.rates, -self.by_encoders[None]]), self.period
+        )
+
+
+def closure_of(robot: RobotModel, log: MotionLog) -> Closure | None:
+    """Both sides along an evenly sampled log; None where it lacks what that takes, or the calm to see it."""
+    imu = robot.imu
+    kinds = ("linear_acceleration", "angular_velocity")
+    needed = [f"imu.{imu.name}.{kind}.{axis}" for kind in kinds for axis in "xyz"] if imu else []
+    if imu is None or not log.has(*needed) or any(foot.contact == "always" for foot in robot.feet.values()):
+        return None
+    motion = inertial_motion(robot, log, CUTOFF)
+    wrenches = np.hstack([foot.wrench.sign * log.wrench(foot.wrench.name) for foot in robot.feet.values()])
+    whole = motion.finite & np.isfinite(wrenches).all(axis=1)
+    longest = max(runs(whole), key=lambda run: run.stop - run.start, default=slice(0, 0))
+    edge = round(EDGE / log.period)
+    if longest.stop - longest.start < 4 * edge + 400:
+        return None
+    equation, parameters = Equation(robot.floating_model), model_parameters(robot.floating_model)
+    contacts = [Contact(*robot.frame(foot.wrench.placement)) for foot in robot.feet.values()]
+    part = motion.select(longest)
+
+    def carried(readings: Array) -> list[Array]:
+        split = [np.ascontiguousarray(readings[:, 6 * i : 6 * i + 6]) for i in range(len(contacts))]
+        return [
+            -equation.inverse_dynamics(part, None, [contact], [own])[BASE_ROWS].T
+            for contact, own in zip(contacts, split, strict=True)
+        ]
+
+    def predicted_at(late: float) -> Array:
+        moved = inertial_motion(robot, log, CUTOFF, late).select(longest) if late else part
+        return equation.inverse_dynamics(moved, parameters)[BASE_ROWS].T
+
+    readings = low_pass(wrenches[longest], log.period, CUTOFF)
+    stride = max(1, round(1 / (KEPT_RATE * log.period)))
+    inner, period = slice(edge, len(part) - edge, stride), stride * log.period
+
+    def moving(sides: Sequence[Array]) -> Array:
+        rows = np.hstack(sides)[inner]
+        return (rows - low_pass(rows, period, SLOW)).reshape(len(rows), -1, 6).transpose(1, 0, 2)
+
+    sides = moving([*carried(readings), *carried(differentiate(readings, log.period)), predicted_at(0.0)])
+    measured, rates, predicted = sides[: len(contacts)], sides[len(contacts) : -1], sides[-1]
+    calm = _longest_closed(measured.sum(axis=0), rates.sum(axis=0), predicted, period)
+    if (calm.stop - calm.start) * period < SHORTEST:
+        return None
+    step = log.period
+    by_encoders = moving([(predicted_at(step) - predicted_at(-step)) / (2 * step)])[0]
+    return Closure(log.name, measured[:, calm], rates[:, calm], predicted[calm], by_encoders[calm], period)
+
+
+def _longest_closed(measured: Array, rate: Array, predicted: Array, period: float) -> slice:
+    """The longest stretch in which nobody pushes and nothing strikes: there the forces follow from the prediction."""
+    width = round(WINDOW / period)
+    measured, rate, predicted = measured[:, FORCE], rate[:, FORCE], predicted[:, FORCE]
+    usual = float(np.mean(np.sum(measured**2, axis=1)))
+    closed = np.zeros(len(measured), dtype=bool)
+    for window in (slice(i * width, (i + 1) * width) for i in range(len(measured) // width)):
+        power = float(np.mean(np.sum(measured[window] ** 2, axis=1)))
+        missing = unexplained(measured[window], rate[window], predicted[window]) / width
+        closed[window] = missing < (1 - LEAST_CLOSED) * max(power, usual)
+    return max(runs(closed), key=lambda run: run.stop - run.start, default=slice(0, 0))

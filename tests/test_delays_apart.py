@@ -1,0 +1,116 @@
+"""Sensors that are late by different delays: each is found beside the others, and none is invented."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from biped import record, sway
+from biped_robot import make_robot
+from plantar.conventions import Array
+from plantar.estimation.delays_apart import estimate_delays
+from plantar.identify.closure import Closure
+from plantar.identify.latency import Latency, in_time, latency_of, wrench_latency
+from plantar.notes import Note
+from plantar.signals import differentiate, interpolate, low_pass
+
+PERIOD, SAMPLES = 0.005, 8000
+INNER = slice(100, -100)
+
+
+def late(values: Array, delay: float) -> Array:
+    """Values (n, 6) as a sensor reports them that is late by `delay` [s]."""
+    time: Array = PERIOD * np.arange(len(values), dtype=np.float64)
+    return np.nan_to_num(
+        np.column_stack([interpolate(time - delay, time, column, 1.0) for column in values.T])
+    )
+
+
+def closure(delays: Sequence[float], seed: int) -> Closure:
+    """Two feet that also push against each other, below 1.5 Hz; half of the motion shows in the encoders alone."""
+    *each, encoders = delays
+    random = np.random.default_rng(seed)
+    trunk, arms, share, between = (
+        300 * low_pass(random.standard_normal((SAMPLES, 6)), PERIOD, 1.5) for _ in range(4)
+    )
+    feet = [(trunk + arms) / 2 + share + between, (trunk + arms) / 2 - share - between]
+    readings = [
+        low_pass(late(foot, delay) + random.standard_normal(foot.shape), PERIOD, 8.0)
+        for foot, delay in zip(feet, each, strict=True)
+    ]
+
+    def predicted(shift: float) -> Array:
+        return low_pass(trunk + late(arms, encoders + shift), PERIOD, 8.0)
+
+    by_encoders = (predicted(-PERIOD) - predicted(PERIOD)) / (2 * PERIOD)
+    rates = [differentiate(reading, PERIOD) for reading in readings]
+    return Closure(
+        "sweep",
+        np.array(readings)[:, INNER],
+        np.array(rates)[:, INNER],
+        predicted(0.0)[INNER],
+        by_encoders[INNER],
+        PERIOD,
+    )
+
+
+@pytest.mark.parametrize(
+    "delays", [(0.0, 0.0, 0.0), (0.01, 0.0, 0.0), (0.004, 0.004, -0.006), (0.008, -0.004, 0.005)]
+)
+def test_each_delay_is_found_beside_the_others(delays: tuple[float, float, float]) -> None:
+    for seed in range(4):
+        found = estimate_delays([closure(delays, seed).balance])
+        assert found is not None
+        assert np.abs(found.values - delays).max() < 7e-4
+        assert np.sqrt(np.diag(found.covariance)).max() < 5e-4
+
+
+def test_what_is_held_is_not_estimated() -> None:
+    found = estimate_delays(
+        [closure((0.006, 0.006, 0.0), 1).balance], np.array([[1.0, -1.0, 0.0], [0.0, 0.0, 1.0]])
+    )
+    assert found is not None
+    assert found.values[0] == pytest.approx(found.values[1], abs=1e-12)
+    assert found.values[2] == pytest.approx(0.0, abs=1e-12)
+    assert found.values[0] == pytest.approx(0.006, abs=5e-4)
+
+
+def latency(tmp_path: Path, *delays: float) -> Latency:
+    robot, log = make_robot(tmp_path), record(sway())
+    return wrench_latency(robot, [log, log], lambda *_: [closure(delays, seed) for seed in (1, 2)])
+
+
+def test_one_delay_is_kept_where_sensors_do_not_differ(tmp_path: Path) -> None:
+    found = latency(tmp_path, 0.005, 0.005, 0.0)
+    assert found.note.code == "delay"
+    assert found.feet == {}
+    assert found.encoders == 0.0
+    assert found.delay == pytest.approx(0.005, abs=5e-4)
+
+
+def test_feet_that_differ_and_encoders_that_lag_are_told(tmp_path: Path) -> None:
+    found = latency(tmp_path, 0.012, 0.002, 0.0)
+    assert found.note.code == "delays_apart"
+    assert found.feet == pytest.approx({"left": 0.012, "right": 0.002}, abs=7e-4)
+    assert found.encoders == 0.0
+    lagging = latency(tmp_path, 0.0, 0.0, 0.006)
+    assert lagging.feet == {}
+    assert lagging.encoders == pytest.approx(0.006, abs=7e-4)
+    assert "encoders +6" in lagging.note.text or "encoders +5.9" in lagging.note.text
+
+
+def test_a_log_is_put_in_time_and_a_result_remembers_how(tmp_path: Path) -> None:
+    robot, log = make_robot(tmp_path), record(sway())
+    note = Note("delays_apart", "warning", "")
+    found = Latency(0.015, 0.0, np.inf, True, note, {"left": 0.02, "right": 0.01}, -0.01)
+    moved = in_time(robot, log, latency_of({"latency": found.to_dict()}))
+    steps = {"wrench.left.force.z": 2, "wrench.right.torque.y": 1, "joint.left_ankle_pitch.position": -1}
+    for name, step in steps.items():
+        expected = log.columns[name][10 + step : 100 + step]
+        np.testing.assert_allclose(moved.columns[name][10:100], expected, atol=1e-9)
+    np.testing.assert_array_equal(
+        moved.columns["imu.chest.orientation.w"], log.columns["imu.chest.orientation.w"]
+    )
