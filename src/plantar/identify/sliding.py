@@ -2,80 +2,93 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
-from plantar.contact import DOUBLE, SUPPORTS, FootContact, widened
-from plantar.conventions import Array, Mask, rotation_from_quaternion
-from plantar.deflection import BushState, closure
+from plantar.contact import FootContact, widened
+from plantar.conventions import Array, Mask
+from plantar.deflection import closure
 from plantar.identify.edges import TIPPING
-from plantar.identify.orientation import attitude
 from plantar.identify.recording import Recording
+from plantar.identify.sole_motion import SoleMotion, both_stand, friction, sole_motion
 from plantar.robot import RobotModel
-from plantar.slip import slides, sliding, sole_velocity, turning
+from plantar.signals import runs
+from plantar.slip import Witness, apart_speed, as_usual, slides, turning, twist_speed, unresisted
 
 APART = "slip: the soles move against each other"
 AFTER = 0.05  # s
 TWIST = "slip: the sole turns on the floor"
 ALONE = "slip: the sole moves over the floor"
+UNREST = (
+    0.0007  # m/s: a speed between soles, or of a turning one, that says so much as one deviation of the IMU's
+)
 
 
 def leave_out_slip(robot: RobotModel, recording: Recording) -> None:
-    """Leave out where soles slide. Without an accelerometer only double support shows it."""
-    contacts = recording.contacts
-    flat = {
-        foot: contact.standing & ~_tipping(contact, recording.period) for foot, contact in contacts.items()
+    """Leave out where soles slide. Without an accelerometer only double support and turning on the floor show it.
+
+    Where the closed chain holds, one sole cannot slide without the other.
+    """
+    contacts, period = recording.contacts, recording.period
+    flat = {foot: contact.standing & ~_tipping(contact, period) for foot, contact in contacts.items()}
+    both = np.asarray(both_stand(contacts) & np.all(list(flat.values()), axis=0))
+    apart = _apart(recording, both)
+    twists = {foot: twist_speed(bush.heading, flat[foot], period) for foot, bush in recording.bushes.items()}
+    fastest = np.nan_to_num(np.fmax.reduce([np.abs(twist) for twist in twists.values()]))
+    unrest = (np.nan_to_num(apart.speed) ** 2 + fastest**2) / UNREST**2
+    moves = _moves(sole_motion(robot, recording, flat, unrest), recording, flat)
+    turns = {foot: _turns(twist, period) for foot, twist in twists.items()}
+    ways = {
+        foot: np.hypot(np.nan_to_num(moves[foot].speed), np.nan_to_num(twist))
+        for foot, twist in twists.items()
     }
-    both = _both(recording) & np.all(list(flat.values()), axis=0)
-    if both.any():
-        apart = closure(*recording.bushes.values())
-        slid = sliding(apart.position[:, :2], apart.yaw, both, recording.period)
-        for contact in contacts.values():
-            contact.leave_out(slid, APART)
-    period, acceleration = recording.period, _acceleration(robot, recording)
-    turns, moves = {}, {}
-    for foot, bush in recording.bushes.items():
-        turns[foot] = turning(bush.heading, flat[foot], period)
-        moves[foot] = np.zeros(len(recording.time), dtype=bool)
-        if acceleration is not None:
-            place = recording.places[foot]
-            velocity, noise = sole_velocity(place, bush.heading, acceleration, bush.rate, flat[foot], period)
-            moves[foot] = slides(velocity, period, noise, _friction(bush)) & flat[foot]
-    for found, reason in ((turns, TWIST), (moves, ALONE)):
-        # Where the closed chain holds, one sole cannot slide without the other.
-        together = np.all(list(found.values()), axis=0)
-        for foot, contact in contacts.items():
-            contact.leave_out(np.asarray(np.where(both, together, found[foot])), reason)
+    for foot, contact in contacts.items():
+        witnesses = {APART: apart, ALONE: _shared(moves, foot, both), TWIST: _shared(turns, foot, both)}
+        way = np.fmax(np.where(both, np.max(list(ways.values()), axis=0), ways[foot]), apart.speed)
+        for run in runs(slides(list(witnesses.values()), way, period) & flat[foot]):
+            stretch = np.zeros(len(way), dtype=bool)
+            stretch[run] = True
+            surest = max(witnesses, key=lambda reason: witnesses[reason].clearness(run))
+            contact.leave_out(stretch, surest)
 
 
-def _friction(bush: BushState) -> Array:
-    """The floor's force on a level sole along its x and y axes over the load, (N, 2)."""
-    (x, y, z), (pitch, roll) = bush.wrench[:, :3].T, bush.deflection.T
-    down = np.sin(pitch) * x + np.cos(pitch) * z
-    along = np.column_stack([np.cos(pitch) * x - np.sin(pitch) * z, np.cos(roll) * y + np.sin(roll) * down])
-    return np.asarray(along / np.where(bush.force_z > 0, bush.force_z, np.nan)[:, None])
+def _apart(recording: Recording, both: Mask) -> Witness:
+    """How fast the soles move against each other where both stand."""
+    if not both.any():
+        return as_usual(np.full(len(both), np.nan))
+    apart = closure(*recording.bushes.values())
+    return apart_speed(apart.position[:, :2], apart.yaw, both, recording.period)
+
+
+def _moves(motion: SoleMotion | None, recording: Recording, flat: Mapping[str, Mask]) -> dict[str, Witness]:
+    """How fast each sole moves over the floor, where friction does not say that it cannot be."""
+    if motion is None:
+        return {foot: as_usual(np.full(len(recording.time), np.nan)) for foot in flat}
+    floor, found = friction(recording, flat), {}
+    for foot, velocity in motion.velocity.items():
+        moves = Witness(np.asarray(np.linalg.norm(velocity, axis=1)), motion.deviation[foot])
+        against = unresisted(moves, velocity, floor, recording.period)
+        found[foot] = Witness(np.where(against, np.nan, moves.speed), moves.deviation)
+    return found
+
+
+def _turns(twist: Array, period: float) -> Witness:
+    """How fast a sole turns on the floor, where it is not its bush that gives way."""
+    usual = as_usual(np.abs(twist))
+    return Witness(np.where(turning(twist, period), usual.speed, np.nan), usual.deviation)
+
+
+def _shared(witnesses: Mapping[str, Witness], foot: str, both: Mask) -> Witness:
+    """One foot's witness, and where both feet stand, that of the faster one."""
+    speed, deviation = witnesses[foot].speed, witnesses[foot].deviation
+    for other in witnesses.values():
+        faster = both & ~(np.nan_to_num(other.speed) <= np.nan_to_num(speed))
+        speed, deviation = np.where(faster, other.speed, speed), np.where(faster, other.deviation, deviation)
+    return Witness(speed, deviation)
 
 
 def _tipping(contact: FootContact, period: float) -> Mask:
     """Where the sole tips or has just done so: its place is computed for a level sole."""
     tips = np.isin(contact.code, [k for k, reason in enumerate(contact.reasons) if reason in TIPPING])
     return widened(tips, round(AFTER / period))
-
-
-def _both(recording: Recording) -> Mask:
-    """Where two feet stand together; nowhere for robots with other numbers of feet."""
-    if len(recording.bushes) != 2:
-        return np.zeros(len(recording.time), dtype=bool)
-    supports = [contact.support == SUPPORTS.index(DOUBLE) for contact in recording.contacts.values()]
-    return np.asarray(supports[0] & supports[1])
-
-
-def _acceleration(robot: RobotModel, recording: Recording) -> Array | None:
-    """Horizontal acceleration of the IMU in the world, (N, 2) [m/s²]; None where the log has no accelerometer."""
-    log, imu = recording.log, robot.imu
-    if imu is None or not log.has(*(f"imu.{imu.name}.linear_acceleration.{axis}" for axis in "xyz")):
-        return None
-    orientation, _ = attitude(log, imu, [])
-    length = np.linalg.norm(orientation, axis=1, keepdims=True)
-    unit = orientation / np.where(length > 0, length, np.nan)
-    proper = log.linear_acceleration(imu.name)
-    return np.asarray(np.einsum("nij,nj->ni", rotation_from_quaternion(unit)[:, :2], proper))
