@@ -86,9 +86,7 @@ def test_no_delay_is_claimed_beyond_what_delays_are() -> None:
 
 def closed(pair: Pair) -> Closure:
     """The pair as one foot's closure, under still joints."""
-    return Closure(
-        pair.label, pair.measured[None], pair.rate[None], pair.predicted, 0 * pair.predicted, pair.period
-    )
+    return Closure(pair, pair.measured[None], pair.rate[None], 0 * pair.predicted)
 
 
 @pytest.mark.parametrize("slow_first", [True, False])

@@ -11,6 +11,7 @@ import pytest
 from biped import record, sway
 from biped_robot import make_robot
 from plantar.conventions import Array
+from plantar.estimation.delay import Pair
 from plantar.estimation.delays_apart import estimate_delays
 from plantar.identify.closure import Closure
 from plantar.identify.latency import Latency, in_time, latency_of, wrench_latency
@@ -47,14 +48,9 @@ def closure(delays: Sequence[float], seed: int) -> Closure:
 
     by_encoders = (predicted(-PERIOD) - predicted(PERIOD)) / (2 * PERIOD)
     rates = [differentiate(reading, PERIOD) for reading in readings]
-    return Closure(
-        "sweep",
-        np.array(readings)[:, INNER],
-        np.array(rates)[:, INNER],
-        predicted(0.0)[INNER],
-        by_encoders[INNER],
-        PERIOD,
-    )
+    measured, rates = np.array(readings)[:, INNER], np.array(rates)[:, INNER]
+    pair = Pair("sweep", measured.sum(axis=0), rates.sum(axis=0), predicted(0.0)[INNER], PERIOD)
+    return Closure(pair, measured, rates, by_encoders[INNER])
 
 
 @pytest.mark.parametrize(

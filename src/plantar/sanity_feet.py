@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -88,9 +88,21 @@ class _Stance:
     wrenches: list[Array]
 
     def sides(self) -> _Sides:
-        data = self.robot.model.createData()
-        levers, ups, forces = zip(*(self._sample(data, i) for i in range(len(self.positions))), strict=True)
-        return _Sides(np.array(levers), np.array(ups), np.array(forces))
+        robot = self.robot
+        placements = [self.imu.placement, *(foot.wrench.placement for foot in robot.feet.values())]
+        centre, rotations, translations = self._poses([robot.frame(placement) for placement in placements])
+        attitude = rotation_from_quaternion(self.orientation)
+        up = np.einsum("nij,nj->ni", rotations[0], attitude[:, 2])
+        level = np.eye(3) - up[:, :, None] * up[:, None, :]
+        found, force = np.zeros((len(up), len(robot.feet), 6, 3)), np.zeros((len(up), 3))
+        for k, wrench in enumerate(self.wrenches):
+            axes = rotations[k + 1].transpose(0, 2, 1)
+            arm = (translations[k + 1] - centre)[:, None, :]
+            found[:, k, :3] = np.cross(arm, axes) * wrench[:, :3, None]
+            found[:, k, 3:] = axes * wrench[:, 3:, None]
+            force += np.einsum("nij,ni->nj", axes, wrench[:, :3])
+        size = np.maximum(np.linalg.norm(force, axis=1), 1.0)[:, None]
+        return _Sides(found @ level[:, None] / size[:, None, None], up, force / size)
 
     def reversed_joint(self, joint: int) -> _Stance:
         positions = self.positions.copy()
@@ -100,32 +112,26 @@ class _Stance:
     def exchanged(self) -> _Stance:
         return replace(self, wrenches=self.wrenches[::-1])
 
-    def _sample(self, data: pin.Data, sample: int) -> tuple[Array, Array, Array]:
+    def _poses(self, frames: Sequence[tuple[int, pin.SE3]]) -> tuple[Array, Array, Array]:
+        """Centre of mass (n, 3), and rotations (f, n, 3, 3) and translations (f, n, 3) of frames, in the root link."""
         robot, model = self.robot, self.robot.model
-        configuration = pin.neutral(model)
-        for joint, angle in enumerate(self.positions[sample], start=1):
+        data, count = model.createData(), len(self.positions)
+        configurations = np.tile(pin.neutral(model), (count, 1))
+        for joint, angles in enumerate(self.positions.T, start=1):
             at = model.idx_qs[joint]
             if model.nqs[joint] == 1:
-                configuration[at] = angle
+                configurations[:, at] = angles
             else:
-                configuration[at : at + 2] = np.cos(angle), np.sin(angle)
+                configurations[:, at], configurations[:, at + 1] = np.cos(angles), np.sin(angles)
         # The root link is fixed in `model`, and Pinocchio leaves what does not move out of the centre of mass.
         root, moving = model.inertias[0], robot.mass - model.inertias[0].mass
-        centre = (root.mass * root.lever + moving * pin.centerOfMass(model, data, configuration)) / robot.mass
-        carrier, in_carrier = robot.frame(self.imu.placement)
-        attitude = rotation_from_quaternion(self.orientation[sample][None])[0]
-        up = (data.oMi[carrier] * in_carrier).rotation @ attitude[2]
-        level = np.eye(3) - np.outer(up, up)
-        found, force = np.zeros((len(robot.feet), 6, 3)), np.zeros(3)
-        for k, foot in enumerate(robot.feet.values()):
-            carrier, placement = robot.frame(foot.wrench.placement)
-            frame, wrench = data.oMi[carrier] * placement, self.wrenches[k][sample]
-            axes = frame.rotation.T
-            found[k, :3] = np.cross(frame.translation - centre, axes) * wrench[:3, None]
-            found[k, 3:] = axes * wrench[3:, None]
-            force += axes.T @ wrench[:3]
-        size = max(float(np.linalg.norm(force)), 1.0)
-        return np.asarray(found @ level / size), np.asarray(up), force / size
+        centre, poses = np.empty((count, 3)), np.empty((len(frames), count, 4, 4))
+        for sample, configuration in enumerate(configurations):
+            centre[sample] = pin.centerOfMass(model, data, configuration)
+            for k, (carrier, _) in enumerate(frames):
+                poses[k, sample] = data.oMi[carrier].homogeneous
+        poses = poses @ np.array([placement.homogeneous for _, placement in frames])[:, None]
+        return (root.mass * root.lever + moving * centre) / robot.mass, poses[..., :3, :3], poses[..., :3, 3]
 
 
 def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:

@@ -10,7 +10,7 @@ import numpy as np
 from plantar.conventions import FORCE, Array
 from plantar.dynamics import Contact, Equation, model_parameters
 from plantar.dynamics.inertial_motion import inertial_motion
-from plantar.estimation.delay import LEAST_CLOSED, Pair, unexplained
+from plantar.estimation.delay import LEAST_CLOSED, Pair, closes, unexplained
 from plantar.estimation.delays_apart import Balance
 from plantar.log import MotionLog
 from plantar.robot import RobotModel
@@ -29,34 +29,25 @@ EDGE = 0.3  # s at both ends of a run, where the filter is unsure
 class Closure:
     """Both sides of Newton's law in the root link's frame over the longest calm stretch of a log.
 
-    `measured` and `rates` (feet, n, 6): each foot's wrench, and how it changes with the moment at which its sensor is
-    read; `predicted` (n, 6), and `by_encoders` (n, 6), how it changes with the moment at which the encoders are.
+    `pair`: all feet together; `measured` and `rates` (feet, n, 6): each foot's wrench, and how it changes with the
+    moment at which its sensor is read; `by_encoders` (n, 6): how the prediction changes with the moment at which the
+    encoders are.
     """
 
-    label: str
+    pair: Pair
     measured: Array
     rates: Array
-    predicted: Array
     by_encoders: Array
-    period: float
-
-    @property
-    def pair(self) -> Pair:
-        """All feet together, for a delay that is common to them."""
-        return Pair(
-            self.label, self.measured.sum(axis=0), self.rates.sum(axis=0), self.predicted, self.period
-        )
 
     @property
     def balance(self) -> Balance:
         """Feet and encoders apart: delays of each foot, then of the encoders, all against the IMU."""
-        return Balance(
-            self.predicted, self.measured, np.concatenate([self.rates, -self.by_encoders[None]]), self.period
-        )
+        by_delay = np.concatenate([self.rates, -self.by_encoders[None]])
+        return Balance(self.pair.predicted, self.measured, by_delay, self.pair.period)
 
 
 def closure_of(robot: RobotModel, log: MotionLog) -> Closure | None:
-    """Both sides along an evenly sampled log; None where it lacks what that takes, or the calm to see it."""
+    """Both sides along an evenly sampled log; None where it lacks what that takes, or does not close."""
     imu = robot.imu
     kinds = ("linear_acceleration", "angular_velocity")
     needed = [f"imu.{imu.name}.{kind}.{axis}" for kind in kinds for axis in "xyz"] if imu else []
@@ -95,11 +86,13 @@ def closure_of(robot: RobotModel, log: MotionLog) -> Closure | None:
     sides = moving([*carried(readings), *carried(differentiate(readings, log.period)), predicted_at(0.0)])
     measured, rates, predicted = sides[: len(contacts)], sides[len(contacts) : -1], sides[-1]
     calm = _longest_closed(measured.sum(axis=0), rates.sum(axis=0), predicted, period)
-    if (calm.stop - calm.start) * period < SHORTEST:
+    measured, rates, predicted = measured[:, calm], rates[:, calm], predicted[calm]
+    pair = Pair(log.name, measured.sum(axis=0), rates.sum(axis=0), predicted, period)
+    if len(predicted) * period < SHORTEST or not closes(pair):
         return None
     step = log.period
     by_encoders = moving([(predicted_at(step) - predicted_at(-step)) / (2 * step)])[0]
-    return Closure(log.name, measured[:, calm], rates[:, calm], predicted[calm], by_encoders[calm], period)
+    return Closure(pair, measured, rates, by_encoders[calm])
 
 
 def _longest_closed(measured: Array, rate: Array, predicted: Array, period: float) -> slice:

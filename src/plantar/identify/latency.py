@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.estimation.delay import LONGEST, closes, estimate_delay
+from plantar.estimation.delay import LONGEST, estimate_delay
 from plantar.estimation.delays_apart import Balance, estimate_delays
 from plantar.identify.closure import Closure, closure_of
 from plantar.log import MotionLog
@@ -91,7 +91,7 @@ def wrench_latency(
     `each` maps a function over logs: a pool's map uses all cores.
     """
     tried = list(each(lambda log: closure_of(robot, log), logs))
-    closures = [closure for closure in tried if closure is not None and closes(closure.pair)]
+    closures = [closure for closure in tried if closure is not None]
     apart = _apart(list(robot.feet), [closure.balance for closure in closures])
     if apart is not None:
         return apart
