@@ -1,13 +1,10 @@
 """Slip and tipping in known seconds: how well they are found, and what K and C are worth in spite of them.
 
-    python benchmarks/contact.py --presets sensors realistic --seeds 4
+    python benchmarks/contact.py --presets sensors realistic --seeds 0 1 2 3
 
-Every seed has its own slippery seconds and shoves of the operator's hand, put into the paper's composed motion. The
-truth is what the soles did in the exact simulation, not when the floor was slippery: a sole slides where its middle
-moves on the floor by 1 mm or more at 2 mm/s or more (or twists alike at the lever of 0.1 m); where both feet stand,
-both are said to slide when either does. A sole tips where it leans by 2 mrad or more against the floor. Samples left
-out for another reason (air, landing, lifting, impact, a filter's edge) are not scored; "kept out for any reason" is the
-share of all samples truly sliding or tipping that do not serve.
+Slides, leans and their truth are those of `disturbed`; where both feet stand, both are said to slide when either does.
+Samples left out for another reason (air, landing, lifting, impact, a filter's edge) are not scored; "kept out for any
+reason" is the share of all samples truly sliding or tipping that do not serve.
 """
 
 from __future__ import annotations
@@ -15,145 +12,29 @@ from __future__ import annotations
 import argparse
 from collections import defaultdict
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from itertools import count
+from dataclasses import dataclass
 
 import numpy as np
-import pinocchio as pin
 
+from disturbed import Trial, play_disturbed
 from plantar.contact import AIR, DOUBLE, joined, widened
-from plantar.conventions import ROTATIONAL_AXES, rotation_from_quaternion
-from plantar.errors import MotionError
+from plantar.conventions import ROTATIONAL_AXES
 from plantar.identify.axis_fit import fit_axis
 from plantar.identify.feet import identify_feet
 from plantar.identify.preparation import prepare_all
 from plantar.identify.settings import FeetSettings
 from plantar.log import MotionLog
 from plantar.motions.campaign import FIT
-from plantar.motions.plan import Hand, Plan
 from plantar.result import FeetResult
-from plantar.robot import Placement, RobotModel
+from plantar.robot import RobotModel
 from plantar.signals import runs
 from plantar.twin import PAPER, hrp2
-from plantar.twin.foot import CutFoot, cut_feet
-from plantar.twin.from_robot import describe
-from plantar.twin.physics import Slip
-from plantar.twin.play import on_cores, planned, play_all, rolled
-from plantar.twin.presets import preset_named
-from plantar.twin.recording import record
-from plantar.twin.rollout import Rollout
+from plantar.twin.play import play_all
 
-SLIDING_SPEED, SLIDING_PATH, LEVER = 0.002, 0.001, 0.1  # m/s, m, m
-TIPPED = 0.002  # rad
-PAUSE = 0.1  # s: two slides that are closer are one
 TOLERANCE = 0.1  # s by which an event may be missed at its ends, and a flag may reach beyond one
 KINDS = ("slip", "tipping")
 PUT_BACK = ("slip", "tipping", "impact", "filter's edge: beside")
-LEAN = 1.2, 1.6  # of the sole's half length or width: how far the hand leads the chest
 Errors = dict[str, list[tuple[float, float]]]
-SOFT_HAND = 600.0, 60.0  # N/m, N·s/m: an operator beside a robot that moves by itself
-
-
-@dataclass(frozen=True)
-class Trial:
-    """A recorded motion with what its soles truly did: by foot and kind, (N,) bool each."""
-
-    log: MotionLog
-    truth: dict[tuple[str, str], np.ndarray]
-
-
-def disturbed(
-    plan: Plan, robot: RobotModel, seed: Sequence[int], shoved: bool
-) -> tuple[Plan, tuple[Slip, ...]]:
-    """The plan with slippery seconds drawn from the seed and, where `shoved`, an operator who shoves in some.
-
-    Half of the shoves happen on a slippery floor; the others lead the robot onto the edges of its soles.
-    """
-    random = np.random.default_rng([*seed, *plan.name.encode()])
-    hand = plan.hand or _beside(plan, robot)
-    halves = np.min([np.ptp(robot.feet[foot].sole.polygon, axis=0) / 2 for foot in plan.standing], axis=0)
-    path, slips = hand.path.copy(), []
-    time, end = plan.time, plan.time[-1]
-    # One stretch a shove, in an order that changes: two on a slippery floor, two that lean on an edge.
-    stretches = np.linspace(3.0, end - 3.0, 5)
-    for place, kind in enumerate(random.permutation(["slip", "slip", "tip", "tip"])):
-        length = random.uniform(0.3, 1.2)
-        start = random.uniform(stretches[place] + 0.3, stretches[place + 1] - length - 0.8)
-        bump = _bump(time, start, length)[:, None]
-        angle = random.uniform(0, 2 * np.pi)
-        if kind == "slip":
-            slips.append(Slip(start, start + length, float(np.exp(random.uniform(*np.log([0.012, 0.04]))))))
-            path += bump * 0.03 * np.array([np.cos(angle), np.sin(angle), 0.0])
-        else:
-            axis = random.integers(2)
-            lean = np.zeros(3)
-            lean[axis] = random.choice([-1.0, 1.0]) * random.uniform(*LEAN) * halves[axis]
-            settled = np.median(hand.path, axis=0) if plan.hand else path
-            path = (1 - bump) * path + bump * (settled + lean)
-    return (replace(plan, hand=replace(hand, path=path)) if shoved else plan), tuple(slips)
-
-
-def _bump(time: np.ndarray, start: float, length: float) -> np.ndarray:
-    """0 to 1 and back, smooth, highest for `length` [s] from `start`."""
-    up, down = (np.clip((time - at) / 0.5, 0, 1) for at in (start - 0.5, start + length))
-    return up**2 * (3 - 2 * up) * (1 - down**2 * (3 - 2 * down))
-
-
-def _beside(plan: Plan, robot: RobotModel) -> Hand:
-    """A soft hand at the IMU's link that goes along with the plan."""
-    assert robot.imu is not None
-    held = Placement(robot.imu.placement.link, np.array([0.0, 0.0, 0.1]), np.zeros(3))
-    model, data = robot.model, robot.model.createData()
-    joint, pose = robot.frame(held)
-    columns = [plan.joints.index(name) for name in robot.joint_names]
-    path = np.empty((plan.time.size, 3))
-    for row, (base, positions) in enumerate(zip(plan.base, plan.positions[:, columns], strict=True)):
-        pin.forwardKinematics(model, data, positions)
-        path[row] = (pin.SE3(base) * data.oMi[joint] * pose).translation
-    return Hand(held, path, *SOFT_HAND)
-
-
-def true_contact(
-    rollout: Rollout, feet: dict[str, CutFoot], period: float
-) -> dict[tuple[str, str], np.ndarray]:
-    """Where each sole slides and where it tips, from its exact pose."""
-    found = {}
-    for name, foot in feet.items():
-        from_bush = np.linalg.inv(foot.bush) @ foot.sole
-        rotation = rotation_from_quaternion(rollout.sensors[f"{name}.sole"])
-        middle = rollout.sensors[f"{name}.place"] + rotation @ from_bush[:3, 3]
-        turned = rotation @ from_bush[:3, :3]
-        yaw = np.unwrap(np.arctan2(turned[:, 1, 0], turned[:, 0, 0]))
-        tilt = np.arccos(np.clip(turned[:, 2, 2], -1, 1))
-        path = np.column_stack([middle[:, :2], LEVER * yaw])
-        speed = np.linalg.norm(np.gradient(path, period, axis=0), axis=1)
-        slides = np.zeros(len(speed), dtype=bool)
-        for run in runs(joined(speed > SLIDING_SPEED, round(PAUSE / period))):
-            slides[run] = speed[run].sum() * period >= SLIDING_PATH
-        found[name, "slip"], found[name, "tipping"] = slides, tilt > TIPPED
-    return found
-
-
-def play_disturbed(
-    motions: Sequence[str], others: Sequence[str], robot: RobotModel, preset_name: str, seed: int
-) -> list[Trial]:
-    """The motions of one seed, `others` without shoves; a draw that makes the robot fall is drawn again."""
-    preset, feet = preset_named(preset_name), cut_feet(describe(robot), robot)
-
-    def one(motion: str) -> Trial:
-        plan = planned(motion, robot)
-        for attempt in count():
-            shoved, slips = disturbed(plan, robot, [seed, attempt], motion not in others)
-            world = replace(preset.physics(PAPER), slips=slips)
-            try:
-                rollout = rolled(shoved, robot, world)
-            except MotionError:
-                continue
-            log = record(rollout, robot, world, preset, seed).log
-            return Trial(log, true_contact(rollout, feet, log.period))
-        raise AssertionError("unreachable")
-
-    return on_cores(one, [*motions, *others])
 
 
 @dataclass
@@ -207,7 +88,8 @@ def score(result: FeetResult, robot: RobotModel, trials: Sequence[Trial], counts
             truth = {kind: trial.truth[foot, kind].copy() for kind in KINDS}
             any_slips = np.any([trial.truth[other, "slip"] for other in robot.feet], axis=0)
             flagged = {kind: np.zeros(time.size, dtype=bool) for kind in KINDS}
-            scored, served, standing = (np.ones(time.size, dtype=bool) for _ in range(3))
+            # The last sample ends a phase and belongs to none.
+            scored, served, standing = (np.zeros(time.size, dtype=bool) for _ in range(3))
             for phase in result.phases:
                 if (phase.motion, phase.foot) != (trial.log.name, foot):
                     continue
@@ -215,8 +97,7 @@ def score(result: FeetResult, robot: RobotModel, trials: Sequence[Trial], counts
                 kind = (phase.reason or "").split(":")[0]
                 if kind in flagged:
                     flagged[kind] |= rows
-                elif phase.reason is not None:
-                    scored &= ~rows
+                scored[rows] = kind in flagged or phase.reason is None
                 served[rows] = phase.used
                 standing[rows] = phase.support != AIR
                 if phase.support == DOUBLE:
