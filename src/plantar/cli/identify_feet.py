@@ -41,9 +41,11 @@ def run(
     """
     if model not in MODELS:
         raise typer.BadParameter(f"'{model}' is not one of {', '.join(MODELS)}", param_hint="--model")
-    known, fitted, unseen = identification.opened(robot, logs, validate, out)
     reach = None if window is None else float(np.radians(window))
     late = None if wrench_delay is None else 1e-3 * wrench_delay
     settings = FeetSettings(offset, model, cutoff, window=reach, wrench_delay=late)
-    result = identify_feet(known, fitted, unseen, settings, progress(quiet))
+    # The logs live no longer than the fit: the report needs their memory.
+    result = identify_feet(
+        *identification.opened(robot, logs, validate, out), settings=settings, progress=progress(quiet)
+    )
     identification.keep(result, out, write_feet_report, print_feet, json=json, quiet=quiet)

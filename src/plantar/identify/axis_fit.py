@@ -16,7 +16,7 @@ from plantar.identify.axis_blocks import blocks_of, trial_of
 from plantar.identify.axis_corrections import about_true_zero, unattenuated
 from plantar.identify.recording import Recording
 from plantar.identify.settings import AUTOMATIC, FeetSettings
-from plantar.models import LAWS, KelvinVoigt
+from plantar.models import LAWS, KelvinVoigt, Law
 
 LEAST_EXPLAINED = 0.5  # of the torque's variance by spring and damper: below it no law of the bush will help
 FULLY_EXPLAINED = 0.997  # above it no richer law could gain what its own parameters cost
@@ -28,28 +28,32 @@ CANDIDATES = (
 
 
 def fit_axis(
-    recordings: Sequence[Recording], foot: str, axis: Axis, settings: FeetSettings
+    recordings: Sequence[Recording], foot: str, axis: Axis, settings: FeetSettings, law: Law | None = None
 ) -> AxisFit | None:
-    """The law asked for, or the one that predicts held-out motions; None where no recording has samples that serve.
+    """The law given or asked for, or the one that predicts held-out motions; None where no recording has samples.
 
     What errors of the angles do to its values is taken off, where that matters.
     """
     shared = settings.offset == "shared"
-    fit = _fitted(recordings, foot, axis, settings)
+    if law is None and settings.model != AUTOMATIC:
+        law = LAWS[settings.model]
+    fit = _fitted(recordings, foot, axis, settings, law)
     return fit and unattenuated(about_true_zero(fit, recordings, shared), recordings, shared)
 
 
-def _fitted(recordings: Sequence[Recording], foot: str, axis: Axis, settings: FeetSettings) -> AxisFit | None:
+def _fitted(
+    recordings: Sequence[Recording], foot: str, axis: Axis, settings: FeetSettings, asked: Law | None
+) -> AxisFit | None:
     shared = settings.offset == "shared"
     blocks = blocks_of(recordings, foot, axis, drift=not shared)
     if not blocks:
         return None
     linear = fit_linear(blocks, shared_offset=shared)
-    if settings.model == KelvinVoigt.name:
+    if isinstance(asked, KelvinVoigt):
         return _of_linear(foot, axis, linear, None, "asked for")
     trials = [trial_of(recording, foot, axis) for recording in recordings if recording.name in linear.offsets]
-    if settings.model != AUTOMATIC:
-        fit = fit_law(LAWS[settings.model], trials, settings.cutoff, shared_offset=shared)
+    if asked is not None:
+        fit = fit_law(asked, trials, settings.cutoff, shared_offset=shared)
         return _of_law(foot, axis, fit, linear, None, "asked for")
     explained = _explained(linear, blocks)
     if not LEAST_EXPLAINED < explained < FULLY_EXPLAINED:

@@ -11,6 +11,7 @@ from plantar.deflection import BushState
 from plantar.identify.axis import AxisFit
 from plantar.identify.axis_blocks import FEWEST_SAMPLES, law_columns
 from plantar.identify.recording import Recording
+from plantar.models import Law
 from plantar.signals import runs
 
 BIN = 0.1  # s
@@ -24,18 +25,19 @@ ROUNDS = 3  # a large outlier hides smaller ones
 
 
 def fit_without_outliers(
-    recordings: Sequence[Recording], foot: str, axis: Axis, fit: Callable[[], AxisFit | None]
+    recordings: Sequence[Recording], foot: str, axis: Axis, fit: Callable[[Law | None], AxisFit | None]
 ) -> AxisFit | None:
     """What `fit` makes of the recordings; where short stretches leave its law by far, again without them.
 
     They are left out of the recordings' contacts with a reason. Clean recordings are fitted once and stay as they are.
+    `fit` chooses a law where it is given none: of all recordings, and of what serves in the end.
     """
-    found = fit()
+    found, several = fit(None), False
     for _ in range(ROUNDS):
         if found is None or not _left_out(recordings, foot, axis, found):
             break
-        found = fit()
-    return found
+        found, several = fit(found.law), True
+    return fit(None) if several else found
 
 
 def _left_out(recordings: Sequence[Recording], foot: str, axis: Axis, fit: AxisFit) -> bool:
