@@ -2,30 +2,26 @@
 
 from __future__ import annotations
 
+import os
 from collections import Counter
 from collections.abc import Callable, Sequence
-from functools import partial
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import numpy as np
 
-from plantar.conventions import OFFSET_UNIT, ROTATIONAL_AXES
+from plantar.conventions import OFFSET_UNIT
 from plantar.errors import DataError
 from plantar.identify.axis import AxisFit
-from plantar.identify.axis_fit import fit_axis
-from plantar.identify.diagnosis import advised, diagnose_axis
-from plantar.identify.outliers import fit_without_outliers
-from plantar.identify.parameter_rows import axis_rows, missing_rows
+from plantar.identify.foot_fit import fit_foot
 from plantar.identify.preparation import prepare_all
 from plantar.identify.recording import Recording
-from plantar.identify.residual_table import Predictions, residual_table
-from plantar.identify.scoring import score_axis
+from plantar.identify.residual_table import residual_table
 from plantar.identify.settings import FeetSettings
-from plantar.identify.systematic import systematic_causes, widened
 from plantar.log import MotionLog
 from plantar.models import KelvinVoigt
 from plantar.notes import Note, unique
-from plantar.result import FeetResult, Input, Offset, Parameter, ValidationRow
+from plantar.result import FeetResult, Input, Offset
 from plantar.robot import Foot, Placement, RobotModel
 
 
@@ -48,37 +44,18 @@ def identify_feet(
     if not any(recording.contacts[foot].standing.any() for recording in ready.fitted for foot in robot.feet):
         names = ", ".join(log.name for log in logs)
         raise DataError(f"{names}: no foot carries load in any log (valid: a standing robot)")
-    parameters: list[Parameter] = []
-    rows: list[ValidationRow] = []
-    fits: list[AxisFit] = []
-    diagnosis: list[dict[str, Any]] = []
-    predictions: Predictions = {}
-    for foot in robot.feet:
-        for axis in ROTATIONAL_AXES:
-            progress(f"fit {foot} {axis}")
-            fit = fit_without_outliers(
-                ready.fitted, foot, axis, partial(fit_axis, ready.fitted, foot, axis, settings)
-            )
-            if fit is None:
-                parameters += missing_rows(foot, axis)
-                continue
-            causes = systematic_causes(
-                fit, ready.fitted, ready.latency, ready.vertical, settings.offset == "shared"
-            )
-            wide = widened(fit, causes)
-            rows += score_axis(ready.recordings, foot, axis, wide, predictions)
-            found = axis_rows(wide, ready.fitted, predictions)
-            limits = diagnose_axis(fit, wide, causes, found)
-            diagnosis += limits
-            parameters += advised(found, limits)
-            fits.append(wide)
-    parameters += ready.vertical.parameters
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        found = list(pool.map(lambda foot: fit_foot(ready, foot, settings, progress), robot.feet))
+    fits = [fit for each in found for fit in each.fits]
+    parameters = [row for each in found for row in each.parameters]
+    rows = [row for each in found for row in each.validation]
+    predictions = {key: value for each in found for key, value in each.predictions.items()}
     return FeetResult(
         robot=robot.name,
         inputs=(*(Input.of(log, "fit") for log in logs), *(Input.of(log, "validate") for log in validate)),
         settings=settings.to_dict(),
         model=_model(fits),
-        parameters=tuple(parameters),
+        parameters=(*parameters, *ready.vertical.parameters),
         offsets=tuple(offset for fit in fits for offset in _offsets(fit)),
         phases=tuple(
             phase
@@ -93,7 +70,7 @@ def identify_feet(
             "laws": [fit.to_dict() for fit in fits],
             "latency": ready.latency.to_dict(),
             "compliance": dict(ready.vertical.compliance),
-            "diagnosis": diagnosis,
+            "diagnosis": [row for each in found for row in each.diagnosis],
         },
         residuals=residual_table(ready.recordings, predictions),
     )
