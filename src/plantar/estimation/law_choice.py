@@ -14,21 +14,17 @@ import numpy as np
 
 from plantar.conventions import Array
 from plantar.errors import DataError
-from plantar.estimation.law_fit import LawFit, refine
-from plantar.estimation.law_search import Numbers, Pieces, fit_pieces, held_out_squares
-from plantar.estimation.law_trials import Prepared, Trial, prepare_trials
+from plantar.estimation.law_contest import FOLDS, Contender, folds_of, judge
+from plantar.estimation.law_fit import LawFit
+from plantar.estimation.law_trials import Trial, prepare_trials
 from plantar.models import LAWS, KelvinVoigt, Law, reach
 
 LEAST_GAIN = 0.10  # of the held-out rms error
 TELLING_GAIN = (
     0.3  # of the held-out rms error: so much better, a law that cannot be identified is still told of
 )
-FOLDS = 5  # contiguous parts that recordings are cut into where they cannot stand for one another
-SEED_REACH = 2.2  # ratio of shapes to those of a simpler law, within which a richer one is looked for
 TOLD = 4.0  # deviations from zero of a term that a law adds to a simpler one
 HOPELESS = 6.0  # times the best law's squares, at its best candidate shape: such a law's shape is not refined
-DOMINANT = 0.5  # share of all motion in one recording, above which the others cannot stand for it
-FEWEST_RECORDINGS = 3  # for whole recordings to be held out
 
 
 @dataclass(frozen=True)
@@ -83,28 +79,28 @@ def choose_law(
         raise DataError(
             "no recording has a sample that serves this fit (valid: at least one standing second)"
         )
-    folds, whole = _folds(prepared)
+    folds, whole = folds_of(prepared)
     rows = sum(len(fold) for fold in folds)
     scores: list[LawScore] = []
     errors: list[Array] = []
     untried: list[str] = []
     motions = [each.motion for each in prepared]
 
-    def judge(contender: _Contender) -> None:
+    def enter(contender: Contender) -> None:
         least = min((score.fit.rms for score in scores), default=np.inf) ** 2 * rows
         hopeless = contender.squares > HOPELESS * least
-        fit, squares = _judge(contender, prepared, folds, whole, shared_offset, refined=not hopeless)
+        fit, squares = judge(contender, prepared, folds, whole, shared_offset, refined=not hopeless)
         scores.append(LawScore(contender.law, float(np.sqrt(squares.sum() / rows)), fit, _refusal(fit)))
         errors.append(squares)
 
     untried += [law.name for law in laws if not law.applies(motions)]
     simple = [
-        _Contender.of(law, prepared, folds, shared_offset)
+        Contender.of(law, prepared, folds, shared_offset)
         for law in laws
         if law.elaborates is None and law.name not in untried
     ]
     for contender in sorted(simple, key=lambda each: each.squares):
-        judge(contender)
+        enter(contender)
     names = [score.law.name for score in scores]
     linear = names.index(KelvinVoigt.name)
     for law in (each for each in laws if each.elaborates is not None and each.name not in untried):
@@ -115,7 +111,7 @@ def choose_law(
             if not _clear(scores, errors, simple=linear, rich=place):
                 untried.append(law.name)
                 continue
-        judge(_Contender.of(law, prepared, folds, shared_offset, seed))
+        enter(Contender.of(law, prepared, folds, shared_offset, seed))
         if seed is not None and not _adds(scores[-1].fit, seed):
             untried.append(scores.pop().law.name)
             errors.pop()
@@ -133,70 +129,6 @@ def choose_law(
         reach=reach(motions),
         caution=_caution(scores, errors, winner),
     )
-
-
-def _folds(prepared: Sequence[Prepared]) -> tuple[list[Numbers], bool]:
-    """Number of the fold of every sample that serves, and whether folds are whole recordings."""
-    moved = np.array([np.sum((e.base[:, 0] - e.base[:, 0].mean()) ** 2) for e in prepared])
-    if len(prepared) >= FEWEST_RECORDINGS and moved.max() <= DOMINANT * moved.sum():
-        return [np.full(int(e.used.sum()), place, dtype=np.intp) for place, e in enumerate(prepared)], True
-    counts = [int(e.used.sum()) for e in prepared]
-    return [np.arange(count, dtype=np.intp) * FOLDS // max(count, 1) for count in counts], False
-
-
-@dataclass(frozen=True)
-class _Contender:
-    """A law with its candidate shapes, their limits (2, s), and the squares that the best candidate leaves."""
-
-    law: Law
-    pieces: Pieces
-    limits: Array
-    squares: float
-
-    @classmethod
-    def of(
-        cls,
-        law: Law,
-        prepared: Sequence[Prepared],
-        folds: Sequence[Numbers],
-        shared_offset: bool,
-        seed: LawFit | None = None,
-    ) -> _Contender:
-        """`seed` is the fit of a simpler law, near whose first shape term and starts this one's are looked for."""
-        shapes = law.candidates([each.motion for each in prepared])
-        limits = np.array([shapes.min(axis=0), shapes.max(axis=0)])
-        starts = None
-        if seed is not None:
-            ratio = np.abs(np.log(shapes[:, 0] / seed.shape[0]))
-            shapes = shapes[ratio <= max(np.log(SEED_REACH), ratio.min())]
-            starts = list(seed.starts.values())
-        pieces = Pieces.of(law, prepared, folds, shapes, starts)
-        everything = np.ones(len(pieces.grams), dtype=bool)
-        squares = fit_pieces(pieces, everything, shared_offset=shared_offset).squares
-        return cls(law, pieces, limits, float(squares.min()))
-
-
-def _judge(
-    contender: _Contender,
-    prepared: Sequence[Prepared],
-    folds: Sequence[Numbers],
-    whole: bool,
-    shared_offset: bool,
-    *,
-    refined: bool,
-) -> tuple[LawFit, Array]:
-    """The law's fit to everything, and its squared error on each piece from fits that have not seen it."""
-    pieces = contender.pieces
-    fit = refine(pieces, prepared, contender.limits, shared_offset=shared_offset, refined=refined)
-    if pieces.shapes.shape[1] and refined:
-        pieces = pieces.with_shape(fit.shape, list(fit.starts.values()), prepared, folds)
-    squares = np.zeros(len(pieces.grams))
-    for fold in np.unique(pieces.fold):
-        held = pieces.fold == fold
-        rest = fit_pieces(pieces, ~held, shared_offset=shared_offset)
-        best = int(np.argmin(rest.squares))
-        squares[held] = held_out_squares(pieces, rest, held, best, whole=whole)
-    return fit, np.maximum(squares, 0.0)
 
 
 def _refusal(fit: LawFit) -> str | None:
