@@ -6,12 +6,12 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from plantar.contact import FootContact, widened
+from plantar.contact import DOUBLE, SUPPORTS, FootContact, widened
 from plantar.conventions import Array, Mask
 from plantar.deflection import closure
 from plantar.identify.edges import TIPPING
 from plantar.identify.recording import Recording
-from plantar.identify.sole_motion import SoleMotion, both_stand, friction, sole_motion
+from plantar.identify.sole_motion import SoleMotion, friction, sole_motion
 from plantar.robot import RobotModel
 from plantar.signals import runs
 from plantar.slip import Witness, apart_speed, as_usual, slides, turning, twist_speed, unresisted
@@ -32,7 +32,7 @@ def leave_out_slip(robot: RobotModel, recording: Recording) -> None:
     """
     contacts, period = recording.contacts, recording.period
     flat = {foot: contact.standing & ~_tipping(contact, period) for foot, contact in contacts.items()}
-    both = np.asarray(both_stand(contacts) & np.all(list(flat.values()), axis=0))
+    both = np.asarray(_both(contacts) & np.all(list(flat.values()), axis=0))
     apart = _apart(recording, both)
     twists = {foot: twist_speed(bush.heading, flat[foot], period) for foot, bush in recording.bushes.items()}
     fastest = np.nan_to_num(np.fmax.reduce([np.abs(twist) for twist in twists.values()]))
@@ -51,6 +51,12 @@ def leave_out_slip(robot: RobotModel, recording: Recording) -> None:
             stretch[run] = True
             surest = max(witnesses, key=lambda reason: witnesses[reason].clearness(run))
             contact.leave_out(stretch, surest)
+
+
+def _both(contacts: Mapping[str, FootContact]) -> Mask:
+    """Where two feet stand together, (N,); nowhere for robots with other numbers of feet."""
+    double = [contact.support == SUPPORTS.index(DOUBLE) for contact in contacts.values()]
+    return np.asarray(np.all(double, axis=0) & (len(double) == 2))
 
 
 def _apart(recording: Recording, both: Mask) -> Witness:

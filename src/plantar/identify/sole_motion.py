@@ -10,7 +10,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from plantar.contact import SUPPORTS, FootContact
 from plantar.conventions import Array, Mask, rotation_from_quaternion
 from plantar.deflection import BushState
 from plantar.estimation.drift import fit_drift
@@ -99,12 +98,6 @@ def friction(recording: Recording, flat: Mapping[str, Mask]) -> Array:
         total += np.where(known[:, None], force[:, :2], 0.0)
         load += np.where(known, force[:, 2], 0.0)
     return np.asarray(total / np.where(load > 0, load, np.nan)[:, None])
-
-
-def both_stand(contacts: Mapping[str, FootContact]) -> Mask:
-    """Where two feet stand together, (N,); nowhere for robots with other numbers of feet."""
-    supports = [contact.support == SUPPORTS.index("double") for contact in contacts.values()]
-    return np.asarray(supports[0] & supports[1] if len(supports) == 2 else supports[0] & False)
 
 
 def _inertial(robot: RobotModel, recording: Recording) -> tuple[Array, Array | None, Array]:
