@@ -23,6 +23,8 @@ SHAKING_SHARE = 0.02  # of the weight, rms: a sole that is shaken by more slaps 
 SHAKING_NOISE = 7.0  # times the log's calmest shaking, which is the sensor's noise
 
 IMPACT = "impact: the force is shaken faster than the samples resolve, as by a sole that slaps the floor"
+TIPPING = "tipping"  # how every reason begins that says that a sole does not lie flat
+SMEARED = "filter's edge: beside a sole that tips"
 NOT_RECORDED = "not recorded: NaN or a gap in a column that this foot needs"
 
 DOUBLE, SINGLE, AIR, TRANSITION = "double", "single", "air", "transition"
@@ -75,6 +77,11 @@ class FootContact:
         if reason not in self.reasons:
             self.reasons.append(reason)
         self.code[samples & (self.code == 0)] = self.reasons.index(reason)
+
+    def left_out_for(self, *beginnings: str) -> Mask:
+        """Samples that are left out for a reason that begins so."""
+        given = [k for k, reason in enumerate(self.reasons) if reason and reason.startswith(beginnings)]
+        return np.isin(self.code, given)
 
     def phases(self, motion: str, foot: str, time: Array) -> list[Phase]:
         """The log as stretches of one support and one reason."""

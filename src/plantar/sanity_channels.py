@@ -16,6 +16,10 @@ from plantar.signals import runs
 SHORTEST, FEWEST = 0.2, 10  # s and samples at one value: less happens by chance
 LIVELY = 0.9  # share of the other steps that change the value: of a coarse or slow channel nothing is said
 NOTABLE = 0.005  # share of the log
+TURNED, STEPS = (
+    0.02,
+    5.0,
+)  # rad, and steps of a coarse encoder: by so much a joint moves, whose position stands still
 
 
 def check_channels(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
@@ -37,6 +41,8 @@ def check_channels(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
             f"{text}; right if the joint stood still, else the channel is dead",
             severity="info",
         )
+    for name in path:
+        yield from _dead_encoder(name, log)
     for sensor in (
         f"imu.{robot.imu.name}.",
         *(f"wrench.{foot.wrench.name}." for foot in robot.feet.values()),
@@ -60,6 +66,29 @@ def _carries(robot: RobotModel, foot: Foot, log: MotionLog) -> bool:
 def _moves(values: Array) -> bool:
     finite = values[np.isfinite(values)]
     return finite.size == 0 or bool(np.ptp(finite) > 0)
+
+
+def _dead_encoder(joint: str, log: MotionLog) -> Iterator[Finding]:
+    """A position that stands still while the recorded velocity turns on: its deflections would all be wrong."""
+    position, velocity = log.joint(joint, "position"), log.joint(joint, "velocity")
+    if position is None or velocity is None:
+        return
+    steps = np.diff(position)
+    moving = np.abs(steps[np.isfinite(steps) & (steps != 0)])
+    coarse = float(np.median(moving)) if moving.size else 0.0
+    path = np.concatenate(
+        [[0.0], np.cumsum(np.nan_to_num(velocity[1:] + velocity[:-1]) * np.diff(log.time) / 2)]
+    )
+    path -= np.linspace(0.0, path[-1], len(path))  # a velocity that is off by a constant turns nothing
+    least = max(FEWEST, round(SHORTEST / log.period))
+    held = [run for run in runs(steps == 0) if run.stop - run.start >= least]
+    turned = [float(np.ptp(path[run.start : run.stop + 1])) for run in held]
+    if not held or max(turned) < max(TURNED, STEPS * coarse):
+        return
+    run = held[int(np.argmax(turned))]
+    where = f"column 'joint.{joint}.position', t = {log.time[run.start]:g} to {log.time[run.stop]:g} s"
+    text = f"{where}, value {position[run.start]:.6g}: stands still while its velocity turns {max(turned):.2g} rad"
+    yield Finding("dead_channel", f"{text}; the encoder is dead (valid: leave such cells empty)", True)
 
 
 def _stuck(sensor: str, log: MotionLog) -> Iterator[Finding]:

@@ -74,7 +74,7 @@ def choose_law(
     Whole recordings are held out where there are at least three and none has more than half of the motion;
     else contiguous fifths of every recording. Raises DataError where no sample serves.
     """
-    prepared = prepare_trials(trials, cutoff)
+    prepared = prepare_trials(trials, cutoff, drift=not shared_offset)
     if not prepared:
         raise DataError(
             "no recording has a sample that serves this fit (valid: at least one standing second)"
@@ -115,7 +115,7 @@ def choose_law(
         if seed is not None and not _adds(scores[-1].fit, seed):
             untried.append(scores.pop().law.name)
             errors.pop()
-    winner = _winner(scores, errors)
+    winner = _winner(scores, errors, linear)
     chosen = replace(scores[winner], chosen=True)
     ranking = [chosen if place == winner else score for place, score in enumerate(scores)]
     held_out = "whole recordings" if whole else f"{FOLDS} contiguous parts of each recording"
@@ -145,15 +145,19 @@ def _adds(fit: LawFit, simpler: LawFit) -> bool:
     return all(abs(fit.values[k]) > TOLD * np.sqrt(fit.covariance[k, k]) for k in added)
 
 
-def _winner(scores: Sequence[LawScore], errors: Sequence[Array]) -> int:
+def _winner(scores: Sequence[LawScore], errors: Sequence[Array], linear: int) -> int:
+    """The simplest law that the best one does not clearly beat; spring and damper where that one is a makeshift."""
     allowed = [place for place, score in enumerate(scores) if score.refused is None]
     best = min(allowed, key=lambda place: scores[place].held_out_rms)
     simple_first = sorted(allowed, key=lambda place: (scores[place].parameters, scores[place].held_out_rms))
-    return next(
+    winner = next(
         place
         for place in simple_first
         if place == best or not _clear(scores, errors, simple=place, rich=best)
     )
+    # Where a law that cannot be identified is clearly better, another one that can be takes its part badly.
+    refused = (place for place, score in enumerate(scores) if score.refused is not None)
+    return linear if any(_clear(scores, errors, simple=winner, rich=place) for place in refused) else winner
 
 
 def _clear(scores: Sequence[LawScore], errors: Sequence[Array], *, simple: int, rich: int) -> bool:

@@ -97,7 +97,7 @@ def fit_law(law: Law, trials: Sequence[Trial], cutoff: float = 5.0, *, shared_of
 
     One offset for each recording, or with `shared_offset` one for all. Raises DataError where no sample serves.
     """
-    prepared = prepare_trials(trials, cutoff)
+    prepared = prepare_trials(trials, cutoff, drift=not shared_offset)
     if not prepared:
         raise DataError(
             "no recording has a sample that serves this fit (valid: at least one standing second)"

@@ -50,7 +50,7 @@ class Problem:
             self.law, self.prepared, shape[None, :], [start[None, :] for start in starts]
         )
         designs = [np.column_stack([e.base, x[:, :, 0]]) for e, x in zip(self.prepared, extras, strict=True)]
-        problem = Linearised(designs, [e.response[e.used] for e in self.prepared], self.shared_offset)
+        problem = Linearised(designs, [e.response for e in self.prepared], self.shared_offset)
         values = problem.solve()
         offsets = problem.offsets(values)
         residuals = [y - x @ values - o for x, y, o in zip(designs, problem.responses, offsets, strict=True)]
@@ -138,11 +138,7 @@ def _scan(problem: Problem, point: Point, width: float) -> Point | None:
     best = []
     for place, (each, extra, tried) in enumerate(zip(problem.prepared, extras, starts, strict=True)):
         linear = each.base @ point.values[:2] + point.offsets[place]
-        missing = (
-            each.response[each.used][:, None]
-            - linear[:, None]
-            - np.einsum("neb,e->nb", extra, point.values[2:])
-        )
+        missing = each.response[:, None] - linear[:, None] - np.einsum("neb,e->nb", extra, point.values[2:])
         if tried.shape[1] == 1 and not problem.shared_offset:
             missing = missing - missing.mean(axis=0)
         squares = np.array([np.bincount(each.run_of, column**2, tried.shape[1]) for column in missing.T])

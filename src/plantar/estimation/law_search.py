@@ -68,7 +68,7 @@ class Pieces:
         for place, (each, extra) in enumerate(
             zip(prepared, filtered_columns(law, prepared, variants, tiled), strict=True)
         ):
-            common = np.column_stack([each.base, np.ones(extra.shape[0]), each.response[each.used]])
+            common = np.column_stack([each.base, np.ones(extra.shape[0]), each.response])
             key = each.run_of * (1 + int(folds[place].max(initial=0))) + folds[place]
             for value in np.unique(key):
                 mine = key == value

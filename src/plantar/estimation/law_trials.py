@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -49,11 +49,14 @@ class Trial:
 
 @dataclass(frozen=True)
 class Prepared:
-    """A trial through the fit's filter: `motion`, `response` (N,) and the samples that serve.
+    """A trial through the fit's filter: `motion` (N,), the samples that serve, and the `response` (n,) at these.
 
     A law with memory does not commute with a filter: its state follows the path, and its columns then go through the
     filter that the torque went through. The path itself is filtered too: jitter of the measured angle would wear the
     state down at every turn (a Bouc-Wen element forgets under dither), which the rubber, not shaken, does not do.
+
+    With `drift`, response and columns come without their line in time: the IMU's attitude drifts slowly, differently in
+    each recording, which is the same as fitting such a line beside the offset.
     """
 
     label: str
@@ -61,9 +64,10 @@ class Prepared:
     response: Array
     used: Mask
     cutoff: float
+    drift: bool
 
     @classmethod
-    def of(cls, trial: Trial, cutoff: float) -> Prepared:
+    def of(cls, trial: Trial, cutoff: float, *, drift: bool = True) -> Prepared:
         """Filter both sides at `cutoff` [Hz]; samples without a value on either side do not serve."""
         motion = trial.motion
         whole = np.isfinite(motion.deflection) & np.isfinite(motion.rate) & np.isfinite(trial.torque)
@@ -75,12 +79,24 @@ class Prepared:
             None if motion.across_rate is None else low_pass(motion.across_rate, motion.period, cutoff)
         )
         path = Motion(smooth[:, 0], smooth[:, 1], motion.period, across, across_rate)
-        return cls(trial.label, path, smooth[:, 2], trial.used & np.isfinite(smooth).all(axis=1), cutoff)
+        used = trial.used & np.isfinite(smooth).all(axis=1)
+        raw = cls(trial.label, path, smooth[used, 2], used, cutoff, drift)
+        return replace(raw, response=raw.without_drift(raw.response))
 
-    @property
+    def without_drift(self, rows: Array) -> Array:
+        """Samples that serve, (n, ...), without their line in time; their means stay."""
+        time = np.flatnonzero(self.used).astype(np.float64)
+        time -= time.mean() if time.size else 0.0
+        power = float(time @ time)
+        if not self.drift or power == 0:
+            return rows
+        flat = rows.reshape(len(rows), -1)
+        return np.asarray(flat - np.outer(time, time @ flat / power)).reshape(rows.shape)
+
+    @cached_property
     def base(self) -> Array:
         """The linear columns, deflection and rate, at the samples that serve, (n, 2)."""
-        return np.column_stack([self.motion.deflection, self.motion.rate])[self.used]
+        return self.without_drift(np.column_stack([self.motion.deflection, self.motion.rate])[self.used])
 
     @cached_property
     def run_of(self) -> Array:
@@ -95,12 +111,12 @@ class Prepared:
         if extra.shape[1] == 0:
             return extra[self.used]
         smooth = low_pass(extra.reshape(len(extra), -1), self.motion.period, self.cutoff)
-        return np.asarray(smooth[self.used].reshape(-1, *extra.shape[1:]))
+        return self.without_drift(smooth[self.used].reshape(-1, *extra.shape[1:]))
 
 
-def prepare_trials(trials: Sequence[Trial], cutoff: float) -> list[Prepared]:
+def prepare_trials(trials: Sequence[Trial], cutoff: float, *, drift: bool = True) -> list[Prepared]:
     """Thinned and filtered trials that have samples to serve."""
-    prepared = [Prepared.of(trial.thinned(cutoff), cutoff) for trial in trials]
+    prepared = [Prepared.of(trial.thinned(cutoff), cutoff, drift=drift) for trial in trials]
     return [each for each in prepared if each.used.any()]
 
 

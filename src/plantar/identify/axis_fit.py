@@ -19,7 +19,7 @@ from plantar.identify.settings import AUTOMATIC, FeetSettings
 from plantar.models import LAWS, KelvinVoigt, Law
 
 LEAST_EXPLAINED = 0.5  # of the torque's variance by spring and damper: below it no law of the bush will help
-FULLY_EXPLAINED = 0.997  # above it no richer law could gain what its own parameters cost
+FULLY_EXPLAINED = 0.99995  # above it what is left is the sensors' noise
 SHORT_STANCE = 5.0  # s: the usual stance of walking is shorter, and tells nothing of a memory
 CANDIDATES = (
     "kelvin_voigt", "hardening", "coulomb", "elastoplastic", "hardening_elastoplastic", "bouc_wen",
@@ -51,7 +51,12 @@ def _fitted(
     linear = fit_linear(blocks, shared_offset=shared)
     if isinstance(asked, KelvinVoigt):
         return _of_linear(foot, axis, linear, None, "asked for")
-    trials = [trial_of(recording, foot, axis) for recording in recordings if recording.name in linear.offsets]
+    stiffness = float(linear.values[0])
+    trials = [
+        trial_of(recording, foot, axis, stiffness)
+        for recording in recordings
+        if recording.name in linear.offsets
+    ]
     if asked is not None:
         fit = fit_law(asked, trials, settings.cutoff, shared_offset=shared)
         return _of_law(foot, axis, fit, linear, None, "asked for")

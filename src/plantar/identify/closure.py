@@ -12,6 +12,7 @@ from plantar.dynamics import Contact, Equation, model_parameters
 from plantar.dynamics.inertial_motion import inertial_motion
 from plantar.estimation.delay import LEAST_CLOSED, Pair, closes, unexplained
 from plantar.estimation.delays_apart import Balance
+from plantar.identify.orientation import attitude
 from plantar.log import MotionLog
 from plantar.robot import RobotModel
 from plantar.signals import differentiate, low_pass, runs
@@ -49,10 +50,14 @@ class Closure:
 def closure_of(robot: RobotModel, log: MotionLog) -> Closure | None:
     """Both sides along an evenly sampled log; None where it lacks what that takes, or does not close."""
     imu = robot.imu
-    kinds = ("linear_acceleration", "angular_velocity")
-    needed = [f"imu.{imu.name}.{kind}.{axis}" for kind in kinds for axis in "xyz"] if imu else []
-    if imu is None or not log.has(*needed) or any(foot.contact == "always" for foot in robot.feet.values()):
+    if imu is None or any(foot.contact == "always" for foot in robot.feet.values()):
         return None
+    gyroscope = [f"imu.{imu.name}.angular_velocity.{axis}" for axis in "xyz"]
+    accelerometer = [f"imu.{imu.name}.linear_acceleration.{axis}" for axis in "xyz"]
+    if not log.has(*accelerometer) or not (log.has(*gyroscope) or log.orientation(imu.name) is not None):
+        return None
+    if not log.has(*gyroscope):
+        log = log.with_columns(dict(zip(gyroscope, attitude(log, imu, [])[1].T, strict=True)))
     motion = inertial_motion(robot, log, CUTOFF)
     wrenches = np.hstack([foot.wrench.sign * log.wrench(foot.wrench.name) for foot in robot.feet.values()])
     whole = motion.finite & np.isfinite(wrenches).all(axis=1)

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from plantar.contact import joined, widened
+from plantar.contact import SMEARED, joined, widened
 from plantar.conventions import ROTATIONAL_AXES, Array, Mask
 from plantar.estimation import fit_linear
 from plantar.identify.axis_blocks import blocks_of
@@ -40,7 +40,6 @@ OUTSIDE = "tipping: the centre of pressure is outside the sole"
 UNKNOWN = (
     "tipping: the centre of pressure is near the sole's edge, and no flat stretch tells whether it leans"
 )
-SMEARED = "filter's edge: beside a sole that tips"
 TIPPING = (LEANS, OUTSIDE, UNKNOWN)
 
 

@@ -31,7 +31,7 @@ CLOCK = 0.06  # of a period: within it, nobody knows when a sample was taken
 SIGNIFICANT = 2.5  # deviations from zero: a poorly known delay is corrected beyond, else only allowed for
 APART = 4.0  # deviations by which sensors must differ to have delays of their own
 LEAST_APART = 0.0015  # s, and by so much
-APART_STD = 0.0003  # s: what is left of a delay of its own, in quadrature
+LEAST_STD = 0.0003  # s: no robot's model shows a delay better, however fast its samples
 
 
 @dataclass(frozen=True)
@@ -97,15 +97,19 @@ def wrench_latency(
         return apart
     found = estimate_delay([closure.pair for closure in closures]) if closures else None
     if found is None:
+        imu = robot.imu
+        columns = [f"imu.{imu.name}.linear_acceleration.{axis}" for axis in "xyz"] if imu is not None else []
+        blind = all(not log.has(*columns) for log in logs)
         text = (
             "delay of the wrenches unknown: no log in which the ground's wrench follows from IMU, encoders and URDF; "
-            f"taken as 0 ± {1e3 * PRIOR_STD:.1f} ms, which widens damping by stiffness times that. Record arm sweeps "
-            "of 0.3 to 1 Hz without an operator"
+            f"taken as 0 ± {1e3 * PRIOR_STD:.1f} ms, which widens damping by stiffness times that. "
+            f"{'Record the accelerometer' if blind else 'Record arm sweeps of 0.3 to 1 Hz without an operator'}"
         )
         return Latency(0.0, PRIOR_STD, np.inf, False, Note("delay_unknown", "warning", text))
     gain = PRIOR_STD**2 / (PRIOR_STD**2 + found.std**2)
     slowest = max(log.period for log, closure in zip(logs, tried, strict=True) if closure is not None)
-    delay, std = gain * found.value, float(np.hypot(np.sqrt(gain) * found.std, CLOCK * slowest))
+    clock = max(CLOCK * slowest, LEAST_STD)
+    delay, std = gain * found.value, float(np.hypot(np.sqrt(gain) * found.std, clock))
     told = f"wrenches are {1e3 * delay:+.1f} ± {1e3 * 1.96 * std:.1f} ms late (95 %) against IMU and encoders"
     if std <= KNOWN_STD:
         return Latency(delay, std, found.freedom, True, Note("delay", "info", f"{told}: corrected"))
@@ -128,7 +132,7 @@ def _apart(names: Sequence[str], balances: Sequence[Balance]) -> Latency | None:
     contrasts[:feet, :feet] = np.eye(feet) - 1 / feet
     contrasts[feet, feet] = 1.0
     apart = contrasts @ found.values
-    spread = np.sqrt(np.diag(contrasts @ found.covariance @ contrasts.T) + APART_STD**2)
+    spread = np.sqrt(np.diag(contrasts @ found.covariance @ contrasts.T) + LEAST_STD**2)
     differ = (np.abs(apart) > np.maximum(APART * spread, LEAST_APART)) & (spread < KNOWN_STD)
     if not differ.any():
         return None
@@ -139,7 +143,7 @@ def _apart(names: Sequence[str], balances: Sequence[Balance]) -> Latency | None:
     delays = dict(zip(names, settled.values[:feet].tolist(), strict=True)) if differ[:feet].any() else {}
     mean = float(np.mean(settled.values[:feet]))
     encoders = float(settled.values[feet])
-    std = float(np.hypot(np.sqrt(np.diag(settled.covariance).max()), APART_STD))
+    std = float(np.hypot(np.sqrt(np.diag(settled.covariance).max()), LEAST_STD))
     each = ", ".join(f"{name} {1e3 * delay:+.1f}" for name, delay in delays.items()) or f"{1e3 * mean:+.1f}"
     text = (
         f"sensors are late by different delays against the IMU: wrenches {each} ms, encoders {1e3 * encoders:+.1f} ms "

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -11,14 +12,16 @@ from plantar.estimation import interval95, relative_std_percent
 from plantar.identify.axis import AxisFit
 from plantar.identify.recording import Recording
 from plantar.identify.residual_table import Predictions
-from plantar.identify.verdicts import Evidence, judge, judge_term
+from plantar.identify.verdicts import Evidence, contradiction, judge, judge_term
 from plantar.models import KelvinVoigt
-from plantar.result import Parameter
+from plantar.result import Parameter, ValidationRow
 
 
-def axis_rows(fit: AxisFit, recordings: Sequence[Recording], predictions: Predictions) -> list[Parameter]:
-    """Every parameter of one axis; `predictions` are those of the fit's own recordings."""
-    evidence = _evidence(fit, recordings, predictions)
+def axis_rows(
+    fit: AxisFit, recordings: Sequence[Recording], predictions: Predictions, scores: Sequence[ValidationRow]
+) -> list[Parameter]:
+    """Every parameter of one axis; `predictions` are those of the fit's own recordings, `scores` of all."""
+    evidence = replace(_evidence(fit, recordings, predictions), contradicted=contradiction(scores))
     rows = []
     for place, term in enumerate(fit.names):
         value, std = float(fit.numbers[place]), float(fit.std[place])

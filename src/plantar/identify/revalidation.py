@@ -19,7 +19,7 @@ from plantar.identify.scoring import score_axis
 from plantar.identify.settings import FeetSettings
 from plantar.identify.sliding import leave_out_slip
 from plantar.log import MotionLog
-from plantar.models import LAWS
+from plantar.models import LAWS, KelvinVoigt
 from plantar.result import ValidationRow
 from plantar.robot import RobotModel
 
@@ -68,8 +68,9 @@ def validate_feet(
 
 def _stored_fit(result: Mapping[str, Any], foot: str, axis: Axis) -> AxisFit | None:
     """The law of one axis as the result holds it, None where a number of it is missing."""
-    chosen = [row["law"] for row in result.get("laws", ()) if (row["foot"], row["axis"]) == (foot, axis)]
-    name = chosen[0] if chosen else "kelvin_voigt"
+    laws = [row for row in result.get("laws", ()) if (row["foot"], row["axis"]) == (foot, axis)]
+    entry: Mapping[str, Any] = laws[0] if laws else {"law": KelvinVoigt.name}
+    name = entry["law"]
     if name not in LAWS:
         raise DataError(f"the result's law '{name}' is unknown (valid: {', '.join(LAWS)})")
     law = LAWS[name]
@@ -82,8 +83,10 @@ def _stored_fit(result: Mapping[str, Any], foot: str, axis: Axis) -> AxisFit | N
     if any(number is None for number in numbers):
         return None
     values = np.array(numbers, dtype=float)
+    linear = entry.get("linear_equivalent", {})
+    equivalent = (float(linear.get("stiffness", values[0])), float(linear.get("damping", values[1])))
     count, size = len(law.terms), len(values)
     return AxisFit(
         foot, axis, law, values[:count], values[count:], np.zeros((size, size)), np.ones(size), np.zeros(size),
-        {}, {}, {}, (values[0], values[1]), None, "stored",
+        {}, {}, {}, equivalent, None, "stored",
     )  # fmt: skip

@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from plantar.conventions import Axis
-from plantar.result import Verdict
+from plantar.result import ValidationRow, Verdict
 
 USABLE_WIDTH = 0.15  # half width of the 95 % interval over the value, at most
 WEAK_WIDTH = 0.5
 LEAST_SECONDS = 3.0  # of samples that serve
 LEAST_EXPLAINED = 0.3  # share of the torque's variance that the law must explain
 GOOD_EXPLAINED = 0.8
+HOLDS, MISSED = (
+    0.3,
+    0.5,
+)  # mean error over that of a constant: of the liveliest motion, of one that contradicts it
+LOADED = 0.1  # of the liveliest motion's torque: others hardly load the axis
 
 SWAY = {
     "pitch": "sway the robot forward and backward",
@@ -24,13 +30,14 @@ SWAY = {
 
 @dataclass(frozen=True)
 class Evidence:
-    """What one fit shows: `seconds` that served, rms of deflection [rad], share of variance explained, and whether
-    the damping is negative beyond doubt."""
+    """What one fit shows: `seconds` that served, rms of deflection [rad], share of variance explained, whether the
+    damping is negative beyond doubt, and the motion that contradicts the others (None where they agree)."""
 
     seconds: float
     excitation: float
     explained: float
     makes_energy: bool = False
+    contradicted: ValidationRow | None = None
 
 
 def judge(
@@ -66,6 +73,14 @@ def judge(
             "damping comes out negative: something else than the bush takes part in this torque",
             advice,
         )
+    if evidence.contradicted is not None:
+        row = evidence.contradicted
+        return (
+            "weak",
+            f"misses {row.motion} by {row.mean_abs_error:.2g} N.m on average, where a constant misses by "
+            f"{row.zero_mean_abs:.2g}, though it holds in other motions",
+            f"check in {row.motion} the encoders between IMU and foot, and whether anything touched the robot",
+        )
     if width > USABLE_WIDTH:
         return "weak", f"the 95 % interval is ±{100 * width:.0f} %; the motion gave {motion}", advice
     if evidence.explained < GOOD_EXPLAINED:
@@ -75,6 +90,26 @@ def judge(
             advice,
         )
     return "usable", f"95 % interval ±{100 * width:.2g} %, {evidence.seconds:.0f} s served", None
+
+
+def contradiction(rows: Sequence[ValidationRow]) -> ValidationRow | None:
+    """The motion that an axis' law misses although it holds where most moves: of `rows` of one axis, the worst.
+
+    Motions that hardly load the axis do not count, and where the law holds nowhere nothing contradicts it.
+    """
+    telling = [row for row in rows if row.zero_mean_abs > 0]
+    if not telling:
+        return None
+    largest = max(telling, key=lambda row: row.zero_mean_abs)
+
+    def share(row: ValidationRow) -> float:
+        return row.mean_abs_error / row.zero_mean_abs
+
+    if share(largest) > HOLDS:
+        return None
+    loaded = [row for row in telling if row.zero_mean_abs > LOADED * largest.zero_mean_abs]
+    worst = max(loaded, key=share)
+    return worst if share(worst) > MISSED else None
 
 
 def judge_term(value: float, interval: tuple[float, float]) -> tuple[Verdict, str, str | None]:
