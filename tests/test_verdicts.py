@@ -11,8 +11,9 @@ from biped import record, sines, sway
 from biped_robot import FEET, make_robot, robot_entry
 from plantar.identify.feet import identify_feet
 from plantar.identify.settings import FeetSettings
-from plantar.identify.verdicts import Evidence, judge
+from plantar.identify.verdicts import Evidence, contradiction, judge
 from plantar.readers import open_log
+from plantar.result import ValidationRow
 from plantar.robot import load_robot
 
 GOOD = Evidence(seconds=60.0, excitation=0.02, explained=0.98)
@@ -119,3 +120,25 @@ def test_still_axes_are_not_judged_by_moving_ones(tmp_path: Path) -> None:
     for foot in FEET:
         assert found.parameter(foot, "pitch", "stiffness").verdict == "usable"
         assert found.parameter(foot, "roll", "stiffness").verdict == "unidentifiable"
+
+
+def scored(motion: str, error: float, constant: float) -> ValidationRow:
+    return ValidationRow("direct", motion, "left", "pitch", error, error, 4 * constant, 1.0, constant, 1000)
+
+
+def test_a_motion_that_contradicts_the_others_is_named() -> None:
+    lively, quiet = scored("sway", 0.3, 17.0), scored("squat", 1.0, 1.1)
+    assert contradiction([lively, quiet, scored("tilt", 0.2, 2.4)]) is None  # the squat hardly loads the axis
+    worst = scored("tilt", 4.1, 2.3)
+    assert contradiction([lively, quiet, worst]) is worst
+    assert (
+        contradiction([scored("sway", 9.0, 17.0), worst]) is None
+    )  # where nothing holds, nothing contradicts
+    assert contradiction([]) is None
+    verdict, reason, advice = judge(
+        "left", "pitch", "stiffness", 480.0, (475.0, 485.0), Evidence(60.0, 0.02, 0.97, contradicted=worst)
+    )
+    assert verdict == "weak"
+    assert "tilt" in reason
+    assert advice is not None
+    assert "encoders" in advice
