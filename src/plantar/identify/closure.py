@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from plantar.conventions import FORCE, Array
+from plantar.contact import shaken
+from plantar.conventions import FORCE, GRAVITY, Array, Mask
 from plantar.dynamics import Contact, Equation, model_parameters
 from plantar.dynamics.inertial_motion import inertial_motion
 from plantar.estimation.delay import LEAST_CLOSED, Pair, closes, unexplained
@@ -61,8 +62,10 @@ def closure_of(robot: RobotModel, log: MotionLog) -> Closure | None:
     motion = inertial_motion(robot, log, CUTOFF)
     wrenches = np.hstack([foot.wrench.sign * log.wrench(foot.wrench.name) for foot in robot.feet.values()])
     whole = motion.finite & np.isfinite(wrenches).all(axis=1)
-    longest = max(runs(whole), key=lambda run: run.stop - run.start, default=slice(0, 0))
     edge = round(EDGE / log.period)
+    longest = _longest(whole & ~_struck(robot, wrenches, log.period))
+    if (longest.stop - longest.start) * log.period < SHORTEST + 2 * EDGE:
+        longest = _longest(whole)
     if longest.stop - longest.start < 4 * edge + 400:
         return None
     equation, parameters = Equation(robot.floating_model), model_parameters(robot.floating_model)
@@ -100,6 +103,17 @@ def closure_of(robot: RobotModel, log: MotionLog) -> Closure | None:
     return Closure(pair, measured, rates, by_encoders[calm])
 
 
+def _struck(robot: RobotModel, wrenches: Array, period: float) -> Mask:
+    """Samples in which a sole slaps the floor: faster than the samples resolve, so that nothing follows from them."""
+    weight, feet = robot.mass * GRAVITY, range(len(robot.feet))
+    shocks = [shaken(wrenches[:, 6 * place : 6 * place + 3], weight, period) for place in feet]
+    return np.asarray(np.any(shocks, axis=0))
+
+
+def _longest(valid: Mask) -> slice:
+    return max(runs(valid), key=lambda run: run.stop - run.start, default=slice(0, 0))
+
+
 def _longest_closed(measured: Array, rate: Array, predicted: Array, period: float) -> slice:
     """The longest stretch in which nobody pushes and nothing strikes: there the forces follow from the prediction."""
     width = round(WINDOW / period)
@@ -110,4 +124,4 @@ def _longest_closed(measured: Array, rate: Array, predicted: Array, period: floa
         power = float(np.mean(np.sum(measured[window] ** 2, axis=1)))
         missing = unexplained(measured[window], rate[window], predicted[window]) / width
         closed[window] = missing < (1 - LEAST_CLOSED) * max(power, usual)
-    return max(runs(closed), key=lambda run: run.stop - run.start, default=slice(0, 0))
+    return _longest(closed)
