@@ -74,16 +74,18 @@ def _dead_encoder(joint: str, log: MotionLog) -> Iterator[Finding]:
     if position is None or velocity is None:
         return
     steps = np.diff(position)
-    moving = np.abs(steps[np.isfinite(steps) & (steps != 0)])
-    coarse = float(np.median(moving)) if moving.size else 0.0
-    path = np.concatenate(
-        [[0.0], np.cumsum(np.nan_to_num(velocity[1:] + velocity[:-1]) * np.diff(log.time) / 2)]
-    )
-    path -= np.linspace(0.0, path[-1], len(path))  # a velocity that is off by a constant turns nothing
     least = max(FEWEST, round(SHORTEST / log.period))
     held = [run for run in runs(steps == 0) if run.stop - run.start >= least]
+    if not held:
+        return
+    path = np.cumsum(np.nan_to_num(velocity[1:] + velocity[:-1]) * np.diff(log.time) / 2)
+    path = np.concatenate(
+        [[0.0], path - np.linspace(0.0, path[-1], len(path))]
+    )  # a constant error turns nothing
+    moving = np.abs(steps[np.isfinite(steps) & (steps != 0)])
+    coarse = float(np.median(moving)) if moving.size else 0.0
     turned = [float(np.ptp(path[run.start : run.stop + 1])) for run in held]
-    if not held or max(turned) < max(TURNED, STEPS * coarse):
+    if max(turned) < max(TURNED, STEPS * coarse):
         return
     run = held[int(np.argmax(turned))]
     where = f"column 'joint.{joint}.position', t = {log.time[run.start]:g} to {log.time[run.stop]:g} s"

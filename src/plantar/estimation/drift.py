@@ -15,7 +15,7 @@ import numpy as np
 from plantar.conventions import Array
 
 OUTLYING = 5.0  # usual deviations: beyond them a sample is motion rather than drift
-ANNEALED = 1.5  # by which the weights' reach shrinks in a step
+ANNEALED = 2.0  # by which the weights' reach shrinks in a step
 STIFF = 1e8  # by which the first weights are lower than the last
 SETTLED = 5  # steps with the final reach
 FIRST_DRIFT, FIRST_SLOPE = 1.0, 0.3  # m/s, m/s²: deviations of what is known of both before the first sample

@@ -70,7 +70,10 @@ def closure_of(robot: RobotModel, log: MotionLog) -> Closure | None:
         return None
     equation, parameters = Equation(robot.floating_model), model_parameters(robot.floating_model)
     contacts = [Contact(*robot.frame(foot.wrench.placement)) for foot in robot.feet.values()]
-    part = motion.select(longest)
+    stride = max(1, round(1 / (KEPT_RATE * log.period)))
+    period, inner = stride * log.period, slice(edge, longest.stop - longest.start - edge, stride)
+    kept = slice(longest.start + edge, longest.stop - edge, stride)
+    part = motion.select(kept)
 
     def carried(readings: Array) -> list[Array]:
         split = [np.ascontiguousarray(readings[:, 6 * i : 6 * i + 6]) for i in range(len(contacts))]
@@ -80,18 +83,17 @@ def closure_of(robot: RobotModel, log: MotionLog) -> Closure | None:
         ]
 
     def predicted_at(late: float) -> Array:
-        moved = inertial_motion(robot, log, CUTOFF, late).select(longest) if late else part
+        moved = inertial_motion(robot, log, CUTOFF, late).select(kept) if late else part
         return equation.inverse_dynamics(moved, parameters)[BASE_ROWS].T
 
     readings = low_pass(wrenches[longest], log.period, CUTOFF)
-    stride = max(1, round(1 / (KEPT_RATE * log.period)))
-    inner, period = slice(edge, len(part) - edge, stride), stride * log.period
+    changes = differentiate(readings, log.period)[inner]
 
     def moving(sides: Sequence[Array]) -> Array:
-        rows = np.hstack(sides)[inner]
+        rows = np.hstack(sides)
         return (rows - low_pass(rows, period, SLOW)).reshape(len(rows), -1, 6).transpose(1, 0, 2)
 
-    sides = moving([*carried(readings), *carried(differentiate(readings, log.period)), predicted_at(0.0)])
+    sides = moving([*carried(readings[inner]), *carried(changes), predicted_at(0.0)])
     measured, rates, predicted = sides[: len(contacts)], sides[len(contacts) : -1], sides[-1]
     calm = _longest_closed(measured.sum(axis=0), rates.sum(axis=0), predicted, period)
     measured, rates, predicted = measured[:, calm], rates[:, calm], predicted[calm]

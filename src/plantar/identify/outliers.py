@@ -51,21 +51,22 @@ def _left_out(recordings: Sequence[Recording], foot: str, axis: Axis, fit: AxisF
         missed = torque - law_columns(recording, foot, axis, fit) @ fit.values
         reach = 1 / recording.cutoff
         off = outliers(np.where(used, missed, np.nan), float(np.std(torque[used])), recording.period, reach)
+        moved = _motion_until(recording.bushes[foot], used) if off.any() else np.zeros((0, 2, 2))
         for run in runs(off):
-            off[run] = not _moves(recording.bushes[foot], used, run)
+            # The motion of either axis, of its angle and its torque, may lie in one stretch for a large part.
+            off[run] = (moved[run.stop] - moved[run.start]).min(axis=0).max() <= MOVING
         if off.any():
             recording.contacts[foot].leave_out(off, f"outlier: the {axis} torque leaves its law for a moment")
             several = True
     return several
 
 
-def _moves(bush: BushState, used: Mask, run: slice) -> bool:
-    """Whether the motion of either axis, of its angle and its torque, lies in one stretch for a large part."""
-    shares = []
-    for values in (bush.deflection, bush.torque):
-        squares = np.where(used[:, None], values - values[used].mean(axis=0), 0.0) ** 2
-        shares.append(squares[run].sum(axis=0) / np.maximum(squares.sum(axis=0), 1e-300))
-    return bool(np.minimum(*shares).max() > MOVING)
+def _motion_until(bush: BushState, used: Mask) -> Array:
+    """Share of the squares of angle and torque, of pitch and roll, before each sample that serves, (N + 1, 2, 2)."""
+    both = np.stack([bush.deflection, bush.torque], axis=1)
+    squares = np.where(used[:, None, None], both - both[used].mean(axis=0), 0.0) ** 2
+    until = np.concatenate([np.zeros((1, 2, 2)), np.cumsum(squares, axis=0)])
+    return np.asarray(until / np.maximum(until[-1], 1e-300))
 
 
 def outliers(missed: Array, spread: float, period: float, reach: float) -> Mask:

@@ -69,10 +69,9 @@ def prepare_all(
                 roles,
             )
         )
-    progress("look for soles that tip or slide")
-    leave_out_edges(robot, recordings, settings)
-    for recording in recordings:
-        leave_out_slip(robot, recording)
+        progress("look for soles that tip or slide")
+        leave_out_edges(robot, recordings, settings)
+        list(pool.map(lambda recording: leave_out_slip(robot, recording), recordings))
     progress("fit z")
     vertical = fit_height(recordings[: len(logs)], robot, settings.cutoff)
     moved = [moved_centre(recording, vertical.compliance, settings.cutoff) for recording in recordings]
