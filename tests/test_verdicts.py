@@ -142,3 +142,14 @@ def test_a_motion_that_contradicts_the_others_is_named() -> None:
     assert "tilt" in reason
     assert advice is not None
     assert "encoders" in advice
+
+
+def test_a_memory_that_goes_through_a_long_lean_is_weak() -> None:
+    evidence = Evidence(60.0, 0.02, 0.99, leaning=0.14)
+    verdict, reason, advice = judge("left", "pitch", "stiffness", 480.0, (475.0, 485.0), evidence)
+    assert verdict == "weak"
+    assert "leans for 14 %" in reason
+    assert advice is not None
+    assert "inside the sole" in advice
+    short = Evidence(60.0, 0.02, 0.99, leaning=0.02)
+    assert judge("left", "pitch", "stiffness", 480.0, (475.0, 485.0), short)[0] == "usable"

@@ -6,14 +6,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from plantar.contact import SMEARED, TIPPING
 from plantar.conventions import ROTATIONAL_AXES, Array, Axis
 from plantar.estimation import Block
 from plantar.estimation.law_trials import Trial
 from plantar.identify.axis import AxisFit
 from plantar.identify.recording import Recording
 from plantar.models import KelvinVoigt, Motion
-from plantar.signals import differentiate, low_pass, runs
+from plantar.signals import low_pass
 
 FEWEST_SAMPLES = 50  # of one recording, for it to take part in a fit
 
@@ -54,7 +53,7 @@ def law_columns(
     recording: Recording, foot: str, axis: Axis, fit: AxisFit | None, starts: Array | None = None
 ) -> Array:
     """Regressor (N, k) of a fit's law along a recording, Kelvin-Voigt's without one; NaN in the air."""
-    motion = motion_of(recording, foot, axis, None if fit is None else fit.equivalent[0])
+    motion = motion_of(recording, foot, axis)
     if fit is None or isinstance(fit.law, KelvinVoigt):
         return np.column_stack([motion.deflection, motion.rate])
     starts = fit.starts.get(recording.name) if starts is None else starts
@@ -65,36 +64,16 @@ def law_columns(
     return columns
 
 
-def motion_of(recording: Recording, foot: str, axis: Axis, stiffness: float | None = None) -> Motion:
-    """Deflection and rate of one axis, NaN where the foot does not stand: a bush in the air forgets.
-
-    Where a sole leans, its angle is not the bush's, but the bush goes on: with a `stiffness` [N·m/rad] its deflection
-    follows the torque there, from where the lean begins to where it ends. Such samples do not serve; a law's memory
-    needs them.
-    """
+def motion_of(recording: Recording, foot: str, axis: Axis) -> Motion:
+    """Deflection and rate of one axis, NaN where the foot does not stand: a bush in the air forgets."""
     column, bush = ROTATIONAL_AXES.index(axis), recording.bushes[foot]
-    contact = recording.contacts[foot]
+    away = ~recording.contacts[foot].loaded
     deflection, rate = bush.deflection[:, column].copy(), bush.rate[:, column].copy()
-    if stiffness is not None and stiffness > 0:
-        for lean in runs(contact.loaded & contact.left_out_for(TIPPING, SMEARED)):
-            around = slice(lean.start - 1, lean.stop + 1)
-            if lean.start == 0 or lean.stop == len(rate) or not contact.loaded[around].all():
-                continue
-            deflection[around] = _by_torque(deflection[around], bush.torque[around, column], stiffness)
-            rate[lean] = differentiate(deflection[around], recording.period)[1:-1]
-    deflection[~contact.loaded] = rate[~contact.loaded] = np.nan
+    deflection[away] = rate[away] = np.nan
     return Motion(deflection, rate, recording.period)
 
 
-def _by_torque(deflection: Array, torque: Array, stiffness: float) -> Array:
-    """A deflection (n,) with the ends that it has, and a spring's way between them."""
-    share = np.linspace(0.0, 1.0, len(torque))
-    spring = torque / stiffness
-    ends = deflection[[0, -1]] - spring[[0, -1]]
-    return np.asarray(spring + (1 - share) * ends[0] + share * ends[1])
-
-
-def trial_of(recording: Recording, foot: str, axis: Axis, stiffness: float) -> Trial:
-    """One recording of one axis, as the laws take it; `stiffness` [N·m/rad] of a spring and damper: see `motion_of`."""
+def trial_of(recording: Recording, foot: str, axis: Axis) -> Trial:
+    """One recording of one axis, as the laws take it."""
     torque = recording.bushes[foot].torque[:, ROTATIONAL_AXES.index(axis)]
-    return Trial(recording.name, motion_of(recording, foot, axis, stiffness), torque, recording.used(foot))
+    return Trial(recording.name, motion_of(recording, foot, axis), torque, recording.used(foot))

@@ -51,12 +51,7 @@ def _fitted(
     linear = fit_linear(blocks, shared_offset=shared)
     if isinstance(asked, KelvinVoigt):
         return _of_linear(foot, axis, linear, None, "asked for")
-    stiffness = float(linear.values[0])
-    trials = [
-        trial_of(recording, foot, axis, stiffness)
-        for recording in recordings
-        if recording.name in linear.offsets
-    ]
+    trials = [trial_of(recording, foot, axis) for recording in recordings if recording.name in linear.offsets]
     if asked is not None:
         fit = fit_law(asked, trials, settings.cutoff, shared_offset=shared)
         return _of_law(foot, axis, fit, linear, None, "asked for")

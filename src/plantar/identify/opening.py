@@ -11,7 +11,7 @@ from plantar.identify.recording import Recording
 
 def unseen_starts(fit: AxisFit, recording: Recording, foot: str, axis: Axis, first: Mask) -> Array | None:
     """The state (runs,) at the start of each run of an unseen recording; None for laws without memory."""
-    motion = motion_of(recording, foot, axis, fit.equivalent[0])
+    motion = motion_of(recording, foot, axis)
     if not fit.law.remembers or not motion.runs or not first.any():
         return None
     torque, used = recording.bushes[foot].torque[:, ROTATIONAL_AXES.index(axis)], recording.used(foot)

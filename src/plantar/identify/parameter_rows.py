@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from plantar.contact import TIPPING
 from plantar.conventions import ROTATIONAL_AXES, Axis
 from plantar.estimation import interval95, relative_std_percent
 from plantar.identify.axis import AxisFit
@@ -55,7 +56,7 @@ def _evidence(
     fit: AxisFit, recordings: Sequence[Recording], predictions: Mapping[tuple[str, str, Axis], np.ndarray]
 ) -> Evidence:
     column = ROTATIONAL_AXES.index(fit.axis)
-    seconds = moved = varied = missed = 0.0
+    seconds = moved = varied = missed = leans = loaded = 0.0
     samples = 0
     for recording in recordings:
         predicted = predictions.get((recording.name, fit.foot, fit.axis))
@@ -64,11 +65,18 @@ def _evidence(
         used, bush = recording.used(fit.foot) & np.isfinite(predicted), recording.bushes[fit.foot]
         angle, torque = bush.deflection[used, column], bush.torque[used, column]
         samples += len(angle)
+        contact = recording.contacts[fit.foot]
+        loaded += float(contact.loaded.sum()) * recording.period
+        leans += float((contact.loaded & contact.left_out_for(TIPPING)).sum()) * recording.period
         seconds += len(angle) * recording.period
         moved += float(np.sum((angle - angle.mean()) ** 2))
         varied += float(np.sum((torque - torque.mean()) ** 2))
         missed += float(np.sum((torque - predicted[used]) ** 2))
     damping = float(fit.numbers[1]) + 2 * float(fit.std[1])
     return Evidence(
-        seconds, float(np.sqrt(moved / max(samples, 1))), 1 - missed / varied if varied else 0.0, damping < 0
+        seconds,
+        float(np.sqrt(moved / max(samples, 1))),
+        1 - missed / varied if varied else 0.0,
+        damping < 0,
+        leaning=leans / loaded if fit.law.remembers and fit.law.forgets and loaded else 0.0,
     )

@@ -19,6 +19,7 @@ HOLDS, MISSED = (
     0.3,
     0.5,
 )  # mean error over that of a constant: of the liveliest motion, of one that contradicts it
+LEANING = 0.05  # of the time: shorter leans hardly move what comes behind them
 LOADED = 0.1  # of the liveliest motion's torque: others hardly load the axis
 
 SWAY = {
@@ -31,13 +32,15 @@ SWAY = {
 @dataclass(frozen=True)
 class Evidence:
     """What one fit shows: `seconds` that served, rms of deflection [rad], share of variance explained, whether the
-    damping is negative beyond doubt, and the motion that contradicts the others (None where they agree)."""
+    damping is negative beyond doubt, the motion that contradicts the others (None where they agree), and the share of
+    the time in which the sole leans, where the law has a memory that has to go through that."""
 
     seconds: float
     excitation: float
     explained: float
     makes_energy: bool = False
     contradicted: ValidationRow | None = None
+    leaning: float = 0.0
 
 
 def judge(
@@ -80,6 +83,12 @@ def judge(
             f"misses {row.motion} by {row.mean_abs_error:.2g} N.m on average, where a constant misses by "
             f"{row.zero_mean_abs:.2g}, though it holds in other motions",
             f"check in {row.motion} the encoders between IMU and foot, and whether anything touched the robot",
+        )
+    if evidence.leaning > LEANING:
+        return (
+            "weak",
+            f"the sole leans for {100 * evidence.leaning:.0f} % of the time, and a bush with a memory goes on unseen",
+            f"{_advice(foot, axis, term)}: the centre of pressure has to stay inside the sole",
         )
     if width > USABLE_WIDTH:
         return "weak", f"the 95 % interval is ±{100 * width:.0f} %; the motion gave {motion}", advice
