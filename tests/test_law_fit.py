@@ -201,7 +201,9 @@ def test_reconstruction_is_the_fit_plus_its_residual() -> None:
         motion, torque = filtered(trial, fit.cutoff)
         missed = (torque - reconstructed(fit, motion, fit.starts[trial.label]))[trial.used]
         time = np.arange(len(missed)) - (len(missed) - 1) / 2
-        missed -= fit.offsets[trial.label] + time * (time @ missed) / (time @ time)  # the attitude's drift is free
+        missed -= fit.offsets[trial.label] + time * (time @ missed) / (
+            time @ time
+        )  # the attitude's drift is free
         assert np.std(missed) == pytest.approx(np.std(fit.residuals[trial.label]), rel=0.05)
 
 

@@ -22,7 +22,9 @@ ARRAYS = ("time", "base", "positions", "velocities", "efforts", "hand")
 
 def plan_key(name: str, robot: RobotModel, postures: Postures, options: Mapping[str, float | None]) -> str:
     """What a plan comes from."""
-    with np.printoptions(floatmode="unique", threshold=sys.maxsize):  # else arrays are rounded to eight digits
+    with np.printoptions(
+        floatmode="unique", threshold=sys.maxsize
+    ):  # else arrays are rounded to eight digits
         mounting = repr((robot.imu, dict(robot.feet)))
     return cache.key("plan", name, robot.urdf, mounting, repr(postures), repr(sorted(options.items())))
 
