@@ -43,8 +43,9 @@ def diagnose_axis(
         limit = max(shares, key=lambda cause: shares[cause])
         without = float(np.sqrt(max(0.0, 1 - shares[limit])))
         percent = 196 * total / abs(row.value)
+        term = row.name.replace("_", " ")
         text = (
-            f"{row.foot} {row.axis} {row.name}: ±{percent:.2g} %, {100 * shares[limit]:.0f} % of its variance from "
+            f"{row.foot} {row.axis} {term}: ±{percent:.2g} %, {100 * shares[limit]:.0f} % of its variance from "
             f"{limit}; without it ±{percent * without:.2g} %. To tighten: {REMEDY[limit]}"
         )
         found.append({"foot": row.foot, "axis": row.axis, "name": row.name, "limit": limit, "variance_shares": shares,
