@@ -58,7 +58,7 @@ def test_what_an_impact_leaves_behind_is_passed_by(twin: RobotModel, sweep: Moti
     columns = {}
     for name in (name for name in sweep.columns if name.startswith("wrench.")):
         columns[name] = np.where(behind, spoiled.column(name), sweep.column(name))
-        columns[name] += np.where(struck, 200 * random.standard_normal(len(sweep)), 0.0)
+        columns[name] += np.where(struck, 20 * random.standard_normal(len(sweep)), 0.0)
     found = wrench_latency(twin, [sweep.with_columns(columns)])
     assert found.measured
     assert found.delay == pytest.approx(0.0, abs=1e-3)
