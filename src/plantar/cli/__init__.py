@@ -35,6 +35,8 @@ EPILOG = "Example: plantar identify feet robot.yaml sway_*.csv --validate squat.
 
 def main(arguments: list[str] | None = None) -> None:
     """Run one command. Exits 0 when done, 1 on a known error (one line on stderr), 2 on wrong usage."""
+    # Logs and feet fill the cores already; a BLAS with threads of its own only waits for them.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     arguments = _spread(sys.argv[1:] if arguments is None else arguments)
     try:
         _application(arguments)(args=arguments, prog_name="plantar")
