@@ -1,8 +1,9 @@
 """Which law of the bush: judged on what the fit has not seen, the simpler one kept unless the gain is clear.
 
 A gain is clear when the squared error on held-out pieces falls by more than one standard error of its fall
-(pieces paired), and its root by at least `LEAST_GAIN`. Of all laws that the best one does not clearly beat,
-the one with the fewest parameters is chosen.
+(pieces paired), and its root by at least `LEAST_GAIN`; what a law adds to the one that it elaborates must differ from
+zero by `TOLD` deviations, and then only not predict worse. Of all laws that the best one does not clearly beat, the one
+with the fewest parameters is chosen; spring and damper where a law that cannot be identified is clearly better still.
 """
 
 from __future__ import annotations

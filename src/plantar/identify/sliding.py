@@ -96,5 +96,4 @@ def _shared(witnesses: Mapping[str, Witness], foot: str, both: Mask) -> Witness:
 
 def _tipping(contact: FootContact, period: float) -> Mask:
     """Where the sole tips or has just done so: its place is computed for a level sole."""
-    tips = np.isin(contact.code, [k for k, reason in enumerate(contact.reasons) if reason in TIPPING])
-    return widened(tips, round(AFTER / period))
+    return widened(contact.left_out_for(*TIPPING), round(AFTER / period))

@@ -13,6 +13,7 @@ import numpy as np
 from plantar.conventions import Array, Mask, rotation_from_quaternion
 from plantar.deflection import BushState
 from plantar.estimation.drift import fit_drift
+from plantar.identify.attitude_pull import unit_quaternions
 from plantar.identify.orientation import attitude
 from plantar.identify.recording import Recording
 from plantar.robot import RobotModel
@@ -106,8 +107,7 @@ def _inertial(robot: RobotModel, recording: Recording) -> tuple[Array, Array | N
     log, imu = recording.log, robot.imu
     assert imu is not None, "checked"
     orientation, rates = attitude(log, imu, [])
-    length = np.linalg.norm(orientation, axis=1, keepdims=True)
-    rotation = rotation_from_quaternion(orientation / np.where(length > 0, length, np.nan))
+    rotation = rotation_from_quaternion(unit_quaternions(orientation))
     turned = np.einsum("nij,nj->ni", rotation, rates)
     if not log.has(*(f"imu.{imu.name}.linear_acceleration.{axis}" for axis in "xyz")):
         return rotation, None, turned
