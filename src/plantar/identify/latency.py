@@ -86,8 +86,8 @@ def known_latency(delay: float) -> Latency:
 def wrench_latency(
     robot: RobotModel, logs: Sequence[MotionLog], each: Callable[..., Iterable[Closure | None]] = map
 ) -> Latency:
-    """The delay common to all logs, evenly sampled, drawn towards zero by what is usual where the logs say little; where
-    sensors clearly differ, the delay of each.
+    """The delay common to all logs, evenly sampled, drawn towards zero by what is usual where the logs say little;
+    where sensors clearly differ, the delay of each.
 
     `each` maps a function over logs: a pool's map uses all cores.
     """

@@ -40,8 +40,8 @@ class Cause:
 def systematic_causes(
     fit: AxisFit, recordings: Sequence[Recording], latency: Latency, vertical: Height, shared: bool
 ) -> list[Cause]:
-    """The wrenches' delay, the lever of the compressed slide, a hardening that the law leaves out, and for roll the zero
-    of the yaw torque."""
+    """The wrenches' delay, the lever of the compressed slide, a hardening that the law leaves out, and for roll the
+    zero of the yaw torque."""
     foot, column = fit.foot, ROTATIONAL_AXES.index(fit.axis)
     blocks = blocks_of(recordings, foot, fit.axis, drift=not shared, fit=fit)
     served = {recording.name: recording for recording in recordings}
