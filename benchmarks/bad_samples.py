@@ -13,10 +13,11 @@ import argparse
 
 import numpy as np
 
-from plantar.identify.feet import identify_feet
-from plantar.log import MotionLog
+from plantar.feet.identify import identify_feet
+from plantar.logs.motion_log import MotionLog
 from plantar.motions.campaign import FIT
-from plantar.twin import PAPER, hrp2, play_all
+from plantar.twin import PAPER, play_all
+from plantar.twin.robots import hrp2
 
 KINDS = ("clean", "spikes", "bursts", "held", "gyroscope spikes", "loud gyroscope", "loud attitude")
 NOISE = {"force": 1.0, "torque": 0.1, "angular_velocity": 0.0013, "orientation": 4.4e-5}

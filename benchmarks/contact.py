@@ -17,19 +17,20 @@ from dataclasses import dataclass
 import numpy as np
 
 from disturbed import Trial, play_disturbed
-from plantar.contact import AIR, DOUBLE, joined, widened
+from plantar.contact.phases import AIR, DOUBLE, joined, widened
 from plantar.conventions import ROTATIONAL_AXES
-from plantar.identify.axis_fit import fit_axis
-from plantar.identify.feet import identify_feet
-from plantar.identify.preparation import prepare_all
-from plantar.identify.settings import FeetSettings
-from plantar.log import MotionLog
+from plantar.feet.fit.axis_fit import fit_axis
+from plantar.feet.identify import identify_feet
+from plantar.feet.prepare import prepare_all
+from plantar.feet.settings import FeetSettings
+from plantar.logs.motion_log import MotionLog
 from plantar.motions.campaign import FIT
-from plantar.result import FeetResult
-from plantar.robot import RobotModel
-from plantar.signals import runs
-from plantar.twin import PAPER, hrp2
+from plantar.results.feet import FeetResult
+from plantar.robot.model import RobotModel
+from plantar.signals.segments import runs
+from plantar.twin import PAPER
 from plantar.twin.play import play_all
+from plantar.twin.robots import hrp2
 
 TOLERANCE = 0.1  # s by which an event may be missed at its ends, and a flag may reach beyond one
 KINDS = ("slip", "tipping")

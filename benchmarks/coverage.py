@@ -23,16 +23,17 @@ import numpy as np
 
 import talos
 from plantar.conventions import rotation_from_quaternion
-from plantar.identify.feet import identify_feet
-from plantar.identify.settings import FeetSettings
+from plantar.feet.identify import identify_feet
+from plantar.feet.settings import FeetSettings
 from plantar.motions.campaign import FIT
-from plantar.result import FeetResult
-from plantar.robot import RobotModel
-from plantar.twin import PAPER, hrp2, play_all
+from plantar.results.feet import FeetResult
+from plantar.robot.model import RobotModel
+from plantar.twin import PAPER, play_all
 from plantar.twin.bush import Feet
-from plantar.twin.exact import bush_forces
 from plantar.twin.play import planned, rolled
 from plantar.twin.presets import preset_named
+from plantar.twin.robots import hrp2
+from plantar.twin.sensing.exact import bush_forces
 
 ROBOTS: dict[str, tuple[Callable[[Path], RobotModel], Feet]] = {
     "hrp2": (lambda _: hrp2.robot(), PAPER),

@@ -19,12 +19,13 @@ import numpy as np
 import pinocchio as pin
 
 from plantar.dynamics import Equation, base_parameters, model_parameters
-from plantar.identify.dynamics_result import BaseParameter, DynamicsResult, JointParameter
-from plantar.identify.inertia import identify_inertia
-from plantar.identify.joints import identify_joints
-from plantar.identify.whole_body import COULOMB_SPEED, DynamicsSettings
-from plantar.log import MotionLog
-from plantar.robot import RobotModel, load_robot
+from plantar.logs.motion_log import MotionLog
+from plantar.results.dynamics import BaseParameter, DynamicsResult, JointParameter
+from plantar.robot.model import RobotModel, load_robot
+from plantar.whole_body.dataset import COULOMB_SPEED
+from plantar.whole_body.inertia import identify_inertia
+from plantar.whole_body.joints import identify_joints
+from plantar.whole_body.settings import DynamicsSettings
 
 sys.path.append(str(Path(__file__).parents[1] / "tests"))
 import example_robots

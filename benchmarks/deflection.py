@@ -15,9 +15,9 @@ import numpy as np
 import pinocchio as pin
 
 from plantar import _core
+from plantar.contact.deflection import foot_motion, foot_path
 from plantar.conventions import Array
-from plantar.deflection import foot_motion, foot_path
-from plantar.kinematics import KinematicTree
+from plantar.robot.kinematics import KinematicTree
 
 TALOS = Path(pin.__file__).parents[4] / "share/example-robot-data/robots/talos_data/robots/talos_reduced.urdf"
 IMU, FEET = "torso_2_link", ("leg_left_6_link", "leg_right_6_link")

@@ -16,14 +16,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from plantar.identify.feet import identify_feet
-from plantar.identify.settings import FeetSettings
-from plantar.log import MotionLog
+from plantar.feet.identify import identify_feet
+from plantar.feet.settings import FeetSettings
+from plantar.logs.motion_log import MotionLog
 from plantar.motions.campaign import FIT
-from plantar.result import FeetResult
-from plantar.robot import RobotModel
-from plantar.signals import shifted
-from plantar.twin import PAPER, PRESETS, hrp2, play_all
+from plantar.results.feet import FeetResult
+from plantar.robot.model import RobotModel
+from plantar.signals.resampling import shifted
+from plantar.twin import PAPER, PRESETS, play_all
+from plantar.twin.robots import hrp2
 
 APART = ((10, 0, 0), (0, 0, 5), (0, 0, -5), (5, -5, 0), (8, 3, -4))  # ms: left and right wrench, encoders
 

@@ -15,21 +15,21 @@ from itertools import count
 import numpy as np
 import pinocchio as pin
 
-from plantar.contact import joined
+from plantar.contact.phases import joined
 from plantar.conventions import rotation_from_quaternion
 from plantar.errors import MotionError
-from plantar.log import MotionLog
+from plantar.logs.motion_log import MotionLog
 from plantar.motions.plan import Hand, Plan
-from plantar.robot import Placement, RobotModel
-from plantar.signals import runs
+from plantar.robot.model import Placement, RobotModel
+from plantar.signals.segments import runs
 from plantar.twin import PAPER
-from plantar.twin.foot import CutFoot, cut_feet
-from plantar.twin.from_robot import describe
-from plantar.twin.physics import Slip
 from plantar.twin.play import on_cores, planned, rolled
 from plantar.twin.presets import preset_named
 from plantar.twin.recording import record
-from plantar.twin.rollout import Rollout
+from plantar.twin.robots.foot import CutFoot, cut_feet
+from plantar.twin.robots.from_robot import describe
+from plantar.twin.simulation.physics import Slip
+from plantar.twin.simulation.rollout import Rollout
 
 SLIDING_SPEED, SLIDING_PATH, LEVER = 0.002, 0.001, 0.1  # m/s, m, m
 TIPPED = 0.002  # rad

@@ -32,9 +32,9 @@ from biped import record, sway
 from biped_robot import make_robot
 from log_formats import WRITERS
 from plantar.errors import PlantarError
-from plantar.log import MotionLog
-from plantar.readers import open_log
-from plantar.robot import RobotModel
+from plantar.logs.motion_log import MotionLog
+from plantar.logs.readers import open_log
+from plantar.robot.model import RobotModel
 
 MEMORY = 4 * 2**30  # bytes of address space beyond what the process starts with
 SECONDS = 10  # for one file

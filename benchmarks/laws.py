@@ -18,7 +18,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 from bush_trials import Rubber, campaign, largest_torque, unseen, unseen_error
-from plantar.estimation.law_choice import choose_law
+from plantar.model_selection.selection import choose_law
 
 RUBBERS = ("none", "jenkins", "bouc_wen 1", "bouc_wen 2", "hardening", "coulomb")
 

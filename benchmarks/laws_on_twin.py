@@ -14,17 +14,18 @@ from dataclasses import replace
 
 import numpy as np
 
-from plantar.identify.feet import identify_feet
-from plantar.identify.settings import FeetSettings
-from plantar.log import MotionLog
+from plantar.feet.identify import identify_feet
+from plantar.feet.settings import FeetSettings
+from plantar.logs.motion_log import MotionLog
 from plantar.models import LAWS
 from plantar.models.hysteresis import Hysteretic
 from plantar.motions.campaign import FIT
-from plantar.result import FeetResult
-from plantar.twin import PAPER, PRESETS, hrp2
+from plantar.results.feet import FeetResult
+from plantar.twin import PAPER, PRESETS
 from plantar.twin.play import planned, roll_all
 from plantar.twin.presets import SLIP_TORQUE
 from plantar.twin.recording import record
+from plantar.twin.robots import hrp2
 
 NAMES = ("stiffness", "damping")
 UNSEEN = ("Tilt1", "Myrand5")

@@ -15,9 +15,9 @@ from pathlib import Path
 
 import numpy as np
 
-from plantar.log import MotionLog
-from plantar.readers import open_log
-from plantar.readers.save import save_log
+from plantar.logs.motion_log import MotionLog
+from plantar.logs.readers import open_log
+from plantar.logs.save import save_log
 
 RATE, SECONDS, JOINTS = 500, 60, 32
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pinocchio as pin
 
-from plantar.robot import RobotModel, load_robot
+from plantar.robot.model import RobotModel, load_robot
 from plantar.twin import Bush
 from plantar.twin.bush import Feet
 

@@ -10,12 +10,13 @@ from __future__ import annotations
 import argparse
 import time
 
-from plantar.identify.feet import identify_feet
-from plantar.identify.settings import FeetSettings
-from plantar.log import MotionLog
+from plantar.feet.identify import identify_feet
+from plantar.feet.settings import FeetSettings
+from plantar.logs.motion_log import MotionLog
 from plantar.motions.campaign import FIT
-from plantar.robot import RobotModel
-from plantar.twin import PAPER, hrp2, play_all
+from plantar.robot.model import RobotModel
+from plantar.twin import PAPER, play_all
+from plantar.twin.robots import hrp2
 
 UNSEEN = ("Tilt1", "Squat", "Myrand4", "Myrand5")
 WAYS = {

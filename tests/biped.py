@@ -16,7 +16,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from biped_robot import AS_USUAL, FEET, HIPS, SOLE_DEPTH, Mounting
-from plantar.log import MotionLog
+from plantar.logs.motion_log import MotionLog
 
 MASS = 60.0
 WEIGHT = MASS * 9.80665

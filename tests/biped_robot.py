@@ -9,7 +9,7 @@ import numpy as np
 import yaml
 from scipy.spatial.transform import Rotation
 
-from plantar.robot import RobotModel, load_robot
+from plantar.robot.model import RobotModel, load_robot
 
 FEET = ("left", "right")
 HIPS = {"left": np.array([0.0, 0.1, -0.1]), "right": np.array([0.0, -0.1, -0.1])}

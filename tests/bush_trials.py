@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from plantar.estimation.law_fit import LawFit
-from plantar.estimation.law_opening import opening_states
-from plantar.estimation.law_trials import Trial
+from plantar.model_selection.data_sets import Trial
+from plantar.model_selection.initial_state import opening_states
+from plantar.model_selection.model_fit import LawFit
 from plantar.models import Motion
-from plantar.signals import low_pass
+from plantar.signals.filters import low_pass
 
 PERIOD = 0.005
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from biped_robot import make_robot
-from plantar.robot import RobotModel
+from plantar.robot.model import RobotModel
 
 
 @pytest.fixture(scope="session")

@@ -9,9 +9,9 @@ import pytest
 
 from biped import TRUTH, Law
 from biped_robot import FEET
-from plantar.identify.settings import FeetSettings
-from plantar.log import MotionLog
-from plantar.result import FeetResult
+from plantar.feet.settings import FeetSettings
+from plantar.logs.motion_log import MotionLog
+from plantar.results.feet import FeetResult
 
 # The biped's forces are drawn, not moved by Newton: its logs cannot show a delay, and are known to have none.
 PUNCTUAL = FeetSettings(wrench_delay=0.0)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from log_tables import FEET, IMU, Written, joints, moving, vector
-from plantar.log import MotionLog
+from plantar.logs.motion_log import MotionLog
 
 
 def ros_messages(log: MotionLog, store: Any, ros1: bool):  # type: ignore[no-untyped-def]

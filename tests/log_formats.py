@@ -16,7 +16,7 @@ from log_tables import (
     write_npz,
     write_parquet,
 )
-from plantar.log import MotionLog
+from plantar.logs.motion_log import MotionLog
 
 WRITERS: dict[str, Callable[[MotionLog, Path], Written]] = {
     "csv": write_csv,

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from log_tables import FEET, IMU, Written, joints, moving, positions, vector, velocities
-from plantar.log import MotionLog
+from plantar.logs.motion_log import MotionLog
 
 
 def write_mc_rtc(log: MotionLog, folder: Path, version: int = 0) -> Written:

@@ -13,7 +13,7 @@ import pyarrow as pa
 import pyarrow.csv as pa_csv
 import pyarrow.parquet as pa_parquet
 
-from plantar.log import MotionLog
+from plantar.logs.motion_log import MotionLog
 
 Written = tuple[Path, dict[str, Any]]
 IMU, FEET = "chest", ("left", "right")

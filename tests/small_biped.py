@@ -8,8 +8,8 @@ import numpy as np
 import pinocchio as pin
 
 from plantar.conventions import Array
-from plantar.log import MotionLog
-from plantar.robot import RobotModel, load_robot
+from plantar.logs.motion_log import MotionLog
+from plantar.robot.model import RobotModel, load_robot
 
 PERIOD = 0.01
 

@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from biped import record, sway
 from biped_robot import Mounting
-from plantar.attitude import attitude_from_inertial
+from plantar.signals.attitude import attitude_from_inertial
 
 IMU = [f"imu.chest.{kind}.{axis}" for kind in ("angular_velocity", "linear_acceleration") for axis in "xyz"]
 

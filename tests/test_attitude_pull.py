@@ -10,11 +10,11 @@ import pytest
 
 from biped import TRUTH, record, sway
 from biped_robot import make_robot
-from plantar.identify.attitude_pull import attitude_pull
-from plantar.identify.feet import identify_feet
-from plantar.identify.settings import FeetSettings
-from plantar.log import MotionLog
-from plantar.twin.attitude_filter import filtered_attitude
+from plantar.feet.identify import identify_feet
+from plantar.feet.sensors.tilt_error import attitude_pull
+from plantar.feet.settings import FeetSettings
+from plantar.logs.motion_log import MotionLog
+from plantar.twin.sensing.attitude_filter import filtered_attitude
 
 PULL = 0.2  # 1/s, of the filter below
 KNOWN = FeetSettings(model="kelvin_voigt", wrench_delay=0.0)

@@ -10,9 +10,9 @@ from scipy.spatial.transform import Rotation
 from biped import TRUTH, record, sway
 from biped_robot import FEET
 from feet_trials import AXES, PUNCTUAL, noisy
-from plantar.identify.feet import identify_feet
-from plantar.log import MotionLog
-from plantar.robot import RobotModel
+from plantar.feet.identify import identify_feet
+from plantar.logs.motion_log import MotionLog
+from plantar.robot.model import RobotModel
 
 HARDENING = 30000.0  # N·m/rad³
 

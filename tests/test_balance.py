@@ -6,7 +6,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from plantar.balance import (
+from plantar.contact.balance import (
     Balance,
     flat_soles,
     measured_balance,
@@ -15,15 +15,15 @@ from plantar.balance import (
     sole_outlines,
     zero_moment_point,
 )
+from plantar.contact.polygon import separation
 from plantar.errors import DataError, MotionError
-from plantar.log import MotionLog
+from plantar.logs.motion_log import MotionLog
 from plantar.motions import planned_balance
-from plantar.polygon import separation
-from plantar.robot import load_robot
-from plantar.twin import hrp2
-from plantar.twin.exact import exact_columns
-from plantar.twin.foot import cut_feet
-from plantar.twin.from_robot import describe
+from plantar.robot.model import load_robot
+from plantar.twin.robots import hrp2
+from plantar.twin.robots.foot import cut_feet
+from plantar.twin.robots.from_robot import describe
+from plantar.twin.sensing.exact import exact_columns
 from twin_samples import plan, short, tilted
 
 SQUARE = {"left": np.array([[0.1, 0.2], [-0.1, 0.2], [-0.1, -0.2], [0.1, -0.2]])}

@@ -23,12 +23,13 @@ from plantar.campaign.pictures import boxes, look_of
 from plantar.campaign.replay import IDENTIFIED, RECORD, RIGID, ReplayRow, best_guess, replay_rows, scores
 from plantar.campaign.tables import simulator_table, table_1, table_3
 from plantar.cli import main
+from plantar.feet.select_motions import Choice, Selection
 from plantar.files import sha256
-from plantar.identify.selection import Choice, Selection
-from plantar.result import FeetResult, Parameter, ValidationRow
-from plantar.twin import PAPER, hrp2
+from plantar.results.feet import FeetResult, Parameter, ValidationRow
+from plantar.twin import PAPER
 from plantar.twin.play import planned
 from plantar.twin.replay import Replayed, moved_onto, pitch_and_roll
+from plantar.twin.robots import hrp2
 from report_visit import Visit, launched
 
 BARS = {"stiffness": 1.0, "damping": 3.0}  # percent

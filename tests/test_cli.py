@@ -18,7 +18,7 @@ from biped_robot import write_robot
 from plantar import __version__
 from plantar.cli import COMMANDS, main
 from plantar.cli.terminal import console, table
-from plantar.log import MotionLog
+from plantar.logs.motion_log import MotionLog
 
 
 def write_csv(log: MotionLog, path: Path) -> Path:

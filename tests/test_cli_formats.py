@@ -16,12 +16,12 @@ from biped_robot import Frame, Mounting, make_robot, write_robot
 from example_robots import G1, ICUB, TALOS
 from log_formats import write_hrpsys, write_mcap
 from plantar.cli import main
-from plantar.export.urdf_tree import UrdfTree
-from plantar.log import MotionLog
-from plantar.readers import open_log
-from plantar.readers.column_map import apply, joint_order, ports
-from plantar.readers.save import save_log
-from plantar.robot import load_robot
+from plantar.export.urdf.tree import UrdfTree
+from plantar.logs.motion_log import MotionLog
+from plantar.logs.readers import open_log
+from plantar.logs.readers.column_map import apply, joint_order, ports
+from plantar.logs.save import save_log
+from plantar.robot.model import load_robot
 from plantar.robot_guess.feet import find_ankles
 
 

@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from plantar.identify.latency import wrench_latency
-from plantar.identify.recording import checked
-from plantar.log import MotionLog
-from plantar.robot import RobotModel
-from plantar.signals import shifted
-from plantar.twin import PAPER, hrp2, play_all
+from plantar.feet.recording import checked
+from plantar.feet.sensors.sensor_delay import wrench_latency
+from plantar.logs.motion_log import MotionLog
+from plantar.robot.model import RobotModel
+from plantar.signals.resampling import shifted
+from plantar.twin import PAPER, play_all
+from plantar.twin.robots import hrp2
 
 
 @pytest.fixture(scope="module")

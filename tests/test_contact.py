@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from plantar.contact import (
+from plantar.contact.phases import (
     AIR,
     DOUBLE,
     SINGLE,
@@ -20,7 +20,7 @@ from plantar.contact import (
     shaken,
     widened,
 )
-from plantar.polygon import convex_hull, inside_distance
+from plantar.contact.polygon import convex_hull, inside_distance
 
 PERIOD = 0.01
 WEIGHT = 600.0

@@ -10,10 +10,10 @@ import pytest
 
 import example_robots
 from plantar import _core
+from plantar.contact.deflection import BushState, bush_states, closure
 from plantar.conventions import Array, rotation_from_rpy
-from plantar.deflection import BushState, bush_states, closure
 from plantar.errors import DataError, RobotError
-from plantar.robot import Foot, Imu, Placement, RobotModel, Sole, WrenchSensor
+from plantar.robot.model import Foot, Imu, Placement, RobotModel, Sole, WrenchSensor
 
 QUANTITIES = ("deflection", "rate", "wrench", "torque", "force_z", "sole_position", "heading")
 SAMPLES = 203  # not a multiple of any vector's length

@@ -10,10 +10,11 @@ import pytest
 from biped_robot import make_robot
 from plantar.conventions import Array
 from plantar.estimation.delay import Delay, Pair, estimate_delay
-from plantar.identify.closure import Closure
-from plantar.identify.latency import CLOCK, wrench_latency
-from plantar.log import MotionLog
-from plantar.signals import differentiate, interpolate, low_pass
+from plantar.feet.sensors.newton_euler import Closure
+from plantar.feet.sensors.sensor_delay import CLOCK, wrench_latency
+from plantar.logs.motion_log import MotionLog
+from plantar.signals.filters import differentiate, low_pass
+from plantar.signals.resampling import interpolate
 
 PERIOD = 0.005
 SAMPLES = 8000

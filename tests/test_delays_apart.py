@@ -12,11 +12,12 @@ from biped import record, sway
 from biped_robot import make_robot
 from plantar.conventions import Array
 from plantar.estimation.delay import Pair
-from plantar.estimation.delays_apart import estimate_delays
-from plantar.identify.closure import Closure
-from plantar.identify.latency import Latency, in_time, latency_of, wrench_latency
+from plantar.estimation.sensor_delays import estimate_delays
+from plantar.feet.sensors.newton_euler import Closure
+from plantar.feet.sensors.sensor_delay import Latency, in_time, latency_of, wrench_latency
 from plantar.notes import Note
-from plantar.signals import differentiate, interpolate, low_pass
+from plantar.signals.filters import differentiate, low_pass
+from plantar.signals.resampling import interpolate
 
 PERIOD, SAMPLES = 0.005, 8000
 INNER = slice(100, -100)

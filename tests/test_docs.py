@@ -10,8 +10,16 @@ import pytest
 import yaml
 
 from plantar.cli import COMMANDS
-from plantar.log import COLUMN
-from plantar.robot_file import FootEntry, FrameEntry, ImuEntry, JointEntry, RobotEntry, SoleEntry, WrenchEntry
+from plantar.logs.motion_log import COLUMN
+from plantar.robot.schema import (
+    FootEntry,
+    FrameEntry,
+    ImuEntry,
+    JointEntry,
+    RobotEntry,
+    SoleEntry,
+    WrenchEntry,
+)
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCUMENTS = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md"), *(ROOT / "examples").rglob("*.md")])

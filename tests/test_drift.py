@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from plantar.estimation.drift import fit_drift
+from plantar.estimation.velocity_drift import fit_drift
 
 PERIOD, NOISE, WANDER = 0.02, 0.0005, 0.001**2
 TIME = np.arange(1500) * PERIOD

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from plantar.identify.edges import leaning
+from plantar.feet.exclusion.edge_rolling import leaning
 
 PERIOD = 0.005
 TIME = np.arange(2000) * PERIOD

@@ -12,11 +12,11 @@ from biped_robot import make_robot
 from plantar.conventions import Array
 from plantar.estimation import Block, fit_linear
 from plantar.estimation.errors_in_variables import attenuation, noise_after_filter, offsets_moved
-from plantar.identify.feet import identify_feet
-from plantar.identify.settings import FeetSettings
-from plantar.log import MotionLog
-from plantar.result import FeetResult
-from plantar.signals import low_pass
+from plantar.feet.identify import identify_feet
+from plantar.feet.settings import FeetSettings
+from plantar.logs.motion_log import MotionLog
+from plantar.results.feet import FeetResult
+from plantar.signals.filters import low_pass
 
 PERIOD, CUTOFF = 0.005, 5.0
 VALUES = np.array([400.0, 20.0])

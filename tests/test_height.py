@@ -7,8 +7,8 @@ import pytest
 from biped import VERTICAL, record, sway
 from biped_robot import FEET
 from feet_trials import PUNCTUAL, codes, noisy
-from plantar.identify.feet import identify_feet
-from plantar.robot import RobotModel
+from plantar.feet.identify import identify_feet
+from plantar.robot.model import RobotModel
 
 
 def test_noise_on_a_constant_total_load_tells_the_feet_not_apart(robot: RobotModel) -> None:

@@ -15,11 +15,12 @@ from biped import TRUTH, VERTICAL, record, sway
 from biped_robot import FEET, Frame, Mounting, make_robot
 from feet_trials import AXES, EXACT, PUNCTUAL, assert_truth, noisy, rotational
 from plantar.errors import DataError
-from plantar.identify.feet import identify_feet
-from plantar.identify.settings import FeetSettings
-from plantar.log import MotionLog
-from plantar.result import FeetResult, read_result
-from plantar.robot import RobotModel
+from plantar.feet.identify import identify_feet
+from plantar.feet.settings import FeetSettings
+from plantar.logs.motion_log import MotionLog
+from plantar.results.feet import FeetResult
+from plantar.results.io import read_result
+from plantar.robot.model import RobotModel
 
 
 @pytest.fixture(scope="module")

@@ -11,10 +11,10 @@ from biped import VERTICAL, WEIGHT, Motion, record, sway, times
 from biped_robot import FEET, make_robot, robot_entry
 from feet_trials import AXES, EXACT, PUNCTUAL, assert_truth, codes, noisy, rotational, without
 from plantar.errors import DataError, LogError, RobotError
-from plantar.identify.feet import identify_feet
-from plantar.log import MotionLog
-from plantar.result import FeetResult
-from plantar.robot import RobotModel
+from plantar.feet.identify import identify_feet
+from plantar.logs.motion_log import MotionLog
+from plantar.results.feet import FeetResult
+from plantar.robot.model import RobotModel
 
 
 @pytest.fixture(scope="module")

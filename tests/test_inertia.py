@@ -16,13 +16,13 @@ from plantar.dynamics.base_motion import relative_motion, root_motion, root_moti
 from plantar.dynamics.consistency import Normal, Prior, consistent_fit, is_consistent, pseudo_inertia
 from plantar.dynamics.equation import Equation
 from plantar.errors import DataError, RobotError
-from plantar.identify.dynamics_result import DynamicsResult
-from plantar.identify.inertia import identify_inertia
-from plantar.identify.pulled_fit import Trial, chosen_strength
-from plantar.identify.whole_body import DynamicsSettings
-from plantar.log import MotionLog
-from plantar.readers import open_log
-from plantar.robot import RobotModel, load_robot
+from plantar.logs.motion_log import MotionLog
+from plantar.logs.readers import open_log
+from plantar.results.dynamics import DynamicsResult
+from plantar.robot.model import RobotModel, load_robot
+from plantar.whole_body.inertia import identify_inertia
+from plantar.whole_body.regularised_fit import Trial, chosen_strength
+from plantar.whole_body.settings import DynamicsSettings
 
 
 @pytest.fixture(scope="module")

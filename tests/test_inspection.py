@@ -11,9 +11,9 @@ import pytest
 from biped import MASS, WEIGHT, record, sway, times
 from biped_robot import FEET, make_robot
 from plantar.inspection import inspect_log
-from plantar.readers import open_log
-from plantar.result import dump_json
-from plantar.robot import RobotModel, load_robot
+from plantar.logs.readers import open_log
+from plantar.results.io import dump_json
+from plantar.robot.model import RobotModel, load_robot
 
 
 def test_a_healthy_log(robot: RobotModel) -> None:

@@ -14,12 +14,12 @@ import small_biped
 from plantar.dynamics import base_parameters, model_parameters
 from plantar.dynamics.equation import Equation
 from plantar.errors import DataError, LogError, RobotError
-from plantar.identify.dynamics_result import DynamicsResult
-from plantar.identify.joints import Inertia, identify_joints
-from plantar.identify.whole_body import COULOMB_SPEED
-from plantar.log import MotionLog
-from plantar.readers import open_log
-from plantar.robot import RobotModel, load_robot
+from plantar.logs.motion_log import MotionLog
+from plantar.logs.readers import open_log
+from plantar.results.dynamics import DynamicsResult
+from plantar.robot.model import RobotModel, load_robot
+from plantar.whole_body.dataset import COULOMB_SPEED
+from plantar.whole_body.joints import Inertia, identify_joints
 
 VISCOUS, COULOMB, OFFSET = 3.0, 2.0, 0.5
 TERMS = "".join(

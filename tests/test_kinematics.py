@@ -8,7 +8,7 @@ import pytest
 
 import example_robots
 from plantar.errors import RobotError
-from plantar.kinematics import KinematicTree
+from plantar.robot.kinematics import KinematicTree
 
 
 def test_the_tree_rebuilds_pinocchios_placements() -> None:

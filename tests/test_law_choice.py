@@ -16,8 +16,8 @@ from bush_trials import (
     unseen,
     unseen_error,
 )
-from plantar.estimation.law_choice import choose_law
-from plantar.estimation.law_fit import fit_law
+from plantar.model_selection.model_fit import fit_law
+from plantar.model_selection.selection import choose_law
 from plantar.models import Elastoplastic, Hardening, KelvinVoigt
 
 JENKINS = Rubber(slip_torque=5.0, slip_angle=0.01)

@@ -19,13 +19,13 @@ from bush_trials import (
     tilt,
 )
 from plantar.errors import DataError
-from plantar.estimation.law_choice import choose_law
-from plantar.estimation.law_fit import fit_law, refine
-from plantar.estimation.law_influence import Linearised
-from plantar.estimation.law_search import Pieces
-from plantar.estimation.law_trials import Trial, prepare_trials
+from plantar.model_selection.data_sets import Trial, prepare_trials
+from plantar.model_selection.grid import Pieces
+from plantar.model_selection.model_fit import fit_law, refine
+from plantar.model_selection.partialled_out import Linearised
+from plantar.model_selection.selection import choose_law
 from plantar.models import LAWS, BoucWen, Elastoplastic, Hardening, KelvinVoigt, Motion
-from plantar.signals import low_pass
+from plantar.signals.filters import low_pass
 
 JENKINS = Rubber(slip_torque=5.0, slip_angle=0.01)
 

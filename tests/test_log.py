@@ -9,9 +9,9 @@ import pytest
 
 from biped import record, sway
 from plantar.errors import LogError
-from plantar.log import COLUMN, MotionLog
+from plantar.logs.motion_log import COLUMN, MotionLog
 from plantar.notes import Note
-from plantar.robot import RobotModel
+from plantar.robot.model import RobotModel
 
 
 def make(**columns: list[float]) -> MotionLog:

@@ -9,13 +9,13 @@ import pytest
 
 from biped import TRUTH, record, sway
 from biped_robot import make_robot
-from plantar.identify.feet import identify_feet
-from plantar.identify.outliers import outliers
-from plantar.identify.settings import FeetSettings
-from plantar.log import MotionLog
-from plantar.result import FeetResult
-from plantar.robot import RobotModel
-from plantar.spikes import lone_spikes, without_spikes
+from plantar.feet.exclusion.outliers import outliers
+from plantar.feet.identify import identify_feet
+from plantar.feet.settings import FeetSettings
+from plantar.logs.motion_log import MotionLog
+from plantar.results.feet import FeetResult
+from plantar.robot.model import RobotModel
+from plantar.signals.spikes import lone_spikes, without_spikes
 
 PERIOD = 0.005
 TIME = PERIOD * np.arange(6000)

@@ -12,9 +12,10 @@ from biped import record, sway
 from biped_robot import make_robot
 from log_formats import write_mcap, write_ros1
 from plantar.errors import LogError
-from plantar.log import MotionLog
-from plantar.readers import compressed, open_log
-from plantar.readers.save import save_log
+from plantar.logs.motion_log import MotionLog
+from plantar.logs.readers import open_log
+from plantar.logs.readers.ros import compressed
+from plantar.logs.save import save_log
 
 
 @pytest.fixture(scope="module")

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from biped_robot import make_robot
 from plantar.errors import LogError
-from plantar.readers import open_log
-from plantar.robot import RobotModel
+from plantar.logs.readers import open_log
+from plantar.robot.model import RobotModel
 
 
 @pytest.mark.parametrize(

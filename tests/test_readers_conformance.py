@@ -11,10 +11,10 @@ import plantar
 from biped import record, sway
 from biped_robot import make_robot
 from log_formats import WRITERS
-from plantar.identify.settings import FeetSettings
-from plantar.log import MotionLog
-from plantar.readers import open_log
-from plantar.robot import RobotModel
+from plantar.feet.settings import FeetSettings
+from plantar.logs.motion_log import MotionLog
+from plantar.logs.readers import open_log
+from plantar.robot.model import RobotModel
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ import struct
 import numpy as np
 import pytest
 
-from plantar.readers.ros_layouts import IMU, JOINT_STATE, WRENCH, BrokenMessage, layout_of
+from plantar.logs.readers.ros.layouts import IMU, JOINT_STATE, WRENCH, BrokenMessage, layout_of
 
 
 def cdr_joint_state(

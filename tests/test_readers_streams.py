@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from plantar.errors import LogError
+from plantar.logs.readers.streams import Stream, merge, resample
 from plantar.notes import Note
-from plantar.readers.streams import Stream, merge, resample
 
 
 def stream(name: str, time: np.ndarray, **columns: np.ndarray) -> Stream:

@@ -16,8 +16,8 @@ from report_samples import HOSTILE, write_campaign
 
 pytest.importorskip("matplotlib", reason="matplotlib (extra 'figures') is not installed")
 
-from plantar.report import figures
-from plantar.report.paper import plates, write_figures
+from plantar.report.figures import plots
+from plantar.report.figures.paper import plates, write_figures
 
 FIT = ["manual_right_roll", "manual_right_pitch", "manual_left_roll", "manual_left_pitch", "tilt3"]
 
@@ -33,20 +33,20 @@ def tracks(directory: Path) -> tuple[Track, ...]:
 
 
 def test_bush_angles_are_red_right_and_blue_left(tracks: tuple[Track, ...]) -> None:
-    drawing = figures.bush_angles(tracks, "tilt3")
+    drawing = plots.bush_angles(tracks, "tilt3")
     for panel, axis in zip(drawing.axes, ("pitch", "roll"), strict=True):
         assert panel.get_ylabel() == f"{axis} [mrad]"
         for line in panel.lines:
             track = next(t for t in tracks if (t.motion, t.foot) == ("tilt3", line.get_label()))
             np.testing.assert_allclose(line.get_ydata(), 1e3 * track.values[f"{axis}.deflection"])
-            assert line.get_color() == {"right": figures.RED, "left": figures.BLUE}[track.foot]
+            assert line.get_color() == {"right": plots.RED, "left": plots.BLUE}[track.foot]
 
 
 def test_composed_motions_follow_each_other(tracks: tuple[Track, ...]) -> None:
-    drawing = figures.torques(tracks, FIT)
+    drawing = plots.torques(tracks, FIT)
     assert len(drawing.axes) == 4
     for panel in drawing.axes:
-        sensor = [line for line in panel.lines if line.get_color() == figures.RED and len(line.get_xdata())]
+        sensor = [line for line in panel.lines if line.get_color() == plots.RED and len(line.get_xdata())]
         assert len(sensor) == len(FIT)
         starts = [line.get_xdata()[0] for line in sensor]
         np.testing.assert_allclose(starts, 3.995 * np.arange(len(FIT)))
@@ -58,8 +58,8 @@ def test_what_was_left_out_is_grey(tracks: tuple[Track, ...]) -> None:
     used[100:300] = False  # half a second and more
     used[500] = False  # a single sample is no band
     one = replace(track, used=used)
-    assert figures.left_out(one) == [(pytest.approx(track.time[100]), pytest.approx(track.time[299]))]
-    panel = figures.torques([one], ["tilt3"]).axes[0]
+    assert plots.left_out(one) == [(pytest.approx(track.time[100]), pytest.approx(track.time[299]))]
+    panel = plots.torques([one], ["tilt3"]).axes[0]
     (band,) = panel.patches
     assert band.get_x() == pytest.approx(track.time[100] - track.time[0])
     assert band.get_width() == pytest.approx(track.time[299] - track.time[100])
@@ -68,10 +68,10 @@ def test_what_was_left_out_is_grey(tracks: tuple[Track, ...]) -> None:
 def test_the_zmp_lies_with_forward_up_and_left_on_the_left() -> None:
     points = np.array([[0.0, 0.0], [np.nan, np.nan], [0.1, 0.02]])
     foot = np.array([[0.1, 0.05], [-0.1, 0.05], [-0.1, -0.05], [0.1, -0.05]])
-    drawing = figures.zmp(points, {"left": foot + [0, 0.1]}, foot)
+    drawing = plots.zmp(points, {"left": foot + [0, 0.1]}, foot)
     (panel,) = drawing.axes
     outline, _, path = panel.lines
-    assert [line.get_color() for line in panel.lines] == ["black", figures.BLUE, figures.RED]
+    assert [line.get_color() for line in panel.lines] == ["black", plots.BLUE, plots.RED]
     np.testing.assert_array_equal(path.get_xdata(), points[:, 1])
     np.testing.assert_array_equal(path.get_ydata(), points[:, 0])
     assert len(outline.get_xdata()) == 5
@@ -85,7 +85,7 @@ def test_an_envelope_keeps_peaks_and_gaps() -> None:
     values[12_345] = 99.0
     values[30_001] = -77.0
     values[40_000:41_000] = np.nan
-    kept_time, kept = figures.envelope(time, values, 300)
+    kept_time, kept = plots.envelope(time, values, 300)
     assert kept.size <= 5 * 300
     assert np.all(np.diff(kept_time) > 0)
     assert {99.0, -77.0} <= set(kept)
@@ -129,8 +129,7 @@ def test_files_are_written_and_stay_the_same(
     assert [path.suffix for path in written] == [".svg"] * 6
     assert all(path.read_bytes().startswith(b"<?xml") for path in written)
     twice = [
-        figures.save(figures.bush_angles(tracks, "tilt3"), tmp_path / place, "angles")
-        for place in ("one", "two")
+        plots.save(plots.bush_angles(tracks, "tilt3"), tmp_path / place, "angles") for place in ("one", "two")
     ]
     for one, two in zip(*twice, strict=True):
         assert one.read_bytes() == two.read_bytes()
@@ -148,9 +147,9 @@ def test_what_is_missing_is_said(
     tracks: tuple[Track, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with pytest.raises(DataError, match="no motion 'tilt9'"):
-        figures.bush_angles(tracks, "tilt9")
+        plots.bush_angles(tracks, "tilt9")
     with pytest.raises(DataError, match="holds no residuals"):
         write_figures(tmp_path, tmp_path)
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     with pytest.raises(MissingExtra, match=r"plantar\[figures\]"):
-        figures.bush_angles(tracks, "tilt3")
+        plots.bush_angles(tracks, "tilt3")

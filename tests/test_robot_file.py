@@ -11,7 +11,7 @@ import yaml
 
 from biped_robot import URDF, Frame, Mounting, make_robot, robot_entry, write_robot
 from plantar.errors import RobotError
-from plantar.robot import load_robot
+from plantar.robot.model import load_robot
 
 Change = Callable[[dict], None]
 

@@ -12,13 +12,13 @@ from scipy.spatial.transform import Rotation
 
 from biped import WEIGHT, Motion, record, sines, sway
 from biped_robot import FEET, Frame, Mounting, make_robot
+from plantar.checks.log_checks import check_log
 from plantar.errors import DataError
-from plantar.identify.feet import identify_feet
-from plantar.log import MotionLog
+from plantar.feet.identify import identify_feet
+from plantar.logs.motion_log import MotionLog
+from plantar.logs.readers import open_log
 from plantar.notes import Finding
-from plantar.readers import open_log
-from plantar.robot import RobotModel, load_robot
-from plantar.sanity import check_log
+from plantar.robot.model import RobotModel, load_robot
 
 QUATERNION = [f"imu.chest.orientation.{axis}" for axis in "wxyz"]
 GYROSCOPE = [f"imu.chest.angular_velocity.{axis}" for axis in "xyz"]

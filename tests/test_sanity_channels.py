@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from biped import record, sway
+from plantar.checks.log_checks import check_log
 from plantar.errors import DataError
-from plantar.identify.feet import identify_feet
-from plantar.log import MotionLog
-from plantar.robot import RobotModel
-from plantar.sanity import check_log
+from plantar.feet.identify import identify_feet
+from plantar.logs.motion_log import MotionLog
+from plantar.robot.model import RobotModel
 
 JOINT = "right_ankle_pitch"
 

@@ -7,11 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from plantar.log import MotionLog
+from plantar.checks.log_checks import check_log
+from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding
-from plantar.sanity import check_log
-from plantar.twin import PAPER, PRESETS, hrp2
+from plantar.twin import PAPER, PRESETS
 from plantar.twin.recording import record
+from plantar.twin.robots import hrp2
 from twin_samples import swayed, tilted
 
 SENSORS = PRESETS["sensors"]

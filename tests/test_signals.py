@@ -7,8 +7,10 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from biped import record, sway, times
-from plantar.log import MotionLog
-from plantar.signals import differentiate, evenly_sampled, interpolate, low_pass, runs, sampling, shifted
+from plantar.logs.motion_log import MotionLog
+from plantar.signals.filters import differentiate, low_pass
+from plantar.signals.resampling import evenly_sampled, interpolate, sampling, shifted
+from plantar.signals.segments import runs
 
 PERIOD = 0.005
 TIME = np.arange(4000) * PERIOD

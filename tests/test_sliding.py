@@ -9,12 +9,12 @@ from scipy.spatial.transform import Rotation
 from biped import record, sway
 from biped_robot import FEET, write_robot
 from feet_trials import noisy, without
-from plantar.identify.recording import Recording, checked, prepare
-from plantar.identify.settings import FeetSettings
-from plantar.identify.sliding import ALONE, APART, leave_out_slip
-from plantar.identify.sole_motion import sole_motion
-from plantar.log import MotionLog
-from plantar.robot import RobotModel, load_robot
+from plantar.feet.exclusion.slip import ALONE, APART, leave_out_slip
+from plantar.feet.exclusion.sole_velocity import sole_motion
+from plantar.feet.recording import Recording, checked, prepare
+from plantar.feet.settings import FeetSettings
+from plantar.logs.motion_log import MotionLog
+from plantar.robot.model import RobotModel, load_robot
 
 STANDING = noisy(record(sway(duration=25.0)), 1)
 TIME, PERIOD = STANDING.time, STANDING.period

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from plantar.slip import Witness, slides, sliding, turning, twist_speed, unresisted
+from plantar.contact.slip import Witness, slides, sliding, turning, twist_speed, unresisted
 
 PERIOD = 0.005
 TIME = np.arange(4000) * PERIOD

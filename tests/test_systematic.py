@@ -10,9 +10,9 @@ import pytest
 from biped import TRUTH, Motion, record, sway
 from biped_robot import FEET
 from feet_trials import AXES, PUNCTUAL, noisy
-from plantar.identify.feet import identify_feet
-from plantar.result import FeetResult
-from plantar.robot import RobotModel
+from plantar.feet.identify import identify_feet
+from plantar.results.feet import FeetResult
+from plantar.robot.model import RobotModel
 
 SPRING_AND_DAMPER = replace(PUNCTUAL, model="kelvin_voigt")
 

@@ -12,8 +12,8 @@ import pytest
 
 from biped import record, sway
 from plantar.errors import LogError
-from plantar.log import MotionLog
-from plantar.readers import motion_name, open_log
+from plantar.logs.motion_log import MotionLog
+from plantar.logs.readers import motion_name, open_log
 
 HEADER = "time,joint.a.position,wrench.left.force.z"
 

@@ -9,11 +9,11 @@ import pytest
 
 from biped import TRUTH, record, sway
 from biped_robot import make_robot
-from plantar.identify.feet import identify_feet
-from plantar.identify.settings import FeetSettings
-from plantar.identify.usage import served_shares
-from plantar.robot import RobotModel
-from plantar.slip import sliding
+from plantar.contact.slip import sliding
+from plantar.feet.identify import identify_feet
+from plantar.feet.settings import FeetSettings
+from plantar.results.usage import served_shares
+from plantar.robot.model import RobotModel
 
 PERIOD = 0.005
 SAMPLES = 8000

@@ -14,18 +14,12 @@ import pytest
 
 from plantar.errors import MotionError
 from plantar.motions import Postures
-from plantar.twin import Bush, cache, hrp2
-from plantar.twin.keep import (
-    plan_arrays,
-    plan_from,
-    plan_key,
-    rollout_arrays,
-    rollout_from,
-    rollout_key,
-)
-from plantar.twin.physics import Physics, Slip
+from plantar.twin import Bush, cache
+from plantar.twin.keep import plan_arrays, plan_from, plan_key, rollout_arrays, rollout_from, rollout_key
 from plantar.twin.play import roll_all, roll_each, rolled
-from plantar.twin.rollout import Rollout
+from plantar.twin.robots import hrp2
+from plantar.twin.simulation.physics import Physics, Slip
+from plantar.twin.simulation.rollout import Rollout
 from twin_samples import plan, short, tilted
 
 
@@ -84,7 +78,7 @@ def test_every_package_that_plans_or_steps_is_in_the_key() -> None:
     """Solvers too: another version plans another motion. Those that only write files change no number."""
     source = Path(cache.__file__).parents[1]
     imported = set()
-    for file in (*(source / "motions").glob("*.py"), *(source / "twin").glob("*.py")):
+    for file in (*(source / "motions").rglob("*.py"), *(source / "twin").rglob("*.py")):
         for node in ast.walk(ast.parse(file.read_text())):
             if isinstance(node, ast.Import | ast.ImportFrom):
                 names = (

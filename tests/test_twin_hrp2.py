@@ -7,9 +7,10 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from plantar.robot import load_robot
-from plantar.twin import PAPER, hrp2
-from plantar.twin.mjcf import Scene, mjcf_text
+from plantar.robot.model import load_robot
+from plantar.twin import PAPER
+from plantar.twin.robots import hrp2
+from plantar.twin.simulation.mjcf import Scene, mjcf_text
 
 LEG = {  # right leg, lower and upper limit [rad]
     0: (-0.785, 0.524), 1: (-0.611, 0.349), 2: (-2.182, 0.733), 3: (-0.035, 2.618), 4: (-1.309, 0.733),

@@ -11,14 +11,16 @@ from example_robots import TALOS
 from plantar.conventions import rotation_from_quaternion
 from plantar.errors import MotionError
 from plantar.motions import plan_motion
-from plantar.robot import RobotModel, load_robot
-from plantar.twin import PAPER, Bush, hrp2, stepping
-from plantar.twin.exact import bush_forces, exact_columns, truth_columns
-from plantar.twin.foot import cut_feet
-from plantar.twin.from_robot import describe
-from plantar.twin.physics import Physics, Slip
-from plantar.twin.rollout import Rollout, roll_out, scene_xml
-from plantar.twin.rubber import Element
+from plantar.robot.model import RobotModel, load_robot
+from plantar.twin import PAPER, Bush
+from plantar.twin.robots import hrp2
+from plantar.twin.robots.foot import cut_feet
+from plantar.twin.robots.from_robot import describe
+from plantar.twin.sensing.exact import bush_forces, exact_columns, truth_columns
+from plantar.twin.simulation import stepping
+from plantar.twin.simulation.physics import Physics, Slip
+from plantar.twin.simulation.rollout import Rollout, roll_out, scene_xml
+from plantar.twin.simulation.rubber import Element
 from twin_samples import plan, roll, short, swayed, tilted
 
 GRAVITY = 9.80665

@@ -10,16 +10,17 @@ from scipy.spatial.transform import Rotation
 
 from plantar.conventions import rotation_from_quaternion
 from plantar.errors import PlantarError
-from plantar.robot import RobotModel
-from plantar.twin import PAPER, hrp2
-from plantar.twin.attitude_filter import filtered_attitude
-from plantar.twin.exact import exact_columns
-from plantar.twin.foot import cut_feet
-from plantar.twin.from_robot import describe
-from plantar.twin.physics import Physics
+from plantar.robot.model import RobotModel
+from plantar.twin import PAPER
 from plantar.twin.presets import PRESETS, SENSORS, preset_named
 from plantar.twin.recording import record
-from plantar.twin.sensors import DEGREE, Sensors, delayed, sense
+from plantar.twin.robots import hrp2
+from plantar.twin.robots.foot import cut_feet
+from plantar.twin.robots.from_robot import describe
+from plantar.twin.sensing.attitude_filter import filtered_attitude
+from plantar.twin.sensing.exact import exact_columns
+from plantar.twin.sensing.sensors import DEGREE, Sensors, delayed, sense
+from plantar.twin.simulation.physics import Physics
 from twin_samples import tilted
 
 TIME = np.arange(4000) / 200.0
@@ -171,7 +172,7 @@ def test_a_recording_says_what_was_put_in(robot) -> None:
 
 
 def test_logs_and_truth_are_written_apart(robot, tmp_path) -> None:
-    from plantar.readers import open_log
+    from plantar.logs.readers import open_log
 
     preset = PRESETS["sensors"]
     recording = record(tilted(), robot, preset.physics(PAPER), preset, 5)

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from plantar.cli import main
-from plantar.readers import open_log
-from plantar.robot import load_robot
+from plantar.logs.readers import open_log
+from plantar.robot.model import load_robot
 
 
 @pytest.fixture(autouse=True)

@@ -12,11 +12,12 @@ import pytest
 from biped import record, sway
 from biped_robot import make_robot, robot_entry
 from plantar.errors import DataError, PlantarError
-from plantar.identify.feet import identify_feet
-from plantar.identify.revalidation import validate_feet
-from plantar.result import FEET_SCHEMA, dump_json, finite, read_result
-from plantar.robot import RobotModel
-from plantar.validation import opening, score
+from plantar.feet.identify import identify_feet
+from plantar.feet.validate import validate_feet
+from plantar.results.feet import FEET_SCHEMA
+from plantar.results.io import dump_json, finite, read_result
+from plantar.results.scores import opening, score
+from plantar.robot.model import RobotModel
 
 
 def test_a_row_by_hand() -> None:

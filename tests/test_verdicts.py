@@ -9,12 +9,12 @@ import pytest
 
 from biped import record, sines, sway
 from biped_robot import FEET, make_robot, robot_entry
-from plantar.identify.feet import identify_feet
-from plantar.identify.settings import FeetSettings
-from plantar.identify.verdicts import Evidence, contradiction, judge
-from plantar.readers import open_log
-from plantar.result import ValidationRow
-from plantar.robot import load_robot
+from plantar.feet.assess.verdicts import Evidence, contradiction, judge
+from plantar.feet.identify import identify_feet
+from plantar.feet.settings import FeetSettings
+from plantar.logs.readers import open_log
+from plantar.results.feet import ValidationRow
+from plantar.robot.model import load_robot
 
 GOOD = Evidence(seconds=60.0, excitation=0.02, explained=0.98)
 

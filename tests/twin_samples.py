@@ -8,9 +8,9 @@ from functools import cache
 import numpy as np
 
 from plantar.motions import Plan, plan_motion
-from plantar.twin import hrp2
-from plantar.twin.physics import Physics
-from plantar.twin.rollout import Rollout, roll_out, scene_xml
+from plantar.twin.robots import hrp2
+from plantar.twin.simulation.physics import Physics
+from plantar.twin.simulation.rollout import Rollout, roll_out, scene_xml
 
 
 def short(plan: Plan, start: float, end: float) -> Plan:

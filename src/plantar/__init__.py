@@ -12,14 +12,14 @@ __version__ = "0.1.0"
 
 _HOMES = {
     "PlantarError": "errors",
-    "MotionLog": "log",
-    "RobotModel": "robot",
-    "load_robot": "robot",
-    "open_log": "readers",
+    "MotionLog": "logs.motion_log",
+    "RobotModel": "robot.model",
+    "load_robot": "robot.model",
+    "open_log": "logs.readers",
     "dynamics": "dynamics",
-    "identify_feet": "identify.feet",
-    "identify_inertia": "identify.inertia",
-    "identify_joints": "identify.joints",
+    "identify_feet": "feet.identify",
+    "identify_inertia": "whole_body.inertia",
+    "identify_joints": "whole_body.joints",
 }
 
 __all__ = ["__version__", *_HOMES]
@@ -27,13 +27,13 @@ __all__ = ["__version__", *_HOMES]
 if TYPE_CHECKING:
     from plantar import dynamics as dynamics
     from plantar.errors import PlantarError as PlantarError
-    from plantar.identify.feet import identify_feet as identify_feet
-    from plantar.identify.inertia import identify_inertia as identify_inertia
-    from plantar.identify.joints import identify_joints as identify_joints
-    from plantar.log import MotionLog as MotionLog
-    from plantar.readers import open_log as open_log
-    from plantar.robot import RobotModel as RobotModel
-    from plantar.robot import load_robot as load_robot
+    from plantar.feet.identify import identify_feet as identify_feet
+    from plantar.logs.motion_log import MotionLog as MotionLog
+    from plantar.logs.readers import open_log as open_log
+    from plantar.robot.model import RobotModel as RobotModel
+    from plantar.robot.model import load_robot as load_robot
+    from plantar.whole_body.inertia import identify_inertia as identify_inertia
+    from plantar.whole_body.joints import identify_joints as identify_joints
 
 
 def __getattr__(name: str) -> Any:

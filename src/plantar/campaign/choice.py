@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any, Final
 
-from plantar.identify.selection import UNKNOWN, Choice, Selection
+from plantar.feet.select_motions import UNKNOWN, Choice, Selection
 from plantar.report.content import Cell, Column, Table
 from plantar.report.numbers import MISSING, number, percent
 from plantar.report.verdict import symbol

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from plantar.campaign.paper import TABLE_1, TABLE_2, TABLE_3
 from plantar.conventions import ROTATIONAL_AXES
-from plantar.result import FeetResult, ValidationRow
+from plantar.results.feet import FeetResult, ValidationRow
 from plantar.twin.bush import Bush, Feet
 
 

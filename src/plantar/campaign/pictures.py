@@ -7,21 +7,21 @@ from typing import Final
 
 import numpy as np
 
-from plantar.balance import measured_balance
 from plantar.campaign.replay import CHEST, IDENTIFIED, RIGID, best_guess
 from plantar.campaign.run import Campaign
+from plantar.contact.balance import measured_balance
 from plantar.conventions import Array
 from plantar.motions import Plan, planned_balance
-from plantar.report.figures import zmp
-from plantar.report.paper import Plate
-from plantar.report.robot_drawing import Box, stances
-from plantar.report.simulation import MotionReplayed, replays, zmp_planned
-from plantar.robot import RobotModel
-from plantar.twin import hrp2
-from plantar.twin.description import Description
-from plantar.twin.from_robot import describe
+from plantar.report.figures.paper import Plate
+from plantar.report.figures.plots import zmp
+from plantar.report.figures.robot_drawing import Box, stances
+from plantar.report.figures.simulation import MotionReplayed, replays, zmp_planned
+from plantar.robot.model import RobotModel
 from plantar.twin.play import planned
 from plantar.twin.replay import Replayed
+from plantar.twin.robots import hrp2
+from plantar.twin.robots.description import Description
+from plantar.twin.robots.from_robot import describe
 
 TILTS: Final = (("Tilt1", "A: regular"), ("Tilt2", "B: right leg aside"), ("Tilt3", "C: right leg forward"))
 SWAYS: Final = (

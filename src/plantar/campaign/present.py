@@ -10,8 +10,8 @@ from plantar.campaign import pictures, tables
 from plantar.campaign.run import Campaign
 from plantar.campaign.scene import write_campaign_scene
 from plantar.report import Section, write_feet_report
-from plantar.report import paper as paper_plates
-from plantar.report.figures import save
+from plantar.report.figures import paper as paper_plates
+from plantar.report.figures.plots import save
 from plantar.report.residuals import read_residuals, residuals_path
 
 STORY = (

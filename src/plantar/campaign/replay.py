@@ -11,17 +11,17 @@ from typing import Final
 
 import numpy as np
 
-from plantar.log import MotionLog
+from plantar.logs.motion_log import MotionLog
 from plantar.motions.plan import Hand
-from plantar.result import FeetResult
-from plantar.robot import RobotModel
+from plantar.results.feet import FeetResult
+from plantar.robot.model import RobotModel
 from plantar.twin.bush import GUESSES, Feet
-from plantar.twin.exact import exact_columns
-from plantar.twin.foot import cut_feet
-from plantar.twin.from_robot import describe
 from plantar.twin.play import planned, rolled
 from plantar.twin.presets import preset_named
 from plantar.twin.replay import Replayed, chest_attitude, feet_of, moved_onto, pitch_and_roll
+from plantar.twin.robots.foot import cut_feet
+from plantar.twin.robots.from_robot import describe
+from plantar.twin.sensing.exact import exact_columns
 
 IDENTIFIED: Final = "identified"
 RIGID: Final = "rigid"

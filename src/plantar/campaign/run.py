@@ -20,15 +20,15 @@ from plantar.campaign.compared import (
 from plantar.campaign.replay import ReplayRow, candidates, hands_of, record_rows, replay_rows
 from plantar.campaign.shares import shares
 from plantar.errors import MotionError
-from plantar.identify.feet import identify_feet
-from plantar.identify.selection import Selection, select_motions
-from plantar.identify.settings import FeetSettings
-from plantar.log import MotionLog
+from plantar.feet.identify import identify_feet
+from plantar.feet.select_motions import Selection, select_motions
+from plantar.feet.settings import FeetSettings
+from plantar.logs.motion_log import MotionLog
+from plantar.logs.readers import open_log
 from plantar.motions import CAMPAIGN, FIT
 from plantar.notes import Note
-from plantar.readers import open_log
-from plantar.result import FeetResult
-from plantar.robot import RobotModel, load_robot
+from plantar.results.feet import FeetResult
+from plantar.robot.model import RobotModel, load_robot
 from plantar.twin import PAPER, TwinRecording, play, play_all, write_campaign
 from plantar.twin.bush import Feet
 from plantar.twin.presets import DEFAULT, preset_named

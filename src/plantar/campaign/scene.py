@@ -12,10 +12,10 @@ from plantar.campaign.run import Campaign
 from plantar.conventions import ROTATIONAL_AXES, Array
 from plantar.report.residuals import Track, read_residuals, residuals_path
 from plantar.report.scene import SceneBody, SceneFoot, SceneMotion, write_scene
-from plantar.robot import RobotModel
-from plantar.twin.description import Description
-from plantar.twin.foot import CutFoot, cut_feet
+from plantar.robot.model import RobotModel
 from plantar.twin.play import planned
+from plantar.twin.robots.description import Description
+from plantar.twin.robots.foot import CutFoot, cut_feet
 
 PLATE = (
     0.8,

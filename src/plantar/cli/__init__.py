@@ -15,9 +15,9 @@ from plantar.errors import PlantarError
 COMMANDS = {
     "demo": ("demo", "The paper's campaign on the built-in twin: tables, figures, report."),
     "inspect": ("inspect", "What is in the logs, what is wrong with them, what they can identify."),
-    "identify feet": ("identify_feet", "Stiffness, damping and offset of each foot (eq. 4 to 7)."),
-    "identify inertia": ("identify_inertia", "Inertial parameters without joint torques (eq. 2)."),
-    "identify joints": ("identify_joints", "Friction, springs and offsets of the joints (eq. 3)."),
+    "identify feet": ("identify.feet", "Stiffness, damping and offset of each foot (eq. 4 to 7)."),
+    "identify inertia": ("identify.inertia", "Inertial parameters without joint torques (eq. 2)."),
+    "identify joints": ("identify.joints", "Friction, springs and offsets of the joints (eq. 3)."),
     "validate": ("validate", "Score a result on logs that it has not seen."),
     "simulate": ("simulate", "Logs from the twin, with the imperfections asked for."),
     "export": ("export", "Hand a result to a simulator or controller."),

@@ -9,9 +9,9 @@ from typing import Annotated
 import typer
 
 from plantar.errors import PlantarError, located
-from plantar.readers import motion_name, open_log
-from plantar.readers.save import ENDINGS, save_log
-from plantar.robot import load_robot
+from plantar.logs.readers import motion_name, open_log
+from plantar.logs.save import ENDINGS, save_log
+from plantar.robot.model import load_robot
 
 LOGS_HELP = "Logs of any format that plantar reads."
 OUT_HELP = "A file ending in " + ", ".join(ENDINGS) + "; for several logs a directory."

@@ -12,7 +12,7 @@ import typer
 from plantar.cli.terminal import console, end_progress, progress, table
 from plantar.errors import MissingExtra
 from plantar.files import refuse_file
-from plantar.result import dump_json
+from plantar.results.io import dump_json
 
 if TYPE_CHECKING:
     from plantar.campaign import Campaign

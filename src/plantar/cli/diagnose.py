@@ -9,8 +9,9 @@ import typer
 from rich.markup import escape
 
 from plantar.cli.terminal import VERDICT_STYLE, console, number, table
-from plantar.identify.usage import served_shares
-from plantar.result import FEET_SCHEMA, dump_json, read_result
+from plantar.results.feet import FEET_SCHEMA
+from plantar.results.io import dump_json, read_result
+from plantar.results.usage import served_shares
 
 
 def run(

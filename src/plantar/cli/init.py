@@ -9,7 +9,7 @@ import typer
 
 from plantar.errors import PlantarError, located
 from plantar.files import write_text
-from plantar.robot import load_robot
+from plantar.robot.model import load_robot
 from plantar.robot_guess import guess_robot_file
 
 OUT_HELP = "The robot file to write."

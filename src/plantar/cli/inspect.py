@@ -12,9 +12,9 @@ from rich.markup import escape
 
 from plantar.cli.terminal import SEVERITY_STYLE, VERDICT_STYLE, console, end_progress, number, progress, table
 from plantar.inspection import LogSummary, inspect_log
-from plantar.readers import open_log
-from plantar.result import dump_json
-from plantar.robot import load_robot
+from plantar.logs.readers import open_log
+from plantar.results.io import dump_json
+from plantar.robot.model import load_robot
 
 
 def run(

@@ -8,7 +8,8 @@ from typing import Annotated
 import typer
 
 from plantar.report import write_dynamics_report, write_feet_report
-from plantar.result import FEET_SCHEMA, read_result
+from plantar.results.feet import FEET_SCHEMA
+from plantar.results.io import read_result
 
 
 def run(

@@ -9,10 +9,10 @@ from typing import Annotated, Any
 import typer
 
 from plantar.cli.terminal import console, end_progress, number, progress, table
-from plantar.identify.selection import UNKNOWN, Choice, Selection, select_motions
-from plantar.readers import open_log
-from plantar.result import dump_json
-from plantar.robot import load_robot
+from plantar.feet.select_motions import UNKNOWN, Choice, Selection, select_motions
+from plantar.logs.readers import open_log
+from plantar.results.io import dump_json
+from plantar.robot.model import load_robot
 
 
 def run(

@@ -12,7 +12,7 @@ import typer
 from plantar.cli.terminal import console, end_progress, number, progress, table
 from plantar.errors import MissingExtra, PlantarError, located
 from plantar.files import refuse_file
-from plantar.robot import load_robot
+from plantar.robot.model import load_robot
 
 if TYPE_CHECKING:
     from plantar.twin.bush import Feet

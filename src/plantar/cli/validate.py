@@ -8,12 +8,13 @@ from typing import Annotated
 
 import typer
 
-from plantar.cli.feet_tables import validation_table
+from plantar.cli.identify.feet_tables import validation_table
 from plantar.cli.terminal import console, end_progress, progress
-from plantar.identify.revalidation import validate_feet
-from plantar.readers import open_log
-from plantar.result import FEET_SCHEMA, dump_json, read_result
-from plantar.robot import load_robot
+from plantar.feet.validate import validate_feet
+from plantar.logs.readers import open_log
+from plantar.results.feet import FEET_SCHEMA
+from plantar.results.io import dump_json, read_result
+from plantar.robot.model import load_robot
 
 
 def run(

@@ -17,7 +17,7 @@ import numpy as np
 import pinocchio as pin
 
 from plantar.conventions import GRAVITY, Array
-from plantar.kinematics import KinematicTree
+from plantar.robot.kinematics import KinematicTree
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ import pinocchio as pin
 from plantar import _core
 from plantar.conventions import INERTIAL_NAMES, Array
 from plantar.dynamics.motion import Motion
-from plantar.kinematics import KinematicTree
+from plantar.robot.kinematics import KinematicTree
 
 BASE_ROWS: Final = 6
 PER_LINK: Final = len(INERTIAL_NAMES)

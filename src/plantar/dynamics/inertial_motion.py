@@ -5,10 +5,11 @@ from __future__ import annotations
 from plantar.dynamics.base_motion import relative_motion, root_motion
 from plantar.dynamics.motion import Motion
 from plantar.errors import RobotError, located
-from plantar.kinematics import KinematicTree
-from plantar.log import MotionLog
-from plantar.robot import RobotModel
-from plantar.signals import differentiate, low_pass, shifted
+from plantar.logs.motion_log import MotionLog
+from plantar.robot.kinematics import KinematicTree
+from plantar.robot.model import RobotModel
+from plantar.signals.filters import differentiate, low_pass
+from plantar.signals.resampling import shifted
 
 
 def inertial_motion(robot: RobotModel, log: MotionLog, cutoff: float, late: float = 0.0) -> Motion:

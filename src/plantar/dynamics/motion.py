@@ -9,7 +9,7 @@ import pinocchio as pin
 
 from plantar.conventions import Array
 from plantar.errors import DataError
-from plantar.kinematics import KinematicTree
+from plantar.robot.kinematics import KinematicTree
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ import numpy as np
 
 from plantar.conventions import FORCE, Array
 from plantar.estimation.intervals import cosine_covariance
-from plantar.signals import differentiate, low_pass
+from plantar.signals.filters import differentiate, low_pass
 
 ROUNDS = 4  # the moment equation is linear near its solution: each round shifts and solves again
 LONGEST = 0.05  # s: later signals than this have another fault than a delay

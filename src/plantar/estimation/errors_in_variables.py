@@ -13,7 +13,7 @@ import numpy as np
 
 from plantar.conventions import Array, Mask
 from plantar.estimation.least_squares import Block, factor_of
-from plantar.signals import FILTER_ORDER, low_pass
+from plantar.signals.filters import FILTER_ORDER, low_pass
 
 ABOVE = 4.0  # cutoffs: from there on a signal counts as noise
 NORMAL = 1.4826  # standard deviation over median absolute value, of normal noise

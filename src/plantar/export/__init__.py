@@ -10,23 +10,23 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 from plantar.errors import ExportError, located
-from plantar.export.bush import FootBush, feet_of_result
+from plantar.export.bush import feet_of_result
+from plantar.export.job import Job
 from plantar.export.source import read_result, robot_urdf
 from plantar.files import write_text
 from plantar.notes import Note, unique
 
 # Target -> (module of this package, what it writes).
 TARGETS: dict[str, tuple[str, str]] = {
-    "mjcf": ("mjcf", "MuJoCo model (MJCF): bush joints and a light sole in each foot"),
-    "sdf": ("sdf", "SDFormat model: prismatic and revolute joints with spring and damper"),
-    "urdf": ("urdf", "URDF with Gazebo's spring tags, or the inertias of a plantar.inertia/1"),
-    "drake": ("drake", "SDFormat for Drake: free bush joints under a drake:linear_bushing_rpy"),
+    "mjcf": ("mjcf.target", "MuJoCo model (MJCF): bush joints and a light sole in each foot"),
+    "sdf": ("sdf.target", "SDFormat model: prismatic and revolute joints with spring and damper"),
+    "urdf": ("urdf.target", "URDF with Gazebo's spring tags, or the inertias of a plantar.inertia/1"),
+    "drake": ("sdf.drake", "SDFormat for Drake: free bush joints under a drake:linear_bushing_rpy"),
     "usd": ("usd", "USD layer (.usda) with UsdPhysics joint drives, per degree, as Isaac reads them"),
     "mc_rtc": ("mc_rtc", "mc_rtc robot module: the JSON entry 'flexibilities'"),
     "openhrp": ("openhrp", "OpenHRP and hrpsys: configuration of the bush customizer"),
@@ -34,18 +34,6 @@ TARGETS: dict[str, tuple[str, str]] = {
     "kinetics_observer": ("kinetics_observer", "Kinetics Observer: stiffness and damping of contacts"),
     "yaml": ("plain", "YAML with every number, its unit and its interval"),
 }
-
-
-@dataclass(frozen=True)
-class Job:
-    """What a target is given: the feet, the result, the model to extend and where the file will stand."""
-
-    result: Mapping[str, Any]
-    feet: tuple[FootBush, ...]
-    model: Path | None
-    out: Path
-    with_offset: bool
-    remarks: tuple[Note, ...]  # what holds for every target, for the comment at the file's head
 
 
 def export(
@@ -75,7 +63,7 @@ def export(
             )
         if given is None and "robot_model" not in data:
             raise ExportError(located("the result names no URDF", valid="--model with the robot's URDF"))
-        from plantar.export.inertia import identified_urdf
+        from plantar.export.urdf.inertia import identified_urdf
 
         text, notes = identified_urdf(data, given or robot_urdf(data, base))
     else:

@@ -26,6 +26,7 @@ from plantar.conventions import (
 )
 from plantar.errors import ExportError, located
 from plantar.export.source import robot_model, robot_urdf
+from plantar.export.urdf.tree import UrdfTree
 from plantar.notes import Note
 
 SIDES = {"left": "LLEG", "right": "RLEG"}
@@ -202,8 +203,6 @@ def _geometry(entry: Mapping[str, Any], result: Mapping[str, Any], base: Path) -
             rotation = rotation_from_rpy(np.array(part.get("rpy", (0, 0, 0)), float))
             origin = np.array(part["xyz"], float)
             if part.get("link", ankle) != ankle:
-                from plantar.export.urdf_tree import UrdfTree
-
                 above = UrdfTree.load(robot_urdf(result, base)).fixed_pose(ankle, part["link"])
                 rotation, origin = above[:3, :3] @ rotation, above[:3, :3] @ origin + above[:3, 3]
             frames.append((rotation, origin))

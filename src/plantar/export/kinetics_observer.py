@@ -16,7 +16,7 @@ from plantar.export.comment import head
 from plantar.notes import Note
 
 if TYPE_CHECKING:
-    from plantar.export import Job
+    from plantar.export.job import Job
 
 # Key -> (attribute of the spring, axes in order x y z, the observer's default).
 ENTRIES: dict[str, tuple[str, tuple[Axis | None, ...], float]] = {

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from plantar.notes import Note
 
 if TYPE_CHECKING:
-    from plantar.export import Job
+    from plantar.export.job import Job
 
 
 def write(job: Job) -> tuple[str, tuple[Note, ...]]:

@@ -12,7 +12,7 @@ from plantar.export.comment import head
 from plantar.notes import Note
 
 if TYPE_CHECKING:
-    from plantar.export import Job
+    from plantar.export.job import Job
 
 
 def write(job: Job) -> tuple[str, tuple[Note, ...]]:

@@ -10,7 +10,7 @@ from plantar.export.comment import head
 from plantar.notes import Note
 
 if TYPE_CHECKING:
-    from plantar.export import Job
+    from plantar.export.job import Job
 
 KEPT = ("value", "unit", "std", "interval95", "verdict")
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 
 from plantar.conventions import Array
@@ -12,28 +10,6 @@ from plantar.export.bush import FootBush
 SOLE_MASS = 0.05  # kg: light beside any foot, heavy enough for every engine
 SOLE_INERTIA = 1e-4  # kg·m² about each axis; shifts the decay rate of K = 500, C = 20 by 0.01 %
 PLATE = 0.01  # m: thickness of the plate written where a model has no sole of its own
-MESH_LIMIT = 256 * 2**20  # bytes
-
-
-def box_corners(size: Array) -> Array:
-    """Corners of a box of full edge lengths `size`, (8, 3), about its centre."""
-    signs = np.array(np.meshgrid([-0.5, 0.5], [-0.5, 0.5], [-0.5, 0.5])).reshape(3, -1).T
-    corners: Array = signs * np.asarray(size)
-    return corners
-
-
-def mesh_points(path: Path | None, scale: Array) -> Array | None:
-    """A mesh's vertices (n, 3), or None where no such mesh can be read."""
-    if path is None or not path.is_file() or path.stat().st_size > MESH_LIMIT:
-        return None
-    import coal  # type: ignore[import-untyped]
-
-    try:
-        mesh = coal.MeshLoader().load(str(path), np.asarray(scale, float))
-        points = np.array(mesh.vertices(), dtype=np.float64)
-    except (RuntimeError, ValueError):
-        return None
-    return points if points.size else None
 
 
 def reaches_sole(points: Array, foot: FootBush) -> bool:

@@ -19,7 +19,7 @@ from plantar.export.shapes import SOLE_INERTIA, SOLE_MASS, plate
 from plantar.notes import Note
 
 if TYPE_CHECKING:
-    from plantar.export import Job
+    from plantar.export.job import Job
 
 AXIS = {"z": "Z", "pitch": "Y", "roll": "X"}
 PER_DEGREE = math.pi / 180

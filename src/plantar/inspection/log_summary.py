@@ -8,18 +8,19 @@ from typing import Any
 
 import numpy as np
 
-from plantar.contact import DOUBLE, SINGLE, SUPPORTS
+from plantar.checks.log_checks import check_log
+from plantar.contact.phases import DOUBLE, SINGLE, SUPPORTS
 from plantar.conventions import GRAVITY, ROTATIONAL_AXES, Array
 from plantar.errors import PlantarError
-from plantar.identify.feet import identify_feet
-from plantar.identify.recording import Recording, checked, prepare
-from plantar.identify.settings import FeetSettings
-from plantar.log import MotionLog
+from plantar.feet.identify import identify_feet
+from plantar.feet.recording import Recording, checked, prepare
+from plantar.feet.settings import FeetSettings
+from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding, Note
-from plantar.result import Parameter, finite
-from plantar.robot import RobotModel
-from plantar.sanity import check_log
-from plantar.signals import Sampling, sampling
+from plantar.results.feet import Parameter
+from plantar.results.io import finite
+from plantar.robot.model import RobotModel
+from plantar.signals.resampling import Sampling, sampling
 
 
 @dataclass(frozen=True)

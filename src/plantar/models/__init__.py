@@ -1,6 +1,7 @@
 """Laws of the bush, one file each: torque from the history of deflection and rate."""
 
 from plantar.models.bouc_wen import BoucWen
+from plantar.models.bush_model import BESIDE, Law, Motion, reach
 from plantar.models.coulomb import Coulomb
 from plantar.models.coupled import Coupled
 from plantar.models.elastoplastic import Elastoplastic
@@ -8,7 +9,6 @@ from plantar.models.hardening import Hardening
 from plantar.models.hardening_elastoplastic import HardeningElastoplastic
 from plantar.models.iwan import Iwan
 from plantar.models.kelvin_voigt import KelvinVoigt
-from plantar.models.law import BESIDE, Law, Motion, reach
 from plantar.models.standard_linear_solid import StandardLinearSolid
 
 LAWS: dict[str, Law] = {

@@ -10,8 +10,8 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from plantar.conventions import Array
+from plantar.models.bush_model import Motion
 from plantar.models.hysteresis import Branches, Hysteretic
-from plantar.models.law import Motion
 
 TABLE = 2001
 DEEPEST = 30.0  # -log(1 - z) at which z counts as 1

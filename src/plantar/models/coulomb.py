@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.models.law import BESIDE, Law, Motion
+from plantar.models.bush_model import BESIDE, Law, Motion
 
 SMOOTHEST = 0.3  # of the motions' fast rate: wider than that, friction is a damper
 SHARPEST = 0.003

@@ -9,7 +9,7 @@ import numpy as np
 
 from plantar.conventions import Array
 from plantar.errors import DataError
-from plantar.models.law import BESIDE, Law, Motion
+from plantar.models.bush_model import BESIDE, Law, Motion
 
 
 class Coupled(Law):

@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.models.law import BESIDE, Law, Motion
+from plantar.models.bush_model import BESIDE, Law, Motion
 
 ZERO_ERROR = 0.01  # rad (m): largest error of the deflection's zero that is looked for
 

@@ -8,9 +8,9 @@ from typing import ClassVar
 import numpy as np
 
 from plantar.conventions import Array
+from plantar.models.bush_model import Motion
 from plantar.models.elastoplastic import Elastoplastic
 from plantar.models.hardening import Hardening
-from plantar.models.law import Motion
 
 
 class HardeningElastoplastic(Elastoplastic):

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plantar.conventions import Array
-from plantar.models.law import BESIDE, Law, Motion, reach
+from plantar.models.bush_model import BESIDE, Law, Motion, reach
 
 SMALLEST_SLIP_ANGLE = 0.02  # of the reach: below it the element looks like dry friction
 LARGEST_SLIP_ANGLE = 0.8  # of the reach: an element that hardly slips looks like a spring

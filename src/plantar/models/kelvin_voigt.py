@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.models.law import Law, Motion
+from plantar.models.bush_model import Law, Motion
 
 
 class KelvinVoigt(Law):

@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.models.law import BESIDE, Law, Motion, reach
+from plantar.models.bush_model import BESIDE, Law, Motion, reach
 
 FASTEST = 0.05  # s: faster relaxation is a damper in the band that a bush is identified in
 LONGEST_SHARE = 0.1  # of the longest run: slower relaxation is drift

@@ -13,7 +13,7 @@ from pink.tasks import ComTask, FrameTask, PostureTask, Task
 
 from plantar.conventions import Array
 from plantar.errors import MotionError, located
-from plantar.robot import Placement, RobotModel
+from plantar.robot.model import Placement, RobotModel
 
 CHEST = "plantar.chest"
 REACHED = 1e-3  # m: how far a foot or the chest may be from where it should be

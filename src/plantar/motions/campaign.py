@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from plantar.balance import Balance
+from plantar.contact.balance import Balance
 from plantar.errors import MotionError, located
 from plantar.motions.body import Body
 from plantar.motions.feasible import check
@@ -17,7 +17,7 @@ from plantar.motions.plan import Plan
 from plantar.motions.stance import STEP_ASIDE, STEP_FORWARD, Stance, on_one_leg, stand, with_arms
 from plantar.motions.tilt import squat_plan, tilt_plan
 from plantar.motions.upper import sweep_plan
-from plantar.robot import RobotModel
+from plantar.robot.model import RobotModel
 
 FIT: Final = ("Manual_right_roll", "Manual_right_pitch", "Manual_left_roll", "Manual_left_pitch", "Tilt3")
 DEMO: Final = (*FIT, "Tilt1", "Squat")

@@ -6,7 +6,7 @@ import numpy as np
 import pinocchio as pin
 from scipy.interpolate import CubicSpline
 
-from plantar.balance import Balance, planned_wrench, require_balance, sole_outlines, zero_moment_point
+from plantar.contact.balance import Balance, planned_wrench, require_balance, sole_outlines, zero_moment_point
 from plantar.conventions import Array
 from plantar.errors import MotionError, located
 from plantar.motions.body import Body

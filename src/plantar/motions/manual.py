@@ -12,7 +12,7 @@ from plantar.motions.plan import RATE, Hand, Plan
 from plantar.motions.profile import window
 from plantar.motions.stance import Stance
 from plantar.motions.track import still
-from plantar.robot import Placement
+from plantar.robot.model import Placement
 
 DURATION = 36.0  # s
 RAMP = 3.0  # s

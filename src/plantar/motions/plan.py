@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from plantar.conventions import Array
-from plantar.robot import Placement
+from plantar.robot.model import Placement
 
 RATE = 200.0  # Hz
 

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
-from plantar.balance import sole_outlines
+from plantar.contact.balance import sole_outlines
+from plantar.contact.polygon import separation
 from plantar.conventions import Array
 from plantar.errors import MotionError, located
 from plantar.motions.body import CHEST, REACHED, Body
-from plantar.polygon import separation
 
 KNEE_BEND = 0.94  # of the straight leg's height, where no posture is given
 STEP_ASIDE = 0.05  # m, the right leg to the right (B)

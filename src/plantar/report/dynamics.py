@@ -14,7 +14,7 @@ from plantar.report.page import render
 from plantar.report.records import InertiaResult, JointsResult, Result, Row, checked, result_path
 from plantar.report.tables import input_table, settings_table, skill_cell, verdict_cell
 from plantar.report.verdict import listed
-from plantar.result import read_result
+from plantar.results.io import read_result
 
 INERTIA: Final = "plantar.inertia/1"
 JOINTS: Final = "plantar.joints/1"

@@ -15,7 +15,8 @@ from plantar.report.page import render
 from plantar.report.records import FeetResult, checked, result_path
 from plantar.report.residuals import read_residuals, residuals_path
 from plantar.report.verdict import foot_verdicts, trust
-from plantar.result import FEET_SCHEMA, read_result
+from plantar.results.feet import FEET_SCHEMA
+from plantar.results.io import read_result
 
 
 def write_feet_report(

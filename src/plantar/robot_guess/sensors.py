@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from plantar.log import MotionLog
-from plantar.readers import open_log
-from plantar.readers.ros_bag import bag_topics
+from plantar.logs.motion_log import MotionLog
+from plantar.logs.readers import open_log
+from plantar.logs.readers.ros.bag import bag_topics
 
 BAGS = (".mcap", ".db3", ".bag")
 

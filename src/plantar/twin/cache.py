@@ -14,9 +14,6 @@ from pathlib import Path
 
 import numpy as np
 
-import plantar.motions
-import plantar.twin
-from plantar import balance, conventions, polygon, robot
 from plantar._core import STEPPING_SOURCE
 from plantar.conventions import Array
 from plantar.errors import PlantarError
@@ -24,6 +21,12 @@ from plantar.files import atomic_write
 
 LIMIT = 2 * 2**30  # bytes in the folder: the oldest files go first
 PACKAGES = ("mujoco", "pin", "pin-pink", "qpsolvers", "daqp", "numpy", "scipy")
+FILES = (
+    "conventions.py",
+    "contact/balance.py",
+    "contact/polygon.py",
+    "robot/model.py",
+)  # what motions and twin run through
 
 
 def folder() -> Path:
@@ -87,9 +90,8 @@ def _code() -> str:
     digest = hashlib.sha256(STEPPING_SOURCE.encode())
     for package in PACKAGES:
         digest.update(f"{package} {version(package)}\n".encode())
-    for module in (plantar.motions, plantar.twin):
-        for file in sorted(Path(str(module.__file__)).parent.glob("*.py")):
-            digest.update(file.name.encode() + b"\0" + file.read_bytes())
-    for module in (balance, conventions, polygon, robot):
-        digest.update(Path(str(module.__file__)).read_bytes())
+    root = Path(__file__).parents[1]
+    rooms = [file for room in ("motions", "twin") for file in sorted((root / room).rglob("*.py"))]
+    for source in (*rooms, *(root / path for path in FILES)):
+        digest.update(source.relative_to(root).as_posix().encode() + b"\0" + source.read_bytes())
     return digest.hexdigest()

@@ -11,10 +11,10 @@ import numpy as np
 from plantar.conventions import Array
 from plantar.motions.campaign import Postures
 from plantar.motions.plan import Hand, Plan
-from plantar.robot import Placement, RobotModel
+from plantar.robot.model import Placement, RobotModel
 from plantar.twin import cache
-from plantar.twin.physics import Physics
-from plantar.twin.rollout import Rollout
+from plantar.twin.simulation.physics import Physics
+from plantar.twin.simulation.rollout import Rollout
 
 TABLES = ("sensors", "bush", "bush_rates", "rubber")
 ARRAYS = ("time", "base", "positions", "velocities", "efforts", "hand")

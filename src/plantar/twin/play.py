@@ -12,14 +12,15 @@ from typing import TypeVar
 from plantar.errors import MotionError
 from plantar.motions.campaign import Postures, plan_motion
 from plantar.motions.plan import Plan
-from plantar.robot import RobotModel
-from plantar.twin import cache, hrp2
+from plantar.robot.model import RobotModel
+from plantar.twin import cache
 from plantar.twin.bush import PAPER, Feet
 from plantar.twin.keep import plan_arrays, plan_from, plan_key, rollout_arrays, rollout_from, rollout_key
-from plantar.twin.physics import Physics
 from plantar.twin.presets import DEFAULT, preset_named
 from plantar.twin.recording import TwinRecording, record
-from plantar.twin.rollout import Rollout, roll_out, scene_xml
+from plantar.twin.robots import hrp2
+from plantar.twin.simulation.physics import Physics
+from plantar.twin.simulation.rollout import Rollout, roll_out, scene_xml
 
 Progress = Callable[[str, float], None]  # motion, share done
 Share = Callable[[float], None]

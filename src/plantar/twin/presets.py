@@ -9,9 +9,9 @@ from typing import Final
 
 from plantar.errors import PlantarError, located
 from plantar.twin.bush import Feet
-from plantar.twin.mjcf import FLOOR
-from plantar.twin.physics import Physics, Slip
-from plantar.twin.sensors import DEGREE, Sensors
+from plantar.twin.sensing.sensors import DEGREE, Sensors
+from plantar.twin.simulation.mjcf import FLOOR
+from plantar.twin.simulation.physics import Physics, Slip
 
 SLIP_TORQUE: Final = (5.0, 2.2)  # N·m in pitch and roll: 7 to 10 % of the largest torques of the campaign
 SLIP_ANGLE: Final = 0.01  # rad

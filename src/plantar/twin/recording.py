@@ -14,15 +14,15 @@ import pyarrow.parquet as pq
 
 from plantar.conventions import Array
 from plantar.files import atomic_write, write_text
-from plantar.log import MotionLog
-from plantar.robot import RobotModel
-from plantar.twin.exact import exact_columns, truth_columns
-from plantar.twin.foot import cut_feet
-from plantar.twin.from_robot import describe
-from plantar.twin.physics import Physics
+from plantar.logs.motion_log import MotionLog
+from plantar.robot.model import RobotModel
 from plantar.twin.presets import Preset
-from plantar.twin.rollout import Rollout
-from plantar.twin.sensors import sense
+from plantar.twin.robots.foot import cut_feet
+from plantar.twin.robots.from_robot import describe
+from plantar.twin.sensing.exact import exact_columns, truth_columns
+from plantar.twin.sensing.sensors import sense
+from plantar.twin.simulation.physics import Physics
+from plantar.twin.simulation.rollout import Rollout
 
 
 @dataclass(frozen=True)

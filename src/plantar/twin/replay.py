@@ -9,20 +9,20 @@ from typing import Any, Final
 import numpy as np
 from scipy.signal import detrend
 
-from plantar.balance import LOADED, flat_soles, soles_in_root
+from plantar.contact.balance import LOADED, flat_soles, soles_in_root
 from plantar.conventions import GRAVITY, Array, rotation_from_quaternion
 from plantar.errors import DataError, MotionError, PlantarError, located
-from plantar.log import MotionLog
+from plantar.logs.motion_log import MotionLog
 from plantar.motions.plan import RATE, Hand, Plan
-from plantar.robot import RobotModel
-from plantar.signals import low_pass
+from plantar.robot.model import RobotModel
+from plantar.signals.filters import low_pass
 from plantar.twin.bush import Bush, Feet
-from plantar.twin.exact import exact_columns
-from plantar.twin.foot import cut_feet
-from plantar.twin.from_robot import describe
-from plantar.twin.mjcf import SERVO_ANGLE
-from plantar.twin.physics import Physics
 from plantar.twin.play import Progress, roll_each
+from plantar.twin.robots.foot import cut_feet
+from plantar.twin.robots.from_robot import describe
+from plantar.twin.sensing.exact import exact_columns
+from plantar.twin.simulation.mjcf import SERVO_ANGLE
+from plantar.twin.simulation.physics import Physics
 
 SMOOTH: Final = 10.0  # Hz: encoder steps are no motion
 REFERENCE: Final = 1.0  # s at the start that zeros of force sensors are taken from, and that are not scored

@@ -1,0 +1,1 @@
+"""Readings that cannot be: channels, IMU, wrenches of a robot that stands."""

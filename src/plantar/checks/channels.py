@@ -1,0 +1,136 @@
+"""Channels that stop while others go on: a cable that comes off, a driver that repeats its last value, a full scale."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from plantar.conventions import GRAVITY, Array
+from plantar.logs.motion_log import MotionLog
+from plantar.notes import Finding
+from plantar.robot.model import Foot, RobotModel
+from plantar.signals.segments import runs
+
+SHORTEST, FEWEST = 0.2, 10  # s and samples at one value: less happens by chance
+LIVELY = 0.9  # share of the other steps that change the value: of a coarse or slow channel nothing is said
+NOTABLE = 0.005  # share of the log
+TURNED, STEPS = (
+    0.02,
+    5.0,
+)  # rad, and steps of a coarse encoder: by so much a joint moves, whose position stands still
+
+
+def check_channels(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
+    """Columns of the IMU and of the wrenches that stand at one value for a while, joints between them that never move.
+
+    Columns of one sensor that stop together are one finding. Encoders read in steps: of one that stands for a while
+    nothing can be said.
+    """
+    if robot.imu is None:
+        return
+    loaded = [foot for foot in robot.feet.values() if _carries(robot, foot, log)]
+    path = frozenset().union(*(robot.joints_between(robot.imu.placement, foot.bush) for foot in loaded))
+    joints = [f"joint.{name}.position" for name in sorted(path) if log.has(f"joint.{name}.position")]
+    still = [name for name in joints if not _moves(log.column(name))]
+    if still and 2 * len(still) < len(joints):
+        text = f"{named(still)}: never change{'s' * (len(still) == 1)}"
+        yield Finding(
+            "still_joint",
+            f"{text}; right if the joint stood still, else the channel is dead",
+            severity="info",
+        )
+    for name in path:
+        yield from _dead_encoder(name, log)
+    for sensor in (
+        f"imu.{robot.imu.name}.",
+        *(f"wrench.{foot.wrench.name}." for foot in robot.feet.values()),
+    ):
+        yield from _stuck(sensor, log)
+
+
+def named(columns: Sequence[str], sensor: str | None = None, of: int = 0) -> str:
+    """Columns as a finding names them: one, several, or all `of` a sensor, which its columns begin with."""
+    if sensor is not None and len(columns) == of > 1:
+        return f"columns '{sensor}*'"
+    return f"column{'s' * (len(columns) > 1)} {', '.join(map(repr, columns))}"
+
+
+def _carries(robot: RobotModel, foot: Foot, log: MotionLog) -> bool:
+    """Whether this foot carries a tenth of the weight or more, at least half of the time."""
+    force = np.linalg.norm(log.wrench(foot.wrench.name)[:, :3], axis=1)
+    return bool(np.mean(force > 0.1 * robot.mass * GRAVITY) > 0.5)
+
+
+def _moves(values: Array) -> bool:
+    finite = values[np.isfinite(values)]
+    return finite.size == 0 or bool(np.ptp(finite) > 0)
+
+
+def _dead_encoder(joint: str, log: MotionLog) -> Iterator[Finding]:
+    """A position that stands still while the recorded velocity turns on: its deflections would all be wrong."""
+    position, velocity = log.joint(joint, "position"), log.joint(joint, "velocity")
+    if position is None or velocity is None:
+        return
+    steps = np.diff(position)
+    least = max(FEWEST, round(SHORTEST / log.period))
+    held = [run for run in runs(steps == 0) if run.stop - run.start >= least]
+    if not held:
+        return
+    path = np.cumsum(np.nan_to_num(velocity[1:] + velocity[:-1]) * np.diff(log.time) / 2)
+    path = np.concatenate(
+        [[0.0], path - np.linspace(0.0, path[-1], len(path))]
+    )  # a constant error turns nothing
+    moving = np.abs(steps[np.isfinite(steps) & (steps != 0)])
+    coarse = float(np.median(moving)) if moving.size else 0.0
+    turned = [float(np.ptp(path[run.start : run.stop + 1])) for run in held]
+    if max(turned) < max(TURNED, STEPS * coarse):
+        return
+    run = held[int(np.argmax(turned))]
+    where = f"column 'joint.{joint}.position', t = {log.time[run.start]:g} to {log.time[run.stop]:g} s"
+    text = f"{where}, value {position[run.start]:.6g}: stands still while its velocity turns {max(turned):.2g} rad"
+    yield Finding("dead_channel", f"{text}; the encoder is dead (valid: leave such cells empty)", True)
+
+
+def _stuck(sensor: str, log: MotionLog) -> Iterator[Finding]:
+    """A finding for each stretch over which columns of this sensor stand still while they change elsewhere."""
+    columns = [column for column in log.columns if column.startswith(sensor)]
+    together: defaultdict[tuple[int, int], list[tuple[str, float]]] = defaultdict(list)
+    for column in columns:
+        values = log.column(column)
+        held = _held(values, log.period)
+        if held:
+            longest = max(held, key=lambda run: run.stop - run.start)
+            share = sum(run.stop - run.start for run in held) / len(log)
+            together[longest.start, longest.stop].append((column, share))
+    for (start, stop), found in together.items():
+        stopped = [column for column, _ in found]
+        several = len(stopped) > 1
+        when = f"t = {log.time[start]:g} to {log.time[stop]:g} s"
+        value = "" if several else f", value {log.column(stopped[0])[start]:.6g}"
+        still = "stand still while they change" if several else "stands still while it changes"
+        share = f"{100 * max(share for _, share in found):.0f} % of the log"
+        asked = (
+            "is the sensor dead or at its full scale?"
+            if several
+            else "is the channel dead or at its full scale?"
+        )
+        text = f"{named(stopped, sensor, len(columns))}, {when}{value}: {still} elsewhere, {share}; {asked}"
+        yield Finding("stuck_channel", f"{text} (valid: leave such cells empty)")
+
+
+def _held(values: Array, period: float) -> list[slice]:
+    """Stretches at one value, as slices of the steps between samples, where they are no chance and no coarse scale."""
+    steps = np.diff(values)
+    still = (steps == 0) & (values[1:] != 0)  # a foot in the air may read zero
+    least = max(FEWEST, round(SHORTEST / period))
+    held = [run for run in runs(still) if run.stop - run.start >= least]
+    count = sum(run.stop - run.start for run in held)
+    if not NOTABLE * len(values) < count < len(steps):
+        return []
+    inside = np.zeros(len(steps), dtype=bool)
+    for run in held:
+        inside[run] = True
+    others = steps[~inside & np.isfinite(steps)]
+    return [] if others.size < least or np.mean(others != 0) < LIVELY else held

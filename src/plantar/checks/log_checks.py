@@ -1,0 +1,115 @@
+"""Sensors that read something impossible: units, signs, orders and channels checked before anything is fitted."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from plantar.checks.channels import check_channels, named
+from plantar.checks.imu import check_imu
+from plantar.checks.standing import check_balance
+from plantar.conventions import GRAVITY
+from plantar.logs.motion_log import MotionLog
+from plantar.notes import Finding
+from plantar.robot.model import RobotModel
+
+DEGREES = 180 / np.pi
+FASTEST, SLOWEST = 1e-5, 1.0  # s between samples: beyond them time is in another unit
+SHORTEST = 0.5  # s of a log from which anything can be said
+
+
+def check_log(robot: RobotModel, log: MotionLog) -> list[Finding]:
+    """Every finding about one log, in the order time, joints, IMU, wrenches, stuck channels."""
+    imu = check_imu(robot.imu.name, log) if robot.imu is not None else ()
+    channels = check_channels(robot, log)
+    return [*_time(log), *_joints(robot, log), *imu, *_wrenches(robot, log), *channels]
+
+
+def _time(log: MotionLog) -> Iterator[Finding]:
+    if not FASTEST < log.period < SLOWEST:
+        text = f"column 'time': samples are {log.period:g} s apart; is it in another unit?"
+        valid = "valid: seconds; divide milliseconds by 1000 and nanoseconds by 1e9"
+        yield Finding("time_unit", f"{text} ({valid})", True)
+    elif log.duration < SHORTEST:
+        yield Finding(
+            "too_short", f"column 'time': lasts {log.duration:g} s (valid: {SHORTEST:g} s or more)", True
+        )
+
+
+def _joints(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
+    model = robot.model
+    for joint, name in enumerate(robot.joint_names, start=1):
+        values = log.joint(name, "position")
+        if values is None or not np.isfinite(values).any():
+            continue
+        lower, upper = (
+            float(limit[model.idx_qs[joint]])
+            for limit in (model.lowerPositionLimit, model.upperPositionLimit)
+        )
+        least, most = float(np.nanmin(values)), float(np.nanmax(values))
+        bounded = model.nqs[joint] == 1 and np.isfinite([lower, upper]).all() and upper > lower
+        revolute = "P" not in model.joints[joint].shortname().removeprefix("JointModel")[:1]
+        if not bounded or not revolute:
+            continue
+        slack = 0.2 + 0.1 * (upper - lower)
+        outside = least < lower - slack or most > upper + slack
+        fits = least / DEGREES > lower - slack and most / DEGREES < upper + slack
+        worst = most if most - upper > lower - least else least
+        at = float(log.time[int(np.nanargmax(values if worst == most else -values))])
+        where = f"column 'joint.{name}.position', t = {at:g} s, value {worst:.6g}"
+        valid = f"valid: {lower:.4g} to {upper:.4g} rad"
+        if outside and fits and max(abs(least), abs(most)) > 2 * np.pi:
+            yield Finding("degrees", f"{where}: looks like degrees ({valid})", True)
+        elif outside:
+            yield Finding("joint_limit", f"{where}: beyond the URDF's limits ({valid})")
+
+
+def _wrenches(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
+    loads = {}
+    for foot in robot.feet.values():
+        sensor, vertical = foot.wrench, f"wrench.{foot.wrench.name}.force.z"
+        wrench = log.wrench(sensor.name)
+        if not np.isfinite(wrench).any():
+            yield Finding(
+                "dead_channel", f"columns 'wrench.{sensor.name}.*': hold no value; the sensor is dead"
+            )
+            continue
+        # Along the bush's z axis, whatever way the sensor is mounted.
+        axis = (
+            (foot.bush.rotation.T @ foot.wrench.placement.rotation)[2]
+            if foot.bush.link == sensor.placement.link
+            else None
+        )
+        load = wrench[:, :3] @ axis * sensor.sign if axis is not None else wrench[:, 2] * sensor.sign
+        loads[foot.name] = load
+        usual = float(np.nanmedian(load))
+        if foot.contact == "auto" and usual < -0.2 * robot.mass * GRAVITY:
+            text = f"column '{vertical}', value {usual:.4g}: pulls the standing foot down"
+            yield Finding(
+                "sign",
+                f"{text} (valid: > 0; set 'sign: {-int(sensor.sign)}' in feet.{foot.name}.wrench)",
+                True,
+            )
+        spans = np.array(
+            [np.ptp(values[np.isfinite(values)]) if np.isfinite(values).any() else 0.0 for values in wrench.T]
+        )
+        alive = (
+            spans.any() or np.nanmax(np.abs(wrench)) > 0.1 * robot.mass * GRAVITY or foot.contact == "always"
+        )
+        parts = [f"wrench.{sensor.name}.{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz"]
+        dead = [part for span, part in zip(spans, parts, strict=True) if alive and span == 0]
+        if dead:
+            text = (
+                f"{named(dead, f'wrench.{sensor.name}.', len(parts))}: never change{'s' * (len(dead) == 1)}"
+            )
+            yield Finding("dead_channel", f"{text}; is the {'channel' if len(dead) == 1 else 'sensor'} dead?")
+    weight = robot.mass * GRAVITY
+    automatic = bool(loads) and all(foot.contact == "auto" for foot in robot.feet.values())
+    if automatic and len(loads) == len(robot.feet):
+        carried = float(np.nanmedian(np.sum(list(loads.values()), axis=0)))
+        if 0.07 < carried / weight < 0.14:
+            text = f"columns 'wrench.*.force.z': the feet carry {carried:.4g}, which looks like kgf"
+            yield Finding("force_unit", f"{text} (valid: N, about {weight:.0f})", True)
+        else:
+            yield from check_balance(robot, log)

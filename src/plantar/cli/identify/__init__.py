@@ -1,0 +1,1 @@
+"""`plantar identify`: feet, inertia, joints, and the tables that they print."""

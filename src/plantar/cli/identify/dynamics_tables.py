@@ -1,0 +1,55 @@
+"""An inertia or joints result on the terminal: parameters, validation, notes."""
+
+from __future__ import annotations
+
+from rich.console import Console
+from rich.markup import escape
+
+from plantar.cli.terminal import SEVERITY_STYLE, VERDICT_STYLE, number, table
+from plantar.results.dynamics import DynamicsResult
+
+LINK_COLUMNS = ("m", "mx", "my", "mz")
+
+
+def print_inertia(out: Console, result: DynamicsResult) -> None:
+    """Masses and first moments by link, beside the URDF's; validation; notes."""
+    found: dict[str, dict[str, tuple[float, float]]] = {}
+    for row in result.inertial_parameters:
+        found.setdefault(row.link, {})[row.name] = (row.value, row.cad)
+    cells = [
+        (link, *(f"{number(values[name][0])} ({number(values[name][1])})" for name in LINK_COLUMNS))
+        for link, values in found.items()
+    ]
+    columns = ("link", "mass [kg] (URDF)", "m·cx [kg.m]", "m·cy [kg.m]", "m·cz [kg.m]")
+    out.print(table(f"Inertial parameters of {result.robot}: {result.mass:.2f} kg", columns, cells))
+    _print_rest(out, result)
+
+
+def print_joints(out: Console, result: DynamicsResult) -> None:
+    """Every joint's terms with intervals and verdicts; validation; notes."""
+    cells = [
+        (row.joint, row.name, number(row.value), row.unit,
+         f"{number(row.interval95[0])} to {number(row.interval95[1])}", row.verdict, row.reason)
+        for row in result.parameters
+    ]  # fmt: skip
+    columns = ("joint", "parameter", "value", "unit", "95 % interval", "verdict", "reason")
+    styles = [VERDICT_STYLE[row.verdict] for row in result.parameters]
+    out.print(table(f"Joint parameters of {result.robot}", columns, cells, styles))
+    _print_rest(out, result)
+
+
+def _print_rest(out: Console, result: DynamicsResult) -> None:
+    for kind, title in (("direct", "Direct validation"), ("cross", "Cross validation")):
+        rows = [row for row in result.validation if row.kind == kind]
+        if not rows:
+            continue
+        cells = [
+            (row.motion, row.axis or row.joint or "", row.unit, number(row.rms_error, 3), number(row.cad_rms_error, 3),
+             number(row.mean_abs_error, 3), number(row.zero_mean_abs, 3), number(row.relative_error_percent, 3))
+            for row in rows
+        ]  # fmt: skip
+        columns = ("motion", "of", "unit", "rms", "rms by URDF", "mean |error|", "mean alone", "error %")
+        out.print()
+        out.print(table(title, columns, cells))
+    for note in result.notes:
+        out.print(f"[{SEVERITY_STYLE[note.severity]}]{note.severity}: {escape(note.text)}[/]")

@@ -1,0 +1,51 @@
+"""`plantar identify feet`."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import numpy as np
+import typer
+
+from plantar.cli.identify import identification
+from plantar.cli.identify.feet_tables import print_feet
+from plantar.cli.terminal import progress
+from plantar.feet.identify import identify_feet
+from plantar.feet.settings import AUTOMATIC, FeetSettings, OffsetRule
+from plantar.models import LAWS
+from plantar.report import write_feet_report
+
+MODELS = (AUTOMATIC, *LAWS)
+MODEL_HELP = f"Law of the bush: {', '.join(MODELS)}. {AUTOMATIC} takes what predicts held-out motions best."
+OFFSET_HELP = "One offset per motion, or shared by all as in the paper."
+DELAY_HELP = "How late the wrenches are, in ms; estimated if left out."
+WINDOW_HELP = "Largest deflection from the resting pose that serves, in degrees."
+
+
+def run(
+    robot: identification.Robot,
+    logs: identification.Logs,
+    out: identification.Out,
+    validate: identification.Validate = None,
+    offset: Annotated[OffsetRule, typer.Option(help=OFFSET_HELP)] = "per-motion",
+    model: Annotated[str, typer.Option(help=MODEL_HELP, metavar="LAW")] = AUTOMATIC,
+    wrench_delay: Annotated[float | None, typer.Option(help=DELAY_HELP)] = None,
+    cutoff: identification.Cutoff = FeetSettings.cutoff,
+    window: Annotated[float | None, typer.Option(help=WINDOW_HELP, min=0.01)] = None,
+    json: identification.Json = False,
+    quiet: identification.Quiet = False,
+) -> None:
+    """Stiffness, damping and offset of each foot, in pitch and roll, from logs of a standing robot.
+
+    Example: plantar identify feet talos.yaml sway_*.csv --validate squat.csv --out out/feet
+    """
+    if model not in MODELS:
+        raise typer.BadParameter(f"'{model}' is not one of {', '.join(MODELS)}", param_hint="--model")
+    reach = None if window is None else float(np.radians(window))
+    late = None if wrench_delay is None else 1e-3 * wrench_delay
+    settings = FeetSettings(offset, model, cutoff, window=reach, wrench_delay=late)
+    # The logs live no longer than the fit: the report needs their memory.
+    result = identify_feet(
+        *identification.opened(robot, logs, validate, out), settings=settings, progress=progress(quiet)
+    )
+    identification.keep(result, out, write_feet_report, print_feet, json=json, quiet=quiet)

@@ -1,0 +1,74 @@
+"""What the verbs of `plantar identify` share: arguments, and the way from files to a result that is kept and shown."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Annotated, Any, Protocol, TypeVar
+
+import typer
+from rich.console import Console
+
+from plantar.cli.terminal import console, end_progress, progress
+from plantar.files import refuse_file
+from plantar.logs.motion_log import MotionLog
+from plantar.logs.readers import open_log
+from plantar.results.io import dump_json
+from plantar.robot.model import RobotModel, load_robot
+
+Robot = Annotated[Path, typer.Argument(help="Robot file (YAML).", metavar="ROBOT.yaml")]
+Logs = Annotated[list[Path], typer.Argument(help="Logs to fit.", metavar="LOG...")]
+Out = Annotated[Path, typer.Option("--out", help="Folder for result.json, the residuals and the report.")]
+Validate = Annotated[list[Path] | None, typer.Option("--validate", help="Logs to score only.")]
+Cutoff = Annotated[float, typer.Option(help="Zero-phase low-pass on both sides of the fit [Hz].", min=0.1)]
+AsRecorded = Annotated[
+    bool,
+    typer.Option(
+        "--as-recorded", help="Name wrench channels that contradict Newton's law, but do not mend them."
+    ),
+]
+Json = Annotated[bool, typer.Option("--json", help="Print result.json instead of tables.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No tables, no progress.")]
+
+
+class Result(Protocol):
+    """What any identification gives."""
+
+    def to_dict(self) -> dict[str, Any]: ...
+
+    def save(self, directory: Path) -> Path: ...
+
+
+Found = TypeVar("Found", bound=Result)
+
+
+def opened(
+    robot: Path, logs: Sequence[Path], validate: Sequence[Path] | None, out: Path
+) -> tuple[RobotModel, list[MotionLog], list[MotionLog]]:
+    """The robot, the logs to fit and those to score; an `out` that cannot serve is refused before any work."""
+    refuse_file(out)
+    known = load_robot(robot)
+    return known, [open_log(path, known) for path in logs], [open_log(path, known) for path in validate or ()]
+
+
+def keep(
+    result: Found,
+    out: Path,
+    report: Callable[[Path], Path],
+    show: Callable[[Console, Found], None],
+    *,
+    json: bool,
+    quiet: bool,
+    beside: Sequence[str] = (),
+) -> None:
+    """Save, report, print; `beside`: names of files worth naming that the result saves beside result.json."""
+    progress(quiet)("write")
+    path = result.save(out)
+    written = [path, *(out / name for name in beside), report(path)]
+    end_progress(quiet)
+    if json:
+        print(dump_json(result.to_dict()), end="")
+    elif not quiet:
+        screen = console()
+        show(screen, result)
+        screen.print("\n" + "\n".join(str(file) for file in written), markup=False)

@@ -1,0 +1,40 @@
+"""`plantar identify joints`."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from plantar.cli.identify import identification
+from plantar.cli.identify.dynamics_tables import print_joints
+from plantar.cli.terminal import progress
+from plantar.report import write_dynamics_report
+from plantar.results.dynamics import URDF
+from plantar.whole_body.joints import Inertia, identify_joints
+from plantar.whole_body.settings import DynamicsSettings
+
+HELP = "Inertias: fitted together with the joints, first (eq. 2; floating bases), or known (the URDF's)."
+
+
+def run(
+    robot: identification.Robot,
+    logs: identification.Logs,
+    out: identification.Out,
+    validate: identification.Validate = None,
+    inertia: Annotated[Inertia, typer.Option("--inertia", help=HELP)] = "together",
+    cutoff: identification.Cutoff = DynamicsSettings.cutoff,
+    as_recorded: identification.AsRecorded = False,
+    json: identification.Json = False,
+    quiet: identification.Quiet = False,
+) -> None:
+    """Friction, springs, offsets and actuator inertia of the joints from their torques (eq. 3).
+
+    Example: plantar identify joints arm.yaml sweep_1.csv --validate sweep_2.csv --out out/joints
+    """
+    known, fitted, unseen = identification.opened(robot, logs, validate, out)
+    settings = DynamicsSettings(cutoff, as_recorded)
+    result = identify_joints(known, fitted, unseen, settings, progress(quiet), inertia=inertia)
+    identification.keep(
+        result, out, write_dynamics_report, print_joints, json=json, quiet=quiet, beside=[URDF]
+    )

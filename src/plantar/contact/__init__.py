@@ -1,0 +1,1 @@
+"""What a foot does on the ground: contact phases, deflection, slip, balance."""

@@ -1,0 +1,256 @@
+"""Bush deflection, its rate and its wrench from encoders, IMU and force sensors (paper 3.2).
+
+The sole stands flat on level ground, so the world's up n in the bush frame gives both angles:
+
+    n = Ry(pitch) Rx(roll) e_z   =>   pitch = atan2(n_x, n_z),   roll = -asin(n_y)
+
+and, as n only turns with the frame it is seen from, n_dot = -ω × n, with the bush frame's own angular
+velocity ω, gives their rates without differentiating. Yaw of the IMU never enters.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pinocchio as pin
+
+from plantar import _core
+from plantar.conventions import FORCE, GRAVITY, TORQUE, Array, skew
+from plantar.errors import DataError, RobotError, located
+from plantar.robot.kinematics import KinematicTree
+from plantar.robot.model import RobotModel
+
+LEAST_LOAD = 0.02  # of the robot's weight: a foot that carries less has no centre of pressure
+
+
+@dataclass(frozen=True)
+class BushState:
+    """One foot through one motion; N samples.
+
+    deflection: (N, 2), pitch and roll of the sole relative to the ankle [rad]; rate: (N, 2) [rad/s];
+    wrench: (N, 6), of the environment on the robot at the bush centre, in the bush frame [N, N·m];
+    torque: (N, 2), generalised, about the bush's pitch and roll axes [N·m];
+    force_z: (N,), along the vertical [N];
+    cop: (N, 2), centre of pressure in the sole frame [m], NaN where the foot carries too little;
+    sole_position: (N, 3), sole origin from the IMU in world axes [m];
+    heading: (N,), of the sole's x axis in the world [rad].
+    """
+
+    deflection: Array
+    rate: Array
+    wrench: Array
+    torque: Array
+    force_z: Array
+    cop: Array
+    sole_position: Array
+    heading: Array
+
+
+@dataclass(frozen=True)
+class FootMotion:
+    """What the kinematics alone say: `up` (N, 3), in the bush frame; the others as in `BushState`."""
+
+    up: Array
+    deflection: Array
+    rate: Array
+    sole_position: Array
+    heading: Array
+
+
+@dataclass(frozen=True)
+class FootPath:
+    """The joints from the IMU to one bush and the frames in between, as the native core takes them.
+
+    joints: their columns in positions and velocities, in the order of the path.
+    """
+
+    joints: tuple[int, ...]
+    frames: tuple[Array, ...]
+    slides: tuple[bool, ...]
+    signs: tuple[float, ...]
+    bush: Array
+    sole: Array
+
+
+def bush_states(
+    robot: RobotModel,
+    positions: Array,
+    velocities: Array,
+    orientation: Array,
+    angular_velocity: Array,
+    wrenches: Mapping[str, Array],
+    threads: int = 0,
+) -> dict[str, BushState]:
+    """The state of every foot of a robot through a motion of N samples.
+
+    positions, velocities: (N, n_joints) in the robot's joint order [rad or m, and per second]; only joints
+    between the IMU and a foot are read; orientation: w x y z, IMU to world, (N, 4), of any length > 0;
+    angular_velocity: of the IMU in its own frame, (N, 3) [rad/s]; wrenches: as recorded, (N, 6), by foot;
+    threads: 0 for as many as are worth starting. NaN in, NaN out.
+
+    Raises RobotError when the robot file has no IMU, DataError when an array has the wrong shape.
+    """
+    if robot.imu is None:
+        raise RobotError(located("names no imu", path=robot.path, valid="imu: {name: ..., link: ...}"))
+    samples, joints = len(orientation), len(robot.joint_names)
+    _expect("positions", positions, (samples, joints))
+    _expect("velocities", velocities, (samples, joints))
+    _expect("orientation", orientation, (samples, 4))
+    _expect("angular velocity", angular_velocity, (samples, 3))
+    tree = KinematicTree.from_model(robot.model)
+    imu = robot.frame(robot.imu.placement)
+    least = LEAST_LOAD * max(robot.mass * GRAVITY, 1.0)
+    states = {}
+    for name, foot in robot.feet.items():
+        _expect(f"wrench of foot '{name}'", wrenches[name], (samples, 6))
+        bush = robot.frame(foot.bush)
+        to_bush = bush[1].inverse()
+        sole = to_bush * robot.frame(foot.sole.placement)[1]
+        sensor = to_bush * robot.frame(foot.wrench.placement)[1]
+        path = foot_path(tree, imu, bush, sole)
+        motion = foot_motion(path, positions, velocities, orientation, angular_velocity, threads)
+        states[name] = bush_state(motion, moved_wrench(wrenches[name], sensor, foot.wrench.sign), sole, least)
+    return states
+
+
+def foot_path(
+    tree: KinematicTree, imu: tuple[int, pin.SE3], bush: tuple[int, pin.SE3], sole: pin.SE3
+) -> FootPath:
+    """The chain from an IMU to a bush.
+
+    imu, bush: (the joint of the Pinocchio model that carries the frame, the placement in that joint's frame);
+    sole: its placement in the bush frame when the bush is not deflected.
+    """
+    first = 2 if tree.floating else 1
+    path = tree.path(imu[0] - first, bush[0] - first)
+    # The core's joints turn about z, so every frame it is given is turned by `to_axis`, z onto the axis.
+    onward = imu[1].inverse()
+    frames = []
+    for joint, sign in path:
+        placement = pin.SE3(tree.rotations[joint], tree.translations[joint])
+        to_axis = pin.SE3(_rotation_from_z(tree.axes[joint]), np.zeros(3))
+        if sign > 0:
+            frames.append(_packed(onward * placement * to_axis))
+            onward = to_axis.inverse()
+        else:
+            frames.append(_packed(onward * to_axis))
+            onward = (placement * to_axis).inverse()
+    return FootPath(
+        joints=tuple(joint for joint, _ in path),
+        frames=tuple(frames),
+        slides=tuple(bool(tree.slides[joint]) for joint, _ in path),
+        signs=tuple(float(sign) for _, sign in path),
+        bush=_packed(onward * bush[1]),
+        sole=_packed(sole),
+    )
+
+
+def foot_motion(
+    path: FootPath,
+    positions: Array,
+    velocities: Array,
+    orientation: Array,
+    angular_velocity: Array,
+    threads: int = 0,
+) -> FootMotion:
+    """Angles, rates and sole position of one foot, for N samples at once; arguments as in `bush_states`."""
+    rows = _core.foot_chain(
+        path.frames,
+        path.slides,
+        path.signs,
+        path.bush,
+        path.sole,
+        [positions[:, joint] for joint in path.joints],
+        [velocities[:, joint] for joint in path.joints],
+        orientation,
+        angular_velocity,
+        threads,
+    )
+    return FootMotion(rows[0:3].T, rows[3:5].T, rows[5:7].T, rows[7:10].T, rows[10])
+
+
+def moved_wrench(wrench: Array, sensor: pin.SE3, sign: float = 1.0) -> Array:
+    """Wrenches (N, 6) from a sensor's frame to the frame in which `sensor` is its placement."""
+    force = sign * wrench[:, FORCE] @ sensor.rotation.T
+    torque = sign * wrench[:, TORQUE] @ sensor.rotation.T + force @ skew(sensor.translation).T
+    return np.hstack([force, torque])
+
+
+def bush_state(motion: FootMotion, wrench: Array, sole: pin.SE3, least: float) -> BushState:
+    """Add what the force sensor says to what the kinematics say.
+
+    wrench: of the environment at the bush centre in the bush frame, (N, 6); sole: its placement in the bush
+    frame; least: the force along the sole's normal below which there is no centre of pressure [N].
+    """
+    force, torque = wrench[:, FORCE], wrench[:, TORQUE]
+    pitch, roll = motion.deflection.T
+    # The pitch axis is fixed to the ankle; the roll axis turns with the pitch: Ry(pitch) e_x.
+    about_roll = np.cos(pitch) * torque[:, 0] - np.sin(pitch) * torque[:, 2]
+    return BushState(
+        deflection=motion.deflection,
+        rate=motion.rate,
+        wrench=wrench,
+        torque=np.column_stack([torque[:, 1], about_roll]),
+        force_z=np.einsum("ni,ni->n", motion.up, force),
+        cop=_centre_of_pressure(force, torque, pitch, roll, sole, least),
+        sole_position=motion.sole_position,
+        heading=motion.heading,
+    )
+
+
+@dataclass(frozen=True)
+class Closure:
+    """The right sole seen from the left one's levelled heading frame: constant while both stand without slip.
+
+    position: (N, 3) [m]; its z is the difference of the soles' heights: the z deflections of both bushes;
+    yaw: (N,) [rad], in (-pi, pi].
+    """
+
+    position: Array
+    yaw: Array
+
+
+def closure(left: BushState, right: BushState) -> Closure:
+    """How two soles stand to each other; the IMU's yaw and position cancel."""
+    x, y, z = (right.sole_position - left.sole_position).T
+    c, s = np.cos(left.heading), np.sin(left.heading)
+    yaw = np.pi - np.mod(np.pi - (right.heading - left.heading), 2 * np.pi)
+    return Closure(np.column_stack([c * x + s * y, c * y - s * x, z]), yaw)
+
+
+def _centre_of_pressure(
+    force: Array, torque: Array, pitch: Array, roll: Array, sole: pin.SE3, least: float
+) -> Array:
+    """Where the ground's force passes through the sole's plane, in the sole frame, (N, 2)."""
+    force, torque = _onto_sole(force, pitch, roll), _onto_sole(torque, pitch, roll)
+    moment = (torque - np.cross(sole.translation, force)) @ sole.rotation
+    normal = force @ sole.rotation[:, 2]
+    normal = np.where(normal >= least, normal, np.nan)
+    return np.column_stack([-moment[:, 1] / normal, moment[:, 0] / normal])
+
+
+def _onto_sole(vector: Array, pitch: Array, roll: Array) -> Array:
+    """From the bush frame to the deflected one: (Ry(pitch) Rx(roll))ᵀ, (N, 3)."""
+    x, y, z = vector.T
+    cp, sp, cr, sr = np.cos(pitch), np.sin(pitch), np.cos(roll), np.sin(roll)
+    level = sp * x + cp * z
+    return np.column_stack([cp * x - sp * z, cr * y + sr * level, cr * level - sr * y])
+
+
+def _expect(what: str, values: Array, shape: Sequence[int]) -> None:
+    if values.shape != tuple(shape):
+        raise DataError(f"{what}: an array of shape {values.shape} (valid: {tuple(shape)})")
+
+
+def _rotation_from_z(axis: Array) -> Array:
+    """A rotation whose third column is the unit `axis`, (3, 3)."""
+    x = np.cross(np.eye(3)[np.argmin(np.abs(axis))], axis)
+    x /= np.linalg.norm(x)
+    return np.column_stack([x, np.cross(axis, x), axis])
+
+
+def _packed(placement: pin.SE3) -> Array:
+    """A frame as the core takes it: rotation, row-major, then origin, (12,)."""
+    return np.concatenate([placement.rotation.ravel(), placement.translation])

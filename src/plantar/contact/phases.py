@@ -1,0 +1,185 @@
+"""Which foot stands, when, and which samples may serve: every one left out carries its reason."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from plantar.conventions import Array, Mask
+from plantar.signals.filters import low_pass
+from plantar.signals.segments import runs
+
+LANDING_SHARE = 0.10  # of the weight: a foot that carries more stands
+LIFTING_SHARE = (
+    0.05  # of the weight: a foot that carries less is in the air; between the two it keeps its state
+)
+SETTLING_TIME = 0.25  # s around landing and lifting, left out: the sole is not flat yet
+SHORTEST_STANCE = 0.5  # s: shorter contacts are steps or impacts, not stances
+
+SHAKING_BAND = 20.0  # Hz: no robot that stands is loaded on purpose so fast
+SHAKING_TIME = 0.1  # s over which shaking is judged
+SHAKING_SHARE = 0.02  # of the weight, rms: a sole that is shaken by more slaps or chatters
+SHAKING_NOISE = 7.0  # times the log's calmest shaking, which is the sensor's noise
+
+IMPACT = "impact: the force is shaken faster than the samples resolve, as by a sole that slaps the floor"
+TIPPING = "tipping"  # how every reason begins that says that a sole does not lie flat
+SMEARED = "filter's edge: beside a sole that tips"
+NOT_RECORDED = "not recorded: NaN or a gap in a column that this foot needs"
+
+DOUBLE, SINGLE, AIR, TRANSITION = "double", "single", "air", "transition"
+SUPPORTS = (DOUBLE, SINGLE, AIR, TRANSITION)
+
+
+@dataclass(frozen=True)
+class Phase:
+    """A stretch of one foot's log in one state: `used` says whether it served, `reason` why not."""
+
+    motion: str
+    foot: str
+    start: float
+    end: float
+    support: str
+    used: bool
+    reason: str | None
+
+    def to_dict(self) -> dict[str, object]:
+        return {**vars(self), "start": round(self.start, 6), "end": round(self.end, 6)}
+
+
+@dataclass
+class FootContact:
+    """One foot through one log: its `support` at each sample (index into SUPPORTS) and why a sample is left out.
+
+    `reasons[code[i]]` is the reason of sample i; code 0 means that it serves.
+    """
+
+    support: np.ndarray[tuple[int], np.dtype[np.int8]]
+    code: np.ndarray[tuple[int], np.dtype[np.int8]]
+    reasons: list[str | None]
+
+    @property
+    def used(self) -> Mask:
+        return np.asarray(self.code == 0)
+
+    @property
+    def loaded(self) -> Mask:
+        """Samples in which the foot is not in the air, landing and lifting among them."""
+        return np.asarray(self.support != SUPPORTS.index(AIR))
+
+    @property
+    def standing(self) -> Mask:
+        """Samples in double or single support."""
+        return np.asarray(self.support < SUPPORTS.index(AIR))
+
+    def leave_out(self, samples: Mask, reason: str) -> None:
+        """Mark samples as not serving; those that already have a reason keep it."""
+        if reason not in self.reasons:
+            self.reasons.append(reason)
+        self.code[samples & (self.code == 0)] = self.reasons.index(reason)
+
+    def left_out_for(self, *beginnings: str) -> Mask:
+        """Samples that are left out for a reason that begins so."""
+        given = [k for k, reason in enumerate(self.reasons) if reason and reason.startswith(beginnings)]
+        return np.isin(self.code, given)
+
+    def phases(self, motion: str, foot: str, time: Array) -> list[Phase]:
+        """The log as stretches of one support and one reason."""
+        change = (np.diff(self.support) != 0) | (np.diff(self.code) != 0)
+        starts = np.concatenate([[0], np.flatnonzero(change) + 1])
+        ends = np.concatenate([starts[1:], [len(time) - 1]])
+        found = []
+        for start, end in zip(starts, ends, strict=True):
+            reason = self.reasons[self.code[start]]
+            support = SUPPORTS[self.support[start]]
+            found.append(
+                Phase(motion, foot, float(time[start]), float(time[end]), support, reason is None, reason)
+            )
+        return found
+
+
+def detect_contact(
+    force: Mapping[str, Array], always: Mapping[str, bool], weight: float, period: float
+) -> dict[str, FootContact]:
+    """Contact of each foot from its vertical force [N], (N,) each, evenly sampled every `period` [s].
+
+    `always` names feet that stand throughout whatever their force says; `weight` [N] is the robot's.
+    """
+    stands = {
+        foot: np.ones(len(values), dtype=bool) if always[foot] else _standing(values, weight, period)
+        for foot, values in force.items()
+    }
+    count = np.sum(list(stands.values()), axis=0)
+    contacts = {}
+    for foot, standing in stands.items():
+        support = np.full(len(standing), SUPPORTS.index(AIR), dtype=np.int8)
+        support[standing & (count > 1)] = SUPPORTS.index(DOUBLE)
+        support[standing & (count == 1)] = SUPPORTS.index(SINGLE)
+        settling = _around_changes(standing, round(SETTLING_TIME / period))
+        support[settling & standing] = SUPPORTS.index(TRANSITION)
+        contact = FootContact(support, np.zeros(len(standing), dtype=np.int8), [None])
+        contact.leave_out(~standing, "in the air: no load on this foot")
+        contact.leave_out(np.isnan(force[foot]), NOT_RECORDED)
+        contact.leave_out(settling, f"landing or lifting: within {SETTLING_TIME} s of a change of contact")
+        contacts[foot] = contact
+    return contacts
+
+
+def shaken(force: Array, weight: float, period: float) -> Mask:
+    """Samples in which a foot's force (N, 3) [N] is shaken by impacts; `weight` [N] is the robot's.
+
+    There the recorded values are aliases: of force and torque, of the accelerometer, of rates. SETTLING_TIME after an
+    impact counts to it, as after a landing.
+    """
+    quick = np.nan_to_num(force - low_pass(force, period, min(SHAKING_BAND, 0.2 / period)))
+    total = np.concatenate([[0.0], np.cumsum(np.sum(quick**2, axis=1))])
+    place, reach = np.arange(len(force)), max(1, round(SHAKING_TIME / 2 / period))
+    last, first = np.minimum(place + reach + 1, len(force)), np.maximum(place - reach, 0)
+    size = np.sqrt((total[last] - total[first]) / (last - first))
+    struck = np.asarray(size > max(SHAKING_SHARE * weight, SHAKING_NOISE * float(np.percentile(size, 10))))
+    return widened(struck, reach, round(SETTLING_TIME / period))
+
+
+def widened(samples: Mask, before: int, behind: int | None = None) -> Mask:
+    """Each true stretch made longer by `before` samples in front and `behind` (as many where None) at its end."""
+    wide, behind = samples.copy(), before if behind is None else behind
+    for run in runs(samples):
+        wide[max(0, run.start - before) : run.stop + behind] = True
+    return wide
+
+
+def joined(samples: Mask, reach: int) -> Mask:
+    """True stretches that are `reach` samples apart or less made one."""
+    whole = samples.copy()
+    for gap in runs(~samples):
+        if gap.start and gap.stop < len(samples) and gap.stop - gap.start <= reach:
+            whole[gap] = True
+    return whole
+
+
+def carried_weight(force: Mapping[str, Array]) -> float:
+    """What the feet carry together, as a rule [N]: the median of the sum of the vertical forces."""
+    total = np.sum(list(force.values()), axis=0)
+    finite = total[np.isfinite(total)]
+    return float(np.median(finite)) if finite.size else 0.0
+
+
+def _standing(force: Array, weight: float, period: float) -> Mask:
+    """Hysteresis on the vertical force, through which NaN keeps the state; contacts shorter than a stance are air."""
+    loaded, lifted = force > LANDING_SHARE * weight, force <= LIFTING_SHARE * weight
+    decided = loaded | lifted
+    last = np.maximum.accumulate(np.where(decided, np.arange(len(force)), -1))
+    standing = np.where(last >= 0, loaded[np.maximum(last, 0)], False)
+    for run in runs(standing):
+        if (run.stop - run.start) * period < SHORTEST_STANCE:
+            standing[run] = False
+    return np.asarray(standing)
+
+
+def _around_changes(standing: Mask, reach: int) -> Mask:
+    """Samples within `reach` of a change between standing and not."""
+    near = np.zeros(len(standing), dtype=bool)
+    for change in np.flatnonzero(np.diff(standing)):
+        near[max(0, change + 1 - reach) : change + 1 + reach] = True
+    return near

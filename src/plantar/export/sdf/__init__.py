@@ -1,0 +1,1 @@
+"""SDFormat models, Drake's dialect among them."""

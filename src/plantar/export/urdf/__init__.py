@@ -1,0 +1,1 @@
+"""URDF: the tree, bush joints, identified inertias."""

@@ -1,0 +1,1 @@
+"""What may be believed of a fit: scores, verdicts, what limits a number."""

@@ -1,0 +1,82 @@
+"""The rows of table 1: each number of a fitted law with its interval, verdict, reason and advice."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from plantar.contact.phases import TIPPING
+from plantar.conventions import ROTATIONAL_AXES, Axis
+from plantar.estimation import interval95, relative_std_percent
+from plantar.feet.assess.residual_table import Predictions
+from plantar.feet.assess.verdicts import Evidence, contradiction, judge, judge_term
+from plantar.feet.fit.axis import AxisFit
+from plantar.feet.recording import Recording
+from plantar.models import KelvinVoigt
+from plantar.results.feet import Parameter, ValidationRow
+
+
+def axis_rows(
+    fit: AxisFit, recordings: Sequence[Recording], predictions: Predictions, scores: Sequence[ValidationRow]
+) -> list[Parameter]:
+    """Every parameter of one axis; `predictions` are those of the fit's own recordings, `scores` of all."""
+    evidence = replace(_evidence(fit, recordings, predictions), contradicted=contradiction(scores))
+    rows = []
+    for place, term in enumerate(fit.names):
+        value, std = float(fit.numbers[place]), float(fit.std[place])
+        interval = interval95(value, std, float(fit.freedom[place]))
+        if place < 2:
+            verdict, reason, advice = judge(fit.foot, fit.axis, term, value, interval, evidence)
+        else:
+            verdict, reason, advice = judge_term(value, interval)
+        unit = fit.law.unit(term, fit.axis)
+        relative = relative_std_percent(value, float(fit.white_std[place]))
+        rows.append(
+            Parameter(fit.foot, fit.axis, term, unit, value, std, interval, relative, verdict, reason, advice)
+        )
+    return rows
+
+
+def missing_rows(foot: str, axis: Axis) -> list[Parameter]:
+    """Stiffness and damping of a foot that no log shows."""
+    reason = f"the {foot} foot has no samples that serve in these logs"
+    advice = f"record motions in which the {foot} foot stands"
+    law = KelvinVoigt()
+    return [
+        Parameter(
+            foot, axis, term, law.unit(term, axis), None, None, None, None, "unidentifiable", reason, advice
+        )
+        for term in law.terms
+    ]
+
+
+def _evidence(
+    fit: AxisFit, recordings: Sequence[Recording], predictions: Mapping[tuple[str, str, Axis], np.ndarray]
+) -> Evidence:
+    column = ROTATIONAL_AXES.index(fit.axis)
+    seconds = moved = varied = missed = leans = loaded = 0.0
+    samples = 0
+    for recording in recordings:
+        predicted = predictions.get((recording.name, fit.foot, fit.axis))
+        if predicted is None:
+            continue
+        used, bush = recording.used(fit.foot) & np.isfinite(predicted), recording.bushes[fit.foot]
+        angle, torque = bush.deflection[used, column], bush.torque[used, column]
+        samples += len(angle)
+        contact = recording.contacts[fit.foot]
+        loaded += float(contact.loaded.sum()) * recording.period
+        leans += float((contact.loaded & contact.left_out_for(TIPPING)).sum()) * recording.period
+        seconds += len(angle) * recording.period
+        moved += float(np.sum((angle - angle.mean()) ** 2))
+        varied += float(np.sum((torque - torque.mean()) ** 2))
+        missed += float(np.sum((torque - predicted[used]) ** 2))
+    damping = float(fit.numbers[1]) + 2 * float(fit.std[1])
+    return Evidence(
+        seconds,
+        float(np.sqrt(moved / max(samples, 1))),
+        1 - missed / varied if varied else 0.0,
+        damping < 0,
+        leaning=leans / loaded if fit.law.remembers and fit.law.forgets and loaded else 0.0,
+    )

@@ -1,0 +1,52 @@
+"""Every sample of every foot beside what the law says of it: the table behind the report's plots."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import pyarrow as pa
+
+from plantar.contact.phases import SUPPORTS
+from plantar.conventions import ROTATIONAL_AXES, Array, Axis
+from plantar.feet.recording import Recording
+
+Predictions = dict[tuple[str, str, Axis], Array]  # (motion, foot, axis) -> torque (N,)
+
+
+def residual_table(
+    recordings: Sequence[Recording], predictions: Mapping[tuple[str, str, Axis], Array]
+) -> pa.Table:
+    """One row a sample, foot and motion; predicted torque is NaN where nothing was predicted."""
+    parts = [_one(recording, foot, predictions) for recording in recordings for foot in recording.bushes]
+    return pa.concat_tables(parts)
+
+
+def _one(recording: Recording, foot: str, predictions: Mapping[tuple[str, str, Axis], Array]) -> pa.Table:
+    bush, contact, count = recording.bushes[foot], recording.contacts[foot], len(recording.time)
+    columns = {
+        "motion": _repeated(recording.name, count),
+        "role": _repeated(recording.role, count),
+        "foot": _repeated(foot, count),
+        "time": pa.array(recording.time),
+        "used": pa.array(contact.used),
+        "support": pa.DictionaryArray.from_arrays(pa.array(contact.support), list(SUPPORTS)),
+        "force_z": _single(bush.force_z),
+        "cop_x": _single(bush.cop[:, 0]),
+        "cop_y": _single(bush.cop[:, 1]),
+    }
+    for column, axis in enumerate(ROTATIONAL_AXES):
+        predicted = predictions.get((recording.name, foot, axis))
+        columns[f"{axis}.deflection"] = pa.array(bush.deflection[:, column])
+        columns[f"{axis}.rate"] = pa.array(bush.rate[:, column])
+        columns[f"{axis}.torque"] = pa.array(bush.torque[:, column])
+        columns[f"{axis}.predicted"] = pa.array(np.full(count, np.nan) if predicted is None else predicted)
+    return pa.table(columns)
+
+
+def _repeated(text: str, count: int) -> pa.Array:
+    return pa.DictionaryArray.from_arrays(pa.array(np.zeros(count, dtype=np.int8)), [text])
+
+
+def _single(values: Array) -> pa.Array:
+    return pa.array(values.astype(np.float32))

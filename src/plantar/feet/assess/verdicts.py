@@ -1,0 +1,135 @@
+"""May this number be used? A verdict per parameter, its reason, and the motion to record next."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from plantar.conventions import Axis
+from plantar.results.feet import ValidationRow, Verdict
+
+USABLE_WIDTH = 0.15  # half width of the 95 % interval over the value, at most
+WEAK_WIDTH = 0.5
+LEAST_SECONDS = 3.0  # of samples that serve
+LEAST_EXPLAINED = 0.3  # share of the torque's variance that the law must explain
+GOOD_EXPLAINED = 0.8
+HOLDS, MISSED = (
+    0.3,
+    0.5,
+)  # mean error over that of a constant: of the liveliest motion, of one that contradicts it
+LEANING = 0.05  # of the time: shorter leans hardly move what comes behind them
+LOADED = 0.1  # of the liveliest motion's torque: others hardly load the axis
+
+SWAY = {
+    "pitch": "sway the robot forward and backward",
+    "roll": "sway the robot left and right",
+    "z": "shift the weight from foot to foot",
+}
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What one fit shows: `seconds` that served, rms of deflection [rad], share of variance explained, whether the
+    damping is negative beyond doubt, the motion that contradicts the others (None where they agree), and the share of
+    the time in which the sole leans, where the law has a memory that has to go through that."""
+
+    seconds: float
+    excitation: float
+    explained: float
+    makes_energy: bool = False
+    contradicted: ValidationRow | None = None
+    leaning: float = 0.0
+
+
+def judge(
+    foot: str, axis: Axis, term: str, value: float, interval: tuple[float, float], evidence: Evidence
+) -> tuple[Verdict, str, str | None]:
+    """Verdict, reason, and advice (None where none is needed) for one stiffness or damping."""
+    advice = _advice(foot, axis, term)
+    half = (interval[1] - interval[0]) / 2
+    width = half / abs(value) if value else np.inf
+    motion = f"{np.degrees(evidence.excitation):.2g} deg rms of {axis}"
+    if evidence.seconds < LEAST_SECONDS:
+        return "unidentifiable", f"only {evidence.seconds:.1f} s of samples serve", advice
+    if value <= 0 and interval[1] <= 0:
+        return (
+            "unidentifiable",
+            f"{term} comes out negative: something else than the bush makes this torque",
+            advice,
+        )
+    if interval[0] <= 0:
+        return "unidentifiable", f"the 95 % interval reaches zero; the motion gave {motion}", advice
+    if evidence.explained < LEAST_EXPLAINED:
+        share = f"{100 * max(evidence.explained, 0):.0f} %"
+        return "unidentifiable", f"the law explains {share} of the torque's variance", advice
+    if width > WEAK_WIDTH:
+        return (
+            "unidentifiable",
+            f"the 95 % interval is ±{100 * width:.0f} %; the motion gave {motion}",
+            advice,
+        )
+    if evidence.makes_energy:
+        return (
+            "weak",
+            "damping comes out negative: something else than the bush takes part in this torque",
+            advice,
+        )
+    if evidence.contradicted is not None:
+        row = evidence.contradicted
+        return (
+            "weak",
+            f"misses {row.motion} by {row.mean_abs_error:.2g} N.m on average, where a constant misses by "
+            f"{row.zero_mean_abs:.2g}, though it holds in other motions",
+            f"check in {row.motion} the encoders between IMU and foot, and whether anything touched the robot",
+        )
+    if evidence.leaning > LEANING:
+        return (
+            "weak",
+            f"the sole leans for {100 * evidence.leaning:.0f} % of the time, and a bush with a memory goes on unseen",
+            f"{_advice(foot, axis, term)}: the centre of pressure has to stay inside the sole",
+        )
+    if width > USABLE_WIDTH:
+        return "weak", f"the 95 % interval is ±{100 * width:.0f} %; the motion gave {motion}", advice
+    if evidence.explained < GOOD_EXPLAINED:
+        return (
+            "weak",
+            f"the law explains only {100 * evidence.explained:.0f} % of the torque's variance",
+            advice,
+        )
+    return "usable", f"95 % interval ±{100 * width:.2g} %, {evidence.seconds:.0f} s served", None
+
+
+def contradiction(rows: Sequence[ValidationRow]) -> ValidationRow | None:
+    """The motion that an axis' law misses although it holds where most moves: of `rows` of one axis, the worst.
+
+    Motions that hardly load the axis do not count, and where the law holds nowhere nothing contradicts it.
+    """
+    telling = [row for row in rows if row.zero_mean_abs > 0]
+    if not telling:
+        return None
+    largest = max(telling, key=lambda row: row.zero_mean_abs)
+
+    def share(row: ValidationRow) -> float:
+        return row.mean_abs_error / row.zero_mean_abs
+
+    if share(largest) > HOLDS:
+        return None
+    loaded = [row for row in telling if row.zero_mean_abs > LOADED * largest.zero_mean_abs]
+    worst = max(loaded, key=share)
+    return worst if share(worst) > MISSED else None
+
+
+def judge_term(value: float, interval: tuple[float, float]) -> tuple[Verdict, str, str | None]:
+    """Verdict and reason for a further term of a richer law."""
+    half = (interval[1] - interval[0]) / 2
+    width = half / abs(value) if value else np.inf
+    if not interval[0] * interval[1] > 0 or not np.isfinite(width):
+        return "unidentifiable", "the 95 % interval reaches zero", None
+    return ("usable" if width < 2 * USABLE_WIDTH else "weak"), f"95 % interval ±{100 * width:.2g} %", None
+
+
+def _advice(foot: str, axis: Axis, term: str) -> str:
+    pace = "faster, at 0.3 to 1 Hz" if term == "damping" else "slowly and by some degrees, at 0.1 to 0.5 Hz"
+    return f"{SWAY[axis]} with its weight on the {foot} foot, {pace}, for 30 s or more, without lifting the sole's edge"

@@ -1,0 +1,160 @@
+"""A sole on its edge: the centre of pressure stops there while the foot goes on turning, and the bush does not.
+
+A sole tips only while the centre of pressure is at its edge. There the angle is the bush's and the sole's lean
+together: what it exceeds torque over stiffness by is the lean. Hysteresis and hardening make that excess wander as
+well, so it is counted from where it was just before the edge and just behind it; and the zeros of force and torque move
+the edge, so it is looked for where the centre of pressure stopped while the lean was beyond doubt.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from plantar.contact.phases import SMEARED, joined, widened
+from plantar.contact.polygon import edge_distances
+from plantar.conventions import ROTATIONAL_AXES, Array, Mask
+from plantar.estimation import fit_linear
+from plantar.feet.fit.regression_data import blocks_of
+from plantar.feet.recording import Recording, filtered
+from plantar.feet.settings import FeetSettings
+from plantar.robot.model import RobotModel
+from plantar.signals.filters import low_pass
+from plantar.signals.segments import runs
+
+LEAST_LEAN = 0.003  # rad: less hardly disturbs a deflection
+SURE = 6.0  # times the usual change of the excess over NOISE_TIME: a lean beyond doubt
+NOISE_TIME = 0.1  # s
+QUICK_CUTOFF = 20.0  # Hz: the common filter of the fit would blur when a lean begins
+BESIDE = 0.3  # of the fit's filter's period, left out beside a lean
+PRESSURE_NOISE = 4.0  # usual deviations of the centre of pressure where it stops
+LEAST_BAND = 0.0007  # m inside of where it stops: still there
+NEAR = 0.1  # s before and behind the edge, in which the excess is that of a flat sole
+SMEAR = 0.02  # s that this filter spreads a lean
+FAR = 0.5  # s: how far a flat sole is looked for
+APART = 0.05  # s: visits to the edge that are closer are one
+FEWEST = 0.04  # s of sure lean, for the edge to be known
+
+LEANS = "tipping: the centre of pressure is at the sole's edge and the foot turns further than its bush"
+OUTSIDE = "tipping: the centre of pressure is outside the sole"
+UNKNOWN = (
+    "tipping: the centre of pressure is near the sole's edge, and no flat stretch tells whether it leans"
+)
+TIPPING = (LEANS, OUTSIDE, UNKNOWN)
+
+
+def leave_out_edges(robot: RobotModel, recordings: Sequence[Recording], settings: FeetSettings) -> None:
+    """Leave out where a sole leans on its edge; what is near the edge and flat serves.
+
+    Feet with `contact: always` are left as they are: their centre of pressure means nothing.
+    """
+    for name, foot in robot.feet.items():
+        if foot.contact == "always":
+            continue
+        depths = [
+            edge_distances(
+                low_pass(recording.bushes[name].cop, recording.period, QUICK_CUTOFF), foot.sole.polygon
+            )
+            for recording in recordings
+        ]
+        near = [
+            recording.contacts[name].standing & (depth < settings.edge_margin).any(axis=1)
+            for recording, depth in zip(recordings, depths, strict=True)
+        ]
+        if not any(edge.any() for edge in near):
+            continue
+        law = _law(recordings, name, near)
+        for recording, depth, edge in zip(recordings, depths, near, strict=True):
+            contact = recording.contacts[name]
+            if not edge.any():
+                continue
+            if law is None:
+                contact.leave_out(edge, UNKNOWN)
+                continue
+            stiffness, damping, zero = law
+            bush = filtered(recording.raw[name], recording.period, QUICK_CUTOFF)
+            load = np.maximum(bush.force_z, 1.0)
+            excess = bush.deflection - (bush.torque - damping * bush.rate) / stiffness
+            outside = (depth < -settings.edge_margin - (zero / load)[:, None]).any(axis=1)
+            contact.leave_out(contact.standing & outside, OUTSIDE)
+            leans = np.zeros(len(load), dtype=bool)
+            for border in depth.T:
+                visits = contact.standing & (border < settings.edge_margin + zero / load)
+                leans |= leaning(excess, border, load, visits, contact.used, recording.period)
+            contact.leave_out(leans & contact.standing, LEANS)
+            beside = widened(leans, round(BESIDE / settings.cutoff / recording.period))
+            contact.leave_out(beside & contact.standing, SMEARED)
+
+
+def leaning(excess: Array, depth: Array, load: Array, visits: Mask, flat: Mask, period: float) -> Mask:
+    """Samples in which a sole leans on one edge.
+
+    excess: (N, 2), the deflection beyond what torque and damping explain [rad]; depth: of the centre of pressure inside
+    the edge, (N,) [m]; load: (N,) [N]; visits: where the edge may be reached; flat: where the sole may be taken as flat
+    when it is not there.
+    """
+    rest = flat & np.isfinite(excess).all(axis=1) & ~widened(visits, round(SMEAR / period))
+    least = max(LEAST_LEAN, SURE * _usual_change(excess, rest, round(NOISE_TIME / period)))
+    sure = _lean(excess, visits, rest, period) > least
+    if sure.sum() * period < FEWEST:
+        return sure
+    # A zero of the torque moves the edge by zero / load.
+    moment = depth * load
+    stop = float(np.median(moment[sure]))
+    spread = PRESSURE_NOISE * 1.4826 * float(np.median(np.abs(moment[sure] - stop)))
+    pinned = visits & (moment < stop + np.maximum(spread, LEAST_BAND * load))
+    rest = flat & np.isfinite(excess).all(axis=1) & ~pinned & ~widened(sure, round(SMEAR / period))
+    return sure | (_lean(excess, pinned, rest, period) > LEAST_LEAN)
+
+
+def _lean(excess: Array, visits: Mask, flat: Mask, period: float) -> Array:
+    """Lean of the sole during visits to an edge, (N,) [rad], 0 elsewhere; infinite where no flat sole is near."""
+    lean = np.zeros(len(visits))
+    near, far = round(NEAR / period), round(FAR / period)
+    for visit in runs(joined(visits, round(APART / period))):
+        first = max(0, visit.start - far)
+        before = first + np.flatnonzero(flat[first : visit.start])[-near:]
+        behind = visit.stop + np.flatnonzero(flat[visit.stop : visit.stop + far])[:near]
+        if not before.size and not behind.size:
+            lean[visit] = np.inf
+            continue
+        ends = [np.median(excess[side], axis=0) for side in (before, behind) if side.size]
+        share = np.linspace(0.0, 1.0, visit.stop - visit.start)[:, None]
+        resting = (1 - share) * ends[0] + share * ends[-1]
+        lean[visit] = np.linalg.norm(excess[visit] - resting, axis=1)
+    return lean
+
+
+def _law(
+    recordings: Sequence[Recording], foot: str, edges: Sequence[Mask]
+) -> tuple[Array, Array, float] | None:
+    """Stiffness and damping of pitch and roll, (2,) each, from samples clear of the edge, and the usual torque zero.
+
+    None where no recording to fit has enough.
+    """
+    clear = [
+        recording.without(foot, widened(edge, round(NEAR / recording.period)))
+        for recording, edge in zip(recordings, edges, strict=True)
+    ]
+    values, zeros = [], []
+    for axis in ROTATIONAL_AXES:
+        blocks = blocks_of(clear, foot, axis)
+        if not blocks:
+            return None
+        fit = fit_linear(blocks)
+        if fit.values[0] <= 0:
+            return None
+        values.append(fit.values[:2])
+        zeros += list(fit.offsets.values())
+    stiffness, damping = np.array(values).T
+    return stiffness, damping, float(np.sqrt(np.mean(np.square(zeros))))
+
+
+def _usual_change(excess: Array, flat: Mask, lag: int) -> float:
+    """Median size of the change of the excess over `lag` samples of a flat sole [rad]."""
+    both = flat[lag:] & flat[:-lag]
+    if not both.any():
+        return 0.0
+    change = excess[lag:][both] - excess[:-lag][both]
+    return float(np.median(np.linalg.norm(change, axis=1)))

@@ -1,0 +1,190 @@
+"""How fast soles move over the floor, from the IMU: its acceleration, moved to the sole, integrated, less its drift.
+
+All feet see one accelerometer, so one drift is told from all that stands, through the whole log.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from plantar.contact.deflection import BushState
+from plantar.contact.slip import SLIP_CUTOFF, usual_deviation
+from plantar.conventions import Array, Mask, rotation_from_quaternion
+from plantar.estimation.velocity_drift import fit_drift
+from plantar.feet.recording import Recording
+from plantar.feet.sensors.tilt_error import unit_quaternions
+from plantar.robot.model import RobotModel
+from plantar.signals.filters import differentiate, low_pass
+from plantar.signals.orientation import attitude
+
+DRIFT_RATE = 50.0  # Hz, enough for the drift
+GYROSCOPE = 2.5  # Hz, above which an attitude's change is the gyroscope's: it is the quieter one there
+SHAKEN = 20.0  # Hz: no part of a robot that stands is moved on purpose above it
+LAG = 0.05  # s, in which neither drift nor slide changes much
+FAR = 1.0  # s, in which the drift's slope changes by more than noise
+LEAST_NOISE = 0.0002  # m/s
+LEAST_WANDER = 0.0005  # m/s² in a second's root
+STRESSED = 80  # percent of the samples are accelerated less
+NEAR = 0.1  # s around a sample whose acceleration counts
+MEDIAN = np.sqrt(2 * np.log(2))  # median length of a plane vector, in deviations of its components
+
+
+@dataclass(frozen=True)
+class SoleMotion:
+    """`velocity`: (N, 2) by foot, of the sole in world axes [m/s], NaN where it is not known to stand flat;
+    `deviation`: (N,) by foot, of either component [m/s]."""
+
+    velocity: Mapping[str, Array]
+    deviation: Mapping[str, Array]
+
+
+def sole_motion(
+    robot: RobotModel, recording: Recording, flat: Mapping[str, Mask], unrest: Array
+) -> SoleMotion | None:
+    """Velocities of the soles; None where the log has no accelerometer or no sole ever stands `flat`, (N,) each.
+
+    unrest: (N,), what else says that soles move, as a square in usual deviations.
+
+    Beside the drift, causes of constant size are taken off: a bush centre that the robot file has too high or too low
+    (what follows the bush's rates), an IMU that is late (the acceleration), and an attitude filter that takes slow
+    accelerations for tilt (the way).
+    """
+    rotation, acceleration, rates = _inertial(robot, recording)
+    if acceleration is None:
+        return None
+    period = recording.period
+    push = np.nan_to_num(low_pass(acceleration, period, SLIP_CUTOFF))
+    shaking = np.nan_to_num(acceleration - low_pass(acceleration, period, min(SHAKEN, 0.2 / period)))
+    noise_of_attitude = _attitude_noise(rotation, rates, period)
+    moved, stands = {}, {}
+    for foot, bush in recording.bushes.items():
+        arm = np.column_stack([recording.places[foot], bush.sole_position[:, 2]])
+        place = arm[:, :2] - np.cross(noise_of_attitude, arm)[:, :2]
+        moved[foot] = differentiate(low_pass(place, period, SLIP_CUTOFF), period)
+        known = np.isfinite(np.column_stack([moved[foot], acceleration])).all(axis=1)
+        stands[foot] = np.asarray(flat[foot] & known)
+    count = np.sum(list(stands.values()), axis=0)
+    if not count.any():
+        return None
+    share = {foot: np.asarray(stands[foot] / np.maximum(count, 1))[:, None] for foot in stands}
+    mean = np.sum([share[foot] * np.nan_to_num(moved[foot]) for foot in stands], axis=0)
+    gained = (np.cumsum(push, axis=0) - push / 2) * period
+    causes = [push, np.cumsum(mean, axis=0) * period]
+    for foot, bush in recording.bushes.items():
+        causes += [share[foot] * cause for cause in _lever_errors(bush)]
+    seen = np.where((count > 0)[:, None], mean + gained, np.nan)
+    drift, drift_deviation, noise = _drift(seen, np.array(causes), unrest, shaking, period)
+    velocity = {
+        foot: np.where(stands[foot][:, None], moved[foot] + gained - drift, np.nan) for foot in stands
+    }
+    strain = _mean_square(acceleration, period)
+    deviation = {foot: _deviation(one, noise, drift_deviation, strain) for foot, one in velocity.items()}
+    return SoleMotion(velocity, deviation)
+
+
+def friction(recording: Recording, flat: Mapping[str, Mask]) -> Array:
+    """The floor's horizontal force on the soles that stand over their load, (N, 2), in world axes."""
+    total, load = np.zeros((len(recording.time), 2)), np.zeros(len(recording.time))
+    for foot, bush in recording.bushes.items():
+        (x, y, z), (pitch, roll) = bush.wrench[:, :3].T, bush.deflection.T
+        down = np.sin(pitch) * x + np.cos(pitch) * z
+        along = np.cos(pitch) * x - np.sin(pitch) * z
+        across = np.cos(roll) * y + np.sin(roll) * down
+        c, s = np.cos(bush.heading), np.sin(bush.heading)
+        force = np.column_stack([c * along - s * across, s * along + c * across, bush.force_z])
+        known = flat[foot] & np.isfinite(force).all(axis=1)
+        total += np.where(known[:, None], force[:, :2], 0.0)
+        load += np.where(known, force[:, 2], 0.0)
+    return np.asarray(total / np.where(load > 0, load, np.nan)[:, None])
+
+
+def _inertial(robot: RobotModel, recording: Recording) -> tuple[Array, Array | None, Array]:
+    """Rotations (N, 3, 3) of the IMU to the world, its horizontal acceleration (N, 2), and its rates (N, 3), in the
+    world; no acceleration where the log has no accelerometer."""
+    log, imu = recording.log, robot.imu
+    assert imu is not None, "checked"
+    orientation, rates = attitude(log, imu, [])
+    rotation = rotation_from_quaternion(unit_quaternions(orientation))
+    turned = np.einsum("nij,nj->ni", rotation, rates)
+    if not log.has(*(f"imu.{imu.name}.linear_acceleration.{axis}" for axis in "xyz")):
+        return rotation, None, turned
+    proper = log.linear_acceleration(imu.name)
+    return rotation, np.asarray(np.einsum("nij,nj->ni", rotation[:, :2], proper)), turned
+
+
+def _attitude_noise(rotation: Array, rates: Array, period: float) -> Array:
+    """Small rotations (N, 3) [rad], in the world, by which the attitude is off at more than GYROSCOPE: its steps are
+    compared with the gyroscope's."""
+    between = rotation[1:] @ np.swapaxes(rotation[:-1], 1, 2)
+    skew = (between - np.swapaxes(between, 1, 2)) / 2
+    step = np.column_stack([skew[:, 2, 1], skew[:, 0, 2], skew[:, 1, 0]])
+    excess = np.nan_to_num(step - period * (rates[1:] + rates[:-1]) / 2)
+    off = np.vstack([np.zeros(3), np.cumsum(excess, axis=0)])
+    return np.asarray(off - low_pass(off, period, GYROSCOPE))
+
+
+def _lever_errors(bush: BushState) -> tuple[Array, Array]:
+    """How a sole seems to move, (N, 2) each, by pitch and by roll, where its bush centre's height is wrong."""
+    c, s = np.cos(bush.heading), np.sin(bush.heading)
+    pitch, roll = np.nan_to_num(bush.rate).T
+    return np.column_stack([pitch * c, pitch * s]), np.column_stack([-roll * s, roll * c])
+
+
+def _drift(
+    seen: Array, causes: Array, unrest: Array, shaking: Array, period: float
+) -> tuple[Array, Array, float]:
+    """The drift (N, 2) in what is seen, its deviation (N,) and the noise of either component [m/s].
+
+    How noisy it is and how fast its slope wanders is read off its differences, whose medians no slide moves. What the
+    velocity may have lost between two samples is known from how it shakes.
+    """
+    noise = max(LEAST_NOISE, _usual(seen[(lag := round(LAG / period)) :] - seen[:-lag]) / np.sqrt(2))
+    far = max(1, min(round(FAR / period), (len(seen) - 1) // 2))
+    lost = np.sum(shaking**2, axis=1) / 2 * period**2
+    bent = _usual(seen[2 * far :] - 2 * seen[far:-far] + seen[: -2 * far]) ** 2
+    bent -= 6 * noise**2 + 2 * far * float(np.median(lost))
+    wander = max(LEAST_WANDER**2, 1.5 * bent / (far * period) ** 3)
+    step = max(1, round(1 / DRIFT_RATE / period))
+    places = np.arange(0, len(seen), step)
+    jump = np.add.reduceat(lost, places)
+    thinned = step * period
+    independent = min(1.0, 2 * SLIP_CUTOFF * thinned)
+    fit = fit_drift(
+        seen[places], causes[:, places], unrest[places], jump, wander, noise, independent, thinned
+    )
+    every = np.arange(len(seen))
+    value = np.column_stack([np.interp(every, places, fit.value[:, axis]) for axis in range(2)])
+    return value, np.interp(every, places, fit.deviation), noise
+
+
+def _usual(change: Array) -> float:
+    """Deviation of either component of changes (n, 2) around their median, as most of them are."""
+    known = change[np.isfinite(change).all(axis=1)]
+    return 1.4826 * float(np.median(np.abs(known - np.median(known, axis=0)))) if known.size else 0.0
+
+
+def _mean_square(acceleration: Array, period: float) -> Array:
+    """Mean square (N,) of the acceleration (N, 2) within NEAR [m²/s⁴]."""
+    square = np.nansum((acceleration - np.nanmedian(acceleration, axis=0)) ** 2, axis=1)
+    total, reach = np.concatenate([[0.0], np.cumsum(square)]), round(NEAR / period)
+    place = np.arange(len(square))
+    last, first = np.minimum(place + reach + 1, len(square)), np.maximum(place - reach, 0)
+    return np.asarray((total[last] - total[first]) / (last - first))
+
+
+def _deviation(velocity: Array, noise: float, of_drift: Array, strain: Array) -> Array:
+    """Deviation (N,) of a velocity (N, 2): its noise, no less than what is usual, and the drift's; more where the robot
+    is accelerated strongly, as far as its velocity is usually off there."""
+    speed = np.linalg.norm(velocity, axis=1)
+    known = np.isfinite(speed)
+    least = np.hypot(max(noise, usual_deviation(speed)), of_drift)
+    if not known.any():
+        return np.asarray(least)
+    strong = known & (strain > np.percentile(strain[known], STRESSED))
+    if not strong.any():
+        return np.asarray(least)
+    grows = float(np.median(((speed / MEDIAN) ** 2 - least**2)[strong] / strain[strong]))
+    return np.sqrt(least**2 + max(grows, 0.0) * strain)

@@ -1,0 +1,1 @@
+"""The regressions of one foot."""

@@ -1,0 +1,71 @@
+"""The fitted law of one axis of one foot."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from plantar.conventions import Array, Axis
+from plantar.model_selection.selection import LawChoice
+from plantar.models import Law
+from plantar.notes import Note
+
+
+@dataclass(frozen=True)
+class AxisFit:
+    """A fitted law. `values` (k,) as `law.terms`, `shape` (s,) as `law.shape_terms`; `covariance`, `freedom` and
+    `white_std` run over both. `starts`: where the law's memory begins in each recording's runs. `equivalent`: K and C
+    of spring and damper over the same motions."""
+
+    foot: str
+    axis: Axis
+    law: Law
+    values: Array
+    shape: Array
+    covariance: Array
+    freedom: Array
+    white_std: Array
+    offsets: Mapping[str, float]
+    offset_std: Mapping[str, float]
+    starts: Mapping[str, Array]
+    equivalent: tuple[float, float]
+    choice: LawChoice | None
+    reason: str
+    notes: tuple[Note, ...] = ()
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return (*self.law.terms, *self.law.shape_terms)
+
+    @property
+    def numbers(self) -> Array:
+        """Values and shape, (k + s,)."""
+        return np.concatenate([self.values, self.shape])
+
+    @property
+    def std(self) -> Array:
+        return np.asarray(np.sqrt(np.diag(self.covariance)))
+
+    def to_dict(self) -> dict[str, Any]:
+        """The law, why it was chosen, and what the others would have missed by."""
+        stiffness, damping = self.equivalent
+        content: dict[str, Any] = {
+            "foot": self.foot,
+            "axis": self.axis,
+            "law": self.law.name,
+            "reason": self.reason,
+            "linear_equivalent": {"stiffness": stiffness, "damping": damping},
+        }
+        if self.choice is not None:
+            content |= {
+                "held_out": self.choice.held_out,
+                "ranking": [
+                    {"law": score.law.name, "held_out_rms": score.held_out_rms, "parameters": score.parameters,
+                     "refused": score.refused, "chosen": score.chosen}
+                    for score in self.choice.ranking
+                ],
+            }  # fmt: skip
+        return content

@@ -1,0 +1,106 @@
+"""One axis of one foot: the law that its motions ask for, fitted to all of them (eq. 4 to 7)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from plantar.conventions import Axis
+from plantar.estimation import Block, LinearFit, fit_linear
+from plantar.feet.fit.axis import AxisFit
+from plantar.feet.fit.corrections import about_true_zero, unattenuated
+from plantar.feet.fit.regression_data import blocks_of, trial_of
+from plantar.feet.recording import Recording
+from plantar.feet.settings import AUTOMATIC, FeetSettings
+from plantar.model_selection.data_sets import Trial
+from plantar.model_selection.model_fit import LawFit, fit_law
+from plantar.model_selection.selection import LawChoice, choose_law
+from plantar.models import LAWS, KelvinVoigt, Law
+
+LEAST_EXPLAINED = 0.5  # of the torque's variance by spring and damper: below it no law of the bush will help
+FULLY_EXPLAINED = 0.99995  # above it what is left is the sensors' noise
+SHORT_STANCE = 5.0  # s: the usual stance of walking is shorter, and tells nothing of a memory
+CANDIDATES = (
+    "kelvin_voigt", "hardening", "coulomb", "elastoplastic", "hardening_elastoplastic", "bouc_wen",
+    "standard_linear_solid",
+)  # fmt: skip
+
+
+def fit_axis(
+    recordings: Sequence[Recording], foot: str, axis: Axis, settings: FeetSettings, law: Law | None = None
+) -> AxisFit | None:
+    """The law given or asked for, or the one that predicts held-out motions; None where no recording has samples.
+
+    What errors of the angles do to its values is taken off, where that matters.
+    """
+    shared = settings.offset == "shared"
+    if law is None and settings.model != AUTOMATIC:
+        law = LAWS[settings.model]
+    fit = _fitted(recordings, foot, axis, settings, law)
+    return fit and unattenuated(about_true_zero(fit, recordings, shared), recordings, shared)
+
+
+def _fitted(
+    recordings: Sequence[Recording], foot: str, axis: Axis, settings: FeetSettings, asked: Law | None
+) -> AxisFit | None:
+    shared = settings.offset == "shared"
+    blocks = blocks_of(recordings, foot, axis, drift=not shared)
+    if not blocks:
+        return None
+    linear = fit_linear(blocks, shared_offset=shared)
+    if isinstance(asked, KelvinVoigt):
+        return _of_linear(foot, axis, linear, None, "asked for")
+    trials = [trial_of(recording, foot, axis) for recording in recordings if recording.name in linear.offsets]
+    if asked is not None:
+        fit = fit_law(asked, trials, settings.cutoff, shared_offset=shared)
+        return _of_law(foot, axis, fit, linear, None, "asked for")
+    explained = _explained(linear, blocks)
+    if not LEAST_EXPLAINED < explained < FULLY_EXPLAINED:
+        return _of_linear(foot, axis, linear, None, _untried(explained))
+    laws = [LAWS[name] for name in CANDIDATES if not LAWS[name].remembers or _remembers(trials)]
+    choice = choose_law(trials, laws, settings.cutoff, shared_offset=shared)
+    if choice.fit.law.name == KelvinVoigt.name:
+        return _of_linear(foot, axis, linear, choice, choice.reason)
+    return _of_law(foot, axis, choice.fit, linear, choice, choice.reason)
+
+
+def _explained(fit: LinearFit, blocks: Sequence[Block]) -> float:
+    """Share of the torque's variance, within recordings, that spring and damper explain."""
+    varied = sum(float(np.sum((block.response - block.response.mean()) ** 2)) for block in blocks)
+    missed = sum(float(residual @ residual) for residual in fit.residuals.values())
+    return 1 - missed / varied if varied > 0 else 0.0
+
+
+def _untried(explained: float) -> str:
+    share = f"spring and damper explain {100 * explained:.4g} % of the torque's variance"
+    if explained >= FULLY_EXPLAINED:
+        return f"{share}: no richer law is needed"
+    return f"{share}: something else than the bush makes this torque, and no richer law was tried"
+
+
+def _remembers(trials: Sequence[Trial]) -> bool:
+    """Whether stances last long enough for a law with memory: each begins with an unknown state."""
+    stances = [run for trial in trials for run in trial.motion.runs]
+    seconds = sum(
+        (run.stop - run.start) * trial.motion.period for trial in trials for run in trial.motion.runs
+    )
+    return bool(stances) and seconds / len(stances) > SHORT_STANCE
+
+
+def _of_linear(foot: str, axis: Axis, fit: LinearFit, choice: LawChoice | None, reason: str) -> AxisFit:
+    size = len(fit.values)
+    return AxisFit(
+        foot, axis, KelvinVoigt(), fit.values, np.zeros(0), fit.covariance[:size, :size], fit.freedom[:size],
+        fit.white_std, fit.offsets, {label: fit.offset_std(label) for label in fit.offsets}, {},
+        (float(fit.values[0]), float(fit.values[1])), choice, reason,
+    )  # fmt: skip
+
+
+def _of_law(
+    foot: str, axis: Axis, fit: LawFit, linear: LinearFit, choice: LawChoice | None, reason: str
+) -> AxisFit:
+    return AxisFit(
+        foot, axis, fit.law, fit.values, fit.shape, fit.covariance, fit.freedom, fit.white_std, fit.offsets,
+        fit.offset_std, fit.starts, (float(linear.values[0]), float(linear.values[1])), choice, reason,
+    )  # fmt: skip

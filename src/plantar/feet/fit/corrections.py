@@ -1,0 +1,73 @@
+"""What imperfect angles do to the fit of one axis: noise draws values towards zero, a wrong zero bends a cube."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from plantar.estimation import fit_linear
+from plantar.estimation.errors_in_variables import attenuation, offsets_moved
+from plantar.feet.fit.axis import AxisFit
+from plantar.feet.fit.regression_data import blocks_of
+from plantar.feet.recording import Recording
+from plantar.models import KelvinVoigt
+from plantar.notes import Note
+
+NEGLIGIBLE, TINY = 0.1, 1e-3  # of a deviation and of a value: a smaller bias is not worth a correction
+NOISE_DOUBT = 0.3  # of what noise takes off: it may not be white
+
+
+def about_true_zero(fit: AxisFit, recordings: Sequence[Recording], shared: bool) -> AxisFit:
+    """The fit with an unknown zero of the deflection in each recording, where its law's shape depends on it.
+
+    The memory stays as it is; linear parameters and offsets are found anew.
+    """
+    if not fit.law.zero_matters or shared:
+        return fit
+    size = len(fit.values)
+    found = fit_linear(blocks_of(recordings, fit.foot, fit.axis, fit=fit))
+    wider = np.ones(len(fit.covariance))
+    wider[:size] = np.maximum(1.0, found.std / fit.std[:size])
+    return replace(
+        fit,
+        values=found.values,
+        covariance=fit.covariance * np.outer(wider, wider),
+        offsets=found.offsets,
+        offset_std={label: max(std, found.offset_std(label)) for label, std in fit.offset_std.items()},
+    )
+
+
+def unattenuated(fit: AxisFit, recordings: Sequence[Recording], shared: bool) -> AxisFit:
+    """The fit without the bias of noisy regressors; as it is where that is small."""
+    blocks = blocks_of(recordings, fit.foot, fit.axis, drift=not shared, fit=fit)
+    taken, size = attenuation(blocks, fit.values, shared_offset=shared), len(fit.values)
+    where = f"{fit.foot} {fit.axis}"
+    if taken is None:
+        text = f"{where}: angles and rates are mostly noise; stiffness and damping come out too small by any factor"
+        return replace(fit, notes=(*fit.notes, Note("noisy_regressors", "warning", text)))
+    if np.all(np.abs(taken) < np.maximum(NEGLIGIBLE * fit.std[:size], TINY * np.abs(fit.values))):
+        return fit
+    added = np.zeros(len(fit.covariance))
+    added[:size] = NOISE_DOUBT * taken
+    moved = offsets_moved(blocks, taken, shared_offset=shared)
+    share = ", ".join(
+        f"{name} {100 * part / value:+.2g} %"
+        for name, part, value in zip(fit.law.terms, taken, fit.values, strict=True)
+        if value
+    )
+    text = f"{where}: noise in angles and rates had drawn values towards zero; given back: {share}"
+    values = fit.values + taken
+    linear = isinstance(fit.law, KelvinVoigt)
+    return replace(
+        fit,
+        values=values,
+        covariance=fit.covariance + np.outer(added, added),
+        offsets={label: offset + moved[label] for label, offset in fit.offsets.items()},
+        offset_std={
+            label: float(np.hypot(std, NOISE_DOUBT * moved[label])) for label, std in fit.offset_std.items()
+        },
+        equivalent=(float(values[0]), float(values[1])) if linear else fit.equivalent,
+        notes=(*fit.notes, Note("noisy_regressors", "info", text)),
+    )

@@ -1,0 +1,112 @@
+"""Causes of error that no residual shows: each widens the intervals by how far it would move the fit."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from plantar.conventions import ROTATIONAL_AXES, Array
+from plantar.estimation import Block, effect_of, fit_linear
+from plantar.estimation.intervals import pooled_freedom
+from plantar.feet.fit.axis import AxisFit
+from plantar.feet.fit.regression_data import blocks_of
+from plantar.feet.fit.vertical_stiffness import Height
+from plantar.feet.recording import Recording, lever_effect
+from plantar.feet.sensors.sensor_delay import Latency
+from plantar.signals.filters import differentiate
+
+SUSPECTED = 2.0  # deviations of a term that the law leaves out
+SINGULAR = 1e6  # condition of the fit beyond which nothing moves enough to tell
+KNOWN = 0.2  # of the stiffness: less sure beside such a term, the motions cannot tell one from the other
+
+
+@dataclass(frozen=True)
+class Cause:
+    """One cause: how far a unit of it moves the law's values (k,), its deviation and that one's degrees of freedom."""
+
+    name: str
+    effect: Array
+    std: float
+    freedom: float = np.inf
+
+    @property
+    def share(self) -> Array:
+        """Deviation that it adds to each value, (k,)."""
+        return np.abs(self.effect) * self.std
+
+
+def systematic_causes(
+    fit: AxisFit, recordings: Sequence[Recording], latency: Latency, vertical: Height, shared: bool
+) -> list[Cause]:
+    """The wrenches' delay, the lever of the compressed slide, a hardening that the law leaves out, and for roll the
+    zero of the yaw torque."""
+    foot, column = fit.foot, ROTATIONAL_AXES.index(fit.axis)
+    blocks = blocks_of(recordings, foot, fit.axis, drift=not shared, fit=fit)
+    served = {recording.name: recording for recording in recordings}
+    parts = [(served[block.label], served[block.label].used(foot)) for block in blocks]
+
+    def moved_by(changes: Sequence[Array]) -> Array:
+        return effect_of(blocks, changes, shared_offset=shared)
+
+    rates = [differentiate(one.bushes[foot].torque[:, column], one.period)[used] for one, used in parts]
+    levers = [lever_effect(one.bushes[foot], one.period, one.cutoff)[used, column] for one, used in parts]
+    causes = [
+        Cause("delay", moved_by([np.nan_to_num(rate) for rate in rates]), latency.std, latency.freedom),
+        Cause("lever", moved_by(levers), vertical.compliance_std[foot], vertical.freedom),
+    ]
+    causes += _suspected_hardening(fit, blocks, shared)
+    if fit.axis == "roll":
+        # Roll's torque is cos(pitch)·τ_x - sin(pitch)·τ_z: the zero of τ_z, as large as the others', does not stay a
+        # constant. Each recording has its own.
+        usual = float(np.sqrt(np.mean(np.square(list(fit.offsets.values())))))
+        sines = [np.sin(one.bushes[foot].deflection[used, 0]) for one, used in parts]
+        effects = np.array(
+            [moved_by([s if i == j else 0 * s for j, s in enumerate(sines)]) for i in range(len(sines))]
+        )
+        causes.append(Cause("yaw torque zero", np.sqrt(np.sum(effects**2, axis=0)), usual))
+    return causes
+
+
+def _suspected_hardening(fit: AxisFit, blocks: Sequence[Block], shared: bool) -> list[Cause]:
+    """A cube that the law leaves out and the motions show, though no held-out motion asked for it.
+
+    It hardly matters to the torque, but the spring's slope at zero is not its mean slope. Empty where the motions are
+    too small to tell the two apart.
+    """
+    if any("hardening" in term for term in fit.law.terms):
+        return []
+    size, extended = len(fit.values), []
+    reach = max(float(np.abs(block.regressor[:, 0]).max()) for block in blocks) or 1.0
+    for block in blocks:
+        cube, square = (reach * (block.regressor[:, 0] / reach) ** power for power in (3, 2))
+        kept = [] if block.nuisance is None else [block.nuisance]
+        extended.append(
+            replace(
+                block,
+                regressor=np.column_stack([block.regressor, cube]),
+                nuisance=np.column_stack([*kept, square - square.mean()]),
+                noise=None,
+            )
+        )
+    found = fit_linear(extended, shared_offset=shared)
+    if found.condition_number > SINGULAR:
+        return []
+    hardening, std = float(found.values[size]), float(found.std[size])
+    known = bool(found.std[0] < KNOWN * abs(fit.values[0]))
+    if not (known and abs(hardening) > SUSPECTED * std):
+        return []
+    return [Cause("hardening", (found.values[:size] - fit.values) / hardening, abs(hardening))]
+
+
+def widened(fit: AxisFit, causes: Sequence[Cause]) -> AxisFit:
+    """The fit with the causes inside its covariance."""
+    covariance, freedom = fit.covariance.copy(), fit.freedom
+    for cause in causes:
+        added = np.zeros(len(covariance))
+        added[: len(cause.effect)] = cause.effect * cause.std
+        variances = np.array([np.diag(covariance), added**2])
+        freedom = pooled_freedom(variances, np.vstack([freedom, np.full_like(added, cause.freedom)]))
+        covariance = covariance + np.outer(added, added)
+    return replace(fit, covariance=covariance, freedom=freedom)

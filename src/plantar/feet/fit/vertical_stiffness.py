@@ -1,0 +1,192 @@
+"""The bush's vertical stiffness, which the paper leaves out: heights of two standing soles agree (double support).
+
+With the bushes taken as stiff in z, the kinematics put the right sole higher than the left one by
+
+    h = z_L - z_R = F_L/K_L - F_R/K_R + const = s·(1/K_L + 1/K_R) + m·(1/K_L - 1/K_R) + const,
+
+s = (F_L - F_R)/2 and m = (F_L + F_R)/2. Moving weight from foot to foot moves s and shows the sum of the compliances;
+their difference shows only where the total m changes as well, and by more than the force sensors' noise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from plantar.contact.deflection import closure
+from plantar.contact.phases import DOUBLE, SUPPORTS
+from plantar.conventions import STIFFNESS_UNIT, Array
+from plantar.estimation import Block, fit_linear, interval95, relative_std_percent
+from plantar.feet.recording import Recording
+from plantar.notes import Note
+from plantar.results.feet import Parameter, Verdict
+from plantar.robot.model import RobotModel
+from plantar.signals.filters import low_pass
+
+FEWEST_SAMPLES = 100  # in double support, of one recording
+RELIABLE = 10.0  # times its noise's variance: that of a load from which a compliance is read
+ALIKE = 0.1  # of the compliances' sum: usual deviation of their difference between feet of one robot
+UNKNOWN_COMPLIANCE = 1e-5  # m/N: of 100 kN/m, the order of soft rubber, where nothing is known
+USABLE_WIDTH, WEAK_WIDTH = 0.15, 0.5  # half width of the interval over the value
+
+ADVICE = (
+    "stand on both feet and shift the weight slowly from foot to foot, nearly all of it, for 30 s or more"
+)
+ADVICE_APART = (
+    "the total load must change to tell the feet apart: stand on both feet while somebody presses the robot down or "
+    "lifts it by 50 N or more, slowly and several times"
+)
+
+
+@dataclass(frozen=True)
+class Compliances:
+    """Sum and difference (left - right) of two feet's vertical compliances [m/N], with their covariance (2, 2)."""
+
+    total: float
+    difference: float
+    covariance: Array
+    freedom: float
+    white_std: Array
+
+    @property
+    def clear(self) -> bool:
+        """Whether the sum is positive beyond doubt."""
+        return interval95(self.total, float(np.sqrt(self.covariance[0, 0])), self.freedom)[0] > 0
+
+    @property
+    def trust(self) -> float:
+        """How far the data tell the feet apart, 0 to 1: the rest is that feet of one robot are ALIKE."""
+        prior = (ALIKE * self.total) ** 2
+        return float(prior / (prior + self.covariance[1, 1]))
+
+    @property
+    def separable(self) -> bool:
+        """Whether the data, more than their likeness, tell the feet apart."""
+        return self.trust > 0.5
+
+    def of(self, side: float) -> tuple[float, float]:
+        """Compliance and its std of the left (+1) or right (-1) foot; half of the sum where they do not separate."""
+        gain = self.trust
+        weights = np.array([0.5, 0.5 * side * gain])
+        unseen = 0.25 * (1 - gain) ** 2 * (ALIKE * self.total) ** 2
+        return float(weights @ [self.total, self.difference]), float(
+            np.sqrt(weights @ self.covariance @ weights + unseen)
+        )
+
+
+@dataclass(frozen=True)
+class Height:
+    """Rows of axis z, and each foot's compliance [m/N] with its standard deviation, for eq. 6's lever."""
+
+    parameters: tuple[Parameter, ...]
+    notes: tuple[Note, ...]
+    compliance: dict[str, float]
+    compliance_std: dict[str, float]
+    freedom: float
+
+
+def fit_height(recordings: Sequence[Recording], robot: RobotModel, cutoff: float) -> Height:
+    """Vertical stiffness of two feet; where no log shows it, compliance 0 with the deviation of soft rubber."""
+    feet = tuple(robot.feet)
+    blocks = []
+    if len(feet) == 2:
+        blocks = [block for recording in recordings if (block := _block(recording, feet, cutoff)) is not None]
+    found = _compliances(blocks) if blocks else None
+    if found is None or not found.clear:
+        text = "z: no log shows the vertical compliance; K of pitch and roll may come out too large by load²·compliance"
+        unknown = tuple(_unknown_row(foot) for foot in feet) if len(feet) == 2 else ()
+        nothing, soft = dict.fromkeys(feet, 0.0), dict.fromkeys(feet, UNKNOWN_COMPLIANCE)
+        return Height(unknown, (Note("z_unknown", "info", text),), nothing, soft, np.inf)
+    notes = []
+    if not found.separable:
+        text = "z: only the sum of both feet's compliances shows (the total load hardly changes); both taken as equal"
+        notes.append(Note("z_sum_only", "info", text))
+    own = {foot: found.of(side) for foot, side in zip(feet, (1.0, -1.0), strict=True)}
+    return Height(
+        tuple(_row(foot, *own[foot], found) for foot in feet),
+        tuple(notes),
+        {foot: value for foot, (value, _) in own.items()},
+        {foot: std for foot, (_, std) in own.items()},
+        found.freedom,
+    )
+
+
+def _compliances(blocks: Sequence[Block]) -> Compliances:
+    """Sum and difference; the sum alone where the total load changes in no recording."""
+    if any(block.regressor[:, 1].any() for block in blocks):
+        fit = fit_linear(blocks)
+        return Compliances(
+            float(fit.values[0]),
+            float(fit.values[1]),
+            fit.covariance[:2, :2],
+            float(fit.freedom[0]),
+            fit.white_std[:2],
+        )
+    fit = fit_linear([replace(block, regressor=block.regressor[:, :1]) for block in blocks])
+    total = float(fit.values[0])
+    unseen = np.diag([float(fit.covariance[0, 0]), total**2])
+    return Compliances(total, 0.0, unseen, float(fit.freedom[0]), np.append(fit.white_std[:1], abs(total)))
+
+
+def _block(recording: Recording, feet: tuple[str, ...], cutoff: float) -> Block | None:
+    """h over [s, m, t] in double support; t is the attitude's drift over the recording, a nuisance.
+
+    None where s hardly moves, m is 0 where it hardly does: a regressor of noise gives no compliance but a wrong one.
+    """
+    left, right = (recording.bushes[foot] for foot in feet)
+    both = recording.used(feet[0]) & recording.used(feet[1])
+    both &= recording.contacts[feet[0]].support == SUPPORTS.index(DOUBLE)
+    height = closure(left, right).position[:, 2]
+    # Along the slide for the law, and once more along the vertical for what the compression does to the height.
+    loads = np.column_stack(
+        [bush.wrench[:, 2] * np.cos(bush.deflection).prod(axis=1) for bush in (left, right)]
+    )
+    values = low_pass(np.column_stack([height, loads]), recording.period, cutoff)
+    both &= np.isfinite(values).all(axis=1) & np.isfinite(loads).all(axis=1)
+    if both.sum() < FEWEST_SAMPLES:
+        return None
+    height, left_load, right_load = values[both].T
+    regressor = np.column_stack([(left_load - right_load) / 2, (left_load + right_load) / 2])
+    drift = np.column_stack([np.ones(len(height)), recording.time[both] - recording.time[both].mean()])
+    joint = np.column_stack([regressor, height])
+    clear = joint - drift @ np.linalg.lstsq(drift, joint, rcond=None)[0]
+    beyond = (loads[both] - values[both][:, 1:]).sum(
+        axis=1
+    ) / 2  # above the cut-off: noise, as white below it
+    noise = np.var(beyond) * cutoff / max(0.5 / recording.period - cutoff, cutoff)
+    moves = np.var(clear[:, :2], axis=0) > RELIABLE * noise
+    if not moves[0]:
+        return None
+    clear[:, 1] *= moves[1]
+    return Block(recording.name, clear[:, :2], clear[:, 2], recording.period)
+
+
+def _row(foot: str, compliance: float, std: float, found: Compliances) -> Parameter:
+    """One foot's stiffness: from sum and difference where they separate, else with both feet alike."""
+    low, high = interval95(compliance, std, found.freedom)
+    if low <= 0 or compliance <= 0:
+        return _unknown_row(foot)
+    value, interval = 1 / compliance, (1 / high, 1 / low)
+    width = (high - low) / 2 / compliance
+    verdict: Verdict = (
+        "usable" if width < USABLE_WIDTH else "weak" if width < WEAK_WIDTH else "unidentifiable"
+    )
+    reason = f"95 % interval of the compliance ±{100 * width:.2g} %"
+    advice = ADVICE
+    if not found.separable:
+        advice = ADVICE_APART
+        verdict = "weak" if verdict == "usable" else verdict
+        reason += "; only the sum of both compliances shows, both feet taken as equal"
+    white = relative_std_percent(found.total, float(found.white_std[0]))
+    return Parameter(
+        foot, "z", "stiffness", STIFFNESS_UNIT["z"], value, std * value**2, interval, white, verdict, reason,
+        None if verdict == "usable" else advice,
+    )  # fmt: skip
+
+
+def _unknown_row(foot: str) -> Parameter:
+    reason = "the heights of the soles do not follow the load clearly"
+    unit = STIFFNESS_UNIT["z"]
+    return Parameter(foot, "z", "stiffness", unit, None, None, None, None, "unidentifiable", reason, ADVICE)

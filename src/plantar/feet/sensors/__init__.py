@@ -1,0 +1,1 @@
+"""Faults of the sensors that shift an estimate: tilt error, delay."""

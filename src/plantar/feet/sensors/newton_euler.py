@@ -1,0 +1,130 @@
+"""Newton's law along one log: the ground's wrench as measured, and as IMU, encoders and URDF predict it (eq. 1)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from plantar.contact.phases import shaken
+from plantar.conventions import FORCE, GRAVITY, Array, Mask
+from plantar.dynamics import Contact, Equation, model_parameters
+from plantar.dynamics.inertial_motion import inertial_motion
+from plantar.estimation.delay import LEAST_CLOSED, Pair, closes, unexplained
+from plantar.estimation.sensor_delays import Balance
+from plantar.logs.motion_log import MotionLog
+from plantar.robot.model import RobotModel
+from plantar.signals.filters import differentiate, low_pass
+from plantar.signals.orientation import attitude
+from plantar.signals.segments import runs
+
+CUTOFF = 8.0  # Hz: above it differentiated encoders are noise
+KEPT_RATE = 67.0  # Hz of the samples that are kept: the cutoff is far below
+SLOW = 0.05  # Hz: below it both sides differ by postures and drifting zeros
+BASE_ROWS = slice(0, 6)
+WINDOW = 2.0  # s, in which the forces must follow from the prediction
+SHORTEST = 8.0  # s that a log must offer without a push or a blow
+EDGE = 0.3  # s at both ends of a run, where the filter is unsure
+
+
+@dataclass(frozen=True)
+class Closure:
+    """Both sides of Newton's law in the root link's frame over the longest calm stretch of a log.
+
+    `pair`: all feet together; `measured` and `rates` (feet, n, 6): each foot's wrench, and how it changes with the
+    moment at which its sensor is read; `by_encoders` (n, 6): how the prediction changes with the moment at which the
+    encoders are.
+    """
+
+    pair: Pair
+    measured: Array
+    rates: Array
+    by_encoders: Array
+
+    @property
+    def balance(self) -> Balance:
+        """Feet and encoders apart: delays of each foot, then of the encoders, all against the IMU."""
+        by_delay = np.concatenate([self.rates, -self.by_encoders[None]])
+        return Balance(self.pair.predicted, self.measured, by_delay, self.pair.period)
+
+
+def closure_of(robot: RobotModel, log: MotionLog) -> Closure | None:
+    """Both sides along an evenly sampled log; None where it lacks what that takes, or does not close."""
+    imu = robot.imu
+    if imu is None or any(foot.contact == "always" for foot in robot.feet.values()):
+        return None
+    gyroscope = [f"imu.{imu.name}.angular_velocity.{axis}" for axis in "xyz"]
+    accelerometer = [f"imu.{imu.name}.linear_acceleration.{axis}" for axis in "xyz"]
+    if not log.has(*accelerometer) or not (log.has(*gyroscope) or log.orientation(imu.name) is not None):
+        return None
+    if not log.has(*gyroscope):
+        log = log.with_columns(dict(zip(gyroscope, attitude(log, imu, [])[1].T, strict=True)))
+    motion = inertial_motion(robot, log, CUTOFF)
+    wrenches = np.hstack([foot.wrench.sign * log.wrench(foot.wrench.name) for foot in robot.feet.values()])
+    whole = motion.finite & np.isfinite(wrenches).all(axis=1)
+    edge = round(EDGE / log.period)
+    longest = _longest(whole & ~_struck(robot, wrenches, log.period))
+    if (longest.stop - longest.start) * log.period < SHORTEST + 2 * EDGE:
+        longest = _longest(whole)
+    if longest.stop - longest.start < 4 * edge + 400:
+        return None
+    equation, parameters = Equation(robot.floating_model), model_parameters(robot.floating_model)
+    contacts = [Contact(*robot.frame(foot.wrench.placement)) for foot in robot.feet.values()]
+    stride = max(1, round(1 / (KEPT_RATE * log.period)))
+    period, inner = stride * log.period, slice(edge, longest.stop - longest.start - edge, stride)
+    kept = slice(longest.start + edge, longest.stop - edge, stride)
+    part = motion.select(kept)
+
+    def carried(readings: Array) -> list[Array]:
+        split = [np.ascontiguousarray(readings[:, 6 * i : 6 * i + 6]) for i in range(len(contacts))]
+        return [
+            -equation.inverse_dynamics(part, None, [contact], [own])[BASE_ROWS].T
+            for contact, own in zip(contacts, split, strict=True)
+        ]
+
+    def predicted_at(late: float) -> Array:
+        moved = inertial_motion(robot, log, CUTOFF, late).select(kept) if late else part
+        return equation.inverse_dynamics(moved, parameters)[BASE_ROWS].T
+
+    readings = low_pass(wrenches[longest], log.period, CUTOFF)
+    changes = differentiate(readings, log.period)[inner]
+
+    def moving(sides: Sequence[Array]) -> Array:
+        rows = np.hstack(sides)
+        return (rows - low_pass(rows, period, SLOW)).reshape(len(rows), -1, 6).transpose(1, 0, 2)
+
+    sides = moving([*carried(readings[inner]), *carried(changes), predicted_at(0.0)])
+    measured, rates, predicted = sides[: len(contacts)], sides[len(contacts) : -1], sides[-1]
+    calm = _longest_closed(measured.sum(axis=0), rates.sum(axis=0), predicted, period)
+    measured, rates, predicted = measured[:, calm], rates[:, calm], predicted[calm]
+    pair = Pair(log.name, measured.sum(axis=0), rates.sum(axis=0), predicted, period)
+    if len(predicted) * period < SHORTEST or not closes(pair):
+        return None
+    step = log.period
+    by_encoders = moving([(predicted_at(step) - predicted_at(-step)) / (2 * step)])[0]
+    return Closure(pair, measured, rates, by_encoders[calm])
+
+
+def _struck(robot: RobotModel, wrenches: Array, period: float) -> Mask:
+    """Samples in which a sole slaps the floor: faster than the samples resolve, so that nothing follows from them."""
+    weight, feet = robot.mass * GRAVITY, range(len(robot.feet))
+    shocks = [shaken(wrenches[:, 6 * place : 6 * place + 3], weight, period) for place in feet]
+    return np.asarray(np.any(shocks, axis=0))
+
+
+def _longest(valid: Mask) -> slice:
+    return max(runs(valid), key=lambda run: run.stop - run.start, default=slice(0, 0))
+
+
+def _longest_closed(measured: Array, rate: Array, predicted: Array, period: float) -> slice:
+    """The longest stretch in which nobody pushes and nothing strikes: there the forces follow from the prediction."""
+    width = round(WINDOW / period)
+    measured, rate, predicted = measured[:, FORCE], rate[:, FORCE], predicted[:, FORCE]
+    usual = float(np.mean(np.sum(measured**2, axis=1)))
+    closed = np.zeros(len(measured), dtype=bool)
+    for window in (slice(i * width, (i + 1) * width) for i in range(len(measured) // width)):
+        power = float(np.mean(np.sum(measured[window] ** 2, axis=1)))
+        missing = unexplained(measured[window], rate[window], predicted[window]) / width
+        closed[window] = missing < (1 - LEAST_CLOSED) * max(power, usual)
+    return _longest(closed)

@@ -1,0 +1,196 @@
+"""An IMU's attitude that follows its accelerometer, put right by a sole that stands.
+
+A causal filter corrects the integrated gyroscope towards the measured proper acceleration, at k [1/s]. A robot that
+sways accelerates, so that the believed vertical leans by k·v/g, v the velocity of the IMU: in phase with the rate of
+the bush, it goes into the damping as K·h·k/g, h the IMU's height: two thirds of C at k = 0.2. A standing sole tells the
+truth: the IMU's acceleration is the opposite of the sole's as seen from the IMU. An attitude wrong by a small angle δ
+leaves, with f the proper acceleration, p the sole's place in the IMU's frame and R the believed attitude,
+
+    horizontal (R f + d²(R p)/dt²) = g δ - h d²δ/dt², which is (g + h ω²) δ at the frequency ω.
+
+What does not change with time stays: the fit has an offset.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import fft
+
+from plantar.contact.deflection import BushState
+from plantar.contact.phases import FootContact
+from plantar.conventions import GRAVITY, Array, rotation_from_quaternion
+from plantar.logs.motion_log import MotionLog
+from plantar.notes import Note
+from plantar.robot.model import Imu
+from plantar.signals.filters import differentiate, low_pass
+from plantar.signals.segments import runs
+
+BAND = 2.0  # Hz: a filter's pull shows below it
+LEAST_PULL = 0.01  # 1/s: of less no damping suffers
+EXPLAINED = 0.3  # of what attitude and gyroscope disagree about, by the pull, for it to be believed
+CORRECTED = 1.5  # Hz, up to which the attitude is put right
+DERIVED = 5.0  # Hz: filter of what is differentiated twice
+SHORTEST_STANCE = 5.0  # s on the same feet
+PADDING = 2.0  # s
+
+
+@dataclass(frozen=True)
+class Pull:
+    """What attitude and gyroscope disagree about, beside what a pull of 1 1/s would make: integrals that add up.
+
+    `error` and `pulled`: of both squared [rad²/s]; `product`: of one times the other. A filter belongs to the IMU, so
+    that the sum over recordings tells what a quiet one alone cannot.
+    """
+
+    product: float = 0.0
+    pulled: float = 0.0
+    error: float = 0.0
+
+    def __add__(self, other: Pull) -> Pull:
+        return Pull(self.product + other.product, self.pulled + other.pulled, self.error + other.error)
+
+    @property
+    def rate(self) -> float:
+        """How fast the attitude follows the accelerometer, k [1/s]."""
+        return self.product / self.pulled if self.pulled > 0 else 0.0
+
+    @property
+    def believed(self) -> bool:
+        """Whether it explains enough of the disagreement, and matters.
+
+        A gyroscope that is late by τ beside the attitude counts as a pull of about g τ/h: as good a reason to put the
+        attitude right.
+        """
+        return self.rate > LEAST_PULL and self.rate * self.product > EXPLAINED * self.error
+
+
+NO_PULL = Pull()
+
+
+def log_pull(log: MotionLog, imu: Imu) -> Pull:
+    """The pull that one log shows; of zeros where it has not all of attitude, gyroscope and accelerometer."""
+    columns = [
+        f"imu.{imu.name}.{kind}.{axis}"
+        for kind in ("angular_velocity", "linear_acceleration")
+        for axis in "xyz"
+    ]
+    orientation = log.orientation(imu.name)
+    if orientation is None or not log.has(*columns):
+        return NO_PULL
+    rates, acceleration = log.angular_velocity(imu.name), log.linear_acceleration(imu.name)
+    return attitude_pull(unit_quaternions(orientation), rates, acceleration, log.period)
+
+
+def right_attitude(
+    log: MotionLog,
+    imu: Imu,
+    orientation: Array,
+    pull: Pull,
+    bushes: Mapping[str, BushState],
+    contacts: Mapping[str, FootContact],
+) -> tuple[Array, Note] | None:
+    """The log's orientation (N, 4) without what its filter took from the accelerometer, and a note that says so.
+
+    None where neither this log nor all together (`pull`) show that it took any, or this log has not the sensors.
+    """
+    own = log_pull(log, imu)
+    found = own if own.believed else pull
+    if not found.believed or own.pulled == 0:
+        return None
+    text = (
+        f"{log.name}: the IMU's attitude follows its accelerometer (as at {found.rate:.2g} 1/s), so that motion tilts "
+        "it; put right by the soles that stand"
+    )
+    unit = unit_quaternions(orientation)
+    right = put_right(unit, log.linear_acceleration(imu.name), bushes, contacts, log.period)
+    return right, Note("attitude_pulled", "info", text)
+
+
+def unit_quaternions(orientation: Array) -> Array:
+    """Quaternions (N, 4) of length 1; NaN for those of none."""
+    length = np.linalg.norm(orientation, axis=1, keepdims=True)
+    return np.asarray(orientation / np.where(length > 0, length, np.nan))
+
+
+def attitude_pull(orientation: Array, rates: Array, acceleration: Array, period: float) -> Pull:
+    """How an attitude follows its accelerometer; of zeros where too little is known.
+
+    orientation: unit quaternions w x y z, IMU to world, (N, 4); rates, proper acceleration: the IMU's, (N, 3).
+    """
+    up = rotation_from_quaternion(orientation)[:, 2, :]
+    believed = low_pass(up, period, BAND)
+    # World's up in the body: d(up)/dt = -(ω + k (a × up)) × up, a the direction of the acceleration.
+    size = np.linalg.norm(acceleration, axis=1, keepdims=True)
+    direction = acceleration / np.where(size > 0, size, np.nan)
+    turned = low_pass(np.cross(rates, up), period, BAND)
+    pulled = low_pass(-np.cross(np.cross(direction, up), up), period, BAND)
+    error = differentiate(believed, period) + turned
+    known = np.isfinite(np.column_stack([error, pulled])).all(axis=1)
+    if known.sum() * period < SHORTEST_STANCE:
+        return NO_PULL
+    error, pulled = (part[known] - part[known].mean(axis=0) for part in (error, pulled))
+    return Pull(
+        *(period * float(np.sum(a * b)) for a, b in ((error, pulled), (pulled, pulled), (error, error)))
+    )
+
+
+def put_right(
+    orientation: Array,
+    acceleration: Array,
+    bushes: Mapping[str, BushState],
+    contacts: Mapping[str, FootContact],
+    period: float,
+) -> Array:
+    """The orientation (N, 4) as the soles that stand have it; unchanged where none stands for SHORTEST_STANCE.
+
+    acceleration: proper, in the IMU's frame, (N, 3); bushes: computed with this orientation.
+    """
+    from scipy.spatial.transform import Rotation  # costs start-up
+
+    push = np.einsum("nij,nj->ni", rotation_from_quaternion(orientation)[:, :2], acceleration)
+    standing = np.array([contacts[foot].standing for foot in bushes])
+    pattern = (1 << np.arange(len(standing))) @ standing
+    finite = np.isfinite(push).all(axis=1)
+    for bush in bushes.values():
+        finite &= np.isfinite(bush.sole_position).all(axis=1)
+    lean = np.full((len(push), 2), np.nan)
+    for which in np.unique(pattern[pattern > 0]):
+        feet = [
+            bush
+            for bush, stands in zip(bushes.values(), standing, strict=True)
+            if stands[pattern == which].all()
+        ]
+        for run in runs(np.asarray(finite & (pattern == which))):
+            if (run.stop - run.start) * period >= SHORTEST_STANCE:
+                place = np.mean([bush.sole_position[run] for bush in feet], axis=0)
+                lean[run] = _lean(push[run], place, period)
+    known = np.isfinite(lean).all(axis=1)
+    if not known.any():
+        return orientation
+    # The accelerometer's zero is no lean; it is one for the whole recording.
+    lean = np.where(known[:, None], lean - np.median(lean[known], axis=0), 0.0)
+    back = Rotation.from_rotvec(np.column_stack([lean[:, 1], -lean[:, 0], np.zeros(len(lean))]))
+    right = orientation.copy()
+    right[finite] = (back[finite] * Rotation.from_quat(orientation[finite], scalar_first=True)).as_quat(
+        scalar_first=True
+    )
+    return right
+
+
+def _lean(push: Array, place: Array, period: float) -> Array:
+    """How far the believed vertical leans along x and y, (n, 2) [rad], over one stance.
+
+    push: horizontal acceleration of the IMU in the believed world, (n, 2); place: of the sole from the IMU, (n, 3).
+    """
+    smooth = low_pass(np.column_stack([push, place[:, :2]]), period, DERIVED)
+    left = smooth[:, :2] + differentiate(differentiate(smooth[:, 2:], period), period)
+    padding = min(round(PADDING / period), len(left) - 1)
+    mirrored = np.vstack([left[padding:0:-1], left, left[-2 : -padding - 2 : -1]])
+    frequency = fft.rfftfreq(len(mirrored), period)
+    height = -float(np.median(place[:, 2]))
+    gain = 1 / (GRAVITY + height * (2 * np.pi * frequency) ** 2) / (1 + (frequency / CORRECTED) ** 8)
+    lean = fft.irfft(fft.rfft(mirrored, axis=0) * gain[:, None], len(mirrored), axis=0)
+    return np.asarray(lean[padding : padding + len(left)])

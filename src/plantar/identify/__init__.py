@@ -1,1 +1,0 @@
-"""The identifications, each a short story in the paper's order."""

@@ -1,0 +1,1 @@
+"""Logs in and out: one table of named columns, whatever the format."""

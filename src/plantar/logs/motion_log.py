@@ -1,0 +1,171 @@
+"""One recording in memory: immutable, labelled, on one time base."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from plantar.conventions import Array, Mask
+from plantar.errors import LogError, located
+from plantar.notes import Note
+
+if TYPE_CHECKING:
+    from plantar.robot.model import RobotModel
+
+COLUMN = re.compile(
+    r"joint\..+\.(position|velocity|acceleration|effort)"
+    r"|imu\..+\.(orientation\.[wxyz]|(angular_velocity|linear_acceleration)\.[xyz])"
+    r"|wrench\..+\.(force|torque)\.[xyz]"
+)
+
+LARGEST = 1e12  # in any unit: what no sensor reads
+
+
+@dataclass(frozen=True)
+class MotionLog:
+    """A recording: `time` (N,) [s], increasing, and `columns`, each (N,), named as in `docs/log_columns.md`.
+
+    Arrays are read-only float64; NaN marks a value that was not recorded, and stands for infinite ones. Raises
+    LogError on construction when lengths differ or time does not increase.
+    """
+
+    name: str
+    time: Array
+    columns: Mapping[str, Array] = field(repr=False)
+    path: Path | None = None
+    sha256: str | None = None
+    notes: tuple[Note, ...] = ()
+
+    def __post_init__(self) -> None:
+        time = _frozen(self.time)
+        columns = {name: _frozen(values) for name, values in self.columns.items()}
+        absurd = [name for name, values in columns.items() if (np.abs(values) > LARGEST).any()]
+        for name in absurd:
+            columns[name] = _frozen(np.where(np.abs(columns[name]) > LARGEST, np.nan, columns[name]))
+        if absurd:
+            text = f"{self.name}: infinite or absurd values count as not recorded: {_listing(absurd)}"
+            object.__setattr__(self, "notes", (*self.notes, Note("absurd_values", "warning", text)))
+        for name, values in columns.items():
+            if values.shape != time.shape:
+                message = f"has {values.size} values where time has {time.size}"
+                raise LogError(located(message, path=self.source, column=name))
+        if time.size < 2:
+            raise LogError(located("holds fewer than two samples", path=self.source, column="time"))
+        bad = np.flatnonzero(~(np.diff(time) > 0))
+        if bad.size:
+            at, value = time[bad[0]], time[bad[0] + 1]
+            message = "does not increase"
+            raise LogError(
+                located(message, path=self.source, column="time", time=float(at), value=float(value))
+            )
+        object.__setattr__(self, "time", time)
+        object.__setattr__(self, "columns", MappingProxyType(columns))
+
+    @property
+    def source(self) -> str:
+        """What to call this log in a message: its file where it has one."""
+        return str(self.path or self.name)
+
+    def __len__(self) -> int:
+        return int(self.time.size)
+
+    @property
+    def duration(self) -> float:
+        """Time from the first sample to the last [s]."""
+        return float(self.time[-1] - self.time[0])
+
+    @property
+    def period(self) -> float:
+        """The usual time between samples [s]: the median, which gaps do not move."""
+        return float(np.median(np.diff(self.time)))
+
+    def has(self, *names: str) -> bool:
+        return all(name in self.columns for name in names)
+
+    def column(self, name: str) -> Array:
+        """One column, (N,); LogError names it when it is missing, and the nearest that is there."""
+        try:
+            return self.columns[name]
+        except KeyError:
+            near = difflib.get_close_matches(name, self.columns, n=2)
+            valid = f"the log has {', '.join(near)}" if near else None
+            raise LogError(located("is missing", path=self.source, column=name, valid=valid)) from None
+
+    def stack(self, names: Iterable[str]) -> Array:
+        """Several columns side by side, (N, k)."""
+        return np.column_stack([self.column(name) for name in names])
+
+    def wrench(self, sensor: str) -> Array:
+        """Force then torque as recorded, in the sensor's frame, (N, 6) [N, N·m]."""
+        parts = [f"wrench.{sensor}.{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz"]
+        return self.stack(parts)
+
+    def orientation(self, imu: str) -> Array | None:
+        """Quaternion w x y z, body to world, (N, 4); None where the log has no such columns."""
+        names = [f"imu.{imu}.orientation.{axis}" for axis in "wxyz"]
+        return self.stack(names) if any(self.has(name) for name in names) else None
+
+    def angular_velocity(self, imu: str) -> Array:
+        """Gyroscope in the IMU's frame, (N, 3) [rad/s]."""
+        return self.stack(f"imu.{imu}.angular_velocity.{axis}" for axis in "xyz")
+
+    def linear_acceleration(self, imu: str) -> Array:
+        """Proper acceleration in the IMU's frame, (N, 3) [m/s²]: +9.81 along up at rest."""
+        return self.stack(f"imu.{imu}.linear_acceleration.{axis}" for axis in "xyz")
+
+    def joint(self, joint: str, quantity: str) -> Array | None:
+        """A joint's position, velocity, acceleration or effort, (N,), or None where not recorded."""
+        return self.columns.get(f"joint.{joint}.{quantity}")
+
+    def positions(self, robot: RobotModel) -> Array:
+        """Joint positions in the robot's order, (N, n_joints); a joint that is not recorded stands at 0."""
+        zero = np.zeros(len(self))
+        columns = [self.columns.get(f"joint.{name}.position", zero) for name in robot.joint_names]
+        return np.column_stack(columns) if columns else np.zeros((len(self), 0))
+
+    def joint_notes(self, robot: RobotModel) -> tuple[Note, ...]:
+        """What the log's joints and the URDF's do not have in common."""
+        recorded = {
+            name.split(".", 1)[1].rsplit(".", 1)[0] for name in self.columns if name.startswith("joint.")
+        }
+        with_position = {name for name in recorded if self.has(f"joint.{name}.position")}
+        missing = [name for name in robot.joint_names if name not in with_position]
+        unknown = sorted(recorded - set(robot.joint_names))
+        return tuple(
+            note
+            for names, note in (
+                (missing, Note("joint_missing", "info", f"{self.name}: not recorded, held at the neutral position: "
+                               + _listing(missing))),
+                (unknown, Note("joint_unknown", "info", f"{self.name}: recorded, but not in the URDF, not used: "
+                               + _listing(unknown))),
+            )
+            if names
+        )  # fmt: skip
+
+    def select(self, rows: slice | Mask) -> MotionLog:
+        """The same recording with only some of its rows."""
+        columns = {name: values[rows] for name, values in self.columns.items()}
+        return replace(self, time=self.time[rows], columns=columns)
+
+    def with_columns(self, columns: Mapping[str, Array], *notes: Note) -> MotionLog:
+        """The same recording with columns added or replaced, and notes added."""
+        return replace(self, columns={**self.columns, **columns}, notes=self.notes + notes)
+
+
+def _frozen(values: Array) -> Array:
+    array = np.ascontiguousarray(values, dtype=np.float64)
+    if array is values and array.flags.writeable:
+        array = array.copy()
+    array.setflags(write=False)
+    return array
+
+
+def _listing(names: list[str], most: int = 8) -> str:
+    return ", ".join(names[:most]) + (f" and {len(names) - most} more" if len(names) > most else "")

@@ -1,0 +1,82 @@
+"""Log files in: every format becomes the same `MotionLog`. One file a format."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from plantar.errors import LogError, located
+
+if TYPE_CHECKING:
+    from plantar.logs.motion_log import MotionLog
+    from plantar.robot.model import RobotModel
+
+Reader = Callable[[Path, "RobotModel | None"], "MotionLog"]
+
+# Ending of the file's name -> module of this package with `read(path, robot) -> MotionLog`.
+FORMATS: dict[str, str] = {
+    ".csv": "table",
+    ".csv.gz": "table",
+    ".parquet": "table",
+    ".mcap": "ros.bag",
+    ".db3": "ros.bag",
+    ".bag": "ros.bag",
+    ".bag.active": "ros.bag",
+    ".bin": "mc_rtc",
+    ".mat": "robot_logger",
+    ".npz": "column_file",
+    ".dat": "column_file",
+    ".txt": "column_file",
+    ".log": "column_file",
+}
+
+
+def open_log(path: str | os.PathLike[str], robot: RobotModel | None = None) -> MotionLog:
+    """Read one recording, whatever its format; `robot` gives topics or column maps where a format needs them.
+
+    Raises LogError: the file is missing, of an unknown format, or broken.
+    """
+    path = Path(path)
+    if not path.exists():
+        raise LogError(located("does not exist", path=path))
+    module = _module(path, robot)
+    reader: Reader = import_module(f"plantar.logs.readers.{module}").read
+    with np.errstate(over="ignore", invalid="ignore"):  # a damaged file may hold any number
+        return reader(path, robot)
+
+
+def _module(path: Path, robot: RobotModel | None) -> str:
+    """The reader for a path: by what a directory holds, by the file's name, by its ending."""
+    if path.is_dir():
+        bag = any(part.suffix.lower() in (".mcap", ".db3", ".bag") for part in path.iterdir())
+        return "ros.bag" if bag else "yarp"
+    if path.name == "data.log":
+        return "yarp"
+    ending = next((e for e in sorted(FORMATS, key=len, reverse=True) if path.name.lower().endswith(e)), None)
+    mapped = robot is not None and any(key not in ("joints", "ports") for key in robot.columns)
+    if ending is not None:
+        return "column_file" if FORMATS[ending] == "table" and mapped else FORMATS[ending]
+    from plantar.logs.readers.hrpsys import is_port_file
+
+    named = (
+        robot is not None
+        and isinstance(entries := robot.columns.get("ports"), Mapping)
+        and path.suffix[1:] in entries
+    )
+    if named or is_port_file(path):
+        return "hrpsys"
+    raise LogError(located("has an unknown ending", path=path, valid=", ".join(FORMATS)))
+
+
+def motion_name(path: Path) -> str:
+    """The file's name without its ending: what a result calls the motion."""
+    name = path.name
+    for ending in sorted(FORMATS, key=len, reverse=True):
+        if name.lower().endswith(ending) and len(name) > len(ending):
+            return name[: -len(ending)]
+    return path.stem

@@ -1,0 +1,127 @@
+"""MATLAB v7.3 files of the iCub and ergoCub robot logger: HDF5 with one group a signal.
+
+`/robot_logger_device/joints_state/{positions,velocities,torques}` with `data`, `timestamps`,
+`elements_names`; `FTs/<sensor>`, `accelerometers/<imu>`, `gyros/<imu>`, `orientations/<imu>` (roll, pitch,
+yaw) (bipedal-locomotion-framework, YarpRobotLoggerDevice). Units are SI there; where a log's are not, name
+the signal in `columns.ports` with its unit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from plantar.conventions import Array
+from plantar.errors import LogError, MissingExtra, located
+from plantar.files import sha256
+from plantar.logs.motion_log import MotionLog
+from plantar.logs.readers import motion_name
+from plantar.logs.readers.column_map import Port, ports
+from plantar.logs.readers.ports import log_of_ports
+from plantar.logs.readers.streams import origin
+from plantar.notes import Note
+
+if TYPE_CHECKING:
+    from plantar.robot.model import RobotModel
+
+DATA_LIMIT = 4 * 2**30  # bytes of one signal
+NAME_LIMIT = 1000  # characters
+SIGNALS = {
+    "joints_state/positions": "joints.position",
+    "joints_state/velocities": "joints.velocity",
+    "joints_state/accelerations": "joints.acceleration",
+    "joints_state/torques": "joints.effort",
+}
+GROUPS = {
+    "FTs": "wrench.{name}",
+    "gyros": "imu.{name}.angular_velocity",
+    "accelerometers": "imu.{name}.linear_acceleration",
+    "orientations": "imu.{name}.orientation.rpy",
+}
+
+
+def read(path: Path, robot: RobotModel | None = None) -> MotionLog:
+    """Read a logger's file. LogError: not HDF5, or no signal of use. MissingExtra: no h5py."""
+    try:
+        import h5py
+    except ImportError as error:
+        raise MissingExtra("h5py", "logs", "reading .mat logs") from error
+    notes: list[Note] = []
+    try:
+        with h5py.File(path, "r") as file:
+            root = next(
+                (g for name, g in file.items() if isinstance(g, h5py.Group) and "joints_state" in g), file
+            )
+            data, roles = _signals(root, ports(robot), path)
+    except (OSError, KeyError, RuntimeError, ValueError, TypeError, AttributeError, MemoryError) as error:
+        reason = " ".join(str(error).split())[:120]
+        raise LogError(located(f"is not a readable MATLAB 7.3 file: {reason}", path=path)) from error
+    if data:
+        start = origin(min(float(np.nanmin(time)) for time, _ in data.values()))
+        data = {port: (time - start, values) for port, (time, values) in data.items()}
+    return log_of_ports(motion_name(path), path, sha256(path), data, roles, robot, notes)
+
+
+def _signals(
+    root: Any, given: dict[str, tuple[Port, ...]], path: Path
+) -> tuple[dict[str, tuple[Array, Array]], dict[str, tuple[Port, ...]]]:
+    wanted = {name: Port(role) for name, role in SIGNALS.items()}
+    for group, role in GROUPS.items():
+        for name in root.get(group, ()):
+            wanted[f"{group}/{name}"] = Port(role.format(name=name))
+    data, roles = {}, {}
+    for name in dict.fromkeys((*wanted, *given)):
+        if name not in root:
+            continue
+        group = root[name].get("measured", root[name])
+        time, values = _signal(group, name, path)
+        joints = _names(root, group)
+        mine = given.get(name) or (wanted[name],)
+        data[name] = (time, values)
+        roles[name] = tuple(
+            port
+            if port.joints or not port.role.startswith("joints.")
+            else Port(port.role, port.unit, port.sign, joints, port.take)
+            for port in mine
+        )
+    return data, roles
+
+
+def _signal(group: Any, name: str, path: Path) -> tuple[Array, Array]:
+    """Stamps (n,) and values (n, k) of a signal; MATLAB's (k, 1, n) comes out of HDF5 as (n, 1, k)."""
+    parts = []
+    for key in ("timestamps", "data"):
+        source = group[key]
+        if source.dtype.kind not in "fiu" or source.size * 8 > DATA_LIMIT:
+            raise LogError(located(f"{name}/{key} is no array of numbers of a size to read", path=path))
+        parts.append(np.asarray(source[()], dtype=np.float64))
+    time = parts[0].ravel()
+    values = parts[1].reshape(parts[1].shape[0], -1)
+    if (
+        values.shape[0] != time.size
+        and values.size % max(time.size, 1) == 0
+        and values.shape[-1] == time.size
+    ):
+        values = values.T
+    if values.shape[0] != time.size:
+        raise LogError(located(f"{name} has {values.shape[0]} samples and {time.size} stamps", path=path))
+    return time, values
+
+
+def _names(root: Any, group: Any) -> Sequence[str] | None:
+    """A signal's element names, else the file's list of joints; None where neither is there."""
+    for holder, key in ((group, "elements_names"), (root, "description_list")):
+        if key in holder:
+            cells = np.asarray(holder[key][()]).ravel()
+            return tuple(_text(holder.file[cell]) for cell in cells[:NAME_LIMIT])
+    return None
+
+
+def _text(source: Any) -> str:
+    """A MATLAB char array: 16-bit codes."""
+    if source.size > NAME_LIMIT:
+        raise ValueError("a name is too long")
+    return "".join(chr(int(code)) for code in np.asarray(source[()]).ravel())

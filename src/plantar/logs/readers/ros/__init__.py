@@ -1,0 +1,1 @@
+"""ROS bags: containers (MCAP, SQLite, ROS 1), message layouts, topics."""

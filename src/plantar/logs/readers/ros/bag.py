@@ -1,0 +1,174 @@
+"""ROS 2 bags (MCAP, sqlite3, a directory) and ROS 1 bags: JointState, Imu and WrenchStamped by topic."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from plantar.conventions import Array
+from plantar.errors import LogError, located
+from plantar.files import sha256
+from plantar.logs.motion_log import MotionLog
+from plantar.logs.readers import motion_name
+from plantar.logs.readers.ros.layouts import JOINT_STATE
+from plantar.logs.readers.ros.mcap_file import read_mcap
+from plantar.logs.readers.ros.ros1_file import read_ros1
+from plantar.logs.readers.ros.sqlite_bag import read_sqlite
+from plantar.logs.readers.ros.topics import Series, Topic, assign
+from plantar.logs.readers.streams import Stream, merge
+from plantar.notes import Note
+
+if TYPE_CHECKING:
+    from plantar.robot.model import RobotModel
+
+FILES = (".mcap", ".db3", ".bag", ".active")  # .bag.active: a ROS 1 bag that was never closed
+NO_ORIENTATION = -1.0  # orientation_covariance[0] of an IMU that has none
+
+
+def read(path: Path, robot: RobotModel | None = None) -> MotionLog:
+    """Read a bag; `robot` says which topics its sensors are. LogError: broken, or nothing of use in it."""
+    notes: list[Note] = []
+    topics = _topics(path, notes)
+    _check(topics, path, notes)
+    columns_by_topic = assign(topics.values(), robot, path, notes)
+    streams = _streams(columns_by_topic, path, notes)
+    time, columns = merge(streams, path, notes)
+    del streams, columns_by_topic
+    for column in (time, *columns.values()):
+        column.setflags(write=False)  # handed over, not copied
+    return MotionLog(motion_name(path), time, columns, path, sha256(bag_files(path)[0]), tuple(notes))
+
+
+def bag_topics(path: Path, robot: RobotModel | None = None) -> dict[str, list[Topic]]:
+    """What a bag's topics are taken for: keys `joints`, `imu.<name>`, `wrench.<name>`. LogError: broken."""
+    notes: list[Note] = []
+    return assign(_topics(path, notes).values(), robot, path, notes)
+
+
+def _topics(path: Path, notes: list[Note]) -> dict[str, Topic]:
+    topics: dict[str, Topic] = {}
+    for file in bag_files(path):
+        reader = {".mcap": read_mcap, ".db3": read_sqlite}.get(file.suffix.lower(), read_ros1)
+        reader(file, topics, notes)
+    return topics
+
+
+def bag_files(path: Path) -> list[Path]:
+    """The files of a bag: itself, or the parts in a ROS 2 bag's directory in their order."""
+    if not path.is_dir():
+        return [path]
+    parts = sorted(part for part in path.iterdir() if part.suffix.lower() in FILES)
+    if not parts:
+        raise LogError(located("is a directory without bag files", path=path, valid=", ".join(FILES)))
+    return sorted(parts, key=lambda part: (len(part.name), part.name))
+
+
+def _check(topics: dict[str, Topic], path: Path, notes: list[Note]) -> None:
+    if not any(topic.series for topic in topics.values()):
+        valid = "sensor_msgs/JointState, sensor_msgs/Imu, geometry_msgs/WrenchStamped"
+        raise LogError(located("holds no message that plantar reads", path=path, valid=valid))
+    for topic in topics.values():
+        if topic.broken:
+            text = (
+                f"{topic.name}: {topic.broken} of {topic.count} messages cannot be decoded and are left out"
+            )
+            notes.append(Note("messages_broken", "warning", f"{path.name}: {text}"))
+
+
+def _streams(chosen: dict[str, list[Topic]], path: Path, notes: list[Note]) -> list[Stream]:
+    """Every sensor's columns on its own clock, the clocks on one origin."""
+    sources = [
+        (key, topic, series)
+        for key, topics in chosen.items()
+        for topic in topics
+        for series in topic.series.values()
+    ]
+    headers = [np.concatenate(series.header) for _, _, series in sources]
+    clocks = headers
+    if (reason := _unusable(headers, [topic.name for _, topic, _ in sources])) is not None:
+        clocks = [np.concatenate(series.received) for _, _, series in sources]
+        notes.append(
+            Note("receive_time", "warning", f"{path.name}: {reason}; times of receipt are used instead")
+        )
+    first = min(int(clock.min()) for clock in clocks)
+    zero = first // 1_000_000_000 * 1_000_000_000 if first > 10**15 else 0
+    if zero:
+        notes.append(
+            Note(
+                "time_origin",
+                "info",
+                f"{path.name}: time counts from {zero // 1_000_000_000} s of the bag's clock",
+            )
+        )
+    streams = []
+    seen: set[str] = set()
+    owners: dict[str, str] = {}
+    for (key, topic, series), clock in zip(sources, clocks, strict=True):
+        columns = (
+            _joints(series, owners, topic, notes, path)
+            if topic.kind == JOINT_STATE
+            else _sensor(key, series, seen)
+        )
+        series.values.clear()
+        seen |= set(columns)
+        if columns:
+            time = (clock - zero).astype(np.float64) * 1e-9
+            streams.append(Stream(topic.name, time, columns))
+    return streams
+
+
+def _unusable(headers: list[np.ndarray[tuple[int], np.dtype[np.int64]]], names: list[str]) -> str | None:
+    """Why the header stamps cannot serve: not set, or clocks that never meet."""
+    for stamps, name in zip(headers, names, strict=True):
+        if stamps.size > 1 and np.count_nonzero(stamps == stamps[0]) > stamps.size // 2:
+            return f"{name} has no header stamps"
+    latest_start, first_end = max(int(s.min()) for s in headers), min(int(s.max()) for s in headers)
+    if latest_start > first_end:
+        late = names[int(np.argmax([int(s.min()) for s in headers]))]
+        return f"the header stamps of {late} do not overlap the others'"
+    return None
+
+
+def _joints(
+    series: Series, owners: dict[str, str], topic: Topic, notes: list[Note], path: Path
+) -> dict[str, Array]:
+    """A joint belongs to the best topic that names it: a command must not fill in for a measurement."""
+    twice = next((name for name in series.names if series.names.count(name) > 1), None)
+    if twice is not None:
+        text = f"{topic.name} names '{twice}' twice; the first is used"
+        notes.append(Note("joint_twice", "warning", f"{path.name}: {text}"))
+    places = {joint: series.names.index(joint) for joint in series.names if joint not in owners}
+    if len(places) < len(set(series.names)):
+        other = owners[next(joint for joint in series.names if joint in owners)]
+        if other != topic.name:
+            text = f"{topic.name} names joints that {other} holds; they are taken from the latter"
+            notes.append(Note("joint_topics", "info", f"{path.name}: {text}"))
+    owners |= dict.fromkeys(places, topic.name)
+    return {
+        f"joint.{joint}.{quantity}": series.column(quantity, index)
+        for quantity in ("position", "velocity", "effort")
+        if quantity in series.values
+        for joint, index in places.items()
+    }
+
+
+def _sensor(key: str, series: Series, seen: set[str]) -> dict[str, Array]:
+    columns = {}
+    for name, axes in (("orientation", "xyzw"), ("angular_velocity", "xyz"), ("linear_acceleration", "xyz"),
+                       ("force", "xyz"), ("torque", "xyz")):  # fmt: skip
+        if name not in series.values or (name == "orientation" and _without_orientation(series)):
+            continue
+        for index, axis in enumerate(axes):
+            if (column := f"{key}.{name}.{axis}") not in seen:
+                columns[column] = series.column(name, index)
+    return columns
+
+
+def _without_orientation(series: Series) -> bool:
+    unknown = np.mean(
+        [np.mean(chunk[:, 0] == NO_ORIENTATION) for chunk in series.values["orientation_covariance"]]
+    )
+    empty = all(not chunk.any() for chunk in series.values["orientation"])
+    return bool(unknown > 0.5 or empty)

@@ -1,0 +1,80 @@
+"""ROS 2 bags in sqlite3: the tables `topics` and `messages` of rosbag2's default storage."""
+
+from __future__ import annotations
+
+import sqlite3
+from pathlib import Path
+
+import numpy as np
+
+from plantar.errors import LogError, located
+from plantar.logs.readers.ros.mcap_file import READ
+from plantar.logs.readers.ros.topics import Topic
+from plantar.notes import Note
+
+BATCH = 2000  # messages decoded at a time
+MESSAGE_LIMIT = 64 * 2**20  # bytes
+
+
+def read_sqlite(path: Path, topics: dict[str, Topic], notes: list[Note]) -> None:
+    """Add the file's messages to `topics`. LogError when it is no bag; a note when it breaks off."""
+    try:
+        connection = sqlite3.connect(f"file:{_quoted(path)}?mode=ro&immutable=1", uri=True)
+    except sqlite3.Error as error:
+        raise LogError(located(f"is not a readable sqlite3 bag: {error}", path=path)) from error
+    connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MESSAGE_LIMIT)
+    try:
+        channels = _channels(connection, path, topics)
+        for identity, topic in channels.items():
+            _messages(connection, identity, topic, path, notes)
+    except (sqlite3.Error, OverflowError, ValueError, TypeError) as error:
+        if not any(topic.series for topic in topics.values()):
+            raise LogError(located(f"is not a readable sqlite3 bag: {error}", path=path)) from error
+        notes.append(
+            Note("file_cut", "warning", f"{path.name} is damaged ({error}); what could be read was read")
+        )
+    finally:
+        connection.close()
+
+
+def _channels(connection: sqlite3.Connection, path: Path, topics: dict[str, Topic]) -> dict[int, Topic]:
+    rows = connection.execute(
+        "SELECT id, name, type, serialization_format FROM topics LIMIT 10000"
+    ).fetchall()
+    found: dict[int, Topic] = {}
+    for identity, name, kind, encoding in rows:
+        plain = str(kind).replace("/msg/", "/")
+        if plain in READ and encoding == "cdr" and isinstance(identity, int):
+            found[identity] = topics.setdefault(str(name), Topic(str(name), plain, "cdr"))
+    return found
+
+
+def _messages(
+    connection: sqlite3.Connection, identity: int, topic: Topic, path: Path, notes: list[Note]
+) -> None:
+    cursor = connection.execute(
+        "SELECT timestamp, data FROM messages WHERE topic_id = ? ORDER BY timestamp", (identity,)
+    )
+    while True:
+        broken: sqlite3.Error | None = None
+        rows: list[tuple[object, object]] = []
+        try:
+            rows = cursor.fetchmany(BATCH)
+        except sqlite3.Error as error:
+            broken = error
+        whole = [(t, d) for t, d in rows if isinstance(t, int) and isinstance(d, bytes) and 0 <= t < 2**63]
+        topic.broken += len(rows) - len(whole)
+        topic.count += len(rows) - len(whole)
+        if whole:
+            ends = np.cumsum([len(data) for _, data in whole]).tolist()
+            buffer = np.frombuffer(b"".join(data for _, data in whole), np.uint8)
+            topic.add(buffer, [0, *ends[:-1]], ends, [stamp for stamp, _ in whole])
+        if broken is not None:
+            notes.append(Note("file_cut", "warning", f"{path.name}: {topic.name} breaks off: {broken}"))
+        if broken is not None or not rows:
+            return
+
+
+def _quoted(path: Path) -> str:
+    """The path inside a URI."""
+    return str(path.resolve()).replace("%", "%25").replace("?", "%3f").replace("#", "%23")

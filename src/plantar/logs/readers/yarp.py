@@ -1,0 +1,78 @@
+"""YARP dumps: one directory a port with `data.log` (number, time stamps, values) and `info.log`.
+
+As written by yarpdatadumper (yarp.it): `[packet] [stamp] [bottle]`, with two stamps where info.log says
+`Stamp: tx+rx`. Brackets of nested bottles are read over. Roles come from `columns.ports`, keyed by the port's
+directory; YARP's own units are degrees and degrees per second, so give `unit: deg`.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from plantar.conventions import Array
+from plantar.errors import LogError, located
+from plantar.files import sha256
+from plantar.logs.motion_log import MotionLog
+from plantar.logs.readers.column_map import Port, ports
+from plantar.logs.readers.ports import log_of_ports
+from plantar.logs.readers.streams import origin
+from plantar.logs.readers.text_numbers import read_numbers
+from plantar.notes import Note
+
+if TYPE_CHECKING:
+    from plantar.robot.model import RobotModel
+
+PORT_LIMIT = 500
+DEPTH = 5  # directories below the one given
+INFO_LIMIT = 4096  # bytes of info.log that are looked at
+
+
+def read(path: Path, robot: RobotModel | None = None) -> MotionLog:
+    """Read every dumped port under a directory, or the one a `data.log` belongs to."""
+    root = path if path.is_dir() else path.parent
+    files = dumps(root)
+    notes: list[Note] = []
+    given = ports(robot)
+    data: dict[str, tuple[Array, Array]] = {}
+    roles: dict[str, tuple[Port, ...]] = {}
+    for file in files:
+        port = "/".join(file.parent.relative_to(root).parts) or file.parent.name
+        roles[port] = given.get(port) or given.get(file.parent.name, ())
+        if not roles[port]:
+            notes.append(Note("port_ignored", "info", f"{port}: no role in columns.ports, not used"))
+            continue
+        values, _ = read_numbers(file, notes, strip=b'()"[]')
+        stamps = 2 if _both_stamps(file.parent / "info.log") else 1
+        if values.shape[1] <= 1 + stamps:
+            raise LogError(located("holds no values beside packet number and stamp", path=file))
+        data[port] = (values[:, 1], values[:, 1 + stamps :])
+    if data:
+        start = origin(min(float(np.nanmin(time)) for time, _ in data.values() if time.size))
+        data = {port: (time - start, values) for port, (time, values) in data.items()}
+    found = {port: data.get(port, (np.empty(0), np.empty((0, 0)))) for port in roles}
+    return log_of_ports(root.name, path, sha256(files[0]), found, roles, robot, notes)
+
+
+def dumps(root: Path) -> list[Path]:
+    """The `data.log` files at most `DEPTH` directories below `root`. LogError when there is none."""
+    found: list[Path] = []
+    for depth in range(DEPTH):
+        found += sorted(root.glob("*/" * depth + "data.log"))[:PORT_LIMIT]
+    if not found:
+        raise LogError(
+            located("is a directory without logs", path=root, valid="a ROS bag, or YARP dumps with data.log")
+        )
+    return found
+
+
+def _both_stamps(info: Path) -> bool:
+    try:
+        with open(info, "rb") as handle:
+            text = handle.read(INFO_LIMIT)
+    except OSError:
+        return False
+    line = next((line for line in text.splitlines() if line.startswith(b"Stamp:")), b"")
+    return b"tx" in line and b"rx" in line

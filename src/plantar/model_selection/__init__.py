@@ -1,0 +1,1 @@
+"""Which bush model the data support: grid, variable projection, cross-validation."""

@@ -1,0 +1,210 @@
+"""Where a law's shape roughly lies, and how well it predicts held-out pieces, from sums of products alone.
+
+Every piece of every recording leaves its Gram matrix for each candidate shape and start of the memory. Fits with any
+pieces left out are then sums of small matrices, so cross-validation costs no more than one pass over the samples.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plantar.conventions import Array, Mask
+from plantar.model_selection.data_sets import Prepared, filtered_columns
+from plantar.models import Law
+
+Numbers = NDArray[np.intp]
+
+NEARBY = 0.2  # how much closer starts are tried about one that is known already
+ROUNDS = 6  # of fitting parameters and starts in turn
+STILL = (
+    1e-14  # of a column's square about zero: what is left about its mean is rounding, the column is constant
+)
+RIDGE = 1e-12  # of each column's own square: keeps collinear columns solvable
+
+
+@dataclass(frozen=True)
+class Pieces:
+    """Grams (pieces, g, c, k + 2, k + 2) of [columns, 1, response], for g shapes and c starts (c, runs) of each trial.
+
+    `trial`, `run` and `fold` (pieces,) say what each piece is part of; runs are numbered through all trials.
+    `rows` (pieces,) are the samples in each.
+    """
+
+    law: Law
+    shapes: Array
+    starts: list[Array]
+    grams: Array
+    trial: Numbers
+    run: Numbers
+    fold: Numbers
+    rows: Numbers
+
+    @classmethod
+    def of(
+        cls,
+        law: Law,
+        prepared: Sequence[Prepared],
+        folds: Sequence[Numbers],
+        shapes: Array,
+        around: Sequence[Array] | None = None,
+    ) -> Pieces:
+        """Products of every piece: `folds` gives each trial's serving samples (n,) the number of their fold.
+
+        Starts are tried over all their range, or `around` known ones (runs,) of each trial.
+        """
+        tried = np.array(law.tried_starts) * (1.0 if around is None else NEARBY)
+        count = len(tried)
+        variants = np.repeat(shapes, count, axis=0)
+        begin: list[Array] = []
+        for place, each in enumerate(prepared):
+            middle = np.zeros(len(each.motion.runs)) if around is None else around[place]
+            begin.append(np.clip(tried[:, None] + middle[None, :], -1.0, 1.0))
+        tiled = [np.tile(start, (len(shapes), 1)) for start in begin]
+        grams, trial, run, fold, rows, first = [], [], [], [], [], 0
+        for place, (each, extra) in enumerate(
+            zip(prepared, filtered_columns(law, prepared, variants, tiled), strict=True)
+        ):
+            common = np.column_stack([each.base, np.ones(extra.shape[0]), each.response])
+            key = each.run_of * (1 + int(folds[place].max(initial=0))) + folds[place]
+            for value in np.unique(key):
+                mine = key == value
+                grams.append(
+                    _gram(common[mine], extra[mine]).reshape(len(shapes), count, *[extra.shape[1] + 4] * 2)
+                )
+                trial.append(place)
+                run.append(first + int(each.run_of[mine][0]))
+                fold.append(int(folds[place][mine][0]))
+                rows.append(int(mine.sum()))
+            first += len(each.motion.runs)
+        numbers = (np.array(values, dtype=np.intp) for values in (trial, run, fold, rows))
+        return cls(law, shapes, begin, np.array(grams), *numbers)
+
+    @property
+    def size(self) -> int:
+        """Number of linear parameters k."""
+        return int(self.grams.shape[-1]) - 2
+
+    def with_shape(
+        self, shape: Array, starts: Sequence[Array], prepared: Sequence[Prepared], folds: Sequence[Numbers]
+    ) -> Pieces:
+        """The same pieces with one more candidate shape (s,), whose starts are tried around the given ones (runs,)."""
+        more = Pieces.of(self.law, prepared, folds, shape[None, :], starts)
+        shapes, grams = (
+            np.vstack([self.shapes, more.shapes]),
+            np.concatenate([self.grams, more.grams], axis=1),
+        )
+        return replace(self, shapes=shapes, grams=grams)
+
+
+@dataclass(frozen=True)
+class Fits:
+    """For every shape: parameters (g, k), offsets (g, trials), the start chosen for each piece (pieces, g),
+    squares (g,)."""
+
+    values: Array
+    offsets: Array
+    starts: Numbers
+    squares: Array
+
+
+def fit_pieces(pieces: Pieces, chosen: Mask, *, shared_offset: bool = False) -> Fits:
+    """Least squares for every shape over the `chosen` pieces (pieces,), with the best start of each run's memory."""
+    shapes, count = pieces.grams.shape[1:3]
+    starts = np.full((len(pieces.grams), shapes), count // 2, dtype=np.intp)
+    runs = np.unique(pieces.run[chosen])
+    for _ in range(ROUNDS if count > 1 else 1):
+        totals = _totals(pieces, chosen, starts)
+        values, offsets, squares = _solve(totals, shared_offset)
+        if count == 1:
+            break
+        before = starts.copy()
+        for run in runs:
+            mine = chosen & (pieces.run == run)
+            trial = int(pieces.trial[mine][0])
+            starts[pieces.run == run] = _best_start(pieces, mine, totals[trial], before[mine], values)
+        if np.array_equal(before, starts):
+            break
+    return Fits(values, offsets, starts, squares)
+
+
+def held_out_squares(pieces: Pieces, fits: Fits, held: Mask, shape: int, *, whole: bool) -> Array:
+    """Squared error (held pieces,) of one shape's fit on pieces that it has not seen.
+
+    `whole`: the pieces are recordings of which the fit knows nothing, so that offset and start are their own;
+    else the offset comes from the rest of the same recording, and a start that does not fade too.
+    """
+    values, squares = fits.values[shape], []
+    for piece in np.flatnonzero(held):
+        grams = pieces.grams[piece, shape]
+        if whole:
+            squares.append(min(_profiled(gram, values) for gram in grams))
+            continue
+        vector = np.concatenate([values, [fits.offsets[shape, pieces.trial[piece]], -1.0]])
+        tried = grams if pieces.law.forgets else grams[[fits.starts[piece, shape]]]
+        squares.append(min(float(vector @ gram @ vector) for gram in tried))
+    return np.array(squares)
+
+
+def _gram(common: Array, extra: Array) -> Array:
+    """Products (b, k + 2, k + 2) in the order deflection, rate, extra..., 1, response."""
+    wide = np.empty((extra.shape[2], len(common), extra.shape[1] + 4))
+    wide[:, :, :2] = common[:, :2]
+    wide[:, :, 2:-2] = np.moveaxis(extra, 2, 0)
+    wide[:, :, -2:] = common[:, 2:]
+    return np.asarray(np.swapaxes(wide, 1, 2) @ wide)
+
+
+def _totals(pieces: Pieces, chosen: Mask, starts: Numbers) -> Array:
+    """Each trial's Gram (trials, g, k + 2, k + 2) with the starts chosen so far."""
+    trials, shapes = int(pieces.trial.max()) + 1, np.arange(pieces.grams.shape[1])
+    totals = np.zeros((trials, len(shapes), *pieces.grams.shape[3:]))
+    for piece in np.flatnonzero(chosen):
+        totals[pieces.trial[piece]] += pieces.grams[piece, shapes, starts[piece]]
+    return totals
+
+
+def _without_offset(gram: Array) -> Array:
+    """Products (..., k + 1, k + 1) of columns and response about their means."""
+    ones = gram[..., -2, :]
+    count = np.maximum(ones[..., -2], 1e-300)[..., None, None]
+    centred = gram - ones[..., :, None] * ones[..., None, :] / count
+    keep = [*range(gram.shape[-1] - 2), gram.shape[-1] - 1]
+    return np.asarray(centred[..., keep, :][..., keep])
+
+
+def _solve(totals: Array, shared_offset: bool) -> tuple[Array, Array, Array]:
+    centred = _without_offset(totals.sum(axis=0)) if shared_offset else _without_offset(totals).sum(axis=0)
+    inner, right = centred[:, :-1, :-1], centred[:, :-1, -1]
+    square = np.einsum("gii->gi", inner)
+    about_zero = np.einsum("tgii->gi", totals[:, :, :-2, :-2])
+    moving = square > STILL * about_zero
+    scale = np.where(moving, np.sqrt(np.where(moving, square, 1.0)), np.inf)
+    scaled = inner / (scale[:, :, None] * scale[:, None, :]) + RIDGE * np.eye(inner.shape[1])
+    values = np.linalg.solve(scaled, (right / scale)[:, :, None])[:, :, 0] / scale
+    squares = centred[:, -1, -1] - np.einsum("gk,gk->g", values, right)
+    sums = totals.sum(axis=0, keepdims=True) if shared_offset else totals
+    ones = sums[..., -2, :]
+    offsets = (ones[..., -1] - np.einsum("tgk,gk->tg", ones[..., :-2], values)) / np.maximum(
+        ones[..., -2], 1e-300
+    )
+    return values, np.repeat(offsets.T, len(totals) // len(sums), axis=1), squares
+
+
+def _best_start(pieces: Pieces, mine: Mask, total: Array, starts: Numbers, values: Array) -> Numbers:
+    """For every shape the start of one run that fits best, the trial's offset moving with it, (g,)."""
+    shapes = np.arange(total.shape[0])
+    grams = pieces.grams[mine]
+    current = sum(gram[shapes, start] for gram, start in zip(grams, starts, strict=True))
+    alternatives = (total - current)[:, None] + grams.sum(axis=0)
+    centred = _without_offset(alternatives)
+    vector = np.column_stack([values, -np.ones(len(values))])
+    return np.asarray(np.argmin(np.einsum("gi,gcij,gj->gc", vector, centred, vector), axis=1))
+
+
+def _profiled(gram: Array, values: Array) -> float:
+    vector = np.append(values, -1.0)
+    return float(vector @ _without_offset(gram) @ vector)

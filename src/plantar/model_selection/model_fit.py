@@ -1,0 +1,152 @@
+"""Fit of a law of the bush that is linear in all but its shape: the shape outside, linear least squares inside.
+
+The search over the shape is in `law_search`; here it is refined together with the unknown start of the law's memory in
+every run (Gauss-Newton on the variable projection), and everything that had to be estimated enters the intervals.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from plantar.conventions import Array
+from plantar.errors import DataError
+from plantar.estimation.intervals import interval95
+from plantar.model_selection.data_sets import Prepared, Trial, prepare_trials
+from plantar.model_selection.grid import Pieces
+from plantar.model_selection.partialled_out import robust_covariance
+from plantar.model_selection.variable_projection import Point, Problem, settle
+from plantar.models import BESIDE, Law
+
+AT_LIMIT = 0.02  # of a shape: so near to its range's end it counts as there
+HARDLY_KNOWN = 0.5  # a standard deviation beyond this share of the value
+
+
+@dataclass(frozen=True)
+class LawFit:
+    """A law fitted to several recordings.
+
+    `values` (k,) as `law.terms`, `shape` (s,) as `law.shape_terms`, `covariance` (k + s, same) of both with coloured
+    residuals, the shape's and the starts' uncertainty inside; `freedom` (k + s,) goes with it, `white_std` (k + s,) is
+    the paper's. `offsets`, `offset_std`, `starts` (runs,) and `residuals` (of the thinned samples that served) by
+    recording. `limits` (2, s) is the range that the motions let the shape be looked for in.
+    """
+
+    law: Law
+    values: Array
+    shape: Array
+    covariance: Array
+    freedom: Array
+    white_std: Array
+    offsets: dict[str, float]
+    offset_std: dict[str, float]
+    starts: dict[str, Array]
+    residuals: dict[str, Array]
+    limits: Array
+    cutoff: float
+    shared_offset: bool
+
+    @property
+    def std(self) -> Array:
+        """Standard deviations of values and shape, (k + s,)."""
+        return np.asarray(np.sqrt(np.diag(self.covariance)))
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of values and shape."""
+        return (*self.law.terms, *self.law.shape_terms)
+
+    @property
+    def rms(self) -> float:
+        """Root mean square of the residuals [N·m]."""
+        return float(np.sqrt(np.mean(np.concatenate(list(self.residuals.values())) ** 2)))
+
+    def value(self, name: str) -> float:
+        """A parameter by its name."""
+        return float(np.append(self.values, self.shape)[self.names.index(name)])
+
+    def interval95(self, name: str) -> tuple[float, float]:
+        """A parameter's 95 % interval."""
+        place = self.names.index(name)
+        return interval95(self.value(name), float(self.std[place]), float(self.freedom[place]))
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """Why the law's own terms are not to be trusted, one line each; empty where they are."""
+        found = []
+        for place, term in enumerate(self.law.shape_terms):
+            low, high = self.limits[:, place]
+            value = self.shape[place]
+            if (term, "high") in self.law.blind_ends and value > (1 - AT_LIMIT) * high:
+                found.append(f"{term} lies at or beyond {high:.3g}, the largest that these motions can show")
+            if (term, "low") in self.law.blind_ends and value < (1 + AT_LIMIT) * low:
+                found.append(f"{term} lies at or below {low:.3g}, the smallest that these motions can show")
+        own = range(len(BESIDE), len(self.law.terms))
+        if own and not any(self.std[place] < HARDLY_KNOWN * abs(self.values[place]) for place in own):
+            known = (
+                f"{self.law.terms[place]} {self.values[place]:.3g} ± {self.std[place]:.2g}" for place in own
+            )
+            found.append(f"not told from nothing: {', '.join(known)}")
+        return tuple(found)
+
+
+def fit_law(law: Law, trials: Sequence[Trial], cutoff: float = 5.0, *, shared_offset: bool = False) -> LawFit:
+    """Least squares of the trials' torques under `law`, both sides filtered at `cutoff` [Hz].
+
+    One offset for each recording, or with `shared_offset` one for all. Raises DataError where no sample serves.
+    """
+    prepared = prepare_trials(trials, cutoff, drift=not shared_offset)
+    if not prepared:
+        raise DataError(
+            "no recording has a sample that serves this fit (valid: at least one standing second)"
+        )
+    folds = [np.zeros(int(each.used.sum()), dtype=np.intp) for each in prepared]
+    shapes = law.candidates([each.motion for each in prepared])
+    limits = np.array([shapes.min(axis=0), shapes.max(axis=0)])
+    return refine(Pieces.of(law, prepared, folds, shapes), prepared, limits, shared_offset=shared_offset)
+
+
+def refine(
+    pieces: Pieces,
+    prepared: Sequence[Prepared],
+    limits: Array,
+    *,
+    shared_offset: bool = False,
+    refined: bool = True,
+) -> LawFit:
+    """The fit that starts from the best candidate of `pieces` and keeps the shape between `limits` (2, s).
+
+    Not `refined`, it stays at that candidate: enough to tell that a law is the wrong one.
+    """
+    problem = Problem(pieces.law, prepared, shared_offset)
+    return _finished(problem, settle(problem, pieces, limits, refined=refined), limits)
+
+
+def _finished(problem: Problem, point: Point, limits: Array) -> LawFit:
+    linear = problem.linearised(point)
+    scale = np.concatenate([np.ones(len(point.values)), point.shape])
+    durations = [len(r) * e.motion.period for e, r in zip(problem.prepared, point.residuals, strict=True)]
+    covariance, freedom = robust_covariance(linear, point.residuals, durations)
+    wide = np.concatenate([scale, np.ones(len(covariance) - len(scale))])
+    covariance = covariance * wide[:, None] * wide[None, :]
+    count, rows = len(scale), sum(len(residual) for residual in point.residuals)
+    white = point.squares / max(rows - len(covariance), 1) * linear.inverse_diagonal() * scale**2
+    labels = [each.label for each in problem.prepared]
+    spread = np.sqrt(np.diag(covariance)[count:])
+    return LawFit(
+        law=problem.law,
+        values=point.values,
+        shape=point.shape,
+        covariance=covariance[:count, :count],
+        freedom=freedom[:count],
+        white_std=np.sqrt(white),
+        offsets=dict(zip(labels, point.offsets.tolist(), strict=True)),
+        offset_std=dict(zip(labels, spread.tolist(), strict=True)),
+        starts=dict(zip(labels, point.starts, strict=True)),
+        residuals=dict(zip(labels, point.residuals, strict=True)),
+        limits=limits,
+        cutoff=problem.prepared[0].cutoff,
+        shared_offset=problem.shared_offset,
+    )

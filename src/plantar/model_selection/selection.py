@@ -1,0 +1,203 @@
+"""Which law of the bush: judged on what the fit has not seen, the simpler one kept unless the gain is clear.
+
+A gain is clear when the squared error on held-out pieces falls by more than one standard error of its fall
+(pieces paired), and its root by at least `LEAST_GAIN`; what a law adds to the one that it elaborates must differ from
+zero by `TOLD` deviations, and then only not predict worse. Of all laws that the best one does not clearly beat, the one
+with the fewest parameters is chosen; spring and damper where a law that cannot be identified is clearly better still.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from plantar.conventions import Array
+from plantar.errors import DataError
+from plantar.model_selection.cross_validation import FOLDS, Contender, folds_of, judge
+from plantar.model_selection.data_sets import Trial, prepare_trials
+from plantar.model_selection.model_fit import LawFit
+from plantar.models import LAWS, KelvinVoigt, Law, reach
+
+LEAST_GAIN = 0.10  # of the held-out rms error
+TELLING_GAIN = (
+    0.3  # of the held-out rms error: so much better, a law that cannot be identified is still told of
+)
+TOLD = 4.0  # deviations from zero of a term that a law adds to a simpler one
+HOPELESS = 6.0  # times the best law's squares, at its best candidate shape: such a law's shape is not refined
+
+
+@dataclass(frozen=True)
+class LawScore:
+    """One law: error on held-out pieces [N·m rms], fit, and why it could not be chosen (None where it could)."""
+
+    law: Law
+    held_out_rms: float
+    fit: LawFit
+    refused: str | None
+    chosen: bool = False
+
+    @property
+    def parameters(self) -> int:
+        """How many the bush has under this law."""
+        return self.law.size
+
+
+@dataclass(frozen=True)
+class LawChoice:
+    """The chosen law's fit, the linear equivalent (K, C of Kelvin-Voigt over the same motions), and the ranking.
+
+    `untried` are laws that elaborate one which gained nothing, add nothing to it, or need what the motions lack. What
+    holds, holds for deflections up to `reach` [rad] from the middle: an element that none of these motions
+    made slip counts as part of the spring. `caution` says so where the motions show that there is one.
+    """
+
+    fit: LawFit
+    equivalent: LawFit
+    ranking: tuple[LawScore, ...]
+    held_out: str
+    reason: str
+    untried: tuple[str, ...]
+    reach: float
+    caution: str | None
+
+
+def choose_law(
+    trials: Sequence[Trial],
+    laws: Sequence[Law] = tuple(LAWS.values()),
+    cutoff: float = 5.0,
+    *,
+    shared_offset: bool = False,
+) -> LawChoice:
+    """Fit every law, hold pieces out in turn, and choose. Laws must include Kelvin-Voigt.
+
+    Whole recordings are held out where there are at least three and none has more than half of the motion;
+    else contiguous fifths of every recording. Raises DataError where no sample serves.
+    """
+    prepared = prepare_trials(trials, cutoff, drift=not shared_offset)
+    if not prepared:
+        raise DataError(
+            "no recording has a sample that serves this fit (valid: at least one standing second)"
+        )
+    folds, whole = folds_of(prepared)
+    rows = sum(len(fold) for fold in folds)
+    scores: list[LawScore] = []
+    errors: list[Array] = []
+    untried: list[str] = []
+    motions = [each.motion for each in prepared]
+
+    def enter(contender: Contender) -> None:
+        least = min((score.fit.rms for score in scores), default=np.inf) ** 2 * rows
+        hopeless = contender.squares > HOPELESS * least
+        fit, squares = judge(contender, prepared, folds, whole, shared_offset, refined=not hopeless)
+        scores.append(LawScore(contender.law, float(np.sqrt(squares.sum() / rows)), fit, _refusal(fit)))
+        errors.append(squares)
+
+    untried += [law.name for law in laws if not law.applies(motions)]
+    simple = [
+        Contender.of(law, prepared, folds, shared_offset)
+        for law in laws
+        if law.elaborates is None and law.name not in untried
+    ]
+    for contender in sorted(simple, key=lambda each: each.squares):
+        enter(contender)
+    names = [score.law.name for score in scores]
+    linear = names.index(KelvinVoigt.name)
+    for law in (each for each in laws if each.elaborates is not None and each.name not in untried):
+        seed = None
+        if law.elaborates in names:
+            place = names.index(law.elaborates)
+            seed = scores[place].fit
+            if not _clear(scores, errors, simple=linear, rich=place):
+                untried.append(law.name)
+                continue
+        enter(Contender.of(law, prepared, folds, shared_offset, seed))
+        if seed is not None and not _adds(scores[-1].fit, seed):
+            untried.append(scores.pop().law.name)
+            errors.pop()
+    winner = _winner(scores, errors, linear)
+    chosen = replace(scores[winner], chosen=True)
+    ranking = [chosen if place == winner else score for place, score in enumerate(scores)]
+    held_out = "whole recordings" if whole else f"{FOLDS} contiguous parts of each recording"
+    return LawChoice(
+        fit=chosen.fit,
+        equivalent=scores[linear].fit,
+        ranking=tuple(sorted(ranking, key=lambda score: score.held_out_rms)),
+        held_out=held_out,
+        reason=_reason(chosen, scores[linear], held_out),
+        untried=tuple(untried),
+        reach=reach(motions),
+        caution=_caution(scores, errors, winner),
+    )
+
+
+def _refusal(fit: LawFit) -> str | None:
+    if isinstance(fit.law, KelvinVoigt):
+        return None
+    if not fit.law.possible(fit.values):
+        return "would make energy of its own"
+    return "; ".join(fit.doubts) or None
+
+
+def _adds(fit: LawFit, simpler: LawFit) -> bool:
+    """Whether every term that a law adds to the one it elaborates is told from zero."""
+    added = range(len(simpler.law.terms), len(fit.law.terms))
+    return all(abs(fit.values[k]) > TOLD * np.sqrt(fit.covariance[k, k]) for k in added)
+
+
+def _winner(scores: Sequence[LawScore], errors: Sequence[Array], linear: int) -> int:
+    """The simplest law that the best one does not clearly beat; spring and damper where that one is a makeshift."""
+    allowed = [place for place, score in enumerate(scores) if score.refused is None]
+    best = min(allowed, key=lambda place: scores[place].held_out_rms)
+    simple_first = sorted(allowed, key=lambda place: (scores[place].parameters, scores[place].held_out_rms))
+    winner = next(
+        place
+        for place in simple_first
+        if place == best or not _clear(scores, errors, simple=place, rich=best)
+    )
+    # Where a law that cannot be identified is clearly better, another one that can be takes its part badly.
+    refused = (place for place, score in enumerate(scores) if score.refused is not None)
+    return linear if any(_clear(scores, errors, simple=winner, rich=place) for place in refused) else winner
+
+
+def _clear(scores: Sequence[LawScore], errors: Sequence[Array], *, simple: int, rich: int) -> bool:
+    """Whether the richer law's gain over the simpler one is clear.
+
+    What a law adds to the one that it elaborates has been told from zero before: it only must not predict worse.
+    """
+    if scores[rich].law.elaborates == scores[simple].law.name:
+        return scores[rich].held_out_rms < scores[simple].held_out_rms
+    fall = errors[simple] - errors[rich]
+    standard_error = float(np.std(fall) * np.sqrt(len(fall)))
+    enough = scores[rich].held_out_rms < (1 - LEAST_GAIN) * scores[simple].held_out_rms
+    return enough and float(fall.sum()) > standard_error
+
+
+def _caution(scores: Sequence[LawScore], errors: Sequence[Array], winner: int) -> str | None:
+    """Whether a law that was refused predicts clearly better: then the bush is not as the chosen law says."""
+    better = [
+        place
+        for place, score in enumerate(scores)
+        if score.refused is not None
+        and score.held_out_rms < (1 - TELLING_GAIN) * scores[winner].held_out_rms
+        and _clear(scores, errors, simple=winner, rich=place)
+    ]
+    if not better:
+        return None
+    best = scores[min(better, key=lambda place: scores[place].held_out_rms)]
+    return (
+        f"{best.law.name} predicts held-out motion better ({best.held_out_rms:.3g} against "
+        f"{scores[winner].held_out_rms:.3g} rms) but cannot be identified: {best.refused}; stiffness and damping "
+        "are those of these motions only (record larger motions)"
+    )
+
+
+def _reason(chosen: LawScore, linear: LawScore, held_out: str) -> str:
+    if chosen.law.name == linear.law.name:
+        return f"no richer law predicts {held_out} clearly better than spring and damper"
+    gain = 100 * (1 - chosen.held_out_rms / linear.held_out_rms) if linear.held_out_rms > 0 else 0.0
+    return (
+        f"held-out {held_out}: {chosen.law.name} misses by {chosen.held_out_rms:.3g} rms, spring and damper by "
+        f"{linear.held_out_rms:.3g} ({gain:.0f} % less)"
+    )

@@ -1,0 +1,147 @@
+"""From the best candidate to the best fit: the shape, and the start of the memory in every run, refined together.
+
+Gauss-Newton on the variable projection: at each point the linear parameters are those that fit best there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from plantar.conventions import Array
+from plantar.model_selection.data_sets import Prepared, filtered_columns
+from plantar.model_selection.grid import Pieces, fit_pieces
+from plantar.model_selection.partialled_out import Linearised
+from plantar.models import Law
+
+ITERATIONS = 16
+WIDEST_SCAN, NARROWEST_SCAN, NARROWING = 1.0, 0.05, 0.2  # of the starts about where the steps came to rest
+HALVINGS = 4
+SETTLED = 1e-4  # relative fall of the squares below which the refinement has arrived
+BOLDEST = 0.4  # largest step of a shape's logarithm
+SHAPE_STEP, START_STEP = 0.01, 0.02  # of the differences that stand for derivatives
+
+
+@dataclass(frozen=True)
+class Point:
+    """A shape and starts, with the linear parameters that fit best there."""
+
+    shape: Array
+    starts: list[Array]
+    values: Array
+    offsets: Array
+    residuals: list[Array]
+    squares: float
+
+
+@dataclass(frozen=True)
+class Problem:
+    """What is fitted: a law to recordings, with an offset each or a shared one."""
+
+    law: Law
+    prepared: Sequence[Prepared]
+    shared_offset: bool
+
+    def at(self, shape: Array, starts: list[Array]) -> Point:
+        """Solve the linear part."""
+        extras = filtered_columns(
+            self.law, self.prepared, shape[None, :], [start[None, :] for start in starts]
+        )
+        designs = [np.column_stack([e.base, x[:, :, 0]]) for e, x in zip(self.prepared, extras, strict=True)]
+        problem = Linearised(designs, [e.response for e in self.prepared], self.shared_offset)
+        values = problem.solve()
+        offsets = problem.offsets(values)
+        residuals = [y - x @ values - o for x, y, o in zip(designs, problem.responses, offsets, strict=True)]
+        return Point(shape, starts, values, offsets, residuals, float(sum(r @ r for r in residuals)))
+
+    def linearised(self, point: Point) -> Linearised:
+        """Columns of values and log shape about a point, residuals as response, starts to be projected out."""
+        law, shape, count = self.law, point.shape, len(point.shape)
+        shapes = np.repeat(shape[None, :], 3 + 2 * count, axis=0)
+        for place in range(count):
+            shapes[3 + 2 * place : 5 + 2 * place, place] *= np.exp([SHAPE_STEP, -SHAPE_STEP])
+        starts = []
+        for start in point.starts:
+            variants = np.repeat(start[None, :], len(shapes), axis=0)
+            variants[1:3] = np.clip([start + START_STEP, start - START_STEP], -1.0, 1.0)
+            starts.append(variants)
+        extras = filtered_columns(law, self.prepared, shapes, starts)
+        designs, memories = [], []
+        for each, extra, variants in zip(self.prepared, extras, starts, strict=True):
+            torque = np.einsum("neb,e->nb", extra, point.values[2:])
+            slopes = (torque[:, 3::2] - torque[:, 4::2]) / (2 * SHAPE_STEP)
+            designs.append(np.column_stack([each.base, extra[:, :, 0], slopes]))
+            width = (variants[1] - variants[2])[each.run_of]
+            memories.append((torque[:, 1] - torque[:, 2]) / width)
+        runs = [each.run_of for each in self.prepared]
+        if not law.remembers:
+            return Linearised(designs, point.residuals, self.shared_offset)
+        return Linearised(designs, point.residuals, self.shared_offset, memories, runs)
+
+
+def settle(problem: Problem, pieces: Pieces, limits: Array, *, refined: bool = True) -> Point:
+    """The best fit reached from the best candidate of `pieces`, its shape between `limits` (2, s).
+
+    Not `refined`: the candidate itself.
+    """
+    law, shapes = pieces.law, pieces.shapes
+    rough = fit_pieces(pieces, np.ones(len(pieces.grams), dtype=bool), shared_offset=problem.shared_offset)
+    best = int(np.argmin(rough.squares))
+    begin = [np.zeros(len(each.motion.runs)) for each in problem.prepared]
+    if law.remembers:
+        runs = np.concatenate([[0], np.cumsum([len(each) for each in begin])])
+        for trial, run, start in zip(pieces.trial, pieces.run, rough.starts[:, best], strict=True):
+            begin[trial][run - runs[trial]] = pieces.starts[trial][start, run - runs[trial]]
+    point = problem.at(shapes[best], begin)
+    width = WIDEST_SCAN
+    for _ in range(ITERATIONS if refined and (shapes.shape[1] or law.remembers) else 0):
+        moved = _step(problem, point, limits)
+        if moved is None or moved.squares > (1 - SETTLED) * point.squares:
+            scanned = _scan(problem, moved or point, width) if law.remembers else None
+            width *= NARROWING
+            if scanned is None and (not law.remembers or width < NARROWEST_SCAN):
+                point = moved or point
+                break
+            moved = scanned or moved or point
+        point = moved
+    return point
+
+
+def _step(problem: Problem, point: Point, limits: Array) -> Point | None:
+    """The next point of the refinement, or None where none is better."""
+    linear = problem.linearised(point)
+    change = linear.solve()
+    move = np.clip(change[len(point.values) :], -BOLDEST, BOLDEST)
+    moves = linear.starts(change)
+    share = 1.0
+    for _ in range(HALVINGS):
+        shape = np.clip(point.shape * np.exp(share * move), limits[0], limits[1])
+        starts = [np.clip(s + share * m, -1.0, 1.0) for s, m in zip(point.starts, moves, strict=True)]
+        tried = problem.at(shape, starts)
+        if tried.squares < point.squares:
+            return tried
+        share *= 0.4
+    return None
+
+
+def _scan(problem: Problem, point: Point, width: float) -> Point | None:
+    """The point with each run's start moved to the best of several about it, or None where none is better.
+
+    A state that stops at its ends makes corners, at which the derivative by the start misleads.
+    """
+    around = np.linspace(-width, width, 9)
+    starts = [np.clip(start[None, :] + around[:, None], -1.0, 1.0) for start in point.starts]
+    shapes = np.repeat(point.shape[None, :], len(around), axis=0)
+    extras = filtered_columns(problem.law, problem.prepared, shapes, starts)
+    best = []
+    for place, (each, extra, tried) in enumerate(zip(problem.prepared, extras, starts, strict=True)):
+        linear = each.base @ point.values[:2] + point.offsets[place]
+        missing = each.response[:, None] - linear[:, None] - np.einsum("neb,e->nb", extra, point.values[2:])
+        if tried.shape[1] == 1 and not problem.shared_offset:
+            missing = missing - missing.mean(axis=0)
+        squares = np.array([np.bincount(each.run_of, column**2, tried.shape[1]) for column in missing.T])
+        best.append(tried[np.argmin(squares, axis=0), np.arange(tried.shape[1])])
+    moved = problem.at(point.shape, best)
+    return moved if moved.squares < (1 - SETTLED) * point.squares else None

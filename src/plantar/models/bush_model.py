@@ -1,0 +1,129 @@
+"""What every law of the bush offers: torque from the history of deflection and rate, linear in all but its shape.
+
+    torque = stiffness·deflection + damping·rate + Σ parameter·column(history; shape) + offset
+
+The offset belongs to the recording, not to the bush. `stiffness` and `damping` are the spring and the damper
+that stand beside whatever else a law has.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar, Final
+
+import numpy as np
+
+from plantar.conventions import DAMPING_UNIT, STIFFNESS_UNIT, Array, Axis
+from plantar.signals.segments import runs
+
+BESIDE: Final = ("stiffness", "damping")  # the spring and damper of every law, first among its terms
+
+
+@dataclass(frozen=True)
+class Motion:
+    """One axis of one foot over one recording, at an even period [s]; NaN where nothing is known (a gap, the air).
+
+    `deflection` [rad] and `rate` [rad/s] are (N,), wide-band: a law that does not commute with a filter needs the path
+    itself. `across` and `across_rate` are (N, m): the same foot's other axes, for laws that couple them.
+    """
+
+    deflection: Array
+    rate: Array
+    period: float
+    across: Array | None = None
+    across_rate: Array | None = None
+
+    @property
+    def runs(self) -> tuple[slice, ...]:
+        """Stretches without a gap: the law's memory lasts over each of them and starts anew in the next."""
+        return tuple(runs(np.isfinite(self.deflection) & np.isfinite(self.rate)))
+
+    def __len__(self) -> int:
+        return len(self.deflection)
+
+
+class Law(ABC):
+    """A law of the bush. Linear `terms` first stiffness and damping; `shape_terms` are its nonlinear parameters.
+
+    A law that `remembers` has an inner state of unknown value where a run begins: its start, in [-1, 1].
+    """
+
+    name: ClassVar[str]
+    terms: ClassVar[tuple[str, ...]] = BESIDE
+    shape_terms: ClassVar[tuple[str, ...]] = ()
+    remembers: ClassVar[bool] = False
+    forgets: ClassVar[bool] = True  # whether motion wears the start's effect away
+    tried_starts: ClassVar[tuple[float, ...]] = (0.0,)  # by the rough search, before they are refined
+    elaborates: ClassVar[str | None] = None  # a simpler law, without whose gain this one is not worth trying
+    blind_ends: ClassVar[frozenset[tuple[str, str]]] = (
+        frozenset()
+    )  # (shape term, "low" or "high"): see `candidates`
+    zero_matters: ClassVar[bool] = (
+        False  # an error of the deflection's zero is more than an offset, and no start
+    )
+    dissipative_terms: ClassVar[tuple[str, ...]] = ()  # below zero they would make energy
+    units: ClassVar[dict[str, tuple[str, str]]] = {}  # of extra and shape terms: rotational, vertical
+
+    @property
+    def size(self) -> int:
+        """How many parameters the bush has under this law."""
+        return len(self.terms) + len(self.shape_terms)
+
+    def unit(self, term: str, axis: Axis) -> str:
+        """Unit of a linear or shape parameter on an axis."""
+        if term == "stiffness":
+            return STIFFNESS_UNIT[axis]
+        if term == "damping":
+            return DAMPING_UNIT[axis]
+        return self.units[term][axis == "z"]
+
+    def applies(self, motions: Sequence[Motion]) -> bool:
+        """Whether these motions hold what the law needs."""
+        return True
+
+    def candidates(self, motions: Sequence[Motion]) -> Array:
+        """Shapes (g, s) worth trying for these motions; one empty shape where the law has none.
+
+        They span what the motions can show. At a blind end of that range the law becomes a spring or a damper
+        more, and cannot be told from the spring and the damper beside it.
+        """
+        return np.zeros((1, 0))
+
+    @abstractmethod
+    def extra(self, motions: Sequence[Motion], shapes: Array, starts: Sequence[Array]) -> list[Array]:
+        """The columns beside deflection and rate, (N, e, b) for every motion; NaN outside its runs.
+
+        `shapes` (b, s) and `starts` (b, runs) of each motion are b variants, computed side by side.
+        """
+
+    def columns(
+        self, motion: Motion, shape: Sequence[float] | Array = (), starts: Array | None = None
+    ) -> Array:
+        """Regressor (N, k) of one motion, NaN outside its runs; `starts` (runs,), zero where not given."""
+        starts = np.zeros(len(motion.runs)) if starts is None else np.asarray(starts, dtype=float)
+        extra = self.extra([motion], np.reshape(np.asarray(shape, dtype=float), (1, -1)), [starts[None, :]])[
+            0
+        ]
+        columns = np.column_stack([motion.deflection, motion.rate, extra[:, :, 0]])
+        columns[~np.isfinite(columns).all(axis=1)] = np.nan
+        return columns
+
+    def starts(self, motion: Motion, shape: Array) -> Array:
+        """Inner state (runs,) at the start of each run, if the bush was loaded there from rest without turning back."""
+        return np.zeros(len(motion.runs))
+
+    def possible(self, values: Array) -> bool:
+        """Whether these linear parameters (k,) describe a bush that makes no energy of its own."""
+        return all(values[self.terms.index(term)] >= 0 for term in self.dissipative_terms)
+
+
+def reach(motions: Sequence[Motion]) -> float:
+    """Largest deflection from the middle, over the motions' runs: half of the widest swing [rad], 1 % cut off."""
+    widest = 0.0
+    for motion in motions:
+        for run in motion.runs:
+            low, high = np.percentile(motion.deflection[run], [0.5, 99.5])
+            widest = max(widest, 0.5 * float(high - low))
+    return widest

@@ -1,0 +1,1 @@
+"""What an identification found, as data: the contract of `result.json`."""

@@ -1,0 +1,49 @@
+"""Measured against reconstructed torque, on the fit's own motions (direct) and on unseen ones (cross)."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+
+from plantar.conventions import Array, Axis, Mask
+from plantar.results.feet import ValidationRow
+
+OPENING = 1.0  # s of an unseen motion that give its offset and are left out of its score
+
+
+def opening(time: Array, used: Mask) -> Mask:
+    """The first second of the samples that serve: an unseen motion's offset comes from these alone."""
+    if not used.any():
+        return np.zeros_like(used)
+    return np.asarray(used & (time < time[used][0] + OPENING))
+
+
+def score(
+    kind: Literal["direct", "cross"],
+    motion: str,
+    foot: str,
+    axis: Axis,
+    measured: Array,
+    predicted: Array,
+    trivial: float,
+) -> ValidationRow:
+    """Errors of `predicted` (n,) against `measured` (n,) [N·m or N], over samples that the caller chose.
+
+    `trivial` is the constant that the trivial predictor gives.
+    """
+    error = measured - predicted
+    largest = float(np.max(np.abs(measured)))
+    mean_abs = float(np.mean(np.abs(error)))
+    return ValidationRow(
+        kind=kind,
+        motion=motion,
+        foot=foot,
+        axis=axis,
+        mean_abs_error=mean_abs,
+        rms_error=float(np.sqrt(np.mean(error**2))),
+        max_abs=largest,
+        percent_of_max=100 * mean_abs / largest if largest > 0 else None,
+        zero_mean_abs=float(np.mean(np.abs(measured - trivial))),
+        samples=len(measured),
+    )

@@ -1,0 +1,1 @@
+"""The robot: its file, its model, its kinematic tree."""

@@ -1,0 +1,226 @@
+"""The robot file: which URDF, where the IMU and the force sensors sit, where the bushes and soles are."""
+
+from __future__ import annotations
+
+import difflib
+import os
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+import pinocchio as pin
+
+from plantar.conventions import Array, rotation_from_rpy
+from plantar.errors import RobotError, located
+from plantar.files import read_bounded
+from plantar.robot.schema import FootEntry, FrameEntry, JointEntry, read_robot_file
+
+URDF_LIMIT = 64 * 2**20  # bytes
+
+
+@dataclass(frozen=True)
+class Placement:
+    """A frame on a URDF link: `xyz` [m], (3,), and fixed-axis `rpy` [rad], (3,), in the link's frame."""
+
+    link: str
+    xyz: Array
+    rpy: Array
+
+    @property
+    def rotation(self) -> Array:
+        """Frame to link, (3, 3)."""
+        return rotation_from_rpy(self.rpy)
+
+
+@dataclass(frozen=True)
+class Imu:
+    name: str
+    placement: Placement
+
+
+@dataclass(frozen=True)
+class WrenchSensor:
+    """A six-axis sensor; `sign` is -1 where it reads the robot's action on the environment."""
+
+    name: str
+    placement: Placement
+    sign: float
+
+
+@dataclass(frozen=True)
+class Sole:
+    """The sole's plane (z up through `placement`) and its outline in that plane, (n, 2) [m]."""
+
+    placement: Placement
+    polygon: Array
+
+
+@dataclass(frozen=True)
+class Foot:
+    """One foot: `ankle` is the last link above the bush, `bush` the centre and axes of the bush."""
+
+    name: str
+    ankle: str
+    bush: Placement
+    wrench: WrenchSensor
+    sole: Sole
+    contact: Literal["auto", "always"]
+
+
+@dataclass(frozen=True)
+class JointTerms:
+    """What eq. 3 models in one joint: names of the terms, and whether the joint has no actuator."""
+
+    terms: tuple[str, ...]
+    passive: bool
+
+
+@dataclass(frozen=True)
+class RobotModel:
+    """A URDF with the sensors and feet that the robot file gives it. Made by `load_robot`."""
+
+    name: str
+    path: Path
+    urdf_path: Path
+    urdf: str = field(repr=False)
+    base: Literal["floating", "fixed"]
+    imu: Imu | None
+    feet: Mapping[str, Foot]
+    joints: Mapping[str, JointTerms]
+    topics: Mapping[str, str]
+    columns: Mapping[str, Any]
+
+    @cached_property
+    def model(self) -> pin.Model:
+        """Pinocchio's model with the root link fixed: the joints that a log can hold."""
+        return _parse_urdf(self.urdf, self.urdf_path, floating=False)
+
+    @cached_property
+    def floating_model(self) -> pin.Model:
+        """Pinocchio's model with a free-flyer above the root link."""
+        return _parse_urdf(self.urdf, self.urdf_path, floating=True)
+
+    @cached_property
+    def joint_names(self) -> tuple[str, ...]:
+        """The movable joints in the order of `model`."""
+        return tuple(self.model.names)[1:]
+
+    @cached_property
+    def mass(self) -> float:
+        """Total mass of the URDF's links [kg]."""
+        return float(sum(inertia.mass for inertia in self.model.inertias))
+
+    def frame(self, placement: Placement) -> tuple[int, pin.SE3]:
+        """The joint of `model` that carries a placement, and the placement in that joint's frame.
+
+        Raises RobotError when the link is not in the URDF.
+        """
+        model = self.model
+        if not model.existFrame(placement.link):
+            raise RobotError(unknown_link(placement.link, model, self.path))
+        frame = model.frames[model.getFrameId(placement.link)]
+        return int(frame.parentJoint), frame.placement * pin.SE3(placement.rotation, placement.xyz)
+
+    def joints_between(self, first: Placement, second: Placement) -> frozenset[str]:
+        """Names of the joints on the chain from one placement's link to another's."""
+        model = self.model
+        supports = [set(model.supports[self.frame(placement)[0]]) - {0} for placement in (first, second)]
+        return frozenset(model.names[joint] for joint in supports[0] ^ supports[1])
+
+
+def load_robot(path: str | os.PathLike[str]) -> RobotModel:
+    """Read a robot file (YAML) and its URDF.
+
+    Raises RobotError: the file or the URDF is missing or broken, a key is unknown, a link is not in the URDF,
+    or a foot's sensor is not rigidly fixed to its ankle.
+    """
+    path = Path(path)
+    entry = read_robot_file(path)
+    urdf_path = path.parent / entry.urdf
+    content = read_bounded(urdf_path, URDF_LIMIT, RobotError)
+    try:
+        urdf = content.decode()
+    except UnicodeDecodeError as error:
+        raise RobotError(located("is not UTF-8 text", path=urdf_path, valid="a URDF")) from error
+    imu = entry.imu and Imu(entry.imu.name, _placement(entry.imu, entry.imu.link or ""))
+    robot = RobotModel(
+        name=entry.name,
+        path=path,
+        urdf_path=urdf_path,
+        urdf=urdf,
+        base=entry.base,
+        imu=imu or None,
+        feet={name: _foot(name, foot) for name, foot in entry.feet.items()},
+        joints={name: JointTerms(_terms(joint), joint.passive) for name, joint in entry.joints.items()},
+        topics=dict(entry.topics),
+        columns=dict(entry.columns),
+    )
+    _check(robot)
+    return robot
+
+
+def unknown_link(link: str, model: pin.Model, path: Path) -> str:
+    """One line that names an unknown link and what may have been meant."""
+    names = [frame.name for frame in model.frames]
+    near = difflib.get_close_matches(link, names, n=3)
+    valid = "one of " + ", ".join(near) if near else f"a frame of the URDF, such as {', '.join(names[1:4])}"
+    return located(f"link '{link}' is not in the URDF", path=path, valid=valid)
+
+
+def _placement(entry: FrameEntry, default_link: str) -> Placement:
+    xyz, rpy = np.array(entry.xyz, dtype=float), np.array(entry.rpy, dtype=float)
+    return Placement(entry.link or default_link, xyz, rpy)
+
+
+def _foot(name: str, entry: FootEntry) -> Foot:
+    sensor = WrenchSensor(entry.wrench.name, _placement(entry.wrench, entry.ankle), float(entry.wrench.sign))
+    sole = Sole(_placement(entry.sole, entry.ankle), np.array(entry.sole.polygon, dtype=float))
+    return Foot(name, entry.ankle, _placement(entry.bush, entry.ankle), sensor, sole, entry.contact)
+
+
+def _terms(entry: JointEntry) -> tuple[str, ...]:
+    if entry.terms is not None:
+        return tuple(entry.terms)
+    return ("stiffness", "viscous", "offset") if entry.passive else ("viscous", "coulomb", "offset")
+
+
+def _parse_urdf(urdf: str, path: Path, *, floating: bool) -> pin.Model:
+    if re.search(r"<!(DOCTYPE|ENTITY)", urdf, re.IGNORECASE):
+        raise RobotError(located("declares a DOCTYPE or an entity", path=path, valid="plain URDF"))
+    try:
+        return (
+            pin.buildModelFromXML(urdf, pin.JointModelFreeFlyer())
+            if floating
+            else pin.buildModelFromXML(urdf)
+        )
+    except (ValueError, RuntimeError, IndexError) as error:
+        reason = str(error).splitlines()[0] if str(error) else "unreadable"
+        raise RobotError(located(f"is not a readable URDF: {reason}", path=path)) from error
+
+
+def _check(robot: RobotModel) -> None:
+    if robot.imu is not None:
+        robot.frame(robot.imu.placement)
+    for foot in robot.feet.values():
+        carriers = {
+            part: robot.frame(placement)[0]
+            for part, placement in (
+                ("ankle", Placement(foot.ankle, np.zeros(3), np.zeros(3))),
+                ("bush", foot.bush),
+                ("wrench", foot.wrench.placement),
+                ("sole", foot.sole.placement),
+            )
+        }
+        for part, carrier in carriers.items():
+            if carrier != carriers["ankle"]:
+                message = f"feet.{foot.name}.{part} is not rigidly fixed to the ankle link '{foot.ankle}'"
+                raise RobotError(located(message, path=robot.path, valid="a link without a joint in between"))
+    for name in robot.joints:
+        if name not in robot.joint_names:
+            near = difflib.get_close_matches(name, robot.joint_names, n=3) or robot.joint_names[:3]
+            message = f"joints.{name}: the URDF has no such movable joint"
+            raise RobotError(located(message, path=robot.path, valid="one of " + ", ".join(near)))

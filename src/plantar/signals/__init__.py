@@ -1,0 +1,1 @@
+"""Signals on one time base: resampling, filters, spikes, the IMU's attitude."""

@@ -1,0 +1,54 @@
+"""The IMU's orientation and angular velocity, each derived from the other sensors where a log lacks it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from plantar.conventions import Array
+from plantar.errors import DataError, located
+from plantar.logs.motion_log import MotionLog
+from plantar.notes import Note
+from plantar.robot.model import Imu
+from plantar.signals.filters import differentiate
+from plantar.signals.resampling import interpolate
+
+
+def attitude(log: MotionLog, imu: Imu, notes: list[Note]) -> tuple[Array, Array]:
+    """Orientation w x y z (N, 4) and angular velocity (N, 3) of the IMU, derived where one is missing."""
+    name = imu.name
+    orientation = log.orientation(name)
+    if orientation is not None:
+        if log.has(*(f"imu.{name}.angular_velocity.{axis}" for axis in "xyz")):
+            return orientation, log.angular_velocity(name)
+        text = f"{log.name}: no angular velocity; rates come from differentiated orientation, damping is less sure"
+        notes.append(Note("gyroscope_missing", "warning", text))
+        return orientation, _rates_from(orientation, log.period)
+    rates, acceleration = log.angular_velocity(name), log.linear_acceleration(name)
+    whole = np.isfinite(np.column_stack([rates, acceleration])).all(axis=1)
+    if not whole.any():
+        raise DataError(located(f"imu '{name}' has no sample with all values", path=log.source))
+    filled = [
+        interpolate(log.time, log.time[whole], column[whole], np.inf)
+        for column in (*rates.T, *acceleration.T)
+    ]
+    bridged = np.nan_to_num(np.column_stack(filled))
+    from plantar.signals.attitude import (
+        attitude_from_inertial,  # its rotations cost start-up, and few logs need them
+    )
+
+    orientation = attitude_from_inertial(bridged[:, :3], bridged[:, 3:], log.period)
+    orientation[~whole] = np.nan
+    text = f"{log.name}: no IMU orientation; gravity's direction blended from gyroscope and accelerometer"
+    notes.append(Note("attitude_derived", "warning", text))
+    return orientation, rates
+
+
+def _rates_from(orientation: Array, period: float) -> Array:
+    """Angular velocity in the body frame, (N, 3), from quaternions w x y z by central differences."""
+    norm = np.linalg.norm(orientation, axis=1, keepdims=True)
+    unit = orientation / norm
+    flips = np.where(np.sum(unit[1:] * unit[:-1], axis=1) < 0, -1.0, 1.0)
+    unit = unit * np.concatenate([[1.0], np.cumprod(flips)])[:, None]
+    slope = differentiate(unit, period)
+    w, vector, dw, dvector = unit[:, :1], unit[:, 1:], slope[:, :1], slope[:, 1:]
+    return np.asarray(2 * (w * dvector - dw * vector - np.cross(vector, dvector)))

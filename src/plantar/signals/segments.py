@@ -1,0 +1,22 @@
+"""Segments: runs of consecutive samples that hold, and their ends."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from plantar.conventions import Mask
+
+
+def runs(valid: Mask) -> list[slice]:
+    """The stretches of consecutive true samples, as slices."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], valid, [False]]).astype(np.int8)))
+    return [slice(int(start), int(stop)) for start, stop in edges.reshape(-1, 2)]
+
+
+def run_ends(valid: Mask, reach: int) -> Mask:
+    """The first and last `reach` samples of every run: where a filter knew only one side."""
+    ends = np.zeros(len(valid), dtype=bool)
+    for run in runs(valid):
+        ends[run.start : min(run.stop, run.start + reach)] = True
+        ends[max(run.start, run.stop - reach) : run.stop] = True
+    return ends

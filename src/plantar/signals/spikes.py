@@ -1,0 +1,98 @@
+"""Lone samples far from their neighbours, as radio, buses and drivers make them: found and bridged before any filter.
+
+After a filter a spike is a hump of the filter's length, that nothing tells from motion any more.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from plantar.conventions import Array, Mask
+from plantar.logs.motion_log import MotionLog
+from plantar.notes import Note, Severity
+
+FAR = 10.0  # usual steps from sample to sample, beyond which a sample does not belong to its neighbours
+NEIGHBOURS = 2  # on either side: a stretch of more than two samples is no spike
+LOCAL = 1.0  # s over which steps are compared: an impact among impacts is no spike
+APART, FEW = (
+    0.15,
+    8,
+)  # s around a spike, and quick steps in them: more make an impact and what it leaves ringing
+SERIOUS = 0.001  # share of a column that is worth a look at the sensor
+MOST = 0.02  # share of a column that may be spikes: more of them are what this sensor reads
+
+
+def without_spikes(log: MotionLog) -> MotionLog:
+    """The evenly sampled log with spikes of IMU and wrenches bridged and told of; itself where there are none.
+
+    Not those of an orientation: its four numbers are one, of either sign, and its yaw may do what it likes.
+    """
+    names = [
+        name for name in log.columns if name.startswith(("imu.", "wrench.")) and ".orientation." not in name
+    ]
+    if not names:
+        return log
+    values = log.stack(names)
+    spikes = lone_spikes(values, log.period)
+    if not spikes.any():
+        return log
+    place, bridged, told = np.arange(len(log)), {}, []
+    for name, column, mask in zip(names, values.T, spikes.T, strict=True):
+        if mask.any():
+            fine = ~mask & np.isfinite(column)
+            bridged[name] = np.where(mask, np.interp(place, place[fine], column[fine]), column)
+            first = int(np.flatnonzero(mask)[0])
+            told.append(
+                f"{name} ({int(mask.sum())}, first at t = {log.time[first]:g} s: {column[first]:.4g})"
+            )
+    more = f" and {len(told) - 3} more columns" if len(told) > 3 else ""
+    text = f"{log.name}: lone samples far from their neighbours bridged: {', '.join(told[:3])}{more}"
+    severity: Severity = "warning" if spikes.mean(axis=0).max() > SERIOUS else "info"
+    return log.with_columns(bridged, Note("spikes", severity, text))
+
+
+def lone_spikes(values: Array, period: float) -> Mask:
+    """Samples of `values` (N, k) that one or two alone stand out from those around them by far, (N, k)."""
+    found = np.zeros(values.shape, dtype=bool)
+    if len(values) < 2 * NEIGHBOURS + 2:
+        return found
+    steps = np.abs(np.diff(values, axis=0))
+    far, reach = FAR * _usual(steps, period), max(NEIGHBOURS, round(APART / period))
+    # Only where a step is far is a median worth its time: in clean columns nowhere.
+    for column in np.flatnonzero((steps > far).any(axis=0)):
+        jumps = np.flatnonzero(steps[:, column] > far[:, column])
+        suspects = np.unique(
+            np.clip(np.concatenate([jumps - 1, jumps, jumps + 1, jumps + 2]), 0, len(values) - 1)
+        )
+        around = suspects[:, None] + np.arange(-NEIGHBOURS, NEIGHBOURS + 1)
+        inside = (around[:, 0] >= 0) & (around[:, -1] < len(values))
+        suspects, around = suspects[inside], around[inside]
+        near = values[around, column]
+        away = np.abs(values[suspects, column] - np.median(near, axis=1))
+        spiked = suspects[away > far[np.minimum(suspects, len(far) - 1), column]]
+        quick = np.flatnonzero(2 * steps[:, column] > far[:, column])
+        first, last = (np.searchsorted(quick, spiked + side * reach) for side in (-1, 1))
+        spiked = spiked[last - first <= FEW]
+        if len(spiked) <= MOST * len(values):
+            found[spiked, column] = True
+    return found
+
+
+def _usual(steps: Array, period: float) -> Array:
+    """Usual size of the steps (n, k) around each: the largest median of this second and the ones beside it, and of all.
+
+    A column that moves in coarse steps has them as its smallest: a change by one of those is no spike.
+    """
+    count, width = len(steps), max(8, round(LOCAL / period))
+    whole = max(1, count // width)
+    filled = np.nan_to_num(steps)
+    parts = (
+        np.median(filled[: whole * width].reshape(whole, -1, steps.shape[1]), axis=1)
+        if count >= width
+        else filled
+    )
+    parts = parts if count >= width else np.median(filled, axis=0)[None, :]
+    beside = np.maximum(parts, np.maximum(np.roll(parts, 1, axis=0), np.roll(parts, -1, axis=0)))
+    coarse = np.min(np.where(filled > 0, filled, np.inf), axis=0)
+    least = np.maximum(np.median(filled, axis=0), np.where(np.isfinite(coarse), coarse, 0.0))
+    return np.maximum(beside[np.minimum(np.arange(count) // width, len(beside) - 1)], least)

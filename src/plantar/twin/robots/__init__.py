@@ -1,0 +1,1 @@
+"""Robots of the twin: links, masses, feet cut at the bush."""

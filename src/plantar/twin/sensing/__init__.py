@@ -1,0 +1,1 @@
+"""What the twin's sensors read: exact columns, then noise and delay."""

@@ -1,0 +1,147 @@
+"""Imperfect sensors: quantised, noisy, biased, drifting and late, each recording drawn from a seed."""
+
+from __future__ import annotations
+
+import zlib
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from plantar.conventions import Array
+from plantar.robot.model import RobotModel
+from plantar.twin.sensing.attitude_filter import filtered_attitude
+from plantar.twin.sensing.exact import Columns
+
+DEGREE: Final = np.pi / 180
+
+
+@dataclass(frozen=True)
+class Sensors:
+    """Sizes of imperfections; white noise and what is drawn per recording are standard deviations.
+
+    Encoders: quanta [rad, rad/s]; joint torque noise [N·m]. IMU: white noise of gyroscope [rad/s] and accelerometer
+    [m/s²] per axis; gyroscope bias; attitude noise, bias of roll and pitch and their drift over the recording [rad],
+    and bias and drift of yaw. Wrench: white noise and zero [N, N·m]. `*_delay` [s]: how late a sensor is.
+    `filtered_attitude`: the attitude comes from a filter on the gyroscope and accelerometer.
+    """
+
+    encoder: float = 0.0
+    encoder_rate: float = 0.0
+    effort: float = 0.0
+    gyroscope: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    accelerometer: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    gyroscope_bias: float = 0.0
+    attitude: float = 0.0
+    attitude_bias: float = 0.0
+    attitude_drift: float = 0.0
+    yaw_bias: float = 0.0
+    yaw_drift: float = 0.0
+    force: float = 0.0
+    torque: float = 0.0
+    force_zero: float = 0.0
+    torque_zero: float = 0.0
+    joint_delay: float = 0.0
+    imu_delay: float = 0.0
+    wrench_delay: float = 0.0
+    filtered_attitude: bool = False
+
+
+def sense(
+    exact: Columns, time: Array, robot: RobotModel, sensors: Sensors, seed: int, name: str
+) -> tuple[Columns, dict[str, float]]:
+    """The columns as the sensors record them, and what was drawn for this recording (biases, zeros, drifts).
+
+    The same seed and name give the same recording.
+    """
+    random = np.random.default_rng([seed, zlib.crc32(name.encode())])
+    drawn: dict[str, float] = {}
+    columns = {column: _late(column, values, time, sensors) for column, values in exact.items()}
+    for column in columns:
+        if column.startswith("joint."):
+            columns[column] = _joint(column, columns[column], sensors, random)
+    if robot.imu is not None:
+        prefix = f"imu.{robot.imu.name}"
+        for quantity, white, bias in (
+            ("angular_velocity", sensors.gyroscope, sensors.gyroscope_bias),
+            ("linear_acceleration", sensors.accelerometer, 0.0),
+        ):
+            for place, axis in enumerate("xyz"):
+                column = f"{prefix}.{quantity}.{axis}"
+                zero = drawn[f"{column}.bias"] = random.normal(0, bias) if bias else 0.0
+                columns[column] = columns[column] + zero + _white(white[place], time, random)
+        names = [f"{prefix}.orientation.{axis}" for axis in "wxyz"]
+        believed = np.column_stack([columns[n] for n in names])
+        if sensors.filtered_attitude:
+            rates, proper = (
+                np.column_stack([columns[f"{prefix}.{quantity}.{axis}"] for axis in "xyz"])
+                for quantity in ("angular_velocity", "linear_acceleration")
+            )
+            believed = filtered_attitude(believed[0], rates, proper, float(np.median(np.diff(time))))
+        quaternions, errors = _attitude(believed, time, sensors, random)
+        columns |= dict(zip(names, quaternions.T, strict=True))
+        drawn |= {f"{prefix}.orientation.{key}": value for key, value in errors.items()}
+    for foot in robot.feet.values():
+        for kind, white_size, zero_size in (
+            ("force", sensors.force, sensors.force_zero),
+            ("torque", sensors.torque, sensors.torque_zero),
+        ):
+            for axis in "xyz":
+                column = f"wrench.{foot.wrench.name}.{kind}.{axis}"
+                zero = drawn[f"{column}.zero"] = random.normal(0, zero_size) if zero_size else 0.0
+                columns[column] = columns[column] + zero + _white(white_size, time, random)
+    return columns, drawn
+
+
+def delayed(values: Array, time: Array, delay: float) -> Array:
+    """What a sensor that is `delay` [s] late reads; before the first sample it reads the first."""
+    if delay == 0.0:
+        return values
+    return np.asarray(CubicSpline(time, values)(np.maximum(time - delay, time[0])))
+
+
+def _late(column: str, values: Array, time: Array, sensors: Sensors) -> Array:
+    delays = {"joint": sensors.joint_delay, "imu": sensors.imu_delay, "wrench": sensors.wrench_delay}
+    return delayed(values, time, delays[column.split(".", 1)[0]])
+
+
+def _joint(column: str, values: Array, sensors: Sensors, random: np.random.Generator) -> Array:
+    if column.endswith(".effort"):
+        return values + _white(sensors.effort, values, random)
+    quantum = sensors.encoder if column.endswith(".position") else sensors.encoder_rate
+    return np.round(values / quantum) * quantum if quantum else values
+
+
+def _white(size: float, like: Array, random: np.random.Generator) -> Array:
+    return random.normal(0, size, like.shape) if size else np.zeros(like.shape)
+
+
+def _attitude(
+    exact: Array, time: Array, sensors: Sensors, random: np.random.Generator
+) -> tuple[Array, dict[str, float]]:
+    """Attitude with a small rotation about the world's axes in front: bias, drift and noise of roll, pitch, yaw."""
+    share = (time - time[0]) / (time[-1] - time[0])
+    tilt, drift = sensors.attitude_bias, sensors.attitude_drift
+    sizes = {"x": (tilt, drift), "y": (tilt, drift), "z": (sensors.yaw_bias, sensors.yaw_drift)}
+    angles, drawn = np.empty((time.size, 3)), {}
+    for place, (axis, (bias, slope)) in enumerate(sizes.items()):
+        drawn[f"bias.{axis}"] = random.normal(0, bias) if bias else 0.0
+        drawn[f"drift.{axis}"] = random.normal(0, slope) if slope else 0.0
+        angles[:, place] = drawn[f"bias.{axis}"] + drawn[f"drift.{axis}"] * share
+        angles[:, place] += _white(sensors.attitude, time, random)
+    half = np.column_stack([np.ones(time.size), angles / 2])
+    return _multiply(half / np.linalg.norm(half, axis=1, keepdims=True), exact), drawn
+
+
+def _multiply(a: Array, b: Array) -> Array:
+    """Product of quaternions w x y z, (N, 4)."""
+    (aw, ax, ay, az), (bw, bx, by, bz) = a.T, b.T
+    return np.column_stack(
+        [
+            aw * bw - ax * bx - ay * by - az * bz,
+            aw * bx + ax * bw + ay * bz - az * by,
+            aw * by - ax * bz + ay * bw + az * bx,
+            aw * bz + ax * by - ay * bx + az * bw,
+        ]
+    )

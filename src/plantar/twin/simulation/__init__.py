@@ -1,0 +1,1 @@
+"""The twin's physics: scene, rubber, steps, rollouts."""

@@ -1,0 +1,38 @@
+"""What the twin's world is made of: everything that changes the physics, nothing that only changes the sensors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from plantar.twin.bush import PAPER, Feet
+from plantar.twin.simulation.mjcf import FLOOR, FRICTION, TIMESTEP
+
+
+@dataclass(frozen=True)
+class Slip:
+    """The floor is slippery from `start` to `end` [s of the motion]: friction falls to `friction`."""
+
+    start: float
+    end: float
+    friction: float
+
+
+@dataclass(frozen=True)
+class Physics:
+    """The bushes (None: rigid feet), the floor and its slippery seconds.
+
+    `floor`: contact stiffness and damping per unit of mass [1/s², 1/s], and impedance; `settle` [s] passes before
+    the log begins.
+    """
+
+    bushes: Feet | None = field(default_factory=lambda: PAPER)
+    floor: tuple[float, float, float] = FLOOR
+    friction: float = FRICTION
+    slips: tuple[Slip, ...] = ()
+    settle: float = 3.0
+    timestep: float = TIMESTEP
+
+    @property
+    def linear(self) -> bool:
+        """Whether every bush is a plain spring and damper."""
+        return self.bushes is None or all(bush.is_linear for bush in self.bushes.values())

@@ -1,0 +1,121 @@
+"""MuJoCo's steps with the rubber and the slippery seconds that MuJoCo does not know."""
+
+from __future__ import annotations
+
+import ctypes
+from functools import cache
+from pathlib import Path
+from typing import Final, Protocol
+
+import mujoco
+import numpy as np
+
+from plantar._core import Stepping
+from plantar.conventions import Array
+from plantar.robot.model import RobotModel
+from plantar.twin.simulation.physics import Physics
+from plantar.twin.simulation.rubber import Element, elements
+
+LIBRARIES: Final = ("libmujoco*.so*", "libmujoco*.dylib", "mujoco*.dll")
+
+
+class Steps(Protocol):
+    """Steps a model once for each row of actuator inputs (count, nu)."""
+
+    def run(self, rows: Array) -> None: ...
+
+
+class Stepper:
+    """Steps one model through a motion: rubber, slippery seconds, sensors only where they are read."""
+
+    def __init__(
+        self, model: mujoco.MjModel, data: mujoco.MjData, physics: Physics, robot: RobotModel
+    ) -> None:
+        self.model, self.physics = model, physics
+        rubber = _rubber(model, physics, robot)
+        step = engine_step()
+        self.steps: Steps = (
+            InPython(model, data, rubber) if step is None else native(model, data, rubber, step)
+        )
+
+    def at(self, time: float) -> None:
+        """Set the floor's friction for this moment."""
+        friction = self.physics.friction
+        for slip in self.physics.slips:
+            if slip.start <= time < slip.end:
+                friction = slip.friction
+        self.model.geom_friction[0, 0] = friction
+
+    def sensed(self, row: Array) -> None:
+        """One step with inputs (nu,), after which the sensors hold what belongs to the state it started from."""
+        self.model.opt.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_SENSOR)
+        self.steps.run(row[None])
+        self.model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_SENSOR)
+
+    def blind(self, rows: Array) -> None:
+        """Steps with inputs (count, nu) whose sensors nobody reads: they are not computed."""
+        self.model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_SENSOR)
+        self.steps.run(rows)
+
+
+class InPython:
+    """The same steps without the native core, which is tested against them; they hold the GIL half of the time."""
+
+    def __init__(
+        self, model: mujoco.MjModel, data: mujoco.MjData, rubber: list[tuple[int, int, Element]]
+    ) -> None:
+        self.model, self.data, self.rubber = model, data, rubber
+
+    def run(self, rows: Array) -> None:
+        for row in rows:
+            self.data.ctrl[:] = row
+            for angle, torque, element in self.rubber:
+                self.data.qfrc_applied[torque] = -element.torque(self.data.qpos[angle])
+            mujoco.mj_step(self.model, self.data)
+
+
+class _Native:
+    """The native core's steps, with what their addresses point into kept alive."""
+
+    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, stepping: Stepping) -> None:
+        self._alive = model, data
+        self._stepping = stepping
+
+    def run(self, rows: Array) -> None:
+        self._stepping.run(np.ascontiguousarray(rows))
+
+
+def native(
+    model: mujoco.MjModel, data: mujoco.MjData, rubber: list[tuple[int, int, Element]], step: int
+) -> Steps:
+    """Steps of the native core, the GIL released, through MuJoCo's own step function at the address `step`."""
+    places = [(angle, torque) for angle, torque, _ in rubber]
+    laws = [(element.stiffness, element.limit, element.hardening) for _, _, element in rubber]
+    stepping = Stepping(
+        step, model._address, data._address, data.qpos, data.qfrc_applied, data.ctrl, places, laws
+    )
+    return _Native(model, data, stepping)
+
+
+@cache
+def engine_step() -> int | None:
+    """Address of `mj_step` in the library that the Python package has loaded; None where it is not to be found."""
+    folder = Path(mujoco.__file__).parent
+    for path in (path for pattern in LIBRARIES for path in sorted(folder.glob(pattern))):
+        try:
+            return ctypes.cast(ctypes.CDLL(str(path)).mj_step, ctypes.c_void_p).value
+        except (OSError, AttributeError):
+            continue
+    return None
+
+
+def _rubber(model: mujoco.MjModel, physics: Physics, robot: RobotModel) -> list[tuple[int, int, Element]]:
+    """Where each element finds its deflection and puts its torque, and the element."""
+    found: list[tuple[int, int, Element]] = []
+    if physics.bushes is None:
+        return found
+    for foot in robot.feet:
+        for axis, element in elements(physics.bushes[foot]).items():
+            joint = model.joint(f"{foot}.{axis}")
+            found.append((int(joint.qposadr[0]), int(joint.dofadr[0]), element))
+    return found

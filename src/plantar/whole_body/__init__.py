@@ -1,0 +1,1 @@
+"""Inertial parameters without joint torques (eq. 2), friction of the joints (eq. 3)."""

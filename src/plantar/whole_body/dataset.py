@@ -1,0 +1,172 @@
+"""A log made ready for eq. 1: the motion of every link, the feet's wrenches, the joints' torques."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import pinocchio as pin
+
+from plantar.checks.log_checks import check_log
+from plantar.conventions import GRAVITY, Array, Mask
+from plantar.dynamics import BaseParameters, Equation, Motion, base_parameters, model_parameters
+from plantar.dynamics.base_motion import relative_motion, root_motion, root_motion_from_sole
+from plantar.dynamics.consistency import Prior
+from plantar.errors import DataError, RobotError, located
+from plantar.logs.motion_log import MotionLog
+from plantar.notes import Note
+from plantar.robot.model import RobotModel
+from plantar.signals.filters import differentiate, low_pass
+from plantar.signals.resampling import evenly_sampled
+from plantar.signals.segments import run_ends
+from plantar.whole_body.settings import DynamicsSettings
+
+FEWEST_SAMPLES = 50
+COULOMB_SPEED = (
+    0.02  # rad/s: Coulomb friction is tanh(v / this); the sign alone would follow an encoder's noise
+)
+STANDING_SHARE = 0.2  # of the weight, on one foot: it stands
+
+Smooth = Callable[[Array], Array]
+
+
+@dataclass(frozen=True)
+class Body:
+    """A robot as eq. 1 sees it."""
+
+    robot: RobotModel
+    equation: Equation
+    base: BaseParameters
+    prior: Prior
+
+    @classmethod
+    def of(cls, robot: RobotModel, *, floating: bool) -> Body:
+        model: pin.Model = robot.floating_model if floating else robot.model
+        equation = Equation(model)
+        return cls(robot, equation, base_parameters(equation), Prior.around(model_parameters(model)))
+
+
+@dataclass(frozen=True)
+class Whole:
+    """One log on one grid, filtered: the joints' motion, the root's (N, 9), wrenches as recorded, efforts.
+
+    sense: of the joints' motion, what Coulomb friction follows, (N, n_joints): filtered after the step that it makes,
+    as the efforts are.
+    """
+
+    log: MotionLog
+    motion: Motion
+    sense: Array
+    wrenches: Mapping[str, Array]
+    efforts: Mapping[str, Array]
+    valid: Mask
+    notes: tuple[Note, ...]
+
+
+def prepare_whole(body: Body, log: MotionLog, settings: DynamicsSettings) -> Whole:
+    """Even samples, filtered, differentiated, with the root's motion.
+
+    Raises RobotError or LogError naming what is missing, DataError where a sensor reads something impossible or too
+    few samples are left.
+    """
+    robot, tree = body.robot, body.equation.tree
+    problems = [finding for finding in check_log(robot, log) if finding.fatal]
+    if problems:
+        raise DataError(located(problems[0].text, path=log.source))
+    even = evenly_sampled(log)
+    notes = [*even.notes, *log.joint_notes(robot)]
+    names = tree.names
+    moving = [name for name in names if even.has(f"joint.{name}.position")]
+    if not moving:
+        raise DataError(located("holds no joint positions", path=log.source, valid="joint.<joint>.position"))
+    given = all(even.has(f"joint.{name}.velocity", f"joint.{name}.acceleration") for name in moving)
+    period = even.period
+
+    def smooth(values: Array) -> Array:
+        return values if given else low_pass(values, period, settings.cutoff)
+
+    def stacked(quantity: str, derived: Array | None) -> Array:
+        columns = []
+        for k, name in enumerate(names):
+            values = even.joint(name, quantity) if name in moving else np.zeros(len(even))
+            if values is not None:
+                columns.append(smooth(values))
+            else:
+                columns.append(np.zeros(len(even)) if derived is None else derived[:, k])
+        return np.column_stack(columns)
+
+    q = stacked("position", None)
+    v = stacked("velocity", differentiate(q, period))
+    a = stacked("acceleration", None) if given else differentiate(v, period)
+    if not given:
+        text = f"{log.name}: accelerations derived; all signals through one zero-phase low-pass at "
+        notes.append(Note("filtered", "info", text + f"{settings.cutoff:g} Hz"))
+    base, known = np.tile(body.equation.rest, (len(even), 1)), np.ones(len(even), dtype=bool)
+    wrenches: dict[str, Array] = {}
+    if body.equation.floating:
+        base, known = _root(body, even, q, v, a, smooth, notes)
+        wrenches = {name: smooth(even.wrench(foot.wrench.name)) for name, foot in robot.feet.items()}
+    efforts = {name: smooth(values) for name in names if (values := even.joint(name, "effort")) is not None}
+    motion = Motion(base, q, v, a)
+    sense = np.column_stack([smooth(np.tanh(rate / COULOMB_SPEED)) for rate in v.T])
+    valid = motion.finite & known
+    for values in (*wrenches.values(), *(effort[:, None] for effort in efforts.values())):
+        valid &= np.isfinite(values).all(axis=1)
+    edge = 0 if given else round(1 / settings.cutoff / period)
+    valid &= ~run_ends(valid, edge)
+    left_out = int(np.sum(~valid))
+    if valid.sum() < FEWEST_SAMPLES:
+        raise DataError(
+            located(
+                f"has {valid.sum()} samples that can serve",
+                path=log.source,
+                valid=f"{FEWEST_SAMPLES} or more",
+            )
+        )
+    if left_out > 2 * edge:
+        text = f"{log.name}: {left_out} of {len(even)} samples left out (NaN, gaps and their surroundings)"
+        notes.append(Note("left_out", "info", text))
+    return Whole(even, motion, sense, wrenches, efforts, valid, tuple(notes))
+
+
+def _root(
+    body: Body, log: MotionLog, q: Array, v: Array, a: Array, smooth: Smooth, notes: list[Note]
+) -> tuple[Array, Mask]:
+    """The root frame's motion (N, 9) and where it is known: from the IMU, else from a sole that stands still."""
+    robot, tree = body.robot, body.equation.tree
+    if not robot.feet:
+        raise RobotError(
+            located("names no feet", path=robot.path, valid="feet whose sensors carry the robot")
+        )
+    imu = robot.imu
+    kinds = ("angular_velocity", "linear_acceleration")
+    if imu is not None and log.has(*(f"imu.{imu.name}.{kind}.{axis}" for kind in kinds for axis in "xyz")):
+        joint, placement = robot.frame(imu.placement)
+        rate = smooth(log.angular_velocity(imu.name))
+        acceleration = smooth(log.linear_acceleration(imu.name))
+        relative = relative_motion(tree, joint - 1, placement, q, v, a)
+        known = np.ones(len(log), dtype=bool)
+        return root_motion(relative, acceleration, rate, differentiate(rate, log.period)), known
+    standing = {name: _stands(body, log, name) for name in robot.feet}
+    name = max(standing, key=lambda foot: int(standing[foot].sum()))
+    if standing[name].sum() < FEWEST_SAMPLES:
+        valid = "IMU columns angular_velocity and linear_acceleration, or a foot that stands still"
+        raise DataError(located("does not tell how the root link moves", path=log.source, valid=valid))
+    joint, placement = robot.frame(robot.feet[name].sole.placement)
+    text = (
+        f"{log.name}: no IMU acceleration and angular velocity; the root's motion comes from the {name} sole, taken as "
+        "level and still where it carries the robot"
+    )
+    notes.append(Note("base_from_sole", "warning", text))
+    return root_motion_from_sole(relative_motion(tree, joint - 1, placement, q, v, a)), standing[name]
+
+
+def _stands(body: Body, log: MotionLog, name: str) -> Mask:
+    """Where a foot carries a fair share of the robot, by the force along its sole's normal."""
+    foot = body.robot.feet[name]
+    _, sensor = body.robot.frame(foot.wrench.placement)
+    _, sole = body.robot.frame(foot.sole.placement)
+    normal = sensor.rotation.T @ sole.rotation[:, 2]
+    force = foot.wrench.sign * log.wrench(foot.wrench.name)[:, :3] @ normal
+    return np.asarray(force > STANDING_SHARE * GRAVITY * body.robot.mass)

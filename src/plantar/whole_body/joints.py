@@ -1,0 +1,193 @@
+"""Friction, springs, offsets and actuator inertia of the joints, with the inertias known or found together (eq. 3)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Literal
+
+import numpy as np
+
+from plantar.conventions import Array
+from plantar.errors import DataError, RobotError, located
+from plantar.estimation.intervals import interval95
+from plantar.logs.motion_log import MotionLog
+from plantar.notes import Note
+from plantar.results.dynamics import JOINTS_SCHEMA, DynamicsResult, JointParameter
+from plantar.results.feet import Verdict
+from plantar.robot.model import RobotModel
+from plantar.whole_body.covariance import Uncertainty, uncertainty
+from plantar.whole_body.equations import TERM_UNITS, inertial_samples, joint_samples
+from plantar.whole_body.folds import Samples
+from plantar.whole_body.regularised_fit import PulledFit, PulledProblem, errors_of
+from plantar.whole_body.regularised_result import fit_notes, result_of
+from plantar.whole_body.scores import Place
+from plantar.whole_body.settings import DynamicsSettings
+from plantar.whole_body.whole_logs import Progress, WholeLogs, prepare_logs
+
+FRICTION = ("viscous", "coulomb", "offset")  # of a joint that the robot file does not describe
+SPRUNG = (*FRICTION, "stiffness")  # cables and covers: taken where held-out data speak for it
+POSITIVE = ("viscous", "coulomb", "stiffness", "inertia")
+USABLE_SHARE = 0.2  # half width of the interval over the value
+OFFSET_SHARE = (
+    0.05  # of the joint's rms torque: an offset known to within it is usable even where it is near zero
+)
+
+Inertia = Literal["together", "first", "known"]
+
+
+def identify_joints(
+    robot: RobotModel,
+    logs: Sequence[MotionLog],
+    validate: Sequence[MotionLog] = (),
+    settings: DynamicsSettings | None = None,
+    progress: Progress = lambda _: None,
+    *,
+    inertia: Inertia = "together",
+) -> DynamicsResult:
+    """Fit the joints' own parameters to `logs` and score them, also on `validate`.
+
+    inertia: "together" fits the inertial parameters with them, "first" takes those of eq. 2 (floating bases), "known"
+    the URDF's.
+
+    Terms are those of the robot file; a joint that it does not describe has viscous and Coulomb friction and an offset,
+    and a spring where held-out stretches of `logs` are predicted better with it. Passive joints need no effort.
+    Fitted inertias stay physically consistent and as near to the URDF's as held-out stretches allow. Raises RobotError,
+    LogError or DataError with one line when the input cannot serve, MissingExtra without clarabel.
+    """
+    settings = settings or DynamicsSettings()
+    if inertia == "first" and robot.base == "fixed":
+        message = "a fixed base has no base rows to identify inertias from first"
+        raise RobotError(located(message, path=robot.path, valid="inertia: together, known"))
+    made = prepare_logs(robot, logs, validate, settings, progress)
+    body = made.body
+    given, said = _given(made, inertia, progress)
+    terms, fit, choice = _chosen(made, given, progress)
+    progress("deviations")
+    fitted, unseen = (
+        [joint_samples(body, whole, made.calibration, terms) for whole in wholes]
+        for wholes in (made.fitted, made.unseen)
+    )
+    trust = uncertainty(fit, fitted)
+    chosen = {
+        **settings.to_dict(),
+        "inertia": inertia,
+        "terms": {joint: list(names) for joint, names in terms.items()},
+    }
+    places = [
+        Place(body.equation.first_joint_row + joint, "N.m", joint=name)
+        for joint, name in enumerate(body.equation.tree.names)
+        if name in terms
+    ]
+    parameters = _parameters(fit, trust, terms, fitted)
+    notes = [*said, *choice]
+    return result_of(
+        JOINTS_SCHEMA, made, fit, trust, fitted, unseen, places, chosen, parameters=parameters, notes=notes
+    )
+
+
+def _given(made: WholeLogs, inertia: Inertia, progress: Progress) -> tuple[Array | None, list[Note]]:
+    """The inertial parameters that eq. 3 is to take as they are, if any: the URDF's, or those of eq. 2."""
+    body = made.body
+    if inertia == "together":
+        return None, []
+    if inertia == "known":
+        text = "inertias taken from the URDF as known: the joints' deviations leave their errors out"
+        return body.prior.cad, [Note("inertia_known", "info", text)]
+    recordings = [inertial_samples(body, whole, made.calibration) for whole in made.fitted]
+    fit = PulledProblem(body.equation, body.base, body.prior, recordings).solve(progress)
+    text = (
+        "inertias identified first, from the base rows (eq. 2): the joints' deviations leave their errors out"
+    )
+    return fit.inertial, [Note("inertia_first", "info", text), *fit_notes(fit)]
+
+
+def _chosen(
+    made: WholeLogs, inertial: Array | None, progress: Progress
+) -> tuple[dict[str, tuple[str, ...]], PulledFit, list[Note]]:
+    """Terms of every joint that takes part, and the fit with them; inertial: given parameters, if any."""
+    body = made.body
+    measured = _measured_joints(made)
+    described = body.robot.joints
+    fits = []
+    for default in (FRICTION, SPRUNG):
+        terms = {name: described[name].terms if name in described else default for name in measured}
+        recordings = [joint_samples(body, whole, made.calibration, terms) for whole in made.fitted]
+        problem = PulledProblem(body.equation, body.base, body.prior, recordings)
+        fits.append((terms, problem.solve(progress) if inertial is None else problem.with_known(inertial)))
+        if all(name in described for name in measured):
+            return terms, fits[0][1], []
+    errors = [_held_out(fit, fits[0][1]) for _, fit in fits]
+    sprung = errors[1] < errors[0]
+    terms, fit = fits[sprung]
+    text = (
+        f"joints that the robot file does not describe: {', '.join(SPRUNG if sprung else FRICTION)} (held-out error "
+        f"{np.sqrt(errors[0]):.4g} without stiffness, {np.sqrt(errors[1]):.4g} with it)"
+    )
+    return terms, fit, [Note("terms", "info", text)]
+
+
+def _held_out(fit: PulledFit, reference: PulledFit) -> float:
+    """Smallest held-out error of a fit in the weights of another, so that both can be compared."""
+    if not fit.trials:
+        return float("inf")
+    ratio = np.mean([(reference.weights[row] / fit.weights[row]) ** 2 for row in fit.weights])
+    return float(errors_of(fit.trials).min() * ratio)
+
+
+def _measured_joints(made: WholeLogs) -> tuple[str, ...]:
+    """Passive joints, and those with effort in every log to fit; what is fitted must also be there to be scored."""
+    joints = made.body.robot.joints
+    passive = {name for name, joint in joints.items() if joint.passive}
+    names = tuple(
+        name
+        for name in made.body.equation.tree.names
+        if name in passive or all(name in whole.efforts for whole in made.fitted)
+    )
+    if not names:
+        valid = "joint.<joint>.effort, or passive: true in the robot file"
+        raise DataError(located("holds no joint torques", path=made.fitted[0].log.source, valid=valid))
+    for whole in made.unseen:
+        for name in names:
+            if name not in passive and name not in whole.efforts:
+                raise DataError(located("is missing", path=whole.log.source, column=f"joint.{name}.effort"))
+    return names
+
+
+def _parameters(
+    fit: PulledFit, trust: Uncertainty, terms: Mapping[str, tuple[str, ...]], recordings: Sequence[Samples]
+) -> tuple[JointParameter, ...]:
+    rows = []
+    for joint, name in enumerate(fit.equation.tree.names):
+        if name not in terms:
+            continue
+        row = fit.equation.first_joint_row + joint
+        torque = float(np.sqrt(np.mean(np.concatenate([one.measured[row] for one in recordings]) ** 2)))
+        still = all(np.ptp(one.motion.positions[:, joint]) < 1e-3 for one in recordings)
+        for term, value, std in zip(terms[name], fit.extras[row], trust.extras[row], strict=True):
+            interval = interval95(float(value), float(std), trust.freedom)
+            verdict, reason = _judge(term, float(value), interval, torque, still)
+            rows.append(
+                JointParameter(
+                    name, term, TERM_UNITS[term], float(value), float(std), interval, verdict, reason
+                )
+            )
+    return tuple(rows)
+
+
+def _judge(
+    term: str, value: float, interval: tuple[float, float], torque: float, still: bool
+) -> tuple[Verdict, str]:
+    half = (interval[1] - interval[0]) / 2
+    if still and term != "offset":
+        return "unidentifiable", "the joint hardly moves"
+    if term in POSITIVE and value <= 0:
+        impossible = interval[1] < 0
+        return (
+            "unidentifiable",
+            "negative, which is impossible" if impossible else "zero lies in the interval",
+        )
+    if half <= USABLE_SHARE * abs(value) or (term == "offset" and half <= OFFSET_SHARE * torque):
+        return "usable", "the interval is narrow"
+    if interval[0] <= 0 <= interval[1]:
+        return "unidentifiable", "zero lies in the interval"
+    return "weak", f"the interval is {100 * half / abs(value):.0f} % of the value to each side"

@@ -1,0 +1,122 @@
+"""What a pulled fit found, as a result: parameters, what the motions excite, how hard the pull was."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from plantar.conventions import INERTIAL_NAMES, INERTIAL_UNITS
+from plantar.dynamics import parameter_name, solve_triangle
+from plantar.dynamics.consistency import is_consistent
+from plantar.estimation.intervals import interval95, relative_std_percent
+from plantar.notes import Note, unique
+from plantar.results.dynamics import BaseParameter, DynamicsResult, InertialParameter, JointParameter
+from plantar.whole_body.covariance import Uncertainty
+from plantar.whole_body.folds import Samples
+from plantar.whole_body.identified_urdf import identified_urdf
+from plantar.whole_body.regularised_fit import PulledFit
+from plantar.whole_body.scores import Place, scored
+from plantar.whole_body.whole_logs import WholeLogs
+
+NAMED = 12  # unexcited parameters named in a note; more are counted
+
+
+def result_of(
+    schema: str,
+    logs: WholeLogs,
+    fit: PulledFit,
+    trust: Uncertainty,
+    fitted: Sequence[Samples],
+    unseen: Sequence[Samples],
+    places: Sequence[Place],
+    settings: Mapping[str, Any],
+    *,
+    parameters: tuple[JointParameter, ...] = (),
+    notes: Sequence[Note] = (),
+) -> DynamicsResult:
+    """What eq. 2 and eq. 3 give alike, scored in `places`; notes on excitation and pull come after those given."""
+    robot = logs.body.robot
+    rank, condition, excitation = excitation_of(fit)
+    validation, residuals = scored(fit, fitted, unseen, places)
+    model = robot.floating_model if fit.equation.floating else robot.model
+    return DynamicsResult(
+        schema=schema,
+        robot=robot.name,
+        inputs=logs.inputs,
+        settings={**settings, "strength": fit.strength},
+        rank=rank,
+        condition_number=condition,
+        base_parameters=base_rows(fit, trust),
+        inertial_parameters=inertial_rows(fit),
+        parameters=parameters,
+        validation=validation,
+        notes=unique([*logs.notes, *notes, *excitation, *fit_notes(fit)]),
+        urdf=identified_urdf(robot.urdf, model, fit.inertial),
+        residuals=residuals,
+    )
+
+
+def excitation_of(fit: PulledFit) -> tuple[int, float, list[Note]]:
+    """Rank and condition number of the weighted regressor, and what the motions do not excite."""
+    triangle = np.ascontiguousarray(fit.triangle)
+    solution = solve_triangle(triangle)
+    singular = np.linalg.svd(triangle[:-1, :-1], compute_uv=False)
+    condition = float(singular[0] / singular[solution.rank - 1]) if solution.rank else float("inf")
+    if solution.full:
+        return solution.rank, condition, []
+    n_base, said = len(fit.base), []
+    names = [fit.base.names[k] for k in np.flatnonzero(~solution.excited[:n_base])]
+    if names:
+        listed = ", ".join(names[:NAMED]) + (f" and {len(names) - NAMED} more" if len(names) > NAMED else "")
+        said.append(f"from the URDF, not from the data: {listed}")
+    if terms := int(np.sum(~solution.excited[n_base:])):
+        said.append(f"of the joints' terms {terms} are not told apart")
+    text = f"the motions excite {solution.rank} of {len(solution.values)} directions; {'; '.join(said)}"
+    return solution.rank, condition, [Note("unexcited", "warning", text)]
+
+
+def fit_notes(fit: PulledFit) -> list[Note]:
+    """What the choice of the pull was, and whether it was at the end of its range."""
+    if np.isinf(fit.strength):
+        return []
+    if not fit.trials:
+        text = "too few samples to hold any out: a gentle pull towards the URDF was assumed"
+        return [Note("pull", "warning", text)]
+    held_out = {trial.strength: float(np.sqrt(trial.errors.mean())) for trial in fit.trials}
+    text = (
+        f"pulled towards the URDF with strength {fit.strength:g}: "
+        f"held-out error {held_out[fit.strength]:.4g} of the fit's, "
+        f"{held_out[min(held_out)]:.4g} at the gentlest pull, {held_out[max(held_out)]:.4g} at the strongest"
+    )
+    notes = [Note("pull", "info", text)]
+    links = zip(fit.equation.links, fit.prior.cad.reshape(-1, len(INERTIAL_NAMES)), strict=True)
+    impossible = [link for link, cad in links if not is_consistent(cad)]
+    if impossible:
+        text = f"inertias in the URDF that no body can have: {', '.join(impossible)}"
+        notes.append(Note("cad_inconsistent", "warning", text))
+    return notes
+
+
+def base_rows(fit: PulledFit, trust: Uncertainty) -> tuple[BaseParameter, ...]:
+    values = fit.base.grouping @ fit.inertial
+    return tuple(
+        BaseParameter(
+            expression,
+            float(value),
+            float(std),
+            interval95(float(value), float(std), trust.freedom),
+            relative_std_percent(float(value), float(std)),
+        )
+        for expression, value, std in zip(fit.base.expressions, values, trust.base, strict=True)
+    )
+
+
+def inertial_rows(fit: PulledFit) -> tuple[InertialParameter, ...]:
+    rows = []
+    for index, (value, cad) in enumerate(zip(fit.inertial, fit.prior.cad, strict=True)):
+        link, name = parameter_name(fit.equation.links, index).rsplit(".", 1)
+        unit = INERTIAL_UNITS[index % len(INERTIAL_NAMES)]
+        rows.append(InertialParameter(link, name, unit, float(value), float(cad)))
+    return tuple(rows)
