@@ -27,7 +27,7 @@ from plantar.whole_body.inertia import identify_inertia
 from plantar.whole_body.joints import identify_joints
 from plantar.whole_body.settings import DynamicsSettings
 
-sys.path.append(str(Path(__file__).parents[1] / "tests"))
+sys.path.append(str(Path(__file__).parents[1] / "tests" / "support"))
 import example_robots
 import small_biped
 

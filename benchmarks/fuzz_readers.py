@@ -26,7 +26,7 @@ from types import FrameType
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "support"))
 
 from biped import record, sway
 from biped_robot import make_robot

@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "support"))
 from bush_trials import Rubber, campaign, largest_torque, unseen, unseen_error
 from plantar.model_selection.selection import choose_law
 

@@ -10,6 +10,7 @@ import pytest
 from scipy import linalg
 
 import example_robots
+from example_robots import random_motion
 from plantar import _core
 from plantar.conventions import Array
 from plantar.dynamics import (
@@ -24,7 +25,6 @@ from plantar.dynamics import (
     stacked,
 )
 from plantar.errors import DataError, RobotError
-from test_dynamics import random_motion
 
 
 def measured(model: pin.Model, motion: tuple[Array, Array, Array], noise: float, seed: int) -> Array:

@@ -7,8 +7,8 @@ import pinocchio as pin
 import pytest
 
 import example_robots
+from example_robots import random_motion
 from plantar.dynamics import BaseParameters, Equation, base_parameters, regressor
-from test_dynamics import random_motion
 
 ROBOTS = [
     (example_robots.TALOS, True),

@@ -10,7 +10,7 @@ import pytest
 from log_formats import WRITERS
 
 spec = importlib.util.spec_from_file_location(
-    "fuzz_readers", Path(__file__).resolve().parents[1] / "benchmarks" / "fuzz_readers.py"
+    "fuzz_readers", Path(__file__).resolve().parents[3] / "benchmarks" / "fuzz_readers.py"
 )
 assert spec is not None
 assert spec.loader is not None

@@ -7,7 +7,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from example_robots import TALOS
+from example_robots import talos_file
 from plantar.conventions import rotation_from_quaternion
 from plantar.errors import MotionError
 from plantar.motions import plan_motion
@@ -236,18 +236,3 @@ def test_any_biped_stands_on_given_bushes(tmp_path) -> None:
     columns = recorded(rollout, robot)
     both = sum(columns[f"wrench.{side}.force.z"] for side in ("left", "right"))
     assert both.mean() == pytest.approx(robot.mass * GRAVITY, rel=0.02)
-
-
-def talos_file(folder):
-    feet = "".join(
-        f"""  {side}:
-    ankle: leg_{side}_6_link
-    bush: {{xyz: [0, 0, -0.09]}}
-    wrench: {{name: {side}, xyz: [0, 0, -0.08]}}
-    sole: {{xyz: [0, 0, -0.107], polygon: [[0.105, 0.07], [-0.105, 0.07], [-0.105, -0.07], [0.105, -0.07]]}}
-"""
-        for side in ("left", "right")
-    )
-    path = folder / "talos.yaml"
-    path.write_text(f"name: talos\nurdf: {TALOS}\nimu: {{name: chest, link: torso_2_link}}\nfeet:\n{feet}")
-    return path

@@ -7,6 +7,7 @@ import pinocchio as pin
 import pytest
 
 import example_robots
+from example_robots import random_motion
 from plantar import _core
 from plantar.conventions import Array
 from plantar.dynamics import Contact, Equation, Motion, model_parameters, pinocchio_motion, regressor
@@ -22,14 +23,6 @@ ROBOTS = [
     (example_robots.TIAGO, False),
 ]
 NAMES = [f"{urdf.stem}-{'floating' if floating else 'fixed'}" for urdf, floating in ROBOTS]
-
-
-def random_motion(model: pin.Model, samples: int, seed: int) -> tuple[Array, Array, Array]:
-    pin.seed(seed)
-    bound = 2 * np.ones(model.nq)
-    q = np.array([pin.randomConfiguration(model, -bound, bound) for _ in range(samples)])
-    rng = np.random.default_rng(seed)
-    return q, rng.normal(size=(samples, model.nv)), rng.normal(size=(samples, model.nv))
 
 
 def relative(found: Array, expected: Array) -> float:

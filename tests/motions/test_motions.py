@@ -6,13 +6,12 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from example_robots import G1
+from example_robots import G1, talos_file
 from plantar.errors import MotionError
 from plantar.motions import CAMPAIGN, DEMO, FIT, Plan, plan_motion, planned_balance
 from plantar.motions.profile import bows, cycles, smooth_step, sweep, window
 from plantar.robot.model import RobotModel, load_robot
 from plantar.twin.robots import hrp2
-from test_twin_rollout import talos_file
 from twin_samples import plan
 
 

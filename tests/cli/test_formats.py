@@ -153,7 +153,7 @@ def test_a_newcomer_gets_from_a_bag_and_a_urdf_to_mujoco_in_four_commands(tmp_pa
 
 
 def test_the_snippets_of_the_documentation_are_robot_files(tmp_path: Path) -> None:
-    text = (Path(__file__).resolve().parents[1] / "docs" / "formats.md").read_text()
+    text = (Path(__file__).resolve().parents[2] / "docs" / "formats.md").read_text()
     snippets = [yaml.safe_load(block) for block in re.findall(r"```yaml\n(.*?)```", text, re.DOTALL)]
     assert len(snippets) >= 3
     for number, snippet in enumerate(snippets):
