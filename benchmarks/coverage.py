@@ -85,17 +85,17 @@ def main() -> None:
                 )
                 truth = _on_the_floor(robot, bushes, preset)
                 played = time.perf_counter() - started
-                laws: Counter[str] = Counter()
+                models: Counter[str] = Counter()
                 table: Table = defaultdict(list)
                 for recordings in campaigns:
                     logs, split = [one.log for one in recordings], len(chosen.motions)
                     result = identify_feet(robot, logs[:split], logs[split:], settings)
-                    laws[result.model] += 1
+                    models[result.model] += 1
                     for key, score in [*_rotations(result, truth), *_compliances(result, truth)]:
                         table[key].append(score)
                         every[key].append(score)
                 took = time.perf_counter() - started - played
-                print(f"{name}, {preset}: laws {dict(laws)}; rollouts {played:.0f} s, fits {took:.0f} s")
+                print(f"{name}, {preset}: laws {dict(models)}; rollouts {played:.0f} s, fits {took:.0f} s")
                 _print(table)
     print("all together")
     _print(every)

@@ -26,7 +26,7 @@ from plantar.signals.resampling import shifted
 from plantar.twin import PAPER, PRESETS, play_all
 from plantar.twin.robots import hrp2
 
-APART = ((10, 0, 0), (0, 0, 5), (0, 0, -5), (5, -5, 0), (8, 3, -4))  # ms: left and right wrench, encoders
+UNEQUAL = ((10, 0, 0), (0, 0, 5), (0, 0, -5), (5, -5, 0), (8, 3, -4))  # ms: left and right wrench, encoders
 
 
 def late(log: MotionLog, delay: float, columns: str = "wrench.") -> MotionLog:
@@ -58,7 +58,7 @@ def print_apart(robot: RobotModel, presets: Sequence[str], seeds: int, others: S
     for preset in presets:
         own = 1e3 * PRESETS[preset].sensors.wrench_delay
         campaigns = play_all([*FIT, *others], robot, PAPER, preset, range(seeds))
-        for left, right, encoders in APART:
+        for left, right, encoders in UNEQUAL:
             misses, rows, taken = [], [], []
             for recordings in campaigns:
                 logs = [
@@ -67,11 +67,11 @@ def print_apart(robot: RobotModel, presets: Sequence[str], seeds: int, others: S
                     for recording in recordings
                 ]  # fmt: skip
                 found = identify_feet(robot, logs[: len(FIT)], logs[len(FIT) :])
-                latency = found.extras["latency"]
+                sensor_delay = found.extras["latency"]
                 for foot, delay in (("left", left), ("right", right)):
-                    told = latency["feet"].get(foot, latency["wrench_delay"])
+                    told = sensor_delay["feet"].get(foot, sensor_delay["wrench_delay"])
                     misses.append(abs(1e3 * told - delay - own))
-                misses.append(abs(1e3 * latency["encoder_delay"] - encoders))
+                misses.append(abs(1e3 * sensor_delay["encoder_delay"] - encoders))
                 rows.append(damping_errors(found))
                 as_read = FeetSettings(wrench_delay=1e-3 * own)
                 taken.append(damping_errors(identify_feet(robot, logs[: len(FIT)], settings=as_read)))
@@ -110,9 +110,9 @@ def main() -> None:
             for seed, recordings in enumerate(campaigns):
                 logs = [late(recording.log, 1e-3 * delay) for recording in recordings]
                 corrected = identify_feet(robot, logs[:split], logs[split:])
-                latency = corrected.extras["latency"]
-                found.append(1e3 * latency["wrench_delay"])
-                claimed.append(1e3 * 1.96 * latency["std"])
+                sensor_delay = corrected.extras["latency"]
+                found.append(1e3 * sensor_delay["wrench_delay"])
+                claimed.append(1e3 * 1.96 * sensor_delay["std"])
                 results[0].append(corrected)
                 if seed == 0:
                     results[1].append(

@@ -10,7 +10,7 @@ import pytest
 
 import example_robots
 from plantar import _core
-from plantar.contact.deflection import BushState, bush_states, closure
+from plantar.contact.deflection import BushState, bush_states, relative_pose
 from plantar.conventions import Array, rotation_from_rpy
 from plantar.errors import DataError, RobotError
 from plantar.robot.model import Foot, Imu, Placement, RobotModel, Sole, WrenchSensor
@@ -149,7 +149,7 @@ def test_closure_agrees_with_the_relative_pose_of_level_soles() -> None:
     moved = motion(model, 5)
     none = {name: np.zeros((SAMPLES, 6)) for name in model.feet}
     found = states(model, moved, none)
-    closed = closure(found["left"], found["right"])
+    closed = relative_pose(found["left"], found["right"])
     for i in range(SAMPLES):
         soles = {name: answer["sole"] for name, answer in oracle(model, moved, none, i).items()}
         forward = {name: sole.rotation[:, 0] for name, sole in soles.items()}
@@ -173,8 +173,8 @@ def test_the_imus_yaw_enters_neither_angles_nor_closure() -> None:
     after = states(model, {**moved, "orientation": turned}, none)
     np.testing.assert_allclose(after["left"].deflection, before["left"].deflection, atol=1e-12)
     np.testing.assert_allclose(
-        closure(after["left"], after["right"]).position,
-        closure(before["left"], before["right"]).position,
+        relative_pose(after["left"], after["right"]).position,
+        relative_pose(before["left"], before["right"]).position,
         atol=1e-12,
     )
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from plantar.contact.slip import Witness, slides, sliding, turning, twist_speed, unresisted
+from plantar.contact.slip import SlipIndicator, slides, sliding, turning, twist_speed, unresisted
 
 PERIOD = 0.005
 TIME = np.arange(4000) * PERIOD
@@ -22,8 +22,8 @@ def noise(size: float, seed: int = 0) -> np.ndarray:
     return np.random.default_rng(seed).normal(0, size, (TIME.size, 2))
 
 
-def witness(speed: np.ndarray, deviation: float = 0.001) -> Witness:
-    return Witness(speed, np.full(TIME.size, deviation))
+def indicator(speed: np.ndarray, deviation: float = 0.001) -> SlipIndicator:
+    return SlipIndicator(speed, np.full(TIME.size, deviation))
 
 
 @pytest.mark.parametrize("distance", [0.003, -0.01])
@@ -59,15 +59,15 @@ def test_a_slide_reaches_as_far_as_it_is_possible() -> None:
     """Sure in its middle, possible before; what is possible alone is none, nor what covers no way."""
     middle, slow = (TIME >= 8.1) & (TIME < 8.3), (TIME >= 8.0) & (TIME < 8.4)
     speed = np.where(middle, 0.0055, np.where(slow, 0.004, 0.0005))
-    assert np.array_equal(slides([witness(speed)], speed, PERIOD), slow)
-    assert not slides([witness(np.where(slow, 0.004, 0.0))], speed, PERIOD).any()
-    assert not slides([witness(speed)], 0.3 * speed, PERIOD).any()
+    assert np.array_equal(slides([indicator(speed)], speed, PERIOD), slow)
+    assert not slides([indicator(np.where(slow, 0.004, 0.0))], speed, PERIOD).any()
+    assert not slides([indicator(speed)], 0.3 * speed, PERIOD).any()
 
 
 def test_two_witnesses_see_one_slide() -> None:
     """One says where it begins, the other where it ends, though neither covers LEAST_PATH alone."""
     first, second = (TIME >= 8.0) & (TIME < 8.1), (TIME >= 8.15) & (TIME < 8.25)
-    seen = [witness(np.where(part, 0.006, 0.0)) for part in (first, second)]
+    seen = [indicator(np.where(part, 0.006, 0.0)) for part in (first, second)]
     way = np.where(first | second, 0.006, 0.0)
     assert np.array_equal(slides(seen, way, PERIOD), (TIME >= 8.0) & (TIME < 8.25))
     assert not slides(seen[:1], np.where(first, 0.006, 0.0), PERIOD).any()
@@ -87,7 +87,7 @@ def test_friction_must_resist_a_slide(force: float, against: bool) -> None:
     fast = (TIME > 8.0) & (TIME < 8.3)
     velocity = np.column_stack([np.where(fast, 0.02, 0.0005), np.zeros(TIME.size)])
     friction = np.column_stack([np.full(TIME.size, force), np.zeros(TIME.size)])
-    found = unresisted(witness(velocity[:, 0]), velocity, friction, PERIOD)
+    found = unresisted(indicator(velocity[:, 0]), velocity, friction, PERIOD)
     assert np.array_equal(found, fast & against)
 
 

@@ -10,8 +10,8 @@ import pytest
 from biped_robot import make_robot
 from plantar.conventions import Array
 from plantar.estimation.delay import Delay, Pair, estimate_delay
-from plantar.feet.sensors.newton_euler import Closure
-from plantar.feet.sensors.sensor_delay import CLOCK, wrench_latency
+from plantar.feet.sensors.newton_euler import NewtonEulerResidual
+from plantar.feet.sensors.sensor_delay import CLOCK, estimate_wrench_delay
 from plantar.logs.motion_log import MotionLog
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.resampling import interpolate
@@ -85,9 +85,9 @@ def test_no_delay_is_claimed_beyond_what_delays_are() -> None:
     assert estimate_delay([late_pair(0.2, 0)]) is None
 
 
-def closed(pair: Pair) -> Closure:
+def closed(pair: Pair) -> NewtonEulerResidual:
     """The pair as one foot's closure, under still joints."""
-    return Closure(pair, pair.measured[None], pair.rate[None], 0 * pair.predicted)
+    return NewtonEulerResidual(pair, pair.measured[None], pair.rate[None], 0 * pair.predicted)
 
 
 @pytest.mark.parametrize("slow_first", [True, False])
@@ -95,6 +95,6 @@ def test_the_slowest_clock_bounds_what_is_known(slow_first: bool, tmp_path: Path
     """Whichever log comes first; one that says nothing of the delay does not count."""
     periods = [0.02, PERIOD] if slow_first else [PERIOD, 0.02]
     logs = [MotionLog(str(period), period * np.arange(100), {}) for period in (*periods, 0.1)]
-    closures = [closed(late_pair(0.01, 1)), closed(late_pair(0.01, 2)), None]
-    found = wrench_latency(make_robot(tmp_path), logs, lambda *_: closures)
+    residuals = [closed(late_pair(0.01, 1)), closed(late_pair(0.01, 2)), None]
+    found = estimate_wrench_delay(make_robot(tmp_path), logs, lambda *_: residuals)
     assert CLOCK * 0.02 <= found.std < CLOCK * 0.1

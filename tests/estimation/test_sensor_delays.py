@@ -13,8 +13,8 @@ from biped_robot import make_robot
 from plantar.conventions import Array
 from plantar.estimation.delay import Pair
 from plantar.estimation.sensor_delays import estimate_delays
-from plantar.feet.sensors.newton_euler import Closure
-from plantar.feet.sensors.sensor_delay import Latency, in_time, latency_of, wrench_latency
+from plantar.feet.sensors.newton_euler import NewtonEulerResidual
+from plantar.feet.sensors.sensor_delay import SensorDelay, estimate_wrench_delay, in_time, sensor_delay_of
 from plantar.notes import Note
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.resampling import interpolate
@@ -31,7 +31,7 @@ def late(values: Array, delay: float) -> Array:
     )
 
 
-def closure(delays: Sequence[float], seed: int) -> Closure:
+def residual(delays: Sequence[float], seed: int) -> NewtonEulerResidual:
     """Two feet that also push against each other, below 1.5 Hz; half of the motion shows in the encoders alone."""
     *each, encoders = delays
     random = np.random.default_rng(seed)
@@ -51,7 +51,7 @@ def closure(delays: Sequence[float], seed: int) -> Closure:
     rates = [differentiate(reading, PERIOD) for reading in readings]
     measured, rates = np.array(readings)[:, INNER], np.array(rates)[:, INNER]
     pair = Pair("sweep", measured.sum(axis=0), rates.sum(axis=0), predicted(0.0)[INNER], PERIOD)
-    return Closure(pair, measured, rates, by_encoders[INNER])
+    return NewtonEulerResidual(pair, measured, rates, by_encoders[INNER])
 
 
 @pytest.mark.parametrize(
@@ -59,7 +59,7 @@ def closure(delays: Sequence[float], seed: int) -> Closure:
 )
 def test_each_delay_is_found_beside_the_others(delays: tuple[float, float, float]) -> None:
     for seed in range(4):
-        found = estimate_delays([closure(delays, seed).balance])
+        found = estimate_delays([residual(delays, seed).balance])
         assert found is not None
         assert np.abs(found.values - delays).max() < 7e-4
         assert np.sqrt(np.diag(found.covariance)).max() < 5e-4
@@ -67,7 +67,7 @@ def test_each_delay_is_found_beside_the_others(delays: tuple[float, float, float
 
 def test_what_is_held_is_not_estimated() -> None:
     found = estimate_delays(
-        [closure((0.006, 0.006, 0.0), 1).balance], np.array([[1.0, -1.0, 0.0], [0.0, 0.0, 1.0]])
+        [residual((0.006, 0.006, 0.0), 1).balance], np.array([[1.0, -1.0, 0.0], [0.0, 0.0, 1.0]])
     )
     assert found is not None
     assert found.values[0] == pytest.approx(found.values[1], abs=1e-12)
@@ -75,13 +75,13 @@ def test_what_is_held_is_not_estimated() -> None:
     assert found.values[0] == pytest.approx(0.006, abs=5e-4)
 
 
-def latency(tmp_path: Path, *delays: float) -> Latency:
+def sensor_delay(tmp_path: Path, *delays: float) -> SensorDelay:
     robot, log = make_robot(tmp_path), record(sway())
-    return wrench_latency(robot, [log, log], lambda *_: [closure(delays, seed) for seed in (1, 2)])
+    return estimate_wrench_delay(robot, [log, log], lambda *_: [residual(delays, seed) for seed in (1, 2)])
 
 
 def test_one_delay_is_kept_where_sensors_do_not_differ(tmp_path: Path) -> None:
-    found = latency(tmp_path, 0.005, 0.005, 0.0)
+    found = sensor_delay(tmp_path, 0.005, 0.005, 0.0)
     assert found.note.code == "delay"
     assert found.feet == {}
     assert found.encoders == 0.0
@@ -89,11 +89,11 @@ def test_one_delay_is_kept_where_sensors_do_not_differ(tmp_path: Path) -> None:
 
 
 def test_feet_that_differ_and_encoders_that_lag_are_told(tmp_path: Path) -> None:
-    found = latency(tmp_path, 0.012, 0.002, 0.0)
+    found = sensor_delay(tmp_path, 0.012, 0.002, 0.0)
     assert found.note.code == "delays_apart"
     assert found.feet == pytest.approx({"left": 0.012, "right": 0.002}, abs=7e-4)
     assert found.encoders == 0.0
-    lagging = latency(tmp_path, 0.0, 0.0, 0.006)
+    lagging = sensor_delay(tmp_path, 0.0, 0.0, 0.006)
     assert lagging.feet == {}
     assert lagging.encoders == pytest.approx(0.006, abs=7e-4)
     assert "encoders +6" in lagging.note.text or "encoders +5.9" in lagging.note.text
@@ -102,8 +102,8 @@ def test_feet_that_differ_and_encoders_that_lag_are_told(tmp_path: Path) -> None
 def test_a_log_is_put_in_time_and_a_result_remembers_how(tmp_path: Path) -> None:
     robot, log = make_robot(tmp_path), record(sway())
     note = Note("delays_apart", "warning", "")
-    found = Latency(0.015, 0.0, np.inf, True, note, {"left": 0.02, "right": 0.01}, -0.01)
-    moved = in_time(robot, log, latency_of({"latency": found.to_dict()}))
+    found = SensorDelay(0.015, 0.0, np.inf, True, note, {"left": 0.02, "right": 0.01}, -0.01)
+    moved = in_time(robot, log, sensor_delay_of({"latency": found.to_dict()}))
     steps = {"wrench.left.force.z": 2, "wrench.right.torque.y": 1, "joint.left_ankle_pitch.position": -1}
     for name, step in steps.items():
         expected = log.columns[name][10 + step : 100 + step]

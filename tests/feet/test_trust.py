@@ -12,7 +12,7 @@ from biped_robot import make_robot
 from plantar.contact.slip import sliding
 from plantar.feet.identify import identify_feet
 from plantar.feet.settings import FeetSettings
-from plantar.results.usage import served_shares
+from plantar.results.usage import used_shares
 from plantar.robot.model import RobotModel
 
 PERIOD = 0.005
@@ -63,7 +63,7 @@ def test_every_second_is_accounted_for(tmp_path: object) -> None:
     log = record(sway("hop", duration=20.0, lifts=(("left", 8.0, 11.0),)))
     result = identify_feet(robot, [log], settings=FeetSettings(model="kelvin_voigt"))
     left = next(
-        row for row in served_shares([phase.to_dict() for phase in result.phases]) if row["foot"] == "left"
+        row for row in used_shares([phase.to_dict() for phase in result.phases]) if row["foot"] == "left"
     )
     assert left["seconds"] == pytest.approx(20.0, abs=0.1)
     assert 12 < left["served"] < 17.5

@@ -16,7 +16,7 @@ from plantar.feet.identify import identify_feet
 from plantar.feet.validate import validate_feet
 from plantar.results.feet import FEET_SCHEMA
 from plantar.results.io import dump_json, finite, read_result
-from plantar.results.scores import opening, score
+from plantar.results.scores import first_second, score
 from plantar.robot.model import RobotModel
 
 
@@ -45,10 +45,10 @@ def test_no_percentage_of_nothing() -> None:
 def test_the_opening_is_one_second_of_samples_that_serve() -> None:
     time = np.arange(400) * 0.01
     used = time >= 1.0
-    first = opening(time, used)
+    first = first_second(time, used)
     assert time[first].min() == pytest.approx(1.0)
     assert time[first].max() == pytest.approx(1.99)
-    assert not opening(time, np.zeros(400, dtype=bool)).any()
+    assert not first_second(time, np.zeros(400, dtype=bool)).any()
 
 
 def test_numbers_that_are_not_finite_become_null() -> None:

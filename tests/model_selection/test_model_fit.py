@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bush_trials import (
+from bush_data_sets import (
     PERIOD,
     Rubber,
     campaign,
@@ -19,12 +19,12 @@ from bush_trials import (
     tilt,
 )
 from plantar.errors import DataError
-from plantar.model_selection.data_sets import Trial, prepare_trials
+from plantar.model_selection.data_sets import DataSet, prepare_data_sets
 from plantar.model_selection.grid import Pieces
-from plantar.model_selection.model_fit import fit_law, refine
+from plantar.model_selection.model_fit import fit_model, refine
 from plantar.model_selection.partialled_out import Linearised
-from plantar.model_selection.selection import choose_law
-from plantar.models import LAWS, BoucWen, Elastoplastic, Hardening, KelvinVoigt, Motion
+from plantar.model_selection.selection import choose_model
+from plantar.models import MODELS, BoucWen, BushMotion, Elastoplastic, Hardening, KelvinVoigt
 from plantar.signals.filters import low_pass
 
 JENKINS = Rubber(slip_torque=5.0, slip_angle=0.01)
@@ -52,27 +52,27 @@ OWN = {
 }
 
 
-@pytest.mark.parametrize("name", sorted(LAWS))
+@pytest.mark.parametrize("name", sorted(MODELS))
 def test_a_law_recovers_its_own_parameters(name: str) -> None:
-    law = LAWS[name]
+    model = MODELS[name]
     rng = np.random.default_rng(5)
     values, shape = np.array([434.0, 15.9, *OWN.get(name, [])]), np.array(SHAPES.get(name, []))
-    trials = []
+    data_sets = []
     for label, start in (("a", 0.0), ("b", 0.3)):
         moved, other = sway(rng, 0.08, 0.5), sway(rng, 0.03, 0.7)
-        motion = Motion(
+        motion = BushMotion(
             moved,
             np.gradient(moved, PERIOD),
             PERIOD,
             other[:, None],
             np.gradient(other, PERIOD)[:, None],
         )
-        starts = np.array([start if law.remembers else 0.0])
-        torque = law.columns(motion, shape, starts) @ values + rng.standard_normal()
+        initial_states = np.array([start if model.remembers else 0.0])
+        torque = model.columns(motion, shape, initial_states) @ values + rng.standard_normal()
         used = np.ones(len(moved), dtype=bool)
         used[:60] = used[-60:] = False
-        trials.append(Trial(label, motion, torque, used))
-    fit = fit_law(law, trials)
+        data_sets.append(DataSet(label, motion, torque, used))
+    fit = fit_model(model, data_sets)
     np.testing.assert_allclose(fit.values[:2], values[:2], rtol=5e-3)  # paths are thinned out
     np.testing.assert_allclose(fit.values[2:], values[2:], rtol=0.01)
     np.testing.assert_allclose(fit.shape, shape, rtol=0.02)
@@ -80,18 +80,18 @@ def test_a_law_recovers_its_own_parameters(name: str) -> None:
 
 
 def test_kelvin_voigt_is_plain_least_squares() -> None:
-    trials = campaign(1, Rubber())
-    fit = fit_law(KelvinVoigt(), trials)
+    data_sets = campaign(1, Rubber())
+    fit = fit_model(KelvinVoigt(), data_sets)
     rows, right, places = [], [], []
-    for place, trial in enumerate(trials):
+    for place, data_set in enumerate(data_sets):
         filtered = low_pass(
-            np.column_stack([trial.motion.deflection, trial.motion.rate, trial.torque]), PERIOD, 5.0
+            np.column_stack([data_set.motion.deflection, data_set.motion.rate, data_set.torque]), PERIOD, 5.0
         )
-        ones = np.zeros((int(trial.used.sum()), len(trials)))
+        ones = np.zeros((int(data_set.used.sum()), len(data_sets)))
         ones[:, place] = 1
-        rows.append(np.column_stack([filtered[trial.used, :2], ones]))
-        right.append(filtered[trial.used, 2])
-        places.append(trial.label)
+        rows.append(np.column_stack([filtered[data_set.used, :2], ones]))
+        right.append(filtered[data_set.used, 2])
+        places.append(data_set.label)
     expected = np.linalg.lstsq(np.vstack(rows), np.concatenate(right), rcond=None)[0]
     np.testing.assert_allclose(fit.values, expected[:2], rtol=5e-4)  # the fit thins the samples out
     np.testing.assert_allclose([fit.offsets[label] for label in places], expected[2:], atol=0.01)
@@ -109,15 +109,15 @@ def test_nuisances_projected_out_are_the_same_as_fitted(shared: bool) -> None:
     found = Linearised(designs, responses, shared, memories, runs)
     rows = sum(sizes)
     offsets = np.zeros((rows, 1 if shared else 2))
-    starts = np.zeros((rows, sum(run_counts)))
+    initial_states = np.zeros((rows, sum(run_counts)))
     begin, first = 0, 0
     for place, (n, count) in enumerate(zip(sizes, run_counts, strict=True)):
         offsets[begin : begin + n, 0 if shared else place] = 1
         for run in range(count):
             mine = np.flatnonzero(runs[place] == run)
-            starts[begin + mine, first + run] = memories[place][mine]
+            initial_states[begin + mine, first + run] = memories[place][mine]
         begin, first = begin + n, first + count
-    dense = np.column_stack([np.vstack(designs), offsets, starts])
+    dense = np.column_stack([np.vstack(designs), offsets, initial_states])
     expected = np.linalg.lstsq(dense, np.concatenate(responses), rcond=None)[0]
     np.testing.assert_allclose(found.solve(), expected[:width], atol=1e-10)
     influence = np.vstack(found.influences())
@@ -125,12 +125,12 @@ def test_nuisances_projected_out_are_the_same_as_fitted(shared: bool) -> None:
     np.testing.assert_allclose(influence[:, :width], pseudo[:, :width], atol=1e-10)
     np.testing.assert_allclose(influence[:, width:][:, : offsets.shape[1]], pseudo[:, width:], atol=1e-10)
     if not shared:
-        change = np.concatenate(found.starts(expected[:width]))
+        change = np.concatenate(found.initial_states(expected[:width]))
         np.testing.assert_allclose(change, expected[width + 2 :], atol=1e-9)
 
 
 @pytest.mark.parametrize(
-    ("law", "rubber"),
+    ("model", "rubber"),
     [
         (Elastoplastic(), JENKINS),
         (BoucWen(), replace(JENKINS, sharpness=2.0)),
@@ -138,10 +138,10 @@ def test_nuisances_projected_out_are_the_same_as_fitted(shared: bool) -> None:
     ],
     ids=lambda each: getattr(each, "name", ""),
 )
-def test_intervals_hold_the_truth(law: LAWS, rubber: Rubber) -> None:  # type: ignore[valid-type]
-    inside, seeds = np.zeros(2), 8 if law.name == "bouc_wen" else 12
+def test_intervals_hold_the_truth(model: MODELS, rubber: Rubber) -> None:  # type: ignore[valid-type]
+    inside, seeds = np.zeros(2), 8 if model.name == "bouc_wen" else 12
     for seed in range(seeds):
-        fit = fit_law(law, campaign(seed, rubber))
+        fit = fit_model(model, campaign(seed, rubber))
         for place, truth in enumerate((rubber.stiffness, rubber.damping)):
             low, high = fit.interval95(fit.names[place])
             inside[place] += low <= truth <= high
@@ -150,18 +150,22 @@ def test_intervals_hold_the_truth(law: LAWS, rubber: Rubber) -> None:  # type: i
 
 
 def test_gaps_and_unused_samples_change_little() -> None:
-    trials = campaign(2, JENKINS)
+    data_sets = campaign(2, JENKINS)
     holed = []
-    for place, trial in enumerate(trials):
-        deflection, torque, used = trial.motion.deflection.copy(), trial.torque.copy(), trial.used.copy()
+    for place, data_set in enumerate(data_sets):
+        deflection, torque, used = (
+            data_set.motion.deflection.copy(),
+            data_set.torque.copy(),
+            data_set.used.copy(),
+        )
         deflection[1500 + 100 * place : 1560 + 100 * place] = np.nan
         torque[2500:2510] = np.nan
         used[3000:3300] = False
         used[1300 + 100 * place : 1760 + 100 * place] = False
         used[2300:2710] = False
-        holed.append(Trial(trial.label, replace(trial.motion, deflection=deflection), torque, used))
-    whole, parted = fit_law(Elastoplastic(), trials), fit_law(Elastoplastic(), holed)
-    assert all(len(starts) == 3 for starts in parted.starts.values())
+        holed.append(DataSet(data_set.label, replace(data_set.motion, deflection=deflection), torque, used))
+    whole, parted = fit_model(Elastoplastic(), data_sets), fit_model(Elastoplastic(), holed)
+    assert all(len(initial_states) == 3 for initial_states in parted.initial_states.values())
     assert all(np.isfinite(residual).all() for residual in parted.residuals.values())
     assert error_percent(parted, JENKINS)[0] < 0.5
     assert error_percent(parted, JENKINS)[1] < 2
@@ -170,89 +174,93 @@ def test_gaps_and_unused_samples_change_little() -> None:
 
 def test_a_start_that_is_not_virgin_is_found() -> None:
     rng = np.random.default_rng(4)
-    trials = campaign(4, JENKINS)
-    law, path = Elastoplastic(), sway(rng, 0.08, 0.5)
-    motion = Motion(path, np.gradient(path, PERIOD), PERIOD)
-    torque = law.columns(motion, [0.01], np.array([-0.7])) @ [434.0, 15.89, 5.0] + 1.5
-    strained = Trial("strained", motion, torque, np.ones(len(path), dtype=bool))
-    fit = fit_law(law, [*trials, strained])
-    assert fit.starts["strained"] == pytest.approx([-0.7], abs=0.05)
+    data_sets = campaign(4, JENKINS)
+    model, path = Elastoplastic(), sway(rng, 0.08, 0.5)
+    motion = BushMotion(path, np.gradient(path, PERIOD), PERIOD)
+    torque = model.columns(motion, [0.01], np.array([-0.7])) @ [434.0, 15.89, 5.0] + 1.5
+    strained = DataSet("strained", motion, torque, np.ones(len(path), dtype=bool))
+    fit = fit_model(model, [*data_sets, strained])
+    assert fit.initial_states["strained"] == pytest.approx([-0.7], abs=0.05)
     assert fit.offsets["strained"] == pytest.approx(1.5, abs=0.2)
     first = np.arange(len(path)) < 200
-    predicted, offset, starts = opened(fit_law(law, trials), strained, first)
-    assert starts == pytest.approx([-0.7], abs=0.1)
+    predicted, offset, initial_states = opened(fit_model(model, data_sets), strained, first)
+    assert initial_states == pytest.approx([-0.7], abs=0.1)
     assert offset == pytest.approx(1.5, abs=0.5)
     assert np.abs(predicted - torque)[200:-200].mean() < 0.2
 
 
 def test_a_shared_offset_is_one_number() -> None:
-    trials = campaign(5, JENKINS, noise=0.0)
-    fit = fit_law(Elastoplastic(), trials, shared_offset=True)
+    data_sets = campaign(5, JENKINS, noise=0.0)
+    fit = fit_model(Elastoplastic(), data_sets, shared_offset=True)
     assert len(set(fit.offsets.values())) == 1
     assert error_percent(fit, JENKINS)[0] < 0.2
-    choice = choose_law(trials, shared_offset=True)
-    assert choice.fit.law.name == "elastoplastic"
+    choice = choose_model(data_sets, shared_offset=True)
+    assert choice.fit.model.name == "elastoplastic"
 
 
 def test_reconstruction_is_the_fit_plus_its_residual() -> None:
-    trials = campaign(6, JENKINS)
-    fit = fit_law(Elastoplastic(), trials)
-    for trial in trials:
-        motion, torque = filtered(trial, fit.cutoff)
-        missed = (torque - reconstructed(fit, motion, fit.starts[trial.label]))[trial.used]
+    data_sets = campaign(6, JENKINS)
+    fit = fit_model(Elastoplastic(), data_sets)
+    for data_set in data_sets:
+        motion, torque = filtered(data_set, fit.cutoff)
+        missed = (torque - reconstructed(fit, motion, fit.initial_states[data_set.label]))[data_set.used]
         time = np.arange(len(missed)) - (len(missed) - 1) / 2
-        missed -= fit.offsets[trial.label] + time * (time @ missed) / (
+        missed -= fit.offsets[data_set.label] + time * (time @ missed) / (
             time @ time
         )  # the attitude's drift is free
-        assert np.std(missed) == pytest.approx(np.std(fit.residuals[trial.label]), rel=0.05)
+        assert np.std(missed) == pytest.approx(np.std(fit.residuals[data_set.label]), rel=0.05)
 
 
 def test_nothing_to_fit_is_one_line() -> None:
-    trial = campaign(0, Rubber())[0]
-    unused = replace(trial, used=np.zeros_like(trial.used))
+    data_set = campaign(0, Rubber())[0]
+    unused = replace(data_set, used=np.zeros_like(data_set.used))
     with pytest.raises(DataError, match="no recording has a sample"):
-        fit_law(KelvinVoigt(), [unused])
+        fit_model(KelvinVoigt(), [unused])
     with pytest.raises(DataError, match="no recording has a sample"):
-        choose_law([unused])
+        choose_model([unused])
 
 
 def test_wrong_starts_do_not_trap_the_refinement() -> None:
     """Four recordings, each from its own strained state, refined from starts that are all at the upper end."""
     rng = np.random.default_rng(9)
-    law, trials, truth = Elastoplastic(), [], rng.uniform(-0.9, 0.9, 4)
+    model, data_sets, truth = Elastoplastic(), [], rng.uniform(-0.9, 0.9, 4)
     for place, start in enumerate(truth):
         path = tilt(rng, 0.012) if place else sway(rng, 0.08, 0.5)
-        motion = Motion(path, np.gradient(path, PERIOD), PERIOD)
-        torque = law.columns(motion, [0.01], np.array([start])) @ [434.0, 15.89, 5.0] + rng.standard_normal()
+        motion = BushMotion(path, np.gradient(path, PERIOD), PERIOD)
+        torque = (
+            model.columns(motion, [0.01], np.array([start])) @ [434.0, 15.89, 5.0] + rng.standard_normal()
+        )
         used = np.ones(len(path), dtype=bool)
         used[:60] = used[-60:] = False
-        trials.append(Trial(f"trial_{place}", motion, torque, used))
-    prepared = prepare_trials(trials, 5.0)
+        data_sets.append(DataSet(f"trial_{place}", motion, torque, used))
+    prepared = prepare_data_sets(data_sets, 5.0)
     folds = [np.zeros(int(each.used.sum()), dtype=np.intp) for each in prepared]
-    pieces = Pieces.of(law, prepared, folds, np.array([[0.009], [0.0125]]), [np.ones(1)] * 4)
+    pieces = Pieces.of(model, prepared, folds, np.array([[0.009], [0.0125]]), [np.ones(1)] * 4)
     fit = refine(pieces, prepared, np.array([[0.002], [0.05]]))
     assert fit.rms < 0.02
     np.testing.assert_allclose(fit.values, [434.0, 15.89, 5.0], rtol=0.01)
 
 
 def test_a_bush_that_never_moves_says_nothing() -> None:
-    still = Motion(np.zeros(2000), np.zeros(2000), PERIOD)
+    still = BushMotion(np.zeros(2000), np.zeros(2000), PERIOD)
     noise = np.random.default_rng(0).standard_normal(2000)
-    choice = choose_law([Trial("still", still, noise, np.ones(2000, dtype=bool))])
-    assert choice.fit.law.name == "kelvin_voigt"
+    choice = choose_model([DataSet("still", still, noise, np.ones(2000, dtype=bool))])
+    assert choice.fit.model.name == "kelvin_voigt"
     assert choice.reach == 0
     assert choice.caution is None
 
 
 def test_many_short_runs_each_have_their_own_start() -> None:
     """As in walking: the foot leaves the ground every 0.9 s, and nobody knows how it comes back."""
-    trials = []
-    for trial in campaign(0, JENKINS)[:2]:
-        phase = np.arange(len(trial.torque)) % 180
-        deflection = np.where(phase < 20, np.nan, trial.motion.deflection)
-        used = trial.used & (phase > 45) & (phase < 155)
-        trials.append(Trial(trial.label, replace(trial.motion, deflection=deflection), trial.torque, used))
-    fit = fit_law(Elastoplastic(), trials)
-    assert all(len(starts) == 26 for starts in fit.starts.values())
+    data_sets = []
+    for data_set in campaign(0, JENKINS)[:2]:
+        phase = np.arange(len(data_set.torque)) % 180
+        deflection = np.where(phase < 20, np.nan, data_set.motion.deflection)
+        used = data_set.used & (phase > 45) & (phase < 155)
+        data_sets.append(
+            DataSet(data_set.label, replace(data_set.motion, deflection=deflection), data_set.torque, used)
+        )
+    fit = fit_model(Elastoplastic(), data_sets)
+    assert all(len(initial_states) == 26 for initial_states in fit.initial_states.values())
     assert error_percent(fit, JENKINS)[0] < 1
     assert error_percent(fit, JENKINS)[1] < 3

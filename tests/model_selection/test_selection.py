@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from bush_trials import (
+from bush_data_sets import (
     Rubber,
     campaign,
     error_percent,
@@ -16,8 +16,8 @@ from bush_trials import (
     unseen,
     unseen_error,
 )
-from plantar.model_selection.model_fit import fit_law
-from plantar.model_selection.selection import choose_law
+from plantar.model_selection.model_fit import fit_model
+from plantar.model_selection.selection import choose_model
 from plantar.models import Elastoplastic, Hardening, KelvinVoigt
 
 JENKINS = Rubber(slip_torque=5.0, slip_angle=0.01)
@@ -29,9 +29,9 @@ def test_hysteresis_is_chosen_and_spring_and_damper_come_back(seed: int) -> None
     share, slip_angle = rng.uniform(0.07, 0.2), rng.uniform(0.005, 0.02)
     plain = largest_torque(campaign(seed, Rubber()))
     rubber = Rubber(slip_torque=share * plain, slip_angle=slip_angle)
-    trials = campaign(seed, rubber)
-    choice = choose_law(trials)
-    assert choice.fit.law.name in ("elastoplastic", "iwan", "bouc_wen")
+    data_sets = campaign(seed, rubber)
+    choice = choose_model(data_sets)
+    assert choice.fit.model.name in ("elastoplastic", "iwan", "bouc_wen")
     stiffness, damping = error_percent(choice.fit, rubber)
     assert stiffness < 1
     assert damping < 3
@@ -43,8 +43,8 @@ def test_hysteresis_is_chosen_and_spring_and_damper_come_back(seed: int) -> None
 
 @pytest.mark.parametrize("seed", range(4))
 def test_without_hysteresis_the_linear_law_is_kept(seed: int) -> None:
-    choice = choose_law(campaign(seed, Rubber()))
-    assert choice.fit.law.name == "kelvin_voigt"
+    choice = choose_model(campaign(seed, Rubber()))
+    assert choice.fit.model.name == "kelvin_voigt"
     assert choice.fit is choice.equivalent
     assert choice.caution is None
     assert sum(score.chosen for score in choice.ranking) == 1
@@ -62,8 +62,8 @@ def test_without_hysteresis_the_linear_law_is_kept(seed: int) -> None:
     ],
 )
 def test_the_law_that_made_the_data_is_chosen(rubber: Rubber, name: str) -> None:
-    choice = choose_law(campaign(3, rubber))
-    assert choice.fit.law.name == name
+    choice = choose_model(campaign(3, rubber))
+    assert choice.fit.model.name == name
     stiffness, damping = error_percent(choice.fit, rubber)
     assert stiffness < 1
     assert damping < 3
@@ -73,11 +73,11 @@ def test_small_motions_never_give_a_confident_wrong_spring() -> None:
     """Nothing slips at a third of the slip angle: the sum of both springs is all there is to see."""
     rng = np.random.default_rng(0)
     paths = [sway(rng, 0.0035, 0.5), sway(rng, 0.003, 0.8), tilt(rng, 0.003)]
-    trials = [recorded(rng, f"small_{i}", path, JENKINS) for i, path in enumerate(paths)]
-    fit = fit_law(Elastoplastic(), trials)
-    assert fit.doubts or not fit.law.possible(fit.values)
-    choice = choose_law(trials)
-    assert choice.fit.law.name == "kelvin_voigt"
+    data_sets = [recorded(rng, f"small_{i}", path, JENKINS) for i, path in enumerate(paths)]
+    fit = fit_model(Elastoplastic(), data_sets)
+    assert fit.doubts or not fit.model.possible(fit.values)
+    choice = choose_model(data_sets)
+    assert choice.fit.model.name == "kelvin_voigt"
     both = JENKINS.stiffness + JENKINS.slip_torque / JENKINS.slip_angle
     assert choice.fit.value("stiffness") == pytest.approx(both, rel=0.03)
     assert choice.reach < JENKINS.slip_angle  # up to there it holds
@@ -86,28 +86,28 @@ def test_small_motions_never_give_a_confident_wrong_spring() -> None:
 def test_motions_that_just_slip_are_told_of() -> None:
     rng = np.random.default_rng(0)
     paths = [sway(rng, 0.01, 0.5), sway(rng, 0.007, 0.8), tilt(rng, 0.01)]
-    choice = choose_law([recorded(rng, f"medium_{i}", path, JENKINS) for i, path in enumerate(paths)])
-    assert choice.fit.law.name == "kelvin_voigt"
+    choice = choose_model([recorded(rng, f"medium_{i}", path, JENKINS) for i, path in enumerate(paths)])
+    assert choice.fit.model.name == "kelvin_voigt"
     assert choice.caution is not None
     assert "cannot be identified" in choice.caution
 
 
 def test_whole_recordings_are_held_out_where_they_can_stand_for_one_another() -> None:
     rng = np.random.default_rng(8)
-    trials = [recorded(rng, f"sway_{i}", sway(rng, 0.08, 0.4 + 0.1 * i), JENKINS) for i in range(4)]
-    choice = choose_law(trials)
+    data_sets = [recorded(rng, f"sway_{i}", sway(rng, 0.08, 0.4 + 0.1 * i), JENKINS) for i in range(4)]
+    choice = choose_model(data_sets)
     assert choice.held_out == "whole recordings"
-    assert choice.fit.law.name == "elastoplastic"
-    alone = choose_law(trials[:1])
+    assert choice.fit.model.name == "elastoplastic"
+    alone = choose_model(data_sets[:1])
     assert "parts" in alone.held_out
-    assert alone.fit.law.name == "elastoplastic"
+    assert alone.fit.model.name == "elastoplastic"
 
 
 def test_a_gain_that_is_real_but_small_keeps_the_simpler_law() -> None:
     """A weak cubic term is well told from nothing, yet predicts held-out motion hardly better."""
-    trials = campaign(1, Rubber(hardening=300.0))
-    choice = choose_law(trials, [KelvinVoigt(), Hardening()])
-    hardening = next(score for score in choice.ranking if score.law.name == "hardening")
+    data_sets = campaign(1, Rubber(hardening=300.0))
+    choice = choose_model(data_sets, [KelvinVoigt(), Hardening()])
+    hardening = next(score for score in choice.ranking if score.model.name == "hardening")
     assert hardening.refused is None
     assert hardening.held_out_rms < choice.ranking[-1].held_out_rms
-    assert choice.fit.law.name == "kelvin_voigt"
+    assert choice.fit.model.name == "kelvin_voigt"

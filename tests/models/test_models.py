@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from scipy import signal
 
-from bush_trials import bouc_wen_step
+from bush_data_sets import bouc_wen_step
 from plantar.conventions import AXES
 from plantar.errors import DataError
-from plantar.models import BESIDE, LAWS, BoucWen, Coulomb, Law, Motion, StandardLinearSolid, reach
+from plantar.models import BESIDE, MODELS, BoucWen, BushModel, BushMotion, Coulomb, StandardLinearSolid, reach
 
 PERIOD = 0.005
 # Shapes and linear parameters of a bush that can exist, law by law.
@@ -45,111 +45,113 @@ def rate_of(deflection: np.ndarray, period: float = PERIOD) -> np.ndarray:
     return np.fft.irfft(2j * np.pi * np.fft.rfftfreq(len(deflection), period) * spectrum, len(deflection))
 
 
-def motion(deflection: np.ndarray, period: float = PERIOD, other: np.ndarray | None = None) -> Motion:
+def motion(deflection: np.ndarray, period: float = PERIOD, other: np.ndarray | None = None) -> BushMotion:
     other = path(seed=7) if other is None else other
-    return Motion(
+    return BushMotion(
         deflection, rate_of(deflection, period), period, other[:, None], rate_of(other, period)[:, None]
     )
 
 
-@pytest.fixture(params=sorted(LAWS))
-def law(request: pytest.FixtureRequest) -> Law:
-    return LAWS[request.param]
+@pytest.fixture(params=sorted(MODELS))
+def model(request: pytest.FixtureRequest) -> BushModel:
+    return MODELS[request.param]
 
 
-def torque(law: Law, moved: Motion, starts: Sequence[float] | None = None) -> np.ndarray:
-    shape, values = EXAMPLES[law.name]
-    return law.columns(moved, shape, None if starts is None else np.array(starts)) @ np.array(values)
+def torque(model: BushModel, moved: BushMotion, initial_states: Sequence[float] | None = None) -> np.ndarray:
+    shape, values = EXAMPLES[model.name]
+    return model.columns(
+        moved, shape, None if initial_states is None else np.array(initial_states)
+    ) @ np.array(values)
 
 
-def test_terms_start_with_spring_and_damper_and_have_units(law: Law) -> None:
-    assert law.terms[:2] == BESIDE
-    assert law.name == next(name for name, each in LAWS.items() if each is law)
+def test_terms_start_with_spring_and_damper_and_have_units(model: BushModel) -> None:
+    assert model.terms[:2] == BESIDE
+    assert model.name == next(name for name, each in MODELS.items() if each is model)
     for axis in AXES:
-        assert all(law.unit(term, axis) for term in (*law.terms, *law.shape_terms))
-    assert set(law.dissipative_terms) <= set(law.terms)
-    assert {term for term, _ in law.blind_ends} <= set(law.shape_terms)
-    assert law.size == len(law.terms) + len(law.shape_terms)
+        assert all(model.unit(term, axis) for term in (*model.terms, *model.shape_terms))
+    assert set(model.dissipative_terms) <= set(model.terms)
+    assert {term for term, _ in model.blind_ends} <= set(model.shape_terms)
+    assert model.size == len(model.terms) + len(model.shape_terms)
 
 
-def test_columns_have_their_shape_and_the_linear_ones_come_first(law: Law) -> None:
+def test_columns_have_their_shape_and_the_linear_ones_come_first(model: BushModel) -> None:
     moved = motion(path())
-    columns = law.columns(moved, EXAMPLES[law.name][0])
-    assert columns.shape == (len(moved), len(law.terms))
+    columns = model.columns(moved, EXAMPLES[model.name][0])
+    assert columns.shape == (len(moved), len(model.terms))
     np.testing.assert_array_equal(columns[:, 0], moved.deflection)
     np.testing.assert_array_equal(columns[:, 1], moved.rate)
 
 
-def test_candidates_span_the_motions(law: Law) -> None:
-    small, large = law.candidates([motion(path())]), law.candidates([motion(2 * path())])
-    assert small.shape[1] == len(law.shape_terms)
+def test_candidates_span_the_motions(model: BushModel) -> None:
+    small, large = model.candidates([motion(path())]), model.candidates([motion(2 * path())])
+    assert small.shape[1] == len(model.shape_terms)
     assert np.all(small > 0)
-    if law.name in HYSTERETIC:
+    if model.name in HYSTERETIC:
         np.testing.assert_allclose(large[:, 0], 2 * small[:, 0])
         assert small[:, 0].max() < reach([motion(path())])  # an element that never slips is a spring
 
 
-def test_rest_gives_no_torque(law: Law) -> None:
+def test_rest_gives_no_torque(model: BushModel) -> None:
     still = np.zeros(400)
-    np.testing.assert_array_equal(torque(law, motion(still, other=still)), 0.0)
+    np.testing.assert_array_equal(torque(model, motion(still, other=still)), 0.0)
 
 
-def test_mirrored_motion_gives_mirrored_torque(law: Law) -> None:
+def test_mirrored_motion_gives_mirrored_torque(model: BushModel) -> None:
     moved, other = path(), path(seed=7)
-    starts = [0.3]
-    plus = torque(law, motion(moved, other=other), starts)
-    minus = torque(law, motion(-moved, other=-other), [-0.3])
+    initial_states = [0.3]
+    plus = torque(model, motion(moved, other=other), initial_states)
+    minus = torque(model, motion(-moved, other=-other), [-0.3])
     np.testing.assert_allclose(minus, -plus, atol=1e-9)
 
 
-def test_no_energy_comes_out_of_a_closed_cycle(law: Law) -> None:
+def test_no_energy_comes_out_of_a_closed_cycle(model: BushModel) -> None:
     """Work put in over the second of two equal cycles; for the coupled law over both axes together."""
     moved, other = path(seed=3), path(seed=4)
     cycle = slice(len(moved) // 2, None)
-    work = np.sum((torque(law, motion(moved, other=other)) * rate_of(moved))[cycle]) * PERIOD
-    if law.name == "coupled":
-        work += np.sum((torque(law, motion(other, other=moved)) * rate_of(other))[cycle]) * PERIOD
-    damped = EXAMPLES[law.name][1][1] * np.sum(rate_of(moved)[cycle] ** 2) * PERIOD
+    work = np.sum((torque(model, motion(moved, other=other)) * rate_of(moved))[cycle]) * PERIOD
+    if model.name == "coupled":
+        work += np.sum((torque(model, motion(other, other=moved)) * rate_of(other))[cycle]) * PERIOD
+    damped = EXAMPLES[model.name][1][1] * np.sum(rate_of(moved)[cycle] ** 2) * PERIOD
     assert work > 0.9 * damped
-    if law.dissipative_terms:
+    if model.dissipative_terms:
         assert work > 1.05 * damped
 
 
-def test_negative_friction_is_not_possible(law: Law) -> None:
-    values = np.array(EXAMPLES[law.name][1])
-    assert law.possible(values)
-    for term in law.dissipative_terms:
+def test_negative_friction_is_not_possible(model: BushModel) -> None:
+    values = np.array(EXAMPLES[model.name][1])
+    assert model.possible(values)
+    for term in model.dissipative_terms:
         worse = values.copy()
-        worse[law.terms.index(term)] *= -1
-        assert not law.possible(worse)
+        worse[model.terms.index(term)] *= -1
+        assert not model.possible(worse)
 
 
-def test_gaps_part_the_runs_and_memory_starts_anew(law: Law) -> None:
+def test_gaps_part_the_runs_and_memory_starts_anew(model: BushModel) -> None:
     whole = motion(path())
     assert whole.across is not None
     assert whole.across_rate is not None
     hole = whole.deflection.copy()
     hole[1000:1010] = np.nan
-    parted = Motion(hole, whole.rate, PERIOD, whole.across, whole.across_rate)
-    starts = np.array([0.4, -0.7])
-    columns = law.columns(parted, EXAMPLES[law.name][0], starts)
+    parted = BushMotion(hole, whole.rate, PERIOD, whole.across, whole.across_rate)
+    initial_states = np.array([0.4, -0.7])
+    columns = model.columns(parted, EXAMPLES[model.name][0], initial_states)
     assert np.isnan(columns[1000:1010]).all()
     tail = slice(1010, None)
-    alone = Motion(hole[tail], whole.rate[tail], PERIOD, whole.across[tail], whole.across_rate[tail])
-    if law.name == "standard_linear_solid":  # its start is a share of the motion's reach
-        starts = starts * reach([parted]) / reach([alone])
+    alone = BushMotion(hole[tail], whole.rate[tail], PERIOD, whole.across[tail], whole.across_rate[tail])
+    if model.name == "standard_linear_solid":  # its start is a share of the motion's reach
+        initial_states = initial_states * reach([parted]) / reach([alone])
     np.testing.assert_allclose(
-        columns[tail], law.columns(alone, EXAMPLES[law.name][0], starts[1:]), atol=1e-12
+        columns[tail], model.columns(alone, EXAMPLES[model.name][0], initial_states[1:]), atol=1e-12
     )
 
 
-def test_variants_side_by_side_are_those_one_by_one(law: Law) -> None:
+def test_variants_side_by_side_are_those_one_by_one(model: BushModel) -> None:
     moved = motion(path())
-    shapes = np.array([np.array(EXAMPLES[law.name][0]) * scale for scale in (1.0, 1.3, 2.0)])
-    starts = np.array([[0.1], [-0.5], [0.9]])
-    together = law.extra([moved, moved], shapes, [starts, starts])
-    for variant, (shape, start) in enumerate(zip(shapes, starts, strict=True)):
-        alone = law.columns(moved, shape, start)[:, 2:]
+    shapes = np.array([np.array(EXAMPLES[model.name][0]) * scale for scale in (1.0, 1.3, 2.0)])
+    initial_states = np.array([[0.1], [-0.5], [0.9]])
+    together = model.extra([moved, moved], shapes, [initial_states, initial_states])
+    for variant, (shape, start) in enumerate(zip(shapes, initial_states, strict=True)):
+        alone = model.columns(moved, shape, start)[:, 2:]
         for columns in together:
             np.testing.assert_allclose(columns[:, :, variant], alone, atol=1e-12)
 
@@ -158,7 +160,9 @@ def test_variants_side_by_side_are_those_one_by_one(law: Law) -> None:
 def test_speed_does_not_matter_without_rates(name: str) -> None:
     slow, fast = motion(path()), motion(path(), period=PERIOD / 7)
     shape = EXAMPLES[name][0]
-    np.testing.assert_allclose(LAWS[name].columns(slow, shape)[:, 2], LAWS[name].columns(fast, shape)[:, 2])
+    np.testing.assert_allclose(
+        MODELS[name].columns(slow, shape)[:, 2], MODELS[name].columns(fast, shape)[:, 2]
+    )
 
 
 @pytest.mark.parametrize("name", HYSTERETIC)
@@ -166,15 +170,15 @@ def test_a_hysteretic_state_depends_on_deflection_over_slip_angle_only(name: str
     shape = np.array(EXAMPLES[name][0])
     wide = shape.copy()
     wide[0] *= 3
-    small = LAWS[name].columns(motion(path()), shape)[:, 2]
-    np.testing.assert_allclose(LAWS[name].columns(motion(3 * path()), wide)[:, 2], small, atol=1e-9)
+    small = MODELS[name].columns(motion(path()), shape)[:, 2]
+    np.testing.assert_allclose(MODELS[name].columns(motion(3 * path()), wide)[:, 2], small, atol=1e-9)
 
 
 @pytest.mark.parametrize("name", HYSTERETIC)
 def test_a_hysteretic_state_starts_as_a_spring_and_ends_at_one(name: str) -> None:
     shape = np.array(EXAMPLES[name][0])
     ramp = np.linspace(0, 30 * shape[0], 60_001)
-    state = LAWS[name].columns(Motion(ramp, np.ones_like(ramp), PERIOD), shape)[:, 2]
+    state = MODELS[name].columns(BushMotion(ramp, np.ones_like(ramp), PERIOD), shape)[:, 2]
     assert state[1] / ramp[1] == pytest.approx(1 / shape[0], rel=0.01)
     assert state[-1] == pytest.approx(1.0, abs=1e-6)
     assert np.all(np.diff(state) >= -1e-12)
@@ -186,7 +190,7 @@ def test_jenkins_element_against_a_stepped_one(start: float) -> None:
     for step in np.diff(moved, prepend=moved[0]) / 0.012:
         state = min(max(state + step, -1.0), 1.0)
         states.append(state)
-    found = LAWS["elastoplastic"].columns(motion(moved), [0.012], np.array([start]))[:, 2]
+    found = MODELS["elastoplastic"].columns(motion(moved), [0.012], np.array([start]))[:, 2]
     np.testing.assert_allclose(found, states, atol=1e-11)
 
 
@@ -197,7 +201,7 @@ def test_iwan_elements_against_stepped_ones() -> None:
     for step in np.diff(moved, prepend=moved[0]):
         states = np.clip(states + step / (ratios * 0.008), -1, 1)
         torques.append(np.mean(ratios * states))
-    np.testing.assert_allclose(LAWS["iwan"].columns(motion(moved), [0.008])[:, 2], torques, atol=1e-11)
+    np.testing.assert_allclose(MODELS["iwan"].columns(motion(moved), [0.008])[:, 2], torques, atol=1e-11)
 
 
 @pytest.mark.parametrize("sharpness", [1.0, 1.7, 4.0])
@@ -231,14 +235,14 @@ def test_coulomb_friction_follows_the_sign_of_a_fast_rate() -> None:
 
 
 def test_a_loaded_element_starts_where_its_load_put_it() -> None:
-    law = LAWS["elastoplastic"]
+    model = MODELS["elastoplastic"]
     lean = motion(path() - path()[0] + 0.004)
-    assert law.starts(lean, np.array([0.01])) == pytest.approx([0.4])
-    assert law.starts(lean, np.array([0.001])) == pytest.approx([1.0])
+    assert model.initial_states(lean, np.array([0.01])) == pytest.approx([0.4])
+    assert model.initial_states(lean, np.array([0.001])) == pytest.approx([1.0])
 
 
 def test_the_coupled_law_asks_for_the_other_axis() -> None:
-    alone = Motion(path(), rate_of(path()), PERIOD)
-    assert not LAWS["coupled"].applies([alone])
+    alone = BushMotion(path(), rate_of(path()), PERIOD)
+    assert not MODELS["coupled"].applies([alone])
     with pytest.raises(DataError, match="other axis"):
-        LAWS["coupled"].columns(alone)
+        MODELS["coupled"].columns(alone)

@@ -24,7 +24,7 @@ Signal = Callable[[np.ndarray], np.ndarray]
 
 
 @dataclass(frozen=True)
-class Law:
+class BushModel:
     """Stiffness [N·m/rad], damping [N·m·s/rad], offset [N·m]; hardening [N·m/rad³]."""
 
     stiffness: float
@@ -38,10 +38,10 @@ class Law:
 
 
 TRUTH = {
-    ("left", "pitch"): Law(420.0, 22.0, -1.5),
-    ("left", "roll"): Law(350.0, 17.0, 0.6),
-    ("right", "pitch"): Law(455.0, 26.0, 0.9),
-    ("right", "roll"): Law(330.0, 19.0, -0.4),
+    ("left", "pitch"): BushModel(420.0, 22.0, -1.5),
+    ("left", "roll"): BushModel(350.0, 17.0, 0.6),
+    ("right", "pitch"): BushModel(455.0, 26.0, 0.9),
+    ("right", "roll"): BushModel(330.0, 19.0, -0.4),
 }
 VERTICAL = 45e3  # N/m, of both bushes
 HEIGHT = 0.7  # m of the torso's origin above the ground
@@ -58,7 +58,7 @@ class Motion:
     ankles: Mapping[str, tuple[Signal, Signal]]
     lifts: tuple[tuple[str, float, float], ...] = ()
     shift: float = 0.06
-    truth: Mapping[tuple[str, str], Law] = field(default_factory=lambda: dict(TRUTH))
+    truth: Mapping[tuple[str, str], BushModel] = field(default_factory=lambda: dict(TRUTH))
 
 
 def sines(*terms: tuple[float, float, float]) -> Signal:

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 
-from biped import TRUTH, Law
+from biped import TRUTH, BushModel
 from biped_robot import FEET
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
@@ -17,7 +17,7 @@ from plantar.results.feet import FeetResult
 PUNCTUAL = FeetSettings(wrench_delay=0.0)
 
 EXACT = 1e-4  # what differences of the joints' positions cost
-Truth = Mapping[tuple[str, str], Law]
+Truth = Mapping[tuple[str, str], BushModel]
 AXES = ("pitch", "roll")
 
 

@@ -21,7 +21,7 @@ from plantar.logs.readers import open_log
 from plantar.results.dynamics import DynamicsResult
 from plantar.robot.model import RobotModel, load_robot
 from plantar.whole_body.inertia import identify_inertia
-from plantar.whole_body.regularised_fit import Trial, chosen_strength
+from plantar.whole_body.regularised_fit import HeldOutError, chosen_regularisation
 from plantar.whole_body.settings import DynamicsSettings
 
 
@@ -281,12 +281,12 @@ def test_consistency_bounds_what_least_squares_would_make_negative() -> None:
 
 
 def test_the_strongest_pull_that_cannot_be_told_from_the_best_is_chosen() -> None:
-    def trial(strength: float, *errors: float) -> Trial:
-        return Trial(strength, np.array(errors))
+    def tried(regularisation: float, *errors: float) -> HeldOutError:
+        return HeldOutError(regularisation, np.array(errors))
 
-    best = trial(1.0, 1.0, 1.0, 1.0)
-    assert chosen_strength([best, trial(10.0, 1.2, 0.9, 1.0), trial(100.0, 1.2, 1.2, 1.25)]) == 10.0
-    assert chosen_strength([trial(0.1, 1.3, 1.3, 1.3), best]) == 1.0
+    best = tried(1.0, 1.0, 1.0, 1.0)
+    assert chosen_regularisation([best, tried(10.0, 1.2, 0.9, 1.0), tried(100.0, 1.2, 1.2, 1.25)]) == 10.0
+    assert chosen_regularisation([tried(0.1, 1.3, 1.3, 1.3), best]) == 1.0
 
 
 @pytest.mark.slow

@@ -17,7 +17,7 @@ SAMPLES = 50  # spread over the log: enough to tell
 BETTER = 0.5  # share of the misfit that must be left after the change
 NOTABLE = 0.02  # m: a lever below it is within the model's own error
 ALIKE = 0.1  # of the misfit: changes that do as well as the best are named with it
-CERTAIN_LEVER, CERTAIN = (
+CERTAIN_MOMENT_ARM, CERTAIN = (
     0.05,
     0.1,
 )  # m, and share left: no error of masses or mounting is undone so well by chance
@@ -41,18 +41,18 @@ COMPONENTS = ("force.x", "force.y", None, "torque.x", "torque.y", None)  # force
 class _Sides:
     """What a stance weighs against each other, in the root link's frame.
 
-    `levers` (n, feet, 6, 3) [m]: level moment about the centre of mass of each component of each foot's wrench, over
-    the load; their sum is zero while the robot stands or sways. `up` (n, 3) as IMU and joints have it, `push` (n, 3)
-    the ground's force, both of unit length: on average alike.
+    `moment_arms` (n, feet, 6, 3) [m]: level moment about the centre of mass of each component of each foot's wrench,
+    over the load; their sum is zero while the robot stands or sways. `up` (n, 3) as IMU and joints have it,
+    `push` (n, 3) the ground's force, both of unit length: on average alike.
     """
 
-    levers: Array
+    moment_arms: Array
     up: Array
     push: Array
 
     @property
     def misfit(self) -> float:
-        return _usual(self.levers.sum(axis=(1, 2)))
+        return _usual(self.moment_arms.sum(axis=(1, 2)))
 
     @property
     def lean(self) -> float:
@@ -131,7 +131,11 @@ class _Stance:
             for k, (carrier, _) in enumerate(frames):
                 poses[k, sample] = data.oMi[carrier].homogeneous
         poses = poses @ np.array([placement.homogeneous for _, placement in frames])[:, None]
-        return (root.mass * root.lever + moving * centre) / robot.mass, poses[..., :3, :3], poses[..., :3, 3]
+        return (
+            (root.mass * root.lever + moving * centre) / robot.mass,
+            poses[..., :3, :3],
+            poses[..., :3, 3],
+        )
 
 
 def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
@@ -148,7 +152,7 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     if as_is <= NOTABLE and sides.lean <= LEANING:
         yield from _turned(stance, sides)
         return
-    in_metres = sides.levers.copy()
+    in_metres = sides.moment_arms.copy()
     in_metres[:, :, 3:] /= 1000
     if as_is > FARTHEST:
         text = f"columns 'wrench.*': balance gravity only to {as_is:.3g} m about the centre of mass"
@@ -166,7 +170,7 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         alike = sorted((name for name in left if left[name] < best + ALIKE * as_is), key=left.__getitem__)
         text = f"{' or '.join(alike[:MOST_NAMED])}: reversed, the wrenches balance gravity to {100 * best:.1f} cm"
         joint = "'joint." in alike[0]
-        certain = (as_is > CERTAIN_LEVER and best < CERTAIN * as_is) or sides.lean > IMPOSSIBLE
+        certain = (as_is > CERTAIN_MOMENT_ARM and best < CERTAIN * as_is) or sides.lean > IMPOSSIBLE
         valid = "valid: the signs of URDF and robot file"
         yield Finding("sign", f"{text} instead of {100 * as_is:.1f} cm ({valid})", joint and certain)
     elif sides.lean > LEANING:
@@ -229,16 +233,16 @@ def _reversed_joints(stance: _Stance, sides: _Sides) -> dict[str, float]:
 def _reversed_components(stance: _Stance, sides: _Sides) -> dict[str, float]:
     """The same with a component of one or both wrenches reversed, where it also follows the motion far better: a
     sensor's zero or a mass in the wrong place is no reversed sign."""
-    levers = sides.levers
-    total = levers.sum(axis=(1, 2))
+    moment_arms = sides.moment_arms
+    total = moment_arms.sum(axis=(1, 2))
     moving = _usual(total - np.median(total, axis=0))
     left: dict[str, float] = {}
     sensors = [foot.wrench.name for foot in stance.robot.feet.values()]
     for component, part in enumerate(COMPONENTS):
         if part is None:
             continue
-        each = [total - 2 * levers[:, k, component] for k in range(len(sensors))]
-        both = total - 2 * levers[:, :, component].sum(axis=1)
+        each = [total - 2 * moment_arms[:, k, component] for k in range(len(sensors))]
+        both = total - 2 * moment_arms[:, :, component].sum(axis=1)
         names = [f"column 'wrench.{sensor}.{part}'" for sensor in sensors]
         trials = dict(zip(names, each, strict=True))
         # A foot without load has nothing to reverse: the pair counts only where both take part.

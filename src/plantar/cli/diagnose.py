@@ -11,7 +11,7 @@ from rich.markup import escape
 from plantar.cli.terminal import VERDICT_STYLE, console, number, table
 from plantar.results.feet import FEET_SCHEMA
 from plantar.results.io import dump_json, read_result
-from plantar.results.usage import served_shares
+from plantar.results.usage import used_shares
 
 
 def run(
@@ -23,9 +23,9 @@ def run(
     Example: plantar diagnose out/feet/result.json
     """
     content = read_result(result, FEET_SCHEMA)
-    diagnosis, served = content.get("diagnosis", []), served_shares(content["phases"])
+    diagnosis, used = content.get("diagnosis", []), used_shares(content["phases"])
     if json:
-        print(dump_json({"schema": "plantar.diagnosis/1", "diagnosis": diagnosis, "served": served}), end="")
+        print(dump_json({"schema": "plantar.diagnosis/1", "diagnosis": diagnosis, "served": used}), end="")
         return
     screen = console()
     verdicts = {(p["foot"], p["axis"], p["name"]): p["verdict"] for p in content["parameters"]}
@@ -46,7 +46,7 @@ def run(
         remedy = next(d["text"].rsplit("To tighten: ", 1)[-1] for d in diagnosis if d["limit"] == limit)
         screen.print(escape(f"Against {limit}: {remedy}."))
     cells = [
-        (s["motion"], s["foot"], f"{s['seconds']:.1f}", f"{s['served']:.1f}", s["reasons"]) for s in served
+        (s["motion"], s["foot"], f"{s['seconds']:.1f}", f"{s['served']:.1f}", s["reasons"]) for s in used
     ]
     screen.print(
         table("\nWhat served of each log", ("motion", "foot", "seconds", "served", "left out because"), cells)

@@ -201,7 +201,7 @@ def bush_state(motion: FootMotion, wrench: Array, sole: pin.SE3, least: float) -
 
 
 @dataclass(frozen=True)
-class Closure:
+class RelativePose:
     """The right sole seen from the left one's levelled heading frame: constant while both stand without slip.
 
     position: (N, 3) [m]; its z is the difference of the soles' heights: the z deflections of both bushes;
@@ -212,12 +212,12 @@ class Closure:
     yaw: Array
 
 
-def closure(left: BushState, right: BushState) -> Closure:
+def relative_pose(left: BushState, right: BushState) -> RelativePose:
     """How two soles stand to each other; the IMU's yaw and position cancel."""
     x, y, z = (right.sole_position - left.sole_position).T
     c, s = np.cos(left.heading), np.sin(left.heading)
     yaw = np.pi - np.mod(np.pi - (right.heading - left.heading), 2 * np.pi)
-    return Closure(np.column_stack([c * x + s * y, c * y - s * x, z]), yaw)
+    return RelativePose(np.column_stack([c * x + s * y, c * y - s * x, z]), yaw)
 
 
 def _centre_of_pressure(

@@ -24,7 +24,7 @@ SHAKING_SHARE = 0.02  # of the weight, rms: a sole that is shaken by more slaps 
 SHAKING_NOISE = 7.0  # times the log's calmest shaking, which is the sensor's noise
 
 IMPACT = "impact: the force is shaken faster than the samples resolve, as by a sole that slaps the floor"
-TIPPING = "tipping"  # how every reason begins that says that a sole does not lie flat
+TIPPING_REASON = "tipping"  # how every reason begins that says that a sole does not lie flat
 SMEARED = "filter's edge: beside a sole that tips"
 NOT_RECORDED = "not recorded: NaN or a gap in a column that this foot needs"
 

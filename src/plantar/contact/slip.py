@@ -15,7 +15,7 @@ from plantar.signals.segments import runs
 SLIP_CUTOFF = 10.0  # Hz: motion of the soles above it is noise
 RINGING = 0.07  # by which this filter overshoots a step, within a period of the cutoff
 LEAST_SPEED = 0.002  # m/s, and for yaw at the lever of half a sole, rad/s times YAW_LEVER
-YAW_LEVER = 0.1  # m
+YAW_MOMENT_ARM = 0.1  # m
 USUAL = 80  # percent of the samples are slower than the noise's usual speed, however much slides
 USUAL_SPEED = 1.794  # that percentile of a plane vector's length, in deviations of its components
 SURE = 5.0  # deviations: no noise
@@ -33,7 +33,7 @@ SMOOTH = 0.05  # friction over load, below which its direction is not known
 
 
 @dataclass(frozen=True)
-class Witness:
+class SlipIndicator:
     """A speed (N,) [m/s] that a sole at rest would not have, NaN where it is not known, and its deviation (N,)."""
 
     speed: Array
@@ -45,9 +45,9 @@ class Witness:
         return float(np.max(np.nan_to_num(share), initial=0.0))
 
 
-def as_usual(speed: Array) -> Witness:
+def as_usual(speed: Array) -> SlipIndicator:
     """A speed (N,) that is noise as a rule."""
-    return Witness(speed, np.full(len(speed), usual_deviation(speed)))
+    return SlipIndicator(speed, np.full(len(speed), usual_deviation(speed)))
 
 
 def usual_deviation(speed: Array) -> float:
@@ -56,7 +56,7 @@ def usual_deviation(speed: Array) -> float:
     return float(np.percentile(known, USUAL)) / USUAL_SPEED if known.size else 0.0
 
 
-def slides(witnesses: Sequence[Witness], way: Array, period: float) -> Mask:
+def slides(indicators: Sequence[SlipIndicator], way: Array, period: float) -> Mask:
     """Samples (N,) in which a sole slides.
 
     One witness is sure of it somewhere, each sample of it is possible to one, and it covers LEAST_PATH.
@@ -67,10 +67,10 @@ def slides(witnesses: Sequence[Witness], way: Array, period: float) -> Mask:
     way = np.nan_to_num(way)
     ringing = RINGING * maximum_filter1d(way, 2 * round(1 / SLIP_CUTOFF / period) + 1)
     possible, sure = (np.zeros(len(way), dtype=bool) for _ in range(2))
-    for witness in witnesses:
-        speed, least = np.nan_to_num(witness.speed), np.maximum(LEAST_SPEED, ringing)
-        possible |= speed > np.maximum(least, POSSIBLE * witness.deviation)
-        sure |= speed > np.maximum(least, SURE * witness.deviation)
+    for indicator in indicators:
+        speed, least = np.nan_to_num(indicator.speed), np.maximum(LEAST_SPEED, ringing)
+        possible |= speed > np.maximum(least, POSSIBLE * indicator.deviation)
+        sure |= speed > np.maximum(least, SURE * indicator.deviation)
     found = np.zeros(len(way), dtype=bool)
     for run in runs(joined(possible, round(PAUSE / period))):
         found[run] = sure[run].any() and way[run].sum() * period > LEAST_PATH
@@ -87,9 +87,9 @@ def sliding(position: Array, yaw: Array, both: Mask, period: float) -> Mask:
     return slides([apart], apart.speed, period) & both
 
 
-def apart_speed(position: Array, yaw: Array, both: Mask, period: float) -> Witness:
+def apart_speed(position: Array, yaw: Array, both: Mask, period: float) -> SlipIndicator:
     """Speed of two soles against each other, of x, y and yaw times YAW_LEVER; arguments as in `sliding`."""
-    apart = np.column_stack([position, YAW_LEVER * np.unwrap(np.nan_to_num(yaw))])
+    apart = np.column_stack([position, YAW_MOMENT_ARM * np.unwrap(np.nan_to_num(yaw))])
     apart[~both] = np.nan
     velocity = differentiate(low_pass(apart, period, SLIP_CUTOFF), period)
     return as_usual(np.asarray(np.linalg.norm(velocity, axis=1)))
@@ -103,7 +103,7 @@ def twist_speed(heading: Array, standing: Mask, period: float) -> Array:
     turned = np.full(len(heading), np.nan)
     known = np.asarray(standing & np.isfinite(heading))
     for run in runs(np.asarray(np.isfinite(heading))):
-        turned[run] = YAW_LEVER * np.unwrap(heading[run])
+        turned[run] = YAW_MOMENT_ARM * np.unwrap(heading[run])
     rate = differentiate(low_pass(turned, period, SLIP_CUTOFF), period)
     rate[~known] = np.nan
     for run in runs(np.isfinite(rate)):
@@ -117,19 +117,19 @@ def turning(twist: Array, period: float) -> Mask:
     They are sure throughout: beside them it may be the bush that turns back.
     """
     speed = np.abs(twist)
-    found = slides([Witness(speed, SURE / POSSIBLE * as_usual(speed).deviation)], speed, period)
+    found = slides([SlipIndicator(speed, SURE / POSSIBLE * as_usual(speed).deviation)], speed, period)
     for run in runs(found):
-        found[run] = abs(np.nansum(twist[run])) * period > ELASTIC * YAW_LEVER
+        found[run] = abs(np.nansum(twist[run])) * period > ELASTIC * YAW_MOMENT_ARM
     return found
 
 
-def unresisted(witness: Witness, velocity: Array, friction: Array, period: float) -> Mask:
+def unresisted(indicator: SlipIndicator, velocity: Array, friction: Array, period: float) -> Mask:
     """Samples (N,) in which a velocity (N, 2) [m/s] stands out that friction does not work against, as it must.
 
     friction: (N, 2), the floor's horizontal force on the sole over its load, in the velocity's axes; less than SMOOTH
     is lost in the sensors' zeros, and no witness against a slide.
     """
-    fast = np.nan_to_num(witness.speed) > np.maximum(LEAST_SPEED, POSSIBLE * witness.deviation)
+    fast = np.nan_to_num(indicator.speed) > np.maximum(LEAST_SPEED, POSSIBLE * indicator.deviation)
     found = np.zeros(len(fast), dtype=bool)
     for run in runs(joined(np.asarray(fast), round(PAUSE / period))):
         size = np.linalg.norm(friction[run], axis=1)

@@ -90,15 +90,17 @@ class Normal:
         return cls(whole.T @ whole, whole.T @ (target - regressor[:, :size] @ prior.cad), scale)
 
 
-def consistent_fit(normal: Normal, prior: Prior, strength: float, positive: Sequence[int] = ()) -> Array:
-    """Least squares plus `strength` times the distance from the CAD, every link's pseudo-inertia positive definite.
+def consistent_fit(
+    normal: Normal, prior: Prior, regularisation: float, positive: Sequence[int] = ()
+) -> Array:
+    """Least squares plus `regularisation` times the distance from the CAD; pseudo-inertias stay positive definite.
 
     positive: which extras may not be negative (friction cannot drive a joint). Returns [inertial parameters, extras].
     Raises MissingExtra without clarabel, DataError when the solver fails.
     """
     size, count = len(prior.cad), len(normal.linear)
-    pull = np.concatenate([np.full(size, strength), np.full(count - size, 1e-12)])
-    square = normal.square + np.diag(pull)
+    ridge = np.concatenate([np.full(size, regularisation), np.full(count - size, 1e-12)])
+    square = normal.square + np.diag(ridge)
     free = np.asarray(np.linalg.solve(square, normal.linear), dtype=np.float64)
     if np.all(free[[size + extra for extra in positive]] >= 0) and _keeps_floor(prior, free[:size]):
         x = free

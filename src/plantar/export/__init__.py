@@ -17,7 +17,7 @@ from typing import Any
 from plantar.errors import ExportError, located
 from plantar.export.bush import feet_of_result
 from plantar.export.job import Job
-from plantar.export.source import read_result, robot_urdf
+from plantar.export.source import open_result, robot_urdf
 from plantar.files import write_text
 from plantar.notes import Note, unique
 
@@ -53,7 +53,7 @@ def export(
     """
     if target not in TARGETS:
         raise ExportError(located(f"'{target}' is not a target", valid=", ".join(TARGETS)))
-    data, base = read_result(result)
+    data, base = open_result(result)
     path = Path(out)
     given = None if model is None else Path(model)
     if data.get("schema") == "plantar.inertia/1":
@@ -63,9 +63,9 @@ def export(
             )
         if given is None and "robot_model" not in data:
             raise ExportError(located("the result names no URDF", valid="--model with the robot's URDF"))
-        from plantar.export.urdf.inertia import identified_urdf
+        from plantar.export.urdf.inertia import with_inertial_parameters
 
-        text, notes = identified_urdf(data, given or robot_urdf(data, base))
+        text, notes = with_inertial_parameters(data, given or robot_urdf(data, base))
     else:
         feet, remarks = feet_of_result(data, base, with_offset=with_offset)
         module = import_module(f"plantar.export.{TARGETS[target][0]}")

@@ -15,7 +15,7 @@ RESULT_LIMIT = 256 * 2**20  # bytes
 SCHEMAS = ("plantar.feet/1", "plantar.inertia/1")
 
 
-def read_result(result: Mapping[str, Any] | str | os.PathLike[str]) -> tuple[Mapping[str, Any], Path]:
+def open_result(result: Mapping[str, Any] | str | os.PathLike[str]) -> tuple[Mapping[str, Any], Path]:
     """The result as a mapping, and the directory that its relative paths start from."""
     base = Path()
     if not isinstance(result, Mapping):

@@ -15,8 +15,8 @@ from plantar.feet.assess.scores import score_axis
 from plantar.feet.exclusion.outliers import fit_without_outliers
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.axis_fit import fit_axis
-from plantar.feet.fit.systematic import systematic_causes, widened
-from plantar.feet.prepare import Prepared
+from plantar.feet.fit.systematic import inflated, systematic_causes
+from plantar.feet.prepare import PreparedLogs
 from plantar.feet.settings import FeetSettings
 from plantar.results.feet import Parameter, ValidationRow
 
@@ -32,7 +32,9 @@ class FootFit:
     predictions: Predictions = field(default_factory=dict)
 
 
-def fit_foot(ready: Prepared, foot: str, settings: FeetSettings, progress: Callable[[str], None]) -> FootFit:
+def fit_foot(
+    ready: PreparedLogs, foot: str, settings: FeetSettings, progress: Callable[[str], None]
+) -> FootFit:
     """Pitch, then roll. Samples of this foot that leave a law by far are left out of its contacts."""
     found, shared = FootFit(), settings.offset == "shared"
     for axis in ROTATIONAL_AXES:
@@ -43,8 +45,8 @@ def fit_foot(ready: Prepared, foot: str, settings: FeetSettings, progress: Calla
         if fit is None:
             found.parameters.extend(missing_rows(foot, axis))
             continue
-        causes = systematic_causes(fit, ready.fitted, ready.latency, ready.vertical, shared)
-        wide = widened(fit, causes)
+        causes = systematic_causes(fit, ready.fitted, ready.sensor_delay, ready.vertical, shared)
+        wide = inflated(fit, causes)
         found.fits.append(wide)
         scores = score_axis(ready.recordings, foot, axis, wide, found.predictions)
         found.validation.extend(scores)

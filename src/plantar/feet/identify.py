@@ -64,11 +64,11 @@ def identify_feet(
             for phase in contact.phases(recording.name, foot, recording.time)
         ),
         validation=tuple(sorted(rows, key=lambda row: row.kind != "direct")),
-        notes=unique([*ready.notes, *_feet_notes(robot, ready.fitted), *_law_notes(fits)]),
+        notes=unique([*ready.notes, *_feet_notes(robot, ready.fitted), *_model_notes(fits)]),
         robot_model=_robot_model(robot),
         extras={
             "laws": [fit.to_dict() for fit in fits],
-            "latency": ready.latency.to_dict(),
+            "latency": ready.sensor_delay.to_dict(),
             "compliance": dict(ready.vertical.compliance),
             "diagnosis": [row for each in found for row in each.diagnosis],
         },
@@ -78,19 +78,19 @@ def identify_feet(
 
 def _model(fits: Sequence[AxisFit]) -> str:
     """The law of most axes; of equally many, the richer one."""
-    counts = Counter(fit.law.name for fit in fits)
+    counts = Counter(fit.model.name for fit in fits)
     return max(counts, key=lambda name: (counts[name], name != KelvinVoigt.name), default=KelvinVoigt.name)
 
 
-def _law_notes(fits: Sequence[AxisFit]) -> list[Note]:
+def _model_notes(fits: Sequence[AxisFit]) -> list[Note]:
     """Laws richer than spring and damper, and what a chosen law leaves open."""
     notes = []
     for fit in fits:
         where = f"{fit.foot} {fit.axis}"
-        if fit.law.name != KelvinVoigt.name:
+        if fit.model.name != KelvinVoigt.name:
             stiffness, damping = fit.equivalent
             linear = f"as spring and damper K = {stiffness:.4g}, C = {damping:.4g}"
-            text = f"{where}: {fit.law.name} ({fit.reason}); {linear}"
+            text = f"{where}: {fit.model.name} ({fit.reason}); {linear}"
             notes.append(Note("law", "info", text))
         if fit.choice is not None and fit.choice.caution is not None:
             notes.append(Note("law_caution", "warning", f"{where}: {fit.choice.caution}"))

@@ -10,11 +10,11 @@ from dataclasses import dataclass
 from plantar.errors import DataError
 from plantar.feet.exclusion.edge_rolling import leave_out_edges
 from plantar.feet.exclusion.slip import leave_out_slip
-from plantar.feet.exclusion.torque_saturation import leave_out_tipping
-from plantar.feet.fit.vertical_stiffness import Height, fit_height
+from plantar.feet.exclusion.torque_saturation import leave_out_torque_saturation
+from plantar.feet.fit.vertical_stiffness import VerticalStiffness, fit_vertical_stiffness
 from plantar.feet.recording import Recording, Role, checked, moved_centre, prepare
-from plantar.feet.sensors.sensor_delay import Latency, in_time, known_latency, wrench_latency
-from plantar.feet.sensors.tilt_error import NO_PULL, Pull, log_pull
+from plantar.feet.sensors.sensor_delay import SensorDelay, estimate_wrench_delay, in_time, known_delay
+from plantar.feet.sensors.tilt_error import NO_TILT_ERROR, TiltError, log_tilt_error
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note, unique
@@ -24,13 +24,13 @@ Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True)
-class Prepared:
+class PreparedLogs:
     """Recordings to fit and to validate, the wrenches' delay and the bushes' vertical compliance behind them."""
 
     fitted: tuple[Recording, ...]
     unseen: tuple[Recording, ...]
-    latency: Latency
-    vertical: Height
+    sensor_delay: SensorDelay
+    vertical: VerticalStiffness
     notes: tuple[Note, ...]
 
     @property
@@ -44,7 +44,7 @@ def prepare_all(
     validate: Sequence[MotionLog],
     settings: FeetSettings,
     progress: Progress,
-) -> Prepared:
+) -> PreparedLogs:
     """Check, put on even grids, correct for delay, leave out what cannot serve, move torques to the loaded centre.
 
     Raises RobotError, LogError or DataError with one line where an input cannot serve.
@@ -54,17 +54,17 @@ def prepare_all(
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         even = list(pool.map(lambda log: checked(robot, log), [*logs, *validate]))
         progress("estimate the sensors' delays")
-        latency = (
-            wrench_latency(robot, even, pool.map)
+        sensor_delay = (
+            estimate_wrench_delay(robot, even, pool.map)
             if settings.wrench_delay is None
-            else known_latency(settings.wrench_delay)
+            else known_delay(settings.wrench_delay)
         )
-        even = [in_time(robot, log, latency) for log in even]
-        pull = common_pull(robot, even)
+        even = [in_time(robot, log, sensor_delay) for log in even]
+        tilt_error = common_tilt_error(robot, even)
         roles = _roles("fit", logs) + _roles("validate", validate)
         recordings = list(
             pool.map(
-                lambda log, role: recorded(robot, log, role, settings, pull, progress),
+                lambda log, role: recorded(robot, log, role, settings, tilt_error, progress),
                 even,
                 roles,
             )
@@ -73,19 +73,21 @@ def prepare_all(
         leave_out_edges(robot, recordings, settings)
         list(pool.map(lambda recording: leave_out_slip(robot, recording), recordings))
     progress("fit z")
-    vertical = fit_height(recordings[: len(logs)], robot, settings.cutoff)
+    vertical = fit_vertical_stiffness(recordings[: len(logs)], robot, settings.cutoff)
     moved = [moved_centre(recording, vertical.compliance, settings.cutoff) for recording in recordings]
-    notes = [*(note for one in recordings for note in one.notes), latency.note, *vertical.notes]
-    return Prepared(tuple(moved[: len(logs)]), tuple(moved[len(logs) :]), latency, vertical, unique(notes))
+    notes = [*(note for one in recordings for note in one.notes), sensor_delay.note, *vertical.notes]
+    return PreparedLogs(
+        tuple(moved[: len(logs)]), tuple(moved[len(logs) :]), sensor_delay, vertical, unique(notes)
+    )
 
 
 def _roles(role: Role, logs: Sequence[MotionLog]) -> list[Role]:
     return [role for _ in logs]
 
 
-def common_pull(robot: RobotModel, logs: Sequence[MotionLog]) -> Pull:
+def common_tilt_error(robot: RobotModel, logs: Sequence[MotionLog]) -> TiltError:
     """The pull of the IMU's filter that all logs together show."""
-    return sum((log_pull(log, robot.imu) for log in logs if robot.imu), NO_PULL)
+    return sum((log_tilt_error(log, robot.imu) for log in logs if robot.imu), NO_TILT_ERROR)
 
 
 def recorded(
@@ -93,13 +95,13 @@ def recorded(
     log: MotionLog,
     role: Role,
     settings: FeetSettings,
-    pull: Pull,
+    tilt_error: TiltError,
     progress: Progress,
 ) -> Recording:
     """A `checked` log `in_time` as `prepare` makes it ready, without what is sure to be beyond the sole."""
     progress(f"prepare {log.name}")
-    recording = prepare(robot, log, role, settings, pull)
-    leave_out_tipping(robot, recording, settings)
+    recording = prepare(robot, log, role, settings, tilt_error)
+    leave_out_torque_saturation(robot, recording, settings)
     return recording
 
 

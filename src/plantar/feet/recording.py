@@ -14,7 +14,7 @@ from plantar.contact.phases import IMPACT, NOT_RECORDED, FootContact, carried_we
 from plantar.conventions import FORCE, GRAVITY, Array, Mask
 from plantar.errors import DataError, RobotError, located
 from plantar.estimation.errors_in_variables import noise_after_filter
-from plantar.feet.sensors.tilt_error import NO_PULL, Pull, right_attitude
+from plantar.feet.sensors.tilt_error import NO_TILT_ERROR, TiltError, right_attitude
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
@@ -78,7 +78,7 @@ def checked(robot: RobotModel, log: MotionLog) -> MotionLog:
     """The log on an even grid, with what is odd about it as notes.
 
     Raises RobotError without IMU or feet in the robot file, LogError for a missing column, DataError where a sensor
-    reads something impossible (degrees for radians, a flipped sign, swapped feet; see `sanity`).
+    reads something impossible (degrees for radians, a flipped sign, swapped feet; see `checks`).
     """
     _require(robot)
     findings = check_log(robot, log)
@@ -94,7 +94,7 @@ def prepare(
     log: MotionLog,
     role: Role,
     settings: FeetSettings,
-    pull: Pull = NO_PULL,
+    tilt_error: TiltError = NO_TILT_ERROR,
 ) -> Recording:
     """Bush states and contact of every foot in a `checked` log whose sensors were read together.
 
@@ -109,7 +109,7 @@ def prepare(
     raw = bush_states(robot, log.positions(robot), velocities, orientation, rates, wrenches)
     contacts = _contacts(robot, log, raw, settings, notes)
     places = {name: state.sole_position[:, :2] for name, state in raw.items()}
-    if (right := right_attitude(log, imu, orientation, pull, raw, contacts)) is not None:
+    if (right := right_attitude(log, imu, orientation, tilt_error, raw, contacts)) is not None:
         raw = bush_states(robot, log.positions(robot), velocities, right[0], rates, wrenches)
         notes.append(right[1])
     smooth = {name: filtered(state, period, settings.cutoff) for name, state in raw.items()}
@@ -212,14 +212,14 @@ def moved_centre(recording: Recording, compliance: Mapping[str, float], cutoff: 
     """
     bushes = {
         foot: replace(
-            bush, torque=bush.torque + compliance[foot] * lever_effect(bush, recording.period, cutoff)
+            bush, torque=bush.torque + compliance[foot] * moment_arm_effect(bush, recording.period, cutoff)
         )
         for foot, bush in recording.bushes.items()
     }
     return replace(recording, bushes=bushes)
 
 
-def lever_effect(bush: BushState, period: float, cutoff: float) -> Array:
+def moment_arm_effect(bush: BushState, period: float, cutoff: float) -> Array:
     """Change of pitch and roll torque for each m/N of vertical compliance, (N, 2) [N·m per m/N], filtered alike."""
     x, y, z = bush.wrench[:, FORCE].T
     return low_pass(np.column_stack([-z * x, np.cos(bush.deflection[:, 0]) * z * y]), period, cutoff)

@@ -26,7 +26,7 @@ Key = tuple[str, str, str]  # foot, axis, term
 
 
 @dataclass(frozen=True)
-class Evidence:
+class MotionInformation:
     """What one recording adds for one foot and axis: `information` (2, 2) and the covariance of its `scores` (2, 2)."""
 
     information: Array
@@ -83,7 +83,7 @@ def select_motions(
     if unknown:
         raise DataError(f"no log is called '{unknown[0]}' (valid: {', '.join(names)})")
     recordings = prepare_all(robot, logs, (), settings, progress).fitted
-    evidence: dict[tuple[str, str], dict[str, Evidence]] = {}
+    gained: dict[tuple[str, str], dict[str, MotionInformation]] = {}
     values: dict[Key, float] = {}
     for foot in robot.feet:
         for axis in ROTATIONAL_AXES:
@@ -93,32 +93,34 @@ def select_motions(
             fit = fit_linear(blocks)
             for term, value in zip(KelvinVoigt().terms, fit.values, strict=True):
                 values[foot, axis, term] = float(value)
-            evidence[foot, axis] = {}
+            gained[foot, axis] = {}
             for block in blocks:
                 centred = block.regressor - block.regressor.mean(axis=0)
                 scores = cosine_covariance(centred * fit.residuals[block.label][:, None], block.duration)[0]
-                evidence[foot, axis][block.label] = Evidence(centred.T @ centred, scores)
+                gained[foot, axis][block.label] = MotionInformation(centred.T @ centred, scores)
     if not values:
         raise DataError(
             "no log has samples of a standing foot that could serve (valid: a robot that stands on its feet)"
         )
-    choices = {(name,): _promise((name,), evidence, values) for name in names}
-    best = _best_sets(names, largest, lambda motions: _promise(motions, evidence, values))
+    choices = {(name,): _promise((name,), gained, values) for name in names}
+    best = _best_sets(names, largest, lambda motions: _promise(motions, gained, values))
     return Selection(
         alone=tuple(sorted(choices.values(), key=lambda choice: choice.usual)),
         best=tuple(best),
-        together=_promise(tuple(names), evidence, values),
-        compared=_promise(tuple(compare), evidence, values) if compare else None,
+        together=_promise(tuple(names), gained, values),
+        compared=_promise(tuple(compare), gained, values) if compare else None,
     )
 
 
 def _promise(
-    motions: tuple[str, ...], evidence: dict[tuple[str, str], dict[str, Evidence]], values: dict[Key, float]
+    motions: tuple[str, ...],
+    gained: dict[tuple[str, str], dict[str, MotionInformation]],
+    values: dict[Key, float],
 ) -> Choice:
     """Expected half widths of a set: sandwich of the summed information and scores."""
     widths: dict[Key, float] = {}
     condition = 1.0
-    for (foot, axis), parts in evidence.items():
+    for (foot, axis), parts in gained.items():
         present = [parts[motion] for motion in motions if motion in parts]
         information = np.sum([part.information for part in present], axis=0) if present else np.zeros((2, 2))
         scale = np.sqrt(np.diag(information))

@@ -14,12 +14,12 @@ from plantar.feet.assess.scores import score_axis
 from plantar.feet.exclusion.edge_rolling import leave_out_edges
 from plantar.feet.exclusion.slip import leave_out_slip
 from plantar.feet.fit.axis import AxisFit
-from plantar.feet.prepare import check_names, common_pull, recorded
+from plantar.feet.prepare import check_names, common_tilt_error, recorded
 from plantar.feet.recording import checked, moved_centre
-from plantar.feet.sensors.sensor_delay import in_time, latency_of
+from plantar.feet.sensors.sensor_delay import in_time, sensor_delay_of
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
-from plantar.models import LAWS, KelvinVoigt
+from plantar.models import MODELS, KelvinVoigt
 from plantar.results.feet import ValidationRow
 from plantar.robot.model import RobotModel
 
@@ -44,10 +44,10 @@ def validate_feet(
     }
     settings = FeetSettings(**known)
     compliance = {foot: float(result.get("compliance", {}).get(foot, 0.0)) for foot in robot.feet}
-    latency = latency_of(result)
-    even = [in_time(robot, checked(robot, log), latency) for log in logs]
-    pull = common_pull(robot, even)
-    recordings = [recorded(robot, log, "validate", settings, pull, progress) for log in even]
+    sensor_delay = sensor_delay_of(result)
+    even = [in_time(robot, checked(robot, log), sensor_delay) for log in logs]
+    tilt_error = common_tilt_error(robot, even)
+    recordings = [recorded(robot, log, "validate", settings, tilt_error, progress) for log in even]
     leave_out_edges(robot, recordings, settings)
     for recording in recordings:
         leave_out_slip(robot, recording)
@@ -68,25 +68,25 @@ def validate_feet(
 
 def _stored_fit(result: Mapping[str, Any], foot: str, axis: Axis) -> AxisFit | None:
     """The law of one axis as the result holds it, None where a number of it is missing."""
-    laws = [row for row in result.get("laws", ()) if (row["foot"], row["axis"]) == (foot, axis)]
-    entry: Mapping[str, Any] = laws[0] if laws else {"law": KelvinVoigt.name}
+    models = [row for row in result.get("laws", ()) if (row["foot"], row["axis"]) == (foot, axis)]
+    entry: Mapping[str, Any] = models[0] if models else {"law": KelvinVoigt.name}
     name = entry["law"]
-    if name not in LAWS:
-        raise DataError(f"the result's law '{name}' is unknown (valid: {', '.join(LAWS)})")
-    law = LAWS[name]
+    if name not in MODELS:
+        raise DataError(f"the result's law '{name}' is unknown (valid: {', '.join(MODELS)})")
+    model = MODELS[name]
     stored = {
         row["name"]: row["value"]
         for row in result["parameters"]
         if (row["foot"], row["axis"]) == (foot, axis)
     }
-    numbers = [stored.get(term) for term in (*law.terms, *law.shape_terms)]
+    numbers = [stored.get(term) for term in (*model.terms, *model.shape_terms)]
     if any(number is None for number in numbers):
         return None
     values = np.array(numbers, dtype=float)
     linear = entry.get("linear_equivalent", {})
     equivalent = (float(linear.get("stiffness", values[0])), float(linear.get("damping", values[1])))
-    count, size = len(law.terms), len(values)
+    count, size = len(model.terms), len(values)
     return AxisFit(
-        foot, axis, law, values[:count], values[count:], np.zeros((size, size)), np.ones(size), np.zeros(size),
+        foot, axis, model, values[:count], values[count:], np.zeros((size, size)), np.ones(size), np.zeros(size),
         {}, {}, {}, equivalent, None, "stored",
     )  # fmt: skip

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.model_selection.data_sets import Prepared
+from plantar.model_selection.data_sets import FilteredDataSet
 from plantar.model_selection.grid import Numbers, Pieces, fit_pieces, held_out_squares
-from plantar.model_selection.model_fit import LawFit, refine
-from plantar.models import Law
+from plantar.model_selection.model_fit import ModelFit, refine
+from plantar.models import BushModel
 
 FOLDS = 5  # contiguous parts that recordings are cut into where they cannot stand for one another
 SEED_REACH = 2.2  # ratio of shapes to those of a simpler law, within which a richer one is looked for
@@ -19,7 +19,7 @@ DOMINANT = 0.5  # share of all motion in one recording, above which the others c
 FEWEST_RECORDINGS = 3  # for whole recordings to be held out
 
 
-def folds_of(prepared: Sequence[Prepared]) -> tuple[list[Numbers], bool]:
+def folds_of(prepared: Sequence[FilteredDataSet]) -> tuple[list[Numbers], bool]:
     """Number of the fold of every sample that serves, and whether folds are whole recordings."""
     moved = np.array([np.sum((e.base[:, 0] - e.base[:, 0].mean()) ** 2) for e in prepared])
     if len(prepared) >= FEWEST_RECORDINGS and moved.max() <= DOMINANT * moved.sum():
@@ -29,10 +29,10 @@ def folds_of(prepared: Sequence[Prepared]) -> tuple[list[Numbers], bool]:
 
 
 @dataclass(frozen=True)
-class Contender:
+class Candidate:
     """A law with its candidate shapes, their limits (2, s), and the squares that the best candidate leaves."""
 
-    law: Law
+    model: BushModel
     pieces: Pieces
     limits: Array
     squares: float
@@ -40,40 +40,40 @@ class Contender:
     @classmethod
     def of(
         cls,
-        law: Law,
-        prepared: Sequence[Prepared],
+        model: BushModel,
+        prepared: Sequence[FilteredDataSet],
         folds: Sequence[Numbers],
         shared_offset: bool,
-        seed: LawFit | None = None,
-    ) -> Contender:
+        seed: ModelFit | None = None,
+    ) -> Candidate:
         """`seed` is the fit of a simpler law, near whose first shape term and starts this one's are looked for."""
-        shapes = law.candidates([each.motion for each in prepared])
+        shapes = model.candidates([each.motion for each in prepared])
         limits = np.array([shapes.min(axis=0), shapes.max(axis=0)])
-        starts = None
+        initial_states = None
         if seed is not None:
             ratio = np.abs(np.log(shapes[:, 0] / seed.shape[0]))
             shapes = shapes[ratio <= max(np.log(SEED_REACH), ratio.min())]
-            starts = list(seed.starts.values())
-        pieces = Pieces.of(law, prepared, folds, shapes, starts)
+            initial_states = list(seed.initial_states.values())
+        pieces = Pieces.of(model, prepared, folds, shapes, initial_states)
         everything = np.ones(len(pieces.grams), dtype=bool)
         squares = fit_pieces(pieces, everything, shared_offset=shared_offset).squares
-        return cls(law, pieces, limits, float(squares.min()))
+        return cls(model, pieces, limits, float(squares.min()))
 
 
-def judge(
-    contender: Contender,
-    prepared: Sequence[Prepared],
+def cross_validate(
+    candidate: Candidate,
+    prepared: Sequence[FilteredDataSet],
     folds: Sequence[Numbers],
     whole: bool,
     shared_offset: bool,
     *,
     refined: bool,
-) -> tuple[LawFit, Array]:
+) -> tuple[ModelFit, Array]:
     """The law's fit to everything, and its squared error on each piece from fits that have not seen it."""
-    pieces = contender.pieces
-    fit = refine(pieces, prepared, contender.limits, shared_offset=shared_offset, refined=refined)
+    pieces = candidate.pieces
+    fit = refine(pieces, prepared, candidate.limits, shared_offset=shared_offset, refined=refined)
     if pieces.shapes.shape[1] and refined:
-        pieces = pieces.with_shape(fit.shape, list(fit.starts.values()), prepared, folds)
+        pieces = pieces.with_shape(fit.shape, list(fit.initial_states.values()), prepared, folds)
     squares = np.zeros(len(pieces.grams))
     for fold in np.unique(pieces.fold):
         held = pieces.fold == fold

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from plantar.conventions import Array, Mask
-from plantar.models import Law, Motion
+from plantar.models import BushModel, BushMotion
 from plantar.signals.filters import low_pass
 
 SAMPLES_PER_CYCLE = 7  # of the filter's cutoff, that thinning keeps
@@ -17,18 +17,18 @@ THIN_BAND = 4.0  # cutoffs, that survive thinning
 
 
 @dataclass(frozen=True)
-class Trial:
+class DataSet:
     """One axis of one foot over one recording: wide-band `motion` and `torque` (N,), and the samples that serve.
 
     Both sides unfiltered, or filtered alike well above the fit's cutoff.
     """
 
     label: str
-    motion: Motion
+    motion: BushMotion
     torque: Array
     used: Mask
 
-    def thinned(self, cutoff: float) -> Trial:
+    def thinned(self, cutoff: float) -> DataSet:
         """Every nth sample, after a filter well above `cutoff` [Hz]; itself where it is slow already."""
         period = self.motion.period
         stride = int(1 / (period * SAMPLES_PER_CYCLE * cutoff) + 1e-6)
@@ -43,12 +43,12 @@ class Trial:
             None if motion.across_rate is None else low_pass(motion.across_rate, period, band)[::stride]
         )
         torque = np.where(np.isfinite(path[:, 0]), self.torque, np.nan)
-        thin = Motion(path[::stride, 0], path[::stride, 1], period * stride, across, across_rate)
-        return Trial(self.label, thin, low_pass(torque, period, band)[::stride], self.used[::stride])
+        thin = BushMotion(path[::stride, 0], path[::stride, 1], period * stride, across, across_rate)
+        return DataSet(self.label, thin, low_pass(torque, period, band)[::stride], self.used[::stride])
 
 
 @dataclass(frozen=True)
-class Prepared:
+class FilteredDataSet:
     """A trial through the fit's filter: `motion` (N,), the samples that serve, and the `response` (n,) at these.
 
     A law with memory does not commute with a filter: its state follows the path, and its columns then go through the
@@ -60,27 +60,27 @@ class Prepared:
     """
 
     label: str
-    motion: Motion
+    motion: BushMotion
     response: Array
     used: Mask
     cutoff: float
     drift: bool
 
     @classmethod
-    def of(cls, trial: Trial, cutoff: float, *, drift: bool = True) -> Prepared:
+    def of(cls, data_set: DataSet, cutoff: float, *, drift: bool = True) -> FilteredDataSet:
         """Filter both sides at `cutoff` [Hz]; samples without a value on either side do not serve."""
-        motion = trial.motion
-        whole = np.isfinite(motion.deflection) & np.isfinite(motion.rate) & np.isfinite(trial.torque)
-        values = np.column_stack([motion.deflection, motion.rate, trial.torque])
+        motion = data_set.motion
+        whole = np.isfinite(motion.deflection) & np.isfinite(motion.rate) & np.isfinite(data_set.torque)
+        values = np.column_stack([motion.deflection, motion.rate, data_set.torque])
         values[~whole] = np.nan
         smooth = low_pass(values, motion.period, cutoff)
         across = None if motion.across is None else low_pass(motion.across, motion.period, cutoff)
         across_rate = (
             None if motion.across_rate is None else low_pass(motion.across_rate, motion.period, cutoff)
         )
-        path = Motion(smooth[:, 0], smooth[:, 1], motion.period, across, across_rate)
-        used = trial.used & np.isfinite(smooth).all(axis=1)
-        raw = cls(trial.label, path, smooth[used, 2], used, cutoff, drift)
+        path = BushMotion(smooth[:, 0], smooth[:, 1], motion.period, across, across_rate)
+        used = data_set.used & np.isfinite(smooth).all(axis=1)
+        raw = cls(data_set.label, path, smooth[used, 2], used, cutoff, drift)
         return replace(raw, response=raw.without_drift(raw.response))
 
     def without_drift(self, rows: Array) -> Array:
@@ -114,15 +114,17 @@ class Prepared:
         return self.without_drift(smooth[self.used].reshape(-1, *extra.shape[1:]))
 
 
-def prepare_trials(trials: Sequence[Trial], cutoff: float, *, drift: bool = True) -> list[Prepared]:
+def prepare_data_sets(
+    data_sets: Sequence[DataSet], cutoff: float, *, drift: bool = True
+) -> list[FilteredDataSet]:
     """Thinned and filtered trials that have samples to serve."""
-    prepared = [Prepared.of(trial.thinned(cutoff), cutoff, drift=drift) for trial in trials]
+    prepared = [FilteredDataSet.of(data_set.thinned(cutoff), cutoff, drift=drift) for data_set in data_sets]
     return [each for each in prepared if each.used.any()]
 
 
 def filtered_columns(
-    law: Law, prepared: Sequence[Prepared], shapes: Array, starts: Sequence[Array]
+    model: BushModel, prepared: Sequence[FilteredDataSet], shapes: Array, initial_states: Sequence[Array]
 ) -> list[Array]:
     """A law's columns beside the linear two at the samples that serve, (n, e, b) for each trial."""
-    extras = law.extra([each.motion for each in prepared], shapes, starts)
+    extras = model.extra([each.motion for each in prepared], shapes, initial_states)
     return [each.filtered(extra) for each, extra in zip(prepared, extras, strict=True)]

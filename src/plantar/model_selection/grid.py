@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plantar.conventions import Array, Mask
-from plantar.model_selection.data_sets import Prepared, filtered_columns
-from plantar.models import Law
+from plantar.model_selection.data_sets import FilteredDataSet, filtered_columns
+from plantar.models import BushModel
 
 Numbers = NDArray[np.intp]
 
@@ -30,15 +30,15 @@ RIDGE = 1e-12  # of each column's own square: keeps collinear columns solvable
 class Pieces:
     """Grams (pieces, g, c, k + 2, k + 2) of [columns, 1, response], for g shapes and c starts (c, runs) of each trial.
 
-    `trial`, `run` and `fold` (pieces,) say what each piece is part of; runs are numbered through all trials.
+    `data_set`, `run` and `fold` (pieces,) say what each piece is part of; runs are numbered through all trials.
     `rows` (pieces,) are the samples in each.
     """
 
-    law: Law
+    model: BushModel
     shapes: Array
-    starts: list[Array]
+    initial_states: list[Array]
     grams: Array
-    trial: Numbers
+    data_set: Numbers
     run: Numbers
     fold: Numbers
     rows: Numbers
@@ -46,8 +46,8 @@ class Pieces:
     @classmethod
     def of(
         cls,
-        law: Law,
-        prepared: Sequence[Prepared],
+        model: BushModel,
+        prepared: Sequence[FilteredDataSet],
         folds: Sequence[Numbers],
         shapes: Array,
         around: Sequence[Array] | None = None,
@@ -56,7 +56,7 @@ class Pieces:
 
         Starts are tried over all their range, or `around` known ones (runs,) of each trial.
         """
-        tried = np.array(law.tried_starts) * (1.0 if around is None else NEARBY)
+        tried = np.array(model.tried_states) * (1.0 if around is None else NEARBY)
         count = len(tried)
         variants = np.repeat(shapes, count, axis=0)
         begin: list[Array] = []
@@ -64,9 +64,9 @@ class Pieces:
             middle = np.zeros(len(each.motion.runs)) if around is None else around[place]
             begin.append(np.clip(tried[:, None] + middle[None, :], -1.0, 1.0))
         tiled = [np.tile(start, (len(shapes), 1)) for start in begin]
-        grams, trial, run, fold, rows, first = [], [], [], [], [], 0
+        grams, data_set, run, fold, rows, first = [], [], [], [], [], 0
         for place, (each, extra) in enumerate(
-            zip(prepared, filtered_columns(law, prepared, variants, tiled), strict=True)
+            zip(prepared, filtered_columns(model, prepared, variants, tiled), strict=True)
         ):
             common = np.column_stack([each.base, np.ones(extra.shape[0]), each.response])
             key = each.run_of * (1 + int(folds[place].max(initial=0))) + folds[place]
@@ -75,13 +75,13 @@ class Pieces:
                 grams.append(
                     _gram(common[mine], extra[mine]).reshape(len(shapes), count, *[extra.shape[1] + 4] * 2)
                 )
-                trial.append(place)
+                data_set.append(place)
                 run.append(first + int(each.run_of[mine][0]))
                 fold.append(int(folds[place][mine][0]))
                 rows.append(int(mine.sum()))
             first += len(each.motion.runs)
-        numbers = (np.array(values, dtype=np.intp) for values in (trial, run, fold, rows))
-        return cls(law, shapes, begin, np.array(grams), *numbers)
+        numbers = (np.array(values, dtype=np.intp) for values in (data_set, run, fold, rows))
+        return cls(model, shapes, begin, np.array(grams), *numbers)
 
     @property
     def size(self) -> int:
@@ -89,10 +89,14 @@ class Pieces:
         return int(self.grams.shape[-1]) - 2
 
     def with_shape(
-        self, shape: Array, starts: Sequence[Array], prepared: Sequence[Prepared], folds: Sequence[Numbers]
+        self,
+        shape: Array,
+        initial_states: Sequence[Array],
+        prepared: Sequence[FilteredDataSet],
+        folds: Sequence[Numbers],
     ) -> Pieces:
         """The same pieces with one more candidate shape (s,), whose starts are tried around the given ones (runs,)."""
-        more = Pieces.of(self.law, prepared, folds, shape[None, :], starts)
+        more = Pieces.of(self.model, prepared, folds, shape[None, :], initial_states)
         shapes, grams = (
             np.vstack([self.shapes, more.shapes]),
             np.concatenate([self.grams, more.grams], axis=1),
@@ -107,28 +111,30 @@ class Fits:
 
     values: Array
     offsets: Array
-    starts: Numbers
+    initial_states: Numbers
     squares: Array
 
 
 def fit_pieces(pieces: Pieces, chosen: Mask, *, shared_offset: bool = False) -> Fits:
     """Least squares for every shape over the `chosen` pieces (pieces,), with the best start of each run's memory."""
     shapes, count = pieces.grams.shape[1:3]
-    starts = np.full((len(pieces.grams), shapes), count // 2, dtype=np.intp)
+    initial_states = np.full((len(pieces.grams), shapes), count // 2, dtype=np.intp)
     runs = np.unique(pieces.run[chosen])
     for _ in range(ROUNDS if count > 1 else 1):
-        totals = _totals(pieces, chosen, starts)
+        totals = _totals(pieces, chosen, initial_states)
         values, offsets, squares = _solve(totals, shared_offset)
         if count == 1:
             break
-        before = starts.copy()
+        before = initial_states.copy()
         for run in runs:
             mine = chosen & (pieces.run == run)
-            trial = int(pieces.trial[mine][0])
-            starts[pieces.run == run] = _best_start(pieces, mine, totals[trial], before[mine], values)
-        if np.array_equal(before, starts):
+            data_set = int(pieces.data_set[mine][0])
+            initial_states[pieces.run == run] = _best_state(
+                pieces, mine, totals[data_set], before[mine], values
+            )
+        if np.array_equal(before, initial_states):
             break
-    return Fits(values, offsets, starts, squares)
+    return Fits(values, offsets, initial_states, squares)
 
 
 def held_out_squares(pieces: Pieces, fits: Fits, held: Mask, shape: int, *, whole: bool) -> Array:
@@ -143,8 +149,8 @@ def held_out_squares(pieces: Pieces, fits: Fits, held: Mask, shape: int, *, whol
         if whole:
             squares.append(min(_profiled(gram, values) for gram in grams))
             continue
-        vector = np.concatenate([values, [fits.offsets[shape, pieces.trial[piece]], -1.0]])
-        tried = grams if pieces.law.forgets else grams[[fits.starts[piece, shape]]]
+        vector = np.concatenate([values, [fits.offsets[shape, pieces.data_set[piece]], -1.0]])
+        tried = grams if pieces.model.forgets else grams[[fits.initial_states[piece, shape]]]
         squares.append(min(float(vector @ gram @ vector) for gram in tried))
     return np.array(squares)
 
@@ -158,12 +164,12 @@ def _gram(common: Array, extra: Array) -> Array:
     return np.asarray(np.swapaxes(wide, 1, 2) @ wide)
 
 
-def _totals(pieces: Pieces, chosen: Mask, starts: Numbers) -> Array:
+def _totals(pieces: Pieces, chosen: Mask, initial_states: Numbers) -> Array:
     """Each trial's Gram (trials, g, k + 2, k + 2) with the starts chosen so far."""
-    trials, shapes = int(pieces.trial.max()) + 1, np.arange(pieces.grams.shape[1])
-    totals = np.zeros((trials, len(shapes), *pieces.grams.shape[3:]))
+    data_sets, shapes = int(pieces.data_set.max()) + 1, np.arange(pieces.grams.shape[1])
+    totals = np.zeros((data_sets, len(shapes), *pieces.grams.shape[3:]))
     for piece in np.flatnonzero(chosen):
-        totals[pieces.trial[piece]] += pieces.grams[piece, shapes, starts[piece]]
+        totals[pieces.data_set[piece]] += pieces.grams[piece, shapes, initial_states[piece]]
     return totals
 
 
@@ -194,11 +200,11 @@ def _solve(totals: Array, shared_offset: bool) -> tuple[Array, Array, Array]:
     return values, np.repeat(offsets.T, len(totals) // len(sums), axis=1), squares
 
 
-def _best_start(pieces: Pieces, mine: Mask, total: Array, starts: Numbers, values: Array) -> Numbers:
+def _best_state(pieces: Pieces, mine: Mask, total: Array, initial_states: Numbers, values: Array) -> Numbers:
     """For every shape the start of one run that fits best, the trial's offset moving with it, (g,)."""
     shapes = np.arange(total.shape[0])
     grams = pieces.grams[mine]
-    current = sum(gram[shapes, start] for gram, start in zip(grams, starts, strict=True))
+    current = sum(gram[shapes, start] for gram, start in zip(grams, initial_states, strict=True))
     alternatives = (total - current)[:, None] + grams.sum(axis=0)
     centred = _without_offset(alternatives)
     vector = np.column_stack([values, -np.ones(len(values))])

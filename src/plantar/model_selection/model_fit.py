@@ -1,6 +1,6 @@
 """Fit of a law of the bush that is linear in all but its shape: the shape outside, linear least squares inside.
 
-The search over the shape is in `law_search`; here it is refined together with the unknown start of the law's memory in
+The search over the shape is in `grid`; here it is refined together with the unknown start of the law's memory in
 every run (Gauss-Newton on the variable projection), and everything that had to be estimated enters the intervals.
 """
 
@@ -14,27 +14,27 @@ import numpy as np
 from plantar.conventions import Array
 from plantar.errors import DataError
 from plantar.estimation.intervals import interval95
-from plantar.model_selection.data_sets import Prepared, Trial, prepare_trials
+from plantar.model_selection.data_sets import DataSet, FilteredDataSet, prepare_data_sets
 from plantar.model_selection.grid import Pieces
 from plantar.model_selection.partialled_out import robust_covariance
 from plantar.model_selection.variable_projection import Point, Problem, settle
-from plantar.models import BESIDE, Law
+from plantar.models import BESIDE, BushModel
 
 AT_LIMIT = 0.02  # of a shape: so near to its range's end it counts as there
 HARDLY_KNOWN = 0.5  # a standard deviation beyond this share of the value
 
 
 @dataclass(frozen=True)
-class LawFit:
+class ModelFit:
     """A law fitted to several recordings.
 
-    `values` (k,) as `law.terms`, `shape` (s,) as `law.shape_terms`, `covariance` (k + s, same) of both with coloured
-    residuals, the shape's and the starts' uncertainty inside; `freedom` (k + s,) goes with it, `white_std` (k + s,) is
-    the paper's. `offsets`, `offset_std`, `starts` (runs,) and `residuals` (of the thinned samples that served) by
-    recording. `limits` (2, s) is the range that the motions let the shape be looked for in.
+    `values` (k,) as `model.terms`, `shape` (s,) as `model.shape_terms`, `covariance` (k + s, same) of both with
+    coloured residuals, the uncertainty of shape and initial states inside; `freedom` (k + s,) goes with it, `white_std`
+    (k + s,) is the paper's. `offsets`, `offset_std`, `initial_states` (runs,) and `residuals` (of the thinned samples
+    that were used) by recording. `limits` (2, s) is the range that the motions let the shape be looked for in.
     """
 
-    law: Law
+    model: BushModel
     values: Array
     shape: Array
     covariance: Array
@@ -42,7 +42,7 @@ class LawFit:
     white_std: Array
     offsets: dict[str, float]
     offset_std: dict[str, float]
-    starts: dict[str, Array]
+    initial_states: dict[str, Array]
     residuals: dict[str, Array]
     limits: Array
     cutoff: float
@@ -56,7 +56,7 @@ class LawFit:
     @property
     def names(self) -> tuple[str, ...]:
         """Names of values and shape."""
-        return (*self.law.terms, *self.law.shape_terms)
+        return (*self.model.terms, *self.model.shape_terms)
 
     @property
     def rms(self) -> float:
@@ -76,55 +76,57 @@ class LawFit:
     def doubts(self) -> tuple[str, ...]:
         """Why the law's own terms are not to be trusted, one line each; empty where they are."""
         found = []
-        for place, term in enumerate(self.law.shape_terms):
+        for place, term in enumerate(self.model.shape_terms):
             low, high = self.limits[:, place]
             value = self.shape[place]
-            if (term, "high") in self.law.blind_ends and value > (1 - AT_LIMIT) * high:
+            if (term, "high") in self.model.blind_ends and value > (1 - AT_LIMIT) * high:
                 found.append(f"{term} lies at or beyond {high:.3g}, the largest that these motions can show")
-            if (term, "low") in self.law.blind_ends and value < (1 + AT_LIMIT) * low:
+            if (term, "low") in self.model.blind_ends and value < (1 + AT_LIMIT) * low:
                 found.append(f"{term} lies at or below {low:.3g}, the smallest that these motions can show")
-        own = range(len(BESIDE), len(self.law.terms))
+        own = range(len(BESIDE), len(self.model.terms))
         if own and not any(self.std[place] < HARDLY_KNOWN * abs(self.values[place]) for place in own):
             known = (
-                f"{self.law.terms[place]} {self.values[place]:.3g} ± {self.std[place]:.2g}" for place in own
+                f"{self.model.terms[place]} {self.values[place]:.3g} ± {self.std[place]:.2g}" for place in own
             )
             found.append(f"not told from nothing: {', '.join(known)}")
         return tuple(found)
 
 
-def fit_law(law: Law, trials: Sequence[Trial], cutoff: float = 5.0, *, shared_offset: bool = False) -> LawFit:
-    """Least squares of the trials' torques under `law`, both sides filtered at `cutoff` [Hz].
+def fit_model(
+    model: BushModel, data_sets: Sequence[DataSet], cutoff: float = 5.0, *, shared_offset: bool = False
+) -> ModelFit:
+    """Least squares of the trials' torques under `model`, both sides filtered at `cutoff` [Hz].
 
     One offset for each recording, or with `shared_offset` one for all. Raises DataError where no sample serves.
     """
-    prepared = prepare_trials(trials, cutoff, drift=not shared_offset)
+    prepared = prepare_data_sets(data_sets, cutoff, drift=not shared_offset)
     if not prepared:
         raise DataError(
             "no recording has a sample that serves this fit (valid: at least one standing second)"
         )
     folds = [np.zeros(int(each.used.sum()), dtype=np.intp) for each in prepared]
-    shapes = law.candidates([each.motion for each in prepared])
+    shapes = model.candidates([each.motion for each in prepared])
     limits = np.array([shapes.min(axis=0), shapes.max(axis=0)])
-    return refine(Pieces.of(law, prepared, folds, shapes), prepared, limits, shared_offset=shared_offset)
+    return refine(Pieces.of(model, prepared, folds, shapes), prepared, limits, shared_offset=shared_offset)
 
 
 def refine(
     pieces: Pieces,
-    prepared: Sequence[Prepared],
+    prepared: Sequence[FilteredDataSet],
     limits: Array,
     *,
     shared_offset: bool = False,
     refined: bool = True,
-) -> LawFit:
+) -> ModelFit:
     """The fit that starts from the best candidate of `pieces` and keeps the shape between `limits` (2, s).
 
     Not `refined`, it stays at that candidate: enough to tell that a law is the wrong one.
     """
-    problem = Problem(pieces.law, prepared, shared_offset)
+    problem = Problem(pieces.model, prepared, shared_offset)
     return _finished(problem, settle(problem, pieces, limits, refined=refined), limits)
 
 
-def _finished(problem: Problem, point: Point, limits: Array) -> LawFit:
+def _finished(problem: Problem, point: Point, limits: Array) -> ModelFit:
     linear = problem.linearised(point)
     scale = np.concatenate([np.ones(len(point.values)), point.shape])
     durations = [len(r) * e.motion.period for e, r in zip(problem.prepared, point.residuals, strict=True)]
@@ -135,8 +137,8 @@ def _finished(problem: Problem, point: Point, limits: Array) -> LawFit:
     white = point.squares / max(rows - len(covariance), 1) * linear.inverse_diagonal() * scale**2
     labels = [each.label for each in problem.prepared]
     spread = np.sqrt(np.diag(covariance)[count:])
-    return LawFit(
-        law=problem.law,
+    return ModelFit(
+        model=problem.model,
         values=point.values,
         shape=point.shape,
         covariance=covariance[:count, :count],
@@ -144,7 +146,7 @@ def _finished(problem: Problem, point: Point, limits: Array) -> LawFit:
         white_std=np.sqrt(white),
         offsets=dict(zip(labels, point.offsets.tolist(), strict=True)),
         offset_std=dict(zip(labels, spread.tolist(), strict=True)),
-        starts=dict(zip(labels, point.starts, strict=True)),
+        initial_states=dict(zip(labels, point.initial_states, strict=True)),
         residuals=dict(zip(labels, point.residuals, strict=True)),
         limits=limits,
         cutoff=problem.prepared[0].cutoff,

@@ -87,7 +87,7 @@ class Linearised:
             return np.full(len(left), np.concatenate(left).mean())
         return np.array([each.mean() for each in left])
 
-    def starts(self, values: Array) -> list[Array]:
+    def initial_states(self, values: Array) -> list[Array]:
         """Change of each run's start (runs,) that goes with parameters (p,), offsets moving along."""
         if self._memories is None or self._runs is None:
             return [np.zeros(1) for _ in self.responses]

@@ -15,10 +15,10 @@ import numpy as np
 
 from plantar.conventions import Array
 from plantar.errors import DataError
-from plantar.model_selection.cross_validation import FOLDS, Contender, folds_of, judge
-from plantar.model_selection.data_sets import Trial, prepare_trials
-from plantar.model_selection.model_fit import LawFit
-from plantar.models import LAWS, KelvinVoigt, Law, reach
+from plantar.model_selection.cross_validation import FOLDS, Candidate, cross_validate, folds_of
+from plantar.model_selection.data_sets import DataSet, prepare_data_sets
+from plantar.model_selection.model_fit import ModelFit
+from plantar.models import MODELS, BushModel, KelvinVoigt, reach
 
 LEAST_GAIN = 0.10  # of the held-out rms error
 TELLING_GAIN = (
@@ -29,23 +29,23 @@ HOPELESS = 6.0  # times the best law's squares, at its best candidate shape: suc
 
 
 @dataclass(frozen=True)
-class LawScore:
+class ModelScore:
     """One law: error on held-out pieces [N·m rms], fit, and why it could not be chosen (None where it could)."""
 
-    law: Law
+    model: BushModel
     held_out_rms: float
-    fit: LawFit
+    fit: ModelFit
     refused: str | None
     chosen: bool = False
 
     @property
     def parameters(self) -> int:
         """How many the bush has under this law."""
-        return self.law.size
+        return self.model.size
 
 
 @dataclass(frozen=True)
-class LawChoice:
+class ModelChoice:
     """The chosen law's fit, the linear equivalent (K, C of Kelvin-Voigt over the same motions), and the ranking.
 
     `untried` are laws that elaborate one which gained nothing, add nothing to it, or need what the motions lack. What
@@ -53,9 +53,9 @@ class LawChoice:
     made slip counts as part of the spring. `caution` says so where the motions show that there is one.
     """
 
-    fit: LawFit
-    equivalent: LawFit
-    ranking: tuple[LawScore, ...]
+    fit: ModelFit
+    equivalent: ModelFit
+    ranking: tuple[ModelScore, ...]
     held_out: str
     reason: str
     untried: tuple[str, ...]
@@ -63,64 +63,64 @@ class LawChoice:
     caution: str | None
 
 
-def choose_law(
-    trials: Sequence[Trial],
-    laws: Sequence[Law] = tuple(LAWS.values()),
+def choose_model(
+    data_sets: Sequence[DataSet],
+    models: Sequence[BushModel] = tuple(MODELS.values()),
     cutoff: float = 5.0,
     *,
     shared_offset: bool = False,
-) -> LawChoice:
+) -> ModelChoice:
     """Fit every law, hold pieces out in turn, and choose. Laws must include Kelvin-Voigt.
 
     Whole recordings are held out where there are at least three and none has more than half of the motion;
     else contiguous fifths of every recording. Raises DataError where no sample serves.
     """
-    prepared = prepare_trials(trials, cutoff, drift=not shared_offset)
+    prepared = prepare_data_sets(data_sets, cutoff, drift=not shared_offset)
     if not prepared:
         raise DataError(
             "no recording has a sample that serves this fit (valid: at least one standing second)"
         )
     folds, whole = folds_of(prepared)
     rows = sum(len(fold) for fold in folds)
-    scores: list[LawScore] = []
+    scores: list[ModelScore] = []
     errors: list[Array] = []
     untried: list[str] = []
     motions = [each.motion for each in prepared]
 
-    def enter(contender: Contender) -> None:
+    def enter(candidate: Candidate) -> None:
         least = min((score.fit.rms for score in scores), default=np.inf) ** 2 * rows
-        hopeless = contender.squares > HOPELESS * least
-        fit, squares = judge(contender, prepared, folds, whole, shared_offset, refined=not hopeless)
-        scores.append(LawScore(contender.law, float(np.sqrt(squares.sum() / rows)), fit, _refusal(fit)))
+        hopeless = candidate.squares > HOPELESS * least
+        fit, squares = cross_validate(candidate, prepared, folds, whole, shared_offset, refined=not hopeless)
+        scores.append(ModelScore(candidate.model, float(np.sqrt(squares.sum() / rows)), fit, _refusal(fit)))
         errors.append(squares)
 
-    untried += [law.name for law in laws if not law.applies(motions)]
+    untried += [model.name for model in models if not model.applies(motions)]
     simple = [
-        Contender.of(law, prepared, folds, shared_offset)
-        for law in laws
-        if law.elaborates is None and law.name not in untried
+        Candidate.of(model, prepared, folds, shared_offset)
+        for model in models
+        if model.elaborates is None and model.name not in untried
     ]
-    for contender in sorted(simple, key=lambda each: each.squares):
-        enter(contender)
-    names = [score.law.name for score in scores]
+    for candidate in sorted(simple, key=lambda each: each.squares):
+        enter(candidate)
+    names = [score.model.name for score in scores]
     linear = names.index(KelvinVoigt.name)
-    for law in (each for each in laws if each.elaborates is not None and each.name not in untried):
+    for model in (each for each in models if each.elaborates is not None and each.name not in untried):
         seed = None
-        if law.elaborates in names:
-            place = names.index(law.elaborates)
+        if model.elaborates in names:
+            place = names.index(model.elaborates)
             seed = scores[place].fit
             if not _clear(scores, errors, simple=linear, rich=place):
-                untried.append(law.name)
+                untried.append(model.name)
                 continue
-        enter(Contender.of(law, prepared, folds, shared_offset, seed))
+        enter(Candidate.of(model, prepared, folds, shared_offset, seed))
         if seed is not None and not _adds(scores[-1].fit, seed):
-            untried.append(scores.pop().law.name)
+            untried.append(scores.pop().model.name)
             errors.pop()
     winner = _winner(scores, errors, linear)
     chosen = replace(scores[winner], chosen=True)
     ranking = [chosen if place == winner else score for place, score in enumerate(scores)]
     held_out = "whole recordings" if whole else f"{FOLDS} contiguous parts of each recording"
-    return LawChoice(
+    return ModelChoice(
         fit=chosen.fit,
         equivalent=scores[linear].fit,
         ranking=tuple(sorted(ranking, key=lambda score: score.held_out_rms)),
@@ -132,21 +132,21 @@ def choose_law(
     )
 
 
-def _refusal(fit: LawFit) -> str | None:
-    if isinstance(fit.law, KelvinVoigt):
+def _refusal(fit: ModelFit) -> str | None:
+    if isinstance(fit.model, KelvinVoigt):
         return None
-    if not fit.law.possible(fit.values):
+    if not fit.model.possible(fit.values):
         return "would make energy of its own"
     return "; ".join(fit.doubts) or None
 
 
-def _adds(fit: LawFit, simpler: LawFit) -> bool:
+def _adds(fit: ModelFit, simpler: ModelFit) -> bool:
     """Whether every term that a law adds to the one it elaborates is told from zero."""
-    added = range(len(simpler.law.terms), len(fit.law.terms))
+    added = range(len(simpler.model.terms), len(fit.model.terms))
     return all(abs(fit.values[k]) > TOLD * np.sqrt(fit.covariance[k, k]) for k in added)
 
 
-def _winner(scores: Sequence[LawScore], errors: Sequence[Array], linear: int) -> int:
+def _winner(scores: Sequence[ModelScore], errors: Sequence[Array], linear: int) -> int:
     """The simplest law that the best one does not clearly beat; spring and damper where that one is a makeshift."""
     allowed = [place for place, score in enumerate(scores) if score.refused is None]
     best = min(allowed, key=lambda place: scores[place].held_out_rms)
@@ -161,12 +161,12 @@ def _winner(scores: Sequence[LawScore], errors: Sequence[Array], linear: int) ->
     return linear if any(_clear(scores, errors, simple=winner, rich=place) for place in refused) else winner
 
 
-def _clear(scores: Sequence[LawScore], errors: Sequence[Array], *, simple: int, rich: int) -> bool:
+def _clear(scores: Sequence[ModelScore], errors: Sequence[Array], *, simple: int, rich: int) -> bool:
     """Whether the richer law's gain over the simpler one is clear.
 
     What a law adds to the one that it elaborates has been told from zero before: it only must not predict worse.
     """
-    if scores[rich].law.elaborates == scores[simple].law.name:
+    if scores[rich].model.elaborates == scores[simple].model.name:
         return scores[rich].held_out_rms < scores[simple].held_out_rms
     fall = errors[simple] - errors[rich]
     standard_error = float(np.std(fall) * np.sqrt(len(fall)))
@@ -174,7 +174,7 @@ def _clear(scores: Sequence[LawScore], errors: Sequence[Array], *, simple: int, 
     return enough and float(fall.sum()) > standard_error
 
 
-def _caution(scores: Sequence[LawScore], errors: Sequence[Array], winner: int) -> str | None:
+def _caution(scores: Sequence[ModelScore], errors: Sequence[Array], winner: int) -> str | None:
     """Whether a law that was refused predicts clearly better: then the bush is not as the chosen law says."""
     better = [
         place
@@ -187,17 +187,17 @@ def _caution(scores: Sequence[LawScore], errors: Sequence[Array], winner: int) -
         return None
     best = scores[min(better, key=lambda place: scores[place].held_out_rms)]
     return (
-        f"{best.law.name} predicts held-out motion better ({best.held_out_rms:.3g} against "
+        f"{best.model.name} predicts held-out motion better ({best.held_out_rms:.3g} against "
         f"{scores[winner].held_out_rms:.3g} rms) but cannot be identified: {best.refused}; stiffness and damping "
         "are those of these motions only (record larger motions)"
     )
 
 
-def _reason(chosen: LawScore, linear: LawScore, held_out: str) -> str:
-    if chosen.law.name == linear.law.name:
+def _reason(chosen: ModelScore, linear: ModelScore, held_out: str) -> str:
+    if chosen.model.name == linear.model.name:
         return f"no richer law predicts {held_out} clearly better than spring and damper"
     gain = 100 * (1 - chosen.held_out_rms / linear.held_out_rms) if linear.held_out_rms > 0 else 0.0
     return (
-        f"held-out {held_out}: {chosen.law.name} misses by {chosen.held_out_rms:.3g} rms, spring and damper by "
+        f"held-out {held_out}: {chosen.model.name} misses by {chosen.held_out_rms:.3g} rms, spring and damper by "
         f"{linear.held_out_rms:.3g} ({gain:.0f} % less)"
     )

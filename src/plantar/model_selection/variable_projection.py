@@ -11,17 +11,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.model_selection.data_sets import Prepared, filtered_columns
+from plantar.model_selection.data_sets import FilteredDataSet, filtered_columns
 from plantar.model_selection.grid import Pieces, fit_pieces
 from plantar.model_selection.partialled_out import Linearised
-from plantar.models import Law
+from plantar.models import BushModel
 
 ITERATIONS = 16
 WIDEST_SCAN, NARROWEST_SCAN, NARROWING = 1.0, 0.05, 0.2  # of the starts about where the steps came to rest
 HALVINGS = 4
 SETTLED = 1e-4  # relative fall of the squares below which the refinement has arrived
 BOLDEST = 0.4  # largest step of a shape's logarithm
-SHAPE_STEP, START_STEP = 0.01, 0.02  # of the differences that stand for derivatives
+SHAPE_STEP, STATE_STEP = 0.01, 0.02  # of the differences that stand for derivatives
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Point:
     """A shape and starts, with the linear parameters that fit best there."""
 
     shape: Array
-    starts: list[Array]
+    initial_states: list[Array]
     values: Array
     offsets: Array
     residuals: list[Array]
@@ -40,43 +40,43 @@ class Point:
 class Problem:
     """What is fitted: a law to recordings, with an offset each or a shared one."""
 
-    law: Law
-    prepared: Sequence[Prepared]
+    model: BushModel
+    prepared: Sequence[FilteredDataSet]
     shared_offset: bool
 
-    def at(self, shape: Array, starts: list[Array]) -> Point:
+    def at(self, shape: Array, initial_states: list[Array]) -> Point:
         """Solve the linear part."""
         extras = filtered_columns(
-            self.law, self.prepared, shape[None, :], [start[None, :] for start in starts]
+            self.model, self.prepared, shape[None, :], [start[None, :] for start in initial_states]
         )
         designs = [np.column_stack([e.base, x[:, :, 0]]) for e, x in zip(self.prepared, extras, strict=True)]
         problem = Linearised(designs, [e.response for e in self.prepared], self.shared_offset)
         values = problem.solve()
         offsets = problem.offsets(values)
         residuals = [y - x @ values - o for x, y, o in zip(designs, problem.responses, offsets, strict=True)]
-        return Point(shape, starts, values, offsets, residuals, float(sum(r @ r for r in residuals)))
+        return Point(shape, initial_states, values, offsets, residuals, float(sum(r @ r for r in residuals)))
 
     def linearised(self, point: Point) -> Linearised:
         """Columns of values and log shape about a point, residuals as response, starts to be projected out."""
-        law, shape, count = self.law, point.shape, len(point.shape)
+        model, shape, count = self.model, point.shape, len(point.shape)
         shapes = np.repeat(shape[None, :], 3 + 2 * count, axis=0)
         for place in range(count):
             shapes[3 + 2 * place : 5 + 2 * place, place] *= np.exp([SHAPE_STEP, -SHAPE_STEP])
-        starts = []
-        for start in point.starts:
+        initial_states = []
+        for start in point.initial_states:
             variants = np.repeat(start[None, :], len(shapes), axis=0)
-            variants[1:3] = np.clip([start + START_STEP, start - START_STEP], -1.0, 1.0)
-            starts.append(variants)
-        extras = filtered_columns(law, self.prepared, shapes, starts)
+            variants[1:3] = np.clip([start + STATE_STEP, start - STATE_STEP], -1.0, 1.0)
+            initial_states.append(variants)
+        extras = filtered_columns(model, self.prepared, shapes, initial_states)
         designs, memories = [], []
-        for each, extra, variants in zip(self.prepared, extras, starts, strict=True):
+        for each, extra, variants in zip(self.prepared, extras, initial_states, strict=True):
             torque = np.einsum("neb,e->nb", extra, point.values[2:])
             slopes = (torque[:, 3::2] - torque[:, 4::2]) / (2 * SHAPE_STEP)
             designs.append(np.column_stack([each.base, extra[:, :, 0], slopes]))
             width = (variants[1] - variants[2])[each.run_of]
             memories.append((torque[:, 1] - torque[:, 2]) / width)
         runs = [each.run_of for each in self.prepared]
-        if not law.remembers:
+        if not model.remembers:
             return Linearised(designs, point.residuals, self.shared_offset)
         return Linearised(designs, point.residuals, self.shared_offset, memories, runs)
 
@@ -86,22 +86,26 @@ def settle(problem: Problem, pieces: Pieces, limits: Array, *, refined: bool = T
 
     Not `refined`: the candidate itself.
     """
-    law, shapes = pieces.law, pieces.shapes
+    model, shapes = pieces.model, pieces.shapes
     rough = fit_pieces(pieces, np.ones(len(pieces.grams), dtype=bool), shared_offset=problem.shared_offset)
     best = int(np.argmin(rough.squares))
     begin = [np.zeros(len(each.motion.runs)) for each in problem.prepared]
-    if law.remembers:
+    if model.remembers:
         runs = np.concatenate([[0], np.cumsum([len(each) for each in begin])])
-        for trial, run, start in zip(pieces.trial, pieces.run, rough.starts[:, best], strict=True):
-            begin[trial][run - runs[trial]] = pieces.starts[trial][start, run - runs[trial]]
+        for data_set, run, start in zip(
+            pieces.data_set, pieces.run, rough.initial_states[:, best], strict=True
+        ):
+            begin[data_set][run - runs[data_set]] = pieces.initial_states[data_set][
+                start, run - runs[data_set]
+            ]
     point = problem.at(shapes[best], begin)
     width = WIDEST_SCAN
-    for _ in range(ITERATIONS if refined and (shapes.shape[1] or law.remembers) else 0):
+    for _ in range(ITERATIONS if refined and (shapes.shape[1] or model.remembers) else 0):
         moved = _step(problem, point, limits)
         if moved is None or moved.squares > (1 - SETTLED) * point.squares:
-            scanned = _scan(problem, moved or point, width) if law.remembers else None
+            scanned = _scan(problem, moved or point, width) if model.remembers else None
             width *= NARROWING
-            if scanned is None and (not law.remembers or width < NARROWEST_SCAN):
+            if scanned is None and (not model.remembers or width < NARROWEST_SCAN):
                 point = moved or point
                 break
             moved = scanned or moved or point
@@ -114,12 +118,14 @@ def _step(problem: Problem, point: Point, limits: Array) -> Point | None:
     linear = problem.linearised(point)
     change = linear.solve()
     move = np.clip(change[len(point.values) :], -BOLDEST, BOLDEST)
-    moves = linear.starts(change)
+    moves = linear.initial_states(change)
     share = 1.0
     for _ in range(HALVINGS):
         shape = np.clip(point.shape * np.exp(share * move), limits[0], limits[1])
-        starts = [np.clip(s + share * m, -1.0, 1.0) for s, m in zip(point.starts, moves, strict=True)]
-        tried = problem.at(shape, starts)
+        initial_states = [
+            np.clip(s + share * m, -1.0, 1.0) for s, m in zip(point.initial_states, moves, strict=True)
+        ]
+        tried = problem.at(shape, initial_states)
         if tried.squares < point.squares:
             return tried
         share *= 0.4
@@ -132,11 +138,11 @@ def _scan(problem: Problem, point: Point, width: float) -> Point | None:
     A state that stops at its ends makes corners, at which the derivative by the start misleads.
     """
     around = np.linspace(-width, width, 9)
-    starts = [np.clip(start[None, :] + around[:, None], -1.0, 1.0) for start in point.starts]
+    initial_states = [np.clip(start[None, :] + around[:, None], -1.0, 1.0) for start in point.initial_states]
     shapes = np.repeat(point.shape[None, :], len(around), axis=0)
-    extras = filtered_columns(problem.law, problem.prepared, shapes, starts)
+    extras = filtered_columns(problem.model, problem.prepared, shapes, initial_states)
     best = []
-    for place, (each, extra, tried) in enumerate(zip(problem.prepared, extras, starts, strict=True)):
+    for place, (each, extra, tried) in enumerate(zip(problem.prepared, extras, initial_states, strict=True)):
         linear = each.base @ point.values[:2] + point.offsets[place]
         missing = each.response[:, None] - linear[:, None] - np.einsum("neb,e->nb", extra, point.values[2:])
         if tried.shape[1] == 1 and not problem.shared_offset:

@@ -1,7 +1,7 @@
 """Laws of the bush, one file each: torque from the history of deflection and rate."""
 
 from plantar.models.bouc_wen import BoucWen
-from plantar.models.bush_model import BESIDE, Law, Motion, reach
+from plantar.models.bush_model import BESIDE, BushModel, BushMotion, reach
 from plantar.models.coulomb import Coulomb
 from plantar.models.coupled import Coupled
 from plantar.models.elastoplastic import Elastoplastic
@@ -11,9 +11,9 @@ from plantar.models.iwan import Iwan
 from plantar.models.kelvin_voigt import KelvinVoigt
 from plantar.models.standard_linear_solid import StandardLinearSolid
 
-LAWS: dict[str, Law] = {
-    law.name: law
-    for law in (
+MODELS: dict[str, BushModel] = {
+    model.name: model
+    for model in (
         KelvinVoigt(),
         Hardening(),
         Coulomb(),
@@ -28,8 +28,10 @@ LAWS: dict[str, Law] = {
 
 __all__ = [
     "BESIDE",
-    "LAWS",
+    "MODELS",
     "BoucWen",
+    "BushModel",
+    "BushMotion",
     "Coulomb",
     "Coupled",
     "Elastoplastic",
@@ -37,8 +39,6 @@ __all__ = [
     "HardeningElastoplastic",
     "Iwan",
     "KelvinVoigt",
-    "Law",
-    "Motion",
     "StandardLinearSolid",
     "reach",
 ]

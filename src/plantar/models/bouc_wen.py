@@ -10,7 +10,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from plantar.conventions import Array
-from plantar.models.bush_model import Motion
+from plantar.models.bush_model import BushMotion
 from plantar.models.hysteresis import Branches, Hysteretic
 
 TABLE = 2001
@@ -29,12 +29,12 @@ class BoucWen(Hysteretic):
     shape_terms: ClassVar[tuple[str, ...]] = ("slip_angle", "sharpness")
     units: ClassVar[dict[str, tuple[str, str]]] = {**Hysteretic.units, "sharpness": ("1", "1")}
 
-    def candidates(self, motions: Sequence[Motion]) -> Array:
+    def candidates(self, motions: Sequence[BushMotion]) -> Array:
         """Slip angles as for a Jenkins element, each with every sharpness."""
         angles = super().candidates(motions)[:, 0]
         return np.array([(angle, sharpness) for sharpness in SHARPNESS for angle in angles[::2]])
 
-    def states(self, branches: Branches, shapes: Array, starts: Array) -> Array:
+    def states(self, branches: Branches, shapes: Array, initial_states: Array) -> Array:
         """z (n, r, b)."""
         runs = np.arange(branches.length.shape[1])
         direction = branches.direction[branches.branch, runs]
@@ -44,7 +44,9 @@ class BoucWen(Hysteretic):
             curve, pace = branch_curve(round(float(sharpness), 9)), sharpness / shapes[chosen, 0]
             left = np.exp(-branches.length[:, :, None] * pace)
             begins = np.empty_like(left)
-            place = curve.place(branches.direction[0][:, None] * np.clip(starts[:, chosen], -1.0, 1.0))
+            place = curve.place(
+                branches.direction[0][:, None] * np.clip(initial_states[:, chosen], -1.0, 1.0)
+            )
             for turn, remaining in enumerate(left):
                 begins[turn] = place
                 place = curve.turned(1.0 - (1.0 - place) * remaining)

@@ -22,7 +22,7 @@ BESIDE: Final = ("stiffness", "damping")  # the spring and damper of every law, 
 
 
 @dataclass(frozen=True)
-class Motion:
+class BushMotion:
     """One axis of one foot over one recording, at an even period [s]; NaN where nothing is known (a gap, the air).
 
     `deflection` [rad] and `rate` [rad/s] are (N,), wide-band: a law that does not commute with a filter needs the path
@@ -44,7 +44,7 @@ class Motion:
         return len(self.deflection)
 
 
-class Law(ABC):
+class BushModel(ABC):
     """A law of the bush. Linear `terms` first stiffness and damping; `shape_terms` are its nonlinear parameters.
 
     A law that `remembers` has an inner state of unknown value where a run begins: its start, in [-1, 1].
@@ -55,7 +55,7 @@ class Law(ABC):
     shape_terms: ClassVar[tuple[str, ...]] = ()
     remembers: ClassVar[bool] = False
     forgets: ClassVar[bool] = True  # whether motion wears the start's effect away
-    tried_starts: ClassVar[tuple[float, ...]] = (0.0,)  # by the rough search, before they are refined
+    tried_states: ClassVar[tuple[float, ...]] = (0.0,)  # by the rough search, before they are refined
     elaborates: ClassVar[str | None] = None  # a simpler law, without whose gain this one is not worth trying
     blind_ends: ClassVar[frozenset[tuple[str, str]]] = (
         frozenset()
@@ -79,11 +79,11 @@ class Law(ABC):
             return DAMPING_UNIT[axis]
         return self.units[term][axis == "z"]
 
-    def applies(self, motions: Sequence[Motion]) -> bool:
+    def applies(self, motions: Sequence[BushMotion]) -> bool:
         """Whether these motions hold what the law needs."""
         return True
 
-    def candidates(self, motions: Sequence[Motion]) -> Array:
+    def candidates(self, motions: Sequence[BushMotion]) -> Array:
         """Shapes (g, s) worth trying for these motions; one empty shape where the law has none.
 
         They span what the motions can show. At a blind end of that range the law becomes a spring or a damper
@@ -92,25 +92,29 @@ class Law(ABC):
         return np.zeros((1, 0))
 
     @abstractmethod
-    def extra(self, motions: Sequence[Motion], shapes: Array, starts: Sequence[Array]) -> list[Array]:
+    def extra(
+        self, motions: Sequence[BushMotion], shapes: Array, initial_states: Sequence[Array]
+    ) -> list[Array]:
         """The columns beside deflection and rate, (N, e, b) for every motion; NaN outside its runs.
 
-        `shapes` (b, s) and `starts` (b, runs) of each motion are b variants, computed side by side.
+        `shapes` (b, s) and `initial_states` (b, runs) of each motion are b variants, computed side by side.
         """
 
     def columns(
-        self, motion: Motion, shape: Sequence[float] | Array = (), starts: Array | None = None
+        self, motion: BushMotion, shape: Sequence[float] | Array = (), initial_states: Array | None = None
     ) -> Array:
-        """Regressor (N, k) of one motion, NaN outside its runs; `starts` (runs,), zero where not given."""
-        starts = np.zeros(len(motion.runs)) if starts is None else np.asarray(starts, dtype=float)
-        extra = self.extra([motion], np.reshape(np.asarray(shape, dtype=float), (1, -1)), [starts[None, :]])[
-            0
-        ]
+        """Regressor (N, k) of one motion, NaN outside its runs; `initial_states` (runs,), zero where not given."""
+        initial_states = (
+            np.zeros(len(motion.runs)) if initial_states is None else np.asarray(initial_states, dtype=float)
+        )
+        extra = self.extra(
+            [motion], np.reshape(np.asarray(shape, dtype=float), (1, -1)), [initial_states[None, :]]
+        )[0]
         columns = np.column_stack([motion.deflection, motion.rate, extra[:, :, 0]])
         columns[~np.isfinite(columns).all(axis=1)] = np.nan
         return columns
 
-    def starts(self, motion: Motion, shape: Array) -> Array:
+    def initial_states(self, motion: BushMotion, shape: Array) -> Array:
         """Inner state (runs,) at the start of each run, if the bush was loaded there from rest without turning back."""
         return np.zeros(len(motion.runs))
 
@@ -119,7 +123,7 @@ class Law(ABC):
         return all(values[self.terms.index(term)] >= 0 for term in self.dissipative_terms)
 
 
-def reach(motions: Sequence[Motion]) -> float:
+def reach(motions: Sequence[BushMotion]) -> float:
     """Largest deflection from the middle, over the motions' runs: half of the widest swing [rad], 1 % cut off."""
     widest = 0.0
     for motion in motions:

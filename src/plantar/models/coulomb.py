@@ -8,13 +8,13 @@ from typing import ClassVar
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.models.bush_model import BESIDE, Law, Motion
+from plantar.models.bush_model import BESIDE, BushModel, BushMotion
 
 SMOOTHEST = 0.3  # of the motions' fast rate: wider than that, friction is a damper
 SHARPEST = 0.003
 
 
-class Coulomb(Law):
+class Coulomb(BushModel):
     """torque = K·q + C·q̇ + coulomb·tanh(q̇ / slip_rate) + offset.
 
     No memory: it jumps wherever the rate changes sign, so it has no slope before slip (see `Elastoplastic`).
@@ -27,7 +27,7 @@ class Coulomb(Law):
     dissipative_terms: ClassVar[tuple[str, ...]] = ("coulomb",)
     units: ClassVar[dict[str, tuple[str, str]]] = {"coulomb": ("N.m", "N"), "slip_rate": ("rad/s", "m/s")}
 
-    def candidates(self, motions: Sequence[Motion]) -> Array:
+    def candidates(self, motions: Sequence[BushMotion]) -> Array:
         """Rates of transition as shares of the motions' fast rate (98th percentile)."""
         rates = np.concatenate(
             [np.abs(motion.rate[run]) for motion in motions for run in motion.runs] or [np.zeros(1)]
@@ -35,6 +35,8 @@ class Coulomb(Law):
         fast = float(np.percentile(rates, 98)) or 1.0
         return np.geomspace(SHARPEST * fast, SMOOTHEST * fast, 9)[:, None]
 
-    def extra(self, motions: Sequence[Motion], shapes: Array, starts: Sequence[Array]) -> list[Array]:
+    def extra(
+        self, motions: Sequence[BushMotion], shapes: Array, initial_states: Sequence[Array]
+    ) -> list[Array]:
         """Sign of the rate, smooth: (N, 1, b)."""
         return [np.tanh(motion.rate[:, None, None] / shapes[:, 0]) for motion in motions]

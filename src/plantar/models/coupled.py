@@ -9,14 +9,14 @@ import numpy as np
 
 from plantar.conventions import Array
 from plantar.errors import DataError
-from plantar.models.bush_model import BESIDE, Law, Motion
+from plantar.models.bush_model import BESIDE, BushModel, BushMotion
 
 
-class Coupled(Law):
+class Coupled(BushModel):
     """torque = K·q + C·q̇ + cross_stiffness·p + cross_damping·ṗ + offset, p the deflection of the other axis.
 
     A bush whose principal axes are turned against the foot's (or a bush centre that is not where the robot
-    file puts it) shows up here. `Motion.across` holds p as its first column.
+    file puts it) shows up here. `BushMotion.across` holds p as its first column.
     """
 
     name: ClassVar[str] = "coupled"
@@ -26,11 +26,13 @@ class Coupled(Law):
         "cross_damping": ("N.m.s/rad", "N.s/rad"),
     }
 
-    def applies(self, motions: Sequence[Motion]) -> bool:
+    def applies(self, motions: Sequence[BushMotion]) -> bool:
         """Whether every motion has the other axis."""
         return all(motion.across is not None and motion.across_rate is not None for motion in motions)
 
-    def extra(self, motions: Sequence[Motion], shapes: Array, starts: Sequence[Array]) -> list[Array]:
+    def extra(
+        self, motions: Sequence[BushMotion], shapes: Array, initial_states: Sequence[Array]
+    ) -> list[Array]:
         """Deflection and rate of the other axis, (N, 2, b). Raises DataError where a motion lacks them."""
         columns = []
         for motion in motions:

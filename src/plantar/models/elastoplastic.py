@@ -10,12 +10,12 @@ from plantar.conventions import Array
 from plantar.models.hysteresis import Branches, Hysteretic
 
 
-def jenkins_states(branches: Branches, slip_angles: Array, starts: Array) -> Array:
-    """z (n, r, b): moves with deflection / slip angle (b,) and stops at ±1; `starts` (r, b)."""
+def jenkins_states(branches: Branches, slip_angles: Array, initial_states: Array) -> Array:
+    """z (n, r, b): moves with deflection / slip angle (b,) and stops at ±1; `initial_states` (r, b)."""
     way = branches.length[:, :, None] / slip_angles
     begins = np.empty_like(way)
     # On each branch z = direction·(place - 1): `place` is how far z stands from the end it came from, 0 to 2.
-    place = 1.0 + branches.direction[0][:, None] * np.clip(starts, -1.0, 1.0)
+    place = 1.0 + branches.direction[0][:, None] * np.clip(initial_states, -1.0, 1.0)
     for turn, onward in enumerate(way):
         begins[turn] = place
         place = np.maximum(2.0 - (place + onward), 0.0)
@@ -29,6 +29,6 @@ class Elastoplastic(Hysteretic):
 
     name: ClassVar[str] = "elastoplastic"
 
-    def states(self, branches: Branches, shapes: Array, starts: Array) -> Array:
+    def states(self, branches: Branches, shapes: Array, initial_states: Array) -> Array:
         """z (n, r, b) of one Jenkins element."""
-        return jenkins_states(branches, shapes[:, 0], starts)
+        return jenkins_states(branches, shapes[:, 0], initial_states)

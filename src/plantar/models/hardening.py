@@ -8,12 +8,12 @@ from typing import ClassVar
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.models.bush_model import BESIDE, Law, Motion
+from plantar.models.bush_model import BESIDE, BushModel, BushMotion
 
 ZERO_ERROR = 0.01  # rad (m): largest error of the deflection's zero that is looked for
 
 
-class Hardening(Law):
+class Hardening(BushModel):
     """torque = K·q + C·q̇ + hardening·((q - e)³ + e³) + offset; K is the slope at zero deflection.
 
     e is the error of the deflection's zero in each run (attitude bias), in starts of `ZERO_ERROR`: a cube
@@ -24,13 +24,15 @@ class Hardening(Law):
     terms: ClassVar[tuple[str, ...]] = (*BESIDE, "hardening")
     remembers: ClassVar[bool] = True
     forgets: ClassVar[bool] = False
-    tried_starts: ClassVar[tuple[float, ...]] = (-0.5, 0.0, 0.5)
+    tried_states: ClassVar[tuple[float, ...]] = (-0.5, 0.0, 0.5)
     units: ClassVar[dict[str, tuple[str, str]]] = {"hardening": ("N.m/rad3", "N/m3")}
 
-    def extra(self, motions: Sequence[Motion], shapes: Array, starts: Sequence[Array]) -> list[Array]:
+    def extra(
+        self, motions: Sequence[BushMotion], shapes: Array, initial_states: Sequence[Array]
+    ) -> list[Array]:
         """The cube of the deflection about its true zero, (N, 1, b)."""
         columns = []
-        for motion, start in zip(motions, starts, strict=True):
+        for motion, start in zip(motions, initial_states, strict=True):
             column = np.full((len(motion), 1, len(shapes)), np.nan)
             for place, run in enumerate(motion.runs):
                 error = ZERO_ERROR * start[:, place]

@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.models.bush_model import Motion
+from plantar.models.bush_model import BushMotion
 from plantar.models.elastoplastic import Elastoplastic
 from plantar.models.hardening import Hardening
 
@@ -26,10 +26,12 @@ class HardeningElastoplastic(Elastoplastic):
     elaborates: ClassVar[str | None] = Elastoplastic.name
     units: ClassVar[dict[str, tuple[str, str]]] = {**Elastoplastic.units, **Hardening.units}
 
-    def extra(self, motions: Sequence[Motion], shapes: Array, starts: Sequence[Array]) -> list[Array]:
+    def extra(
+        self, motions: Sequence[BushMotion], shapes: Array, initial_states: Sequence[Array]
+    ) -> list[Array]:
         """The state z and the cube, (N, 2, b)."""
         columns = []
-        for motion, slip in zip(motions, super().extra(motions, shapes, starts), strict=True):
+        for motion, slip in zip(motions, super().extra(motions, shapes, initial_states), strict=True):
             cube = np.where(np.isfinite(slip), (motion.deflection**3)[:, None, None], np.nan)
             columns.append(np.concatenate([slip, cube], axis=1))
         return columns

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plantar.conventions import Array
-from plantar.models.bush_model import BESIDE, Law, Motion, reach
+from plantar.models.bush_model import BESIDE, BushModel, BushMotion, reach
 
 SMALLEST_SLIP_ANGLE = 0.02  # of the reach: below it the element looks like dry friction
 LARGEST_SLIP_ANGLE = 0.8  # of the reach: an element that hardly slips looks like a spring
@@ -61,7 +61,7 @@ def _turning_points(path: Array) -> tuple[NDArray[np.intp], float]:
     return np.concatenate([[0], turned]).astype(np.intp), float(step[moving[0]])
 
 
-class Hysteretic(Law):
+class Hysteretic(BushModel):
     """torque = K·q + C·q̇ + slip_torque·z + offset: an element beside the spring that yields around `slip_angle`.
 
     Before it yields it is a spring of slip_torque / slip_angle. The start of a run is its state z there.
@@ -70,32 +70,34 @@ class Hysteretic(Law):
     terms: ClassVar[tuple[str, ...]] = (*BESIDE, "slip_torque")
     shape_terms: ClassVar[tuple[str, ...]] = ("slip_angle",)
     remembers: ClassVar[bool] = True
-    tried_starts: ClassVar[tuple[float, ...]] = (-0.9, -0.45, 0.0, 0.45, 0.9)
+    tried_states: ClassVar[tuple[float, ...]] = (-0.9, -0.45, 0.0, 0.45, 0.9)
     blind_ends: ClassVar[frozenset[tuple[str, str]]] = frozenset({("slip_angle", "high")})
     dissipative_terms: ClassVar[tuple[str, ...]] = ("slip_torque",)
     units: ClassVar[dict[str, tuple[str, str]]] = {"slip_torque": ("N.m", "N"), "slip_angle": ("rad", "m")}
 
     @abstractmethod
-    def states(self, branches: Branches, shapes: Array, starts: Array) -> Array:
+    def states(self, branches: Branches, shapes: Array, initial_states: Array) -> Array:
         """z (n, r, b) along r runs, for b variants of shape (b, s) and start (r, b)."""
 
-    def candidates(self, motions: Sequence[Motion]) -> Array:
+    def candidates(self, motions: Sequence[BushMotion]) -> Array:
         """Slip angles in equal ratios, from what looks like dry friction to what hardly slips in these motions."""
         size = reach(motions) or 1.0
         return np.geomspace(SMALLEST_SLIP_ANGLE * size, LARGEST_SLIP_ANGLE * size, 12)[:, None]
 
-    def starts(self, motion: Motion, shape: Array) -> Array:
+    def initial_states(self, motion: BushMotion, shape: Array) -> Array:
         """State of an element that was loaded from rest to where each run begins."""
         first = np.array([motion.deflection[run.start] for run in motion.runs])
         return np.asarray(np.clip(first / shape[0], -1.0, 1.0))
 
-    def extra(self, motions: Sequence[Motion], shapes: Array, starts: Sequence[Array]) -> list[Array]:
+    def extra(
+        self, motions: Sequence[BushMotion], shapes: Array, initial_states: Sequence[Array]
+    ) -> list[Array]:
         """The state z, (N, 1, b)."""
         places = [(m, run) for m, motion in enumerate(motions) for run in motion.runs]
         columns = [np.full((len(motion), 1, len(shapes)), np.nan) for motion in motions]
         if places:
             branches = Branches.of([motions[m].deflection[run] for m, run in places])
-            state = self.states(branches, shapes, np.concatenate([start.T for start in starts]))
+            state = self.states(branches, shapes, np.concatenate([start.T for start in initial_states]))
             for column, (m, run) in enumerate(places):
                 columns[m][run, 0] = state[: run.stop - run.start, column]
         return columns

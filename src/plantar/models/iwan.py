@@ -23,10 +23,10 @@ class Iwan(Hysteretic):
     name: ClassVar[str] = "iwan"
     elaborates: ClassVar[str | None] = "elastoplastic"
 
-    def states(self, branches: Branches, shapes: Array, starts: Array) -> Array:
+    def states(self, branches: Branches, shapes: Array, initial_states: Array) -> Array:
         """z (n, r, b): torques of the elements, each its slip angle's share."""
         spread = 2.0 * (np.arange(ELEMENTS) + 0.5) / ELEMENTS  # slip angles over their mean
         total: Array = np.zeros(())
         for ratio in spread:
-            total = total + ratio * jenkins_states(branches, ratio * shapes[:, 0], starts)
+            total = total + ratio * jenkins_states(branches, ratio * shapes[:, 0], initial_states)
         return np.asarray(total / ELEMENTS)

@@ -8,14 +8,16 @@ from typing import ClassVar
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.models.bush_model import Law, Motion
+from plantar.models.bush_model import BushModel, BushMotion
 
 
-class KelvinVoigt(Law):
+class KelvinVoigt(BushModel):
     """torque = K·deflection + C·rate + offset; the offset belongs to the recording, not to the bush."""
 
     name: ClassVar[str] = "kelvin_voigt"
 
-    def extra(self, motions: Sequence[Motion], shapes: Array, starts: Sequence[Array]) -> list[Array]:
+    def extra(
+        self, motions: Sequence[BushMotion], shapes: Array, initial_states: Sequence[Array]
+    ) -> list[Array]:
         """No columns beside the two: (N, 0, b)."""
         return [np.zeros((len(motion), 0, len(shapes))) for motion in motions]

@@ -8,13 +8,13 @@ from typing import ClassVar
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.models.bush_model import BESIDE, Law, Motion, reach
+from plantar.models.bush_model import BESIDE, BushModel, BushMotion, reach
 
 FASTEST = 0.05  # s: faster relaxation is a damper in the band that a bush is identified in
 LONGEST_SHARE = 0.1  # of the longest run: slower relaxation is drift
 
 
-class StandardLinearSolid(Law):
+class StandardLinearSolid(BushModel):
     """torque = K·q + C·q̇ + relaxing_stiffness·x + offset, with relaxation_time·ẋ + x = relaxation_time·q̇.
 
     K is the relaxed stiffness; a fast movement feels K + relaxing_stiffness. The start of a run is the
@@ -25,7 +25,7 @@ class StandardLinearSolid(Law):
     terms: ClassVar[tuple[str, ...]] = (*BESIDE, "relaxing_stiffness")
     shape_terms: ClassVar[tuple[str, ...]] = ("relaxation_time",)
     remembers: ClassVar[bool] = True
-    tried_starts: ClassVar[tuple[float, ...]] = (-0.3, 0.0, 0.3)
+    tried_states: ClassVar[tuple[float, ...]] = (-0.3, 0.0, 0.3)
     blind_ends: ClassVar[frozenset[tuple[str, str]]] = frozenset(
         {("relaxation_time", "low"), ("relaxation_time", "high")}
     )
@@ -35,19 +35,21 @@ class StandardLinearSolid(Law):
         "relaxation_time": ("s", "s"),
     }
 
-    def candidates(self, motions: Sequence[Motion]) -> Array:
+    def candidates(self, motions: Sequence[BushMotion]) -> Array:
         """Relaxation times between what looks like a damper and what looks like drift, in equal ratios."""
         longest = max(
             (motion.period * (run.stop - run.start) for motion in motions for run in motion.runs), default=1.0
         )
         return np.geomspace(FASTEST, max(LONGEST_SHARE * longest, 4 * FASTEST), 12)[:, None]
 
-    def extra(self, motions: Sequence[Motion], shapes: Array, starts: Sequence[Array]) -> list[Array]:
+    def extra(
+        self, motions: Sequence[BushMotion], shapes: Array, initial_states: Sequence[Array]
+    ) -> list[Array]:
         """Deflection of the relaxing spring, (N, 1, b), exact for a deflection linear between samples."""
         from scipy.signal import lfilter  # half a second to import, and hardly ever needed
 
         columns = []
-        for motion, start in zip(motions, starts, strict=True):
+        for motion, start in zip(motions, initial_states, strict=True):
             column = np.full((len(motion), 1, len(shapes)), np.nan)
             scale = reach([motion])
             for place, run in enumerate(motion.runs):

@@ -76,5 +76,5 @@ def _tables(result: FeetResult) -> list[Table]:
     ]
     made += tables.comparison_tables(result)
     made += [tables.offset_table(result.offsets)] if result.offsets else []
-    made += [tables.served_table(result.phases)] if result.phases else []
+    made += [tables.used_table(result.phases)] if result.phases else []
     return made

@@ -38,10 +38,10 @@ class Plot:
 
 @dataclass(frozen=True)
 class FootPlots:
-    """One foot's plots in a motion; `served` is false where all its samples were left out."""
+    """One foot's plots in a motion; `used` is false where all its samples were left out."""
 
     foot: str
-    served: bool
+    used: bool
     plots: tuple[Plot, ...]
 
 

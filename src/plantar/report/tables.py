@@ -157,7 +157,7 @@ def _comparison(result: FeetResult, other: Comparison) -> list[Table]:
     return tables
 
 
-def served_table(phases: Sequence[Phase]) -> Table:
+def used_table(phases: Sequence[Phase]) -> Table:
     """How much of each log served, and for what reasons the rest did not."""
     rows = []
     for motion, foot in dict.fromkeys((phase.motion, phase.foot) for phase in phases):

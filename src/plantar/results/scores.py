@@ -9,14 +9,14 @@ import numpy as np
 from plantar.conventions import Array, Axis, Mask
 from plantar.results.feet import ValidationRow
 
-OPENING = 1.0  # s of an unseen motion that give its offset and are left out of its score
+FIRST_SECOND = 1.0  # s of an unseen motion that give its offset and are left out of its score
 
 
-def opening(time: Array, used: Mask) -> Mask:
+def first_second(time: Array, used: Mask) -> Mask:
     """The first second of the samples that serve: an unseen motion's offset comes from these alone."""
     if not used.any():
         return np.zeros_like(used)
-    return np.asarray(used & (time < time[used][0] + OPENING))
+    return np.asarray(used & (time < time[used][0] + FIRST_SECOND))
 
 
 def score(

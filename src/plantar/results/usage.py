@@ -7,16 +7,16 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 
-def served_shares(phases: Iterable[Mapping[str, Any]]) -> list[dict[str, Any]]:
+def used_shares(phases: Iterable[Mapping[str, Any]]) -> list[dict[str, Any]]:
     """Seconds, seconds that served and the reasons for the others, by motion and foot, from a result's phases."""
     seconds: dict[tuple[str, str], float] = defaultdict(float)
-    served: dict[tuple[str, str], float] = defaultdict(float)
+    used: dict[tuple[str, str], float] = defaultdict(float)
     reasons: dict[tuple[str, str], dict[str, float]] = defaultdict(lambda: defaultdict(float))
     for phase in phases:
         key, duration = (phase["motion"], phase["foot"]), phase["end"] - phase["start"]
         seconds[key] += duration
         if phase["used"]:
-            served[key] += duration
+            used[key] += duration
         else:
             reasons[key][phase["reason"]] += duration
     return [
@@ -24,7 +24,7 @@ def served_shares(phases: Iterable[Mapping[str, Any]]) -> list[dict[str, Any]]:
             "motion": motion,
             "foot": foot,
             "seconds": total,
-            "served": served[motion, foot],
+            "served": used[motion, foot],
             "reasons": "; ".join(
                 f"{reason} ({spent:.1f} s)" for reason, spent in reasons[motion, foot].items()
             ),

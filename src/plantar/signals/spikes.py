@@ -11,10 +11,10 @@ from plantar.conventions import Array, Mask
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note, Severity
 
-FAR = 10.0  # usual steps from sample to sample, beyond which a sample does not belong to its neighbours
+FAR_STEPS = 10.0  # usual steps from sample to sample, beyond which a sample does not belong to its neighbours
 NEIGHBOURS = 2  # on either side: a stretch of more than two samples is no spike
 LOCAL = 1.0  # s over which steps are compared: an impact among impacts is no spike
-APART, FEW = (
+GROUP_GAP, FEW = (
     0.15,
     8,
 )  # s around a spike, and quick steps in them: more make an impact and what it leaves ringing
@@ -57,7 +57,7 @@ def lone_spikes(values: Array, period: float) -> Mask:
     if len(values) < 2 * NEIGHBOURS + 2:
         return found
     steps = np.abs(np.diff(values, axis=0))
-    far, reach = FAR * _usual(steps, period), max(NEIGHBOURS, round(APART / period))
+    far, reach = FAR_STEPS * _usual(steps, period), max(NEIGHBOURS, round(GROUP_GAP / period))
     # Only where a step is far is a median worth its time: in clean columns nowhere.
     for column in np.flatnonzero((steps > far).any(axis=0)):
         jumps = np.flatnonzero(steps[:, column] > far[:, column])

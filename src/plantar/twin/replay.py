@@ -26,7 +26,7 @@ from plantar.twin.simulation.physics import Physics
 
 SMOOTH: Final = 10.0  # Hz: encoder steps are no motion
 REFERENCE: Final = 1.0  # s at the start that zeros of force sensors are taken from, and that are not scored
-LAWS: Final = ("kelvin_voigt", "hardening", "elastoplastic", "hardening_elastoplastic")
+MODELS: Final = ("kelvin_voigt", "hardening", "elastoplastic", "hardening_elastoplastic")
 TERMS: Final = ("stiffness", "damping", "hardening", "slip_torque", "slip_angle")
 
 
@@ -122,9 +122,9 @@ def feet_of(result: Mapping[str, Any]) -> Feet:
     Raises PlantarError when its law is one that the twin has no element for, or a value is missing. z keeps the
     twin's own where the result has none.
     """
-    if result["model"] not in LAWS:
+    if result["model"] not in MODELS:
         message = f"the law '{result['model']}' cannot be played on the twin"
-        raise PlantarError(located(message, valid=", ".join(LAWS)))
+        raise PlantarError(located(message, valid=", ".join(MODELS)))
     values: dict[str, dict[str, float]] = {}
     for row in result["parameters"]:
         if row["name"] in TERMS and row["value"] is not None and (row["axis"] != "z" or row["value"] > 0):

@@ -11,10 +11,10 @@ from plantar.conventions import Array
 from plantar.dynamics.consistency import Normal
 from plantar.estimation.intervals import cosine_covariance
 from plantar.whole_body.folds import Samples
-from plantar.whole_body.regularised_fit import PulledFit
+from plantar.whole_body.regularised_fit import RegularisedFit
 
 CHUNK = 2048  # samples whose regressor is held at a time
-GIVEN_STRENGTH = (
+GIVEN_REGULARISATION = (
     1e12  # of the pull where the inertial parameters are given: they have no deviation of their own
 )
 
@@ -28,7 +28,7 @@ class Uncertainty:
     freedom: float
 
 
-def uncertainty(fit: PulledFit, recordings: Sequence[Samples]) -> Uncertainty:
+def uncertainty(fit: RegularisedFit, recordings: Sequence[Samples]) -> Uncertainty:
     """Sandwich H⁻¹ (S + s² t² 1) H⁻¹ in the prior's units: S from the coloured scores, s the strength of the pull.
 
     The second part is what the pull itself gets wrong: t² is how far the CAD is from the robot, judged by how far the
@@ -40,14 +40,16 @@ def uncertainty(fit: PulledFit, recordings: Sequence[Samples]) -> Uncertainty:
     onto = np.zeros((n_base + len(normal.scale), size + len(normal.scale)))
     onto[:n_base, :size] = fit.base.grouping @ fit.prior.spread
     onto[n_base:, size:] = np.diag(normal.scale)
-    given = np.isinf(fit.strength)
-    strength = GIVEN_STRENGTH if given else fit.strength
-    pull = np.concatenate([np.full(size, strength), np.full(len(normal.scale), 1e-9)])
-    inverse = np.linalg.inv(normal.square + np.diag(pull))
+    given = np.isinf(fit.regularisation)
+    regularisation = GIVEN_REGULARISATION if given else fit.regularisation
+    ridge = np.concatenate([np.full(size, regularisation), np.full(len(normal.scale), 1e-9)])
+    inverse = np.linalg.inv(normal.square + np.diag(ridge))
     moved = np.linalg.solve(fit.prior.spread, fit.inertial - fit.prior.cad)
-    kept = np.eye(size) - strength * inverse[:size, :size]  # share of the truth's distance that the fit shows
+    kept = (
+        np.eye(size) - regularisation * inverse[:size, :size]
+    )  # share of the truth's distance that the fit shows
     decided = max(float(np.sum(kept * kept.T)), 1.0)
-    error = 0.0 if given else strength**2 * float(moved @ moved) / decided
+    error = 0.0 if given else regularisation**2 * float(moved @ moved) / decided
     meat = np.diag(np.concatenate([np.full(size, error), np.zeros(len(normal.scale))]))
     freedom = 0.0
     for samples in recordings:
@@ -63,7 +65,7 @@ def uncertainty(fit: PulledFit, recordings: Sequence[Samples]) -> Uncertainty:
     return Uncertainty(std[:n_base], extras, freedom)
 
 
-def _scores(fit: PulledFit, samples: Samples) -> Array:
+def _scores(fit: RegularisedFit, samples: Samples) -> Array:
     """Weighted regressor times residual of every sample, (N, n_base + n_extras)."""
     predicted = fit.predict(samples)
     rows = list(samples.measured)

@@ -12,7 +12,7 @@ from scipy import optimize
 from plantar.conventions import Array, Mask
 from plantar.dynamics import BaseParameters, Equation, EquationStream, Motion, RowFactor, stacked
 
-STRETCHES = 6  # over all recordings
+FOLDS = 6  # over all recordings
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class Samples:
         )
 
 
-class Stretches:
+class Folds:
     """The stretches' factors. Solutions x are the inertial parameters (10 n_links,), then the extras row by row."""
 
     def __init__(self, equation: Equation, base: BaseParameters, recordings: Sequence[Samples]) -> None:
@@ -55,7 +55,7 @@ class Stretches:
         ]
         self.positive = tuple(place for place, flag in enumerate(flags) if flag)
         self.factors: list[dict[int, RowFactor]] = []
-        each = max(1, -(-STRETCHES // len(recordings)))
+        each = max(1, -(-FOLDS // len(recordings)))
         for samples in recordings:
             bounds = np.linspace(0, len(samples.time), each + 1).astype(int)
             for start, stop in pairwise(bounds):

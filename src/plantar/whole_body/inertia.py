@@ -11,7 +11,7 @@ from plantar.results.dynamics import INERTIA_SCHEMA, DynamicsResult
 from plantar.robot.model import RobotModel
 from plantar.whole_body.covariance import uncertainty
 from plantar.whole_body.equations import inertial_samples
-from plantar.whole_body.regularised_fit import PulledProblem
+from plantar.whole_body.regularised_fit import RegularisedProblem
 from plantar.whole_body.regularised_result import result_of
 from plantar.whole_body.scores import Place
 from plantar.whole_body.settings import DynamicsSettings
@@ -43,7 +43,7 @@ def identify_inertia(
         [inertial_samples(body, whole, made.calibration) for whole in wholes]
         for wholes in (made.fitted, made.unseen)
     )
-    fit = PulledProblem(body.equation, body.base, body.prior, fitted).solve(progress)
+    fit = RegularisedProblem(body.equation, body.base, body.prior, fitted).solve(progress)
     progress("deviations")
     trust = uncertainty(fit, fitted)
     said = {**settings.to_dict(), "weights": [float(weight) for weight in fit.weights.values()]}

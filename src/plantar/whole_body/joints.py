@@ -18,7 +18,7 @@ from plantar.robot.model import RobotModel
 from plantar.whole_body.covariance import Uncertainty, uncertainty
 from plantar.whole_body.equations import TERM_UNITS, inertial_samples, joint_samples
 from plantar.whole_body.folds import Samples
-from plantar.whole_body.regularised_fit import PulledFit, PulledProblem, errors_of
+from plantar.whole_body.regularised_fit import RegularisedFit, RegularisedProblem, errors_of
 from plantar.whole_body.regularised_result import fit_notes, result_of
 from plantar.whole_body.scores import Place
 from plantar.whole_body.settings import DynamicsSettings
@@ -94,7 +94,7 @@ def _given(made: WholeLogs, inertia: Inertia, progress: Progress) -> tuple[Array
         text = "inertias taken from the URDF as known: the joints' deviations leave their errors out"
         return body.prior.cad, [Note("inertia_known", "info", text)]
     recordings = [inertial_samples(body, whole, made.calibration) for whole in made.fitted]
-    fit = PulledProblem(body.equation, body.base, body.prior, recordings).solve(progress)
+    fit = RegularisedProblem(body.equation, body.base, body.prior, recordings).solve(progress)
     text = (
         "inertias identified first, from the base rows (eq. 2): the joints' deviations leave their errors out"
     )
@@ -103,7 +103,7 @@ def _given(made: WholeLogs, inertia: Inertia, progress: Progress) -> tuple[Array
 
 def _chosen(
     made: WholeLogs, inertial: Array | None, progress: Progress
-) -> tuple[dict[str, tuple[str, ...]], PulledFit, list[Note]]:
+) -> tuple[dict[str, tuple[str, ...]], RegularisedFit, list[Note]]:
     """Terms of every joint that takes part, and the fit with them; inertial: given parameters, if any."""
     body = made.body
     measured = _measured_joints(made)
@@ -112,7 +112,7 @@ def _chosen(
     for default in (FRICTION, SPRUNG):
         terms = {name: described[name].terms if name in described else default for name in measured}
         recordings = [joint_samples(body, whole, made.calibration, terms) for whole in made.fitted]
-        problem = PulledProblem(body.equation, body.base, body.prior, recordings)
+        problem = RegularisedProblem(body.equation, body.base, body.prior, recordings)
         fits.append((terms, problem.solve(progress) if inertial is None else problem.with_known(inertial)))
         if all(name in described for name in measured):
             return terms, fits[0][1], []
@@ -126,12 +126,12 @@ def _chosen(
     return terms, fit, [Note("terms", "info", text)]
 
 
-def _held_out(fit: PulledFit, reference: PulledFit) -> float:
+def _held_out(fit: RegularisedFit, reference: RegularisedFit) -> float:
     """Smallest held-out error of a fit in the weights of another, so that both can be compared."""
-    if not fit.trials:
+    if not fit.held_out:
         return float("inf")
     ratio = np.mean([(reference.weights[row] / fit.weights[row]) ** 2 for row in fit.weights])
-    return float(errors_of(fit.trials).min() * ratio)
+    return float(errors_of(fit.held_out).min() * ratio)
 
 
 def _measured_joints(made: WholeLogs) -> tuple[str, ...]:
@@ -154,7 +154,10 @@ def _measured_joints(made: WholeLogs) -> tuple[str, ...]:
 
 
 def _parameters(
-    fit: PulledFit, trust: Uncertainty, terms: Mapping[str, tuple[str, ...]], recordings: Sequence[Samples]
+    fit: RegularisedFit,
+    trust: Uncertainty,
+    terms: Mapping[str, tuple[str, ...]],
+    recordings: Sequence[Samples],
 ) -> tuple[JointParameter, ...]:
     rows = []
     for joint, name in enumerate(fit.equation.tree.names):

@@ -15,27 +15,27 @@ import numpy as np
 from plantar.conventions import Array
 from plantar.dynamics import BaseParameters, Equation
 from plantar.dynamics.consistency import Normal, Prior, consistent_fit
-from plantar.whole_body.folds import Samples, Stretches
+from plantar.whole_body.folds import Folds, Samples
 
-STRENGTHS = tuple(float(strength) for strength in 10.0 ** np.arange(-1.0, 6.5))
+REGULARISATIONS = tuple(float(regularisation) for regularisation in 10.0 ** np.arange(-1.0, 6.5))
 WEIGHTING_ROUNDS = 2
 HOPELESS = 3.0  # times the smallest held-out error: stronger pulls are not tried any more
-FIRST_STRENGTH = 10.0  # of the fit that gives the first weights
+FIRST_REGULARISATION = 10.0  # of the fit that gives the first weights
 LEAST_ERROR = 1e-5  # N, N.m: what a row misses by less is rounding, and its weight would drown all others
 
 
 @dataclass(frozen=True)
-class Trial:
+class HeldOutError:
     """Held-out error of one strength: mean of the rows' squared errors over their weights, by stretch."""
 
-    strength: float
+    regularisation: float
     errors: Array
 
 
 @dataclass(frozen=True)
-class PulledFit:
+class RegularisedFit:
     """inertial: (10 n_links,); extras: those of each row; weights: of each row [1 / unit]; strength: of the pull,
-    infinite where the inertial parameters were given; trials: see `Trial`."""
+    infinite where the inertial parameters were given; trials: see `HeldOutError`."""
 
     equation: Equation
     base: BaseParameters
@@ -43,8 +43,8 @@ class PulledFit:
     inertial: Array
     extras: Mapping[int, Array]
     weights: Mapping[int, float]
-    strength: float
-    trials: tuple[Trial, ...]
+    regularisation: float
+    held_out: tuple[HeldOutError, ...]
     triangle: Array
 
     def predict(self, samples: Samples) -> Array:
@@ -56,79 +56,77 @@ class PulledFit:
         return rows
 
 
-class PulledProblem:
+class RegularisedProblem:
     """The stretches of all recordings and the CAD that fits to them are pulled towards."""
 
     def __init__(
         self, equation: Equation, base: BaseParameters, prior: Prior, recordings: Sequence[Samples]
     ) -> None:
         self.equation, self.base, self.prior = equation, base, prior
-        self.stretches = Stretches(equation, base, recordings)
-        self.every = range(len(self.stretches))
+        self.folds = Folds(equation, base, recordings)
+        self.every = range(len(self.folds))
 
-    def solve(self, progress: Callable[[str], None] = lambda _: None) -> PulledFit:
+    def solve(self, progress: Callable[[str], None] = lambda _: None) -> RegularisedFit:
         """Weights from the data, then the strength of the pull, then the fit to everything."""
-        weights = dict.fromkeys(self.stretches.rows, 1.0)
-        strength = FIRST_STRENGTH * self._scale()
+        weights = dict.fromkeys(self.folds.rows, 1.0)
+        regularisation = FIRST_REGULARISATION * self._scale()
         for _ in range(WEIGHTING_ROUNDS):
             progress("weigh the rows")
-            weights = self._weights(self._fit(self.stretches.triangle(self.every, weights), strength))
-            strength = FIRST_STRENGTH
-        trials = self._trials(weights, progress)
-        strength = chosen_strength(trials)
-        progress(f"fit, pulled with strength {strength:g}")
-        x = self._fit(self.stretches.triangle(self.every, weights), strength)
-        return self._found(x, weights, strength, trials)
+            weights = self._weights(self._fit(self.folds.triangle(self.every, weights), regularisation))
+            regularisation = FIRST_REGULARISATION
+        held_out = self._errors(weights, progress)
+        regularisation = chosen_regularisation(held_out)
+        progress(f"fit, pulled with strength {regularisation:g}")
+        x = self._fit(self.folds.triangle(self.every, weights), regularisation)
+        return self._found(x, weights, regularisation, held_out)
 
-    def with_known(self, inertial: Array) -> PulledFit:
+    def with_known(self, inertial: Array) -> RegularisedFit:
         """Only the rows' extras, the inertial parameters (10 n_links,) given: each row by itself. Strength infinite."""
-        x = self.stretches.with_known(self.every, inertial)
+        x = self.folds.with_known(self.every, inertial)
         weights = self._weights(x)
-        trials = []
-        if len(self.stretches) > 1:
-            fits = [self.stretches.with_known(self.stretches.but(out), inertial) for out in self.every]
-            trials.append(Trial(np.inf, self._held_out(fits, weights)))
-        return self._found(x, weights, np.inf, trials)
+        held_out = []
+        if len(self.folds) > 1:
+            fits = [self.folds.with_known(self.folds.but(out), inertial) for out in self.every]
+            held_out.append(HeldOutError(np.inf, self._held_out(fits, weights)))
+        return self._found(x, weights, np.inf, held_out)
 
     def _found(
-        self, x: Array, weights: Mapping[int, float], strength: float, trials: Sequence[Trial]
-    ) -> PulledFit:
-        return PulledFit(
+        self, x: Array, weights: Mapping[int, float], regularisation: float, held_out: Sequence[HeldOutError]
+    ) -> RegularisedFit:
+        return RegularisedFit(
             equation=self.equation,
             base=self.base,
             prior=self.prior,
             inertial=x[: len(self.prior.cad)],
-            extras=self.stretches.extras_of(x),
+            extras=self.folds.extras_of(x),
             weights=weights,
-            strength=strength,
-            trials=tuple(trials),
-            triangle=self.stretches.triangle(self.every, weights),
+            regularisation=regularisation,
+            held_out=tuple(held_out),
+            triangle=self.folds.triangle(self.every, weights),
         )
 
     def _weights(self, x: Array) -> dict[int, float]:
         """One over what each row misses, rms over everything."""
-        missed = {
-            row: float(np.sqrt(self.stretches.error(self.every, row, x))) for row in self.stretches.rows
-        }
+        missed = {row: float(np.sqrt(self.folds.error(self.every, row, x))) for row in self.folds.rows}
         return {row: 1 / max(rms, LEAST_ERROR) for row, rms in missed.items()}
 
-    def _trials(self, weights: Mapping[int, float], progress: Callable[[str], None]) -> list[Trial]:
-        if len(self.stretches) < 2:
+    def _errors(self, weights: Mapping[int, float], progress: Callable[[str], None]) -> list[HeldOutError]:
+        if len(self.folds) < 2:
             return []
-        triangles = (self.stretches.triangle(self.stretches.but(out), weights) for out in self.every)
+        triangles = (self.folds.triangle(self.folds.but(out), weights) for out in self.every)
         normals = [self._normal(triangle) for triangle in triangles]
-        trials = []
-        for strength in STRENGTHS:
-            progress(f"held-out error of pull {strength:g}")
-            fits = [self._pulled(normal, strength) for normal in normals]
-            trials.append(Trial(strength, self._held_out(fits, weights)))
-            if errors_of(trials)[-1] > HOPELESS * errors_of(trials).min():
+        held_out = []
+        for regularisation in REGULARISATIONS:
+            progress(f"held-out error of pull {regularisation:g}")
+            fits = [self._regularised(normal, regularisation) for normal in normals]
+            held_out.append(HeldOutError(regularisation, self._held_out(fits, weights)))
+            if errors_of(held_out)[-1] > HOPELESS * errors_of(held_out).min():
                 break
-        return trials
+        return held_out
 
     def _held_out(self, fits: Sequence[Array], weights: Mapping[int, float]) -> Array:
         """Each stretch's error by the fit to the others."""
-        errors = [self.stretches.weighted_error([out], x, weights) for out, x in enumerate(fits)]
+        errors = [self.folds.weighted_error([out], x, weights) for out, x in enumerate(fits)]
         return np.array(errors)
 
     def _normal(self, triangle: Array) -> Normal:
@@ -136,31 +134,33 @@ class PulledProblem:
         regressor = np.hstack([triangle[:, :base] @ self.base.grouping, triangle[:, base:-1]])
         return Normal.of(regressor, triangle[:, -1], self.prior)
 
-    def _pulled(self, normal: Normal, strength: float) -> Array:
-        return consistent_fit(normal, self.prior, strength, self.stretches.positive)
+    def _regularised(self, normal: Normal, regularisation: float) -> Array:
+        return consistent_fit(normal, self.prior, regularisation, self.folds.positive)
 
-    def _fit(self, triangle: Array, strength: float) -> Array:
-        return self._pulled(self._normal(triangle), strength)
+    def _fit(self, triangle: Array, regularisation: float) -> Array:
+        return self._regularised(self._normal(triangle), regularisation)
 
     def _scale(self) -> float:
         """Mean square of what the CAD misses, so that the first pull has its unit."""
-        x = np.concatenate([self.prior.cad, np.zeros(sum(self.stretches.counts.values()))])
-        return float(np.mean([self.stretches.error(self.every, row, x) for row in self.stretches.rows]))
+        x = np.concatenate([self.prior.cad, np.zeros(sum(self.folds.counts.values()))])
+        return float(np.mean([self.folds.error(self.every, row, x) for row in self.folds.rows]))
 
 
-def errors_of(trials: Sequence[Trial]) -> Array:
+def errors_of(held_out: Sequence[HeldOutError]) -> Array:
     """Mean held-out error of each strength."""
-    return np.array([trial.errors.mean() for trial in trials])
+    return np.array([tried.errors.mean() for tried in held_out])
 
 
-def chosen_strength(trials: Sequence[Trial]) -> float:
+def chosen_regularisation(held_out: Sequence[HeldOutError]) -> float:
     """The strongest pull whose held-out error is within one standard error of the smallest."""
-    if not trials:
-        return FIRST_STRENGTH
-    best = min(trials, key=lambda trial: float(trial.errors.mean()))
-    tolerated = [best.strength]
-    for trial in trials:
-        excess = trial.errors - best.errors
-        if trial.strength > best.strength and excess.mean() <= excess.std(ddof=1) / np.sqrt(len(excess)):
-            tolerated.append(trial.strength)
+    if not held_out:
+        return FIRST_REGULARISATION
+    best = min(held_out, key=lambda tried: float(tried.errors.mean()))
+    tolerated = [best.regularisation]
+    for tried in held_out:
+        excess = tried.errors - best.errors
+        if tried.regularisation > best.regularisation and excess.mean() <= excess.std(ddof=1) / np.sqrt(
+            len(excess)
+        ):
+            tolerated.append(tried.regularisation)
     return max(tolerated)

@@ -16,7 +16,7 @@ from plantar.results.dynamics import BaseParameter, DynamicsResult, InertialPara
 from plantar.whole_body.covariance import Uncertainty
 from plantar.whole_body.folds import Samples
 from plantar.whole_body.identified_urdf import identified_urdf
-from plantar.whole_body.regularised_fit import PulledFit
+from plantar.whole_body.regularised_fit import RegularisedFit
 from plantar.whole_body.scores import Place, scored
 from plantar.whole_body.whole_logs import WholeLogs
 
@@ -26,7 +26,7 @@ NAMED = 12  # unexcited parameters named in a note; more are counted
 def result_of(
     schema: str,
     logs: WholeLogs,
-    fit: PulledFit,
+    fit: RegularisedFit,
     trust: Uncertainty,
     fitted: Sequence[Samples],
     unseen: Sequence[Samples],
@@ -45,7 +45,7 @@ def result_of(
         schema=schema,
         robot=robot.name,
         inputs=logs.inputs,
-        settings={**settings, "strength": fit.strength},
+        settings={**settings, "strength": fit.regularisation},
         rank=rank,
         condition_number=condition,
         base_parameters=base_rows(fit, trust),
@@ -58,7 +58,7 @@ def result_of(
     )
 
 
-def excitation_of(fit: PulledFit) -> tuple[int, float, list[Note]]:
+def excitation_of(fit: RegularisedFit) -> tuple[int, float, list[Note]]:
     """Rank and condition number of the weighted regressor, and what the motions do not excite."""
     triangle = np.ascontiguousarray(fit.triangle)
     solution = solve_triangle(triangle)
@@ -77,17 +77,17 @@ def excitation_of(fit: PulledFit) -> tuple[int, float, list[Note]]:
     return solution.rank, condition, [Note("unexcited", "warning", text)]
 
 
-def fit_notes(fit: PulledFit) -> list[Note]:
+def fit_notes(fit: RegularisedFit) -> list[Note]:
     """What the choice of the pull was, and whether it was at the end of its range."""
-    if np.isinf(fit.strength):
+    if np.isinf(fit.regularisation):
         return []
-    if not fit.trials:
+    if not fit.held_out:
         text = "too few samples to hold any out: a gentle pull towards the URDF was assumed"
         return [Note("pull", "warning", text)]
-    held_out = {trial.strength: float(np.sqrt(trial.errors.mean())) for trial in fit.trials}
+    held_out = {tried.regularisation: float(np.sqrt(tried.errors.mean())) for tried in fit.held_out}
     text = (
-        f"pulled towards the URDF with strength {fit.strength:g}: "
-        f"held-out error {held_out[fit.strength]:.4g} of the fit's, "
+        f"pulled towards the URDF with strength {fit.regularisation:g}: "
+        f"held-out error {held_out[fit.regularisation]:.4g} of the fit's, "
         f"{held_out[min(held_out)]:.4g} at the gentlest pull, {held_out[max(held_out)]:.4g} at the strongest"
     )
     notes = [Note("pull", "info", text)]
@@ -99,7 +99,7 @@ def fit_notes(fit: PulledFit) -> list[Note]:
     return notes
 
 
-def base_rows(fit: PulledFit, trust: Uncertainty) -> tuple[BaseParameter, ...]:
+def base_rows(fit: RegularisedFit, trust: Uncertainty) -> tuple[BaseParameter, ...]:
     values = fit.base.grouping @ fit.inertial
     return tuple(
         BaseParameter(
@@ -113,7 +113,7 @@ def base_rows(fit: PulledFit, trust: Uncertainty) -> tuple[BaseParameter, ...]:
     )
 
 
-def inertial_rows(fit: PulledFit) -> tuple[InertialParameter, ...]:
+def inertial_rows(fit: RegularisedFit) -> tuple[InertialParameter, ...]:
     rows = []
     for index, (value, cad) in enumerate(zip(fit.inertial, fit.prior.cad, strict=True)):
         link, name = parameter_name(fit.equation.links, index).rsplit(".", 1)

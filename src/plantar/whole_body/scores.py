@@ -12,7 +12,7 @@ import pyarrow as pa
 from plantar.conventions import Array
 from plantar.results.dynamics import DynamicsScore
 from plantar.whole_body.folds import Samples
-from plantar.whole_body.regularised_fit import PulledFit
+from plantar.whole_body.regularised_fit import RegularisedFit
 
 Kind = Literal["direct", "cross"]
 
@@ -32,7 +32,7 @@ class Place:
 
 
 def scored(
-    fit: PulledFit, fitted: Sequence[Samples], unseen: Sequence[Samples], places: Sequence[Place]
+    fit: RegularisedFit, fitted: Sequence[Samples], unseen: Sequence[Samples], places: Sequence[Place]
 ) -> tuple[tuple[DynamicsScore, ...], pa.Table]:
     """Scores motion by motion and place by place, joints also all together; and the residuals, sample by sample."""
     index = [place.row for place in places]

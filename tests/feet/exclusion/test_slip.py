@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from biped import record, sway
 from biped_robot import FEET, write_robot
 from feet_trials import noisy, without
-from plantar.feet.exclusion.slip import ALONE, APART, leave_out_slip
+from plantar.feet.exclusion.slip import ALONE, BETWEEN_SOLES, leave_out_slip
 from plantar.feet.exclusion.sole_velocity import sole_motion
 from plantar.feet.recording import Recording, checked, prepare
 from plantar.feet.settings import FeetSettings
@@ -101,7 +101,7 @@ def test_soles_that_slide_apart_are_seen_by_the_closed_chain(robot: RobotModel, 
     found = reasons(robot, log if accelerometer else without(log, "linear_acceleration"))
     middle = (START + 0.1 < TIME) & (END - 0.1 > TIME)
     for foot in FEET:
-        assert set(found[foot][middle]) == {APART}
+        assert set(found[foot][middle]) == {BETWEEN_SOLES}
         assert not slips(found[foot])[(START - 0.1 > TIME) | (END + 0.1 < TIME)].any()
 
 

@@ -19,7 +19,7 @@ SPRING_AND_DAMPER = replace(PUNCTUAL, model="kelvin_voigt")
 
 def stiffening(hardening: float) -> list[Motion]:
     """Two sways on bushes that stiffen (or soften) with deflection."""
-    truth = {key: replace(law, hardening=hardening) for key, law in TRUTH.items()}
+    truth = {key: replace(model, hardening=hardening) for key, model in TRUTH.items()}
     return [sway(f"sway_{seed}", seed, duration=40.0, truth=truth) for seed in (3, 4)]
 
 

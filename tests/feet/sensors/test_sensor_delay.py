@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from plantar.feet.recording import checked
-from plantar.feet.sensors.sensor_delay import wrench_latency
+from plantar.feet.sensors.sensor_delay import estimate_wrench_delay
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
 from plantar.signals.resampling import shifted
@@ -33,8 +33,8 @@ def late(log: MotionLog, columns: str, delay: float) -> MotionLog:
 
 
 def test_one_foot_and_the_encoders_may_lag(twin: RobotModel, sweep: MotionLog) -> None:
-    assert wrench_latency(twin, [sweep]).delay == pytest.approx(0.0, abs=1e-3)
-    lagging = wrench_latency(twin, [late(late(sweep, "wrench.left", 0.010), "joint.", 0.005)])
+    assert estimate_wrench_delay(twin, [sweep]).delay == pytest.approx(0.0, abs=1e-3)
+    lagging = estimate_wrench_delay(twin, [late(late(sweep, "wrench.left", 0.010), "joint.", 0.005)])
     assert lagging.feet == pytest.approx({"left": 0.010, "right": 0.0}, abs=1e-3)
     assert lagging.encoders == pytest.approx(0.005, abs=1e-3)
 
@@ -43,7 +43,7 @@ def test_without_a_gyroscope_the_orientation_tells(twin: RobotModel, sweep: Moti
     blind = MotionLog(
         sweep.name, sweep.time, {k: v for k, v in sweep.columns.items() if "angular_velocity" not in k}
     )
-    found = wrench_latency(twin, [late(blind, "wrench.", 0.006)])
+    found = estimate_wrench_delay(twin, [late(blind, "wrench.", 0.006)])
     assert found.measured
     assert found.delay == pytest.approx(0.006, abs=2e-3)
 
@@ -60,6 +60,6 @@ def test_what_an_impact_leaves_behind_is_passed_by(twin: RobotModel, sweep: Moti
     for name in (name for name in sweep.columns if name.startswith("wrench.")):
         columns[name] = np.where(behind, spoiled.column(name), sweep.column(name))
         columns[name] += np.where(struck, 20 * random.standard_normal(len(sweep)), 0.0)
-    found = wrench_latency(twin, [sweep.with_columns(columns)])
+    found = estimate_wrench_delay(twin, [sweep.with_columns(columns)])
     assert found.measured
     assert found.delay == pytest.approx(0.0, abs=1e-3)

@@ -11,12 +11,12 @@ import pytest
 from biped import TRUTH, record, sway
 from biped_robot import make_robot
 from plantar.feet.identify import identify_feet
-from plantar.feet.sensors.tilt_error import attitude_pull
+from plantar.feet.sensors.tilt_error import tilt_error_of
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
 from plantar.twin.sensing.attitude_filter import filtered_attitude
 
-PULL = 0.2  # 1/s, of the filter below
+CORRECTION_RATE = 0.2  # 1/s, of the filter below
 KNOWN = FeetSettings(model="kelvin_voigt", wrench_delay=0.0)
 
 
@@ -38,16 +38,16 @@ def filtered(log: MotionLog) -> MotionLog:
 
 def test_a_pull_is_noticed_and_a_true_attitude_has_none() -> None:
     log = record(sway(duration=30.0))
-    assert not attitude_pull(*parts(log), log.period).believed
+    assert not tilt_error_of(*parts(log), log.period).believed
     random = np.random.default_rng(0)
     orientation, rates, acceleration = parts(log)
     noisy = orientation + random.normal(0, 5e-5, orientation.shape)
     noisy /= np.linalg.norm(noisy, axis=1, keepdims=True)
     shaken = rates + random.normal(0, 2e-3, rates.shape)
-    assert not attitude_pull(noisy, shaken, acceleration, log.period).believed
-    found = attitude_pull(*parts(filtered(log)), log.period)
+    assert not tilt_error_of(noisy, shaken, acceleration, log.period).believed
+    found = tilt_error_of(*parts(filtered(log)), log.period)
     assert found.believed
-    assert PULL / 2 < found.rate < 2 * PULL
+    assert CORRECTION_RATE / 2 < found.rate < 2 * CORRECTION_RATE
 
 
 def test_damping_survives_a_filtered_attitude(tmp_path: Path) -> None:

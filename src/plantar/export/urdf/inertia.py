@@ -21,7 +21,7 @@ from plantar.export.xml_file import numbers, to_text
 from plantar.notes import Note
 
 
-def identified_urdf(result: Mapping[str, Any], model: Path) -> tuple[str, tuple[Note, ...]]:
+def with_inertial_parameters(result: Mapping[str, Any], model: Path) -> tuple[str, tuple[Note, ...]]:
     """The URDF `model` with the result's inertial parameters, as text.
 
     Raises ExportError: a parameter is missing or unknown, a link is not in the URDF.

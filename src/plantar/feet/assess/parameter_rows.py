@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from plantar.contact.phases import TIPPING
+from plantar.contact.phases import TIPPING_REASON
 from plantar.conventions import ROTATIONAL_AXES, Axis
 from plantar.estimation import interval95, relative_std_percent
 from plantar.feet.assess.residual_table import Predictions
@@ -31,7 +31,7 @@ def axis_rows(
             verdict, reason, advice = judge(fit.foot, fit.axis, term, value, interval, evidence)
         else:
             verdict, reason, advice = judge_term(value, interval)
-        unit = fit.law.unit(term, fit.axis)
+        unit = fit.model.unit(term, fit.axis)
         relative = relative_std_percent(value, float(fit.white_std[place]))
         rows.append(
             Parameter(fit.foot, fit.axis, term, unit, value, std, interval, relative, verdict, reason, advice)
@@ -43,12 +43,12 @@ def missing_rows(foot: str, axis: Axis) -> list[Parameter]:
     """Stiffness and damping of a foot that no log shows."""
     reason = f"the {foot} foot has no samples that serve in these logs"
     advice = f"record motions in which the {foot} foot stands"
-    law = KelvinVoigt()
+    model = KelvinVoigt()
     return [
         Parameter(
-            foot, axis, term, law.unit(term, axis), None, None, None, None, "unidentifiable", reason, advice
+            foot, axis, term, model.unit(term, axis), None, None, None, None, "unidentifiable", reason, advice
         )
-        for term in law.terms
+        for term in model.terms
     ]
 
 
@@ -67,7 +67,7 @@ def _evidence(
         samples += len(angle)
         contact = recording.contacts[fit.foot]
         loaded += float(contact.loaded.sum()) * recording.period
-        leans += float((contact.loaded & contact.left_out_for(TIPPING)).sum()) * recording.period
+        leans += float((contact.loaded & contact.left_out_for(TIPPING_REASON)).sum()) * recording.period
         seconds += len(angle) * recording.period
         moved += float(np.sum((angle - angle.mean()) ** 2))
         varied += float(np.sum((torque - torque.mean()) ** 2))
@@ -78,5 +78,5 @@ def _evidence(
         float(np.sqrt(moved / max(samples, 1))),
         1 - missed / varied if varied else 0.0,
         damping < 0,
-        leaning=leans / loaded if fit.law.remembers and fit.law.forgets and loaded else 0.0,
+        leaning=leans / loaded if fit.model.remembers and fit.model.forgets and loaded else 0.0,
     )

@@ -10,11 +10,11 @@ import numpy as np
 from plantar.conventions import ROTATIONAL_AXES, Axis
 from plantar.feet.assess.residual_table import Predictions
 from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.initial_state import unseen_starts
-from plantar.feet.fit.regression_data import law_columns
+from plantar.feet.fit.initial_state import unseen_initial_states
+from plantar.feet.fit.regression_data import model_columns
 from plantar.feet.recording import Recording
 from plantar.results.feet import ValidationRow
-from plantar.results.scores import opening, score
+from plantar.results.scores import first_second, score
 
 FEWEST_SAMPLES = 50  # of one recording, for a score
 
@@ -35,9 +35,11 @@ def score_axis(
     for recording in recordings:
         used = recording.used(foot)
         torque = recording.bushes[foot].torque[:, column]
-        first = opening(recording.time, used)
-        starts = None if recording.role == "fit" else unseen_starts(fit, recording, foot, axis, first)
-        reconstructed = law_columns(recording, foot, axis, fit, starts) @ fit.values
+        first = first_second(recording.time, used)
+        initial_states = (
+            None if recording.role == "fit" else unseen_initial_states(fit, recording, foot, axis, first)
+        )
+        reconstructed = model_columns(recording, foot, axis, fit, initial_states) @ fit.values
         if recording.role == "fit":
             if recording.name not in fit.offsets:
                 continue

@@ -32,8 +32,8 @@ PRESSURE_NOISE = 4.0  # usual deviations of the centre of pressure where it stop
 LEAST_BAND = 0.0007  # m inside of where it stops: still there
 NEAR = 0.1  # s before and behind the edge, in which the excess is that of a flat sole
 SMEAR = 0.02  # s that this filter spreads a lean
-FAR = 0.5  # s: how far a flat sole is looked for
-APART = 0.05  # s: visits to the edge that are closer are one
+FLAT_SEARCH = 0.5  # s: how far a flat sole is looked for
+VISIT_PAUSE = 0.05  # s: visits to the edge that are closer are one
 FEWEST = 0.04  # s of sure lean, for the edge to be known
 
 LEANS = "tipping: the centre of pressure is at the sole's edge and the foot turns further than its bush"
@@ -41,7 +41,7 @@ OUTSIDE = "tipping: the centre of pressure is outside the sole"
 UNKNOWN = (
     "tipping: the centre of pressure is near the sole's edge, and no flat stretch tells whether it leans"
 )
-TIPPING = (LEANS, OUTSIDE, UNKNOWN)
+EDGE_REASONS = (LEANS, OUTSIDE, UNKNOWN)
 
 
 def leave_out_edges(robot: RobotModel, recordings: Sequence[Recording], settings: FeetSettings) -> None:
@@ -64,15 +64,15 @@ def leave_out_edges(robot: RobotModel, recordings: Sequence[Recording], settings
         ]
         if not any(edge.any() for edge in near):
             continue
-        law = _law(recordings, name, near)
+        model = _bush_model(recordings, name, near)
         for recording, depth, edge in zip(recordings, depths, near, strict=True):
             contact = recording.contacts[name]
             if not edge.any():
                 continue
-            if law is None:
+            if model is None:
                 contact.leave_out(edge, UNKNOWN)
                 continue
-            stiffness, damping, zero = law
+            stiffness, damping, zero = model
             bush = filtered(recording.raw[name], recording.period, QUICK_CUTOFF)
             load = np.maximum(bush.force_z, 1.0)
             excess = bush.deflection - (bush.torque - damping * bush.rate) / stiffness
@@ -111,8 +111,8 @@ def leaning(excess: Array, depth: Array, load: Array, visits: Mask, flat: Mask, 
 def _lean(excess: Array, visits: Mask, flat: Mask, period: float) -> Array:
     """Lean of the sole during visits to an edge, (N,) [rad], 0 elsewhere; infinite where no flat sole is near."""
     lean = np.zeros(len(visits))
-    near, far = round(NEAR / period), round(FAR / period)
-    for visit in runs(joined(visits, round(APART / period))):
+    near, far = round(NEAR / period), round(FLAT_SEARCH / period)
+    for visit in runs(joined(visits, round(VISIT_PAUSE / period))):
         first = max(0, visit.start - far)
         before = first + np.flatnonzero(flat[first : visit.start])[-near:]
         behind = visit.stop + np.flatnonzero(flat[visit.stop : visit.stop + far])[:near]
@@ -126,7 +126,7 @@ def _lean(excess: Array, visits: Mask, flat: Mask, period: float) -> Array:
     return lean
 
 
-def _law(
+def _bush_model(
     recordings: Sequence[Recording], foot: str, edges: Sequence[Mask]
 ) -> tuple[Array, Array, float] | None:
     """Stiffness and damping of pitch and roll, (2,) each, from samples clear of the edge, and the usual torque zero.

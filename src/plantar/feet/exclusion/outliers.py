@@ -9,14 +9,14 @@ import numpy as np
 from plantar.contact.deflection import BushState
 from plantar.conventions import ROTATIONAL_AXES, Array, Axis, Mask
 from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.regression_data import FEWEST_SAMPLES, law_columns
+from plantar.feet.fit.regression_data import FEWEST_SAMPLES, model_columns
 from plantar.feet.recording import Recording
-from plantar.models import Law
+from plantar.models import BushModel
 from plantar.signals.segments import runs
 
 BIN = 0.1  # s
 AROUND = 6.0  # s whose usual misfit a bin is compared with
-FAR = 6.0  # usual misfits
+FAR_MISFITS = 6.0  # usual misfits
 WORTH = 0.03  # of the recording's spread of torque: a smaller misfit does no harm
 LONGEST = 1.0  # s: what lasts longer is not a bad sample but another law
 MOST = 0.1  # share of a recording that may be outliers
@@ -25,7 +25,7 @@ ROUNDS = 3  # a large outlier hides smaller ones
 
 
 def fit_without_outliers(
-    recordings: Sequence[Recording], foot: str, axis: Axis, fit: Callable[[Law | None], AxisFit | None]
+    recordings: Sequence[Recording], foot: str, axis: Axis, fit: Callable[[BushModel | None], AxisFit | None]
 ) -> AxisFit | None:
     """What `fit` makes of the recordings; where short stretches leave its law by far, again without them.
 
@@ -36,7 +36,7 @@ def fit_without_outliers(
     for _ in range(ROUNDS):
         if found is None or not _left_out(recordings, foot, axis, found):
             break
-        found, several = fit(found.law), True
+        found, several = fit(found.model), True
     return fit(None) if several else found
 
 
@@ -48,7 +48,7 @@ def _left_out(recordings: Sequence[Recording], foot: str, axis: Axis, fit: AxisF
         if recording.name not in fit.offsets or used.sum() < FEWEST_SAMPLES:
             continue
         torque = recording.bushes[foot].torque[:, column]
-        missed = torque - law_columns(recording, foot, axis, fit) @ fit.values
+        missed = torque - model_columns(recording, foot, axis, fit) @ fit.values
         reach = 1 / recording.cutoff
         off = outliers(np.where(used, missed, np.nan), float(np.std(torque[used])), recording.period, reach)
         moved = _motion_until(recording.bushes[foot], used) if off.any() else np.zeros((0, 2, 2))
@@ -77,17 +77,17 @@ def outliers(missed: Array, spread: float, period: float, reach: float) -> Mask:
     width = max(1, round(BIN / period))
     bins = -(-len(missed) // width)
     padded = np.append(missed, np.full(bins * width - len(missed), np.nan)).reshape(bins, width)
-    served = np.isfinite(padded).sum(axis=1) > width // 2
+    used = np.isfinite(padded).sum(axis=1) > width // 2
     none = np.zeros(len(missed), dtype=bool)
-    if served.sum() < AROUND / BIN:
+    if used.sum() < AROUND / BIN:
         return none
-    level = np.nanmean(padded[served], axis=1)
+    level = np.nanmean(padded[used], axis=1)
     # Over the bins that serve, the usual level around each, and the usual distance from it.
     usual = _median_around(level)
-    size = np.sqrt(np.nanmean((padded[served] - usual[:, None]) ** 2, axis=1))
+    size = np.sqrt(np.nanmean((padded[used] - usual[:, None]) ** 2, axis=1))
     scale = _median_around(size)
     far = np.zeros(bins, dtype=bool)
-    far[served] = size > np.maximum(FAR * scale, WORTH * spread)
+    far[used] = size > np.maximum(FAR_MISFITS * scale, WORTH * spread)
     found = none.copy()
     margin = round(reach / period)
     for run in runs(far):

@@ -6,17 +6,25 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from plantar.contact.deflection import closure
+from plantar.contact.deflection import relative_pose
 from plantar.contact.phases import DOUBLE, SUPPORTS, FootContact, widened
-from plantar.contact.slip import Witness, apart_speed, as_usual, slides, turning, twist_speed, unresisted
+from plantar.contact.slip import (
+    SlipIndicator,
+    apart_speed,
+    as_usual,
+    slides,
+    turning,
+    twist_speed,
+    unresisted,
+)
 from plantar.conventions import Array, Mask
-from plantar.feet.exclusion.edge_rolling import TIPPING
+from plantar.feet.exclusion.edge_rolling import EDGE_REASONS
 from plantar.feet.exclusion.sole_velocity import SoleMotion, friction, sole_motion
 from plantar.feet.recording import Recording
 from plantar.robot.model import RobotModel
 from plantar.signals.segments import runs
 
-APART = "slip: the soles move against each other"
+BETWEEN_SOLES = "slip: the soles move against each other"
 AFTER = 0.05  # s
 TWIST = "slip: the sole turns on the floor"
 ALONE = "slip: the sole moves over the floor"
@@ -31,7 +39,7 @@ def leave_out_slip(robot: RobotModel, recording: Recording) -> None:
     Where the closed chain holds, one sole cannot slide without the other.
     """
     contacts, period = recording.contacts, recording.period
-    flat = {foot: contact.standing & ~_tipping(contact, period) for foot, contact in contacts.items()}
+    flat = {foot: contact.standing & ~_not_flat(contact, period) for foot, contact in contacts.items()}
     both = np.asarray(_both(contacts) & np.all(list(flat.values()), axis=0))
     apart = _apart(recording, both)
     twists = {foot: twist_speed(bush.heading, flat[foot], period) for foot, bush in recording.bushes.items()}
@@ -44,13 +52,17 @@ def leave_out_slip(robot: RobotModel, recording: Recording) -> None:
         for foot, twist in twists.items()
     }
     for foot, contact in contacts.items():
-        witnesses = {APART: apart, ALONE: _shared(moves, foot, both), TWIST: _shared(turns, foot, both)}
+        indicators = {
+            BETWEEN_SOLES: apart,
+            ALONE: _shared(moves, foot, both),
+            TWIST: _shared(turns, foot, both),
+        }
         way = np.fmax(np.where(both, np.max(list(ways.values()), axis=0), ways[foot]), apart.speed)
-        for run in runs(slides(list(witnesses.values()), way, period) & flat[foot]):
-            stretch = np.zeros(len(way), dtype=bool)
-            stretch[run] = True
-            surest = max(witnesses, key=lambda reason: witnesses[reason].clearness(run))
-            contact.leave_out(stretch, surest)
+        for run in runs(slides(list(indicators.values()), way, period) & flat[foot]):
+            slide = np.zeros(len(way), dtype=bool)
+            slide[run] = True
+            surest = max(indicators, key=lambda reason: indicators[reason].clearness(run))
+            contact.leave_out(slide, surest)
 
 
 def _both(contacts: Mapping[str, FootContact]) -> Mask:
@@ -59,41 +71,43 @@ def _both(contacts: Mapping[str, FootContact]) -> Mask:
     return np.asarray(np.all(double, axis=0) & (len(double) == 2))
 
 
-def _apart(recording: Recording, both: Mask) -> Witness:
+def _apart(recording: Recording, both: Mask) -> SlipIndicator:
     """How fast the soles move against each other where both stand."""
     if not both.any():
         return as_usual(np.full(len(both), np.nan))
-    apart = closure(*recording.bushes.values())
+    apart = relative_pose(*recording.bushes.values())
     return apart_speed(apart.position[:, :2], apart.yaw, both, recording.period)
 
 
-def _moves(motion: SoleMotion | None, recording: Recording, flat: Mapping[str, Mask]) -> dict[str, Witness]:
+def _moves(
+    motion: SoleMotion | None, recording: Recording, flat: Mapping[str, Mask]
+) -> dict[str, SlipIndicator]:
     """How fast each sole moves over the floor, where friction does not say that it cannot be."""
     if motion is None:
         return {foot: as_usual(np.full(len(recording.time), np.nan)) for foot in flat}
     floor, found = friction(recording, flat), {}
     for foot, velocity in motion.velocity.items():
-        moves = Witness(np.asarray(np.linalg.norm(velocity, axis=1)), motion.deviation[foot])
+        moves = SlipIndicator(np.asarray(np.linalg.norm(velocity, axis=1)), motion.deviation[foot])
         against = unresisted(moves, velocity, floor, recording.period)
-        found[foot] = Witness(np.where(against, np.nan, moves.speed), moves.deviation)
+        found[foot] = SlipIndicator(np.where(against, np.nan, moves.speed), moves.deviation)
     return found
 
 
-def _turns(twist: Array, period: float) -> Witness:
+def _turns(twist: Array, period: float) -> SlipIndicator:
     """How fast a sole turns on the floor, where it is not its bush that gives way."""
     usual = as_usual(np.abs(twist))
-    return Witness(np.where(turning(twist, period), usual.speed, np.nan), usual.deviation)
+    return SlipIndicator(np.where(turning(twist, period), usual.speed, np.nan), usual.deviation)
 
 
-def _shared(witnesses: Mapping[str, Witness], foot: str, both: Mask) -> Witness:
+def _shared(indicators: Mapping[str, SlipIndicator], foot: str, both: Mask) -> SlipIndicator:
     """One foot's witness, and where both feet stand, that of the faster one."""
-    speed, deviation = witnesses[foot].speed, witnesses[foot].deviation
-    for other in witnesses.values():
+    speed, deviation = indicators[foot].speed, indicators[foot].deviation
+    for other in indicators.values():
         faster = both & ~(np.nan_to_num(other.speed) <= np.nan_to_num(speed))
         speed, deviation = np.where(faster, other.speed, speed), np.where(faster, other.deviation, deviation)
-    return Witness(speed, deviation)
+    return SlipIndicator(speed, deviation)
 
 
-def _tipping(contact: FootContact, period: float) -> Mask:
+def _not_flat(contact: FootContact, period: float) -> Mask:
     """Where the sole tips or has just done so: its place is computed for a level sole."""
-    return widened(contact.left_out_for(*TIPPING), round(AFTER / period))
+    return widened(contact.left_out_for(*EDGE_REASONS), round(AFTER / period))

@@ -24,7 +24,7 @@ DRIFT_RATE = 50.0  # Hz, enough for the drift
 GYROSCOPE = 2.5  # Hz, above which an attitude's change is the gyroscope's: it is the quieter one there
 SHAKEN = 20.0  # Hz: no part of a robot that stands is moved on purpose above it
 LAG = 0.05  # s, in which neither drift nor slide changes much
-FAR = 1.0  # s, in which the drift's slope changes by more than noise
+SLOPE_TIME = 1.0  # s, in which the drift's slope changes by more than noise
 LEAST_NOISE = 0.0002  # m/s
 LEAST_WANDER = 0.0005  # m/s² in a second's root
 STRESSED = 80  # percent of the samples are accelerated less
@@ -74,7 +74,7 @@ def sole_motion(
     gained = (np.cumsum(push, axis=0) - push / 2) * period
     causes = [push, np.cumsum(mean, axis=0) * period]
     for foot, bush in recording.bushes.items():
-        causes += [share[foot] * cause for cause in _lever_errors(bush)]
+        causes += [share[foot] * cause for cause in _moment_arm_errors(bush)]
     seen = np.where((count > 0)[:, None], mean + gained, np.nan)
     drift, drift_deviation, noise = _drift(seen, np.array(causes), unrest, shaking, period)
     velocity = {
@@ -126,7 +126,7 @@ def _attitude_noise(rotation: Array, rates: Array, period: float) -> Array:
     return np.asarray(off - low_pass(off, period, GYROSCOPE))
 
 
-def _lever_errors(bush: BushState) -> tuple[Array, Array]:
+def _moment_arm_errors(bush: BushState) -> tuple[Array, Array]:
     """How a sole seems to move, (N, 2) each, by pitch and by roll, where its bush centre's height is wrong."""
     c, s = np.cos(bush.heading), np.sin(bush.heading)
     pitch, roll = np.nan_to_num(bush.rate).T
@@ -142,7 +142,7 @@ def _drift(
     velocity may have lost between two samples is known from how it shakes.
     """
     noise = max(LEAST_NOISE, _usual(seen[(lag := round(LAG / period)) :] - seen[:-lag]) / np.sqrt(2))
-    far = max(1, min(round(FAR / period), (len(seen) - 1) // 2))
+    far = max(1, min(round(SLOPE_TIME / period), (len(seen) - 1) // 2))
     lost = np.sum(shaking**2, axis=1) / 2 * period**2
     bent = _usual(seen[2 * far :] - 2 * seen[far:-far] + seen[: -2 * far]) ** 2
     bent -= 6 * noise**2 + 2 * far * float(np.median(lost))

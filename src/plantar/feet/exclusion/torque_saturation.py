@@ -15,7 +15,7 @@ LEAST_SHELL = np.radians(0.02)  # rad: narrower shells hold noise
 BIN = np.radians(0.25)  # rad
 
 
-def leave_out_tipping(robot: RobotModel, recording: Recording, settings: FeetSettings) -> None:
+def leave_out_torque_saturation(robot: RobotModel, recording: Recording, settings: FeetSettings) -> None:
     """Leave out samples beyond the bend of torque over angle, or beyond `settings.window`, with the reason."""
     for foot, bush in recording.bushes.items():
         contact = recording.contacts[foot]

@@ -9,20 +9,20 @@ from typing import Any
 import numpy as np
 
 from plantar.conventions import Array, Axis
-from plantar.model_selection.selection import LawChoice
-from plantar.models import Law
+from plantar.model_selection.selection import ModelChoice
+from plantar.models import BushModel
 from plantar.notes import Note
 
 
 @dataclass(frozen=True)
 class AxisFit:
-    """A fitted law. `values` (k,) as `law.terms`, `shape` (s,) as `law.shape_terms`; `covariance`, `freedom` and
-    `white_std` run over both. `starts`: where the law's memory begins in each recording's runs. `equivalent`: K and C
-    of spring and damper over the same motions."""
+    """A fitted model. `values` (k,) as `model.terms`, `shape` (s,) as `model.shape_terms`; `covariance`, `freedom` and
+    `white_std` run over both. `initial_states`: of the model's memory in each recording's runs.
+    `equivalent`: K and C of spring and damper over the same motions."""
 
     foot: str
     axis: Axis
-    law: Law
+    model: BushModel
     values: Array
     shape: Array
     covariance: Array
@@ -30,15 +30,15 @@ class AxisFit:
     white_std: Array
     offsets: Mapping[str, float]
     offset_std: Mapping[str, float]
-    starts: Mapping[str, Array]
+    initial_states: Mapping[str, Array]
     equivalent: tuple[float, float]
-    choice: LawChoice | None
+    choice: ModelChoice | None
     reason: str
     notes: tuple[Note, ...] = ()
 
     @property
     def names(self) -> tuple[str, ...]:
-        return (*self.law.terms, *self.law.shape_terms)
+        return (*self.model.terms, *self.model.shape_terms)
 
     @property
     def numbers(self) -> Array:
@@ -55,7 +55,7 @@ class AxisFit:
         content: dict[str, Any] = {
             "foot": self.foot,
             "axis": self.axis,
-            "law": self.law.name,
+            "law": self.model.name,
             "reason": self.reason,
             "linear_equivalent": {"stiffness": stiffness, "damping": damping},
         }
@@ -63,7 +63,7 @@ class AxisFit:
             content |= {
                 "held_out": self.choice.held_out,
                 "ranking": [
-                    {"law": score.law.name, "held_out_rms": score.held_out_rms, "parameters": score.parameters,
+                    {"law": score.model.name, "held_out_rms": score.held_out_rms, "parameters": score.parameters,
                      "refused": score.refused, "chosen": score.chosen}
                     for score in self.choice.ranking
                 ],

@@ -10,13 +10,13 @@ from plantar.conventions import Axis
 from plantar.estimation import Block, LinearFit, fit_linear
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.corrections import about_true_zero, unattenuated
-from plantar.feet.fit.regression_data import blocks_of, trial_of
+from plantar.feet.fit.regression_data import blocks_of, data_set_of
 from plantar.feet.recording import Recording
 from plantar.feet.settings import AUTOMATIC, FeetSettings
-from plantar.model_selection.data_sets import Trial
-from plantar.model_selection.model_fit import LawFit, fit_law
-from plantar.model_selection.selection import LawChoice, choose_law
-from plantar.models import LAWS, KelvinVoigt, Law
+from plantar.model_selection.data_sets import DataSet
+from plantar.model_selection.model_fit import ModelFit, fit_model
+from plantar.model_selection.selection import ModelChoice, choose_model
+from plantar.models import MODELS, BushModel, KelvinVoigt
 
 LEAST_EXPLAINED = 0.5  # of the torque's variance by spring and damper: below it no law of the bush will help
 FULLY_EXPLAINED = 0.99995  # above it what is left is the sensors' noise
@@ -28,21 +28,25 @@ CANDIDATES = (
 
 
 def fit_axis(
-    recordings: Sequence[Recording], foot: str, axis: Axis, settings: FeetSettings, law: Law | None = None
+    recordings: Sequence[Recording],
+    foot: str,
+    axis: Axis,
+    settings: FeetSettings,
+    model: BushModel | None = None,
 ) -> AxisFit | None:
     """The law given or asked for, or the one that predicts held-out motions; None where no recording has samples.
 
     What errors of the angles do to its values is taken off, where that matters.
     """
     shared = settings.offset == "shared"
-    if law is None and settings.model != AUTOMATIC:
-        law = LAWS[settings.model]
-    fit = _fitted(recordings, foot, axis, settings, law)
+    if model is None and settings.model != AUTOMATIC:
+        model = MODELS[settings.model]
+    fit = _fitted(recordings, foot, axis, settings, model)
     return fit and unattenuated(about_true_zero(fit, recordings, shared), recordings, shared)
 
 
 def _fitted(
-    recordings: Sequence[Recording], foot: str, axis: Axis, settings: FeetSettings, asked: Law | None
+    recordings: Sequence[Recording], foot: str, axis: Axis, settings: FeetSettings, asked: BushModel | None
 ) -> AxisFit | None:
     shared = settings.offset == "shared"
     blocks = blocks_of(recordings, foot, axis, drift=not shared)
@@ -51,18 +55,20 @@ def _fitted(
     linear = fit_linear(blocks, shared_offset=shared)
     if isinstance(asked, KelvinVoigt):
         return _of_linear(foot, axis, linear, None, "asked for")
-    trials = [trial_of(recording, foot, axis) for recording in recordings if recording.name in linear.offsets]
+    data_sets = [
+        data_set_of(recording, foot, axis) for recording in recordings if recording.name in linear.offsets
+    ]
     if asked is not None:
-        fit = fit_law(asked, trials, settings.cutoff, shared_offset=shared)
-        return _of_law(foot, axis, fit, linear, None, "asked for")
+        fit = fit_model(asked, data_sets, settings.cutoff, shared_offset=shared)
+        return _of_model(foot, axis, fit, linear, None, "asked for")
     explained = _explained(linear, blocks)
     if not LEAST_EXPLAINED < explained < FULLY_EXPLAINED:
         return _of_linear(foot, axis, linear, None, _untried(explained))
-    laws = [LAWS[name] for name in CANDIDATES if not LAWS[name].remembers or _remembers(trials)]
-    choice = choose_law(trials, laws, settings.cutoff, shared_offset=shared)
-    if choice.fit.law.name == KelvinVoigt.name:
+    models = [MODELS[name] for name in CANDIDATES if not MODELS[name].remembers or _remembers(data_sets)]
+    choice = choose_model(data_sets, models, settings.cutoff, shared_offset=shared)
+    if choice.fit.model.name == KelvinVoigt.name:
         return _of_linear(foot, axis, linear, choice, choice.reason)
-    return _of_law(foot, axis, choice.fit, linear, choice, choice.reason)
+    return _of_model(foot, axis, choice.fit, linear, choice, choice.reason)
 
 
 def _explained(fit: LinearFit, blocks: Sequence[Block]) -> float:
@@ -79,16 +85,18 @@ def _untried(explained: float) -> str:
     return f"{share}: something else than the bush makes this torque, and no richer law was tried"
 
 
-def _remembers(trials: Sequence[Trial]) -> bool:
+def _remembers(data_sets: Sequence[DataSet]) -> bool:
     """Whether stances last long enough for a law with memory: each begins with an unknown state."""
-    stances = [run for trial in trials for run in trial.motion.runs]
+    stances = [run for data_set in data_sets for run in data_set.motion.runs]
     seconds = sum(
-        (run.stop - run.start) * trial.motion.period for trial in trials for run in trial.motion.runs
+        (run.stop - run.start) * data_set.motion.period
+        for data_set in data_sets
+        for run in data_set.motion.runs
     )
     return bool(stances) and seconds / len(stances) > SHORT_STANCE
 
 
-def _of_linear(foot: str, axis: Axis, fit: LinearFit, choice: LawChoice | None, reason: str) -> AxisFit:
+def _of_linear(foot: str, axis: Axis, fit: LinearFit, choice: ModelChoice | None, reason: str) -> AxisFit:
     size = len(fit.values)
     return AxisFit(
         foot, axis, KelvinVoigt(), fit.values, np.zeros(0), fit.covariance[:size, :size], fit.freedom[:size],
@@ -97,10 +105,10 @@ def _of_linear(foot: str, axis: Axis, fit: LinearFit, choice: LawChoice | None, 
     )  # fmt: skip
 
 
-def _of_law(
-    foot: str, axis: Axis, fit: LawFit, linear: LinearFit, choice: LawChoice | None, reason: str
+def _of_model(
+    foot: str, axis: Axis, fit: ModelFit, linear: LinearFit, choice: ModelChoice | None, reason: str
 ) -> AxisFit:
     return AxisFit(
-        foot, axis, fit.law, fit.values, fit.shape, fit.covariance, fit.freedom, fit.white_std, fit.offsets,
-        fit.offset_std, fit.starts, (float(linear.values[0]), float(linear.values[1])), choice, reason,
+        foot, axis, fit.model, fit.values, fit.shape, fit.covariance, fit.freedom, fit.white_std, fit.offsets,
+        fit.offset_std, fit.initial_states, (float(linear.values[0]), float(linear.values[1])), choice, reason,
     )  # fmt: skip

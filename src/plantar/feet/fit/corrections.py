@@ -24,7 +24,7 @@ def about_true_zero(fit: AxisFit, recordings: Sequence[Recording], shared: bool)
 
     The memory stays as it is; linear parameters and offsets are found anew.
     """
-    if not fit.law.zero_matters or shared:
+    if not fit.model.zero_matters or shared:
         return fit
     size = len(fit.values)
     found = fit_linear(blocks_of(recordings, fit.foot, fit.axis, fit=fit))
@@ -54,12 +54,12 @@ def unattenuated(fit: AxisFit, recordings: Sequence[Recording], shared: bool) ->
     moved = offsets_moved(blocks, taken, shared_offset=shared)
     share = ", ".join(
         f"{name} {100 * part / value:+.2g} %"
-        for name, part, value in zip(fit.law.terms, taken, fit.values, strict=True)
+        for name, part, value in zip(fit.model.terms, taken, fit.values, strict=True)
         if value
     )
     text = f"{where}: noise in angles and rates had drawn values towards zero; given back: {share}"
     values = fit.values + taken
-    linear = isinstance(fit.law, KelvinVoigt)
+    linear = isinstance(fit.model, KelvinVoigt)
     return replace(
         fit,
         values=values,

@@ -10,8 +10,8 @@ from plantar.conventions import ROTATIONAL_AXES, Array, Axis
 from plantar.estimation import Block
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.recording import Recording
-from plantar.model_selection.data_sets import Trial
-from plantar.models import KelvinVoigt, Motion
+from plantar.model_selection.data_sets import DataSet
+from plantar.models import BushMotion, KelvinVoigt
 from plantar.signals.filters import low_pass
 
 FEWEST_SAMPLES = 50  # of one recording, for it to take part in a fit
@@ -38,10 +38,10 @@ def blocks_of(
             continue
         time = recording.time[used]
         nuisance = (time - time.mean())[:, None] if drift else None
-        if nuisance is not None and fit is not None and fit.law.zero_matters:
+        if nuisance is not None and fit is not None and fit.model.zero_matters:
             square = bush.deflection[used, column] ** 2
             nuisance = np.column_stack([nuisance, square - square.mean()])
-        regressor = law_columns(recording, foot, axis, fit)[used]
+        regressor = model_columns(recording, foot, axis, fit)[used]
         noise = np.zeros(regressor.shape[1])
         noise[:2] = recording.noise[foot][:, column]
         torque = bush.torque[used, column]
@@ -49,31 +49,31 @@ def blocks_of(
     return blocks
 
 
-def law_columns(
-    recording: Recording, foot: str, axis: Axis, fit: AxisFit | None, starts: Array | None = None
+def model_columns(
+    recording: Recording, foot: str, axis: Axis, fit: AxisFit | None, initial_states: Array | None = None
 ) -> Array:
     """Regressor (N, k) of a fit's law along a recording, Kelvin-Voigt's without one; NaN in the air."""
     motion = motion_of(recording, foot, axis)
-    if fit is None or isinstance(fit.law, KelvinVoigt):
+    if fit is None or isinstance(fit.model, KelvinVoigt):
         return np.column_stack([motion.deflection, motion.rate])
-    starts = fit.starts.get(recording.name) if starts is None else starts
-    if starts is None or len(starts) != len(motion.runs):
-        starts = fit.law.starts(motion, fit.shape)
-    columns = fit.law.columns(motion, fit.shape, starts)
+    initial_states = fit.initial_states.get(recording.name) if initial_states is None else initial_states
+    if initial_states is None or len(initial_states) != len(motion.runs):
+        initial_states = fit.model.initial_states(motion, fit.shape)
+    columns = fit.model.columns(motion, fit.shape, initial_states)
     columns[:, 2:] = low_pass(columns[:, 2:], recording.period, recording.cutoff)
     return columns
 
 
-def motion_of(recording: Recording, foot: str, axis: Axis) -> Motion:
+def motion_of(recording: Recording, foot: str, axis: Axis) -> BushMotion:
     """Deflection and rate of one axis, NaN where the foot does not stand: a bush in the air forgets."""
     column, bush = ROTATIONAL_AXES.index(axis), recording.bushes[foot]
     away = ~recording.contacts[foot].loaded
     deflection, rate = bush.deflection[:, column].copy(), bush.rate[:, column].copy()
     deflection[away] = rate[away] = np.nan
-    return Motion(deflection, rate, recording.period)
+    return BushMotion(deflection, rate, recording.period)
 
 
-def trial_of(recording: Recording, foot: str, axis: Axis) -> Trial:
+def data_set_of(recording: Recording, foot: str, axis: Axis) -> DataSet:
     """One recording of one axis, as the laws take it."""
     torque = recording.bushes[foot].torque[:, ROTATIONAL_AXES.index(axis)]
-    return Trial(recording.name, motion_of(recording, foot, axis), torque, recording.used(foot))
+    return DataSet(recording.name, motion_of(recording, foot, axis), torque, recording.used(foot))

@@ -12,9 +12,9 @@ from plantar.estimation import Block, effect_of, fit_linear
 from plantar.estimation.intervals import pooled_freedom
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.regression_data import blocks_of
-from plantar.feet.fit.vertical_stiffness import Height
-from plantar.feet.recording import Recording, lever_effect
-from plantar.feet.sensors.sensor_delay import Latency
+from plantar.feet.fit.vertical_stiffness import VerticalStiffness
+from plantar.feet.recording import Recording, moment_arm_effect
+from plantar.feet.sensors.sensor_delay import SensorDelay
 from plantar.signals.filters import differentiate
 
 SUSPECTED = 2.0  # deviations of a term that the law leaves out
@@ -38,23 +38,31 @@ class Cause:
 
 
 def systematic_causes(
-    fit: AxisFit, recordings: Sequence[Recording], latency: Latency, vertical: Height, shared: bool
+    fit: AxisFit,
+    recordings: Sequence[Recording],
+    sensor_delay: SensorDelay,
+    vertical: VerticalStiffness,
+    shared: bool,
 ) -> list[Cause]:
     """The wrenches' delay, the lever of the compressed slide, a hardening that the law leaves out, and for roll the
     zero of the yaw torque."""
     foot, column = fit.foot, ROTATIONAL_AXES.index(fit.axis)
     blocks = blocks_of(recordings, foot, fit.axis, drift=not shared, fit=fit)
-    served = {recording.name: recording for recording in recordings}
-    parts = [(served[block.label], served[block.label].used(foot)) for block in blocks]
+    by_name = {recording.name: recording for recording in recordings}
+    parts = [(by_name[block.label], by_name[block.label].used(foot)) for block in blocks]
 
     def moved_by(changes: Sequence[Array]) -> Array:
         return effect_of(blocks, changes, shared_offset=shared)
 
     rates = [differentiate(one.bushes[foot].torque[:, column], one.period)[used] for one, used in parts]
-    levers = [lever_effect(one.bushes[foot], one.period, one.cutoff)[used, column] for one, used in parts]
+    moment_arms = [
+        moment_arm_effect(one.bushes[foot], one.period, one.cutoff)[used, column] for one, used in parts
+    ]
     causes = [
-        Cause("delay", moved_by([np.nan_to_num(rate) for rate in rates]), latency.std, latency.freedom),
-        Cause("lever", moved_by(levers), vertical.compliance_std[foot], vertical.freedom),
+        Cause(
+            "delay", moved_by([np.nan_to_num(rate) for rate in rates]), sensor_delay.std, sensor_delay.freedom
+        ),
+        Cause("lever", moved_by(moment_arms), vertical.compliance_std[foot], vertical.freedom),
     ]
     causes += _suspected_hardening(fit, blocks, shared)
     if fit.axis == "roll":
@@ -75,7 +83,7 @@ def _suspected_hardening(fit: AxisFit, blocks: Sequence[Block], shared: bool) ->
     It hardly matters to the torque, but the spring's slope at zero is not its mean slope. Empty where the motions are
     too small to tell the two apart.
     """
-    if any("hardening" in term for term in fit.law.terms):
+    if any("hardening" in term for term in fit.model.terms):
         return []
     size, extended = len(fit.values), []
     reach = max(float(np.abs(block.regressor[:, 0]).max()) for block in blocks) or 1.0
@@ -100,7 +108,7 @@ def _suspected_hardening(fit: AxisFit, blocks: Sequence[Block], shared: bool) ->
     return [Cause("hardening", (found.values[:size] - fit.values) / hardening, abs(hardening))]
 
 
-def widened(fit: AxisFit, causes: Sequence[Cause]) -> AxisFit:
+def inflated(fit: AxisFit, causes: Sequence[Cause]) -> AxisFit:
     """The fit with the causes inside its covariance."""
     covariance, freedom = fit.covariance.copy(), fit.freedom
     for cause in causes:

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from plantar.contact.deflection import closure
+from plantar.contact.deflection import relative_pose
 from plantar.contact.phases import DOUBLE, SUPPORTS
 from plantar.conventions import STIFFNESS_UNIT, Array
 from plantar.estimation import Block, fit_linear, interval95, relative_std_percent
@@ -77,7 +77,7 @@ class Compliances:
 
 
 @dataclass(frozen=True)
-class Height:
+class VerticalStiffness:
     """Rows of axis z, and each foot's compliance [m/N] with its standard deviation, for eq. 6's lever."""
 
     parameters: tuple[Parameter, ...]
@@ -87,7 +87,9 @@ class Height:
     freedom: float
 
 
-def fit_height(recordings: Sequence[Recording], robot: RobotModel, cutoff: float) -> Height:
+def fit_vertical_stiffness(
+    recordings: Sequence[Recording], robot: RobotModel, cutoff: float
+) -> VerticalStiffness:
     """Vertical stiffness of two feet; where no log shows it, compliance 0 with the deviation of soft rubber."""
     feet = tuple(robot.feet)
     blocks = []
@@ -98,13 +100,13 @@ def fit_height(recordings: Sequence[Recording], robot: RobotModel, cutoff: float
         text = "z: no log shows the vertical compliance; K of pitch and roll may come out too large by load²·compliance"
         unknown = tuple(_unknown_row(foot) for foot in feet) if len(feet) == 2 else ()
         nothing, soft = dict.fromkeys(feet, 0.0), dict.fromkeys(feet, UNKNOWN_COMPLIANCE)
-        return Height(unknown, (Note("z_unknown", "info", text),), nothing, soft, np.inf)
+        return VerticalStiffness(unknown, (Note("z_unknown", "info", text),), nothing, soft, np.inf)
     notes = []
     if not found.separable:
         text = "z: only the sum of both feet's compliances shows (the total load hardly changes); both taken as equal"
         notes.append(Note("z_sum_only", "info", text))
     own = {foot: found.of(side) for foot, side in zip(feet, (1.0, -1.0), strict=True)}
-    return Height(
+    return VerticalStiffness(
         tuple(_row(foot, *own[foot], found) for foot in feet),
         tuple(notes),
         {foot: value for foot, (value, _) in own.items()},
@@ -138,7 +140,7 @@ def _block(recording: Recording, feet: tuple[str, ...], cutoff: float) -> Block 
     left, right = (recording.bushes[foot] for foot in feet)
     both = recording.used(feet[0]) & recording.used(feet[1])
     both &= recording.contacts[feet[0]].support == SUPPORTS.index(DOUBLE)
-    height = closure(left, right).position[:, 2]
+    height = relative_pose(left, right).position[:, 2]
     # Along the slide for the law, and once more along the vertical for what the compression does to the height.
     loads = np.column_stack(
         [bush.wrench[:, 2] * np.cos(bush.deflection).prod(axis=1) for bush in (left, right)]

@@ -29,7 +29,7 @@ EDGE = 0.3  # s at both ends of a run, where the filter is unsure
 
 
 @dataclass(frozen=True)
-class Closure:
+class NewtonEulerResidual:
     """Both sides of Newton's law in the root link's frame over the longest calm stretch of a log.
 
     `pair`: all feet together; `measured` and `rates` (feet, n, 6): each foot's wrench, and how it changes with the
@@ -49,7 +49,7 @@ class Closure:
         return Balance(self.pair.predicted, self.measured, by_delay, self.pair.period)
 
 
-def closure_of(robot: RobotModel, log: MotionLog) -> Closure | None:
+def newton_euler_residual(robot: RobotModel, log: MotionLog) -> NewtonEulerResidual | None:
     """Both sides along an evenly sampled log; None where it lacks what that takes, or does not close."""
     imu = robot.imu
     if imu is None or any(foot.contact == "always" for foot in robot.feet.values()):
@@ -103,7 +103,7 @@ def closure_of(robot: RobotModel, log: MotionLog) -> Closure | None:
         return None
     step = log.period
     by_encoders = moving([(predicted_at(step) - predicted_at(-step)) / (2 * step)])[0]
-    return Closure(pair, measured, rates, by_encoders[calm])
+    return NewtonEulerResidual(pair, measured, rates, by_encoders[calm])
 
 
 def _struck(robot: RobotModel, wrenches: Array, period: float) -> Mask:

@@ -17,7 +17,7 @@ import numpy as np
 from plantar.conventions import Array
 from plantar.estimation.delay import LONGEST, estimate_delay
 from plantar.estimation.sensor_delays import Balance, estimate_delays
-from plantar.feet.sensors.newton_euler import Closure, closure_of
+from plantar.feet.sensors.newton_euler import NewtonEulerResidual, newton_euler_residual
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
@@ -29,13 +29,13 @@ PRIOR_STD = (
 KNOWN_STD = 0.001  # s: better known than this, the delay is corrected without a warning
 CLOCK = 0.06  # of a period: within it, nobody knows when a sample was taken
 SIGNIFICANT = 2.5  # deviations from zero: a poorly known delay is corrected beyond, else only allowed for
-APART = 4.0  # deviations by which sensors must differ to have delays of their own
-LEAST_APART = 0.0015  # s, and by so much
+DISTINCT = 4.0  # deviations by which sensors must differ to have delays of their own
+LEAST_DISTINCT = 0.0015  # s, and by so much
 LEAST_STD = 0.0003  # s: no robot's model shows a delay better, however fast its samples
 
 
 @dataclass(frozen=True)
-class Latency:
+class SensorDelay:
     """Delay of the wrenches against the IMU [s], > 0: late; `std` [s]; `measured` whether any log showed it.
 
     `feet` has each foot's own delay where they differ, `encoders` that of the joints' positions; both are usually
@@ -55,48 +55,52 @@ class Latency:
         return content | {"feet": dict(self.feet), "encoder_delay": self.encoders}
 
 
-def latency_of(result: Mapping[str, Any]) -> Latency:
+def sensor_delay_of(result: Mapping[str, Any]) -> SensorDelay:
     """The latency that a `plantar.feet/1` result was corrected for; none where it names none."""
     stored = result.get("latency", {})
     delay, feet = float(stored.get("wrench_delay", 0.0)), stored.get("feet", {})
     note = Note("delay_given", "info", f"wrenches taken as {1e3 * delay:+.1f} ms late, as in the result")
     own = {str(foot): float(late) for foot, late in feet.items()}
-    return Latency(delay, 0.0, np.inf, False, note, own, float(stored.get("encoder_delay", 0.0)))
+    return SensorDelay(delay, 0.0, np.inf, False, note, own, float(stored.get("encoder_delay", 0.0)))
 
 
-def in_time(robot: RobotModel, log: MotionLog, latency: Latency) -> MotionLog:
+def in_time(robot: RobotModel, log: MotionLog, sensor_delay: SensorDelay) -> MotionLog:
     """The log with wrenches and joint positions as they were at the moments of the IMU's samples."""
     moved: dict[str, Array] = {}
     for name, foot in robot.feet.items():
         columns = [column for column in log.columns if column.startswith(f"wrench.{foot.wrench.name}.")]
-        late = latency.feet.get(name, latency.delay)
+        late = sensor_delay.feet.get(name, sensor_delay.delay)
         moved |= dict(zip(columns, shifted(log.stack(columns), log.period, late).T, strict=True))
-    if latency.encoders:
+    if sensor_delay.encoders:
         columns = [column for column in log.columns if column.startswith("joint.")]
-        moved |= dict(zip(columns, shifted(log.stack(columns), log.period, latency.encoders).T, strict=True))
+        moved |= dict(
+            zip(columns, shifted(log.stack(columns), log.period, sensor_delay.encoders).T, strict=True)
+        )
     return log.with_columns(moved)
 
 
-def known_latency(delay: float) -> Latency:
+def known_delay(delay: float) -> SensorDelay:
     """A delay that the user knows."""
     text = f"wrenches taken as {1e3 * delay:+.1f} ms late, as the user says"
-    return Latency(delay, 0.0, np.inf, False, Note("delay_given", "info", text))
+    return SensorDelay(delay, 0.0, np.inf, False, Note("delay_given", "info", text))
 
 
-def wrench_latency(
-    robot: RobotModel, logs: Sequence[MotionLog], each: Callable[..., Iterable[Closure | None]] = map
-) -> Latency:
+def estimate_wrench_delay(
+    robot: RobotModel,
+    logs: Sequence[MotionLog],
+    each: Callable[..., Iterable[NewtonEulerResidual | None]] = map,
+) -> SensorDelay:
     """The delay common to all logs, evenly sampled, drawn towards zero by what is usual where the logs say little;
     where sensors clearly differ, the delay of each.
 
     `each` maps a function over logs: a pool's map uses all cores.
     """
-    tried = list(each(lambda log: closure_of(robot, log), logs))
-    closures = [closure for closure in tried if closure is not None]
-    apart = _apart(list(robot.feet), [closure.balance for closure in closures])
+    tried = list(each(lambda log: newton_euler_residual(robot, log), logs))
+    residuals = [residual for residual in tried if residual is not None]
+    apart = _apart(list(robot.feet), [residual.balance for residual in residuals])
     if apart is not None:
         return apart
-    found = estimate_delay([closure.pair for closure in closures]) if closures else None
+    found = estimate_delay([residual.pair for residual in residuals]) if residuals else None
     if found is None:
         imu = robot.imu
         columns = [f"imu.{imu.name}.linear_acceleration.{axis}" for axis in "xyz"] if imu is not None else []
@@ -106,23 +110,23 @@ def wrench_latency(
             f"taken as 0 ± {1e3 * PRIOR_STD:.1f} ms, which widens damping by stiffness times that. "
             f"{'Record the accelerometer' if blind else 'Record arm sweeps of 0.3 to 1 Hz without an operator'}"
         )
-        return Latency(0.0, PRIOR_STD, np.inf, False, Note("delay_unknown", "warning", text))
+        return SensorDelay(0.0, PRIOR_STD, np.inf, False, Note("delay_unknown", "warning", text))
     gain = PRIOR_STD**2 / (PRIOR_STD**2 + found.std**2)
-    slowest = max(log.period for log, closure in zip(logs, tried, strict=True) if closure is not None)
+    slowest = max(log.period for log, residual in zip(logs, tried, strict=True) if residual is not None)
     clock = max(CLOCK * slowest, LEAST_STD)
     delay, std = gain * found.value, float(np.hypot(np.sqrt(gain) * found.std, clock))
     told = f"wrenches are {1e3 * delay:+.1f} ± {1e3 * 1.96 * std:.1f} ms late (95 %) against IMU and encoders"
     if std <= KNOWN_STD:
-        return Latency(delay, std, found.freedom, True, Note("delay", "info", f"{told}: corrected"))
+        return SensorDelay(delay, std, found.freedom, True, Note("delay", "info", f"{told}: corrected"))
     advice = "known poorly, which widens damping: record arm sweeps of 0.3 to 1 Hz without an operator"
     if abs(delay) > SIGNIFICANT * std:
         note = Note("delay_poorly_known", "warning", f"{told}: corrected; {advice}")
-        return Latency(delay, std, found.freedom, True, note)
+        return SensorDelay(delay, std, found.freedom, True, note)
     note = Note("delay_poorly_known", "warning", f"{told}: not corrected; {advice}")
-    return Latency(0.0, float(np.hypot(delay, std)), found.freedom, True, note)
+    return SensorDelay(0.0, float(np.hypot(delay, std)), found.freedom, True, note)
 
 
-def _apart(names: Sequence[str], balances: Sequence[Balance]) -> Latency | None:
+def _apart(names: Sequence[str], balances: Sequence[Balance]) -> SensorDelay | None:
     """Delays of each foot and of the encoders, those that clearly differ; None where one common delay will do."""
     found = estimate_delays(balances) if balances else None
     if found is None:
@@ -134,7 +138,7 @@ def _apart(names: Sequence[str], balances: Sequence[Balance]) -> Latency | None:
     contrasts[feet, feet] = 1.0
     apart = contrasts @ found.values
     spread = np.sqrt(np.diag(contrasts @ found.covariance @ contrasts.T) + LEAST_STD**2)
-    differ = (np.abs(apart) > np.maximum(APART * spread, LEAST_APART)) & (spread < KNOWN_STD)
+    differ = (np.abs(apart) > np.maximum(DISTINCT * spread, LEAST_DISTINCT)) & (spread < KNOWN_STD)
     if not differ.any():
         return None
     differ[:feet] = differ[:feet].any()
@@ -150,6 +154,6 @@ def _apart(names: Sequence[str], balances: Sequence[Balance]) -> Latency | None:
         f"sensors are late by different delays against the IMU: wrenches {each} ms, encoders {1e3 * encoders:+.1f} ms "
         f"(± {1e3 * 1.96 * std:.1f} ms, 95 %): corrected"
     )
-    return Latency(
+    return SensorDelay(
         mean, std, float(settled.cells), True, Note("delays_apart", "warning", text), delays, encoders
     )

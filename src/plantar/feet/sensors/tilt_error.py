@@ -29,7 +29,7 @@ from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.segments import runs
 
 BAND = 2.0  # Hz: a filter's pull shows below it
-LEAST_PULL = 0.01  # 1/s: of less no damping suffers
+LEAST_RATE = 0.01  # 1/s: of less no damping suffers
 EXPLAINED = 0.3  # of what attitude and gyroscope disagree about, by the pull, for it to be believed
 CORRECTED = 1.5  # Hz, up to which the attitude is put right
 DERIVED = 5.0  # Hz: filter of what is differentiated twice
@@ -38,24 +38,26 @@ PADDING = 2.0  # s
 
 
 @dataclass(frozen=True)
-class Pull:
+class TiltError:
     """What attitude and gyroscope disagree about, beside what a pull of 1 1/s would make: integrals that add up.
 
-    `error` and `pulled`: of both squared [rad²/s]; `product`: of one times the other. A filter belongs to the IMU, so
-    that the sum over recordings tells what a quiet one alone cannot.
+    `error` and `predicted`: of both squared [rad²/s]; `product`: of one times the other. A filter belongs to the IMU,
+    so that the sum over recordings tells what a quiet one alone cannot.
     """
 
     product: float = 0.0
-    pulled: float = 0.0
+    predicted: float = 0.0
     error: float = 0.0
 
-    def __add__(self, other: Pull) -> Pull:
-        return Pull(self.product + other.product, self.pulled + other.pulled, self.error + other.error)
+    def __add__(self, other: TiltError) -> TiltError:
+        return TiltError(
+            self.product + other.product, self.predicted + other.predicted, self.error + other.error
+        )
 
     @property
     def rate(self) -> float:
         """How fast the attitude follows the accelerometer, k [1/s]."""
-        return self.product / self.pulled if self.pulled > 0 else 0.0
+        return self.product / self.predicted if self.predicted > 0 else 0.0
 
     @property
     def believed(self) -> bool:
@@ -64,13 +66,13 @@ class Pull:
         A gyroscope that is late by τ beside the attitude counts as a pull of about g τ/h: as good a reason to put the
         attitude right.
         """
-        return self.rate > LEAST_PULL and self.rate * self.product > EXPLAINED * self.error
+        return self.rate > LEAST_RATE and self.rate * self.product > EXPLAINED * self.error
 
 
-NO_PULL = Pull()
+NO_TILT_ERROR = TiltError()
 
 
-def log_pull(log: MotionLog, imu: Imu) -> Pull:
+def log_tilt_error(log: MotionLog, imu: Imu) -> TiltError:
     """The pull that one log shows; of zeros where it has not all of attitude, gyroscope and accelerometer."""
     columns = [
         f"imu.{imu.name}.{kind}.{axis}"
@@ -79,26 +81,26 @@ def log_pull(log: MotionLog, imu: Imu) -> Pull:
     ]
     orientation = log.orientation(imu.name)
     if orientation is None or not log.has(*columns):
-        return NO_PULL
+        return NO_TILT_ERROR
     rates, acceleration = log.angular_velocity(imu.name), log.linear_acceleration(imu.name)
-    return attitude_pull(unit_quaternions(orientation), rates, acceleration, log.period)
+    return tilt_error_of(unit_quaternions(orientation), rates, acceleration, log.period)
 
 
 def right_attitude(
     log: MotionLog,
     imu: Imu,
     orientation: Array,
-    pull: Pull,
+    tilt_error: TiltError,
     bushes: Mapping[str, BushState],
     contacts: Mapping[str, FootContact],
 ) -> tuple[Array, Note] | None:
     """The log's orientation (N, 4) without what its filter took from the accelerometer, and a note that says so.
 
-    None where neither this log nor all together (`pull`) show that it took any, or this log has not the sensors.
+    None where neither this log nor all together (`tilt_error`) show that it took any, or this log has not the sensors.
     """
-    own = log_pull(log, imu)
-    found = own if own.believed else pull
-    if not found.believed or own.pulled == 0:
+    own = log_tilt_error(log, imu)
+    found = own if own.believed else tilt_error
+    if not found.believed or own.predicted == 0:
         return None
     text = (
         f"{log.name}: the IMU's attitude follows its accelerometer (as at {found.rate:.2g} 1/s), so that motion tilts "
@@ -115,7 +117,7 @@ def unit_quaternions(orientation: Array) -> Array:
     return np.asarray(orientation / np.where(length > 0, length, np.nan))
 
 
-def attitude_pull(orientation: Array, rates: Array, acceleration: Array, period: float) -> Pull:
+def tilt_error_of(orientation: Array, rates: Array, acceleration: Array, period: float) -> TiltError:
     """How an attitude follows its accelerometer; of zeros where too little is known.
 
     orientation: unit quaternions w x y z, IMU to world, (N, 4); rates, proper acceleration: the IMU's, (N, 3).
@@ -126,14 +128,17 @@ def attitude_pull(orientation: Array, rates: Array, acceleration: Array, period:
     size = np.linalg.norm(acceleration, axis=1, keepdims=True)
     direction = acceleration / np.where(size > 0, size, np.nan)
     turned = low_pass(np.cross(rates, up), period, BAND)
-    pulled = low_pass(-np.cross(np.cross(direction, up), up), period, BAND)
+    predicted = low_pass(-np.cross(np.cross(direction, up), up), period, BAND)
     error = differentiate(believed, period) + turned
-    known = np.isfinite(np.column_stack([error, pulled])).all(axis=1)
+    known = np.isfinite(np.column_stack([error, predicted])).all(axis=1)
     if known.sum() * period < SHORTEST_STANCE:
-        return NO_PULL
-    error, pulled = (part[known] - part[known].mean(axis=0) for part in (error, pulled))
-    return Pull(
-        *(period * float(np.sum(a * b)) for a, b in ((error, pulled), (pulled, pulled), (error, error)))
+        return NO_TILT_ERROR
+    error, predicted = (part[known] - part[known].mean(axis=0) for part in (error, predicted))
+    return TiltError(
+        *(
+            period * float(np.sum(a * b))
+            for a, b in ((error, predicted), (predicted, predicted), (error, error))
+        )
     )
 
 

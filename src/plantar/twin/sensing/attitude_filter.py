@@ -9,7 +9,9 @@ import numpy as np
 
 from plantar.conventions import Array
 
-PULL: Final = 0.2  # 1/s: how fast the accelerometer corrects; slower lets the gyroscope's bias through
+CORRECTION_RATE: Final = (
+    0.2  # 1/s: how fast the accelerometer corrects; slower lets the gyroscope's bias through
+)
 LEARN: Final = 0.01  # 1/s²: how fast the gyroscope's bias is learnt
 
 
@@ -32,9 +34,9 @@ def filtered_attitude(start: Array, angular_velocity: Array, acceleration: Array
         bias_x, bias_y, bias_z = (
             b + LEARN * e * period for b, e in zip((bias_x, bias_y, bias_z), (ex, ey, ez), strict=True)
         )
-        px = 0.5 * period * (rate[0] + bias_x + PULL * ex)
-        py = 0.5 * period * (rate[1] + bias_y + PULL * ey)
-        pz = 0.5 * period * (rate[2] + bias_z + PULL * ez)
+        px = 0.5 * period * (rate[0] + bias_x + CORRECTION_RATE * ex)
+        py = 0.5 * period * (rate[1] + bias_y + CORRECTION_RATE * ey)
+        pz = 0.5 * period * (rate[2] + bias_z + CORRECTION_RATE * ez)
         w, x, y, z = (
             w - x * px - y * py - z * pz,
             x + w * px + y * pz - z * py,

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from plantar.model_selection.data_sets import Trial
-from plantar.model_selection.initial_state import opening_states
-from plantar.model_selection.model_fit import LawFit
-from plantar.models import Motion
+from plantar.model_selection.data_sets import DataSet
+from plantar.model_selection.initial_state import initial_states_of
+from plantar.model_selection.model_fit import ModelFit
+from plantar.models import BushMotion
 from plantar.signals.filters import low_pass
 
 PERIOD = 0.005
@@ -82,7 +82,7 @@ def tilt(
 
 def recorded(
     rng: np.random.Generator, label: str, path: np.ndarray, rubber: Rubber, *, noise: float = 1.0
-) -> Trial:
+) -> DataSet:
     """What the sensors say: attitude bias and drift, gyroscope and wrench noise, zeros drawn per recording."""
     time = PERIOD * np.arange(len(path))
     rate = np.gradient(path, PERIOD)
@@ -97,10 +97,10 @@ def recorded(
     torque += noise * 0.1 * wander / wander.std()
     deflection = path + noise * (bias + drift + jitter)
     used = (time > 0.3) & (time < time[-1] - 0.3)
-    return Trial(label, Motion(deflection, rate + noise * gyro, PERIOD), torque, used)
+    return DataSet(label, BushMotion(deflection, rate + noise * gyro, PERIOD), torque, used)
 
 
-def campaign(seed: int, rubber: Rubber, *, noise: float = 1.0) -> list[Trial]:
+def campaign(seed: int, rubber: Rubber, *, noise: float = 1.0) -> list[DataSet]:
     """Two sways of this axis, two tilts, and two recordings in which the axis hardly moves."""
     rng = np.random.default_rng(seed)
     paths = {
@@ -112,19 +112,19 @@ def campaign(seed: int, rubber: Rubber, *, noise: float = 1.0) -> list[Trial]:
     return [recorded(rng, name, path, rubber, noise=noise) for name, path in paths.items()]
 
 
-def unseen(seed: int, rubber: Rubber) -> list[Trial]:
+def unseen(seed: int, rubber: Rubber) -> list[DataSet]:
     """Motions that no fit sees."""
     rng = np.random.default_rng(100_000 + seed)
     paths = [sway(rng, rng.uniform(0.06, 0.12), rng.uniform(0.3, 1.0)), tilt(rng), sway(rng, 0.03, 0.4)]
     return [recorded(rng, f"unseen_{i}", path, rubber) for i, path in enumerate(paths)]
 
 
-def largest_torque(trials: Sequence[Trial]) -> float:
+def largest_torque(data_sets: Sequence[DataSet]) -> float:
     """Largest torque about its mean over the trials [N·m]."""
-    return max(float(np.max(np.abs(trial.torque - trial.torque.mean()))) for trial in trials)
+    return max(float(np.max(np.abs(data_set.torque - data_set.torque.mean()))) for data_set in data_sets)
 
 
-def error_percent(fit: LawFit, rubber: Rubber) -> tuple[float, float]:
+def error_percent(fit: ModelFit, rubber: Rubber) -> tuple[float, float]:
     """Errors of stiffness and damping."""
     return (
         100 * abs(fit.value("stiffness") / rubber.stiffness - 1),
@@ -132,40 +132,44 @@ def error_percent(fit: LawFit, rubber: Rubber) -> tuple[float, float]:
     )
 
 
-def filtered(trial: Trial, cutoff: float) -> tuple[Motion, np.ndarray]:
+def filtered(data_set: DataSet, cutoff: float) -> tuple[BushMotion, np.ndarray]:
     """Motion and torque as an identification has them."""
     deflection, rate, torque = (
         low_pass(values, PERIOD, cutoff)
-        for values in (trial.motion.deflection, trial.motion.rate, trial.torque)
+        for values in (data_set.motion.deflection, data_set.motion.rate, data_set.torque)
     )
-    return Motion(deflection, rate, PERIOD), torque
+    return BushMotion(deflection, rate, PERIOD), torque
 
 
-def reconstructed(fit: LawFit, motion: Motion, starts: np.ndarray | None) -> np.ndarray:
+def reconstructed(fit: ModelFit, motion: BushMotion, initial_states: np.ndarray | None) -> np.ndarray:
     """Torque of a fitted law along a filtered motion, without offset."""
-    columns = fit.law.columns(motion, fit.shape, starts)
+    columns = fit.model.columns(motion, fit.shape, initial_states)
     columns[:, 2:] = low_pass(columns[:, 2:], PERIOD, fit.cutoff)
     return np.asarray(columns @ fit.values)
 
 
-def opened(fit: LawFit, trial: Trial, first: np.ndarray) -> tuple[np.ndarray, float, np.ndarray | None]:
+def opened(
+    fit: ModelFit, data_set: DataSet, first: np.ndarray
+) -> tuple[np.ndarray, float, np.ndarray | None]:
     """Predicted torque of an unseen recording whose samples `first` give its offset, that offset, and its start."""
-    motion, torque = filtered(trial, fit.cutoff)
-    starts = None
-    if fit.law.remembers:
-        starts = opening_states(fit.law, fit.values, fit.shape, motion, torque, trial.used, first, fit.cutoff)
-    predicted = reconstructed(fit, motion, starts)
+    motion, torque = filtered(data_set, fit.cutoff)
+    initial_states = None
+    if fit.model.remembers:
+        initial_states = initial_states_of(
+            fit.model, fit.values, fit.shape, motion, torque, data_set.used, first, fit.cutoff
+        )
+    predicted = reconstructed(fit, motion, initial_states)
     offset = float(np.mean((torque - predicted)[first]))
-    return predicted + offset, offset, starts
+    return predicted + offset, offset, initial_states
 
 
-def unseen_error(fit: LawFit, trials: list[Trial]) -> float:
+def unseen_error(fit: ModelFit, data_sets: list[DataSet]) -> float:
     """Mean absolute error after the first second, which gives the offset."""
     errors = []
-    for trial in trials:
-        served = np.flatnonzero(trial.used)
-        first = np.zeros(len(trial.torque), dtype=bool)
+    for data_set in data_sets:
+        served = np.flatnonzero(data_set.used)
+        first = np.zeros(len(data_set.torque), dtype=bool)
         first[served[:200]] = True
-        missed = filtered(trial, fit.cutoff)[1] - opened(fit, trial, first)[0]
+        missed = filtered(data_set, fit.cutoff)[1] - opened(fit, data_set, first)[0]
         errors.append(np.mean(np.abs(missed)[served[200:]]))
     return float(np.mean(errors))

@@ -1,6 +1,6 @@
 """Which law of the bush is chosen on the twin, over noise seeds, without hysteresis, with it, and with twice as much.
 
-    python benchmarks/laws_on_twin.py --seeds 20
+    python benchmarks/bush_models_on_twin.py --seeds 20
 
 One rollout a motion and rubber; the sensors are drawn anew for every seed. `slip` is the torque at which the rubber's
 elastoplastic elements slip, in pitch and roll. The linear law is fitted to the same motions with the same delay.
@@ -17,7 +17,7 @@ import numpy as np
 from plantar.feet.identify import identify_feet
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
-from plantar.models import LAWS
+from plantar.models import MODELS
 from plantar.models.hysteresis import Hysteretic
 from plantar.motions.campaign import FIT
 from plantar.results.feet import FeetResult
@@ -66,7 +66,7 @@ def main() -> None:
         preset = replace(PRESETS["realistic" if share else "sensors"], slip_torque=slip)
         physics = preset.physics(PAPER)
         rollouts = roll_all([(plan, physics) for plan in plans], robot)
-        laws: Counter[str] = Counter()
+        models: Counter[str] = Counter()
         right, ratios = 0, []
         auto: dict[str, list[float]] = {name: [] for name in NAMES}
         linear: dict[str, list[float]] = {name: [] for name in NAMES}
@@ -76,17 +76,17 @@ def main() -> None:
             result = identify_feet(robot, fit, unseen)
             known = FeetSettings(model="kelvin_voigt", wrench_delay=result.extras["latency"]["wrench_delay"])
             plain = identify_feet(robot, fit, unseen, known)
-            names = [law["law"] for law in result.extras["laws"]]
-            laws.update(names)
+            names = [model["law"] for model in result.extras["laws"]]
+            models.update(names)
             wanted = [
-                isinstance(LAWS[name], Hysteretic) if share else name == "kelvin_voigt" for name in names
+                isinstance(MODELS[name], Hysteretic) if share else name == "kelvin_voigt" for name in names
             ]
             right += all(wanted)
             for name in NAMES:
                 auto[name] += errors(result)[name]
                 linear[name] += errors(plain)[name]
             ratios.append(unseen_error(result) / unseen_error(plain))
-        told = ", ".join(f"{name} {count}" for name, count in laws.most_common())
+        told = ", ".join(f"{name} {count}" for name, count in models.most_common())
         print(f"{slip[0]:5.1f} {slip[1]:5.1f}  {told:44} "
               + " ".join(f"{np.median(auto[name]):6.2f} {max(auto[name]):6.2f}" for name in NAMES)
               + f" {np.median(linear['stiffness']):9.1f} {np.median(linear['damping']):6.0f}"
