@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
-from biped_robot import make_robot
 from plantar.conventions import Array
 from plantar.estimation.delay import Delay, Pair, estimate_delay
-from plantar.feet.sensors.newton_euler import NewtonEulerResidual
-from plantar.feet.sensors.sensor_delay import CLOCK, estimate_wrench_delay
-from plantar.logs.motion_log import MotionLog
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.resampling import interpolate
 
 PERIOD = 0.005
+
 SAMPLES = 8000
 
 
@@ -83,18 +78,3 @@ def test_the_frame_of_a_turning_sensor_is_not_late(delay: float) -> None:
 
 def test_no_delay_is_claimed_beyond_what_delays_are() -> None:
     assert estimate_delay([late_pair(0.2, 0)]) is None
-
-
-def closed(pair: Pair) -> NewtonEulerResidual:
-    """The pair as one foot's closure, under still joints."""
-    return NewtonEulerResidual(pair, pair.measured[None], pair.rate[None], 0 * pair.predicted)
-
-
-@pytest.mark.parametrize("slow_first", [True, False])
-def test_the_slowest_clock_bounds_what_is_known(slow_first: bool, tmp_path: Path) -> None:
-    """Whichever log comes first; one that says nothing of the delay does not count."""
-    periods = [0.02, PERIOD] if slow_first else [PERIOD, 0.02]
-    logs = [MotionLog(str(period), period * np.arange(100), {}) for period in (*periods, 0.1)]
-    residuals = [closed(late_pair(0.01, 1)), closed(late_pair(0.01, 2)), None]
-    found = estimate_wrench_delay(make_robot(tmp_path), logs, lambda *_: residuals)
-    assert CLOCK * 0.02 <= found.std < CLOCK * 0.1

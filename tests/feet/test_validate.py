@@ -2,85 +2,18 @@
 
 from __future__ import annotations
 
-import json
-from dataclasses import asdict
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from biped import record, sway
 from biped_robot import make_robot, robot_entry
-from plantar.errors import DataError, PlantarError
+from plantar.errors import DataError
 from plantar.feet.identify import identify_feet
 from plantar.feet.validate import validate_feet
 from plantar.results.feet import FEET_SCHEMA
-from plantar.results.io import dump_json, finite, read_result
-from plantar.results.scores import first_second, score
+from plantar.results.io import read_result
 from plantar.robot.model import RobotModel
-
-
-def test_a_row_by_hand() -> None:
-    row = score("cross", "squat", "left", "roll", np.array([1.0, -4.0, 2.0]), np.array([0.0, -4.0, 4.0]), 1.0)
-    assert asdict(row) == {
-        "kind": "cross",
-        "motion": "squat",
-        "foot": "left",
-        "axis": "roll",
-        "mean_abs_error": pytest.approx((1 + 0 + 2) / 3),
-        "rms_error": pytest.approx(np.sqrt((1 + 0 + 4) / 3)),
-        "max_abs": 4.0,
-        "percent_of_max": pytest.approx(25.0),
-        "zero_mean_abs": pytest.approx((0 + 5 + 1) / 3),
-        "samples": 3,
-    }
-
-
-def test_no_percentage_of_nothing() -> None:
-    row = score("direct", "a", "left", "pitch", np.zeros(3), np.ones(3), 0.0)
-    assert row.percent_of_max is None
-    assert row.mean_abs_error == 1.0
-
-
-def test_the_opening_is_one_second_of_samples_that_serve() -> None:
-    time = np.arange(400) * 0.01
-    used = time >= 1.0
-    first = first_second(time, used)
-    assert time[first].min() == pytest.approx(1.0)
-    assert time[first].max() == pytest.approx(1.99)
-    assert not first_second(time, np.zeros(400, dtype=bool)).any()
-
-
-def test_numbers_that_are_not_finite_become_null() -> None:
-    content = {"a": float("nan"), "b": (1.0, float("inf")), 3: [{"c": -0.5}], "d": True, "e": None}
-    assert finite(content) == {"a": None, "b": [1.0, None], "3": [{"c": -0.5}], "d": True, "e": None}
-    assert json.loads(dump_json(content))["b"] == [1.0, None]
-    assert dump_json({}).endswith("}\n")
-
-
-@pytest.mark.parametrize(
-    ("text", "expected"),
-    [
-        ("", "not readable JSON"),
-        ("{", "not readable JSON"),
-        ("[" * 100_000, "not readable JSON"),
-        ("[]", "not such a result"),
-        ('{"schema": "other/1"}', "not such a result"),
-        ('{"schema": 3}', "not such a result"),
-    ],
-)
-def test_files_that_are_no_results(tmp_path: Path, text: str, expected: str) -> None:
-    path = tmp_path / "result.json"
-    path.write_text(text)
-    with pytest.raises(PlantarError, match=expected) as caught:
-        read_result(path)
-    assert "\n" not in str(caught.value)
-    assert "result.json" in str(caught.value)
-
-
-def test_a_missing_result(tmp_path: Path) -> None:
-    with pytest.raises(PlantarError, match="No such file"):
-        read_result(tmp_path / "result.json")
 
 
 def test_a_saved_result_scores_unseen_logs_as_the_fit_did(robot: RobotModel, tmp_path: Path) -> None:

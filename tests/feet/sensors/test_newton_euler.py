@@ -1,0 +1,50 @@
+"""Delays from Newton-Euler residuals: the slowest clock bounds what is known."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from biped_robot import make_robot
+from plantar.estimation.delay import Pair
+from plantar.feet.sensors.newton_euler import NewtonEulerResidual
+from plantar.feet.sensors.sensor_delay import CLOCK, estimate_wrench_delay
+from plantar.logs.motion_log import MotionLog
+from plantar.signals.filters import differentiate, low_pass
+from plantar.signals.resampling import interpolate
+
+PERIOD = 0.005
+
+SAMPLES = 8000
+
+
+def late_pair(delay: float, seed: int, push: float = 0.0) -> Pair:
+    """A random wrench below 1.5 Hz, measured `delay` late, noise on both sides; `push`: an operator's share."""
+    random = np.random.default_rng(seed)
+    time = PERIOD * np.arange(SAMPLES)
+    true = 300 * low_pass(random.standard_normal((SAMPLES, 6)), PERIOD, 1.5)
+    hand = push * 300 * low_pass(random.standard_normal((SAMPLES, 6)), PERIOD, 1.5)
+    late = np.nan_to_num(
+        np.column_stack([interpolate(time - delay, time, column, 1.0) for column in (true + hand).T])
+    )
+    measured = low_pass(late + random.standard_normal(late.shape), PERIOD, 8.0)
+    predicted = low_pass(true + random.standard_normal(true.shape), PERIOD, 8.0)
+    rate = differentiate(measured, PERIOD)
+    return Pair("sweep", measured[100:-100], rate[100:-100], predicted[100:-100], PERIOD)
+
+
+def closed(pair: Pair) -> NewtonEulerResidual:
+    """The pair as one foot's closure, under still joints."""
+    return NewtonEulerResidual(pair, pair.measured[None], pair.rate[None], 0 * pair.predicted)
+
+
+@pytest.mark.parametrize("slow_first", [True, False])
+def test_the_slowest_clock_bounds_what_is_known(slow_first: bool, tmp_path: Path) -> None:
+    """Whichever log comes first; one that says nothing of the delay does not count."""
+    periods = [0.02, PERIOD] if slow_first else [PERIOD, 0.02]
+    logs = [MotionLog(str(period), period * np.arange(100), {}) for period in (*periods, 0.1)]
+    residuals = [closed(late_pair(0.01, 1)), closed(late_pair(0.01, 2)), None]
+    found = estimate_wrench_delay(make_robot(tmp_path), logs, lambda *_: residuals)
+    assert CLOCK * 0.02 <= found.std < CLOCK * 0.1
