@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
+from plantar.contact.reasons import LeftOut, Reason
 from plantar.conventions import Array, Mask
 from plantar.signals.filters import low_pass
 from plantar.signals.segments import runs
@@ -16,17 +18,13 @@ LIFTING_SHARE = (
     0.05  # of the weight: a foot that carries less is in the air; between the two it keeps its state
 )
 SETTLING_TIME = 0.25  # s around landing and lifting, left out: the sole is not flat yet
-SHORTEST_STANCE = 0.5  # s: shorter contacts are steps or impacts, not stances
+SETTLING_SHARE = 0.1  # of a stance, at most: a foot that steps lands and lifts faster
+SHORTEST_STANCE = 0.5  # s: shorter contacts are scuffs or impacts, not stances
 
 SHAKING_BAND = 20.0  # Hz: no robot that stands is loaded on purpose so fast
 SHAKING_TIME = 0.1  # s over which shaking is judged
 SHAKING_SHARE = 0.02  # of the weight, rms: a sole that is shaken by more slaps or chatters
 SHAKING_NOISE = 7.0  # times the log's calmest shaking, which is the sensor's noise
-
-IMPACT = "impact: the force is shaken faster than the samples resolve, as by a sole that slaps the floor"
-TIPPING_REASON = "tipping"  # how every reason begins that says that a sole does not lie flat
-SMEARED = "filter's edge: beside a sole that tips"
-NOT_RECORDED = "not recorded: NaN or a gap in a column that this foot needs"
 
 DOUBLE, SINGLE, AIR, TRANSITION = "double", "single", "air", "transition"
 SUPPORTS = (DOUBLE, SINGLE, AIR, TRANSITION)
@@ -48,16 +46,16 @@ class Phase:
         return {**vars(self), "start": round(self.start, 6), "end": round(self.end, 6)}
 
 
-@dataclass
+@dataclass(frozen=True)
 class FootContact:
     """One foot through one log: its `support` at each sample (index into SUPPORTS) and why a sample is left out.
 
-    `reasons[code[i]]` is the reason of sample i; code 0 means that it serves.
+    Sample i is used where `code[i]` is 0, else left out for `reasons[code[i] - 1]`.
     """
 
-    support: np.ndarray[tuple[int], np.dtype[np.int8]]
-    code: np.ndarray[tuple[int], np.dtype[np.int8]]
-    reasons: list[str | None]
+    support: NDArray[np.int8]
+    code: NDArray[np.int8]
+    reasons: tuple[LeftOut, ...] = ()
 
     @property
     def used(self) -> Mask:
@@ -73,15 +71,16 @@ class FootContact:
         """Samples in double or single support."""
         return np.asarray(self.support < SUPPORTS.index(AIR))
 
-    def leave_out(self, samples: Mask, reason: str) -> None:
-        """Mark samples as not serving; those that already have a reason keep it."""
-        if reason not in self.reasons:
-            self.reasons.append(reason)
-        self.code[samples & (self.code == 0)] = self.reasons.index(reason)
+    def without(self, samples: Mask, reason: Reason, detail: str = "") -> FootContact:
+        """The same contact with `samples` (N,) left out; those that have a reason already keep it."""
+        why = LeftOut(reason, detail)
+        reasons = self.reasons if why in self.reasons else (*self.reasons, why)
+        code = np.where(samples & (self.code == 0), np.int8(reasons.index(why) + 1), self.code)
+        return replace(self, code=code, reasons=reasons)
 
-    def left_out_for(self, *beginnings: str) -> Mask:
-        """Samples that are left out for a reason that begins so."""
-        given = [k for k, reason in enumerate(self.reasons) if reason and reason.startswith(beginnings)]
+    def left_out_for(self, reasons: Collection[Reason]) -> Mask:
+        """Samples that are left out for one of these reasons."""
+        given = [place + 1 for place, why in enumerate(self.reasons) if why.reason in reasons]
         return np.isin(self.code, given)
 
     def phases(self, motion: str, foot: str, time: Array) -> list[Phase]:
@@ -91,8 +90,8 @@ class FootContact:
         ends = np.concatenate([starts[1:], [len(time) - 1]])
         found = []
         for start, end in zip(starts, ends, strict=True):
-            reason = self.reasons[self.code[start]]
-            support = SUPPORTS[self.support[start]]
+            code, support = int(self.code[start]), SUPPORTS[self.support[start]]
+            reason = self.reasons[code - 1].text if code else None
             found.append(
                 Phase(motion, foot, float(time[start]), float(time[end]), support, reason is None, reason)
             )
@@ -116,13 +115,14 @@ def detect_contact(
         support = np.full(len(standing), SUPPORTS.index(AIR), dtype=np.int8)
         support[standing & (count > 1)] = SUPPORTS.index(DOUBLE)
         support[standing & (count == 1)] = SUPPORTS.index(SINGLE)
-        settling = _around_changes(standing, round(SETTLING_TIME / period))
-        support[settling & standing] = SUPPORTS.index(TRANSITION)
-        contact = FootContact(support, np.zeros(len(standing), dtype=np.int8), [None])
-        contact.leave_out(~standing, "in the air: no load on this foot")
-        contact.leave_out(np.isnan(force[foot]), NOT_RECORDED)
-        contact.leave_out(settling, f"landing or lifting: within {SETTLING_TIME} s of a change of contact")
-        contacts[foot] = contact
+        settling = _settling(standing, period)
+        support[settling] = SUPPORTS.index(TRANSITION)
+        contacts[foot] = (
+            FootContact(support, np.zeros(len(standing), dtype=np.int8))
+            .without(~standing, Reason.IN_THE_AIR)
+            .without(np.isnan(force[foot]), Reason.NOT_RECORDED)
+            .without(settling, Reason.SETTLING)
+        )
     return contacts
 
 
@@ -177,9 +177,13 @@ def _standing(force: Array, weight: float, period: float) -> Mask:
     return np.asarray(standing)
 
 
-def _around_changes(standing: Mask, reach: int) -> Mask:
-    """Samples within `reach` of a change between standing and not."""
+def _settling(standing: Mask, period: float) -> Mask:
+    """The first and last samples of every stance that lands or lifts within the log."""
     near = np.zeros(len(standing), dtype=bool)
-    for change in np.flatnonzero(np.diff(standing)):
-        near[max(0, change + 1 - reach) : change + 1 + reach] = True
+    for run in runs(standing):
+        reach = round(min(SETTLING_TIME / period, SETTLING_SHARE * (run.stop - run.start)))
+        if run.start > 0:
+            near[run.start : run.start + reach] = True
+        if run.stop < len(standing):
+            near[run.stop - reach : run.stop] = True
     return near

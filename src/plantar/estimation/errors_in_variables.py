@@ -12,7 +12,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from plantar.conventions import Array, Mask
-from plantar.estimation.least_squares import Block, factor_of
+from plantar.estimation.blocks import Block
+from plantar.estimation.linear import information_inverse
 from plantar.signals.filters import FILTER_ORDER, low_pass
 
 ABOVE = 4.0  # cutoffs: from there on a signal counts as noise
@@ -61,10 +62,9 @@ def attenuation(blocks: Sequence[Block], values: Array, *, shared_offset: bool =
     """What the blocks' noise has taken off `values` (k,): to be added; None where noise is most of what there is."""
     size = len(values)
     noise = np.diag(
-        np.sum([len(one.response) * one.noise for one in blocks if one.noise is not None], axis=0)
-        * np.ones(size)
+        np.sum([one.rows * one.noise for one in blocks if one.noise is not None], axis=0) * np.ones(size)
     )
-    inverse = factor_of(blocks, shared_offset).information_inverse()[:size, :size]
+    inverse = information_inverse(blocks, shared_offset=shared_offset)
     share = inverse @ noise  # nothing along a direction that no block excites
     if np.max(np.linalg.eigvals(share).real) > MOST:
         return None

@@ -3,71 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
 
 import numpy as np
 
 from plantar.conventions import Array
+from plantar.estimation.blocks import Block, LinearFit
 from plantar.estimation.intervals import cosine_covariance, pooled_freedom
 from plantar.estimation.triangular import TriangularFactor
-
-
-@dataclass(frozen=True)
-class Block:
-    """One recording's rows: `regressor` (n, k) without the offset's column, `response` (n,), `period` [s].
-
-    `nuisance` (n, m) are columns of this recording alone, fitted beside its offset and then forgotten; `noise` (k,) is
-    the variance of what is noise in the regressor's columns.
-    """
-
-    label: str
-    regressor: Array
-    response: Array
-    period: float
-    nuisance: Array | None = None
-    noise: Array | None = None
-
-    @property
-    def duration(self) -> float:
-        return len(self.response) * self.period
-
-
-@dataclass(frozen=True)
-class LinearFit:
-    """Parameters common to all recordings, then offsets: one per recording, or a single shared one.
-
-    `values` (k,), `offsets` by recording's label; `covariance` of values, offsets and nuisances, in this order, holds
-    with coloured residuals, `white_covariance` assumes white ones (the paper's). `freedom` goes with `covariance`.
-    """
-
-    values: Array
-    offsets: dict[str, float]
-    covariance: Array
-    white_covariance: Array
-    freedom: Array
-    residuals: dict[str, Array]
-    rank: int
-    condition_number: float
-    shared_offset: bool
-
-    @property
-    def std(self) -> Array:
-        """Standard deviations of `values`, robust to coloured residuals, (k,)."""
-        return np.asarray(np.sqrt(np.diag(self.covariance))[: len(self.values)])
-
-    @property
-    def white_std(self) -> Array:
-        """Standard deviations of `values` for white residuals, (k,)."""
-        return np.asarray(np.sqrt(np.diag(self.white_covariance))[: len(self.values)])
-
-    def offset_std(self, label: str) -> float:
-        """Standard deviation of a recording's offset."""
-        place = 0 if self.shared_offset else list(self.offsets).index(label)
-        return float(np.sqrt(self.covariance[len(self.values) + place, len(self.values) + place]))
-
-    def predict(self, regressor: Array, offset: float) -> Array:
-        """Response (n,) of `regressor` (n, k) with a given offset."""
-        return np.asarray(regressor @ self.values + offset)
 
 
 def fit_linear(blocks: Sequence[Block], *, shared_offset: bool = False) -> LinearFit:
@@ -141,9 +83,3 @@ def _robust(
         freedoms.append(freedom)
     variances = np.array([np.diag(part) for part in parts])
     return np.sum(parts, axis=0), pooled_freedom(variances, np.array(freedoms, dtype=float)[:, None])
-
-
-def effect_of(blocks: Sequence[Block], changes: Sequence[Array], *, shared_offset: bool = False) -> Array:
-    """How `values` (k,) move when each block's response changes by `changes` (n,): it is linear in that."""
-    changed = [replace(block, response=change) for block, change in zip(blocks, changes, strict=True)]
-    return factor_of(changed, shared_offset).solve()[: blocks[0].regressor.shape[1]]

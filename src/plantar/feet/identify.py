@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from plantar.errors import DataError
 from plantar.feet.assess.residual_table import residual_table
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.foot_fit import fit_foot
-from plantar.feet.prepare import prepare_all
+from plantar.feet.prepare import PreparedLogs, prepare_all
 from plantar.feet.recording import Recording
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
@@ -40,20 +41,29 @@ def identify_feet(
     settings = settings or FeetSettings()
     if not logs:
         raise DataError("no logs to fit (valid: at least one)")
-    ready = prepare_all(robot, logs, validate, settings, progress)
+    return fit_prepared(robot, prepare_all(robot, logs, validate, settings, progress), progress)
+
+
+def fit_prepared(
+    robot: RobotModel, ready: PreparedLogs, progress: Callable[[str], None] = lambda _: None
+) -> FeetResult:
+    """`identify_feet` on logs that are ready. Raises DataError where no foot carries load in any of them."""
+    logs = [recording.log for recording in ready.fitted]
     if not any(recording.contacts[foot].standing.any() for recording in ready.fitted for foot in robot.feet):
         names = ", ".join(log.name for log in logs)
         raise DataError(f"{names}: no foot carries load in any log (valid: a standing robot)")
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        found = list(pool.map(lambda foot: fit_foot(ready, foot, settings, progress), robot.feet))
+        both = list(pool.map(lambda foot: fit_foot(ready, foot, progress), robot.feet))
+    found = [fit for fit, _ in both]
+    ready = _merged(ready, {foot: own for foot, (_, own) in zip(robot.feet, both, strict=True)})
     fits = [fit for each in found for fit in each.fits]
     parameters = [row for each in found for row in each.parameters]
     rows = [row for each in found for row in each.validation]
     predictions = {key: value for each in found for key, value in each.predictions.items()}
     return FeetResult(
         robot=robot.name,
-        inputs=(*(Input.of(log, "fit") for log in logs), *(Input.of(log, "validate") for log in validate)),
-        settings=settings.to_dict(),
+        inputs=tuple(Input.of(recording.log, recording.role) for recording in ready.recordings),
+        settings=ready.settings.to_dict(),
         model=_model(fits),
         parameters=(*parameters, *ready.vertical.parameters),
         offsets=tuple(offset for fit in fits for offset in _offsets(fit)),
@@ -74,6 +84,15 @@ def identify_feet(
         },
         residuals=residual_table(ready.recordings, predictions),
     )
+
+
+def _merged(ready: PreparedLogs, by_foot: Mapping[str, PreparedLogs]) -> PreparedLogs:
+    """The logs with each foot's contacts as its own fit left them."""
+    fitted = tuple(
+        replace(recording, contacts={foot: own.fitted[place].contacts[foot] for foot, own in by_foot.items()})
+        for place, recording in enumerate(ready.fitted)
+    )
+    return replace(ready, fitted=fitted)
 
 
 def _model(fits: Sequence[AxisFit]) -> str:

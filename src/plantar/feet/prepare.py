@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from plantar.errors import DataError
-from plantar.feet.exclusion.edge_rolling import leave_out_edges
-from plantar.feet.exclusion.slip import leave_out_slip
-from plantar.feet.exclusion.torque_saturation import leave_out_torque_saturation
+from plantar.feet.exclusion.edge_rolling import without_edge_rolling
+from plantar.feet.exclusion.slip import without_slip
+from plantar.feet.exclusion.torque_saturation import without_torque_saturation
 from plantar.feet.fit.vertical_stiffness import VerticalStiffness, fit_vertical_stiffness
-from plantar.feet.recording import Recording, Role, checked, moved_centre, prepare
+from plantar.feet.prepare_log import checked, prepare
+from plantar.feet.recording import Recording, Role, filtered_recording, moved_centre
+from plantar.feet.sensors.coherent_band import coherent_band
 from plantar.feet.sensors.sensor_delay import SensorDelay, estimate_wrench_delay, in_time, known_delay
-from plantar.feet.sensors.tilt_error import NO_TILT_ERROR, TiltError, log_tilt_error
+from plantar.feet.sensors.tilt_error import NO_TILT_ERROR, log_tilt_error
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note, unique
@@ -25,10 +27,14 @@ Progress = Callable[[str], None]
 
 @dataclass(frozen=True)
 class PreparedLogs:
-    """Recordings to fit and to validate, the wrenches' delay and the bushes' vertical compliance behind them."""
+    """Recordings to fit and to validate, the wrenches' delay and the bushes' vertical compliance behind them.
+
+    `settings` hold the cutoff that was used.
+    """
 
     fitted: tuple[Recording, ...]
     unseen: tuple[Recording, ...]
+    settings: FeetSettings
     sensor_delay: SensorDelay
     vertical: VerticalStiffness
     notes: tuple[Note, ...]
@@ -45,64 +51,90 @@ def prepare_all(
     settings: FeetSettings,
     progress: Progress,
 ) -> PreparedLogs:
-    """Check, put on even grids, correct for delay, leave out what cannot serve, move torques to the loaded centre.
+    """Check, put on even grids, and `prepare_checked`.
 
-    Raises RobotError, LogError or DataError with one line where an input cannot serve.
+    Raises RobotError, LogError or DataError with one line where an input cannot be used.
     """
-    check_names([*logs, *validate])
+    everything = [*logs, *validate]
+    check_names(everything)
     progress("check the logs")
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        even = list(pool.map(lambda log: checked(robot, log), [*logs, *validate]))
-        progress("estimate the sensors' delays")
-        sensor_delay = (
-            estimate_wrench_delay(robot, even, pool.map)
-            if settings.wrench_delay is None
-            else known_delay(settings.wrench_delay)
-        )
-        even = [in_time(robot, log, sensor_delay) for log in even]
-        tilt_error = common_tilt_error(robot, even)
-        roles = _roles("fit", logs) + _roles("validate", validate)
-        recordings = list(
-            pool.map(
-                lambda log, role: recorded(robot, log, role, settings, tilt_error, progress),
-                even,
-                roles,
-            )
-        )
-        progress("look for soles that tip or slide")
-        leave_out_edges(robot, recordings, settings)
-        list(pool.map(lambda recording: leave_out_slip(robot, recording), recordings))
+        even = list(pool.map(lambda log: checked(robot, log), everything))
+    return prepare_checked(robot, even[: len(logs)], even[len(logs) :], settings, progress)
+
+
+def prepare_checked(
+    robot: RobotModel,
+    logs: Sequence[MotionLog],
+    validate: Sequence[MotionLog],
+    settings: FeetSettings,
+    progress: Progress,
+) -> PreparedLogs:
+    """Correct `checked` logs for delay, leave out what cannot be used, move torques to the loaded centre."""
+    even = [*logs, *validate]
+    progress("estimate the sensors' delays")
+    if settings.wrench_delay is None:
+        with ThreadPoolExecutor(os.cpu_count()) as pool:
+            delay = estimate_wrench_delay(robot, even, pool.map)
+    else:
+        delay = known_delay(settings.wrench_delay)
+    recordings, settings = _recordings(robot, even, len(logs), settings, delay, progress)
     progress("fit z")
-    vertical = fit_vertical_stiffness(recordings[: len(logs)], robot, settings.cutoff)
-    moved = [moved_centre(recording, vertical.compliance, settings.cutoff) for recording in recordings]
-    notes = [*(note for one in recordings for note in one.notes), sensor_delay.note, *vertical.notes]
+    vertical = fit_vertical_stiffness(recordings[: len(logs)], robot)
+    moved = [moved_centre(recording, vertical.compliance) for recording in recordings]
+    notes = [*(note for one in recordings for note in one.notes), delay.note, *vertical.notes]
     return PreparedLogs(
-        tuple(moved[: len(logs)]), tuple(moved[len(logs) :]), sensor_delay, vertical, unique(notes)
+        tuple(moved[: len(logs)]), tuple(moved[len(logs) :]), settings, delay, vertical, unique(notes)
     )
 
 
-def _roles(role: Role, logs: Sequence[MotionLog]) -> list[Role]:
-    return [role for _ in logs]
-
-
-def common_tilt_error(robot: RobotModel, logs: Sequence[MotionLog]) -> TiltError:
-    """The pull of the IMU's filter that all logs together show."""
-    return sum((log_tilt_error(log, robot.imu) for log in logs if robot.imu), NO_TILT_ERROR)
-
-
-def recorded(
+def prepare_unseen(
     robot: RobotModel,
-    log: MotionLog,
-    role: Role,
+    logs: Sequence[MotionLog],
     settings: FeetSettings,
-    tilt_error: TiltError,
+    delay: SensorDelay,
+    compliance: Mapping[str, float],
     progress: Progress,
-) -> Recording:
-    """A `checked` log `in_time` as `prepare` makes it ready, without what is sure to be beyond the sole."""
-    progress(f"prepare {log.name}")
-    recording = prepare(robot, log, role, settings, tilt_error)
-    leave_out_torque_saturation(robot, recording, settings)
-    return recording
+) -> list[Recording]:
+    """Logs to score with what an earlier fit found: its cutoff in `settings`, its `delay`, its `compliance` [m/N]."""
+    check_names(logs)
+    even = [checked(robot, log) for log in logs]
+    recordings, _ = _recordings(robot, even, 0, settings, delay, progress)
+    return [moved_centre(recording, compliance) for recording in recordings]
+
+
+def _recordings(
+    robot: RobotModel,
+    even: Sequence[MotionLog],
+    fitted: int,
+    settings: FeetSettings,
+    delay: SensorDelay,
+    progress: Progress,
+) -> tuple[list[Recording], FeetSettings]:
+    """Checked logs, the first `fitted` of them to fit, as recordings without what cannot be used; the cutoff used."""
+    on_time = [in_time(robot, log, delay) for log in even]
+    tilt_error = sum((log_tilt_error(log, robot.imu) for log in on_time if robot.imu), NO_TILT_ERROR)
+
+    def ready(place: int) -> Recording:
+        progress(f"prepare {on_time[place].name}")
+        role: Role = "fit" if place < fitted else "validate"
+        return prepare(robot, on_time[place], role, tilt_error, settings.highest_cutoff)
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        recordings = list(pool.map(ready, range(len(on_time))))
+        cutoff = settings.highest_cutoff
+        if settings.cutoff is None:
+            cutoff = min(cutoff, coherent_band(recordings[:fitted]))
+        settings = replace(settings, cutoff=cutoff)
+
+        def usable(recording: Recording) -> Recording:
+            return without_torque_saturation(robot, filtered_recording(recording, cutoff), settings)
+
+        recordings = list(pool.map(usable, recordings))
+        progress("look for soles that tip or slide")
+        recordings = without_edge_rolling(robot, recordings, settings)
+        recordings = list(pool.map(lambda recording: without_slip(robot, recording), recordings))
+    return recordings, settings
 
 
 def check_names(logs: Sequence[MotionLog]) -> None:

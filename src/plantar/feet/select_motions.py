@@ -10,7 +10,7 @@ import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES, Array
 from plantar.errors import DataError
-from plantar.estimation import fit_linear
+from plantar.estimation import fit_blocks
 from plantar.estimation.intervals import cosine_covariance
 from plantar.feet.fit.regression_data import blocks_of
 from plantar.feet.prepare import check_names, prepare_all
@@ -90,7 +90,7 @@ def select_motions(
             blocks = blocks_of(recordings, foot, axis)
             if not blocks:
                 continue
-            fit = fit_linear(blocks)
+            fit = fit_blocks(blocks)
             for term, value in zip(KelvinVoigt().terms, fit.values, strict=True):
                 values[foot, axis, term] = float(value)
             gained[foot, axis] = {}

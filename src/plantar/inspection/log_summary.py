@@ -12,8 +12,10 @@ from plantar.checks.log_checks import check_log
 from plantar.contact.phases import DOUBLE, SINGLE, SUPPORTS
 from plantar.conventions import GRAVITY, ROTATIONAL_AXES, Array
 from plantar.errors import PlantarError
-from plantar.feet.identify import identify_feet
-from plantar.feet.recording import Recording, checked, prepare
+from plantar.feet.identify import fit_prepared
+from plantar.feet.prepare import prepare_checked
+from plantar.feet.prepare_log import checked
+from plantar.feet.recording import Recording
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding, Note
@@ -76,9 +78,11 @@ def inspect_log(robot: RobotModel, log: MotionLog) -> LogSummary:
     try:
         findings = check_log(robot, log)
         if robot.feet and not any(finding.fatal for finding in findings):
-            recording = prepare(robot, checked(robot, log), "fit", FeetSettings())
-            feet = tuple(_foot(recording, foot) for foot in robot.feet)
-            result = identify_feet(robot, [log])
+            ready = prepare_checked(
+                robot, [checked(robot, log, findings)], [], FeetSettings(), lambda _: None
+            )
+            feet = tuple(_foot(ready.fitted[0], foot) for foot in robot.feet)
+            result = fit_prepared(robot, ready)
             parameters, notes = result.parameters, result.notes
     except PlantarError as error:
         findings.append(Finding("not_usable", str(error), True))

@@ -20,8 +20,8 @@ NEGLIGIBLE = 1e-9  # of a column's square left after projection: nothing of its 
 class Linearised:
     """Least squares of `responses` (n,) on `designs` (n, p) of each recording, nuisances projected out.
 
-    `memories` (n,) is the effect of the start of each run's memory, and `runs` (n,) the run of each sample. A
-    shared offset is one more column at the end.
+    `memories` (n,) is the effect of the start of each run's memory, `runs` (n,) the run of each sample and `counts` how
+    many runs each recording has, those without a used sample among them. A shared offset is one more column at the end.
     """
 
     def __init__(
@@ -31,11 +31,12 @@ class Linearised:
         shared_offset: bool,
         memories: Sequence[Array] | None = None,
         runs: Sequence[Array] | None = None,
+        counts: Sequence[int] = (),
     ) -> None:
         self.responses = list(responses)
         self.shared_offset = shared_offset
         self._designs = list(designs)
-        self._memories, self._runs = memories, runs
+        self._memories, self._runs, self._counts = memories, runs, counts
         self._ones = [
             self._project(place, np.ones((len(y), 1)))[:, 0] for place, y in enumerate(self.responses)
         ]
@@ -56,12 +57,17 @@ class Linearised:
         """Columns (n, m) of one recording without what the runs' starts explain."""
         if self._memories is None or self._runs is None:
             return columns
-        memory, run = self._memories[place], self._runs[place]
-        return np.asarray(columns - memory[:, None] * self._shares(memory, run, columns)[run])
+        return np.asarray(
+            columns - self._memories[place][:, None] * self._shares(place, columns)[self._runs[place]]
+        )
 
-    def _shares(self, memory: Array, run: Array, columns: Array) -> Array:
-        square = np.bincount(run, memory * memory)
-        products = np.column_stack([np.bincount(run, memory * column) for column in columns.T])
+    def _shares(self, place: int, columns: Array) -> Array:
+        """How much of columns (n, m) each run's start explains, (runs, m); none where the run has no used sample."""
+        assert self._memories is not None, "asked only where there is a memory"
+        assert self._runs is not None, "a memory has runs"
+        memory, run, count = self._memories[place], self._runs[place], self._counts[place]
+        square = np.bincount(run, memory * memory, count)
+        products = np.column_stack([np.bincount(run, memory * column, count) for column in columns.T])
         known = square > NEGLIGIBLE * max(square.max(initial=0.0), 1e-300)
         return np.asarray(np.where(known[:, None], products / np.where(known, square, 1.0)[:, None], 0.0))
 
@@ -96,8 +102,7 @@ class Linearised:
             left, ones = response - design @ values, self._ones[place]
             if self._has_offset(place) and not self.shared_offset:
                 left = left - (ones @ left) / (ones @ ones)
-            memory, run = self._memories[place], self._runs[place]
-            result.append(self._shares(memory, run, left[:, None])[:, 0])
+            result.append(self._shares(place, left[:, None])[:, 0])
         return result
 
     def inverse_diagonal(self) -> Array:

@@ -78,7 +78,8 @@ class Problem:
         runs = [each.run_of for each in self.prepared]
         if not model.remembers:
             return Linearised(designs, point.residuals, self.shared_offset)
-        return Linearised(designs, point.residuals, self.shared_offset, memories, runs)
+        counts = [len(each.motion.runs) for each in self.prepared]
+        return Linearised(designs, point.residuals, self.shared_offset, memories, runs, counts)
 
 
 def settle(problem: Problem, pieces: Pieces, limits: Array, *, refined: bool = True) -> Point:

@@ -26,11 +26,11 @@ def score(
     axis: Axis,
     measured: Array,
     predicted: Array,
-    trivial: float,
+    trivial: Array,
 ) -> ValidationRow:
     """Errors of `predicted` (n,) against `measured` (n,) [N·m or N], over samples that the caller chose.
 
-    `trivial` is the constant that the trivial predictor gives.
+    `trivial` (n,) is what the offset alone gives.
     """
     error = measured - predicted
     largest = float(np.max(np.abs(measured)))

@@ -12,12 +12,12 @@ FILTER_ORDER = 4  # Butterworth, run forth and back
 SHORTEST_RUN = 27  # samples
 
 
-def low_pass(values: Array, period: float, cutoff: float) -> Array:
+def low_pass(values: Array, period: float, cutoff: float, shortest: int = SHORTEST_RUN) -> Array:
     """Zero-phase low-pass of (N,) or (N, k) at `cutoff` [Hz], each run without NaN by itself.
 
     The gain is a Butterworth filter's, run forth and back, 1 / (1 + (f / cutoff)^(2·order)), applied to the spectrum
-    of the run mirrored about its ends. A cutoff at or above the Nyquist frequency changes nothing; runs too short to
-    filter become NaN.
+    of the run mirrored about its ends. A cutoff at or above the Nyquist frequency changes nothing; runs of `shortest`
+    samples or fewer become NaN.
     """
     if cutoff >= 0.95 * 0.5 / period:
         return values.copy()
@@ -25,7 +25,7 @@ def low_pass(values: Array, period: float, cutoff: float) -> Array:
     flat = values.reshape(len(values), -1)
     result = np.full_like(flat, np.nan)
     for run in runs(np.asarray(np.isfinite(flat).all(axis=1))):
-        if run.stop - run.start > SHORTEST_RUN:
+        if run.stop - run.start > shortest:
             result[run] = _filtered(flat[run], period, cutoff, min(padding, run.stop - run.start - 1))
     return result.reshape(values.shape)
 

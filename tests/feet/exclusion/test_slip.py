@@ -9,16 +9,19 @@ from scipy.spatial.transform import Rotation
 from biped import record, sway
 from biped_robot import FEET, write_robot
 from feet_trials import noisy, without
-from plantar.feet.exclusion.slip import ALONE, BETWEEN_SOLES, leave_out_slip
+from plantar.contact.reasons import Reason
+from plantar.feet.exclusion.slip import without_slip
 from plantar.feet.exclusion.sole_velocity import sole_motion
-from plantar.feet.recording import Recording, checked, prepare
-from plantar.feet.settings import FeetSettings
+from plantar.feet.prepare_log import checked, prepare
+from plantar.feet.recording import Recording, filtered_recording
+from plantar.feet.settings import DEFAULT_CUTOFF
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel, load_robot
 
 STANDING = noisy(record(sway(duration=25.0)), 1)
 TIME, PERIOD = STANDING.time, STANDING.period
 START, END = 12.0, 12.5
+SLIDES, APART = Reason.SOLE_SLIDES.value, Reason.SOLES_APART.value
 
 
 @pytest.fixture(scope="module")
@@ -58,12 +61,13 @@ def struck(seconds: tuple[float, ...], seed: int, size: float = 1.5) -> np.ndarr
 def reasons(robot: RobotModel, log: MotionLog) -> dict[str, np.ndarray]:
     """Why samples of each foot are left out, (N,), '' where they are not."""
     recording = prepared(robot, log)
-    leave_out_slip(robot, recording)
-    return {foot: np.array(one.reasons, object)[one.code] for foot, one in recording.contacts.items()}
+    contacts = without_slip(robot, recording).contacts
+    said = {foot: [None, *(why.text for why in one.reasons)] for foot, one in contacts.items()}
+    return {foot: np.array(said[foot], object)[one.code] for foot, one in contacts.items()}
 
 
 def prepared(robot: RobotModel, log: MotionLog) -> Recording:
-    return prepare(robot, checked(robot, log), "fit", FeetSettings())
+    return filtered_recording(prepare(robot, checked(robot, log), "fit"), DEFAULT_CUTOFF)
 
 
 def slips(reason: np.ndarray) -> np.ndarray:
@@ -76,7 +80,7 @@ def test_both_soles_that_slide_together_show_in_the_acceleration(robot: RobotMod
     slides = np.abs(np.gradient(way(distance), PERIOD)) > 0.008
     for foot in FEET:
         slipped = slips(found[foot])
-        assert set(found[foot][slipped]) == {ALONE}
+        assert set(found[foot][slipped]) == {SLIDES}
         assert slipped[slides].mean() > 0.9
         assert not slipped[(START - 0.1 > TIME) | (END + 0.1 < TIME)].any()
 
@@ -101,7 +105,7 @@ def test_soles_that_slide_apart_are_seen_by_the_closed_chain(robot: RobotModel, 
     found = reasons(robot, log if accelerometer else without(log, "linear_acceleration"))
     middle = (START + 0.1 < TIME) & (END - 0.1 > TIME)
     for foot in FEET:
-        assert set(found[foot][middle]) == {BETWEEN_SOLES}
+        assert set(found[foot][middle]) == {APART}
         assert not slips(found[foot])[(START - 0.1 > TIME) | (END + 0.1 < TIME)].any()
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from plantar.feet.recording import checked
+from plantar.feet.prepare_log import checked
 from plantar.feet.sensors.sensor_delay import estimate_wrench_delay
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel

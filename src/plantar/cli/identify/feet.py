@@ -11,7 +11,7 @@ from plantar.cli.identify import identification
 from plantar.cli.identify.feet_tables import print_feet
 from plantar.cli.terminal import progress
 from plantar.feet.identify import identify_feet
-from plantar.feet.settings import AUTOMATIC, FeetSettings, OffsetRule
+from plantar.feet.settings import AUTOMATIC, DEFAULT_CUTOFF, FeetSettings, OffsetRule
 from plantar.models import MODELS
 from plantar.report import write_feet_report
 
@@ -19,6 +19,10 @@ CHOICES = (AUTOMATIC, *MODELS)
 MODEL_HELP = f"Law of the bush: {', '.join(CHOICES)}. {AUTOMATIC} takes what predicts held-out motions best."
 OFFSET_HELP = "One offset per motion, or shared by all as in the paper."
 DELAY_HELP = "How late the wrenches are, in ms; estimated if left out."
+CUTOFF_HELP = (
+    f"Zero-phase low-pass on both sides of the fit [Hz]; {DEFAULT_CUTOFF:g}, or less where walks show that angle and "
+    "torque part below it, if left out."
+)
 WINDOW_HELP = "Largest deflection from the resting pose that serves, in degrees."
 
 
@@ -30,7 +34,7 @@ def run(
     offset: Annotated[OffsetRule, typer.Option(help=OFFSET_HELP)] = "per-motion",
     model: Annotated[str, typer.Option(help=MODEL_HELP, metavar="LAW")] = AUTOMATIC,
     wrench_delay: Annotated[float | None, typer.Option(help=DELAY_HELP)] = None,
-    cutoff: identification.Cutoff = FeetSettings.cutoff,
+    cutoff: Annotated[float | None, typer.Option(help=CUTOFF_HELP, min=0.1)] = None,
     window: Annotated[float | None, typer.Option(help=WINDOW_HELP, min=0.01)] = None,
     json: identification.Json = False,
     quiet: identification.Quiet = False,

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from plantar.contact.phases import TIPPING_REASON
+from plantar.contact.reasons import TIPPING
 from plantar.conventions import ROTATIONAL_AXES, Axis
 from plantar.estimation import interval95, relative_std_percent
 from plantar.feet.assess.residual_table import Predictions
@@ -67,7 +67,7 @@ def _evidence(
         samples += len(angle)
         contact = recording.contacts[fit.foot]
         loaded += float(contact.loaded.sum()) * recording.period
-        leans += float((contact.loaded & contact.left_out_for(TIPPING_REASON)).sum()) * recording.period
+        leans += float((contact.loaded & contact.left_out_for(TIPPING)).sum()) * recording.period
         seconds += len(angle) * recording.period
         moved += float(np.sum((angle - angle.mean()) ** 2))
         varied += float(np.sum((torque - torque.mean()) ** 2))

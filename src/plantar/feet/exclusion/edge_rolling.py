@@ -12,10 +12,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from plantar.contact.phases import SMEARED, joined, widened
+from plantar.contact.phases import joined, widened
 from plantar.contact.polygon import edge_distances
+from plantar.contact.reasons import Reason
 from plantar.conventions import ROTATIONAL_AXES, Array, Mask
-from plantar.estimation import fit_linear
+from plantar.estimation import fit_blocks
 from plantar.feet.fit.regression_data import blocks_of
 from plantar.feet.recording import Recording, filtered
 from plantar.feet.settings import FeetSettings
@@ -36,55 +37,64 @@ FLAT_SEARCH = 0.5  # s: how far a flat sole is looked for
 VISIT_PAUSE = 0.05  # s: visits to the edge that are closer are one
 FEWEST = 0.04  # s of sure lean, for the edge to be known
 
-LEANS = "tipping: the centre of pressure is at the sole's edge and the foot turns further than its bush"
-OUTSIDE = "tipping: the centre of pressure is outside the sole"
-UNKNOWN = (
-    "tipping: the centre of pressure is near the sole's edge, and no flat stretch tells whether it leans"
-)
-EDGE_REASONS = (LEANS, OUTSIDE, UNKNOWN)
 
+def without_edge_rolling(
+    robot: RobotModel, recordings: Sequence[Recording], settings: FeetSettings
+) -> list[Recording]:
+    """The recordings without samples in which a sole leans on its edge; what is near the edge and flat is used.
 
-def leave_out_edges(robot: RobotModel, recordings: Sequence[Recording], settings: FeetSettings) -> None:
-    """Leave out where a sole leans on its edge; what is near the edge and flat serves.
-
-    Feet with `contact: always` are left as they are: their centre of pressure means nothing.
+    Feet with `contact: always` are left as they are: their centre of pressure means nothing. So are feet that step:
+    they roll while they land and lift, and what is left there weighs little.
     """
+    rest = list(recordings)
     for name, foot in robot.feet.items():
-        if foot.contact == "always":
+        if foot.contact != "always":
+            rest = _flat(rest, name, foot.sole.polygon, settings)
+    return rest
+
+
+def _flat(
+    recordings: Sequence[Recording], name: str, polygon: Array, settings: FeetSettings
+) -> list[Recording]:
+    """The recordings without leans of one foot."""
+    depths = [
+        edge_distances(low_pass(recording.bushes[name].cop, recording.period, QUICK_CUTOFF), polygon)
+        for recording in recordings
+    ]
+    near = [
+        recording.contacts[name].standing
+        & (depth < settings.edge_margin).any(axis=1)
+        & (recording.stances[name] is None)
+        for recording, depth in zip(recordings, depths, strict=True)
+    ]
+    if not any(edge.any() for edge in near):
+        return list(recordings)
+    model, rest = _bush_model(recordings, name, near), []
+    for recording, depth, edge in zip(recordings, depths, near, strict=True):
+        contact = recording.contacts[name]
+        if not edge.any():
+            rest.append(recording)
             continue
-        depths = [
-            edge_distances(
-                low_pass(recording.bushes[name].cop, recording.period, QUICK_CUTOFF), foot.sole.polygon
+        if model is None:
+            rest.append(recording.without(name, edge, Reason.NEAR_THE_EDGE))
+            continue
+        stiffness, damping, zero = model
+        bush = filtered(recording.raw[name], recording.period, QUICK_CUTOFF)
+        load = np.maximum(bush.force_z, 1.0)
+        excess = bush.deflection - (bush.torque - damping * bush.rate) / stiffness
+        outside = (depth < -settings.edge_margin - (zero / load)[:, None]).any(axis=1)
+        recording = recording.without(name, contact.standing & outside, Reason.OUTSIDE_THE_SOLE)
+        used, leans = recording.used(name), np.zeros(len(load), dtype=bool)
+        for border in depth.T:
+            visits = contact.standing & (border < settings.edge_margin + zero / load)
+            leans |= leaning(excess, border, load, visits, used, recording.period)
+        beside = widened(leans, round(BESIDE / recording.cutoff / recording.period))
+        rest.append(
+            recording.without(name, leans & contact.standing, Reason.ON_THE_EDGE).without(
+                name, beside & contact.standing, Reason.BESIDE_TIPPING
             )
-            for recording in recordings
-        ]
-        near = [
-            recording.contacts[name].standing & (depth < settings.edge_margin).any(axis=1)
-            for recording, depth in zip(recordings, depths, strict=True)
-        ]
-        if not any(edge.any() for edge in near):
-            continue
-        model = _bush_model(recordings, name, near)
-        for recording, depth, edge in zip(recordings, depths, near, strict=True):
-            contact = recording.contacts[name]
-            if not edge.any():
-                continue
-            if model is None:
-                contact.leave_out(edge, UNKNOWN)
-                continue
-            stiffness, damping, zero = model
-            bush = filtered(recording.raw[name], recording.period, QUICK_CUTOFF)
-            load = np.maximum(bush.force_z, 1.0)
-            excess = bush.deflection - (bush.torque - damping * bush.rate) / stiffness
-            outside = (depth < -settings.edge_margin - (zero / load)[:, None]).any(axis=1)
-            contact.leave_out(contact.standing & outside, OUTSIDE)
-            leans = np.zeros(len(load), dtype=bool)
-            for border in depth.T:
-                visits = contact.standing & (border < settings.edge_margin + zero / load)
-                leans |= leaning(excess, border, load, visits, contact.used, recording.period)
-            contact.leave_out(leans & contact.standing, LEANS)
-            beside = widened(leans, round(BESIDE / settings.cutoff / recording.period))
-            contact.leave_out(beside & contact.standing, SMEARED)
+        )
+    return rest
 
 
 def leaning(excess: Array, depth: Array, load: Array, visits: Mask, flat: Mask, period: float) -> Mask:
@@ -134,7 +144,7 @@ def _bush_model(
     None where no recording to fit has enough.
     """
     clear = [
-        recording.without(foot, widened(edge, round(NEAR / recording.period)))
+        recording.without(foot, widened(edge, round(NEAR / recording.period)), Reason.SET_ASIDE)
         for recording, edge in zip(recordings, edges, strict=True)
     ]
     values, zeros = [], []
@@ -142,7 +152,7 @@ def _bush_model(
         blocks = blocks_of(clear, foot, axis)
         if not blocks:
             return None
-        fit = fit_linear(blocks)
+        fit = fit_blocks(blocks)
         if fit.values[0] <= 0:
             return None
         values.append(fit.values[:2])

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
 from plantar.contact.deflection import BushState
-from plantar.conventions import ROTATIONAL_AXES, Array, Axis, Mask
-from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.regression_data import FEWEST_SAMPLES, model_columns
+from plantar.conventions import ROTATIONAL_AXES, Array, Mask
+from plantar.feet.fit.axis import FittedModel
+from plantar.feet.fit.prediction import predict
+from plantar.feet.fit.regression_data import FEWEST_SAMPLES
 from plantar.feet.recording import Recording
-from plantar.models import BushModel
 from plantar.signals.segments import runs
 
 BIN = 0.1  # s
@@ -21,44 +21,27 @@ WORTH = 0.03  # of the recording's spread of torque: a smaller misfit does no ha
 LONGEST = 1.0  # s: what lasts longer is not a bad sample but another law
 MOST = 0.1  # share of a recording that may be outliers
 MOVING = 0.1  # share of the squares of both angle and torque: a stretch with so much is what the motion consists of
-ROUNDS = 3  # a large outlier hides smaller ones
 
 
-def fit_without_outliers(
-    recordings: Sequence[Recording], foot: str, axis: Axis, fit: Callable[[BushModel | None], AxisFit | None]
-) -> AxisFit | None:
-    """What `fit` makes of the recordings; where short stretches leave its law by far, again without them.
-
-    They are left out of the recordings' contacts with a reason. Clean recordings are fitted once and stay as they are.
-    `fit` chooses a law where it is given none: of all recordings, and of what serves in the end.
-    """
-    found, several = fit(None), False
-    for _ in range(ROUNDS):
-        if found is None or not _left_out(recordings, foot, axis, found):
-            break
-        found, several = fit(found.model), True
-    return fit(None) if several else found
-
-
-def _left_out(recordings: Sequence[Recording], foot: str, axis: Axis, fit: AxisFit) -> bool:
-    """Leave outliers out; whether there were any."""
-    column, several = ROTATIONAL_AXES.index(axis), False
+def outlier_masks(recordings: Sequence[Recording], fitted: FittedModel) -> dict[str, Mask]:
+    """By recording, the samples (N,) in which one axis leaves its fitted model; none where there are none."""
+    foot, column, found = fitted.foot, ROTATIONAL_AXES.index(fitted.axis), {}
     for recording in recordings:
         used = recording.used(foot)
-        if recording.name not in fit.offsets or used.sum() < FEWEST_SAMPLES:
+        if recording.name not in fitted.offsets or used.sum() < FEWEST_SAMPLES:
             continue
         torque = recording.bushes[foot].torque[:, column]
-        missed = torque - model_columns(recording, foot, axis, fit) @ fit.values
-        reach = 1 / recording.cutoff
-        off = outliers(np.where(used, missed, np.nan), float(np.std(torque[used])), recording.period, reach)
+        prediction = predict(recording, fitted)
+        assert prediction is not None, "a fitted recording"
+        missed = np.where(used, torque - prediction.torque, np.nan)
+        off = outliers(missed, float(np.std(torque[used])), recording.period, 1 / recording.cutoff)
         moved = _motion_until(recording.bushes[foot], used) if off.any() else np.zeros((0, 2, 2))
         for run in runs(off):
             # The motion of either axis, of its angle and its torque, may lie in one stretch for a large part.
             off[run] = (moved[run.stop] - moved[run.start]).min(axis=0).max() <= MOVING
         if off.any():
-            recording.contacts[foot].leave_out(off, f"outlier: the {axis} torque leaves its law for a moment")
-            several = True
-    return several
+            found[recording.name] = off
+    return found
 
 
 def _motion_until(bush: BushState, used: Mask) -> Array:

@@ -8,6 +8,7 @@ import numpy as np
 
 from plantar.contact.deflection import relative_pose
 from plantar.contact.phases import DOUBLE, SUPPORTS, FootContact, widened
+from plantar.contact.reasons import EDGES, Reason
 from plantar.contact.slip import (
     SlipIndicator,
     apart_speed,
@@ -18,23 +19,21 @@ from plantar.contact.slip import (
     unresisted,
 )
 from plantar.conventions import Array, Mask
-from plantar.feet.exclusion.edge_rolling import EDGE_REASONS
 from plantar.feet.exclusion.sole_velocity import SoleMotion, friction, sole_motion
 from plantar.feet.recording import Recording
 from plantar.robot.model import RobotModel
 from plantar.signals.segments import runs
 
-BETWEEN_SOLES = "slip: the soles move against each other"
 AFTER = 0.05  # s
-TWIST = "slip: the sole turns on the floor"
-ALONE = "slip: the sole moves over the floor"
 UNREST = (
     0.0007  # m/s: a speed between soles, or of a turning one, that says so much as one deviation of the IMU's
 )
 
 
-def leave_out_slip(robot: RobotModel, recording: Recording) -> None:
-    """Leave out where soles slide. Without an accelerometer only double support and turning on the floor show it.
+def without_slip(robot: RobotModel, recording: Recording) -> Recording:
+    """The recording without samples in which soles slide.
+
+    Without an accelerometer only double support and turning on the floor show it.
 
     Where the closed chain holds, one sole cannot slide without the other.
     """
@@ -51,18 +50,19 @@ def leave_out_slip(robot: RobotModel, recording: Recording) -> None:
         foot: np.hypot(np.nan_to_num(moves[foot].speed), np.nan_to_num(twist))
         for foot, twist in twists.items()
     }
-    for foot, contact in contacts.items():
+    for foot in contacts:
         indicators = {
-            BETWEEN_SOLES: apart,
-            ALONE: _shared(moves, foot, both),
-            TWIST: _shared(turns, foot, both),
+            Reason.SOLES_APART: apart,
+            Reason.SOLE_SLIDES: _shared(moves, foot, both),
+            Reason.SOLE_TURNS: _shared(turns, foot, both),
         }
         way = np.fmax(np.where(both, np.max(list(ways.values()), axis=0), ways[foot]), apart.speed)
         for run in runs(slides(list(indicators.values()), way, period) & flat[foot]):
             slide = np.zeros(len(way), dtype=bool)
             slide[run] = True
             surest = max(indicators, key=lambda reason: indicators[reason].clearness(run))
-            contact.leave_out(slide, surest)
+            recording = recording.without(foot, slide, surest)
+    return recording
 
 
 def _both(contacts: Mapping[str, FootContact]) -> Mask:
@@ -110,4 +110,4 @@ def _shared(indicators: Mapping[str, SlipIndicator], foot: str, both: Mask) -> S
 
 def _not_flat(contact: FootContact, period: float) -> Mask:
     """Where the sole tips or has just done so: its place is computed for a level sole."""
-    return widened(contact.left_out_for(*EDGE_REASONS), round(AFTER / period))
+    return widened(contact.left_out_for(EDGES), round(AFTER / period))

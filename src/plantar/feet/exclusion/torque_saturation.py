@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from plantar.contact.reasons import Reason
 from plantar.conventions import ROTATIONAL_AXES, Array
 from plantar.feet.recording import Recording
 from plantar.feet.settings import FeetSettings
@@ -15,25 +16,27 @@ LEAST_SHELL = np.radians(0.02)  # rad: narrower shells hold noise
 BIN = np.radians(0.25)  # rad
 
 
-def leave_out_torque_saturation(robot: RobotModel, recording: Recording, settings: FeetSettings) -> None:
-    """Leave out samples beyond the bend of torque over angle, or beyond `settings.window`, with the reason."""
+def without_torque_saturation(robot: RobotModel, recording: Recording, settings: FeetSettings) -> Recording:
+    """The recording without samples beyond the bend of torque over angle, or beyond `settings.window`."""
     for foot, bush in recording.bushes.items():
-        contact = recording.contacts[foot]
         for column, axis in enumerate(ROTATIONAL_AXES):
-            used = contact.used
+            used = recording.used(foot)
             if used.sum() < 100:
                 continue
             angle = bush.deflection[:, column] - _resting(bush.deflection[used, column])
             if settings.window is not None:
-                reach = f"beyond the window of {np.degrees(settings.window):.3g} deg"
-                contact.leave_out(np.abs(angle) > settings.window, reach)
+                beyond = np.abs(angle) > settings.window
+                recording = recording.without(
+                    foot, beyond, Reason.WINDOW, f"{np.degrees(settings.window):.3g} deg"
+                )
             if robot.feet[foot].contact != "always":
                 continue
             for side, name in ((1.0, "positive"), (-1.0, "negative")):
                 bend = _bend(side * angle[used], side * bush.torque[used, column])
                 if bend is not None:
-                    window = f"{axis} more than {np.degrees(bend):.2f} deg {name} of the resting pose"
-                    contact.leave_out(side * angle > bend, f"tipping: the torque stops growing, {window}")
+                    where = f"{axis} more than {np.degrees(bend):.2f} deg {name} of the resting pose"
+                    recording = recording.without(foot, side * angle > bend, Reason.TORQUE_SATURATION, where)
+    return recording
 
 
 def _resting(angles: Array) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -14,27 +14,22 @@ from plantar.models import BushModel
 from plantar.notes import Note
 
 
-@dataclass(frozen=True)
-class AxisFit:
-    """A fitted model. `values` (k,) as `model.terms`, `shape` (s,) as `model.shape_terms`; `covariance`, `freedom` and
-    `white_std` run over both. `initial_states`: of the model's memory in each recording's runs.
-    `equivalent`: K and C of spring and damper over the same motions."""
+@dataclass(frozen=True, kw_only=True)
+class FittedModel:
+    """What a fit predicts one axis of one foot by: `values` (k,) as `model.terms`, `shape` (s,) as `model.shape_terms`.
+
+    `load_arm` [m]: torque beside the bush's for each newton of vertical force, of feet that step. Of the recordings
+    that were fitted: `offsets` [N.m], and `initial_states` of the model's memory in each recording's runs.
+    """
 
     foot: str
     axis: Axis
     model: BushModel
     values: Array
     shape: Array
-    covariance: Array
-    freedom: Array
-    white_std: Array
-    offsets: Mapping[str, float]
-    offset_std: Mapping[str, float]
-    initial_states: Mapping[str, Array]
-    equivalent: tuple[float, float]
-    choice: ModelChoice | None
-    reason: str
-    notes: tuple[Note, ...] = ()
+    load_arm: float = 0.0
+    offsets: Mapping[str, float] = field(default_factory=dict)
+    initial_states: Mapping[str, Array] = field(default_factory=dict)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -44,6 +39,21 @@ class AxisFit:
     def numbers(self) -> Array:
         """Values and shape, (k + s,)."""
         return np.concatenate([self.values, self.shape])
+
+
+@dataclass(frozen=True, kw_only=True)
+class AxisFit(FittedModel):
+    """A fitted model and how well it is known: `covariance`, `freedom` and `white_std` run over values and shape.
+    `equivalent`: K and C of spring and damper over the same motions."""
+
+    covariance: Array
+    freedom: Array
+    white_std: Array
+    offset_std: Mapping[str, float]
+    equivalent: tuple[float, float]
+    choice: ModelChoice | None
+    reason: str
+    notes: tuple[Note, ...] = ()
 
     @property
     def std(self) -> Array:
@@ -59,6 +69,8 @@ class AxisFit:
             "reason": self.reason,
             "linear_equivalent": {"stiffness": stiffness, "damping": damping},
         }
+        if self.load_arm:
+            content["load_arm"] = self.load_arm
         if self.choice is not None:
             content |= {
                 "held_out": self.choice.held_out,

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from plantar.conventions import Axis
-from plantar.estimation import Block, LinearFit, fit_linear
+from plantar.estimation import Block, LinearFit, fit_blocks
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.corrections import about_true_zero, unattenuated
 from plantar.feet.fit.regression_data import blocks_of, data_set_of
@@ -20,6 +20,7 @@ from plantar.models import MODELS, BushModel, KelvinVoigt
 
 LEAST_EXPLAINED = 0.5  # of the torque's variance by spring and damper: below it no law of the bush will help
 FULLY_EXPLAINED = 0.99995  # above it what is left is the sensors' noise
+STEPS = "the foot steps: each stance begins with a memory of its own, which no richer model was asked to find"
 SHORT_STANCE = 5.0  # s: the usual stance of walking is shorter, and tells nothing of a memory
 CANDIDATES = (
     "kelvin_voigt", "hardening", "coulomb", "elastoplastic", "hardening_elastoplastic", "bouc_wen",
@@ -52,20 +53,23 @@ def _fitted(
     blocks = blocks_of(recordings, foot, axis, drift=not shared)
     if not blocks:
         return None
-    linear = fit_linear(blocks, shared_offset=shared)
+    linear = fit_blocks(blocks, shared_offset=shared)
     if isinstance(asked, KelvinVoigt):
         return _of_linear(foot, axis, linear, None, "asked for")
+    if blocks[0].stances is not None and asked is None:
+        return _of_linear(foot, axis, linear, None, STEPS)
+    cutoff = min(recording.cutoff for recording in recordings)
     data_sets = [
         data_set_of(recording, foot, axis) for recording in recordings if recording.name in linear.offsets
     ]
     if asked is not None:
-        fit = fit_model(asked, data_sets, settings.cutoff, shared_offset=shared)
+        fit = fit_model(asked, data_sets, cutoff, shared_offset=shared)
         return _of_model(foot, axis, fit, linear, None, "asked for")
     explained = _explained(linear, blocks)
     if not LEAST_EXPLAINED < explained < FULLY_EXPLAINED:
         return _of_linear(foot, axis, linear, None, _untried(explained))
     models = [MODELS[name] for name in CANDIDATES if not MODELS[name].remembers or _remembers(data_sets)]
-    choice = choose_model(data_sets, models, settings.cutoff, shared_offset=shared)
+    choice = choose_model(data_sets, models, cutoff, shared_offset=shared)
     if choice.fit.model.name == KelvinVoigt.name:
         return _of_linear(foot, axis, linear, choice, choice.reason)
     return _of_model(foot, axis, choice.fit, linear, choice, choice.reason)
@@ -99,16 +103,45 @@ def _remembers(data_sets: Sequence[DataSet]) -> bool:
 def _of_linear(foot: str, axis: Axis, fit: LinearFit, choice: ModelChoice | None, reason: str) -> AxisFit:
     size = len(fit.values)
     return AxisFit(
-        foot, axis, KelvinVoigt(), fit.values, np.zeros(0), fit.covariance[:size, :size], fit.freedom[:size],
-        fit.white_std, fit.offsets, {label: fit.offset_std(label) for label in fit.offsets}, {},
-        (float(fit.values[0]), float(fit.values[1])), choice, reason,
-    )  # fmt: skip
+        foot=foot,
+        axis=axis,
+        model=KelvinVoigt(),
+        values=fit.values,
+        shape=np.zeros(0),
+        load_arm=_load_arm(fit),
+        offsets=fit.offsets,
+        covariance=fit.covariance[:size, :size],
+        freedom=fit.freedom[:size],
+        white_std=fit.white_std,
+        offset_std={label: fit.offset_std(label) for label in fit.offsets},
+        equivalent=(float(fit.values[0]), float(fit.values[1])),
+        choice=choice,
+        reason=reason,
+    )
 
 
 def _of_model(
     foot: str, axis: Axis, fit: ModelFit, linear: LinearFit, choice: ModelChoice | None, reason: str
 ) -> AxisFit:
     return AxisFit(
-        foot, axis, fit.model, fit.values, fit.shape, fit.covariance, fit.freedom, fit.white_std, fit.offsets,
-        fit.offset_std, fit.initial_states, (float(linear.values[0]), float(linear.values[1])), choice, reason,
-    )  # fmt: skip
+        foot=foot,
+        axis=axis,
+        model=fit.model,
+        values=fit.values,
+        shape=fit.shape,
+        load_arm=_load_arm(linear),
+        offsets=fit.offsets,
+        initial_states=fit.initial_states,
+        covariance=fit.covariance,
+        freedom=fit.freedom,
+        white_std=fit.white_std,
+        offset_std=fit.offset_std,
+        equivalent=(float(linear.values[0]), float(linear.values[1])),
+        choice=choice,
+        reason=reason,
+    )
+
+
+def _load_arm(fit: LinearFit) -> float:
+    """The torque for each newton of load that a fit of stances found, 0 of others."""
+    return float(fit.common_nuisance[0]) if fit.common_nuisance.size else 0.0

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from plantar.estimation import fit_linear
+from plantar.estimation import fit_blocks
 from plantar.estimation.errors_in_variables import attenuation, offsets_moved
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.regression_data import blocks_of
@@ -27,7 +27,7 @@ def about_true_zero(fit: AxisFit, recordings: Sequence[Recording], shared: bool)
     if not fit.model.zero_matters or shared:
         return fit
     size = len(fit.values)
-    found = fit_linear(blocks_of(recordings, fit.foot, fit.axis, fit=fit))
+    found = fit_blocks(blocks_of(recordings, fit.foot, fit.axis, fit=fit))
     wider = np.ones(len(fit.covariance))
     wider[:size] = np.maximum(1.0, found.std / fit.std[:size])
     return replace(

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from plantar.conventions import ROTATIONAL_AXES, Array, Axis, Mask
-from plantar.feet.fit.axis import AxisFit
+from plantar.conventions import ROTATIONAL_AXES, Array, Mask
+from plantar.feet.fit.axis import FittedModel
 from plantar.feet.fit.regression_data import motion_of
 from plantar.feet.recording import Recording
 from plantar.model_selection.initial_state import initial_states_of
 
 
-def unseen_initial_states(
-    fit: AxisFit, recording: Recording, foot: str, axis: Axis, first: Mask
-) -> Array | None:
-    """The state (runs,) at the start of each run of an unseen recording; None for laws without memory."""
+def unseen_initial_states(fitted: FittedModel, recording: Recording, first: Mask) -> Array | None:
+    """The state (runs,) at the start of each run of an unseen recording; None for models without memory.
+
+    first: (N,), the samples that show the recording's offset.
+    """
+    foot, axis = fitted.foot, fitted.axis
     motion = motion_of(recording, foot, axis)
-    if not fit.model.remembers or not motion.runs or not first.any():
+    if not fitted.model.remembers or not motion.runs or not first.any():
         return None
     torque, used = recording.bushes[foot].torque[:, ROTATIONAL_AXES.index(axis)], recording.used(foot)
-    return initial_states_of(fit.model, fit.values, fit.shape, motion, torque, used, first, recording.cutoff)
+    return initial_states_of(
+        fitted.model, fitted.values, fitted.shape, motion, torque, used, first, recording.cutoff
+    )

@@ -8,7 +8,8 @@ import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES, Array, Axis
 from plantar.estimation import Block
-from plantar.feet.fit.axis import AxisFit
+from plantar.estimation.blocks import StanceRows
+from plantar.feet.fit.axis import AxisFit, FittedModel
 from plantar.feet.recording import Recording
 from plantar.model_selection.data_sets import DataSet
 from plantar.models import BushMotion, KelvinVoigt
@@ -29,28 +30,62 @@ def blocks_of(
 
     `drift` adds a line in time to each recording's offset: the IMU's attitude drifts slowly. A law whose shape depends
     on the deflection's zero gets the square of the deflection too, which is what an error of that zero adds to a cube.
+    Where the foot steps in any of the recordings, rows have stances, and the torque that grows with the load alone, of
+    a bush or a sensor beside its place, is a nuisance of all.
     """
     column = ROTATIONAL_AXES.index(axis)
+    steps = any(recording.stances[foot] is not None for recording in recordings)
     blocks = []
     for recording in recordings:
         used, bush = recording.used(foot), recording.bushes[foot]
         if used.sum() < FEWEST_SAMPLES or (fit is not None and recording.name not in fit.offsets):
             continue
-        time = recording.time[used]
-        nuisance = (time - time.mean())[:, None] if drift else None
-        if nuisance is not None and fit is not None and fit.model.zero_matters:
-            square = bush.deflection[used, column] ** 2
-            nuisance = np.column_stack([nuisance, square - square.mean()])
         regressor = model_columns(recording, foot, axis, fit)[used]
         noise = np.zeros(regressor.shape[1])
         noise[:2] = recording.noise[foot][:, column]
-        torque = bush.torque[used, column]
-        blocks.append(Block(recording.name, regressor, torque, recording.period, nuisance, noise))
+        blocks.append(
+            Block(
+                label=recording.name,
+                regressor=regressor,
+                response=bush.torque[used, column],
+                period=recording.period,
+                nuisance=_nuisance(recording, foot, column, fit) if drift else None,
+                noise=noise,
+                stances=_stance_rows(recording, foot) if steps else None,
+                common_nuisance=load_of(recording, foot)[used, None] if steps else None,
+            )
+        )
     return blocks
 
 
+def _nuisance(recording: Recording, foot: str, column: int, fit: AxisFit | None) -> Array | None:
+    """Columns (n, m) of one recording alone; None where a foot steps: the offsets of its stances follow any drift."""
+    if recording.stances[foot] is not None:
+        return None
+    used = recording.used(foot)
+    time = recording.time[used]
+    line = (time - time.mean())[:, None]
+    if fit is None or not fit.model.zero_matters:
+        return np.asarray(line)
+    square = recording.bushes[foot].deflection[used, column] ** 2
+    return np.column_stack([line, square - square.mean()])
+
+
+def _stance_rows(recording: Recording, foot: str) -> StanceRows:
+    """The stance and the weight of each used sample; a foot that stands has one stance in all."""
+    stances, used = recording.stances[foot], recording.used(foot)
+    if stances is None:
+        return StanceRows(np.zeros(int(used.sum()), dtype=np.intp), np.ones(int(used.sum())))
+    return StanceRows(stances.number[used], stances.weight[used])
+
+
+def load_of(recording: Recording, foot: str) -> Array:
+    """The vertical force through the fit's filter, (N,) [N], 0 where it is not known."""
+    return np.nan_to_num(low_pass(recording.bushes[foot].force_z, recording.period, recording.cutoff))
+
+
 def model_columns(
-    recording: Recording, foot: str, axis: Axis, fit: AxisFit | None, initial_states: Array | None = None
+    recording: Recording, foot: str, axis: Axis, fit: FittedModel | None, initial_states: Array | None = None
 ) -> Array:
     """Regressor (N, k) of a fit's law along a recording, Kelvin-Voigt's without one; NaN in the air."""
     motion = motion_of(recording, foot, axis)

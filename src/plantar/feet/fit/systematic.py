@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES, Array
-from plantar.estimation import Block, effect_of, fit_linear
+from plantar.estimation import Block, effect_of, fit_blocks
 from plantar.estimation.intervals import pooled_freedom
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.regression_data import blocks_of
@@ -64,6 +64,9 @@ def systematic_causes(
         ),
         Cause("lever", moved_by(moment_arms), vertical.compliance_std[foot], vertical.freedom),
     ]
+    if blocks[0].stances is not None:
+        # The zeros were read in the air, and within a stance no cube is told from how a sole lands and lifts.
+        return causes
     causes += _suspected_hardening(fit, blocks, shared)
     if fit.axis == "roll":
         # Roll's torque is cos(pitch)·τ_x - sin(pitch)·τ_z: the zero of τ_z, as large as the others', does not stay a
@@ -98,7 +101,7 @@ def _suspected_hardening(fit: AxisFit, blocks: Sequence[Block], shared: bool) ->
                 noise=None,
             )
         )
-    found = fit_linear(extended, shared_offset=shared)
+    found = fit_blocks(extended, shared_offset=shared)
     if found.condition_number > SINGULAR:
         return []
     hardening, std = float(found.values[size]), float(found.std[size])

@@ -87,14 +87,12 @@ class VerticalStiffness:
     freedom: float
 
 
-def fit_vertical_stiffness(
-    recordings: Sequence[Recording], robot: RobotModel, cutoff: float
-) -> VerticalStiffness:
+def fit_vertical_stiffness(recordings: Sequence[Recording], robot: RobotModel) -> VerticalStiffness:
     """Vertical stiffness of two feet; where no log shows it, compliance 0 with the deviation of soft rubber."""
     feet = tuple(robot.feet)
     blocks = []
     if len(feet) == 2:
-        blocks = [block for recording in recordings if (block := _block(recording, feet, cutoff)) is not None]
+        blocks = [block for recording in recordings if (block := _block(recording, feet)) is not None]
     found = _compliances(blocks) if blocks else None
     if found is None or not found.clear:
         text = "z: no log shows the vertical compliance; K of pitch and roll may come out too large by load²·compliance"
@@ -132,11 +130,14 @@ def _compliances(blocks: Sequence[Block]) -> Compliances:
     return Compliances(total, 0.0, unseen, float(fit.freedom[0]), np.append(fit.white_std[:1], abs(total)))
 
 
-def _block(recording: Recording, feet: tuple[str, ...], cutoff: float) -> Block | None:
+def _block(recording: Recording, feet: tuple[str, ...]) -> Block | None:
     """h over [s, m, t] in double support; t is the attitude's drift over the recording, a nuisance.
 
     None where s hardly moves, m is 0 where it hardly does: a regressor of noise gives no compliance but a wrong one.
     """
+    if any(recording.stances[foot] is not None for foot in feet):
+        return None  # a sole that lands or lifts is not flat, and its height then says nothing of the load
+    cutoff = recording.cutoff
     left, right = (recording.bushes[foot] for foot in feet)
     both = recording.used(feet[0]) & recording.used(feet[1])
     both &= recording.contacts[feet[0]].support == SUPPORTS.index(DOUBLE)

@@ -1,0 +1,92 @@
+"""The rows of a linear fit, recording by recording, and what a fit of them says."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plantar.conventions import Array
+
+
+@dataclass(frozen=True)
+class StanceRows:
+    """Where a foot steps: the `number` (n,) of each row's stance, which has an offset of its own, and `weight` (n,)."""
+
+    number: NDArray[np.intp]
+    weight: Array
+
+    def split(self) -> list[NDArray[np.intp]]:
+        """The rows of each stance."""
+        return [np.flatnonzero(self.number == number) for number in np.unique(self.number)]
+
+
+@dataclass(frozen=True)
+class Block:
+    """One recording's rows: `regressor` (n, k) without the offset's column, `response` (n,), `period` [s].
+
+    `nuisance` (n, m) are columns of this recording alone, fitted beside its offset and then forgotten; `noise` (k,) is
+    the variance of what is noise in the regressor's columns.
+
+    Where a foot steps, rows have `stances`, and `common_nuisance` (n, j) are columns that all recordings share beside
+    the regressor's.
+    """
+
+    label: str
+    regressor: Array
+    response: Array
+    period: float
+    nuisance: Array | None = None
+    noise: Array | None = None
+    stances: StanceRows | None = None
+    common_nuisance: Array | None = None
+
+    @property
+    def duration(self) -> float:
+        return len(self.response) * self.period
+
+    @property
+    def rows(self) -> float:
+        """How many rows there are, by their weights."""
+        return float(len(self.response) if self.stances is None else self.stances.weight.sum())
+
+
+@dataclass(frozen=True)
+class LinearFit:
+    """Parameters common to all recordings, then offsets: one per recording, or a single shared one.
+
+    `values` (k,), `offsets` by recording's label; `covariance` of values, offsets and nuisances, in this order, holds
+    with coloured residuals, `white_covariance` assumes white ones (the paper's). `freedom` goes with `covariance`.
+    `common_nuisance` (j,) are the coefficients of the blocks' columns of that name.
+    """
+
+    values: Array
+    offsets: dict[str, float]
+    covariance: Array
+    white_covariance: Array
+    freedom: Array
+    residuals: dict[str, Array]
+    rank: int
+    condition_number: float
+    shared_offset: bool
+    common_nuisance: Array = field(default_factory=lambda: np.zeros(0))
+
+    @property
+    def std(self) -> Array:
+        """Standard deviations of `values`, robust to coloured residuals, (k,)."""
+        return np.asarray(np.sqrt(np.diag(self.covariance))[: len(self.values)])
+
+    @property
+    def white_std(self) -> Array:
+        """Standard deviations of `values` for white residuals, (k,)."""
+        return np.asarray(np.sqrt(np.diag(self.white_covariance))[: len(self.values)])
+
+    def offset_std(self, label: str) -> float:
+        """Standard deviation of a recording's offset."""
+        place = 0 if self.shared_offset else list(self.offsets).index(label)
+        return float(np.sqrt(self.covariance[len(self.values) + place, len(self.values) + place]))
+
+    def predict(self, regressor: Array, offset: float) -> Array:
+        """Response (n,) of `regressor` (n, k) with a given offset."""
+        return np.asarray(regressor @ self.values + offset)

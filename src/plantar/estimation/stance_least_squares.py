@@ -1,0 +1,90 @@
+"""Least squares over many short stances, with deviations that hold where errors hang together.
+
+Errors within a stance hang together, and so may those within a recording: deviations come from refits without one
+stance and without one recording, the larger of the two (delete-group jackknife; B. Efron and C. Stein, Annals of
+Statistics 9, 1981).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from plantar.conventions import Array
+from plantar.estimation.blocks import Block, LinearFit
+from plantar.estimation.stance_problem import StanceProblem, design
+
+FEWEST_RECORDINGS = (
+    5  # whose scatter gives a deviation of its own: of fewer, Student's t is too wide to be of use
+)
+
+
+def fit_stances(blocks: Sequence[Block]) -> LinearFit:
+    """Values common to all blocks, an offset for each recording and one drawn to it for each stance.
+
+    Of `LinearFit.covariance` the part of the offsets is diagonal.
+    """
+    problem, size = StanceProblem.drawn_together(blocks), blocks[0].regressor.shape[1]
+    solution = problem.solve()
+    covariance, freedom = _deviations(problem, size)
+    labels = [block.label for block in blocks]
+    residuals = [
+        block.response - design(block, own.size - 1) @ np.concatenate([solution.values, own])
+        for block, own in zip(blocks, solution.own, strict=True)
+    ]
+    offsets = [_offset_variance(*each, covariance) for each in zip(blocks, residuals, strict=True)]
+    rows = sum(block.rows for block in blocks)
+    noise = solution.squares / max(rows - len(problem.products) - problem.common, 1.0)
+    stances = np.bincount(problem.recording)
+    return LinearFit(
+        values=solution.values[:size],
+        offsets=dict(zip(labels, solution.own[:, -1].tolist(), strict=True)),
+        covariance=_beside(covariance, np.diag(offsets)),
+        white_covariance=_beside(
+            noise * solution.inverse[:size, :size], np.zeros((len(blocks), len(blocks)))
+        ),
+        freedom=np.concatenate([freedom, np.maximum(stances - 1.0, 1.0)]),
+        residuals=dict(zip(labels, residuals, strict=True)),
+        rank=int(np.linalg.matrix_rank(solution.inverse)),
+        condition_number=float(np.sqrt(np.linalg.cond(solution.inverse))),
+        shared_offset=False,
+        common_nuisance=solution.values[size:],
+    )
+
+
+def _deviations(problem: StanceProblem, size: int) -> tuple[Array, Array]:
+    """Covariance (size, size) of the first values and its degrees of freedom (size,)."""
+    covariance, freedom = _jackknife(problem.without_each_stance()[:, :size])
+    if problem.recordings < FEWEST_RECORDINGS:
+        return covariance, freedom
+    between, of_between = _jackknife(problem.without_each_recording()[:, :size])
+    least = np.maximum(np.diag(covariance), np.finfo(float).tiny)
+    growth = np.sqrt(np.maximum(np.diag(between) / least, 1.0))
+    return covariance * np.outer(growth, growth), np.where(growth > 1, of_between, freedom)
+
+
+def _jackknife(refits: Array) -> tuple[Array, Array]:
+    """Covariance (k, k) from refits (G, k) that lack one group each, and its degrees of freedom (k,)."""
+    groups, away = len(refits), refits - refits.mean(axis=0)
+    covariance = (groups - 1) / groups * away.T @ away
+    if groups == 1:  # nothing to compare with: anything is possible
+        covariance = np.diag(refits[0] ** 2 + np.finfo(float).tiny)
+    return covariance, np.full(refits.shape[1], max(groups - 1.0, 1.0))
+
+
+def _offset_variance(block: Block, residual: Array, covariance: Array) -> float:
+    """Of a recording's offset: the scatter of its stances' means, and what the values' uncertainty adds."""
+    assert block.stances is not None, "a block of a foot that steps"
+    means = [float(np.mean(residual[rows])) for rows in block.stances.split()]
+    middle = block.regressor.mean(axis=0)
+    own = float(np.var(means, ddof=1)) / len(means) if len(means) > 1 else float(np.var(residual))
+    return own + float(middle @ covariance @ middle)
+
+
+def _beside(first: Array, second: Array) -> Array:
+    """Both matrices on the diagonal of a larger one."""
+    whole = np.zeros((len(first) + len(second), len(first) + len(second)))
+    whole[: len(first), : len(first)] = first
+    whole[len(first) :, len(first) :] = second
+    return whole

@@ -1,0 +1,162 @@
+"""The normal equations of a fit over many short stances, kept by stance, so that any of them can be left out.
+
+    response = regressor · values + common_nuisance · a + nuisance · n_r + O_r + d_s + error
+
+`values` and `a` are common to all recordings, `n_r` and `O_r` belong to recording r, `d_s` to its stance s. The offsets
+of one recording's stances scatter about O_r: d_s has a prior of mean zero (random effects).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plantar.conventions import Array
+from plantar.estimation.blocks import Block
+
+NEVER_FREE = 1e-9  # of a stance's weight, the least prior of its offset: keeps the recording's offset defined
+RANK_TOLERANCE = 1e-12  # of the largest eigenvalue: what nothing excites stays zero
+LEAST_SHARE = 1e-3  # of the offsets' scatter that counts as the stances' own: keeps the prior finite
+SHORTEST_HALF = 2  # rows of a stance's half, for its mean to be worth comparing
+
+
+@dataclass(frozen=True)
+class Solution:
+    """`values` (k,) common to all recordings; of each recording its nuisances and offset, `own` (R, m + 1); `inverse`
+    (k, k) of the information about the values; `squares` that are left."""
+
+    values: Array
+    own: Array
+    inverse: Array
+    squares: float
+
+
+@dataclass(frozen=True)
+class StanceProblem:
+    """Products (S, c, c) of [common columns, nuisance, 1, response] over each of S stances, the recording of each
+    (S,), how many columns are common to all (k), and the `prior` weight that draws a stance's offset to O_r."""
+
+    products: Array
+    recording: NDArray[np.intp]
+    common: int
+    prior: float
+
+    @classmethod
+    def of(cls, blocks: Sequence[Block], prior: float) -> StanceProblem:
+        """Of blocks with stances and weights."""
+        widest = max(0 if block.nuisance is None else block.nuisance.shape[1] for block in blocks)
+        products, owner = [], []
+        for place, block in enumerate(blocks):
+            assert block.stances is not None, "blocks of a foot that steps"
+            columns = np.column_stack([design(block, widest), block.response])
+            columns *= np.sqrt(block.stances.weight)[:, None]
+            for rows in block.stances.split():
+                products.append(columns[rows].T @ columns[rows])
+                owner.append(place)
+        common = common_columns(blocks[0]).shape[1]
+        return cls(np.array(products), np.array(owner, dtype=np.intp), common, prior)
+
+    @classmethod
+    def drawn_together(cls, blocks: Sequence[Block]) -> StanceProblem:
+        """With the prior that the blocks' own scatter of offsets gives."""
+        free = cls.of(blocks, 0.0)
+        return replace(free, prior=_offset_prior(blocks, free.solve()))
+
+    @property
+    def recordings(self) -> int:
+        return int(self.recording.max()) + 1
+
+    def solve(self, total: Array | None = None) -> Solution:
+        """The solution of all recordings, or of other reduced sums `total` (k + 1, k + 1)."""
+        total = self._total if total is None else total
+        inverse = _scaled_inverse(total[:-1, :-1])
+        values = inverse @ total[:-1, -1]
+        own = np.array([back[:, -1] - back[:, :-1] @ values for _, back in self._parts])
+        return Solution(values, own, inverse, float(total[-1, -1] - values @ total[:-1, -1]))
+
+    def without_each_stance(self) -> Array:
+        """Values (S, k) of the fits that lack one stance each."""
+        found = []
+        for stance, place in enumerate(self.recording):
+            rest = np.flatnonzero((self.recording == place) & (np.arange(len(self.recording)) != stance))
+            less = self._reduced(rest)[0] if rest.size else 0.0
+            found.append(self.solve(self._total - self._parts[place][0] + less).values)
+        return np.array(found)
+
+    def without_each_recording(self) -> Array:
+        """Values (R, k) of the fits that lack one recording each."""
+        return np.array([self.solve(self._total - part).values for part, _ in self._parts])
+
+    @cached_property
+    def _parts(self) -> list[tuple[Array, Array]]:
+        return [self._reduced(np.flatnonzero(self.recording == place)) for place in range(self.recordings)]
+
+    @cached_property
+    def _total(self) -> Array:
+        return np.asarray(np.sum([part for part, _ in self._parts], axis=0))
+
+    def _reduced(self, stances: NDArray[np.intp]) -> tuple[Array, Array]:
+        """Products (k + 1, k + 1) of one recording's `stances` with all that is its own eliminated, and the map
+        (m + 1, k + 1) that gives its own back."""
+        sums = self.products[stances]
+        ones = sums[:, :, -2]
+        least = NEVER_FREE * float(ones[:, -2].max(initial=0.0)) or 1.0
+        share = 1 / (ones[:, -2] + max(self.prior, least))
+        drawn = (sums - share[:, None, None] * ones[:, :, None] * ones[:, None, :]).sum(axis=0)
+        own, kept = slice(self.common, -1), [*range(self.common), sums.shape[-1] - 1]
+        back = _scaled_inverse(drawn[own, own]) @ drawn[own][:, kept]
+        return drawn[np.ix_(kept, kept)] - drawn[kept][:, own] @ back, back
+
+
+def common_columns(block: Block) -> Array:
+    """The regressor and the nuisances that all recordings share, (n, k)."""
+    if block.common_nuisance is None:
+        return block.regressor
+    return np.hstack([block.regressor, block.common_nuisance])
+
+
+def design(block: Block, widest: int) -> Array:
+    """All columns of a block, its own nuisances filled up to `widest` by zeros, (n, k + widest + 1)."""
+    own = np.zeros((len(block.response), widest))
+    if block.nuisance is not None:
+        own[:, : block.nuisance.shape[1]] = block.nuisance
+    return np.column_stack([common_columns(block), own, np.ones(len(block.response))])
+
+
+def _scaled_inverse(square: Array) -> Array:
+    """Pseudo-inverse of a positive semidefinite matrix, its rows scaled alike first: newtons and radians meet here."""
+    scale = np.sqrt(np.diag(square))
+    scale = np.where(scale > 0, scale, 1.0)
+    inverse = np.linalg.pinv(square / np.outer(scale, scale), rcond=RANK_TOLERANCE, hermitian=True)
+    return np.asarray(inverse / np.outer(scale, scale))
+
+
+def _offset_prior(blocks: Sequence[Block], free: Solution) -> float:
+    """Weight that draws a stance's offset to its recording's: large where stances differ by no more than errors do.
+
+    What both halves of a stance have in common beyond their recording is the stance's own; how far its mean scatters
+    beyond that is error.
+    """
+    together = scattered = weight = 0.0
+    count = 0
+    for block, own in zip(blocks, free.own, strict=True):
+        assert block.stances is not None, "blocks of a foot that steps"
+        left = block.response - (design(block, own.size - 1) @ np.concatenate([free.values, own[:-1], [0.0]]))
+        halves = []
+        for rows in block.stances.split():
+            if len(rows) >= 2 * SHORTEST_HALF:
+                halves.append([float(part.mean()) for part in np.array_split(left[rows], 2)])
+                weight += float(block.stances.weight[rows].sum())
+        if len(halves) > 1:
+            apart = np.array(halves) - np.mean(halves)
+            together += float(np.sum(apart[:, 0] * apart[:, 1]))
+            scattered += float(np.sum(apart.mean(axis=1) ** 2))
+            count += len(halves)
+    if scattered <= 0:
+        return 0.0
+    share = min(max(together / scattered, LEAST_SHARE), 1.0)
+    return weight / count * (1 / share - 1)

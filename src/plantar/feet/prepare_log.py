@@ -1,0 +1,166 @@
+"""One log made ready: checked, on an even grid, its bush states, contacts and stances found."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from plantar.checks.log_checks import check_log
+from plantar.contact.deflection import BushState, bush_states
+from plantar.contact.phases import FootContact, carried_weight, detect_contact, shaken
+from plantar.contact.reasons import Reason
+from plantar.contact.stances import Stances, stances_of
+from plantar.conventions import FORCE, GRAVITY, Array
+from plantar.errors import DataError, RobotError, located
+from plantar.feet.recording import Recording, Role
+from plantar.feet.sensors.air_zero import air_zero
+from plantar.feet.sensors.tilt_error import NO_TILT_ERROR, TiltError, right_attitude
+from plantar.feet.settings import DEFAULT_CUTOFF
+from plantar.logs.motion_log import MotionLog
+from plantar.notes import Finding, Note
+from plantar.robot.model import Imu, RobotModel
+from plantar.signals.filters import differentiate, low_pass
+from plantar.signals.orientation import attitude
+from plantar.signals.resampling import evenly_sampled, without_holes
+from plantar.signals.spikes import without_spikes
+
+VELOCITY_BAND = 4.0  # times the fit's cutoff, up to which joint angles are differentiated
+CONTACT_BAND = 2.0  # times the fit's cutoff, up to which a force tells landing from lifting
+WEIGHT_MISMATCH = 0.15  # share by which the feet may carry more or less than the model weighs
+
+
+def checked(robot: RobotModel, log: MotionLog, findings: Sequence[Finding] | None = None) -> MotionLog:
+    """The log on an even grid, with what is odd about it as notes; `findings` where `check_log` has been asked already.
+
+    Raises RobotError without IMU or feet in the robot file, LogError for a missing column, DataError where a sensor
+    reads something impossible (degrees for radians, a flipped sign, swapped feet; see `checks`).
+    """
+    _require(robot)
+    findings = check_log(robot, log) if findings is None else findings
+    problems = [finding for finding in findings if finding.fatal]
+    if problems:
+        raise DataError(located(problems[0].text, path=log.source))
+    odd = [Note(found.code, found.severity, f"{log.name}: {found.text}") for found in findings]
+    return without_spikes(without_holes(evenly_sampled(log))).with_columns({}, *log.joint_notes(robot), *odd)
+
+
+def prepare(
+    robot: RobotModel,
+    log: MotionLog,
+    role: Role,
+    tilt_error: TiltError = NO_TILT_ERROR,
+    highest_cutoff: float = DEFAULT_CUTOFF,
+) -> Recording:
+    """Bush states, contacts and stances of every foot in a `checked` log whose sensors were read together; unfiltered.
+
+    tilt_error: of the attitude towards the accelerometer, from all logs of this IMU; highest_cutoff: of the filter that
+    the fit may use [Hz].
+    """
+    imu = _require(robot)
+    notes = list(log.notes)
+    velocities = _velocities(robot, log, VELOCITY_BAND * highest_cutoff, notes)
+    orientation, rates = attitude(log, imu, notes)
+    positions = log.positions(robot)
+    wrenches = {name: log.wrench(foot.wrench.name) for name, foot in robot.feet.items()}
+    raw = bush_states(robot, positions, velocities, orientation, rates, wrenches)
+    if (tared := _without_zeros(robot, log, wrenches, raw, notes)) is not None:
+        wrenches, raw = tared, bush_states(robot, positions, velocities, orientation, rates, tared)
+    contacts, stances = _contacts(robot, log, raw, CONTACT_BAND * highest_cutoff, notes)
+    places = {name: state.sole_position[:, :2] for name, state in raw.items()}
+    if (right := right_attitude(log, imu, orientation, tilt_error, raw, contacts)) is not None:
+        raw = bush_states(robot, positions, velocities, right[0], rates, wrenches)
+        notes.append(right[1])
+    return Recording(
+        log=log,
+        role=role,
+        cutoff=np.inf,
+        raw=raw,
+        bushes=raw,
+        contacts=contacts,
+        stances=stances,
+        noise={name: np.zeros((2, 2)) for name in raw},
+        places=places,
+        notes=tuple(notes),
+    )
+
+
+def _without_zeros(
+    robot: RobotModel,
+    log: MotionLog,
+    wrenches: Mapping[str, Array],
+    raw: Mapping[str, BushState],
+    notes: list[Note],
+) -> dict[str, Array] | None:
+    """The wrenches without the zeros that sensors show while their feet swing; None where no foot does."""
+    tared, weight = dict(wrenches), robot.mass * GRAVITY
+    for name, foot in robot.feet.items():
+        zero = air_zero(log.time, wrenches[name], raw[name].force_z, weight)
+        if zero is not None and foot.contact != "always":
+            tared[name] = wrenches[name] - zero.at(log.time)
+            notes.append(Note("air_zero", "info", f"{log.name}: {name} foot: {zero.text}"))
+    return None if all(tared[name] is wrenches[name] for name in tared) else tared
+
+
+def _require(robot: RobotModel) -> Imu:
+    if not robot.feet:
+        raise RobotError(located("names no feet", path=robot.path, valid="feet: {left: ..., right: ...}"))
+    if robot.imu is None:
+        message = "names no imu: bush angles need the direction of gravity"
+        raise RobotError(located(message, path=robot.path, valid="imu: {name: ..., link: ...}"))
+    return robot.imu
+
+
+def _velocities(robot: RobotModel, log: MotionLog, band: float, notes: list[Note]) -> Array:
+    """Joint velocities (N, n_joints), differentiated from the positions; 0 for joints off the feet's paths.
+
+    Recorded velocities serve only where there is no position: a controller's own filter makes them late, and that goes
+    straight into the damping; coarse steps make small ones vanish.
+    """
+    velocities = np.zeros((len(log), len(robot.joint_names)))
+    missing = []
+    needed = _path_joints(robot)
+    for place, name in enumerate(robot.joint_names):
+        if name not in needed:
+            continue
+        position, recorded = log.joint(name, "position"), log.joint(name, "velocity")
+        if position is not None:
+            velocities[:, place] = differentiate(low_pass(position, log.period, band), log.period)
+            continue
+        missing.append(name)
+        if recorded is not None:
+            velocities[:, place] = recorded
+    if missing:
+        names = ", ".join(missing)
+        text = f"{log.name}: between IMU and feet, but not recorded: {names}; angles are right only if they stood at 0"
+        notes.append(Note("path_joint_missing", "warning", text))
+    return velocities
+
+
+def _path_joints(robot: RobotModel) -> frozenset[str]:
+    """The joints between the IMU and any foot."""
+    imu = _require(robot).placement
+    return frozenset().union(*(robot.joints_between(imu, foot.bush) for foot in robot.feet.values()))
+
+
+def _contacts(
+    robot: RobotModel, log: MotionLog, bushes: Mapping[str, BushState], band: float, notes: list[Note]
+) -> tuple[dict[str, FootContact], dict[str, Stances | None]]:
+    """Phases from the vertical forces, and the stances of feet that step; of those that do not impacts are left out."""
+    force = {name: low_pass(state.force_z, log.period, band) for name, state in bushes.items()}
+    always = {name: foot.contact == "always" for name, foot in robot.feet.items()}
+    carried, model_weight = carried_weight(force), robot.mass * GRAVITY
+    if not any(always.values()) and abs(carried - model_weight) > WEIGHT_MISMATCH * model_weight:
+        text = (
+            f"{log.name}: the feet carry {carried / GRAVITY:.1f} kg where the URDF weighs {robot.mass:.1f} kg"
+        )
+        notes.append(Note("weight", "warning", text))
+    weight = carried if carried > 0.3 * model_weight else model_weight
+    contacts = detect_contact(force, always, weight, log.period)
+    stances = {name: stances_of(contacts[name], force[name], weight, log.period) for name in bushes}
+    for name, state in bushes.items():
+        # Zeroed under load, its force is no share of the weight; a foot that steps strikes the floor by nature.
+        if not always[name] and stances[name] is None:
+            impacts = shaken(state.wrench[:, FORCE], weight, log.period)
+            contacts[name] = contacts[name].without(impacts, Reason.IMPACT)
+    return contacts, stances

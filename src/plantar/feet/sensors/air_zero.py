@@ -1,0 +1,82 @@
+"""Zeros of the force sensors, read while their foot is in the air.
+
+A lifted foot carries what hangs below its sensor and that part's inertia, a few newtons; what else the sensor reads is
+its zero. Each swing shows it once, all swings of a recording its drift.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from plantar.conventions import Array
+from plantar.signals.segments import runs
+
+FEWEST_SWINGS = 2  # fewer do not tell a zero from a robot that is lifted, or a foot that slides along
+FEWEST_FOR_DRIFT = 4
+SHORTEST_SWING = 0.1  # s of the middle of a swing: its first and last quarter may still touch the ground
+CLEARLY_LOADED = 0.3  # of the weight, between air and stance: a foot that never carries as much does not step
+IN_AIR = 0.1  # of the way from air to stance
+
+
+@dataclass(frozen=True)
+class AirZero:
+    """A sensor's zero: `middle` (6,) [N, N·m] at the time `about` [s], `drift` (6,) [1/s], and by how much single
+    swings `scatter` (6,) about that line; `swings`: how many show it."""
+
+    middle: Array
+    drift: Array
+    scatter: Array
+    about: float
+    swings: int
+
+    @property
+    def text(self) -> str:
+        """What was found, in a sentence."""
+        x, y, z = self.middle[:3]
+        return (
+            f"in the air its force sensor reads {x:.3g}, {y:.3g}, {z:.3g} N ({self.swings} swings, which differ by "
+            f"{np.max(self.scatter[:3]):.2g} N): taken off as its zero"
+        )
+
+    def at(self, time: Array) -> Array:
+        """The zero (N, 6) at times (N,) [s]."""
+        return np.asarray(self.middle + (time - self.about)[:, None] * self.drift)
+
+
+def air_zero(time: Array, wrench: Array, force_z: Array, weight: float) -> AirZero | None:
+    """The zero of a sensor whose foot swings; None where it does not.
+
+    time: (N,) [s]; wrench: as recorded, (N, 6); force_z: its vertical force (N,) [N]; weight: the robot's [N].
+    """
+    known = np.isfinite(force_z) & np.isfinite(wrench).all(axis=1)
+    if not known.any():
+        return None
+    low, high = np.percentile(force_z[known], [2, 98])
+    if high - low < CLEARLY_LOADED * weight:
+        return None
+    places, values = [], []
+    for swing in runs(known & (force_z < low + IN_AIR * (high - low))):
+        quarter = (swing.stop - swing.start) // 4
+        middle = slice(swing.start + quarter, swing.stop - quarter)
+        if time[middle.stop - 1] - time[middle.start] >= SHORTEST_SWING:
+            places.append(float(np.mean(time[middle])))
+            values.append(np.median(wrench[middle], axis=0))
+    if len(values) < FEWEST_SWINGS:
+        return None
+    seen, when = np.array(values), np.array(places)
+    about, drift = float(when.mean()), np.zeros(6)
+    if len(seen) >= FEWEST_FOR_DRIFT:
+        drift = _usual_slope(when, seen)
+    left = seen - (when - about)[:, None] * drift
+    middle_value = np.median(left, axis=0)
+    return AirZero(
+        middle_value, drift, 1.4826 * np.median(np.abs(left - middle_value), axis=0), about, len(seen)
+    )
+
+
+def _usual_slope(when: Array, seen: Array) -> Array:
+    """Median of the slopes between all pairs of swings (Theil and Sen), (6,): a swing that touches moves it little."""
+    first, second = np.triu_indices(len(when), 1)
+    return np.asarray(np.median((seen[second] - seen[first]) / (when[second] - when[first])[:, None], axis=0))
