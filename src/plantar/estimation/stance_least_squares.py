@@ -27,7 +27,7 @@ def fit_stances(blocks: Sequence[Block]) -> LinearFit:
     """
     problem, size = StanceProblem.drawn_together(blocks), blocks[0].regressor.shape[1]
     solution = problem.solve()
-    covariance, freedom = _deviations(problem, size)
+    covariance, freedom = _deviations(problem, solution.values[:size])
     labels = [block.label for block in blocks]
     residuals = [
         block.response - design(block, own.size - 1) @ np.concatenate([solution.values, own])
@@ -53,8 +53,11 @@ def fit_stances(blocks: Sequence[Block]) -> LinearFit:
     )
 
 
-def _deviations(problem: StanceProblem, size: int) -> tuple[Array, Array]:
-    """Covariance (size, size) of the first values and its degrees of freedom (size,)."""
+def _deviations(problem: StanceProblem, values: Array) -> tuple[Array, Array]:
+    """Covariance (k, k) of the first `values` (k,) and its degrees of freedom (k,)."""
+    size = len(values)
+    if len(problem.products) == 1:  # nothing to compare with: anything is possible
+        return np.diag(values**2), np.ones(size)
     covariance, freedom = _jackknife(problem.without_each_stance()[:, :size])
     if problem.recordings < FEWEST_RECORDINGS:
         return covariance, freedom
@@ -68,9 +71,7 @@ def _jackknife(refits: Array) -> tuple[Array, Array]:
     """Covariance (k, k) from refits (G, k) that lack one group each, and its degrees of freedom (k,)."""
     groups, away = len(refits), refits - refits.mean(axis=0)
     covariance = (groups - 1) / groups * away.T @ away
-    if groups == 1:  # nothing to compare with: anything is possible
-        covariance = np.diag(refits[0] ** 2 + np.finfo(float).tiny)
-    return covariance, np.full(refits.shape[1], max(groups - 1.0, 1.0))
+    return covariance, np.full(refits.shape[1], groups - 1.0)
 
 
 def _offset_variance(block: Block, residual: Array, covariance: Array) -> float:

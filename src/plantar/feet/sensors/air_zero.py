@@ -14,7 +14,8 @@ from plantar.conventions import Array
 from plantar.signals.segments import runs
 
 FEWEST_SWINGS = 2  # fewer do not tell a zero from a robot that is lifted, or a foot that slides along
-FEWEST_FOR_DRIFT = 4
+FEWEST_FOR_DRIFT = 4  # swings: a line through fewer follows their scatter
+CLEAR_DRIFT = 3.0  # times its own deviation: a smaller drift is what single swings differ by
 SHORTEST_SWING = 0.1  # s of the middle of a swing: its first and last quarter may still touch the ground
 CLEARLY_LOADED = 0.3  # of the weight, between air and stance: a foot that never carries as much does not step
 IN_AIR = 0.1  # of the way from air to stance
@@ -68,12 +69,14 @@ def air_zero(time: Array, wrench: Array, force_z: Array, weight: float) -> AirZe
     seen, when = np.array(values), np.array(places)
     about, drift = float(when.mean()), np.zeros(6)
     if len(seen) >= FEWEST_FOR_DRIFT:
-        drift = _usual_slope(when, seen)
+        slope = _usual_slope(when, seen)
+        left = seen - (when - about)[:, None] * slope
+        uncertainty = np.std(left, axis=0) / np.sqrt(np.sum((when - about) ** 2))
+        drift = np.where(np.abs(slope) > CLEAR_DRIFT * uncertainty, slope, 0.0)
     left = seen - (when - about)[:, None] * drift
-    middle_value = np.median(left, axis=0)
-    return AirZero(
-        middle_value, drift, 1.4826 * np.median(np.abs(left - middle_value), axis=0), about, len(seen)
-    )
+    usual = np.median(left, axis=0)
+    scatter = 1.4826 * np.median(np.abs(left - usual), axis=0)
+    return AirZero(usual, drift, scatter, about, len(seen))
 
 
 def _usual_slope(when: Array, seen: Array) -> Array:

@@ -1,0 +1,154 @@
+"""Fits over stances: against a dense solution, and whether their intervals cover."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from plantar.estimation.blocks import Block, StanceRows
+from plantar.estimation.intervals import interval95
+from plantar.estimation.linear import effect_of, fit_blocks, information_inverse
+from plantar.estimation.stance_least_squares import fit_stances
+from plantar.estimation.stance_problem import StanceProblem
+
+VALUES, ARM, ROWS = np.array([450.0, 20.0]), 0.02, 40
+
+
+def walk(seed: int, stances: int = 8, scatter: float = 3.0, noise: float = 1.0) -> Block:
+    """One recording: torque of a spring, a damper and a load, an offset for each stance, errors smooth within it."""
+    random = np.random.default_rng(seed)
+    time = np.linspace(0, 1, ROWS)
+    rows, torque, load, number = [], [], [], []
+    for stance in range(stances):
+        angle = 0.02 * np.sin(2 * np.pi * time + random.normal()) + 0.01 * random.normal() * time
+        rate = np.gradient(angle, time)
+        force = 600 * np.clip(6 * np.minimum(time, 1 - time), 0, 1) + 20 * random.normal()
+        wander = noise * np.interp(time, np.linspace(0, 1, 4), random.normal(size=4))
+        rows.append(np.column_stack([angle, rate]))
+        load.append(force)
+        torque.append(rows[-1] @ VALUES + ARM * force + scatter * random.normal() + 5 * seed % 7 + wander)
+        number.append(np.full(ROWS, stance))
+    weight = np.clip(np.concatenate(load) / 600, 0, 1)
+    return Block(
+        label=f"walk_{seed}",
+        regressor=np.vstack(rows),
+        response=np.concatenate(torque),
+        period=0.025,
+        stances=StanceRows(np.concatenate(number), weight),
+        common_nuisance=np.concatenate(load)[:, None],
+    )
+
+
+def dense(blocks: list[Block], prior: float) -> np.ndarray:
+    """The same problem as one matrix: columns for every offset, a row for each stance's prior."""
+    designs, responses = [], []
+    total = sum(len(block.stances.split()) for block in blocks)
+    place = 0
+    for i, block in enumerate(blocks):
+        root = np.sqrt(block.stances.weight)
+        recording = np.zeros((len(block.response), len(blocks)))
+        recording[:, i] = 1
+        own = np.zeros((len(block.response), total))
+        for rows in block.stances.split():
+            own[rows, place] = 1
+            place += 1
+        design = np.hstack([block.regressor, block.common_nuisance, recording, own])
+        designs.append(design * root[:, None])
+        responses.append(block.response * root)
+    pulls = np.hstack([np.zeros((total, 3 + len(blocks))), np.sqrt(prior) * np.eye(total)])
+    stacked, measured = np.vstack([*designs, pulls]), np.concatenate([*responses, np.zeros(total)])
+    return np.linalg.lstsq(stacked, measured, rcond=None)[0]
+
+
+@pytest.mark.parametrize("prior", [0.5, 30.0])
+def test_it_is_the_dense_solution(prior: float) -> None:
+    blocks = [walk(seed) for seed in range(3)]
+    solution, expected = StanceProblem.of(blocks, prior).solve(), dense(blocks, prior)
+    assert solution.values == pytest.approx(expected[:3], rel=1e-8)
+    assert solution.own[:, -1] == pytest.approx(expected[3:6], rel=1e-6)
+
+
+def test_leaving_a_stance_or_a_recording_out_is_fitting_the_rest() -> None:
+    blocks = [walk(seed) for seed in range(3)]
+    problem = StanceProblem.of(blocks, 4.0)
+    kept = blocks[1].stances.number != 2
+    less = replace(
+        blocks[1],
+        regressor=blocks[1].regressor[kept],
+        response=blocks[1].response[kept],
+        stances=StanceRows(blocks[1].stances.number[kept], blocks[1].stances.weight[kept]),
+        common_nuisance=blocks[1].common_nuisance[kept],
+    )
+    rest = StanceProblem.of([blocks[0], less, blocks[2]], 4.0).solve().values
+    assert problem.without_each_stance()[8 + 2] == pytest.approx(rest, rel=1e-9)
+    rest = StanceProblem.of(blocks[:2], 4.0).solve().values
+    assert problem.without_each_recording()[2] == pytest.approx(rest, rel=1e-9)
+
+
+def test_exact_data_give_exact_values() -> None:
+    blocks = [walk(seed, noise=0.0) for seed in range(2)]
+    fit = fit_stances(blocks)
+    assert fit.values == pytest.approx(VALUES, rel=2e-3)
+    assert fit.common_nuisance == pytest.approx([ARM], rel=0.02)
+
+
+def test_offsets_that_do_not_scatter_are_drawn_together() -> None:
+    """The prior is heavy where stances have one offset, and light where each has its own."""
+    alike = [walk(seed, scatter=0.0) for seed in range(4)]
+    apart = [walk(seed, scatter=20.0) for seed in range(4)]
+    weight = float(alike[0].stances.weight[:ROWS].sum())
+    assert StanceProblem.drawn_together(alike).prior > 0.3 * weight
+    assert StanceProblem.drawn_together(apart).prior < 0.02 * weight
+
+
+@pytest.mark.parametrize("recordings", [1, 8])
+def test_intervals_cover_the_truth(recordings: int) -> None:
+    hits = np.zeros(2)
+    trials = 150
+    for trial in range(trials):
+        fit = fit_stances([walk(1000 * trial + seed) for seed in range(recordings)])
+        for place in range(2):
+            low, high = interval95(float(fit.values[place]), float(fit.std[place]), float(fit.freedom[place]))
+            hits[place] += low <= VALUES[place] <= high
+    assert np.all(hits / trials > 0.90)
+    assert np.all(hits / trials < 1.0)
+
+
+def test_recordings_that_differ_widen_the_interval() -> None:
+    """K that changes from walk to walk shows in the deviation, though within each walk everything fits."""
+    same = [walk(seed, noise=0.2) for seed in range(8)]
+    factors = 1 + 0.05 * np.random.default_rng(0).normal(size=8)
+    differing = [
+        replace(block, response=block.response + (factor - 1) * VALUES[0] * block.regressor[:, 0])
+        for block, factor in zip(same, factors, strict=True)
+    ]
+    assert fit_stances(differing).std[0] > 4 * fit_stances(same).std[0]
+
+
+def test_the_effect_of_a_change_is_that_of_fitting_it() -> None:
+    blocks = [walk(seed) for seed in range(3)]
+    changes = [block.regressor @ np.array([3.0, -0.5]) for block in blocks]
+    assert effect_of(blocks, changes) == pytest.approx([3.0, -0.5], rel=1e-6)
+
+
+def test_information_counts_weighted_rows() -> None:
+    blocks = [walk(seed) for seed in range(2)]
+    assert information_inverse(
+        [*blocks, *[replace(b, label=b.label + "b") for b in blocks]]
+    ) == pytest.approx(information_inverse(blocks) / 2, rel=0.05)
+
+
+def test_scaling_the_torque_scales_values_and_deviations() -> None:
+    blocks = [walk(seed) for seed in range(3)]
+    scaled = [replace(block, response=10 * block.response) for block in blocks]
+    one, ten = fit_blocks(blocks), fit_blocks(scaled)
+    assert ten.values == pytest.approx(10 * one.values, rel=1e-9)
+    assert ten.std == pytest.approx(10 * one.std, rel=1e-9)
+
+
+def test_one_lone_stance_promises_nothing() -> None:
+    fit = fit_stances([walk(0, stances=1)])
+    low, high = interval95(float(fit.values[0]), float(fit.std[0]), float(fit.freedom[0]))
+    assert low < 0 < high

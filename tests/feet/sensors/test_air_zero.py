@@ -1,0 +1,66 @@
+"""Zeros of force sensors read in the air: their middle, their drift, and when nothing is said."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from plantar.feet.sensors.air_zero import air_zero
+
+WEIGHT, PERIOD = 700.0, 0.02
+ZERO = np.array([12.0, -17.0, -60.0, 0.4, -0.2, 0.8])
+
+
+def walked(swings: int, drift: float = 0.0, noise: float = 0.5) -> tuple[np.ndarray, np.ndarray]:
+    """Time (N,) and wrench (N, 6) of a foot that stands and swings for a second each."""
+    time = np.arange(0, 2.0 * swings + 1.0, PERIOD)
+    stands = np.mod(time, 2.0) < 1.0
+    wrench = np.zeros((time.size, 6))
+    wrench[stands, 2], wrench[stands, 4] = WEIGHT, 30.0
+    wrench += ZERO + drift * np.outer(time - time.mean(), [1, 1, 1, 0, 0, 0])
+    return time, wrench + noise * np.random.default_rng(0).normal(size=wrench.shape)
+
+
+def test_the_zero_is_what_a_lifted_foot_reads() -> None:
+    time, wrench = walked(8)
+    zero = air_zero(time, wrench, wrench[:, 2], WEIGHT)
+    assert zero is not None
+    assert zero.swings == 8
+    assert zero.at(time).mean(axis=0) == pytest.approx(ZERO, abs=0.3)
+
+
+def test_a_drift_is_followed() -> None:
+    time, wrench = walked(8, drift=2.0)
+    zero = air_zero(time, wrench, wrench[:, 2], WEIGHT)
+    assert zero is not None
+    assert zero.drift[:3] == pytest.approx(np.full(3, 2.0), abs=0.1)
+    assert zero.drift[3:] == pytest.approx(np.zeros(3), abs=0.1)
+
+
+def test_what_swings_scatter_by_is_no_drift() -> None:
+    time, wrench = walked(8, noise=0.0)
+    number = np.floor(time / 2.0).astype(int)
+    wrench += np.random.default_rng(1).normal(0, 2.0, (number.max() + 1, 6))[number]
+    zero = air_zero(time, wrench, wrench[:, 2], WEIGHT)
+    assert zero is not None
+    assert np.count_nonzero(zero.drift) <= 1
+
+
+def test_a_swing_that_touches_the_ground_moves_it_little() -> None:
+    time, wrench = walked(8)
+    wrench[(time > 3.0) & (time < 4.0), 2] += 25.0
+    zero = air_zero(time, wrench, wrench[:, 2], WEIGHT)
+    assert zero is not None
+    assert zero.middle[2] == pytest.approx(ZERO[2], abs=1.0)
+
+
+@pytest.mark.parametrize("kind", ["stands", "one swing", "hardly loaded", "nothing known"])
+def test_nothing_is_said_of_a_foot_that_does_not_step(kind: str) -> None:
+    time, wrench = walked(1 if kind == "one swing" else 8)
+    if kind == "stands":
+        wrench[:, 2] = WEIGHT / 2
+    if kind == "hardly loaded":
+        wrench[:, 2] = np.where(wrench[:, 2] > 100, 0.2 * WEIGHT, 0.0)
+    if kind == "nothing known":
+        wrench[:] = np.nan
+    assert air_zero(time, wrench, wrench[:, 2], WEIGHT) is None
