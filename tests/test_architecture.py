@@ -14,9 +14,9 @@ FILES = sorted(SOURCE.rglob("*.py"))
 # A room imports only from rooms that stand before it.
 ROOMS = (
     "conventions", "errors", "notes", "files",
-    "robot_file", "robot", "log", "readers",
+    "joint_names", "robot_guesses", "robot_uncertainty", "robot_file", "robot", "log", "readers",
     "signals", "spikes", "kinematics", "attitude", "polygon", "contact", "slip", "deflection",
-    "sanity_channels", "sanity_feet", "sanity_imu", "sanity",
+    "sanity_channels", "sanity_feet", "sanity_imu", "sanity_joints", "sanity",
     "dynamics", "models", "estimation",
     "result", "validation", "identify",
     "balance", "motions", "twin",

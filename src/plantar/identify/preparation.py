@@ -19,6 +19,7 @@ from plantar.identify.tipping import leave_out_tipping
 from plantar.log import MotionLog
 from plantar.notes import Note, unique
 from plantar.robot import RobotModel
+from plantar.robot_guesses import guess_notes
 
 Progress = Callable[[str], None]
 
@@ -75,7 +76,8 @@ def prepare_all(
     progress("fit z")
     vertical = fit_height(recordings[: len(logs)], robot, settings.cutoff)
     moved = [moved_centre(recording, vertical.compliance, settings.cutoff) for recording in recordings]
-    notes = [*(note for one in recordings for note in one.notes), latency.note, *vertical.notes]
+    guessed = guess_notes(robot.path.name, robot.guesses)
+    notes = [*guessed, *(note for one in recordings for note in one.notes), latency.note, *vertical.notes]
     return Prepared(tuple(moved[: len(logs)]), tuple(moved[len(logs) :]), latency, vertical, unique(notes))
 
 

@@ -16,6 +16,7 @@ from plantar.log import MotionLog
 from plantar.notes import Note
 from plantar.result import Input
 from plantar.robot import RobotModel
+from plantar.robot_guesses import guess_notes
 
 Progress = Callable[[str], None]
 
@@ -54,5 +55,6 @@ def prepare_logs(
     if body.equation.floating:
         calibration, notes = calibrate(body, fitted, as_recorded=settings.as_recorded)
     inputs = (*(Input.of(log, "fit") for log in logs), *(Input.of(log, "validate") for log in validate))
-    said = (*(note for whole in fitted + unseen for note in whole.notes), *notes)
+    guessed = guess_notes(robot.path.name, robot.guesses)
+    said = (*guessed, *(note for whole in fitted + unseen for note in whole.notes), *notes)
     return WholeLogs(body, fitted, unseen, calibration, inputs, said)
