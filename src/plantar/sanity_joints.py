@@ -37,7 +37,8 @@ def check_joint_names(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         valid = "valid: a log of this robot, or 'joint_names: {renamed: {URDF joint: log joint}}' in the robot file"
         text += f"; it holds {_listing(strangers)}"
     else:
-        valid = "valid: a position of every joint between IMU and feet"
+        text = f"columns 'joint.*.position': the log holds no joint positions, such as of {_listing(missing)}"
+        valid = "valid: a position of every joint that moves"
     yield Finding("joint_names", f"{text} ({valid})", True)
 
 

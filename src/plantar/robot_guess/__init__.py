@@ -116,7 +116,7 @@ def _seen_standing(draft: Draft, tree: UrdfTree, model: pin.Model, logs: Sequenc
     if len(draft.sensors) < len(draft.soles):
         return draft
     name, mount = draft.imu or (None, None)
-    links = [mount.link] if mount is not None else []
+    links = [mount.link, *mount.others] if mount is not None else []
     stance = find_stance(model, draft.soles, draft.sensors, name, links, logs)
     if stance is None:
         remark = Remark("the feet never carry the robot's weight: nothing could be checked", True)
@@ -144,24 +144,41 @@ def _seat_poses(draft: Draft, tree: UrdfTree) -> Mapping[str, Array]:
 
 
 def _with_bush_by_log(draft: Draft, urdf: Path, logs: Sequence[MotionLog]) -> Draft:
-    """The draft with bushes as high as torque and force agree that they are, if that is between sole and ankle."""
+    """The draft with bushes as high as torque and force agree that they are, if that is between sole and ankle.
+
+    What shows is the height over the sensor: a sensor at the ankle's origin by a guess goes to the sole where only then
+    the bush lies between both.
+    """
     if draft.imu is None or len(draft.sensors) < len(draft.soles):
         return draft
     shift = bush_shift(_loaded(draft, urdf), logs)
-    moved = dict(draft.bushes)
+    seats, bushes = dict(draft.seats), dict(draft.bushes)
     for sole in draft.soles:
-        side, low = sole.limb.side, sole.depth
-        if shift is None:
-            reason = f"{draft.bushes[side].reason}, and the logs do not show it"
-            moved[side] = replace(draft.bushes[side], reason=reason)
+        side = sole.limb.side
+        seat, bush = seats[side], bushes[side]
+        lowered = replace(
+            seat,
+            xyz=sole.upright @ [0.0, 0.0, sole.depth],
+            height=sole.depth,
+            reason=f"at the sole, below the bush as torque and force show, {seat.reason.partition(', ')[2]}",
+        )
+        tried = [seat, lowered] if seat.at_origin else [seat]
+        rise = None if shift is None else bush.height + shift[0] - seat.height
+        heights = [] if rise is None else [one.height + rise for one in tried]
+        best = int(np.argmin([abs(height - bush.height) for height in heights])) if heights else 0
+        if rise is None or shift is None or not sole.depth - shift[1] < heights[best] < shift[1]:
+            bushes[side] = replace(bush, reason=f"{bush.reason}, and the logs do not show it")
             continue
-        height = draft.bushes[side].height + shift[0]
-        if not low - shift[1] <= height <= shift[1]:
-            return draft
-        spread = shift[1] + draft.seats[side].spread / 2
-        reason = "where torque and force of both feet agree, counted from the sensor"
-        moved[side] = BushHeight(height, spread, reason)
-    return replace(draft, bushes=moved)
+        seats[side] = tried[best]
+        if best == 1:
+            seats[side] = replace(lowered, spread=shift[1] + bush.spread)
+        height, within = heights[best], f"± {1e3 * shift[1]:.0f} mm"
+        if shift[1] < bush.spread and sole.depth < height < 0:
+            reason = f"{1e3 * rise:+.0f} mm over the sensor, where torque and force of both feet agree within {within}"
+            bushes[side] = BushHeight(height, shift[1], reason)
+        else:
+            bushes[side] = replace(bush, reason=f"{bush.reason}; torque and force agree within {within}")
+    return replace(draft, seats=seats, bushes=bushes)
 
 
 def _findings(draft: Draft, urdf: Path, logs: Sequence[MotionLog]) -> list[Remark]:

@@ -27,7 +27,10 @@ EXPLAINED = 0.05  # of the torque's variance at most is left by a spring and dam
 
 
 def bush_shift(robot: RobotModel, logs: Sequence[MotionLog]) -> tuple[float, float] | None:
-    """How much higher the bushes sit than the robot file says, and its spread [m]; None where the logs do not tell."""
+    """How much higher the bushes sit than the robot file says, and its spread [m], as far as sensors sit as it says.
+
+    None where the logs do not tell.
+    """
     recordings = []
     for log in logs:
         try:

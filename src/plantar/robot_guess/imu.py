@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import permutations, product
 
 import numpy as np
@@ -31,6 +31,7 @@ NOT_IT = {
     "right",
     "wrist",
 }
+TRUNK = 0.1  # m: an IMU sits so far from the origin of the link that carries it
 MOST_NAMED = 4  # other frames in a comment
 
 UPRIGHT = np.radians(
@@ -44,13 +45,15 @@ CLEARLY = 0.5  # a turn about the vertical is believed where it leaves this shar
 
 @dataclass(frozen=True)
 class Mount:
-    """A link, the IMU's axes in it (3, 3), whether that is a guess, its reason, and other frames that it may be."""
+    """A link, the IMU's axes in it (3, 3), whether that is a guess, its reason, other frames that it may be, and by how
+    much its place may be off [m]."""
 
     link: str
     rotation: Array
     guess: bool
     reason: str
     others: tuple[str, ...] = ()
+    spread: float = 0.0
 
     @property
     def rpy(self) -> Array:
@@ -66,14 +69,20 @@ def find_frame(tree: UrdfTree, name: str, frame: str) -> Mount:
     said = _words(name) - {"imu"}
     ranked = sorted(links, key=lambda link: (-_score(_words(link), said), links.index(link)))
     best = ranked[0] if ranked and _score(_words(ranked[0]), said) > 0 else links[0]
-    others = tuple(link for link in ranked if "imu" in _words(link) and link != best)[:MOST_NAMED]
+    top = _score(_words(best), said)
+    others = [
+        link
+        for link in ranked
+        if link != best and ("imu" in _words(link) or _score(_words(link), said) == top > 0)
+    ]
     if "imu" in _words(best):
         reason = "a frame called imu"
     elif _words(best) & (said | BODY):
         reason = f"its name holds {' and '.join(sorted(_words(best) & (said | BODY)))}"
     else:
         reason = "the first link"
-    return Mount(best, np.eye(3), True, reason, others)
+    spread = 0.0 if "imu" in _words(best) else TRUNK
+    return Mount(best, np.eye(3), True, reason, tuple(others[:MOST_NAMED]), spread)
 
 
 def _score(words: set[str], said: set[str]) -> float:
@@ -93,34 +102,45 @@ def turned_to_gravity(mount: Mount, stance: Stance) -> Mount:
     """The mount with the axes that gravity shows: up by the IMU must be up by the loaded soles, while tilting too.
 
     A frame that agrees stays as it is. One that does not is turned by right angles; where none of these agree, by the
-    smallest turn that does.
+    smallest turn that does. Another link that a guess may have meant is taken where it tilts far more alike.
     """
     if stance.felt is None:
         return mount
+    own, left = _turned(mount, stance, stance.felt)
+    if not mount.guess:
+        return own
+    for link in mount.others:
+        rest = tuple(other for other in (mount.link, *mount.others) if other != link)
+        other, remains = _turned(replace(mount, link=link, others=rest), stance, stance.felt)
+        if remains < CLEARLY * left:
+            reason = f"{other.reason}; {link} tilts as the IMU does, {own.link} does not"
+            own, left = replace(other, reason=reason), remains
+    return own
+
+
+def _turned(mount: Mount, stance: Stance, felt: Array) -> tuple[Mount, float]:
+    """One link's mount, turned where it must be, and how much the tilts still differ [rad]."""
     link = stance.carriers[mount.link][:, :3, :3]
     soles = np.einsum("nji,nj->ni", link, stance.up)  # up in the link's axes
     turns = [mount.rotation @ turn for turn in right_angles()]  # as it is comes first
-    apart = [_apart(soles, stance.felt @ turn.T) for turn in turns]
-    tilts = [_tilts(soles, stance.felt @ turn.T) for turn in turns]
+    apart = [_apart(soles, felt @ turn.T) for turn in turns]
+    tilts = [_tilts(soles, felt @ turn.T) for turn in turns]
     level = [k for k in range(len(turns)) if apart[k] < UPRIGHT]
     if not level:
-        return _least_turn(mount, soles, stance.felt, apart[0])
+        return _least_turn(mount, soles, felt, apart[0]), np.inf
     best = min(level, key=tilts.__getitem__)
-    first = 0 if 0 in level else level[int(np.argmin([_size(turns[k] @ mount.rotation.T) for k in level]))]
+    rival = tilts[level[0]] if best != level[0] else min((tilts[k] for k in level[1:]), default=np.inf)
     moves = float(np.sqrt(np.mean(np.sum((soles - soles.mean(axis=0)) ** 2, axis=1)))) > MOVES
-    sure = moves and tilts[best] < CLEARLY * tilts[first]
-    chosen = best if sure else first
+    sure = moves and tilts[best] < CLEARLY * rival
+    chosen = best if sure else level[0]  # smaller turns come first
+    off = f"{np.degrees(apart[0]):.1f} deg"
     if chosen == 0:
-        reason = f"{mount.reason}; up by the IMU and by the soles are {np.degrees(apart[0]):.1f} deg apart"
-        return Mount(mount.link, mount.rotation, mount.guess, reason, mount.others)
+        reason = f"{mount.reason}; up by the IMU and by the soles are {off} apart"
+        return replace(mount, reason=reason), tilts[0]
     yaw = "as its tilts show" if sure else "its turn about the vertical is not seen in the logs"
-    against = (
-        f"as it is in the URDF, {np.degrees(apart[0]):.0f} deg off gravity"
-        if apart[0] >= UPRIGHT
-        else "tilts another way"
-    )
+    against = f"as it is, {off} off gravity" if apart[0] >= UPRIGHT else "as it is, tilts another way"
     reason = f"{mount.reason}; turned by right angles, {yaw} ({against})"
-    return Mount(mount.link, turns[chosen], True, reason, mount.others)
+    return replace(mount, rotation=turns[chosen], guess=True, reason=reason), tilts[chosen]
 
 
 def right_angles() -> list[Array]:
@@ -144,7 +164,7 @@ def _least_turn(mount: Mount, soles: Array, felt: Array, apart: float) -> Mount:
     turn = np.eye(3) + cross + cross @ cross / (1 + cosine)
     how = f"turned by {np.degrees(apart):.0f} deg to agree with gravity, its turn about the vertical unknown"
     reason = f"{mount.reason}; {how}"
-    return Mount(mount.link, turn @ mount.rotation, True, reason, mount.others)
+    return replace(mount, rotation=turn @ mount.rotation, guess=True, reason=reason)
 
 
 def _apart(soles: Array, felt: Array) -> float:
@@ -156,7 +176,3 @@ def _tilts(soles: Array, felt: Array) -> float:
     """Rms of the difference of their changes."""
     apart = soles - felt
     return float(np.sqrt(np.mean(np.sum((apart - apart.mean(axis=0)) ** 2, axis=1))))
-
-
-def _size(turn: Array) -> float:
-    return float(np.arccos(np.clip((np.trace(turn) - 1) / 2, -1, 1)))

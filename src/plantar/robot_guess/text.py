@@ -75,7 +75,7 @@ class Draft:
             ]
         also = f"; or one of {', '.join(mount.others)}" if mount.others else ""
         place = f"{{name: {scalar(name)}, link: {scalar(mount.link)}, xyz: [0, 0, 0]{turn}}}"
-        return [f"imu: {place}  # GUESS: {mount.reason}{also}"]
+        return [f"imu: {place}  # GUESS{_spread(mount.spread)}: {mount.reason}{also}"]
 
     def _foot(self, sole: Sole) -> list[str]:
         side, seat, bush = sole.limb.side, self.seats[sole.limb.side], self.bushes[sole.limb.side]

@@ -45,6 +45,11 @@ class Seat:
     spread: float = 0.0
     sign: int = 1
 
+    @property
+    def at_origin(self) -> bool:
+        """Whether only the ankle's origin was known."""
+        return self.guess and self.spread > 0 and not self.height and not self.xyz.any()
+
 
 def urdf_seat(tree: UrdfTree, sole: Sole, name: str | None, frame: str) -> Seat:
     """The pose of the sensor `name` by the URDF alone: the frame of its messages, a frame of its name, one called force
