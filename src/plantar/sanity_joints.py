@@ -25,8 +25,7 @@ def check_joint_names(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     every = set(robot.joint_names)
     if not every or (not needed and (every & recorded or robot.imu is not None)):
         return
-    what = next(iter(needed), "any joint")
-    missing = needed.get(what, every) if every & recorded else every
+    what, missing = next(iter(needed.items())) if every & recorded else ("any joint", every)
     text = f"columns 'joint.*.position': do not hold {what} of the URDF ({_listing(missing)})"
     names = propose_names(robot.joint_names, recorded)
     strangers = recorded - every
@@ -37,7 +36,8 @@ def check_joint_names(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         valid = "valid: a log of this robot, or 'joint_names: {renamed: {URDF joint: log joint}}' in the robot file"
         text += f"; it holds {_listing(strangers)}"
     else:
-        text = f"columns 'joint.*.position': the log holds no joint positions, such as of {_listing(missing)}"
+        if not recorded:
+            text = f"columns 'joint.*.position': the log holds no joint positions, such as of {_listing(missing)}"
         valid = "valid: a position of every joint that moves"
     yield Finding("joint_names", f"{text} ({valid})", True)
 
