@@ -27,7 +27,7 @@ def check_joint_names(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         return
     what, missing = next(iter(needed.items())) if every & recorded else ("any joint", every)
     text = f"columns 'joint.*.position': do not hold {what} of the URDF ({_listing(missing)})"
-    names = propose_names(robot.joint_names, recorded)
+    names = propose_names(robot.joint_names, sorted(recorded))
     strangers = recorded - every
     if names is not None:
         valid = f"valid: '{names}' in the robot file"
