@@ -23,7 +23,7 @@ ROOMS = (
 )  # fmt: skip
 # So does a folder or a file inside `feet`: from those before it.
 FEET = (
-    "settings", "sensors", "recording", "fit", "exclusion", "assess", "prepare", "foot_fit",
+    "settings", "recording", "sensors", "fit", "exclusion", "assess", "prepare_log", "prepare", "foot_fit",
     "identify", "validate", "select_motions",
 )  # fmt: skip
 LARGEST_ROOM = 0.15  # of all lines
@@ -44,7 +44,6 @@ UNTESTED = frozenset(
         "feet.assess.residual_table",
         "feet.assess.scores",
         "feet.exclusion.torque_saturation",
-        "feet.fit.axis",
         "feet.fit.axis_fit",
         "feet.fit.corrections",
         "feet.fit.initial_state",

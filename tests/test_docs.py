@@ -16,10 +16,12 @@ from plantar.robot.schema import (
     FrameEntry,
     ImuEntry,
     JointEntry,
+    JointNamesEntry,
     RobotEntry,
     SoleEntry,
     WrenchEntry,
 )
+from plantar.robot.uncertainty import Uncertainty
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCUMENTS = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md"), *(ROOT / "examples").rglob("*.md")])
@@ -76,7 +78,17 @@ def test_every_key_of_the_robot_file_is_documented() -> None:
     text = (ROOT / "docs" / "robot_file.md").read_text()
     documented = {key for row in re.findall(r"^\| `([^`]+)`", text, re.MULTILINE) for key in row.split(".")}
     documented |= set(re.findall(r"`(\w+)`", text))
-    for entry in (RobotEntry, ImuEntry, FootEntry, FrameEntry, WrenchEntry, SoleEntry, JointEntry):
+    parts = (
+        ImuEntry,
+        FootEntry,
+        FrameEntry,
+        WrenchEntry,
+        SoleEntry,
+        JointEntry,
+        JointNamesEntry,
+        Uncertainty,
+    )
+    for entry in (RobotEntry, *parts):
         assert set(entry.model_fields) <= documented, entry.__name__
 
 
@@ -85,3 +97,9 @@ def test_changes_are_listed_newest_first() -> None:
     assert versions
     for newer, older in pairwise([tuple(map(int, version)) for version in versions]):
         assert newer > older
+
+
+def test_the_defaults_of_uncertainty_are_documented() -> None:
+    text = (ROOT / "docs" / "robot_file.md").read_text()
+    for key, field in Uncertainty.model_fields.items():
+        assert f"| `{key}` | {field.default} |" in text, key

@@ -22,7 +22,8 @@ from plantar.logs.readers import open_log
 from plantar.logs.readers.column_map import apply, joint_order, ports
 from plantar.logs.save import save_log
 from plantar.robot.model import load_robot
-from plantar.robot_guess.feet import find_ankles
+from plantar.robot_guess.biped import find_biped
+from plantar.robot_guess.feet import find_sole
 
 
 def command(*words: object) -> int:
@@ -115,12 +116,15 @@ def test_init_sees_a_sensor_that_reads_the_other_way(log: MotionLog, tmp_path: P
     ],
 )
 def test_feet_of_real_robots_are_found(urdf: Path, ankles: dict[str, str], depth: float | None) -> None:
-    found = find_ankles(UrdfTree.load(urdf), pin.buildModelFromXML(urdf.read_text()))
-    assert {ankle.side: ankle.link for ankle in found} == ankles
-    for ankle in found:
-        length, width = np.ptp(ankle.sole, axis=0)
+    tree, model = UrdfTree.load(urdf), pin.buildModelFromXML(urdf.read_text())
+    biped = find_biped(tree, model)
+    assert {leg.side: leg.link for leg in biped.legs} == ankles
+    for leg in biped.legs:
+        sole = find_sole(tree, model, biped, leg)
+        length, width = np.ptp(sole.corners, axis=0)
         assert 0.05 < width < length < 0.35
-        assert depth is None or ankle.depth == pytest.approx(depth, abs=1e-3)
+        assert sole.corners[:, 0].max() > -sole.corners[:, 0].min() or urdf == TALOS, "toes are in front"
+        assert depth is None or sole.depth == pytest.approx(depth, abs=1e-3)
 
 
 @pytest.mark.slow

@@ -96,6 +96,15 @@ def test_paths_are_relative_to_the_robot_file(tmp_path: Path, monkeypatch: pytes
         (lambda e: e["feet"]["left"]["wrench"].update(name="right"), ["share one wrench sensor"]),
         (lambda e: e.update(joints={"nek": {}}), ["joints.nek", "neck"]),
         (lambda e: e.update(joints={"neck": {"terms": ["sticky"]}}), ["joints.neck.terms"]),
+        (lambda e: e.update(uncertainty={"imu_mout": 0.1}), ["'uncertainty.imu_mout'", "imu_mount"]),
+        (lambda e: e.update(uncertainty={"imu_mount": -0.1}), ["uncertainty.imu_mount", "-0.1"]),
+        (lambda e: e.update(uncertainty={"link_mass": float("inf")}), ["uncertainty.link_mass", "finite"]),
+        (lambda e: e.update(joint_names={"prefx": "a"}), ["'joint_names.prefx'", "prefix"]),
+        (lambda e: e.update(joint_names={"renamed": {"nek": "a"}}), ["joint_names.renamed.nek", "neck"]),
+        (
+            lambda e: e.update(joint_names={"renamed": {"neck": "a", "left_leg_x": "a"}}),
+            ["joint_names", "two joints", "'a'"],
+        ),
     ],
 )
 def test_what_is_wrong_is_named(tmp_path: Path, change: Change, expected: list[str]) -> None:
@@ -103,6 +112,13 @@ def test_what_is_wrong_is_named(tmp_path: Path, change: Change, expected: list[s
     assert "robot.yaml" in message
     for part in expected:
         assert part in message, message
+
+
+def test_uncertainty_has_defaults_and_takes_what_is_given(tmp_path: Path) -> None:
+    usual = make_robot(tmp_path).uncertainty
+    assert (usual.wrench_gain, usual.bush_position, usual.between_recordings) == (0.01, 0.003, 0.0)
+    given = make_robot(tmp_path, uncertainty={"bush_position": 0.02, "imu_mount": 0}).uncertainty
+    assert (given.bush_position, given.imu_mount, given.wrench_gain) == (0.02, 0.0, 0.01)
 
 
 def test_a_sole_without_area_is_refused(tmp_path: Path) -> None:

@@ -17,6 +17,12 @@ HUMANOID = ROBOTS / "simple_humanoid_description/urdf/simple_humanoid.urdf"
 HAND = ROBOTS / "allegro_hand_description/urdf/allegro_right_hand.urdf"
 PANDA = ROBOTS / "panda_description/urdf/panda.urdf"
 UR5 = ROBOTS / "ur_description/urdf/ur5_robot.urdf"
+HUMAN = ROBOTS / "human_description/robots/human.urdf"
+ROMEO = ROBOTS / "romeo_description/urdf/romeo_small.urdf"
+GO2 = ROBOTS / "go2_description/urdf/go2.urdf"
+CENTAURO = ROBOTS / "centauro_description/urdf/centauro.urdf"
+BOLT = ROBOTS / "bolt_description/robots/bolt.urdf"
+BAXTER = ROBOTS / "baxter_description/urdf/baxter.urdf"
 TIAGO = ROBOTS / "tiago_description/robots/tiago_no_hand.urdf"
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from plantar.checks.channels import check_channels, named
 from plantar.checks.imu import check_imu
+from plantar.checks.joints import check_joint_names
 from plantar.checks.standing import check_balance
 from plantar.conventions import GRAVITY
 from plantar.logs.motion_log import MotionLog
@@ -20,10 +21,11 @@ SHORTEST = 0.5  # s of a log from which anything can be said
 
 
 def check_log(robot: RobotModel, log: MotionLog) -> list[Finding]:
-    """Every finding about one log, in the order time, joints, IMU, wrenches, stuck channels."""
+    """Every finding about one log, in the order joint names, time, joints, IMU, wrenches, stuck channels."""
     imu = check_imu(robot.imu.name, log) if robot.imu is not None else ()
     channels = check_channels(robot, log)
-    return [*_time(log), *_joints(robot, log), *imu, *_wrenches(robot, log), *channels]
+    names = check_joint_names(robot, log)
+    return [*names, *_time(log), *_joints(robot, log), *imu, *_wrenches(robot, log), *channels]
 
 
 def _time(log: MotionLog) -> Iterator[Finding]:

@@ -25,7 +25,7 @@ COMMANDS = {
     "diagnose": ("diagnose", "What limits each number of a result, and what to record next."),
     "report": ("report", "Write the result's report.html again."),
     "convert": ("convert", "A log in another format."),
-    "init": ("init", "A first robot file from a URDF and logs, every guess marked."),
+    "init": ("init", "A first robot file from a URDF, and logs if there are any, every guess marked."),
 }
 SEVERAL = "--validate"  # takes one log or more
 GROUPS = {"identify": "Identify feet, inertial parameters or joints from logs."}

@@ -13,11 +13,12 @@ from plantar.robot.model import load_robot
 from plantar.robot_guess import guess_robot_file
 
 OUT_HELP = "The robot file to write."
+LOGS_HELP = "Logs of the robot standing, to find sensors in and to check the file against."
 
 
 def run(
     urdf: Annotated[Path, typer.Argument(help="The robot's URDF.", metavar="URDF")],
-    logs: Annotated[list[Path], typer.Argument(help="Logs to look for sensors in.", metavar="LOG...")],
+    logs: Annotated[list[Path] | None, typer.Argument(help=LOGS_HELP, metavar="[LOG...]")] = None,
     out: Annotated[Path, typer.Option("--out", help=OUT_HELP, metavar="FILE")] = Path("robot.yaml"),
     force: Annotated[bool, typer.Option("--force", help="Write over an existing file.")] = False,
 ) -> None:
@@ -27,9 +28,7 @@ def run(
     """
     if out.exists() and not force:
         raise PlantarError(located("is there already", path=out, valid="another --out, or --force"))
-    text = guess_robot_file(urdf, logs, out)
-    write_text(out, text)
-    load_robot(out)  # what was written must be readable
-    print(text, end="")
-    guesses = text.count("# GUESS")
-    print(f"# {out}: {guesses} lines are guesses, marked GUESS; look at the bush heights first")
+    write_text(out, guess_robot_file(urdf, logs or [], out))
+    guesses = load_robot(out).guesses  # what was written must be readable
+    print(out.read_text(), end="")
+    print(f"# {out}: {len(guesses)} lines are guesses, marked GUESS; look at the bush heights first")

@@ -20,6 +20,7 @@ from plantar.feet.sensors.tilt_error import NO_TILT_ERROR, log_tilt_error
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note, unique
+from plantar.robot.guesses import guess_notes
 from plantar.robot.model import RobotModel
 
 Progress = Callable[[str], None]
@@ -82,7 +83,8 @@ def prepare_checked(
     progress("fit z")
     vertical = fit_vertical_stiffness(recordings[: len(logs)], robot)
     moved = [moved_centre(recording, vertical.compliance) for recording in recordings]
-    notes = [*(note for one in recordings for note in one.notes), delay.note, *vertical.notes]
+    guessed = guess_notes(robot.path.name, robot.guesses)
+    notes = [*guessed, *(note for one in recordings for note in one.notes), delay.note, *vertical.notes]
     return PreparedLogs(
         tuple(moved[: len(logs)]), tuple(moved[len(logs) :]), settings, delay, vertical, unique(notes)
     )

@@ -21,6 +21,7 @@ from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding, Note
 from plantar.results.feet import Parameter
 from plantar.results.io import finite
+from plantar.robot.guesses import guess_notes
 from plantar.robot.model import RobotModel
 from plantar.signals.resampling import Sampling, sampling
 
@@ -74,7 +75,7 @@ def inspect_log(robot: RobotModel, log: MotionLog) -> LogSummary:
     findings = []
     feet: tuple[FootSummary, ...] = ()
     parameters: tuple[Parameter, ...] = ()
-    notes = (*log.notes, *log.joint_notes(robot))
+    notes = (*guess_notes(robot.path.name, robot.guesses), *log.notes, *log.joint_notes(robot))
     try:
         findings = check_log(robot, log)
         if robot.feet and not any(finding.fatal for finding in findings):

@@ -17,7 +17,10 @@ import pinocchio as pin
 from plantar.conventions import Array, rotation_from_rpy
 from plantar.errors import RobotError, located
 from plantar.files import read_bounded
+from plantar.robot.guesses import Guess
+from plantar.robot.joint_names import JointNames
 from plantar.robot.schema import FootEntry, FrameEntry, JointEntry, read_robot_file
+from plantar.robot.uncertainty import Uncertainty
 
 URDF_LIMIT = 64 * 2**20  # bytes
 
@@ -81,7 +84,10 @@ class JointTerms:
 
 @dataclass(frozen=True)
 class RobotModel:
-    """A URDF with the sensors and feet that the robot file gives it. Made by `load_robot`."""
+    """A URDF with the sensors and feet that the robot file gives it. Made by `load_robot`.
+
+    guesses: the keys of the file that are marked as not measured; uncertainty: what its numbers may be off by.
+    """
 
     name: str
     path: Path
@@ -93,6 +99,9 @@ class RobotModel:
     joints: Mapping[str, JointTerms]
     topics: Mapping[str, str]
     columns: Mapping[str, Any]
+    joint_names_in_logs: JointNames = field(default_factory=JointNames)
+    uncertainty: Uncertainty = field(default_factory=Uncertainty)
+    guesses: tuple[Guess, ...] = ()
 
     @cached_property
     def model(self) -> pin.Model:
@@ -139,7 +148,7 @@ def load_robot(path: str | os.PathLike[str]) -> RobotModel:
     or a foot's sensor is not rigidly fixed to its ankle.
     """
     path = Path(path)
-    entry = read_robot_file(path)
+    entry, guesses = read_robot_file(path)
     urdf_path = path.parent / entry.urdf
     content = read_bounded(urdf_path, URDF_LIMIT, RobotError)
     try:
@@ -158,6 +167,11 @@ def load_robot(path: str | os.PathLike[str]) -> RobotModel:
         joints={name: JointTerms(_terms(joint), joint.passive) for name, joint in entry.joints.items()},
         topics=dict(entry.topics),
         columns=dict(entry.columns),
+        joint_names_in_logs=JointNames(
+            entry.joint_names.prefix, entry.joint_names.suffix, dict(entry.joint_names.renamed)
+        ),
+        uncertainty=entry.uncertainty,
+        guesses=guesses,
     )
     _check(robot)
     return robot
@@ -219,8 +233,10 @@ def _check(robot: RobotModel) -> None:
             if carrier != carriers["ankle"]:
                 message = f"feet.{foot.name}.{part} is not rigidly fixed to the ankle link '{foot.ankle}'"
                 raise RobotError(located(message, path=robot.path, valid="a link without a joint in between"))
-    for name in robot.joints:
+    keys = [("joints", name) for name in robot.joints]
+    keys += [("joint_names.renamed", name) for name in robot.joint_names_in_logs.renamed]
+    for key, name in keys:
         if name not in robot.joint_names:
             near = difflib.get_close_matches(name, robot.joint_names, n=3) or robot.joint_names[:3]
-            message = f"joints.{name}: the URDF has no such movable joint"
+            message = f"{key}.{name}: the URDF has no such movable joint"
             raise RobotError(located(message, path=robot.path, valid="one of " + ", ".join(near)))

@@ -11,6 +11,8 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_valida
 
 from plantar.errors import RobotError, located
 from plantar.files import read_bounded
+from plantar.robot.guesses import Guess, read_guesses
+from plantar.robot.uncertainty import Uncertainty
 
 FILE_LIMIT = 2**20  # bytes
 DEPTH_LIMIT = 20  # levels of nesting: a robot file needs five
@@ -67,6 +69,22 @@ class JointEntry(Entry):
     passive: bool = False
 
 
+class JointNamesEntry(Entry):
+    """What a log calls the joints of the URDF: `prefix` + name + `suffix`, but for those that `renamed` lists."""
+
+    prefix: Annotated[str, Field(max_length=200)] = ""
+    suffix: Annotated[str, Field(max_length=200)] = ""
+    renamed: dict[Name, Name] = {}
+
+    @model_validator(mode="after")
+    def _log_names_differ(self) -> JointNamesEntry:
+        names = list(self.renamed.values())
+        twice = next((name for name in names if names.count(name) > 1), None)
+        if twice is not None:
+            raise ValueError(f"renamed gives two joints the log's name '{twice}'")
+        return self
+
+
 class RobotEntry(Entry):
     """The whole file."""
 
@@ -76,6 +94,8 @@ class RobotEntry(Entry):
     imu: ImuEntry | None = None
     feet: Annotated[dict[Name, FootEntry], Field(max_length=8)] = {}
     joints: dict[Name, JointEntry] = {}
+    joint_names: JointNamesEntry = JointNamesEntry()
+    uncertainty: Uncertainty = Uncertainty()
     topics: dict[Name, str] = {}
     columns: dict[Name, Any] = {}
 
@@ -87,8 +107,11 @@ class RobotEntry(Entry):
         return self
 
 
-def read_robot_file(path: Path) -> RobotEntry:
-    """Parse and check a robot file; RobotError says in one line which key is wrong and what would be valid."""
+def read_robot_file(path: Path) -> tuple[RobotEntry, tuple[Guess, ...]]:
+    """Parse and check a robot file; with it, which of its keys are marked as guesses.
+
+    Raises RobotError: one line that says which key is wrong and what would be valid.
+    """
     content = read_bounded(path, FILE_LIMIT, RobotError)
     try:
         _refuse_bombs(content, path)
@@ -101,9 +124,10 @@ def read_robot_file(path: Path) -> RobotEntry:
     if not isinstance(data, dict):
         raise RobotError(located("holds no keys", path=path, valid="name, urdf, imu, feet"))
     try:
-        return RobotEntry.model_validate(data)
+        entry = RobotEntry.model_validate(data)
     except ValidationError as error:
         raise RobotError(_explain(error, path)) from error
+    return entry, read_guesses(content)
 
 
 def _refuse_bombs(content: bytes, path: Path) -> None:
@@ -137,6 +161,7 @@ def _known_keys(location: tuple[int | str, ...]) -> list[str]:
     """The keys valid beside the one at `location`."""
     entries: dict[str, type[BaseModel]] = {
         "imu": ImuEntry, "bush": FrameEntry, "wrench": WrenchEntry, "sole": SoleEntry,
+        "joint_names": JointNamesEntry, "uncertainty": Uncertainty,
     }  # fmt: skip
     if len(location) == 1:
         return list(RobotEntry.model_fields)

@@ -1,49 +1,203 @@
 """A first robot file from a URDF and logs: what can be seen is written, what is guessed says so.
 
-Feet are the two lowest ends of the URDF's chains; soles come from the lowest shapes; sensors from the logs'
-names and message frames. Nothing here is certain: every line that was guessed says so, with its reason.
+Legs and soles come from the URDF; sensors from the logs' names and message frames; the logs of a standing robot then
+check and turn what gravity, weight and balance show. Without a log the URDF has to do.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pinocchio as pin
-import yaml
 
-from plantar.errors import PlantarError, RobotError, located
+from plantar.checks.joints import recorded_joints
+from plantar.checks.log_checks import check_log
+from plantar.conventions import GRAVITY, Array
+from plantar.errors import LogError, RobotError, located
 from plantar.export.urdf.tree import UrdfTree
-from plantar.files import read_bounded
-from plantar.robot_guess.feet import Ankle, find_ankles, vector
-from plantar.robot_guess.sensors import Sensors, look_at
+from plantar.files import read_bounded, write_text
+from plantar.logs.motion_log import MotionLog
+from plantar.logs.readers.urdf_names import with_urdf_names
+from plantar.robot.joint_names import JointNames, propose_names
+from plantar.robot.model import RobotModel, load_robot
+from plantar.robot_guess.biped import find_biped
+from plantar.robot_guess.bush import bush_shift
+from plantar.robot_guess.evidence import Remark, check_stance, widen_outline
+from plantar.robot_guess.feet import Sole, find_sole, fixed_links
+from plantar.robot_guess.imu import find_frame, turned_to_gravity
+from plantar.robot_guess.sensors import Sensors, look_at, sensor_of
+from plantar.robot_guess.stance import find_stance
+from plantar.robot_guess.text import BushHeight, Draft
+from plantar.robot_guess.wrench import seats_by_log, urdf_seat
 
-BUSH_HEIGHT = 0.02  # m above the sole: rubber bushes are thin
+THIN = 0.02  # m: rubber bushes sit about so far above the sole
 URDF_LIMIT = 64 * 2**20  # bytes
+WITHOUT_LOG = "imu"  # what an IMU is called before there is a log
 
 
 def guess_robot_file(urdf: Path, logs: Sequence[Path], out: Path) -> str:
-    """The robot file's text. Raises RobotError (URDF), LogError (logs)."""
+    """The robot file's text, for a file at `out`.
+
+    Raises RobotError where the URDF is unreadable or no biped, LogError where a log is, or is of another robot.
+    """
     model = _model(urdf)
     tree = UrdfTree.load(urdf)
+    biped = find_biped(tree, model)
+    soles = [find_sole(tree, model, biped, leg) for leg in biped.legs]
     sensors = look_at(logs)
-    ankles = find_ankles(tree, model)
-    count = "1 log" if len(logs) == 1 else f"{len(logs)} logs"
-    lines = [
-        f"# Written by plantar init from {urdf.name} and {count}. Lines marked GUESS want a look.",
-        f"name: {_text(tree.root.get('name') or urdf.stem)}",
-        f"urdf: {_text(_relative(urdf, out))}",
-        *_imu_lines(sensors, tree),
-        "feet:",
+    draft = _first_draft(tree, soles, sensors, urdf)
+    draft, recordings = _with_names(draft, tuple(model.names)[1:], sensors.logs)
+    if recordings:
+        _refuse_other_robot(draft, urdf, recordings)
+        draft = _seen_standing(draft, tree, model, recordings)
+        draft = _with_bush_by_log(draft, urdf, recordings)
+        draft = replace(draft, remarks=[*draft.remarks, *_findings(draft, urdf, recordings)])
+    return draft.text(_relative(urdf, out))
+
+
+def _first_draft(tree: UrdfTree, soles: Sequence[Sole], sensors: Sensors, urdf: Path) -> Draft:
+    """What the URDF and the sensors' names tell."""
+    found = dict[str, str]()
+    for sole in soles:
+        name = sensor_of(sole.limb.side, sensors, fixed_links(tree, sole.limb.link))
+        if name is not None and name not in found.values():
+            found[sole.limb.side] = name
+    seats = {
+        sole.limb.side: urdf_seat(
+            tree, sole, name := found.get(sole.limb.side), sensors.wrenches.get(name or "", "")
+        )
+        for sole in soles
+    }
+    name = next(iter(sensors.imus), None if sensors.logs else WITHOUT_LOG)
+    imu = None if name is None else (name, find_frame(tree, name, sensors.imus.get(name, "")))
+    if imu is not None and len(sensors.imus) > 1:
+        others = ", ".join(other for other in sensors.imus if other != name)
+        imu = (imu[0], replace(imu[1], reason=f"{imu[1].reason}; the logs also hold {others}"))
+    bushes = {sole.limb.side: _usual_bush(sole) for sole in soles}
+    left_out = [Remark(f"{path.name} is what the twin knows, no log: left out") for path in sensors.left_out]
+    count = {0: "no log", 1: "1 log"}.get(len(sensors.logs), f"{len(sensors.logs)} logs")
+    source = f"{urdf.name} and {count}"
+    robot = tree.root.get("name") or urdf.stem
+    return Draft(robot, source, imu, soles, found, seats, bushes, JointNames(), sensors.topics, left_out)
+
+
+def _usual_bush(sole: Sole) -> BushHeight:
+    above = min(THIN, abs(sole.depth) / 2)
+    reason = f"{1e3 * above:.0f} mm above the sole; the URDF cannot know"
+    return BushHeight(sole.depth + above, above, reason)
+
+
+def _with_names(
+    draft: Draft, joints: Sequence[str], logs: Sequence[MotionLog]
+) -> tuple[Draft, list[MotionLog]]:
+    """The draft with the logs' names of joints where they are not the URDF's, and the logs under the URDF's names."""
+    recorded = set().union(*(recorded_joints(log) for log in logs)) if logs else set()
+    names = propose_names(joints, sorted(recorded)) if recorded else None
+    if names is None:
+        return draft, list(logs)
+    return replace(draft, names=names), [with_urdf_names(log, names, joints) for log in logs]
+
+
+def _refuse_other_robot(draft: Draft, urdf: Path, logs: Sequence[MotionLog]) -> None:
+    robot = _loaded(draft, urdf)
+    for log in logs:
+        problem = next((one for one in check_log(robot, log) if one.code == "joint_names"), None)
+        if problem is not None:
+            raise LogError(located(problem.text, path=log.source))
+
+
+def _seen_standing(draft: Draft, tree: UrdfTree, model: pin.Model, logs: Sequence[MotionLog]) -> Draft:
+    """The draft after a look at gravity, balance, weight and centre of pressure, where both feet have a sensor."""
+    if len(draft.sensors) < len(draft.soles):
+        return draft
+    name, mount = draft.imu or (None, None)
+    links = [mount.link, *mount.others] if mount is not None else []
+    stance = find_stance(model, draft.soles, draft.sensors, name, links, logs)
+    if stance is None:
+        remark = Remark("the feet never carry the robot's weight: nothing could be checked", True)
+        return replace(draft, remarks=[*draft.remarks, remark])
+    poses = _seat_poses(draft, tree)
+    imu = None if mount is None or name is None else (name, turned_to_gravity(mount, stance))
+    seats, left = seats_by_log(draft.seats, draft.soles, stance, poses)
+    weight = GRAVITY * float(sum(inertia.mass for inertia in model.inertias))
+    soles, remarks = list[Sole](), list(draft.remarks)
+    for sole in draft.soles:
+        side = sole.limb.side
+        wider, doubts = widen_outline(sole, seats[side], stance, poses[side], weight)
+        soles.append(wider)
+        remarks += doubts
+    remarks += check_stance(soles, seats, stance, poses, weight, left)
+    return replace(draft, imu=imu, seats=seats, soles=soles, remarks=remarks)
+
+
+def _seat_poses(draft: Draft, tree: UrdfTree) -> Mapping[str, Array]:
+    """Pose of each sensor's link in its ankle link, (4, 4)."""
+    return {
+        sole.limb.side: np.array(tree.fixed_pose(sole.limb.link, draft.seats[sole.limb.side].link))
+        for sole in draft.soles
+    }
+
+
+def _with_bush_by_log(draft: Draft, urdf: Path, logs: Sequence[MotionLog]) -> Draft:
+    """The draft with bushes as high as torque and force agree that they are, if that is between sole and ankle.
+
+    What shows is the height over the sensor: a sensor at the ankle's origin by a guess goes to the sole where only then
+    the bush lies between both.
+    """
+    if draft.imu is None or len(draft.sensors) < len(draft.soles):
+        return draft
+    shift = bush_shift(_loaded(draft, urdf), logs)
+    seats, bushes = dict(draft.seats), dict(draft.bushes)
+    for sole in draft.soles:
+        side = sole.limb.side
+        seat, bush = seats[side], bushes[side]
+        lowered = replace(
+            seat,
+            xyz=sole.upright @ [0.0, 0.0, sole.depth],
+            height=sole.depth,
+            reason=f"at the sole, below the bush as torque and force show, {seat.reason.partition(', ')[2]}",
+        )
+        tried = [seat, lowered] if seat.at_origin else [seat]
+        rise = None if shift is None else bush.height + shift[0] - seat.height
+        heights = [] if rise is None else [one.height + rise for one in tried]
+        best = int(np.argmin([abs(height - bush.height) for height in heights])) if heights else 0
+        if rise is None or shift is None or not sole.depth - shift[1] < heights[best] < shift[1]:
+            bushes[side] = replace(bush, reason=f"{bush.reason}, and the logs do not show it")
+            continue
+        seats[side] = tried[best]
+        if best == 1:
+            seats[side] = replace(lowered, spread=shift[1] + bush.spread)
+        height, within = heights[best], f"± {1e3 * shift[1]:.0f} mm"
+        if shift[1] < bush.spread and sole.depth < height < 0:
+            reason = f"{1e3 * rise:+.0f} mm over the sensor, where torque and force of both feet agree within {within}"
+            bushes[side] = BushHeight(height, shift[1], reason)
+        else:
+            bushes[side] = replace(bush, reason=f"{bush.reason}; torque and force agree within {within}")
+    return replace(draft, seats=seats, bushes=bushes)
+
+
+def _findings(draft: Draft, urdf: Path, logs: Sequence[MotionLog]) -> list[Remark]:
+    """What is odd about the logs, seen with the file as it will be written."""
+    robot = _loaded(draft, urdf)
+    return [
+        Remark(f"{log.name}: {finding.text}", True)
+        for log in logs
+        for finding in check_log(robot, log)
+        if finding.severity == "warning"
     ]
-    taken: set[str] = set()
-    for ankle in ankles:
-        lines += _foot_lines(ankle, tree, sensors, taken)
-    if sensors.topics:
-        lines.append("topics:")
-        lines += [f"  {_text(key)}: {_text(topic)}" for key, topic in sensors.topics.items()]
-    return "\n".join(lines) + "\n"
+
+
+def _loaded(draft: Draft, urdf: Path) -> RobotModel:
+    """The draft as the rest of plantar reads it."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "robot.yaml"
+        write_text(path, draft.text(str(urdf.resolve())))
+        return load_robot(path)
 
 
 def _model(urdf: Path) -> pin.Model:
@@ -57,91 +211,8 @@ def _model(urdf: Path) -> pin.Model:
         raise RobotError(located(f"is not a readable URDF: {reason}", path=urdf)) from error
 
 
-def _imu_lines(sensors: Sensors, tree: UrdfTree) -> list[str]:
-    if not sensors.imus:
-        return ["# imu: no IMU was found in the logs"]
-    name = next(iter(sensors.imus))
-    frame = sensors.imus[name]
-    if frame in tree.links:
-        return [f"imu: {{name: {_text(name)}, link: {_text(frame)}}}  # link: the frame of its messages"]
-    words = [name.lower(), "imu", "chest", "torso", "trunk", "pelvis", "waist", "base"]
-    link, reason = next(
-        (
-            (link, f"its name holds '{word}'")
-            for word in words
-            for link in reversed(tree.links)
-            if word in link.lower()
-        ),
-        (next(iter(tree.links)), "the first link"),
-    )
-    others = [other for other in sensors.imus if other != name]
-    also = f"; the logs also hold {', '.join(others)}" if others else ""
-    place = f"{{name: {_text(name)}, link: {_text(link)}, xyz: [0, 0, 0], rpy: [0, 0, 0]}}"
-    return [f"imu: {place}  # GUESS: {reason}{also}"]
-
-
-def _foot_lines(ankle: Ankle, tree: UrdfTree, sensors: Sensors, taken: set[str]) -> list[str]:
-    bush, sole = ankle.place(ankle.depth + BUSH_HEIGHT), ankle.place(ankle.depth)
-    corners = ", ".join(vector(corner) for corner in ankle.sole)
-    name = _wrench_for(ankle, tree, sensors, taken)
-    key = ankle.side if name is None else name
-    frame = "" if name is None else sensors.wrenches[name]
-    sign = ", sign: -1" if name is not None and sensors.upward.get(name, 0.0) < 0 else ""
-    why = "; sign: its force.z is negative under load" if sign else ""
-    taken.add(key)
-    if frame in tree.links:
-        wrench = f"{{name: {_text(key)}, link: {_text(frame)}{sign}}}  # link: the frame of its messages{why}"
-    else:
-        reason = "no force sensor in the logs" if name is None else f"measured at the sole{why}"
-        wrench = f"{{name: {_text(key)}, {sole}{sign}}}  # GUESS: {reason}"
-    height = f"{1e3 * BUSH_HEIGHT:.0f} mm above the sole; the URDF cannot know"
-    return [
-        f"  {ankle.side}:",
-        f"    ankle: {_text(ankle.link)}  # GUESS: one of the lowest ends of the URDF",
-        f"    bush: {{{bush}}}  # GUESS: {height}",
-        f"    wrench: {wrench}",
-        f"    # GUESS: {ankle.reason}",
-        f"    sole: {{{sole}, polygon: [{corners}]}}",
-    ]
-
-
-def _wrench_for(ankle: Ankle, tree: UrdfTree, sensors: Sensors, taken: set[str]) -> str | None:
-    """The force sensor of a foot: by the frame fixed to its ankle, else by side in its name."""
-    free = [name for name in sensors.wrenches if name not in taken]
-    for name in free:
-        frame = sensors.wrenches[name]
-        if frame in tree.links and _fixed(tree, ankle.link, frame):
-            return name
-    initial = ankle.side[0]
-    patterns = (rf"{ankle.side}.*(foot|ankle|sole|leg)|(foot|ankle|sole|leg).*{ankle.side}", ankle.side,
-                rf"^{initial}_?(foot|leg|ankle|sole)|^{initial}f|{initial}leg")  # fmt: skip
-    for pattern in patterns:
-        for name in free:
-            if re.search(pattern, name, re.IGNORECASE):
-                return name
-    return free[0] if len(free) == 1 and len(sensors.wrenches) == 1 else None
-
-
-def _fixed(tree: UrdfTree, ankle: str, frame: str) -> bool:
-    try:
-        tree.fixed_pose(ankle, frame)
-    except PlantarError:
-        return False
-    return True
-
-
 def _relative(path: Path, out: Path) -> str:
     try:
         return str(path.resolve().relative_to(out.resolve().parent))
     except ValueError:
         return str(path.resolve())
-
-
-def _text(value: str) -> str:
-    """A scalar as YAML, quoted where it must be."""
-    return (
-        yaml.safe_dump(value, default_flow_style=True, width=10_000)
-        .removesuffix("\n")
-        .removesuffix("...")
-        .strip()
-    )

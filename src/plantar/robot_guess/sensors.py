@@ -1,34 +1,40 @@
-"""Sensors as logs show them: names, frames of messages, topics, and which way a force sensor reads."""
+"""Sensors as logs show them: names, frames of messages, topics; and which of them belongs to which foot."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import numpy as np
-
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import open_log
 from plantar.logs.readers.ros.bag import bag_topics
+from plantar.robot_guess.biped import LEFT, RIGHT
 
 BAGS = (".mcap", ".db3", ".bag")
+TRUTH = ".truth."  # in the name of what the twin writes beside its logs
 
 
 @dataclass
 class Sensors:
-    """What the logs hold: names of IMUs and wrench sensors, the frames of their messages, topics of bags."""
+    """What the logs hold: IMUs and wrench sensors, each with the frame of its messages, topics of bags; the logs
+    themselves, and the files that are none."""
 
     imus: dict[str, str] = field(default_factory=dict)
     wrenches: dict[str, str] = field(default_factory=dict)
-    upward: dict[str, float] = field(default_factory=dict)
     topics: dict[str, str] = field(default_factory=dict)
+    logs: list[MotionLog] = field(default_factory=list)
+    left_out: list[Path] = field(default_factory=list)
 
 
-def look_at(logs: Sequence[Path]) -> Sensors:
-    """Sensors in logs, the frames that bags give, and each wrench's mean force.z while it carries load."""
+def look_at(paths: Sequence[Path]) -> Sensors:
+    """Open logs and list their sensors; a file of the twin's truth is left out. Raises LogError."""
     sensors = Sensors()
-    for path in logs:
+    for path in paths:
+        if TRUTH in path.name:
+            sensors.left_out.append(path)
+            continue
         if path.suffix.lower() in BAGS or path.is_dir():
             _look_at_bag(path, sensors)
         log = open_log(path)
@@ -37,10 +43,26 @@ def look_at(logs: Sequence[Path]) -> Sensors:
             if kind in ("imu", "wrench"):
                 found = sensors.imus if kind == "imu" else sensors.wrenches
                 found.setdefault(rest.rsplit(".", 2)[0], "")
-        for sensor in sensors.wrenches:
-            if sensor not in sensors.upward and log.has(f"wrench.{sensor}.force.z"):
-                sensors.upward[sensor] = _loaded(log, sensor)
+        sensors.logs.append(log)
     return sensors
+
+
+def sensor_of(side: str, sensors: Sensors, on_foot: Sequence[str]) -> str | None:
+    """The force sensor of a foot: by the frame of its messages, one of `on_foot`, else by the side in its name."""
+    framed = [name for name, frame in sensors.wrenches.items() if frame in on_foot]
+    if framed:
+        return framed[0]
+    own, other = (LEFT, RIGHT) if side == "left" else (RIGHT, LEFT)
+    free = [name for name, frame in sensors.wrenches.items() if not other.search(name) or own.search(name)]
+    free = [name for name in free if not re.search("hand|arm|wrist|elbow", name, re.I)] or free
+    initial = side[0]
+    patterns = (rf"{side}.*(foot|ankle|sole|leg)|(foot|ankle|sole|leg).*{side}", side,
+                rf"^{initial}_?(foot|leg|ankle|sole)|^{initial}f|{initial}leg|(^|_){initial}(_|$)")  # fmt: skip
+    for pattern in patterns:
+        for name in free:
+            if re.search(pattern, name, re.I):
+                return name
+    return free[0] if len(free) == 1 and len(sensors.wrenches) == 1 else None
 
 
 def _look_at_bag(path: Path, sensors: Sensors) -> None:
@@ -54,9 +76,3 @@ def _look_at_bag(path: Path, sensors: Sensors) -> None:
         elif kind in ("imu", "wrench"):
             (sensors.imus if kind == "imu" else sensors.wrenches)[name] = frame
             sensors.topics.setdefault(name, topics[0].name)
-
-
-def _loaded(log: MotionLog, sensor: str) -> float:
-    force = log.column(f"wrench.{sensor}.force.z")
-    force = force[np.isfinite(force)]
-    return float(force[np.abs(force) >= np.quantile(np.abs(force), 0.75)].mean()) if force.size else 0.0

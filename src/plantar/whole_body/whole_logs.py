@@ -12,6 +12,7 @@ from plantar.feet.prepare import check_names
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.results.feet import Input
+from plantar.robot.guesses import guess_notes
 from plantar.robot.model import RobotModel
 from plantar.whole_body.dataset import Body, Whole, prepare_whole
 from plantar.whole_body.equations import Calibration
@@ -55,5 +56,6 @@ def prepare_logs(
     if body.equation.floating:
         calibration, notes = calibrate(body, fitted, as_recorded=settings.as_recorded)
     inputs = (*(Input.of(log, "fit") for log in logs), *(Input.of(log, "validate") for log in validate))
-    said = (*(note for whole in fitted + unseen for note in whole.notes), *notes)
+    guessed = guess_notes(robot.path.name, robot.guesses)
+    said = (*guessed, *(note for whole in fitted + unseen for note in whole.notes), *notes)
     return WholeLogs(body, fitted, unseen, calibration, inputs, said)

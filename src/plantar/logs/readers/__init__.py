@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from plantar.errors import LogError, located
+from plantar.logs.readers.urdf_names import with_urdf_names
 
 if TYPE_CHECKING:
     from plantar.logs.motion_log import MotionLog
@@ -37,7 +38,8 @@ FORMATS: dict[str, str] = {
 
 
 def open_log(path: str | os.PathLike[str], robot: RobotModel | None = None) -> MotionLog:
-    """Read one recording, whatever its format; `robot` gives topics or column maps where a format needs them.
+    """Read one recording, whatever its format; `robot` gives topics or column maps where a format needs them, and what
+    the log calls the joints.
 
     Raises LogError: the file is missing, of an unknown format, or broken.
     """
@@ -47,7 +49,8 @@ def open_log(path: str | os.PathLike[str], robot: RobotModel | None = None) -> M
     module = _module(path, robot)
     reader: Reader = import_module(f"plantar.logs.readers.{module}").read
     with np.errstate(over="ignore", invalid="ignore"):  # a damaged file may hold any number
-        return reader(path, robot)
+        log = reader(path, robot)
+    return log if robot is None else with_urdf_names(log, robot.joint_names_in_logs, robot.joint_names)
 
 
 def _module(path: Path, robot: RobotModel | None) -> str:

@@ -1,0 +1,70 @@
+"""Joints of a log that are not the URDF's: without them every angle would be wrong, so nothing may be fitted."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from plantar.logs.motion_log import MotionLog
+from plantar.notes import Finding
+from plantar.robot.joint_names import propose_names
+from plantar.robot.model import RobotModel
+
+MOST_NAMED = 3
+
+
+def check_joint_names(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
+    """A fatal finding where the log holds no joint of the URDF, or none of a leg; it proposes the naming that would."""
+    recorded = recorded_joints(log)
+    needed = {
+        f"any joint between IMU and {foot} foot": own
+        for foot, own in _legs(robot).items()
+        if own and not own & recorded
+    }
+    every = set(robot.joint_names)
+    if not every or (not needed and (every & recorded or robot.imu is not None)):
+        return
+    what, missing = next(iter(needed.items())) if every & recorded else ("any joint", every)
+    text = f"columns 'joint.*.position': do not hold {what} of the URDF ({_listing(missing)})"
+    names = propose_names(robot.joint_names, sorted(recorded))
+    strangers = recorded - every
+    if names is not None:
+        valid = f"valid: '{names}' in the robot file"
+        text += f"; the log's {_listing(strangers)} look like them"
+    elif strangers:
+        valid = "valid: a log of this robot, or 'joint_names: {renamed: {URDF joint: log joint}}' in the robot file"
+        text += f"; it holds {_listing(strangers)}"
+    else:
+        if not recorded:
+            text = f"columns 'joint.*.position': the log holds no joint positions, such as of {_listing(missing)}"
+        valid = "valid: a position of every joint that moves"
+    yield Finding("joint_names", f"{text} ({valid})", True)
+
+
+def recorded_joints(log: MotionLog) -> set[str]:
+    """The joints of which a log holds positions."""
+    parts = [name.partition(".")[2].rpartition(".") for name in log.columns if name.startswith("joint.")]
+    return {
+        joint
+        for joint, _, quantity in parts
+        if quantity == "position" and np.isfinite(log.column(f"joint.{joint}.position")).any()
+    }
+
+
+def _legs(robot: RobotModel) -> dict[str, set[str]]:
+    """The joints between the IMU and each foot that no other foot has there; none without IMU."""
+    if robot.imu is None:
+        return {}
+    paths = {
+        name: set(robot.joints_between(robot.imu.placement, foot.bush)) for name, foot in robot.feet.items()
+    }
+    return {
+        name: path.difference(*(other for key, other in paths.items() if key != name))
+        for name, path in paths.items()
+    }
+
+
+def _listing(names: set[str]) -> str:
+    shown = sorted(names)[:MOST_NAMED]
+    return ", ".join(shown) + (f" and {len(names) - len(shown)} more" if len(names) > len(shown) else "")

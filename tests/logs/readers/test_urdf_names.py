@@ -1,0 +1,45 @@
+"""Logs read under the URDF's names, where the robot file says what the logs call the joints."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from biped import record, sway
+from biped_robot import make_robot
+from plantar.checks.log_checks import check_log
+from plantar.errors import LogError
+from plantar.logs.motion_log import MotionLog
+from plantar.logs.readers import open_log
+from plantar.logs.save import save_log
+from renamed_joints import renamed
+
+
+@pytest.fixture(scope="module")
+def log() -> MotionLog:
+    return record(sway(duration=6.0))
+
+
+def test_the_robot_file_says_what_the_log_calls_its_joints(tmp_path: Path, log: MotionLog) -> None:
+    save_log(renamed(log, {"neck": "Hals"}, prefix="biped/"), tmp_path / "sway.csv")
+    names = {"prefix": "biped/", "renamed": {"neck": "Hals"}}
+    robot = make_robot(tmp_path, joint_names=names)
+    read = open_log(tmp_path / "sway.csv", robot)
+    for joint in robot.joint_names:
+        if log.has(f"joint.{joint}.position"):
+            np.testing.assert_allclose(
+                read.column(f"joint.{joint}.position"), log.column(f"joint.{joint}.position"), atol=1e-12
+            )
+    assert not [found for found in check_log(robot, read) if found.code == "joint_names"]
+    save_log(log, tmp_path / "own.csv")
+    assert set(open_log(tmp_path / "own.csv", robot).columns) == set(log.columns), "the URDF's names stay"
+
+
+def test_a_log_that_holds_a_joint_twice_is_refused(tmp_path: Path, log: MotionLog) -> None:
+    both = {**log.columns, "joint.Hals.position": log.column("joint.left_ankle_roll.position")}
+    save_log(MotionLog("twice", log.time, both), tmp_path / "twice.csv")
+    robot = make_robot(tmp_path, joint_names={"renamed": {"left_ankle_roll": "Hals"}})
+    with pytest.raises(LogError, match="also holds"):
+        open_log(tmp_path / "twice.csv", robot)
