@@ -34,6 +34,7 @@ from plantar.robot_guess.sensors import Sensors, look_at, sensor_of
 from plantar.robot_guess.stance import find_stance
 from plantar.robot_guess.text import BushHeight, Draft
 from plantar.robot_guess.wrench import seats_by_log, urdf_seat
+from plantar.robot_guess.zeros import without_zeros
 
 THIN = 0.02  # m: rubber bushes sit about so far above the sole
 URDF_LIMIT = 64 * 2**20  # bytes
@@ -117,15 +118,16 @@ def _seen_standing(draft: Draft, tree: UrdfTree, model: pin.Model, logs: Sequenc
         return draft
     name, mount = draft.imu or (None, None)
     links = [mount.link, *mount.others] if mount is not None else []
-    stance = find_stance(model, draft.soles, draft.sensors, name, links, logs)
+    weight = GRAVITY * float(sum(inertia.mass for inertia in model.inertias))
+    tared, seen = without_zeros(logs, draft.sensors, weight)
+    stance = find_stance(model, draft.soles, draft.sensors, name, links, tared)
     if stance is None:
         remark = Remark("the feet never carry the robot's weight: nothing could be checked", True)
         return replace(draft, remarks=[*draft.remarks, remark])
     poses = _seat_poses(draft, tree)
     imu = None if mount is None or name is None else (name, turned_to_gravity(mount, stance))
     seats, left = seats_by_log(draft.seats, draft.soles, stance, poses)
-    weight = GRAVITY * float(sum(inertia.mass for inertia in model.inertias))
-    soles, remarks = list[Sole](), list(draft.remarks)
+    soles, remarks = list[Sole](), [*draft.remarks, *seen]
     for sole in draft.soles:
         side = sole.limb.side
         wider, doubts = widen_outline(sole, seats[side], stance, poses[side], weight)

@@ -1,0 +1,60 @@
+"""Zeros of force sensors are taken off before a first robot file is checked against a walk."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from example_robots import TALOS
+from plantar.logs.motion_log import MotionLog
+from plantar.logs.save import save_log
+from plantar.robot_guess import guess_robot_file
+from plantar.robot_guess.zeros import without_zeros
+from standing_robot import talos_sways
+
+SENSORS = {"left": "left", "right": "right"}
+WEIGHT = 880.0  # N
+ZERO = {"left": [-15.0, 8.0, -50.0, 25.0, -4.0, 1.0], "right": [6.0, 12.0, 40.0, -20.0, 3.0, 0.0]}
+
+
+def stepping(log: MotionLog, zero: dict[str, list[float]] | None = None) -> MotionLog:
+    """The log of a robot that stands on one foot for half a second in turn, its sensors with zeros of their own."""
+    turn = np.floor(log.time / 0.5).astype(int) % 4
+    shares = {"left": np.array([1.0, 2.0, 1.0, 0.0])[turn], "right": np.array([1.0, 0.0, 1.0, 2.0])[turn]}
+    columns = {}
+    for foot, share in shares.items():
+        wrench = log.wrench(foot) * share[:, None] + (zero or {}).get(foot, [0.0] * 6)
+        for k, part in enumerate(f"{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz"):
+            columns[f"wrench.{foot}.{part}"] = wrench[:, k]
+    return log.with_columns(columns)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_what_a_lifted_foot_reads_is_taken_off_whatever_the_sensors_axes(sign: float) -> None:
+    turn = (
+        np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]) * sign
+    )  # an axis points the other way too
+    log = talos_sways(TALOS, wrench_turn=turn)
+    (tared,), (remark,) = without_zeros([stepping(log, ZERO)], SENSORS, WEIGHT)
+    for foot in ZERO:
+        np.testing.assert_allclose(tared.wrench(foot), stepping(log).wrench(foot), atol=1e-9)
+    assert "left 53 N, right 42 N" in remark.text
+    assert not remark.doubt
+
+
+def test_nothing_is_taken_off_where_both_feet_stand() -> None:
+    log = talos_sways(TALOS)
+    without_left = MotionLog(
+        "none", log.time, {name: values for name, values in log.columns.items() if "left" not in name}
+    )
+    assert without_zeros([log, without_left], SENSORS, WEIGHT) == ([log, without_left], [])
+
+
+def test_a_zero_does_not_speak_against_the_outline(tmp_path: Path) -> None:
+    save_log(stepping(talos_sways(TALOS), ZERO), tmp_path / "walk.csv")
+    text = guess_robot_file(TALOS, [tmp_path / "walk.csv"], tmp_path / "robot.yaml")
+    assert "leaves its outline" not in text
+    assert "balance gravity to 0.0 cm" in text
+    assert "taken off as their zeros" in text
