@@ -20,9 +20,12 @@ ZERO = {"left": [-15.0, 8.0, -50.0, 25.0, -4.0, 1.0], "right": [6.0, 12.0, 40.0,
 
 
 def stepping(log: MotionLog, zero: dict[str, list[float]] | None = None) -> MotionLog:
-    """The log of a robot that stands on one foot for half a second in turn, its sensors with zeros of their own."""
+    """The log of a robot that lifts its feet in turn for half a second, its sensors with zeros of their own.
+
+    What the lifted foot carried is held by nobody: the other foot's load and centre of pressure stay.
+    """
     turn = np.floor(log.time / 0.5).astype(int) % 4
-    shares = {"left": np.array([1.0, 2.0, 1.0, 0.0])[turn], "right": np.array([1.0, 0.0, 1.0, 2.0])[turn]}
+    shares = {"left": np.array([1.0, 1.0, 1.0, 0.0])[turn], "right": np.array([1.0, 0.0, 1.0, 1.0])[turn]}
     columns = {}
     for foot, share in shares.items():
         wrench = log.wrench(foot) * share[:, None] + (zero or {}).get(foot, [0.0] * 6)
