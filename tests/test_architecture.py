@@ -23,7 +23,7 @@ ROOMS = (
 )  # fmt: skip
 # So does a folder or a file inside `feet`: from those before it.
 FEET = (
-    "settings", "sensors", "recording", "fit", "exclusion", "assess", "prepare", "foot_fit",
+    "settings", "recording", "sensors", "fit", "exclusion", "assess", "prepare_log", "prepare", "foot_fit",
     "identify", "validate", "select_motions",
 )  # fmt: skip
 LARGEST_ROOM = 0.15  # of all lines
@@ -53,10 +53,10 @@ UNTESTED = frozenset(
         "feet.fit.vertical_stiffness",
         "feet.foot_fit",
         "feet.prepare",
+        "feet.fit.prediction",
         "feet.select_motions",
         "model_selection.cross_validation",
         "model_selection.initial_state",
-        "model_selection.variable_projection",
         "results.dynamics",
         "results.feet",
         "signals.orientation",
