@@ -106,7 +106,7 @@ def test_nuisances_projected_out_are_the_same_as_fitted(shared: bool) -> None:
     responses = [rng.standard_normal(n) + 2 for n in sizes]
     runs = [np.sort(rng.integers(0, count, n)) for n, count in zip(sizes, run_counts, strict=True)]
     memories = [np.exp(-0.05 * np.arange(n)) + 0.2 * rng.random(n) for n in sizes]
-    found = Linearised(designs, responses, shared, memories, runs)
+    found = Linearised(designs, responses, shared, memories, runs, run_counts)
     rows = sum(sizes)
     offsets = np.zeros((rows, 1 if shared else 2))
     initial_states = np.zeros((rows, sum(run_counts)))

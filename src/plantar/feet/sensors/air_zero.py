@@ -17,8 +17,10 @@ FEWEST_SWINGS = 2  # fewer do not tell a zero from a robot that is lifted, or a 
 FEWEST_FOR_DRIFT = 4  # swings: a line through fewer follows their scatter
 CLEAR_DRIFT = 3.0  # times its own deviation: a smaller drift is what single swings differ by
 SHORTEST_SWING = 0.1  # s of the middle of a swing: its first and last quarter may still touch the ground
-CLEARLY_LOADED = 0.3  # of the weight, between air and stance: a foot that never carries as much does not step
-IN_AIR = 0.1  # of the way from air to stance
+LOADED = 0.5  # of the weight, that a foot carries in its stances: one that does not share it with the other
+LARGEST_ZERO = 0.2  # of the weight: a foot that reads more at its lightest is not in the air
+IN_AIR = 0.4  # of the way from air to stance: so high that a foot which only sways is seen to go on changing
+FLAT = 0.015  # of the weight: what a foot reads in the middle of a swing hardly changes
 
 
 @dataclass(frozen=True)
@@ -55,13 +57,14 @@ def air_zero(time: Array, wrench: Array, force_z: Array, weight: float) -> AirZe
     if not known.any():
         return None
     low, high = np.percentile(force_z[known], [2, 98])
-    if high - low < CLEARLY_LOADED * weight:
+    if high < LOADED * weight or abs(low) > LARGEST_ZERO * weight:
         return None
     places, values = [], []
     for swing in runs(known & (force_z < low + IN_AIR * (high - low))):
         quarter = (swing.stop - swing.start) // 4
         middle = slice(swing.start + quarter, swing.stop - quarter)
-        if time[middle.stop - 1] - time[middle.start] >= SHORTEST_SWING:
+        long_enough = time[middle.stop - 1] - time[middle.start] >= SHORTEST_SWING
+        if long_enough and np.std(force_z[middle]) < FLAT * weight:
             places.append(float(np.mean(time[middle])))
             values.append(np.median(wrench[middle], axis=0))
     if len(values) < FEWEST_SWINGS:
