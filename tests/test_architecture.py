@@ -19,7 +19,7 @@ ROOMS = (
     "dynamics", "models", "estimation", "model_selection",
     "results", "feet", "whole_body",
     "motions", "twin",
-    "inspection", "export", "robot_guess", "report", "campaign", "cli",
+    "inspection", "exporters", "robot_guess", "report", "campaign", "cli",
 )  # fmt: skip
 # So does a folder or a file inside `feet`: from those before it.
 FEET = (
@@ -77,7 +77,7 @@ LONGEST = 350  # lines
 # Who may import what is heavy, optional or has effects.
 KEEPERS = {
     "plantar._core": {"dynamics", "contact", "twin"},
-    "mujoco": {"twin", "export"},
+    "mujoco": {"twin", "exporters"},
     "pink": {"motions", "twin"},
     "qpsolvers": {"motions", "twin"},
     "clarabel": {"dynamics", "estimation"},

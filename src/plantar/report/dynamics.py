@@ -9,12 +9,12 @@ from typing import Any, Final
 from plantar.errors import PlantarError, located
 from plantar.files import write_text
 from plantar.report.content import Cell, Column, Figure, Section, Table
-from plantar.report.numbers import MISSING, interval, number, percent, unit, with_uncertainty
 from plantar.report.page import render
 from plantar.report.records import InertiaResult, JointsResult, Result, Row, checked, result_path
 from plantar.report.tables import input_table, settings_table, skill_cell, verdict_cell
 from plantar.report.verdict import listed
 from plantar.results.io import read_result
+from plantar.results.numbers import MISSING, interval, number, percent, unit, with_uncertainty
 
 INERTIA: Final = "plantar.inertia/1"
 JOINTS: Final = "plantar.joints/1"

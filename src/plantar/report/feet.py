@@ -13,10 +13,10 @@ from plantar.report.content import Figure, Section, Table
 from plantar.report.motions import motion_views
 from plantar.report.page import render
 from plantar.report.records import FeetResult, checked, result_path
-from plantar.report.residuals import read_residuals, residuals_path
 from plantar.report.verdict import foot_verdicts, trust
 from plantar.results.feet import FEET_SCHEMA
 from plantar.results.io import read_result
+from plantar.results.residuals import read_residuals, residuals_path
 
 
 def write_feet_report(

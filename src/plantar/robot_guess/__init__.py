@@ -14,7 +14,7 @@ import pinocchio as pin
 import yaml
 
 from plantar.errors import PlantarError, RobotError, located
-from plantar.export.urdf.tree import UrdfTree
+from plantar.exporters.urdf.tree import UrdfTree
 from plantar.files import read_bounded
 from plantar.robot_guess.feet import Ankle, find_ankles, vector
 from plantar.robot_guess.sensors import Sensors, look_at

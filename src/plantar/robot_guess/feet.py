@@ -9,8 +9,8 @@ import numpy as np
 import pinocchio as pin
 
 from plantar.conventions import Array, rotation_from_rpy
-from plantar.export.poses import pose, rpy_of
-from plantar.export.urdf.tree import UrdfTree
+from plantar.exporters.poses import pose, rpy_of
+from plantar.exporters.urdf.tree import UrdfTree
 
 LEVEL = 0.02  # m: feet stand this level at the reference pose
 BOTTOM = 0.01  # m above the lowest point: what still belongs to the sole

@@ -14,16 +14,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from plantar.conventions import rotation_from_rpy
-from plantar.export.bush import FootBush, Spring
-from plantar.export.comment import head
-from plantar.export.poses import pose
-from plantar.export.sdf.target import insert_bushes
-from plantar.export.sdf.tree import SdfTree, set_pose
-from plantar.export.xml_file import numbers, to_text
+from plantar.exporters.bush import FootBush, Spring
+from plantar.exporters.comment import head
+from plantar.exporters.poses import pose
+from plantar.exporters.sdf.target import insert_bushes
+from plantar.exporters.sdf.tree import SdfTree, set_pose
+from plantar.exporters.xml_file import numbers, to_text
 from plantar.notes import Note
 
 if TYPE_CHECKING:
-    from plantar.export.job import Job
+    from plantar.exporters.job import Job
 
 EXTENDS = True
 MESHES = (".obj", ".vtk", ".gltf")  # what Drake makes collision shapes of

@@ -25,8 +25,8 @@ from plantar.conventions import (
     rotation_from_rpy,
 )
 from plantar.errors import ExportError, located
-from plantar.export.source import robot_model, robot_urdf
-from plantar.export.urdf.tree import UrdfTree
+from plantar.exporters.source import robot_model, robot_urdf
+from plantar.exporters.urdf.tree import UrdfTree
 from plantar.notes import Note
 
 SIDES = {"left": "LLEG", "right": "RLEG"}

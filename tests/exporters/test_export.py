@@ -24,7 +24,7 @@ import yaml
 from export_robots import CENTRE, SOLE_Z, TRUTH, bush_rotation, result, write_sdf, write_urdf
 from plantar.cli import main
 from plantar.errors import ExportError
-from plantar.export import TARGETS, export
+from plantar.exporters import TARGETS, export
 
 SIDES = {"left": "LLEG", "right": "RLEG"}
 
@@ -165,7 +165,7 @@ def test_urdf_export_twice_updates_instead_of_stacking(feet: dict[str, Any], tmp
 def test_sdf_models_of_both_pose_grammars(version: str, feet: dict[str, Any], tmp_path: Path) -> None:
     model = write_sdf(tmp_path / "robot.sdf", version)
     export(feet, "sdf", tmp_path / "out.sdf", model=model, with_offset=True)
-    from plantar.export.sdf.tree import SdfTree, relative
+    from plantar.exporters.sdf.tree import SdfTree, relative
 
     tree = SdfTree.load(tmp_path / "out.sdf", ("left_ankle",))
     place = relative(tree, "left_bush_sole", "left_ankle")

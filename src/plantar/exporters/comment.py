@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from plantar.export.bush import FootBush
+from plantar.exporters.bush import FootBush
 from plantar.notes import Note
 
 

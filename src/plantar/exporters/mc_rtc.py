@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from plantar.notes import Note
 
 if TYPE_CHECKING:
-    from plantar.export.job import Job
+    from plantar.exporters.job import Job
 
 
 def write(job: Job) -> tuple[str, tuple[Note, ...]]:

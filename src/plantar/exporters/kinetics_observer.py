@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from plantar.conventions import Axis
-from plantar.export.comment import head
+from plantar.exporters.comment import head
 from plantar.notes import Note
 
 if TYPE_CHECKING:
-    from plantar.export.job import Job
+    from plantar.exporters.job import Job
 
 # Key -> (attribute of the spring, axes in order x y z, the observer's default).
 ENTRIES: dict[str, tuple[str, tuple[Axis | None, ...], float]] = {

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from plantar.export.bush import FootBush
+from plantar.exporters.bush import FootBush
 from plantar.notes import Note
 
 

@@ -22,7 +22,7 @@ from scipy.integrate import simpson, solve_ivp
 from example_robots import TALOS
 from export_robots import CENTRE, TRUTH, bush_rotation, result, write_mjcf, write_sdf, write_urdf
 from plantar.conventions import rotation_from_rpy
-from plantar.export import export
+from plantar.exporters import export
 
 LOAD = {"pitch": 5.0, "roll": 4.0, "z": 300.0}  # N·m, N
 SIDE = {"left": "LLEG", "right": "RLEG"}

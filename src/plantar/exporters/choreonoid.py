@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from plantar.export.comment import head
+from plantar.exporters.comment import head
 from plantar.notes import Note
 
 if TYPE_CHECKING:
-    from plantar.export.job import Job
+    from plantar.exporters.job import Job
 
 
 def write(job: Job) -> tuple[str, tuple[Note, ...]]:

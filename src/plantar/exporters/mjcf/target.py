@@ -14,16 +14,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from plantar.errors import ExportError, MissingExtra, located
-from plantar.export.bush import FootBush, Spring
-from plantar.export.comment import head, plate_note, updated_note
-from plantar.export.mjcf.file import Compiled, load_mjcf, relocate
-from plantar.export.mjcf.from_urdf import mjcf_from_urdf
-from plantar.export.shapes import SOLE_INERTIA, SOLE_MASS, plate, reaches_sole
-from plantar.export.xml_file import numbers, to_text
+from plantar.exporters.bush import FootBush, Spring
+from plantar.exporters.comment import head, plate_note, updated_note
+from plantar.exporters.mjcf.file import Compiled, load_mjcf, relocate
+from plantar.exporters.mjcf.from_urdf import mjcf_from_urdf
+from plantar.exporters.shapes import SOLE_INERTIA, SOLE_MASS, plate, reaches_sole
+from plantar.exporters.xml_file import numbers, to_text
 from plantar.notes import Note
 
 if TYPE_CHECKING:
-    from plantar.export.job import Job
+    from plantar.exporters.job import Job
 
 EXTENDS = True
 SENSORS_ABOVE = {"force", "torque", "accelerometer", "gyro", "velocimeter", "magnetometer"}

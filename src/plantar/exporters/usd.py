@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.export.bush import FootBush, Spring
-from plantar.export.comment import head
-from plantar.export.shapes import SOLE_INERTIA, SOLE_MASS, plate
+from plantar.exporters.bush import FootBush, Spring
+from plantar.exporters.comment import head
+from plantar.exporters.shapes import SOLE_INERTIA, SOLE_MASS, plate
 from plantar.notes import Note
 
 if TYPE_CHECKING:
-    from plantar.export.job import Job
+    from plantar.exporters.job import Job
 
 AXIS = {"z": "Z", "pitch": "Y", "roll": "X"}
 PER_DEGREE = math.pi / 180

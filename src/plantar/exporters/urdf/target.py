@@ -13,16 +13,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.export.bush import FootBush, Spring
-from plantar.export.comment import head, mesh_note, moved_note, plate_note, updated_note
-from plantar.export.poses import inverse, pose
-from plantar.export.shapes import SOLE_INERTIA, SOLE_MASS, plate, reaches_sole
-from plantar.export.urdf.tree import UrdfTree, origin_of, set_origin
-from plantar.export.xml_file import numbers, to_text, vector
+from plantar.exporters.bush import FootBush, Spring
+from plantar.exporters.comment import head, mesh_note, moved_note, plate_note, updated_note
+from plantar.exporters.poses import inverse, pose
+from plantar.exporters.shapes import SOLE_INERTIA, SOLE_MASS, plate, reaches_sole
+from plantar.exporters.urdf.tree import UrdfTree, origin_of, set_origin
+from plantar.exporters.xml_file import numbers, to_text, vector
 from plantar.notes import Note
 
 if TYPE_CHECKING:
-    from plantar.export.job import Job
+    from plantar.exporters.job import Job
 
 EXTENDS = True
 REACH = {"z": 0.05, "pitch": 0.6, "roll": 0.6}  # limits far beyond any bush: a URDF must have some

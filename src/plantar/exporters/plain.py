@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 
 import yaml
 
-from plantar.export.comment import head
+from plantar.exporters.comment import head
 from plantar.notes import Note
 
 if TYPE_CHECKING:
-    from plantar.export.job import Job
+    from plantar.exporters.job import Job
 
 KEPT = ("value", "unit", "std", "interval95", "verdict")
 

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from plantar.export.comment import head
+from plantar.exporters.comment import head
 from plantar.notes import Note
 
 if TYPE_CHECKING:
-    from plantar.export.job import Job
+    from plantar.exporters.job import Job
 
 
 def write(job: Job) -> tuple[str, tuple[Note, ...]]:

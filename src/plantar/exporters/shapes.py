@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.export.bush import FootBush
+from plantar.exporters.bush import FootBush
 
 SOLE_MASS = 0.05  # kg: light beside any foot, heavy enough for every engine
 SOLE_INERTIA = 1e-4  # kg·m² about each axis; shifts the decay rate of K = 500, C = 20 by 0.01 %

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from plantar.errors import ExportError, located
-from plantar.export.bush import FootBush
-from plantar.export.urdf.tree import UrdfTree
+from plantar.exporters.bush import FootBush
+from plantar.exporters.urdf.tree import UrdfTree
 from plantar.notes import Note
 
 MESHES = {".stl", ".obj"}  # what MuJoCo's importer reads

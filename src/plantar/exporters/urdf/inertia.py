@@ -15,9 +15,9 @@ import numpy as np
 
 from plantar.conventions import INERTIAL_NAMES, Array, skew
 from plantar.errors import ExportError, located
-from plantar.export.poses import pose
-from plantar.export.urdf.tree import UrdfTree, set_origin
-from plantar.export.xml_file import numbers, to_text
+from plantar.exporters.poses import pose
+from plantar.exporters.urdf.tree import UrdfTree, set_origin
+from plantar.exporters.xml_file import numbers, to_text
 from plantar.notes import Note
 
 

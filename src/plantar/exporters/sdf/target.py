@@ -13,17 +13,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.export.bush import FootBush, Spring
-from plantar.export.comment import head, mesh_note, moved_note, plate_note, updated_note
-from plantar.export.poses import inverse, pose
-from plantar.export.sdf.from_urdf import sdf_from_urdf
-from plantar.export.sdf.tree import SdfTree, pose_of, relative, set_pose
-from plantar.export.shapes import SOLE_INERTIA, SOLE_MASS, plate, reaches_sole
-from plantar.export.xml_file import numbers, to_text, vector
+from plantar.exporters.bush import FootBush, Spring
+from plantar.exporters.comment import head, mesh_note, moved_note, plate_note, updated_note
+from plantar.exporters.poses import inverse, pose
+from plantar.exporters.sdf.from_urdf import sdf_from_urdf
+from plantar.exporters.sdf.tree import SdfTree, pose_of, relative, set_pose
+from plantar.exporters.shapes import SOLE_INERTIA, SOLE_MASS, plate, reaches_sole
+from plantar.exporters.xml_file import numbers, to_text, vector
 from plantar.notes import Note
 
 if TYPE_CHECKING:
-    from plantar.export.job import Job
+    from plantar.exporters.job import Job
 
 EXTENDS = True
 REACH = {"z": 0.05, "pitch": 0.6, "roll": 0.6}  # m, rad: limits far beyond any bush

@@ -13,10 +13,10 @@ import numpy as np
 
 from plantar.conventions import Array
 from plantar.errors import ExportError, located
-from plantar.export.bush import FootBush
-from plantar.export.geometry import box_corners
-from plantar.export.shapes import reaches_sole
-from plantar.export.xml_file import load_xml
+from plantar.exporters.bush import FootBush
+from plantar.exporters.geometry import box_corners
+from plantar.exporters.shapes import reaches_sole
+from plantar.exporters.xml_file import load_xml
 from plantar.notes import Note
 
 INCLUDE_LIMIT = 100  # files pasted into one model

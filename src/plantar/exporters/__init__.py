@@ -1,6 +1,6 @@
 """Results out: the files that simulators and controllers read. One file a target.
 
-    from plantar.export import export
+    from plantar.exporters import export
     export("out/result.json", "mjcf", "robot_on_bushes.xml", model="robot.xml")
 
 A result of `identify feet` goes to any target of `TARGETS`; a result of `identify inertia` to `urdf`.
@@ -15,9 +15,9 @@ from pathlib import Path
 from typing import Any
 
 from plantar.errors import ExportError, located
-from plantar.export.bush import feet_of_result
-from plantar.export.job import Job
-from plantar.export.source import open_result, robot_urdf
+from plantar.exporters.bush import feet_of_result
+from plantar.exporters.job import Job
+from plantar.exporters.source import open_result, robot_urdf
 from plantar.files import write_text
 from plantar.notes import Note, unique
 
@@ -63,12 +63,12 @@ def export(
             )
         if given is None and "robot_model" not in data:
             raise ExportError(located("the result names no URDF", valid="--model with the robot's URDF"))
-        from plantar.export.urdf.inertia import with_inertial_parameters
+        from plantar.exporters.urdf.inertia import with_inertial_parameters
 
         text, notes = with_inertial_parameters(data, given or robot_urdf(data, base))
     else:
         feet, remarks = feet_of_result(data, base, with_offset=with_offset)
-        module = import_module(f"plantar.export.{TARGETS[target][0]}")
+        module = import_module(f"plantar.exporters.{TARGETS[target][0]}")
         if given is None and getattr(module, "EXTENDS", False):
             given = robot_urdf(data, base)
         if given is not None and not getattr(module, "EXTENDS", False):

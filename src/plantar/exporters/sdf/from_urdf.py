@@ -8,9 +8,9 @@ from pathlib import Path
 
 from plantar.conventions import Array
 from plantar.errors import ExportError, located
-from plantar.export.sdf.tree import set_pose
-from plantar.export.urdf.tree import UrdfTree, origin_of
-from plantar.export.xml_file import numbers, vector
+from plantar.exporters.sdf.tree import set_pose
+from plantar.exporters.urdf.tree import UrdfTree, origin_of
+from plantar.exporters.xml_file import numbers, vector
 from plantar.notes import Note
 
 JOINT_TYPES = {"fixed", "revolute", "continuous", "prismatic"}

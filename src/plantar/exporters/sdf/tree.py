@@ -14,9 +14,9 @@ import numpy as np
 
 from plantar.conventions import Array
 from plantar.errors import ExportError, located
-from plantar.export.geometry import box_corners, mesh_points
-from plantar.export.poses import inverse, pose, rpy_of
-from plantar.export.xml_file import load_xml, numbers, vector
+from plantar.exporters.geometry import box_corners, mesh_points
+from plantar.exporters.poses import inverse, pose, rpy_of
+from plantar.exporters.xml_file import load_xml, numbers, vector
 
 OLDEST = (1, 5)  # before it a joint's axis stood in another frame
 FRAME_DEPTH = 100
