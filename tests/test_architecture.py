@@ -14,7 +14,7 @@ FILES = sorted(SOURCE.rglob("*.py"))
 
 # A room imports only from rooms that stand before it.
 ROOMS = (
-    "conventions", "errors", "notes", "files",
+    "conventions", "errors", "choices", "notes", "files",
     "robot", "logs", "signals", "contact", "checks",
     "dynamics", "models", "estimation", "model_selection",
     "results", "feet", "whole_body",
@@ -57,8 +57,6 @@ UNTESTED = frozenset(
         "model_selection.cross_validation",
         "model_selection.initial_state",
         "model_selection.variable_projection",
-        "results.dynamics",
-        "results.feet",
         "signals.orientation",
         "signals.spikes",
         "whole_body.covariance",

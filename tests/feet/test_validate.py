@@ -11,16 +11,14 @@ from biped_robot import make_robot, robot_entry
 from plantar.errors import DataError
 from plantar.feet.identify import identify_feet
 from plantar.feet.validate import validate_feet
-from plantar.results.feet import FEET_SCHEMA
-from plantar.results.io import read_result
 from plantar.robot.model import RobotModel
 
 
 def test_a_saved_result_scores_unseen_logs_as_the_fit_did(robot: RobotModel, tmp_path: Path) -> None:
     fit, unseen = record(sway("a", 1)), record(sway("b", 2, duration=10.0))
     found = identify_feet(robot, [fit], [unseen])
-    content = read_result(found.save(tmp_path), FEET_SCHEMA)
-    again = {(row.foot, row.axis): row for row in validate_feet(content, robot, [unseen])}
+    saved = found.save(tmp_path)
+    again = {(row.foot, row.axis): row for row in validate_feet(saved, robot, [unseen])}
     first = {(row.foot, row.axis): row for row in found.validation if row.kind == "cross"}
     assert set(again) == set(first)
     for key, row in again.items():
@@ -31,15 +29,15 @@ def test_a_saved_result_scores_unseen_logs_as_the_fit_did(robot: RobotModel, tmp
 
 def test_another_robots_result_is_refused(robot: RobotModel, tmp_path: Path) -> None:
     log = record(sway("a", 1, duration=8.0))
-    content = identify_feet(robot, [log]).to_dict()
+    found = identify_feet(robot, [log])
     feet = robot_entry()["feet"]
     assert isinstance(feet, dict)
     other = make_robot(tmp_path, feet={"right": feet["right"]})
     with pytest.raises(DataError, match=r"foot 'left' \(valid: right\)"):
-        validate_feet(content, other, [log])
+        validate_feet(found, other, [log])
 
 
 def test_a_log_too_short_to_score_is_refused(robot: RobotModel) -> None:
-    content = identify_feet(robot, [record(sway("a", 1, duration=8.0))]).to_dict()
+    found = identify_feet(robot, [record(sway("a", 1, duration=8.0))])
     with pytest.raises(DataError, match="no log has samples"):
-        validate_feet(content, robot, [record(sway("b", 2, duration=1.2))])
+        validate_feet(found, robot, [record(sway("b", 2, duration=1.2))])

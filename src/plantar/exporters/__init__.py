@@ -1,7 +1,6 @@
 """Results out: the files that simulators and controllers read. One file a target.
 
-    from plantar.exporters import export
-    export("out/result.json", "mjcf", "robot_on_bushes.xml", model="robot.xml")
+    plantar.export("out/result.json", "mjcf", "robot_on_bushes.xml", model="robot.xml")
 
 A result of `identify feet` goes to any target of `TARGETS`; a result of `identify inertia` to `urdf`.
 """
@@ -9,15 +8,13 @@ A result of `identify feet` goes to any target of `TARGETS`; a result of `identi
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
 from importlib import import_module
 from pathlib import Path
-from typing import Any
 
 from plantar.errors import ExportError, located
 from plantar.exporters.bush import feet_of_result
 from plantar.exporters.job import Job
-from plantar.exporters.source import open_result, robot_urdf
+from plantar.exporters.source import ResultInput, open_result, robot_urdf
 from plantar.files import write_text
 from plantar.notes import Note, unique
 
@@ -37,19 +34,35 @@ TARGETS: dict[str, tuple[str, str]] = {
 
 
 def export(
-    result: Mapping[str, Any] | str | os.PathLike[str],
+    result: ResultInput,
     target: str,
     out: str | os.PathLike[str],
     model: str | os.PathLike[str] | None = None,
     *,
     with_offset: bool = False,
 ) -> tuple[Note, ...]:
-    """Write a result to `out` in the format of `target`; returns what the target could not hold, as notes.
+    """Hand a result to a simulator or controller: springs and dampers in its own format and units.
 
-    `model` is an existing robot model of that format to extend (MJCF, SDFormat, URDF; a URDF also serves MJCF
-    and SDFormat); without it the result's own URDF is taken. `with_offset` moves the springs' rest to
-    -offset/K; else it is 0, since the offset is mostly the sensors' zero.
-    Raises ExportError: unknown target, a result without what the target needs, a model without the ankle.
+    Args:
+        result: what `identify_feet` or `identify_inertia` found, or the path of its `result.json`.
+        target: mjcf, sdf, urdf, drake, usd, mc_rtc, openhrp, choreonoid, kinetics_observer or yaml; for inertias urdf.
+        out: the file to write.
+        model: an existing robot model of that format to extend (MJCF, SDFormat, URDF; a URDF also serves MJCF and
+            SDFormat); the result's own URDF where left out.
+        with_offset: the springs rest at -offset/K; else at 0, since the offset is mostly the sensors' zero.
+
+    Returns:
+        What the target could not hold, as notes.
+
+    Raises:
+        ExportError: an unknown target, a result without what the target needs, a model without the ankle.
+
+    Example:
+        >>> import plantar
+        >>> result = plantar.FeetResult.load("out/feet")
+        >>> notes = plantar.export(result, "urdf", "out/robot_on_bushes.urdf")
+        >>> "LLEG_BUSH_PITCH" in open("out/robot_on_bushes.urdf").read()
+        True
     """
     if target not in TARGETS:
         raise ExportError(located(f"'{target}' is not a target", valid=", ".join(TARGETS)))

@@ -2,33 +2,33 @@
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from plantar.errors import ExportError, located
-from plantar.files import read_bounded
+from plantar.results.dynamics import INERTIA_SCHEMA, DynamicsResult
+from plantar.results.feet import FEET_SCHEMA, FeetResult
+from plantar.results.io import read_result, result_path
 
-RESULT_LIMIT = 256 * 2**20  # bytes
-SCHEMAS = ("plantar.feet/1", "plantar.inertia/1")
+SCHEMAS = (FEET_SCHEMA, INERTIA_SCHEMA)
+ResultInput = FeetResult | DynamicsResult | Mapping[str, Any] | str | os.PathLike[str]
 
 
-def open_result(result: Mapping[str, Any] | str | os.PathLike[str]) -> tuple[Mapping[str, Any], Path]:
-    """The result as a mapping, and the directory that its relative paths start from."""
+def open_result(result: ResultInput) -> tuple[Mapping[str, Any], Path]:
+    """The result as `result.json` holds it, and the directory that its relative paths start from."""
     base = Path()
-    if not isinstance(result, Mapping):
-        path = Path(result)
-        base = path.parent
-        try:
-            result = json.loads(read_bounded(path, RESULT_LIMIT, ExportError))
-        except (ValueError, RecursionError) as error:
-            raise ExportError(
-                located("is not JSON", path=path, valid="the result.json of identify")
-            ) from error
-        if not isinstance(result, Mapping):
-            raise ExportError(located("is not a result", path=path, valid="the result.json of identify"))
+    if isinstance(result, FeetResult | DynamicsResult):
+        result = result.to_dict()
+    elif isinstance(result, str | os.PathLike):
+        file = result_path(result)
+        base, result = file.parent, read_result(file, error=ExportError)
+    elif not isinstance(result, Mapping):
+        kind = type(result).__name__
+        raise ExportError(
+            located("is not a result", value=kind, valid="a FeetResult or the path of a result.json")
+        )
     schema = result.get("schema")
     if schema not in SCHEMAS:
         raise ExportError(

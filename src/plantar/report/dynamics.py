@@ -10,10 +10,10 @@ from plantar.errors import PlantarError, located
 from plantar.files import write_text
 from plantar.report.content import Cell, Column, Figure, Section, Table
 from plantar.report.page import render
-from plantar.report.records import InertiaResult, JointsResult, Result, Row, checked, result_path
+from plantar.report.records import InertiaResult, JointsResult, Result, Row, checked
 from plantar.report.tables import input_table, settings_table, skill_cell, verdict_cell
 from plantar.report.verdict import listed
-from plantar.results.io import read_result
+from plantar.results.io import read_result, result_path
 from plantar.results.numbers import MISSING, interval, number, percent, unit, with_uncertainty
 
 INERTIA: Final = "plantar.inertia/1"
@@ -46,7 +46,7 @@ def write_dynamics_report(
     `result` is `result.json` or its directory; the page is one file that needs no network. Raises
     `PlantarError` for a result that cannot be read.
     """
-    path = result_path(Path(result))
+    path = result_path(result)
     content = read_result(path)
     read: Result
     if content["schema"] == INERTIA:

@@ -7,7 +7,13 @@ from typing import Final
 
 MISSING: Final = "–"
 
-_UNITS: Final = {"N.m/rad": "N·m/rad", "N.m.s/rad": "N·m·s/rad", "N.s/m": "N·s/m", "kg.m2": "kg·m²"}
+_UNITS: Final = {
+    "N.m/rad": "N·m/rad",
+    "N.m/rad3": "N·m/rad³",
+    "N.m.s/rad": "N·m·s/rad",
+    "N.s/m": "N·s/m",
+    "kg.m2": "kg·m²",
+}
 
 
 def unit(name: str) -> str:

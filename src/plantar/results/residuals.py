@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -25,8 +26,10 @@ _QUANTITIES: Final = ("deflection", "rate", "torque", "predicted")
 class Track:
     """One foot in one motion, N samples in time's order.
 
-    `time` [s], `used` whether a sample served the fit or the score, `support` its phase's name, and `values`
-    the float columns of the file, such as `pitch.deflection` [rad] or `force_z` [N]; NaN where not computed.
+    `time` (N,) [s]; `used` (N,): whether a sample was used for the fit or the score; `support` (N,): double, single,
+    air or transition. `values` has the other columns, (N,) each, NaN where not computed: `pitch.deflection` and
+    `roll.deflection` [rad], their `.rate` [rad/s], measured `.torque` and the model's `.predicted` [N·m] about the
+    bush; `force_z` [N], and the centre of pressure `cop_x`, `cop_y` in the sole's frame [m].
     """
 
     motion: str
@@ -47,12 +50,41 @@ def residuals_path(directory: Path) -> Path | None:
     return next((directory / name for name in FILE_NAMES if (directory / name).is_file()), None)
 
 
-def read_residuals(path: Path) -> tuple[Track, ...]:
-    """All tracks, motions and feet in the order in which the file first names them.
+def read_residuals(path: str | os.PathLike[str]) -> tuple[Track, ...]:
+    """Every sample that an identification of the feet looked at, beside what its model says of it.
 
-    Raises `PlantarError` for an unreadable file, a missing column or a time that is not finite.
+    Args:
+        path: `residuals.parquet`, `.csv` or `.csv.gz`, or the folder of a result that holds one of them.
+
+    Returns:
+        A `Track` for each motion and foot, in the order in which the file first names them.
+
+    Raises:
+        PlantarError: an unreadable file, a missing column or a time that is not finite.
+
+    Example:
+        >>> import plantar
+        >>> track = plantar.read_residuals("out/feet")[0]
+        >>> track.motion, track.foot, track.axes
+        ('sway_1', 'left', ('pitch', 'roll'))
+        >>> error = track.values["pitch.torque"] - track.values["pitch.predicted"]
+        >>> bool(abs(error[track.used]).mean() < 0.5)
+        True
     """
-    table = _table(path)
+    file = Path(path)
+    if file.is_dir():
+        found = residuals_path(file)
+        if found is None:
+            raise PlantarError(located("holds no residuals", path=file, valid=", ".join(FILE_NAMES)))
+        file = found
+    return tracks_of(read_table(file), file)
+
+
+def tracks_of(table: Any, path: Path | None = None) -> tuple[Track, ...]:
+    """The tracks of a residual table (Arrow), as in `FeetResult.residuals`; `path` says in an error where it is from.
+
+    Raises PlantarError for a missing column or a time that is not finite.
+    """
     missing = [name for name in _REQUIRED if name not in table.column_names]
     if missing:
         raise PlantarError(located("is missing", path=path, column=missing[0], valid=", ".join(_REQUIRED)))
@@ -79,7 +111,8 @@ def read_residuals(path: Path) -> tuple[Track, ...]:
     return tuple(tracks)
 
 
-def _table(path: Path) -> Any:
+def read_table(path: Path) -> Any:
+    """A residual file as an Arrow table; PlantarError where it cannot be read."""
     import pyarrow as pa
     import pyarrow.csv
     import pyarrow.parquet
@@ -99,7 +132,7 @@ def _table(path: Path) -> Any:
 
 def _labels(table: Any, name: str) -> tuple[NDArray[np.intp], list[str]]:
     """A text column as codes and the texts in order of first appearance."""
-    column = table.column(name).combine_chunks().cast("string").fill_null("").dictionary_encode()
+    column = table.column(name).cast("string").combine_chunks().fill_null("").dictionary_encode()
     return np.asarray(column.indices, dtype=np.intp), [str(text) for text in column.dictionary.to_pylist()]
 
 
@@ -110,7 +143,7 @@ def _text(labels: tuple[NDArray[np.intp], list[str]] | None, rows: NDArray[np.in
     return np.array(texts, dtype=np.str_)[codes[rows]]
 
 
-def _floats(table: Any, name: str, path: Path) -> Array:
+def _floats(table: Any, name: str, path: Path | None) -> Array:
     import pyarrow as pa
 
     try:
