@@ -10,6 +10,7 @@ import re
 import subprocess
 import sys
 from collections.abc import Callable
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
@@ -43,7 +44,13 @@ def inside(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def functions() -> list[str]:
-    return [name for name in sorted(PROMISED) if inspect.isfunction(getattr(plantar, name))]
+    """Public functions, and those of `plantar.dynamics` for arrays."""
+    names = [name for name in sorted(PROMISED) if inspect.isfunction(getattr(plantar, name))]
+    return [*names, "dynamics.fit_base_parameters", "dynamics.regressor"]
+
+
+def public(name: str) -> Any:
+    return attrgetter(name)(plantar)
 
 
 def classes() -> list[str]:
@@ -52,7 +59,7 @@ def classes() -> list[str]:
 
 def documented() -> list[tuple[str, Any]]:
     """Every public function and class, and the methods of results that have an example."""
-    found = [(name, getattr(plantar, name)) for name in (*functions(), *classes())]
+    found = [(name, public(name)) for name in (*functions(), *classes())]
     for name in ("FeetResult", "DynamicsResult"):
         kind = getattr(plantar, name)
         found += [(f"{name}.{method}", getattr(kind, method)) for method in ("load", "to_table")]
@@ -66,7 +73,7 @@ def test_dir_shows_the_api_and_nothing_else() -> None:
 
 def test_help_shows_every_function_and_class() -> None:
     page = pydoc.render_doc(plantar, renderer=pydoc.plaintext)
-    for name in functions():
+    for name in functions()[:-2]:
         assert re.search(rf"^    {name}\(", page, re.MULTILINE), name
     for name in classes():
         assert re.search(rf"class {name}\(", page), name
@@ -80,7 +87,7 @@ def test_export_is_the_function_whatever_was_imported_before() -> None:
 
 @pytest.mark.parametrize("name", functions())
 def test_every_function_says_what_goes_in_and_out(name: str) -> None:
-    function = getattr(plantar, name)
+    function = public(name)
     text = inspect.getdoc(function) or ""
     for part in ("Args:", "Returns:", "Raises:", "Example:"):
         assert re.search(rf"^{part}$", text, re.MULTILINE), f"{name}: {part}"
@@ -127,6 +134,17 @@ def test_the_notebook_runs(folder: Path, tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     assert "left   pitch  stiffness" in done.stdout
     assert {"pitch.png", "feet", "robot_on_bushes.xml"} <= {path.name for path in tmp_path.iterdir()}
+
+
+def test_the_document_runs_and_names_every_residual_column(inside: Path) -> None:
+    text = (ROOT / "docs" / "python.md").read_text()
+    blocks = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+    names: dict[str, Any] = {}
+    for block in blocks:
+        exec(compile(block, "docs/python.md", "exec"), names)
+    rows = re.findall(r"^\| (`.+?) \|", text.split("## The residuals")[1], re.MULTILINE)
+    columns = [column for row in rows for column in re.findall(r"`([^`]+)`", row)]
+    assert sorted(columns) == sorted(names["result"].residuals.column_names)
 
 
 def test_paths_and_objects_give_the_same(inside: Path) -> None:

@@ -65,6 +65,21 @@ def test_a_result_comes_back_from_its_file_to_the_byte(result: FeetResult, tmp_p
         assert again.save(tmp_path / "again").read_bytes() == path.read_bytes()
 
 
+def test_the_file_has_the_contracts_keys_in_their_order(result: FeetResult) -> None:
+    keys = [
+        "schema", "robot", "plantar", "created", "inputs", "settings", "model", "parameters", "offsets", "phases",
+        "validation", "notes", "robot_model", "laws", "latency", "compliance", "diagnosis",
+    ]  # fmt: skip
+    content = result.to_dict()
+    assert list(content) == keys
+    assert list(full(result).to_dict()) == [*keys, "comparisons", "campaign"]
+    law = next(row for row in content["laws"] if "ranking" in row)
+    assert list(law) == ["foot", "axis", "law", "reason", "linear_equivalent", "held_out", "ranking"]
+    assert list(law["ranking"][0]) == ["law", "held_out_rms", "parameters", "refused", "chosen"]
+    assert list(content["latency"]) == ["wrench_delay", "std", "measured", "unit", "feet", "encoder_delay"]
+    assert set(content["compliance"]) == {"left", "right"}
+
+
 def test_a_file_of_another_version_keeps_its_version(result: FeetResult, tmp_path: Path) -> None:
     content = result.to_dict() | {"plantar": "0.0.9", "created": "2026-01-01T00:00:00Z", "colour": "red"}
     (tmp_path / "result.json").write_text(json.dumps(content))

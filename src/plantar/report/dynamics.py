@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
@@ -35,8 +36,8 @@ _HEADINGS: Final = {
 
 
 def write_dynamics_report(
-    result: Path,
-    out: Path | None = None,
+    result: str | os.PathLike[str],
+    out: str | os.PathLike[str] | None = None,
     *,
     figures: Sequence[Figure] = (),
     sections: Sequence[Section] = (),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -20,8 +21,8 @@ from plantar.results.residuals import read_residuals, residuals_path
 
 
 def write_feet_report(
-    result: Path,
-    out: Path | None = None,
+    result: str | os.PathLike[str],
+    out: str | os.PathLike[str] | None = None,
     *,
     figures: Sequence[Figure] = (),
     sections: Sequence[Section] = (),
