@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -9,8 +10,12 @@ import pytest
 from biped import record, sway
 from biped_robot import make_robot, robot_entry
 from plantar.errors import DataError
-from plantar.feet.identify import identify_feet
+from plantar.feet.identify import delay_estimate, identify_feet
+from plantar.feet.sensors.sensor_delay import SensorDelay
+from plantar.feet.settings import FeetSettings
 from plantar.feet.validate import validate_feet
+from plantar.notes import Note
+from plantar.results.feet import DelayEstimate
 from plantar.robot.model import RobotModel
 
 
@@ -41,3 +46,28 @@ def test_a_log_too_short_to_score_is_refused(robot: RobotModel) -> None:
     found = identify_feet(robot, [record(sway("a", 1, duration=8.0))])
     with pytest.raises(DataError, match="no log has samples"):
         validate_feet(found, robot, [record(sway("b", 2, duration=1.2))])
+
+
+def test_the_results_delays_are_taken_off_unseen_logs(robot: RobotModel) -> None:
+    """Exact logs: whatever is taken off them makes them worse, each delay by itself."""
+    log = record(sway("a", 1, duration=10.0))
+    known = FeetSettings(model="kelvin_voigt", wrench_delay=0.0)
+    found = identify_feet(robot, [log], settings=known)
+    assert found.sensor_delay == DelayEstimate(0.0, 0.0, False)
+    right = {(row.foot, row.axis): row.mean_abs_error for row in validate_feet(found, robot, log)}
+    for delay, hit in (
+        (DelayEstimate(0.02, 0.001, True), ("left", "right")),
+        (DelayEstimate(0.0, 0.001, True, feet={"left": 0.02, "right": 0.0}), ("left",)),
+        (DelayEstimate(0.0, 0.001, True, encoder_delay=0.02), ("left", "right")),
+    ):
+        wrong = validate_feet(replace(found, sensor_delay=delay), robot, log)
+        worse = {row.foot for row in wrong if row.mean_abs_error > 10 * right[row.foot, row.axis]}
+        assert worse == set(hit)
+        assert len(wrong) == len(right) == 4
+
+
+def test_every_delay_that_was_corrected_stands_in_the_result() -> None:
+    note = Note("delays_apart", "warning", "late")
+    found = SensorDelay(0.004, 0.0005, 30.0, True, note, {"left": 0.003, "right": 0.005}, 0.002)
+    feet = {"left": 0.003, "right": 0.005}
+    assert delay_estimate(found) == DelayEstimate(0.004, 0.0005, True, feet=feet, encoder_delay=0.002)

@@ -23,7 +23,14 @@ from plantar.feet.settings import FeetSettings
 from plantar.notes import Note
 from plantar.results.feet import Comparison, FeetResult
 from plantar.results.feet_rows import AxisModel, Candidate, LinearEquivalent, Parameter
-from plantar.results.feet_text import delay_line, parameter_cells, prediction_cells, title_of_axis
+from plantar.results.feet_text import (
+    advice,
+    delay_line,
+    parameter_cells,
+    prediction_cells,
+    reasons,
+    title_of_axis,
+)
 from plantar.results.text import columns, html_lines, html_table, warnings
 
 mpl.use("agg")
@@ -138,6 +145,12 @@ def test_a_number_is_printed_with_half_of_its_interval_in_units_and_percent() ->
     assert (Z.half_width, Z.half_width_percent) == (None, None)
     title = "left pitch: K = 434.0 ± 0.3 N·m/rad (usable), C = −0.4 ± 2.0 N·m·s/rad (weak)"
     assert title_of_axis([K, C, Z], "left", "pitch") == title
+
+
+def test_advice_is_given_where_there_is_one_and_told_once() -> None:
+    bare, lost = replace(C, name="slip_torque", advice=None), replace(Z, advice="sway faster")
+    assert advice([K, C, bare, lost]) == ["  for left pitch damping, left z stiffness: sway faster"]
+    assert reasons([K, C, bare]) == ["  left pitch damping, left pitch slip torque (weak): wide"]
 
 
 def test_the_text_has_every_number_its_verdict_reason_and_advice(result: FeetResult) -> None:

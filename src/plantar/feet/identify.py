@@ -96,7 +96,7 @@ def identify_feet(
         notes=unique([*ready.notes, *_feet_notes(robot, ready.fitted), *_model_notes(fits)]),
         robot_model=_robot_model(robot),
         models=tuple(_axis_model(fit) for fit in fits),
-        sensor_delay=_delay_estimate(ready.sensor_delay),
+        sensor_delay=delay_estimate(ready.sensor_delay),
         compliance=dict(ready.vertical.compliance),
         diagnosis=tuple(Diagnosis(**row) for each in found for row in each.diagnosis),
         residuals=residual_table(ready.recordings, predictions),
@@ -115,7 +115,7 @@ def _axis_model(fit: AxisFit) -> AxisModel:
     return replace(axis_model, held_out=fit.choice.held_out, ranking=ranking)
 
 
-def _delay_estimate(found: SensorDelay) -> DelayEstimate:
+def delay_estimate(found: SensorDelay) -> DelayEstimate:
     """The delays that the logs were corrected for."""
     return DelayEstimate(
         found.delay, found.std, found.measured, feet=dict(found.feet), encoder_delay=found.encoders
