@@ -74,9 +74,9 @@ def main() -> None:
             logs: list[MotionLog] = [record(one, robot, physics, preset, seed).log for one in rollouts]
             fit, unseen = logs[: len(FIT)], logs[len(FIT) :]
             result = identify_feet(robot, fit, unseen)
-            known = FeetSettings(model="kelvin_voigt", wrench_delay=result.extras["latency"]["wrench_delay"])
+            known = FeetSettings(model="kelvin_voigt", wrench_delay=result.sensor_delay.wrench_delay)
             plain = identify_feet(robot, fit, unseen, known)
-            names = [model["law"] for model in result.extras["laws"]]
+            names = [row.model for row in result.models]
             models.update(names)
             wanted = [
                 isinstance(MODELS[name], Hysteretic) if share else name == "kelvin_voigt" for name in names

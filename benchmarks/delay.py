@@ -67,11 +67,11 @@ def print_apart(robot: RobotModel, presets: Sequence[str], seeds: int, others: S
                     for recording in recordings
                 ]  # fmt: skip
                 found = identify_feet(robot, logs[: len(FIT)], logs[len(FIT) :])
-                sensor_delay = found.extras["latency"]
+                sensor_delay = found.sensor_delay
                 for foot, delay in (("left", left), ("right", right)):
-                    told = sensor_delay["feet"].get(foot, sensor_delay["wrench_delay"])
+                    told = sensor_delay.feet.get(foot, sensor_delay.wrench_delay)
                     misses.append(abs(1e3 * told - delay - own))
-                misses.append(abs(1e3 * sensor_delay["encoder_delay"] - encoders))
+                misses.append(abs(1e3 * sensor_delay.encoder_delay - encoders))
                 rows.append(damping_errors(found))
                 as_read = FeetSettings(wrench_delay=1e-3 * own)
                 taken.append(damping_errors(identify_feet(robot, logs[: len(FIT)], settings=as_read)))
@@ -110,9 +110,9 @@ def main() -> None:
             for seed, recordings in enumerate(campaigns):
                 logs = [late(recording.log, 1e-3 * delay) for recording in recordings]
                 corrected = identify_feet(robot, logs[:split], logs[split:])
-                sensor_delay = corrected.extras["latency"]
-                found.append(1e3 * sensor_delay["wrench_delay"])
-                claimed.append(1e3 * 1.96 * sensor_delay["std"])
+                sensor_delay = corrected.sensor_delay
+                found.append(1e3 * sensor_delay.wrench_delay)
+                claimed.append(1e3 * 1.96 * sensor_delay.std)
                 results[0].append(corrected)
                 if seed == 0:
                     results[1].append(

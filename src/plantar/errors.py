@@ -10,7 +10,16 @@ import os
 
 
 class PlantarError(Exception):
-    """A problem with the input that the user can mend; the message is one line."""
+    """A problem with the input that the user can mend; the message is one line. The kinds below are all of this.
+
+    Example:
+        >>> import plantar
+        >>> try:
+        ...     plantar.open_log("nowhere.csv")
+        ... except plantar.PlantarError as error:
+        ...     print(error)
+        nowhere.csv: does not exist
+    """
 
 
 class RobotError(PlantarError):
@@ -23,6 +32,10 @@ class LogError(PlantarError):
 
 class DataError(PlantarError):
     """The logs are readable, but what is asked cannot be computed from them."""
+
+
+class SettingsError(PlantarError):
+    """A setting is not one of its choices, or out of its range."""
 
 
 class MotionError(PlantarError):

@@ -228,6 +228,7 @@ def write_json(folder: Path, content: object) -> Path:
         ["identify", "feet"],
         ["identify", "feet", "robot.yaml", "log.csv"],
         ["identify", "feet", "robot.yaml", "log.csv", "--out", "x", "--offset", "none"],
+        ["identify", "feet", "robot.yaml", "log.csv", "--out", "x", "--model", "x"],
         ["identify", "feet", "robot.yaml", "log.csv", "--out", "x", "--cutoff", "fast"],
         ["identify", "feet", "robot.yaml", "log.csv", "--out", "x", "--cutof", "5"],
         ["inspect"],
@@ -238,6 +239,22 @@ def test_wrong_usage_is_2(arguments: list[str], capsys: pytest.CaptureFixture[st
     assert run(*arguments) == 2
     captured = capsys.readouterr()
     assert "Traceback" not in captured.err + captured.out
+
+
+def test_a_setting_out_of_its_range_is_one_line(
+    campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arguments = [
+        "identify",
+        "feet",
+        campaign / "robot.yaml",
+        campaign / "first.csv",
+        "--out",
+        tmp_path / "out",
+    ]
+    assert "wrench_delay is not valid" in refused(capsys, *arguments, "--wrench-delay", "5000")
+    assert "window is not valid" in refused(capsys, *arguments, "--window", "400")
+    assert not (tmp_path / "out").exists()
 
 
 def test_units_in_brackets_are_text_not_markup(capsys: pytest.CaptureFixture[str]) -> None:

@@ -16,7 +16,7 @@ from biped_robot import Frame, Mounting, make_robot, write_robot
 from example_robots import G1, ICUB, TALOS
 from log_formats import write_hrpsys, write_mcap
 from plantar.cli import main
-from plantar.export.urdf.tree import UrdfTree
+from plantar.exporters.urdf.tree import UrdfTree
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import open_log
 from plantar.logs.readers.column_map import apply, joint_order, ports

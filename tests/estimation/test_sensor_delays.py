@@ -14,7 +14,7 @@ from plantar.conventions import Array
 from plantar.estimation.delay import Pair
 from plantar.estimation.sensor_delays import estimate_delays
 from plantar.feet.sensors.newton_euler import NewtonEulerResidual
-from plantar.feet.sensors.sensor_delay import SensorDelay, estimate_wrench_delay, in_time, sensor_delay_of
+from plantar.feet.sensors.sensor_delay import SensorDelay, estimate_wrench_delay, in_time
 from plantar.notes import Note
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.resampling import interpolate
@@ -99,11 +99,11 @@ def test_feet_that_differ_and_encoders_that_lag_are_told(tmp_path: Path) -> None
     assert "encoders +6" in lagging.note.text or "encoders +5.9" in lagging.note.text
 
 
-def test_a_log_is_put_in_time_and_a_result_remembers_how(tmp_path: Path) -> None:
+def test_a_log_is_put_in_time(tmp_path: Path) -> None:
     robot, log = make_robot(tmp_path), record(sway())
     note = Note("delays_apart", "warning", "")
     found = SensorDelay(0.015, 0.0, np.inf, True, note, {"left": 0.02, "right": 0.01}, -0.01)
-    moved = in_time(robot, log, sensor_delay_of({"latency": found.to_dict()}))
+    moved = in_time(robot, log, found)
     steps = {"wrench.left.force.z": 2, "wrench.right.torque.y": 1, "joint.left_ankle_pitch.position": -1}
     for name, step in steps.items():
         expected = log.columns[name][10 + step : 100 + step]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -9,18 +10,20 @@ import pytest
 from biped import record, sway
 from biped_robot import make_robot, robot_entry
 from plantar.errors import DataError
-from plantar.feet.identify import identify_feet
+from plantar.feet.identify import delay_estimate, identify_feet
+from plantar.feet.sensors.sensor_delay import SensorDelay
+from plantar.feet.settings import FeetSettings
 from plantar.feet.validate import validate_feet
-from plantar.results.feet import FEET_SCHEMA
-from plantar.results.io import read_result
+from plantar.notes import Note
+from plantar.results.feet import DelayEstimate
 from plantar.robot.model import RobotModel
 
 
 def test_a_saved_result_scores_unseen_logs_as_the_fit_did(robot: RobotModel, tmp_path: Path) -> None:
     fit, unseen = record(sway("a", 1)), record(sway("b", 2, duration=10.0))
     found = identify_feet(robot, [fit], [unseen])
-    content = read_result(found.save(tmp_path), FEET_SCHEMA)
-    again = {(row.foot, row.axis): row for row in validate_feet(content, robot, [unseen])}
+    saved = found.save(tmp_path)
+    again = {(row.foot, row.axis): row for row in validate_feet(saved, robot, [unseen])}
     first = {(row.foot, row.axis): row for row in found.validation if row.kind == "cross"}
     assert set(again) == set(first)
     for key, row in again.items():
@@ -31,15 +34,52 @@ def test_a_saved_result_scores_unseen_logs_as_the_fit_did(robot: RobotModel, tmp
 
 def test_another_robots_result_is_refused(robot: RobotModel, tmp_path: Path) -> None:
     log = record(sway("a", 1, duration=8.0))
-    content = identify_feet(robot, [log]).to_dict()
+    found = identify_feet(robot, [log])
     feet = robot_entry()["feet"]
     assert isinstance(feet, dict)
     other = make_robot(tmp_path, feet={"right": feet["right"]})
     with pytest.raises(DataError, match=r"foot 'left' \(valid: right\)"):
-        validate_feet(content, other, [log])
+        validate_feet(found, other, [log])
 
 
 def test_a_log_too_short_to_score_is_refused(robot: RobotModel) -> None:
-    content = identify_feet(robot, [record(sway("a", 1, duration=8.0))]).to_dict()
+    found = identify_feet(robot, [record(sway("a", 1, duration=8.0))])
     with pytest.raises(DataError, match="no log has samples"):
-        validate_feet(content, robot, [record(sway("b", 2, duration=1.2))])
+        validate_feet(found, robot, [record(sway("b", 2, duration=1.2))])
+
+
+def test_the_results_delays_are_taken_off_unseen_logs(robot: RobotModel) -> None:
+    """Exact logs: whatever is taken off them makes them worse, each delay by itself."""
+    log = record(sway("a", 1, duration=10.0))
+    known = FeetSettings(model="kelvin_voigt", wrench_delay=0.0)
+    found = identify_feet(robot, [log], settings=known)
+    assert found.sensor_delay == DelayEstimate(0.0, 0.0, False)
+    right = {(row.foot, row.axis): row.mean_abs_error for row in validate_feet(found, robot, log)}
+    for delay, hit in (
+        (DelayEstimate(0.02, 0.001, True), ("left", "right")),
+        (DelayEstimate(0.0, 0.001, True, feet={"left": 0.02, "right": 0.0}), ("left",)),
+        (DelayEstimate(0.0, 0.001, True, encoder_delay=0.02), ("left", "right")),
+    ):
+        wrong = validate_feet(replace(found, sensor_delay=delay), robot, log)
+        worse = {row.foot for row in wrong if row.mean_abs_error > 10 * right[row.foot, row.axis]}
+        assert worse == set(hit)
+        assert len(wrong) == len(right) == 4
+
+
+def test_the_results_moment_arm_of_the_load_is_predicted_with(robot: RobotModel) -> None:
+    """A spring and damper alone predict exact logs; torque of the load beside them spoils its own axis only."""
+    log = record(sway("a", 1, duration=10.0))
+    known = FeetSettings(model="kelvin_voigt", wrench_delay=0.0)
+    found = identify_feet(robot, [log], settings=known)
+    right = {(row.foot, row.axis): row.mean_abs_error for row in validate_feet(found, robot, log)}
+    first = replace(found.models[0], load_arm=0.02)
+    rows = validate_feet(replace(found, models=(first, *found.models[1:])), robot, log)
+    worse = [(row.foot, row.axis) for row in rows if row.mean_abs_error > 10 * right[row.foot, row.axis]]
+    assert worse == [(first.foot, first.axis)]
+
+
+def test_every_delay_that_was_corrected_stands_in_the_result() -> None:
+    note = Note("delays_apart", "warning", "late")
+    found = SensorDelay(0.004, 0.0005, 30.0, True, note, {"left": 0.003, "right": 0.005}, 0.002)
+    feet = {"left": 0.003, "right": 0.005}
+    assert delay_estimate(found) == DelayEstimate(0.004, 0.0005, True, feet=feet, encoder_delay=0.002)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from plantar.report import write_feet_report
-from plantar.report.residuals import Track, read_residuals
+from plantar.results.residuals import Track, read_residuals
 from report_samples import MOTIONS, write_campaign
 from report_visit import INK, Visit, launched
 

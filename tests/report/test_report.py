@@ -9,12 +9,10 @@ import re
 from html.parser import HTMLParser
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from plantar.errors import PlantarError
 from plantar.report import Column, Figure, Section, Table, write_feet_report
-from plantar.report.residuals import read_residuals
 from report_samples import HOSTILE, MOTIONS, Campaign, write_campaign
 
 FIVE_MEGABYTES = 5_000_000
@@ -176,23 +174,6 @@ def test_a_campaign_too_long_is_thinned_and_says_so(
     text = path.read_text(encoding="utf-8")
     assert len(text) < 900_000
     assert re.search(r"Every \d+\. sample is drawn; all of them are in residuals.parquet", text)
-
-
-def test_csv_residuals_serve_as_well(tmp_path: Path) -> None:
-    import pyarrow.csv
-    import pyarrow.parquet
-
-    write_campaign(tmp_path, seconds=2.0)
-    table = pyarrow.parquet.read_table(tmp_path / "residuals.parquet")
-    from_parquet = read_residuals(tmp_path / "residuals.parquet")
-    pyarrow.csv.write_csv(table, tmp_path / "residuals.csv")
-    from_csv = read_residuals(tmp_path / "residuals.csv")
-    assert [(t.motion, t.foot, t.role) for t in from_csv] == [
-        (t.motion, t.foot, t.role) for t in from_parquet
-    ]
-    for one, other in zip(from_csv, from_parquet, strict=True):
-        np.testing.assert_array_equal(one.used, other.used)
-        np.testing.assert_allclose(one.values["pitch.predicted"], other.values["pitch.predicted"])
 
 
 def test_without_residuals_the_numbers_still_come(campaign: Campaign, tmp_path: Path) -> None:

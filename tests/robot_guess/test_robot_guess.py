@@ -31,7 +31,7 @@ from example_robots import (
 )
 from plantar.checks.log_checks import check_log
 from plantar.errors import LogError, RobotError
-from plantar.export.urdf.tree import UrdfTree
+from plantar.exporters.urdf.tree import UrdfTree
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import open_log
 from plantar.logs.save import save_log

@@ -7,8 +7,8 @@ from typing import Any, Final
 
 from plantar.feet.select_motions import UNKNOWN, Choice, Selection
 from plantar.report.content import Cell, Column, Table
-from plantar.report.numbers import MISSING, number, percent
 from plantar.report.verdict import symbol
+from plantar.results.numbers import MISSING, number, percent
 
 COMPOSED: Final = "the paper's composed motion"
 TOGETHER: Final = "all of them"

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from plantar.campaign.paper import TABLE_1, TABLE_2, TABLE_3
 from plantar.conventions import ROTATIONAL_AXES
-from plantar.results.feet import FeetResult, ValidationRow
+from plantar.results.feet import Comparison, FeetResult, ValidationRow
 from plantar.twin.bush import Bush, Feet
 
 
@@ -153,8 +153,6 @@ def _pooled(group: list[ValidationRow]) -> tuple[float, float]:
     return mean, max(row.max_abs for row in group)
 
 
-def comparison(name: str, result: FeetResult) -> Mapping[str, object]:
+def comparison(name: str, result: FeetResult) -> Comparison:
     """The same logs under another choice, as `result.json` holds it."""
-    content = result.to_dict()
-    return {"name": name, "settings": content["settings"], "parameters": content["parameters"],
-            "validation": content["validation"]}  # fmt: skip
+    return Comparison(name, result.settings, result.parameters, result.validation)

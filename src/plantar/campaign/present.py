@@ -12,7 +12,7 @@ from plantar.campaign.scene import write_campaign_scene
 from plantar.report import Section, write_feet_report
 from plantar.report.figures import paper as paper_plates
 from plantar.report.figures.plots import save
-from plantar.report.residuals import read_residuals, residuals_path
+from plantar.results.residuals import read_residuals, residuals_path
 
 STORY = (
     "A robot in MuJoCo stands on bushes whose stiffness and damping are the paper's table 1, and records what a "

@@ -72,7 +72,7 @@ class Course:
 
 @dataclass(frozen=True)
 class Campaign:
-    """Everything a campaign found. `result` is the default pipeline's, its extras hold the rest as data."""
+    """Everything a campaign found. `result` is the default pipeline's, its `campaign` holds the rest as data."""
 
     directory: Path
     robot: RobotModel
@@ -126,12 +126,12 @@ def run_campaign(
         selection, tuple(replays), replayed,
     )  # fmt: skip
     progress("save the numbers")
-    extras = {
-        **result.extras,
-        "comparisons": [comparison(PAPER_WAY_NAME, paper_way)],
-        "campaign": _as_data(campaign, preset, seed, truth),
-    }
-    campaign = replace(campaign, result=replace(result, extras=extras))
+    result = replace(
+        result,
+        comparisons=(comparison(PAPER_WAY_NAME, paper_way),),
+        campaign=_as_data(campaign, preset, seed, truth),
+    )
+    campaign = replace(campaign, result=result)
     campaign.result.save(directory)
     return campaign
 

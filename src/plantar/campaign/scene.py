@@ -10,8 +10,8 @@ import numpy as np
 from plantar.campaign.pictures import look_of, side_of
 from plantar.campaign.run import Campaign
 from plantar.conventions import ROTATIONAL_AXES, Array
-from plantar.report.residuals import Track, read_residuals, residuals_path
 from plantar.report.scene import SceneBody, SceneFoot, SceneMotion, write_scene
+from plantar.results.residuals import Track, read_residuals, residuals_path
 from plantar.robot.model import RobotModel
 from plantar.twin.play import planned
 from plantar.twin.robots.description import Description

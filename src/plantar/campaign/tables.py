@@ -13,8 +13,8 @@ from plantar.campaign.replay import IDENTIFIED, RIGID, ReplayRow, scores
 from plantar.campaign.run import Campaign
 from plantar.conventions import ROTATIONAL_AXES
 from plantar.report.content import Cell, Column, Mark, Table
-from plantar.report.numbers import MISSING, number, percent, unit, with_uncertainty
 from plantar.report.verdict import symbol
+from plantar.results.numbers import MISSING, number, percent, unit, with_uncertainty
 
 GOOD: Final = {"stiffness": 1.0, "damping": 3.0}  # percent of the truth
 PAPER: Final = "paper's robot"

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from plantar.export import TARGETS, export
+from plantar.exporters import TARGETS, export
 
 TARGET_HELP = "One of: " + ", ".join(TARGETS) + "."
 MODEL_HELP = "Existing robot model to extend: MJCF, SDFormat or URDF; the result's own URDF if left out."

@@ -10,9 +10,7 @@ import typer
 
 from plantar.cli.terminal import console, end_progress, number, progress, table
 from plantar.feet.select_motions import UNKNOWN, Choice, Selection, select_motions
-from plantar.logs.readers import open_log
 from plantar.results.io import dump_json
-from plantar.robot.model import load_robot
 
 
 def run(
@@ -28,9 +26,8 @@ def run(
     Example: plantar select robot.yaml out/*.csv --compare Manual_right_roll,Manual_left_roll,Tilt3
     """
     step = progress(quiet)
-    loaded = load_robot(robot)
     named = [name.strip() for name in compare.split(",") if name.strip()]
-    found = select_motions(loaded, [open_log(path, loaded) for path in logs], named, largest, progress=step)
+    found = select_motions(robot, logs, named, largest, progress=step)
     end_progress(quiet)
     if json:
         print(dump_json({"schema": "plantar.selection/1", **_plain(found)}), end="")

@@ -11,10 +11,7 @@ import typer
 from plantar.cli.identify.feet_tables import validation_table
 from plantar.cli.terminal import console, end_progress, progress
 from plantar.feet.validate import validate_feet
-from plantar.logs.readers import open_log
-from plantar.results.feet import FEET_SCHEMA
-from plantar.results.io import dump_json, read_result
-from plantar.robot.model import load_robot
+from plantar.results.io import dump_json
 
 
 def run(
@@ -29,8 +26,7 @@ def run(
     Example: plantar validate out/feet/result.json robot.yaml squat.csv
     """
     step = progress(quiet)
-    content, loaded = read_result(result, FEET_SCHEMA), load_robot(robot)
-    rows = validate_feet(content, loaded, [open_log(path, loaded) for path in logs], step)
+    rows = validate_feet(result, robot, logs, step)
     end_progress(quiet)
     if json:
         print(

@@ -38,10 +38,28 @@ __all__ = [
 
 
 def regressor(model: pin.Model, q: Array, v: Array, a: Array, threads: int = 0) -> Array:
-    """Y_BI and Y_JI of eq. 1, dense: (N, nv, 10 n_links), for small N.
+    """Y_BI and Y_JI of eq. 1, dense, for small N; equal to Pinocchio's `computeJointTorqueRegressor`.
 
-    q: (N, nq); v, a: (N, nv) in Pinocchio's conventions; equal to its `computeJointTorqueRegressor`. Raises RobotError
-    for a joint type that is not supported, DataError for wrong shapes or values that are not finite.
+    Args:
+        model: the robot.
+        q: (N, nq) positions in Pinocchio's conventions [m, rad].
+        v: (N, nv) velocities.
+        a: (N, nv) accelerations.
+        threads: 0 for as many as are worth starting.
+
+    Returns:
+        (N, nv, 10 n_links): inertial parameters to generalised forces.
+
+    Raises:
+        RobotError: a joint type that is not supported. DataError: wrong shapes or values that are not finite.
+
+    Example:
+        >>> import numpy as np, pinocchio as pin
+        >>> from plantar import dynamics
+        >>> model = pin.buildSampleModelManipulator()
+        >>> q, v, a = np.random.default_rng(0).normal(size=(3, 5, model.nv))
+        >>> dynamics.regressor(model, q, v, a).shape == (5, model.nv, 10 * (model.njoints - 1))
+        True
     """
     equation = Equation(model)
     return np.moveaxis(

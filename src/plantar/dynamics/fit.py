@@ -76,11 +76,32 @@ def fit_base_parameters(
 ) -> BaseParameterFit:
     """Base parameters of a Pinocchio model by least squares.
 
-    q: (N, nq); v, a, tau: (N, nv) in Pinocchio's conventions. rows: "base" uses the six rows of the free-flyer (eq. 2,
-    no joint torque is read), "all" every row. threads: 0 for as many as are worth starting.
+    Args:
+        model: the robot, with or without a free-flyer at its root.
+        q: (N, nq) positions in Pinocchio's conventions [m, rad].
+        v: (N, nv) velocities.
+        a: (N, nv) accelerations.
+        tau: (N, nv) generalised forces [N, N·m].
+        rows: "base" uses the six rows of the free-flyer (eq. 2, no joint torque is read), "all" every row.
+        threads: 0 for as many as are worth starting.
 
-    Raises RobotError for a joint type that is not supported, DataError for wrong shapes, values that are not
-    finite, or base rows asked of a model without free-flyer.
+    Returns:
+        `.values`, `.std`, `.rank`, `.condition_number`, `.expressions` of the parameters, and `.predict(q, v, a)`.
+
+    Raises:
+        RobotError: a joint type that is not supported. DataError: wrong shapes, values that are not finite, or base
+        rows asked of a model without free-flyer.
+
+    Example:
+        >>> import numpy as np, pinocchio as pin
+        >>> from plantar import dynamics
+        >>> model, random = pin.buildSampleModelManipulator(), np.random.default_rng(0)
+        >>> q, v, a = random.normal(size=(3, 100, model.nv))
+        >>> data = model.createData()
+        >>> tau = np.array([pin.rnea(model, data, *sample) for sample in zip(q, v, a)])
+        >>> fit = dynamics.fit_base_parameters(model, q, v, a, tau, rows="all")
+        >>> fit.rank == len(fit.values), bool(np.allclose(fit.predict(q, v, a), tau))
+        (True, True)
     """
     return fit_base_parameters_chunked(model, [(q, v, a, tau)], rows, threads)
 

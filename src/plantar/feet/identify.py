@@ -18,26 +18,54 @@ from plantar.feet.fit.axis import AxisFit
 from plantar.feet.foot_fit import fit_foot
 from plantar.feet.prepare import PreparedLogs, prepare_all
 from plantar.feet.recording import Recording
+from plantar.feet.sensors.sensor_delay import SensorDelay
 from plantar.feet.settings import FeetSettings
-from plantar.logs.motion_log import MotionLog
+from plantar.logs.inputs import LogInputs, RobotInput, logs_of, robot_of
 from plantar.models import KelvinVoigt
 from plantar.notes import Note, unique
-from plantar.results.feet import FeetResult, Input, Offset
+from plantar.results.feet import AxisModel, DelayEstimate, Diagnosis, FeetResult, Input, Offset
+from plantar.results.feet_rows import Candidate, LinearEquivalent
 from plantar.robot.model import Foot, Placement, RobotModel
 
 
 def identify_feet(
-    robot: RobotModel,
-    logs: Sequence[MotionLog],
-    validate: Sequence[MotionLog] = (),
+    robot: RobotInput,
+    logs: LogInputs,
+    validate: LogInputs = (),
     settings: FeetSettings | None = None,
     progress: Callable[[str], None] = lambda _: None,
 ) -> FeetResult:
-    """Fit every foot's law in pitch and roll to `logs` together (eq. 6 and 7) and score it, also on `validate`.
+    """Stiffness, damping and offset of each foot, in pitch and roll, from logs of a standing robot (eq. 4 to 7).
 
-    Raises RobotError, LogError or DataError with one line when the input cannot serve; what could be worked around
-    is a note in the result. `progress` is called with a line for each step.
+    All `logs` are fitted together; the scores on them are direct validation, those on `validate` cross-validation.
+
+    Args:
+        robot: a robot with feet, or the path of its robot file.
+        logs: logs to fit, or their paths; one or several.
+        validate: logs to score only.
+        settings: what to choose by hand; all is found by itself where left out.
+        progress: called with a line for each step.
+
+    Returns:
+        Parameters [N·m/rad, N·m·s/rad] with 95 % intervals and verdicts, offsets [N·m], scores, and notes on what was
+        assumed or left out.
+
+    Raises:
+        RobotError: the robot file is wrong. LogError: a log cannot be read. DataError: nothing can be fitted to them.
+        Each is one line that names file, column and time, and what would be valid.
+
+    Example:
+        >>> import plantar
+        >>> known = plantar.FeetSettings(model="kelvin_voigt", wrench_delay=0.0)
+        >>> result = plantar.identify_feet("robot.yaml", ["sway_1.csv", "sway_2.csv"], "squat.csv", known)
+        >>> stiffness = result.parameter("left", "pitch", "stiffness")
+        >>> f"{stiffness.value:.0f} {stiffness.unit}, {stiffness.verdict}"
+        '420 N.m/rad, usable'
+        >>> result.save("out/mine").name
+        'result.json'
     """
+    robot = robot_of(robot)
+    logs, validate = logs_of(logs, robot), logs_of(validate, robot)
     settings = settings or FeetSettings()
     if not logs:
         raise DataError("no logs to fit (valid: at least one)")
@@ -76,13 +104,31 @@ def fit_prepared(
         validation=tuple(sorted(rows, key=lambda row: row.kind != "direct")),
         notes=unique([*ready.notes, *_feet_notes(robot, ready.fitted), *_model_notes(fits)]),
         robot_model=_robot_model(robot),
-        extras={
-            "laws": [fit.to_dict() for fit in fits],
-            "latency": ready.sensor_delay.to_dict(),
-            "compliance": dict(ready.vertical.compliance),
-            "diagnosis": [row for each in found for row in each.diagnosis],
-        },
+        models=tuple(_axis_model(fit) for fit in fits),
+        sensor_delay=delay_estimate(ready.sensor_delay),
+        compliance=dict(ready.vertical.compliance),
+        diagnosis=tuple(Diagnosis(**row) for each in found for row in each.diagnosis),
         residuals=residual_table(ready.recordings, predictions),
+    )
+
+
+def _axis_model(fit: AxisFit) -> AxisModel:
+    """The model of one axis, why it was chosen, and what the others missed by on held-out motions."""
+    linear = LinearEquivalent(*fit.equivalent)
+    axis_model = AxisModel(fit.foot, fit.axis, fit.model.name, fit.reason, linear, fit.load_arm)
+    if fit.choice is None:
+        return axis_model
+    ranking = tuple(
+        Candidate(tried.model.name, tried.held_out_rms, tried.parameters, tried.refused, tried.chosen)
+        for tried in fit.choice.ranking
+    )
+    return replace(axis_model, held_out=fit.choice.held_out, ranking=ranking)
+
+
+def delay_estimate(found: SensorDelay) -> DelayEstimate:
+    """The delays that the logs were corrected for."""
+    return DelayEstimate(
+        found.delay, found.std, found.measured, feet=dict(found.feet), encoder_delay=found.encoders
     )
 
 

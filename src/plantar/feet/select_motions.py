@@ -15,9 +15,8 @@ from plantar.estimation.intervals import cosine_covariance
 from plantar.feet.fit.regression_data import blocks_of
 from plantar.feet.prepare import check_names, prepare_all
 from plantar.feet.settings import FeetSettings
-from plantar.logs.motion_log import MotionLog
+from plantar.logs.inputs import LogInputs, RobotInput, logs_of, robot_of
 from plantar.models import KelvinVoigt
-from plantar.robot.model import RobotModel
 
 SEVERAL = 3000  # combinations looked at one by one; beyond that the best set grows one recording at a time
 UNKNOWN = 1000.0  # %: stands for a parameter that a set does not identify
@@ -65,17 +64,39 @@ class Selection:
 
 
 def select_motions(
-    robot: RobotModel,
-    logs: Sequence[MotionLog],
+    robot: RobotInput,
+    logs: LogInputs,
     compare: Sequence[str] = (),
     largest: int = 6,
     settings: FeetSettings | None = None,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Selection:
-    """Rank single recordings and sets of up to `largest` by the intervals that they promise.
+    """Rank single recordings and sets of them by the intervals that they promise.
 
-    `compare` names motions to set beside the best. Raises DataError where a name is unknown or nothing can be fitted.
+    Args:
+        robot: a robot with feet, or the path of its robot file.
+        logs: logs to choose from, or their paths.
+        compare: names of motions to set beside the best.
+        largest: most recordings in a set.
+        settings: as for `identify_feet`.
+        progress: called with a line for each step.
+
+    Returns:
+        Every recording alone, the best set of each size, all together, and `compare`: 95 % half widths [% of the
+        value] by foot, axis and term.
+
+    Raises:
+        RobotError, LogError: a file that cannot be read. DataError: a name in `compare` is unknown, or nothing can be
+        fitted.
+
+    Example:
+        >>> import plantar
+        >>> found = plantar.select_motions("robot.yaml", ["sway_1.csv", "sway_2.csv"], largest=2)
+        >>> [len(choice.motions) for choice in found.best]
+        [1, 2]
     """
+    robot = robot_of(robot)
+    logs = logs_of(logs, robot)
     settings = settings or FeetSettings()
     check_names(logs)
     names = [log.name for log in logs]

@@ -2,22 +2,51 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import asdict, dataclass
-from typing import Any, Literal
+from typing import Any, Final, Literal, get_args
+
+from plantar.choices import number_in, one_of
+from plantar.models import MODELS
 
 OffsetRule = Literal["per-motion", "shared"]
-AUTOMATIC = "auto"
-DEFAULT_CUTOFF = 5.0  # Hz: sways of a robot are slower, and encoders differentiated are noise above
+AUTOMATIC: Final = "auto"
+MODEL_CHOICES: Final = (AUTOMATIC, *MODELS)
+DEFAULT_CUTOFF: Final = 5.0  # Hz: sways of a robot are slower, and encoders differentiated are noise above
+
+LOWEST_CUTOFF: Final = 0.1  # Hz: below it nothing of a sway is left
+LEAST_WINDOW: Final = math.radians(0.01)  # rad: finer than a good encoder
+LONGEST_DELAY: Final = 1.0  # s: a sensor that is later has another fault than a delay
 
 
 @dataclass(frozen=True)
 class FeetSettings:
-    """`offset`: one for each recording, or one for all as in the paper. `model`: a law of the bush, or the one that
-    predicts held-out motions best. `cutoff` [Hz]: zero-phase low-pass on both sides of eq. 6; None takes
-    DEFAULT_CUTOFF, or less where walks show that angle and torque part below it. `edge_margin` [m]: a
-    centre of pressure nearer to the sole's border is left out. `window` [rad]: largest deflection from the resting pose
-    that serves; None finds the bend of the torque by itself. `wrench_delay` [s]: how late the force sensors are; None
-    estimates it."""
+    """What `identify_feet` may be told. The defaults find out by themselves what they can.
+
+    Args:
+        offset: "per-motion" gives each recording its own offset, because the zeros of sensors change between
+            recordings; "shared" gives one offset to all, as in the paper.
+        model: a model of the bush, such as "kelvin_voigt" (spring and damper), or "auto": the one that predicts
+            held-out motions best.
+        cutoff: zero-phase low-pass on both sides of eq. 6 [Hz], at least 0.1; None takes 5 Hz, or less where walks
+            show that angle and torque part below it.
+        edge_margin: samples with the centre of pressure nearer than this to the sole's border are left out [m].
+        window: largest deflection from the resting pose that is used [rad]; None finds by itself where the torque
+            bends.
+        wrench_delay: how late the force sensors are against the IMU [s], > 0: late; None estimates it.
+
+    Raises:
+        SettingsError: a value that is not one of the choices or out of its range.
+
+    Example:
+        >>> import plantar
+        >>> plantar.FeetSettings(model="kelvin_voigt", wrench_delay=0.005).wrench_delay
+        0.005
+        >>> plantar.FeetSettings(offset="shard")
+        Traceback (most recent call last):
+        ...
+        plantar.errors.SettingsError: value 'shard': offset is not a choice (valid: per-motion, shared)
+    """
 
     offset: OffsetRule = "per-motion"
     model: str = AUTOMATIC
@@ -26,10 +55,22 @@ class FeetSettings:
     window: float | None = None
     wrench_delay: float | None = None
 
+    def __post_init__(self) -> None:
+        one_of("offset", self.offset, get_args(OffsetRule))
+        one_of("model", self.model, MODEL_CHOICES)
+        number_in("cutoff", self.cutoff, LOWEST_CUTOFF, math.inf, "Hz", optional="found from the data")
+        number_in("edge_margin", self.edge_margin, 0.0, math.inf, "m")
+        number_in("window", self.window, LEAST_WINDOW, math.pi, "rad", optional="found from the data")
+        number_in(
+            "wrench_delay", self.wrench_delay, -LONGEST_DELAY, LONGEST_DELAY, "s",
+            optional="estimated from the data",
+        )  # fmt: skip
+
     @property
     def highest_cutoff(self) -> float:
         """The cutoff asked for, or the highest one that may be found [Hz]."""
         return DEFAULT_CUTOFF if self.cutoff is None else self.cutoff
 
     def to_dict(self) -> dict[str, Any]:
+        """The settings as they stand in `result.json`."""
         return asdict(self)

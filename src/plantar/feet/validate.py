@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+import os
+from collections.abc import Callable
 
 import numpy as np
 
@@ -12,39 +12,59 @@ from plantar.errors import DataError
 from plantar.feet.assess.scores import score_axis
 from plantar.feet.fit.axis import FittedModel
 from plantar.feet.prepare import prepare_unseen
-from plantar.feet.sensors.sensor_delay import sensor_delay_of
+from plantar.feet.sensors.sensor_delay import SensorDelay
 from plantar.feet.settings import FeetSettings
-from plantar.logs.motion_log import MotionLog
+from plantar.logs.inputs import LogInputs, RobotInput, logs_of, robot_of
 from plantar.models import MODELS, KelvinVoigt
-from plantar.results.feet import ValidationRow
-from plantar.robot.model import RobotModel
+from plantar.notes import Note
+from plantar.results.feet import DelayEstimate, FeetResult, ValidationRow
 
 
 def validate_feet(
-    result: Mapping[str, Any],
-    robot: RobotModel,
-    logs: Sequence[MotionLog],
+    result: FeetResult | str | os.PathLike[str],
+    robot: RobotInput,
+    logs: LogInputs,
     progress: Callable[[str], None] = lambda _: None,
 ) -> list[ValidationRow]:
-    """Cross-validation rows of a `plantar.feet/1` result on `logs`; each log's first second gives its offset.
+    """Cross-validation of identified feet on logs that their fit has not seen (table 3).
 
-    Raises DataError when the result names feet that the robot has not, or no log has samples to score.
+    Each log's first second gives its offset and is left out of the score.
+
+    Args:
+        result: what `identify_feet` found, or the path of its `result.json`.
+        robot: the robot of these logs, or the path of its robot file.
+        logs: logs to score, or their paths; one or several.
+        progress: called with a line for each step.
+
+    Returns:
+        A row for each log, foot and axis: mean, rms and largest error of the torque [N·m], beside the error of the
+        offset alone.
+
+    Raises:
+        PlantarError: a file that is not a result. RobotError, LogError: a file that cannot be read. DataError: the
+        result names feet that the robot has not, or no log has samples to score.
+
+    Example:
+        >>> import plantar
+        >>> rows = plantar.validate_feet("out/feet/result.json", "robot.yaml", "squat.csv")
+        >>> len(rows), all(row.mean_abs_error < row.zero_mean_abs for row in rows)
+        (4, True)
     """
-    feet = {row["foot"] for row in result["parameters"]}
+    found = result if isinstance(result, FeetResult) else FeetResult.load(result, residuals=False)
+    robot = robot_of(robot)
+    logs = logs_of(logs, robot)
+    feet = {row.foot for row in found.parameters}
     strangers = sorted(feet - set(robot.feet))
     if strangers:
         raise DataError(f"the result is about a foot '{strangers[0]}' (valid: {', '.join(robot.feet)})")
-    known = {
-        key: value for key, value in result["settings"].items() if key in FeetSettings.__dataclass_fields__
-    }
-    compliance = {foot: float(result.get("compliance", {}).get(foot, 0.0)) for foot in robot.feet}
-    recordings = prepare_unseen(
-        robot, logs, FeetSettings(**known), sensor_delay_of(result), compliance, progress
-    )
+    known = {key: value for key, value in found.settings.items() if key in FeetSettings.__dataclass_fields__}
+    compliance = {foot: found.compliance.get(foot, 0.0) for foot in robot.feet}
+    delay = _sensor_delay(found.sensor_delay)
+    recordings = prepare_unseen(robot, logs, FeetSettings(**known), delay, compliance, progress)
     rows: list[ValidationRow] = []
     for foot in sorted(feet):
         for axis in ROTATIONAL_AXES:
-            fitted = _stored_model(result, foot, axis)
+            fitted = _stored_model(found, foot, axis)
             if fitted is not None:
                 rows += score_axis(recordings, fitted)[0]
     if not rows:
@@ -54,19 +74,22 @@ def validate_feet(
     return rows
 
 
-def _stored_model(result: Mapping[str, Any], foot: str, axis: Axis) -> FittedModel | None:
-    """The law of one axis as the result holds it, None where a number of it is missing."""
-    models = [row for row in result.get("laws", ()) if (row["foot"], row["axis"]) == (foot, axis)]
-    entry: Mapping[str, Any] = models[0] if models else {"law": KelvinVoigt.name}
-    name = entry["law"]
+def _sensor_delay(stored: DelayEstimate | None) -> SensorDelay:
+    """The delays that the result's logs were corrected for; none where it names none."""
+    stored = stored or DelayEstimate(0.0, 0.0, False)
+    text = f"wrenches taken as {1e3 * stored.wrench_delay:+.1f} ms late, as in the result"
+    note = Note("delay_given", "info", text)
+    return SensorDelay(stored.wrench_delay, 0.0, np.inf, False, note, dict(stored.feet), stored.encoder_delay)
+
+
+def _stored_model(result: FeetResult, foot: str, axis: Axis) -> FittedModel | None:
+    """The model of one axis as the result holds it, None where a number of it is missing."""
+    entry = next((row for row in result.models if (row.foot, row.axis) == (foot, axis)), None)
+    name = KelvinVoigt.name if entry is None else entry.model
     if name not in MODELS:
-        raise DataError(f"the result's law '{name}' is unknown (valid: {', '.join(MODELS)})")
+        raise DataError(f"the result's model '{name}' is unknown (valid: {', '.join(MODELS)})")
     model = MODELS[name]
-    stored = {
-        row["name"]: row["value"]
-        for row in result["parameters"]
-        if (row["foot"], row["axis"]) == (foot, axis)
-    }
+    stored = {row.name: row.value for row in result.parameters if (row.foot, row.axis) == (foot, axis)}
     numbers = [stored.get(term) for term in (*model.terms, *model.shape_terms)]
     if any(number is None for number in numbers):
         return None
@@ -78,5 +101,5 @@ def _stored_model(result: Mapping[str, Any], foot: str, axis: Axis) -> FittedMod
         model=model,
         values=values[:count],
         shape=values[count:],
-        load_arm=float(entry.get("load_arm", 0.0)),
+        load_arm=0.0 if entry is None else entry.load_arm,
     )

@@ -30,10 +30,24 @@ LARGEST = 1e12  # in any unit: what no sensor reads
 
 @dataclass(frozen=True)
 class MotionLog:
-    """A recording: `time` (N,) [s], increasing, and `columns`, each (N,), named as in `docs/log_columns.md`.
+    """One recording: a time base and labelled columns. Made by `open_log`, or from arrays.
 
-    Arrays are read-only float64; NaN marks a value that was not recorded, and stands for infinite ones. Raises
-    LogError on construction when lengths differ or time does not increase.
+    Args:
+        name: what results call the motion.
+        time: (N,) [s], increasing; evenly spaced or not.
+        columns: (N,) each, in SI units, named as in `docs/log_columns.md`, such as `joint.<joint>.position` [rad]. They
+            become read-only float64; NaN marks a value that was not recorded, and stands for infinite ones.
+        path, sha256: the file that it was read from. notes: what was assumed while reading.
+
+    Raises:
+        LogError: lengths differ, time does not increase, or there are fewer than two samples.
+
+    Example:
+        >>> import numpy as np, plantar
+        >>> time = np.arange(0.0, 2.0, 0.01)
+        >>> log = plantar.MotionLog("still", time, {"joint.knee.position": np.zeros(200)})
+        >>> log.column("joint.knee.position").shape, f"{log.duration:.2f} s"
+        ((200,), '1.99 s')
     """
 
     name: str

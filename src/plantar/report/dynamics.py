@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
@@ -9,12 +10,12 @@ from typing import Any, Final
 from plantar.errors import PlantarError, located
 from plantar.files import write_text
 from plantar.report.content import Cell, Column, Figure, Section, Table
-from plantar.report.numbers import MISSING, interval, number, percent, unit, with_uncertainty
 from plantar.report.page import render
-from plantar.report.records import InertiaResult, JointsResult, Result, Row, checked, result_path
+from plantar.report.records import InertiaResult, JointsResult, Result, Row, checked
 from plantar.report.tables import input_table, settings_table, skill_cell, verdict_cell
 from plantar.report.verdict import listed
-from plantar.results.io import read_result
+from plantar.results.io import read_result, result_path
+from plantar.results.numbers import MISSING, interval, number, percent, unit, with_uncertainty
 
 INERTIA: Final = "plantar.inertia/1"
 JOINTS: Final = "plantar.joints/1"
@@ -35,8 +36,8 @@ _HEADINGS: Final = {
 
 
 def write_dynamics_report(
-    result: Path,
-    out: Path | None = None,
+    result: str | os.PathLike[str],
+    out: str | os.PathLike[str] | None = None,
     *,
     figures: Sequence[Figure] = (),
     sections: Sequence[Section] = (),
@@ -46,7 +47,7 @@ def write_dynamics_report(
     `result` is `result.json` or its directory; the page is one file that needs no network. Raises
     `PlantarError` for a result that cannot be read.
     """
-    path = result_path(Path(result))
+    path = result_path(result)
     content = read_result(path)
     read: Result
     if content["schema"] == INERTIA:

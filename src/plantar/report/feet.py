@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -12,16 +13,16 @@ from plantar.report import tables
 from plantar.report.content import Figure, Section, Table
 from plantar.report.motions import motion_views
 from plantar.report.page import render
-from plantar.report.records import FeetResult, checked, result_path
-from plantar.report.residuals import read_residuals, residuals_path
+from plantar.report.records import FeetResult, checked
 from plantar.report.verdict import foot_verdicts, trust
 from plantar.results.feet import FEET_SCHEMA
-from plantar.results.io import read_result
+from plantar.results.io import read_result, result_path
+from plantar.results.residuals import read_residuals, residuals_path
 
 
 def write_feet_report(
-    result: Path,
-    out: Path | None = None,
+    result: str | os.PathLike[str],
+    out: str | os.PathLike[str] | None = None,
     *,
     figures: Sequence[Figure] = (),
     sections: Sequence[Section] = (),
@@ -32,7 +33,7 @@ def write_feet_report(
     plots; without them the page has none and says so. `sections` come after the tables, `figures` after the plots. The
     page is one file that needs no network. Raises `PlantarError` for a result or residuals that cannot be read.
     """
-    path = result_path(Path(result))
+    path = result_path(result)
     content = checked(read_result(path, FEET_SCHEMA), FeetResult, FEET_SCHEMA, path)
     residuals = residuals_path(path.parent)
     motions, stride = motion_views(content, read_residuals(residuals) if residuals is not None else ())

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from typing import Final
 
 from plantar.conventions import AXES
-from plantar.report.numbers import number
 from plantar.report.payload import Payload, encode
 from plantar.report.records import FeetResult, Phase
-from plantar.report.residuals import Track
+from plantar.results.numbers import number
+from plantar.results.residuals import Track
 
 ROLES: Final = {"fit": "served the fit", "validate": "not seen by the fit"}
 PHASE_LIMIT: Final = 4000

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plantar.conventions import Array
-from plantar.report.residuals import Track
+from plantar.results.residuals import Track
 
 SIZE_LIMIT: Final = 4_000_000
 """What all motions together may take in the page [characters]; a longer campaign is thinned and says so."""

@@ -169,11 +169,6 @@ class JointsResult(Result):
 AnyResult = TypeVar("AnyResult", bound=Result)
 
 
-def result_path(path: Path) -> Path:
-    """`result.json` in a directory, or the file itself."""
-    return path / "result.json" if path.is_dir() else path
-
-
 def checked(content: dict[str, Any], kind: type[AnyResult], schema: str, path: Path) -> AnyResult:
     """`content` as a `kind`; `PlantarError` naming the first key that does not fit."""
     if content["schema"] != schema:

@@ -8,9 +8,9 @@ from pathlib import PurePath
 from typing import Any
 
 from plantar.report.content import Cell, Column, Table
-from plantar.report.numbers import MISSING, interval, number, percent, unit, with_uncertainty
 from plantar.report.records import Comparison, FeetResult, Input, Offset, Parameter, Phase, Validation
 from plantar.report.verdict import MARKS, symbol, why_of
+from plantar.results.numbers import MISSING, interval, number, percent, unit, with_uncertainty
 
 
 def parameter_table(parameters: Sequence[Parameter]) -> Table:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Final
 
 from plantar.report.content import Mark
-from plantar.report.numbers import unit, with_uncertainty
 from plantar.report.records import FeetResult, Parameter, Validation
+from plantar.results.numbers import unit, with_uncertainty
 
 MARKS: Final[dict[str, Mark]] = {"usable": "good", "weak": "weak", "unidentifiable": "bad"}
 SYMBOLS: Final[dict[str, str]] = {"stiffness": "K", "damping": "C"}

@@ -2,91 +2,64 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any, Final, Literal
+from typing import Any, Final
 
 import pyarrow as pa
 import pyarrow.parquet as pa_parquet
 
 from plantar import __version__
-from plantar.files import atomic_write, write_text
+from plantar.errors import PlantarError, located
+from plantar.files import atomic_write, read_bounded, write_text
 from plantar.notes import Note
-from plantar.results.feet import Input, Verdict
-from plantar.results.io import dump_json, finite
+from plantar.results import dynamics_text, text
+from plantar.results.dynamics_rows import BaseParameter, DynamicsScore, InertialParameter, JointParameter
+from plantar.results.feet_rows import Input
+from plantar.results.io import RESULT_LIMIT, dump_json, finite, read_result, result_path
+from plantar.results.residuals import read_table, residuals_path
+from plantar.results.stored import rows_of, value_of
+
+__all__ = [
+    "INERTIA_SCHEMA", "JOINTS_SCHEMA", "URDF", "BaseParameter", "DynamicsResult", "DynamicsScore",
+    "InertialParameter", "JointParameter",
+]  # fmt: skip
 
 INERTIA_SCHEMA: Final = "plantar.inertia/1"
 JOINTS_SCHEMA: Final = "plantar.joints/1"
 URDF: Final = "identified.urdf"  # beside result.json: the robot with the inertias found
 
-
-@dataclass(frozen=True)
-class InertialParameter:
-    """One of a link's ten parameters about its joint frame, identified and in the URDF."""
-
-    link: str
-    name: str
-    unit: str
-    value: float
-    cad: float
-
-
-@dataclass(frozen=True)
-class BaseParameter:
-    """One minimal parameter; std and interval95 (Student's) count coloured residuals and the pull, relative_std_percent
-    is 100·std/|value|."""
-
-    expression: str
-    value: float
-    std: float
-    interval95: tuple[float, float]
-    relative_std_percent: float | None
+_INERTIAL_TABLE: Final = pa.schema(
+    [(name, pa.string()) for name in ("link", "name", "unit")]
+    + [(name, pa.float64()) for name in ("value", "cad")]
+)
+_JOINT_TABLE: Final = pa.schema(
+    [(name, pa.string()) for name in ("joint", "name", "unit")]
+    + [(name, pa.float64()) for name in ("value", "std", "low", "high")]
+    + [(name, pa.string()) for name in ("verdict", "reason")]
+)
 
 
-@dataclass(frozen=True)
-class JointParameter:
-    """One term of one joint."""
-
-    joint: str
-    name: str
-    unit: str
-    value: float
-    std: float
-    interval95: tuple[float, float]
-    verdict: Verdict
-    reason: str
-
-
-@dataclass(frozen=True)
-class DynamicsScore:
-    """Measured against predicted over one motion, of one wrench axis or one joint; `cad_rms_error` by the URDF alone
-    (joints: its inertias and the friction fitted to them are not mixed), `zero_mean_abs` by the fit motions' mean."""
-
-    kind: Literal["direct", "cross"]
-    motion: str
-    unit: str
-    mean_abs_error: float
-    rms_error: float
-    max_abs: float
-    percent_of_max: float | None
-    zero_mean_abs: float
-    cad_rms_error: float
-    samples: int
-    relative_error_percent: float | None
-    axis: str | None = None
-    joint: str | None = None
-
-    def to_dict(self) -> dict[str, Any]:
-        return {key: value for key, value in asdict(self).items() if value is not None}
-
-
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class DynamicsResult:
-    """Everything `identify inertia` or `identify joints` found; `to_dict` is the contract's JSON.
+    """Everything `identify_inertia` or `identify_joints` found. `print` it for a table; in a notebook it shows itself.
 
-    urdf: the robot's URDF with the identified inertias; residuals: measured and predicted, sample by sample.
+    Attributes:
+        schema: "plantar.inertia/1" or "plantar.joints/1". robot: its name. inputs: every log with its SHA-256.
+        settings: what was chosen. rank, condition_number: of the weighted regressor.
+        base_parameters: minimal parameters with 95 % intervals. inertial_parameters: ten of each link, beside the
+            URDF's [kg, kg·m, kg·m²]. parameters: of the joints [N·m, N·m/rad, N·m·s/rad, kg·m²]; none in eq. 2.
+        validation: errors on fitted (direct) and unseen (cross) motions [N, N·m]. notes: what was assumed.
+        urdf: the robot's URDF with the identified inertias. residuals: measured and predicted, sample by sample.
+        created: UTC time. version: of plantar.
+
+    Example:
+        >>> import plantar
+        >>> plantar.DynamicsResult.load("out/inertia")
+        <DynamicsResult of walker: plantar.inertia/1, 22.99 kg, rank 59>
     """
 
     schema: str
@@ -100,9 +73,34 @@ class DynamicsResult:
     parameters: tuple[JointParameter, ...]
     validation: tuple[DynamicsScore, ...]
     notes: tuple[Note, ...]
-    urdf: str = field(repr=False)
-    residuals: pa.Table = field(repr=False, compare=False)
+    urdf: str
+    residuals: pa.Table | None = field(compare=False)
     created: str = field(default_factory=lambda: datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ"))
+    version: str = __version__
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} of {self.robot}: {self.schema}, {self.mass:.4g} kg, rank {self.rank}>"
+
+    def __str__(self) -> str:
+        """Links or joint terms as text, prediction on all motions, warnings."""
+        heads, cells = self._cells()
+        scores = dynamics_text.score_cells(self.validation)
+        lines = [self._title(), *text.columns([heads, *cells])]
+        lines += ["Prediction", *text.columns([dynamics_text.SCORE_HEADS, *scores])] if scores else []
+        return "\n".join([*lines, *text.warnings(self.notes)])
+
+    def _repr_html_(self) -> str:
+        """The same for a notebook."""
+        return text.html_table(self._title(), *self._cells()) + text.html_lines(text.warnings(self.notes))
+
+    def _title(self) -> str:
+        what = "Joints" if self.schema == JOINTS_SCHEMA else "Inertias"
+        return f"{what} of {self.robot}: {self.mass:.4g} kg, rank {self.rank}; plantar {self.version}, ± for 95 %"
+
+    def _cells(self) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+        if self.schema == JOINTS_SCHEMA:
+            return dynamics_text.JOINT_HEADS, dynamics_text.joint_cells(self.parameters)
+        return dynamics_text.LINK_HEADS, dynamics_text.link_cells(self.inertial_parameters)
 
     @property
     def mass(self) -> float:
@@ -123,12 +121,27 @@ class DynamicsResult:
                 return row
         raise KeyError((joint, name))
 
+    def to_table(self) -> pa.Table:
+        """Joint terms (eq. 3) or inertial parameters (eq. 2) as an Arrow table; `.to_pandas()` where pandas is there.
+
+        Columns: joint, name, unit, value, std, low, high (of the 95 % interval), verdict, reason; or link, name, unit,
+        value, cad (the URDF's).
+        """
+        if self.schema != JOINTS_SCHEMA:
+            return pa.Table.from_pylist(
+                [asdict(row) for row in self.inertial_parameters], schema=_INERTIAL_TABLE
+            )
+        rows = [
+            asdict(row) | {"low": row.interval95[0], "high": row.interval95[1]} for row in self.parameters
+        ]
+        return pa.Table.from_pylist(rows, schema=_JOINT_TABLE)
+
     def to_dict(self) -> dict[str, Any]:
         """Plain data for JSON; numbers that are not finite become None."""
         content: dict[str, Any] = {
             "schema": self.schema,
             "robot": self.robot,
-            "plantar": __version__,
+            "plantar": self.version,
             "created": self.created,
             "inputs": [asdict(row) for row in self.inputs],
             "settings": dict(self.settings),
@@ -144,11 +157,61 @@ class DynamicsResult:
         plain: dict[str, Any] = finite(content)
         return plain
 
-    def save(self, directory: Path) -> Path:
-        """Write `residuals.parquet`, `identified.urdf` and `result.json`; returns the latter's path."""
-        with atomic_write(directory / "residuals.parquet") as handle:
-            pa_parquet.write_table(self.residuals, handle, compression="zstd")
-        write_text(directory / URDF, self.urdf)
-        path = directory / "result.json"
+    def save(self, directory: str | os.PathLike[str]) -> Path:
+        """Write `residuals.parquet`, `identified.urdf` and `result.json` into a folder; returns the latter's path.
+
+        Raises PlantarError where the folder cannot be written.
+        """
+        folder = Path(directory)
+        if self.residuals is not None:
+            with atomic_write(folder / "residuals.parquet") as handle:
+                pa_parquet.write_table(self.residuals, handle, compression="zstd")
+        write_text(folder / URDF, self.urdf)
+        path = folder / "result.json"
         write_text(path, dump_json(self.to_dict()))
         return path
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> DynamicsResult:
+        """A result read back from `result.json` or its folder, with the URDF and the residuals beside it.
+
+        Args:
+            path: the file, or the folder that holds it.
+
+        Returns:
+            The result; its `to_dict` is the file's content. Keys that this version does not know are left out.
+
+        Raises:
+            PlantarError: a file is missing, not a result of eq. 2 or 3, or a row does not fit.
+
+        Example:
+            >>> import plantar
+            >>> plantar.DynamicsResult.load("out/inertia/result.json").rank
+            59
+        """
+        file = result_path(path)
+        content = read_result(file)
+        schema = content["schema"]
+        if schema not in (INERTIA_SCHEMA, JOINTS_SCHEMA):
+            valid = f"{INERTIA_SCHEMA}, {JOINTS_SCHEMA}"
+            raise PlantarError(located("is another kind of result", path=file, value=schema, valid=valid))
+        beside = residuals_path(file.parent)
+        return cls(
+            schema=schema,
+            robot=value_of(str, content, "robot", file),
+            inputs=rows_of(Input, content, "inputs", file),
+            settings=value_of(dict[str, Any], content, "settings", file),
+            rank=value_of(int, content, "rank", file),
+            condition_number=value_of(float, content, "condition_number", file),
+            base_parameters=rows_of(BaseParameter, content, "base_parameters", file),
+            inertial_parameters=rows_of(
+                InertialParameter, content, "inertial_parameters", file, required=True
+            ),
+            parameters=rows_of(JointParameter, content, "parameters", file),
+            validation=rows_of(DynamicsScore, content, "validation", file),
+            notes=rows_of(Note, content, "notes", file),
+            urdf=read_bounded(file.parent / URDF, RESULT_LIMIT).decode(errors="replace"),
+            residuals=None if beside is None else read_table(beside),
+            created=value_of(str, content, "created", file),
+            version=value_of(str, content, "plantar", file),
+        )

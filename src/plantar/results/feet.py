@@ -1,91 +1,77 @@
-"""What an identification found, as data: the contract of `result.json` for the feet."""
+"""What an identification of the feet found, as data: the contract of `result.json`, written and read back."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Final
 
 import pyarrow as pa
 import pyarrow.parquet as pa_parquet
 
-from plantar import __version__
+import plantar
 from plantar.contact.phases import Phase
-from plantar.conventions import Axis
 from plantar.files import atomic_write, write_text
-from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
-from plantar.results.io import dump_json, finite
+from plantar.results import feet_text, text
+from plantar.results.feet_rows import (
+    AxisModel,
+    Comparison,
+    DelayEstimate,
+    Diagnosis,
+    Input,
+    Offset,
+    Parameter,
+    ValidationRow,
+    Verdict,
+)
+from plantar.results.io import dump_json, finite, read_result, result_path
+from plantar.results.residuals import read_table, residuals_path
+from plantar.results.stored import row_of, rows_of, value_of
 
-Verdict = Literal["usable", "weak", "unidentifiable"]
-FEET_SCHEMA = "plantar.feet/1"
+__all__ = [
+    "FEET_SCHEMA", "AxisModel", "Comparison", "DelayEstimate", "Diagnosis", "FeetResult", "Input", "Offset",
+    "Parameter", "ValidationRow", "Verdict",
+]  # fmt: skip
 
+FEET_SCHEMA: Final = "plantar.feet/1"
 
-@dataclass(frozen=True)
-class Input:
-    """A log that served: `role` says for what; `sha256` is None for a log that never was a file."""
-
-    path: str
-    sha256: str | None
-    role: Literal["fit", "validate"]
-
-    @classmethod
-    def of(cls, log: MotionLog, role: Literal["fit", "validate"]) -> Input:
-        return cls(str(log.path) if log.path else log.name, log.sha256, role)
-
-
-@dataclass(frozen=True)
-class Parameter:
-    """One number of a bush's law. `std` and `interval95` hold with coloured residuals; `relative_std_percent` is the
-    paper's, for white ones. None stands where nothing can be computed."""
-
-    foot: str
-    axis: Axis
-    name: str
-    unit: str
-    value: float | None
-    std: float | None
-    interval95: tuple[float, float] | None
-    relative_std_percent: float | None
-    verdict: Verdict
-    reason: str
-    advice: str | None = None
+_TABLE: Final = pa.schema(
+    [(name, pa.string()) for name in ("foot", "axis", "name", "unit")]
+    + [(name, pa.float64()) for name in ("value", "std", "low", "high", "relative_std_percent")]
+    + [(name, pa.string()) for name in ("verdict", "reason", "advice")]
+)
 
 
-@dataclass(frozen=True)
-class Offset:
-    """The law's offset in one recording: it absorbs the zeros of force sensor and attitude there."""
-
-    foot: str
-    axis: Axis
-    motion: str
-    unit: str
-    value: float
-    std: float
-
-
-@dataclass(frozen=True)
-class ValidationRow:
-    """Measured against reconstructed torque over one recording. `zero_mean_abs` is the trivial predictor's error:
-    the offset alone, found in the same way."""
-
-    kind: Literal["direct", "cross"]
-    motion: str
-    foot: str
-    axis: Axis
-    mean_abs_error: float
-    rms_error: float
-    max_abs: float
-    percent_of_max: float | None
-    zero_mean_abs: float
-    samples: int
-
-
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class FeetResult:
-    """Everything `identify feet` found; `to_dict` is the contract's JSON."""
+    """Everything `identify_feet` found. `print` it for a table; in a notebook it shows itself.
+
+    Attributes:
+        robot: the robot's name. inputs: every log with its SHA-256. settings: what was chosen.
+        model: the bush model of most axes; `models` has that of each axis and why it was chosen.
+        parameters: stiffness, damping and further terms [SI], each with interval, verdict, reason and advice.
+        offsets: of each motion [N·m]. phases: stretches of each log, used or with the reason why not.
+        validation: errors [N·m] on fitted (direct) and unseen (cross) motions. notes: what was assumed.
+        robot_model: path of the URDF and geometry of the feet [m, rad], for exports.
+        sensor_delay: how late the sensors are [s]. compliance: of each foot along z [m/N], 0 where not known.
+        diagnosis: what limits each number. comparisons: the same logs under other choices.
+        campaign: what `plantar demo` adds, as plain data; None elsewhere.
+        residuals: one row for each sample, foot and motion, or None; columns as in `read_residuals`.
+        created: UTC time. version: of plantar.
+
+    Example:
+        >>> import plantar
+        >>> result = plantar.FeetResult.load("out/feet")
+        >>> result
+        <FeetResult of biped: 10 parameters, 10 usable, from 2 logs>
+        >>> row = result.parameter("left", "pitch", "stiffness")
+        >>> row.unit, row.verdict, row.interval95[0] < 420.0 < row.interval95[1]
+        ('N.m/rad', 'usable', True)
+    """
 
     robot: str
     inputs: tuple[Input, ...]
@@ -97,23 +83,86 @@ class FeetResult:
     validation: tuple[ValidationRow, ...]
     notes: tuple[Note, ...]
     robot_model: Mapping[str, Any] = field(default_factory=dict)
-    extras: Mapping[str, Any] = field(default_factory=dict)
-    residuals: pa.Table | None = field(default=None, repr=False, compare=False)
+    models: tuple[AxisModel, ...] = ()
+    sensor_delay: DelayEstimate | None = None
+    compliance: Mapping[str, float] = field(default_factory=dict)
+    diagnosis: tuple[Diagnosis, ...] = ()
+    comparisons: tuple[Comparison, ...] = ()
+    campaign: Mapping[str, Any] | None = None
+    residuals: pa.Table | None = field(default=None, compare=False)
     created: str = field(default_factory=lambda: datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ"))
+    version: str = plantar.__version__
+
+    def __repr__(self) -> str:
+        usable = sum(row.verdict == "usable" for row in self.parameters)
+        count = sum(row.role == "fit" for row in self.inputs)
+        numbers = f"{len(self.parameters)} parameters, {usable} usable"
+        return f"<{type(self).__name__} of {self.robot}: {numbers}, from {count} logs>"
+
+    def __str__(self) -> str:
+        """Table 1 as text (± is half of the 95 % interval), what is not usable and why, prediction, warnings."""
+        why, todo = feet_text.reasons(self.parameters), feet_text.advice(self.parameters)
+        scores = feet_text.prediction_cells(self.validation)
+        lines = [self._title(), *text.columns([feet_text.HEADS, *feet_text.parameter_cells(self.parameters)])]
+        lines += ["Not usable as they are", *why] if why else []
+        lines += ["What to record next", *todo] if todo else []
+        if scores:
+            lines += ["Prediction of the torque [N·m]", *text.columns([feet_text.PREDICTION_HEADS, *scores])]
+        lines += [*feet_text.delay_line(self.sensor_delay), *text.warnings(self.notes)]
+        return "\n".join(lines)
+
+    def _repr_html_(self) -> str:
+        """The same for a notebook."""
+        table = text.html_table(self._title(), feet_text.HEADS, feet_text.parameter_cells(self.parameters))
+        why = [*feet_text.reasons(self.parameters), *feet_text.advice(self.parameters)]
+        delay = feet_text.delay_line(self.sensor_delay)
+        return table + text.html_lines([*why, *delay, *text.warnings(self.notes)])
+
+    def _title(self) -> str:
+        counts = [sum(row.role == role for row in self.inputs) for role in ("fit", "validate")]
+        logs = f"logs: {counts[0]} fitted, {counts[1]} unseen"
+        rule = self.settings.get("offset", "")
+        return (
+            f"Feet of {self.robot}: {self.model}, offset {rule}; {logs}; plantar {self.version}; ± for 95 %"
+        )
 
     def parameter(self, foot: str, axis: str, name: str) -> Parameter:
-        """One parameter by foot, axis and name; KeyError where there is none."""
+        """One parameter by foot, axis ("pitch", "roll", "z") and name; KeyError where there is none."""
         for row in self.parameters:
             if (row.foot, row.axis, row.name) == (foot, axis, name):
                 return row
         raise KeyError((foot, axis, name))
 
+    def to_table(self) -> pa.Table:
+        """The parameters as an Arrow table, one row each; `.to_pandas()` where pandas is installed.
+
+        Columns: foot, axis, name, unit, value, std, low, high (of the 95 % interval), relative_std_percent, verdict,
+        reason, advice.
+
+        Example:
+            >>> import plantar
+            >>> plantar.FeetResult.load("out/feet").to_table().column("unit")[0].as_py()
+            'N.m/rad'
+        """
+        rows = []
+        for row in self.parameters:
+            low, high = row.interval95 or (None, None)
+            entry = asdict(row)
+            del entry["interval95"]
+            rows.append(entry | {"low": low, "high": high})
+        return pa.Table.from_pylist(rows, schema=_TABLE)
+
+    def plot(self, foot: str, axis: str, *, motions: str | Sequence[str] = (), axes: Any = None) -> Any:
+        """Torque over angle of one foot and axis, measured and model, as matplotlib axes; see `plantar.plot_torque`."""
+        # Drawing stands in a later room; the package's front door leads there.
+        return plantar.plot_torque(self, foot, axis, motions=motions, axes=axes)
+
     def to_dict(self) -> dict[str, Any]:
-        """Plain data for JSON; numbers that are not finite become None."""
-        content = {
+        """Plain data for JSON, the contract's keys; numbers that are not finite become None."""
+        content: dict[str, Any] = {
             "schema": FEET_SCHEMA,
             "robot": self.robot,
-            "plantar": __version__,
+            "plantar": self.version,
             "created": self.created,
             "inputs": [asdict(row) for row in self.inputs],
             "settings": dict(self.settings),
@@ -124,16 +173,79 @@ class FeetResult:
             "validation": [asdict(row) for row in self.validation],
             "notes": [note.to_dict() for note in self.notes],
             "robot_model": dict(self.robot_model),
-            **self.extras,
+            "laws": [row.to_dict() for row in self.models],
         }
+        content |= {} if self.sensor_delay is None else {"latency": asdict(self.sensor_delay)}
+        content |= {
+            "compliance": dict(self.compliance),
+            "diagnosis": [asdict(row) for row in self.diagnosis],
+        }
+        content |= {"comparisons": [asdict(row) for row in self.comparisons]} if self.comparisons else {}
+        content |= {} if self.campaign is None else {"campaign": dict(self.campaign)}
         plain: dict[str, Any] = finite(content)
         return plain
 
-    def save(self, directory: Path) -> Path:
-        """Write `residuals.parquet`, then `result.json`, each whole or not at all; returns the latter's path."""
+    def save(self, directory: str | os.PathLike[str]) -> Path:
+        """Write `residuals.parquet`, then `result.json` into a folder, each whole or not at all.
+
+        Returns the path of `result.json`. Raises PlantarError where the folder cannot be written.
+        """
+        folder = Path(directory)
         if self.residuals is not None:
-            with atomic_write(directory / "residuals.parquet") as handle:
+            with atomic_write(folder / "residuals.parquet") as handle:
                 pa_parquet.write_table(self.residuals, handle, compression="zstd")
-        path = directory / "result.json"
+        path = folder / "result.json"
         write_text(path, dump_json(self.to_dict()))
         return path
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str], *, residuals: bool = True) -> FeetResult:
+        """A result read back from `result.json` or its folder.
+
+        Args:
+            path: the file, or the folder that holds it.
+            residuals: also read the residuals beside it, where there are any.
+
+        Returns:
+            The result; its `to_dict` is the file's content. Keys that this version does not know are left out.
+
+        Raises:
+            PlantarError: no such file, not a result of `identify_feet`, or a row that does not fit.
+
+        Example:
+            >>> import plantar
+            >>> plantar.FeetResult.load("out/feet/result.json", residuals=False).model
+            'kelvin_voigt'
+        """
+        file = result_path(path)
+        found = cls._from_dict(read_result(file, FEET_SCHEMA), file)
+        beside = residuals_path(file.parent) if residuals else None
+        return found if beside is None else replace(found, residuals=read_table(beside))
+
+    @classmethod
+    def _from_dict(cls, content: Mapping[str, Any], path: Path) -> FeetResult:
+        lists = {"comparisons": [], "laws": [], **content}
+        comparisons, laws = (value_of(list[Any], lists, key, path) for key in ("comparisons", "laws"))
+        delay = content.get("latency")
+        return cls(
+            robot=value_of(str, content, "robot", path),
+            inputs=rows_of(Input, content, "inputs", path),
+            settings=value_of(dict[str, Any], content, "settings", path),
+            model=value_of(str, content, "model", path),
+            parameters=rows_of(Parameter, content, "parameters", path, required=True),
+            offsets=rows_of(Offset, content, "offsets", path),
+            phases=rows_of(Phase, content, "phases", path),
+            validation=rows_of(ValidationRow, content, "validation", path),
+            notes=rows_of(Note, content, "notes", path),
+            robot_model=value_of(dict[str, Any], {"robot_model": {}, **content}, "robot_model", path),
+            models=tuple(AxisModel.from_dict(row, f"laws.{k}", path) for k, row in enumerate(laws)),
+            sensor_delay=None if delay is None else row_of(DelayEstimate, delay, "latency", path),
+            compliance=value_of(dict[str, float], {"compliance": {}, **content}, "compliance", path),
+            diagnosis=rows_of(Diagnosis, content, "diagnosis", path),
+            comparisons=tuple(
+                Comparison.from_dict(row, f"comparisons.{k}", path) for k, row in enumerate(comparisons)
+            ),
+            campaign=value_of(dict[str, Any], content, "campaign", path) if "campaign" in content else None,
+            created=value_of(str, content, "created", path),
+            version=value_of(str, content, "plantar", path),
+        )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -30,17 +31,24 @@ def finite(content: Any) -> Any:
     return content
 
 
-def read_result(path: Path, schema: str = "plantar.") -> dict[str, Any]:
-    """A result file as plain data. Raises PlantarError when it is not one, or not of the schema asked for."""
+def result_path(path: str | os.PathLike[str]) -> Path:
+    """`result.json` in a folder, or the file itself."""
+    given = Path(path)
+    return given / "result.json" if given.is_dir() else given
+
+
+def read_result(
+    path: str | os.PathLike[str], schema: str = "plantar.", error: type[PlantarError] = PlantarError
+) -> dict[str, Any]:
+    """A result file (or its folder) as plain data; `error` when it is not one, or not of the schema asked for."""
+    file = result_path(path)
     try:
-        content = json.loads(read_bounded(path, RESULT_LIMIT))
-    except (ValueError, RecursionError) as error:
-        raise PlantarError(
-            located(f"is not readable JSON: {error}", path=path, valid="a result.json")
-        ) from error
+        content = json.loads(read_bounded(file, RESULT_LIMIT, error))
+    except (ValueError, RecursionError) as problem:
+        raise error(
+            located(f"is not readable JSON: {problem}", path=file, valid="a result.json")
+        ) from problem
     found = content.get("schema") if isinstance(content, dict) else None
     if not isinstance(found, str) or not found.startswith(schema):
-        raise PlantarError(
-            located("is not such a result", path=path, value=found, valid=f"schema '{schema}...'")
-        )
+        raise error(located("is not such a result", path=file, value=found, valid=f"schema '{schema}...'"))
     return dict(content)

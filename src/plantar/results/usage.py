@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from typing import Any
 
+from plantar.contact.phases import Phase
 
-def used_shares(phases: Iterable[Mapping[str, Any]]) -> list[dict[str, Any]]:
+
+def used_shares(phases: Iterable[Phase]) -> list[dict[str, Any]]:
     """Seconds, seconds that served and the reasons for the others, by motion and foot, from a result's phases."""
     seconds: dict[tuple[str, str], float] = defaultdict(float)
     used: dict[tuple[str, str], float] = defaultdict(float)
     reasons: dict[tuple[str, str], dict[str, float]] = defaultdict(lambda: defaultdict(float))
     for phase in phases:
-        key, duration = (phase["motion"], phase["foot"]), phase["end"] - phase["start"]
+        key, duration = (phase.motion, phase.foot), phase.end - phase.start
         seconds[key] += duration
-        if phase["used"]:
+        if phase.used:
             used[key] += duration
         else:
-            reasons[key][phase["reason"]] += duration
+            reasons[key][phase.reason or ""] += duration
     return [
         {
             "motion": motion,

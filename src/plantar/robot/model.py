@@ -86,7 +86,20 @@ class JointTerms:
 class RobotModel:
     """A URDF with the sensors and feet that the robot file gives it. Made by `load_robot`.
 
-    guesses: the keys of the file that are marked as not measured; uncertainty: what its numbers may be off by.
+    Attributes:
+        name, path, urdf_path, urdf: the robot's name, its files and the URDF's text.
+        base: "floating", or "fixed" for a robot that is bolted down.
+        imu: the IMU, or None. feet: by name; placements in the link's frame [m, rad].
+        joints: what eq. 3 models in the joints that the robot file describes.
+        topics, columns: where readers find each quantity in a log.
+        joint_names_in_logs: what logs call the joints, where not as the URDF does.
+        guesses: keys of the file that are marked as not measured. uncertainty: what its numbers may be off by.
+
+    Example:
+        >>> import plantar
+        >>> robot = plantar.load_robot("robot.yaml")
+        >>> robot.imu.name, list(robot.feet), round(robot.mass)
+        ('chest', ['left', 'right'], 60)
     """
 
     name: str
@@ -144,8 +157,20 @@ class RobotModel:
 def load_robot(path: str | os.PathLike[str]) -> RobotModel:
     """Read a robot file (YAML) and its URDF.
 
-    Raises RobotError: the file or the URDF is missing or broken, a key is unknown, a link is not in the URDF,
-    or a foot's sensor is not rigidly fixed to its ankle.
+    Args:
+        path: the robot file; `docs/robot_file.md` has its keys.
+
+    Returns:
+        The robot, with its sensors and feet placed on the URDF's links [m, rad].
+
+    Raises:
+        RobotError: the file or the URDF is missing or broken, a key is unknown, a link is not in the URDF, or a foot's
+            sensor is not rigidly fixed to its ankle.
+
+    Example:
+        >>> import plantar
+        >>> plantar.load_robot("robot.yaml").feet["left"].ankle
+        'left_foot'
     """
     path = Path(path)
     entry, guesses = read_robot_file(path)

@@ -19,7 +19,7 @@ from plantar.checks.joints import recorded_joints
 from plantar.checks.log_checks import check_log
 from plantar.conventions import GRAVITY, Array
 from plantar.errors import LogError, RobotError, located
-from plantar.export.urdf.tree import UrdfTree
+from plantar.exporters.urdf.tree import UrdfTree
 from plantar.files import read_bounded, write_text
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers.urdf_names import with_urdf_names

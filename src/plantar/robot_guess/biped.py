@@ -16,7 +16,7 @@ import pinocchio as pin
 
 from plantar.conventions import Array
 from plantar.errors import RobotError, located
-from plantar.export.urdf.tree import UrdfTree
+from plantar.exporters.urdf.tree import UrdfTree
 
 ALIKE = 0.03  # share of a leg's reach by which the ends of two legs may be nearer or farther
 FEWEST_JOINTS = 4  # of a leg with a flat sole: hip roll, hip pitch, knee, ankle

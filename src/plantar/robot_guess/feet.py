@@ -8,8 +8,8 @@ import numpy as np
 import pinocchio as pin
 
 from plantar.conventions import Array
-from plantar.export.poses import pose, rpy_of
-from plantar.export.urdf.tree import UrdfTree
+from plantar.exporters.poses import pose, rpy_of
+from plantar.exporters.urdf.tree import UrdfTree
 from plantar.robot_guess.biped import Biped, Limb
 
 BOTTOM = 0.01  # m above the lowest point: what still belongs to the sole

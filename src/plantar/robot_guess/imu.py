@@ -9,8 +9,8 @@ from itertools import permutations, product
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.export.poses import pose, rpy_of
-from plantar.export.urdf.tree import UrdfTree
+from plantar.exporters.poses import pose, rpy_of
+from plantar.exporters.urdf.tree import UrdfTree
 from plantar.robot_guess.stance import Stance
 
 WORD = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|[0-9]+")

@@ -15,7 +15,7 @@ import numpy as np
 
 from plantar.conventions import FORCE, TORQUE, Array
 from plantar.errors import PlantarError
-from plantar.export.urdf.tree import UrdfTree
+from plantar.exporters.urdf.tree import UrdfTree
 from plantar.robot.joint_names import words_of
 from plantar.robot_guess.feet import Sole, fixed_links
 from plantar.robot_guess.imu import right_angles

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from plantar.conventions import WRENCH_AXES
 from plantar.errors import RobotError, located
-from plantar.logs.motion_log import MotionLog
+from plantar.logs.inputs import LogInputs, RobotInput, logs_of, robot_of
 from plantar.results.dynamics import INERTIA_SCHEMA, DynamicsResult
-from plantar.robot.model import RobotModel
 from plantar.whole_body.covariance import uncertainty
 from plantar.whole_body.equations import inertial_samples
 from plantar.whole_body.regularised_fit import RegularisedProblem
@@ -22,22 +19,42 @@ AXES = tuple(Place(row, "N" if row < 3 else "N.m", axis=axis) for row, axis in e
 
 
 def identify_inertia(
-    robot: RobotModel,
-    logs: Sequence[MotionLog],
-    validate: Sequence[MotionLog] = (),
+    robot: RobotInput,
+    logs: LogInputs,
+    validate: LogInputs = (),
     settings: DynamicsSettings | None = None,
     progress: Progress = lambda _: None,
 ) -> DynamicsResult:
-    """Fit the inertial parameters of a floating-base robot to `logs` and score them, also on `validate`.
+    """Inertial parameters of a floating-base robot from IMU, encoders and feet, without joint torques (eq. 2).
 
-    Every link is physically consistent and as near to the URDF's as held-out stretches of `logs` allow. Raises
-    RobotError, LogError or DataError with one line when the input cannot serve, MissingExtra without clarabel.
+    Every link stays physically consistent and as near to the URDF's as held-out parts of `logs` allow.
+
+    Args:
+        robot: a robot with a floating base, an IMU and feet, or the path of its robot file.
+        logs: logs to fit, or their paths; one or several.
+        validate: logs to score only.
+        settings: what to choose by hand.
+        progress: called with a line for each step.
+
+    Returns:
+        Base parameters with 95 % intervals, each link's ten parameters beside the URDF's [kg, kg·m, kg·m²], scores of
+        the ground's wrench [N, N·m], and the URDF with what was found.
+
+    Raises:
+        RobotError, LogError, DataError: the input cannot be used, in one line. MissingExtra: clarabel is not installed.
+
+    Example:
+        >>> import plantar
+        >>> result = plantar.identify_inertia("walker.yaml", "walk.csv")
+        >>> 20.0 < result.mass < 25.0
+        True
     """
+    robot = robot_of(robot)
     settings = settings or DynamicsSettings()
     if robot.base == "fixed":
         message = "a fixed base has no base rows to identify from"
         raise RobotError(located(message, path=robot.path, valid="plantar identify joints"))
-    made = prepare_logs(robot, logs, validate, settings, progress)
+    made = prepare_logs(robot, logs_of(logs, robot), logs_of(validate, robot), settings, progress)
     body = made.body
     fitted, unseen = (
         [inertial_samples(body, whole, made.calibration) for whole in wholes]

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 
+from plantar.choices import one_of
 from plantar.conventions import Array
 from plantar.errors import DataError, RobotError, located
 from plantar.estimation.intervals import interval95
-from plantar.logs.motion_log import MotionLog
+from plantar.logs.inputs import LogInputs, RobotInput, logs_of, robot_of
 from plantar.notes import Note
 from plantar.results.dynamics import JOINTS_SCHEMA, DynamicsResult, JointParameter
 from plantar.results.feet import Verdict
-from plantar.robot.model import RobotModel
 from plantar.whole_body.covariance import Uncertainty, uncertainty
 from plantar.whole_body.equations import TERM_UNITS, inertial_samples, joint_samples
 from plantar.whole_body.folds import Samples
@@ -36,29 +36,49 @@ Inertia = Literal["together", "first", "known"]
 
 
 def identify_joints(
-    robot: RobotModel,
-    logs: Sequence[MotionLog],
-    validate: Sequence[MotionLog] = (),
+    robot: RobotInput,
+    logs: LogInputs,
+    validate: LogInputs = (),
     settings: DynamicsSettings | None = None,
     progress: Progress = lambda _: None,
     *,
     inertia: Inertia = "together",
 ) -> DynamicsResult:
-    """Fit the joints' own parameters to `logs` and score them, also on `validate`.
-
-    inertia: "together" fits the inertial parameters with them, "first" takes those of eq. 2 (floating bases), "known"
-    the URDF's.
+    """Friction, springs, offsets and actuator inertia of the joints from their torques (eq. 3).
 
     Terms are those of the robot file; a joint that it does not describe has viscous and Coulomb friction and an offset,
-    and a spring where held-out stretches of `logs` are predicted better with it. Passive joints need no effort.
-    Fitted inertias stay physically consistent and as near to the URDF's as held-out stretches allow. Raises RobotError,
-    LogError or DataError with one line when the input cannot serve, MissingExtra without clarabel.
+    and a spring where held-out parts of `logs` are predicted better with it. Passive joints need no effort.
+
+    Args:
+        robot: a robot, or the path of its robot file.
+        logs: logs to fit, or their paths; one or several.
+        validate: logs to score only.
+        settings: what to choose by hand.
+        progress: called with a line for each step.
+        inertia: "together" fits the inertial parameters with the joints', "first" takes those of eq. 2 (floating
+            bases), "known" the URDF's.
+
+    Returns:
+        Each joint's terms [N·m, N·m/rad, N·m·s/rad, kg·m²] with 95 % intervals and verdicts, and scores [N·m].
+
+    Raises:
+        SettingsError: an unknown `inertia`. RobotError, LogError, DataError: the input cannot be used, in one line.
+        MissingExtra: clarabel is not installed.
+
+    Example:
+        >>> import plantar
+        >>> result = plantar.identify_joints("arm.yaml", "arm.csv", inertia="known")
+        >>> row = result.parameter("elbow_joint", "viscous")
+        >>> round(row.value), row.unit, row.verdict
+        (3, 'N.m.s/rad', 'usable')
     """
+    one_of("inertia", inertia, get_args(Inertia))
+    robot = robot_of(robot)
     settings = settings or DynamicsSettings()
     if inertia == "first" and robot.base == "fixed":
         message = "a fixed base has no base rows to identify inertias from first"
         raise RobotError(located(message, path=robot.path, valid="inertia: together, known"))
-    made = prepare_logs(robot, logs, validate, settings, progress)
+    made = prepare_logs(robot, logs_of(logs, robot), logs_of(validate, robot), settings, progress)
     body = made.body
     given, said = _given(made, inertia, progress)
     terms, fit, choice = _chosen(made, given, progress)

@@ -46,9 +46,9 @@ def test_a_spring_that_stiffens_widens_the_stiffness_of_a_law_that_does_not(
 
 def test_a_spring_that_does_not_stiffen_is_not_widened(robot: RobotModel) -> None:
     shares = [
-        each["variance_shares"].get("hardening", 0.0)
-        for each in identified(robot, 0.0).extras["diagnosis"]
-        if each["name"] == "stiffness"
+        each.variance_shares.get("hardening", 0.0)
+        for each in identified(robot, 0.0).diagnosis
+        if each.name == "stiffness"
     ]
     assert len(shares) == 4
     assert np.median(shares) == 0.0

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from plantar.errors import DataError, MissingExtra
-from plantar.report.residuals import Track, read_residuals
+from plantar.results.residuals import Track, read_residuals
 from report_samples import HOSTILE, write_campaign
 
 pytest.importorskip("matplotlib", reason="matplotlib (extra 'figures') is not installed")

@@ -11,12 +11,12 @@ from plantar.cli.identify import identification
 from plantar.cli.identify.feet_tables import print_feet
 from plantar.cli.terminal import progress
 from plantar.feet.identify import identify_feet
-from plantar.feet.settings import AUTOMATIC, DEFAULT_CUTOFF, FeetSettings, OffsetRule
-from plantar.models import MODELS
+from plantar.feet.settings import AUTOMATIC, DEFAULT_CUTOFF, MODEL_CHOICES, FeetSettings, OffsetRule
 from plantar.report import write_feet_report
 
-CHOICES = (AUTOMATIC, *MODELS)
-MODEL_HELP = f"Law of the bush: {', '.join(CHOICES)}. {AUTOMATIC} takes what predicts held-out motions best."
+MODEL_HELP = (
+    f"Law of the bush: {', '.join(MODEL_CHOICES)}. {AUTOMATIC} takes what predicts held-out motions best."
+)
 OFFSET_HELP = "One offset per motion, or shared by all as in the paper."
 DELAY_HELP = "How late the wrenches are, in ms; estimated if left out."
 CUTOFF_HELP = (
@@ -43,8 +43,8 @@ def run(
 
     Example: plantar identify feet talos.yaml sway_*.csv --validate squat.csv --out out/feet
     """
-    if model not in CHOICES:
-        raise typer.BadParameter(f"'{model}' is not one of {', '.join(CHOICES)}", param_hint="--model")
+    if model not in MODEL_CHOICES:
+        raise typer.BadParameter(f"'{model}' is not one of {', '.join(MODEL_CHOICES)}", param_hint="--model")
     reach = None if window is None else float(np.radians(window))
     late = None if wrench_delay is None else 1e-3 * wrench_delay
     settings = FeetSettings(offset, model, cutoff, window=reach, wrench_delay=late)

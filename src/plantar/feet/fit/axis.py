@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
@@ -58,26 +57,3 @@ class AxisFit(FittedModel):
     @property
     def std(self) -> Array:
         return np.asarray(np.sqrt(np.diag(self.covariance)))
-
-    def to_dict(self) -> dict[str, Any]:
-        """The law, why it was chosen, and what the others would have missed by."""
-        stiffness, damping = self.equivalent
-        content: dict[str, Any] = {
-            "foot": self.foot,
-            "axis": self.axis,
-            "law": self.model.name,
-            "reason": self.reason,
-            "linear_equivalent": {"stiffness": stiffness, "damping": damping},
-        }
-        if self.load_arm:
-            content["load_arm"] = self.load_arm
-        if self.choice is not None:
-            content |= {
-                "held_out": self.choice.held_out,
-                "ranking": [
-                    {"law": score.model.name, "held_out_rms": score.held_out_rms, "parameters": score.parameters,
-                     "refused": score.refused, "chosen": score.chosen}
-                    for score in self.choice.ranking
-                ],
-            }  # fmt: skip
-        return content

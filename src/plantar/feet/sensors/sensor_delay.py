@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
@@ -49,19 +48,6 @@ class SensorDelay:
     note: Note
     feet: Mapping[str, float] = field(default_factory=dict)
     encoders: float = 0.0
-
-    def to_dict(self) -> dict[str, object]:
-        content = {"wrench_delay": self.delay, "std": self.std, "measured": self.measured, "unit": "s"}
-        return content | {"feet": dict(self.feet), "encoder_delay": self.encoders}
-
-
-def sensor_delay_of(result: Mapping[str, Any]) -> SensorDelay:
-    """The latency that a `plantar.feet/1` result was corrected for; none where it names none."""
-    stored = result.get("latency", {})
-    delay, feet = float(stored.get("wrench_delay", 0.0)), stored.get("feet", {})
-    note = Note("delay_given", "info", f"wrenches taken as {1e3 * delay:+.1f} ms late, as in the result")
-    own = {str(foot): float(late) for foot, late in feet.items()}
-    return SensorDelay(delay, 0.0, np.inf, False, note, own, float(stored.get("encoder_delay", 0.0)))
 
 
 def in_time(robot: RobotModel, log: MotionLog, sensor_delay: SensorDelay) -> MotionLog:

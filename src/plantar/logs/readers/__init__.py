@@ -38,10 +38,24 @@ FORMATS: dict[str, str] = {
 
 
 def open_log(path: str | os.PathLike[str], robot: RobotModel | None = None) -> MotionLog:
-    """Read one recording, whatever its format; `robot` gives topics or column maps where a format needs them, and what
-    the log calls the joints.
+    """Read one recording, whatever its format.
 
-    Raises LogError: the file is missing, of an unknown format, or broken.
+    Args:
+        path: a table (.csv, .csv.gz, .parquet), a bag or its folder (.mcap, .db3, .bag), or a log of mc_rtc, hrpsys,
+            YARP and others.
+        robot: gives topics or column names where a format needs them, and what the log calls the joints.
+
+    Returns:
+        The log in SI units, with the columns of `docs/log_columns.md`.
+
+    Raises:
+        LogError: the file is missing, of an unknown format, or broken. MissingExtra: its format's package is missing.
+
+    Example:
+        >>> import plantar
+        >>> log = plantar.open_log("sway_1.csv")
+        >>> log.name, len(log), round(1 / log.period)
+        ('sway_1', 1201, 100)
     """
     path = Path(path)
     if not path.exists():

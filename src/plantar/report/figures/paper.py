@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 from plantar.errors import DataError, located
 from plantar.report.content import Figure
 from plantar.report.figures import plots
-from plantar.report.residuals import Track, read_residuals, residuals_path
+from plantar.results.residuals import Track, read_residuals, residuals_path
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing

@@ -19,7 +19,7 @@ from plantar.errors import DataError
 from plantar.files import atomic_write
 from plantar.report.content import Figure, MediaType
 from plantar.report.figures.panels import STYLE, panels
-from plantar.report.residuals import Track
+from plantar.results.residuals import Track
 from plantar.signals.segments import runs
 
 if TYPE_CHECKING:

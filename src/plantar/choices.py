@@ -1,0 +1,31 @@
+"""What a caller may choose, checked where it is chosen: a wrong choice is one line that names the valid ones."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+from plantar.errors import SettingsError, located
+
+
+def one_of(name: str, value: object, choices: Iterable[str]) -> None:
+    """Raise SettingsError unless `value` is one of `choices`; `name` is what the caller set."""
+    known = tuple(choices)
+    if not isinstance(value, str) or value not in known:
+        raise SettingsError(located(f"{name} is not a choice", value=value, valid=", ".join(known)))
+
+
+def number_in(
+    name: str, value: object, low: float, high: float, unit: str, *, optional: str | None = None
+) -> None:
+    """Raise SettingsError unless `value` is a number from `low` to `high` [`unit`].
+
+    optional: what None stands for; where it is left out, None is an error.
+    """
+    if value is None and optional is not None:
+        return
+    number = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    if not number or not low <= float(value) <= high:  # type: ignore[arg-type]
+        valid = f"{low:g} to {high:g} {unit}" if math.isfinite(high) else f"at least {low:g} {unit}"
+        valid += "" if optional is None else f", or None: {optional}"
+        raise SettingsError(located(f"{name} is not valid", value=value, valid=valid))

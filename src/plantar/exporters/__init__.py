@@ -1,0 +1,92 @@
+"""Results out: the files that simulators and controllers read. One file a target.
+
+    plantar.export("out/result.json", "mjcf", "robot_on_bushes.xml", model="robot.xml")
+
+A result of `identify feet` goes to any target of `TARGETS`; a result of `identify inertia` to `urdf`.
+"""
+
+from __future__ import annotations
+
+import os
+from importlib import import_module
+from pathlib import Path
+
+from plantar.errors import ExportError, located
+from plantar.exporters.bush import feet_of_result
+from plantar.exporters.job import Job
+from plantar.exporters.source import ResultInput, open_result, robot_urdf
+from plantar.files import write_text
+from plantar.notes import Note, unique
+
+# Target -> (module of this package, what it writes).
+TARGETS: dict[str, tuple[str, str]] = {
+    "mjcf": ("mjcf.target", "MuJoCo model (MJCF): bush joints and a light sole in each foot"),
+    "sdf": ("sdf.target", "SDFormat model: prismatic and revolute joints with spring and damper"),
+    "urdf": ("urdf.target", "URDF with Gazebo's spring tags, or the inertias of a plantar.inertia/1"),
+    "drake": ("sdf.drake", "SDFormat for Drake: free bush joints under a drake:linear_bushing_rpy"),
+    "usd": ("usd", "USD layer (.usda) with UsdPhysics joint drives, per degree, as Isaac reads them"),
+    "mc_rtc": ("mc_rtc", "mc_rtc robot module: the JSON entry 'flexibilities'"),
+    "openhrp": ("openhrp", "OpenHRP and hrpsys: configuration of the bush customizer"),
+    "choreonoid": ("choreonoid", "Choreonoid: the YAML entry 'bush' of a body customizer"),
+    "kinetics_observer": ("kinetics_observer", "Kinetics Observer: stiffness and damping of contacts"),
+    "yaml": ("plain", "YAML with every number, its unit and its interval"),
+}
+
+
+def export(
+    result: ResultInput,
+    target: str,
+    out: str | os.PathLike[str],
+    model: str | os.PathLike[str] | None = None,
+    *,
+    with_offset: bool = False,
+) -> tuple[Note, ...]:
+    """Hand a result to a simulator or controller: springs and dampers in its own format and units.
+
+    Args:
+        result: what `identify_feet` or `identify_inertia` found, or the path of its `result.json`.
+        target: mjcf, sdf, urdf, drake, usd, mc_rtc, openhrp, choreonoid, kinetics_observer or yaml; for inertias urdf.
+        out: the file to write.
+        model: an existing robot model of that format to extend (MJCF, SDFormat, URDF; a URDF also serves MJCF and
+            SDFormat); the result's own URDF where left out.
+        with_offset: the springs rest at -offset/K; else at 0, since the offset is mostly the sensors' zero.
+
+    Returns:
+        What the target could not hold, as notes.
+
+    Raises:
+        ExportError: an unknown target, a result without what the target needs, a model without the ankle.
+
+    Example:
+        >>> import plantar
+        >>> result = plantar.FeetResult.load("out/feet")
+        >>> notes = plantar.export(result, "urdf", "out/robot_on_bushes.urdf")
+        >>> "LLEG_BUSH_PITCH" in open("out/robot_on_bushes.urdf").read()
+        True
+    """
+    if target not in TARGETS:
+        raise ExportError(located(f"'{target}' is not a target", valid=", ".join(TARGETS)))
+    data, base = open_result(result)
+    path = Path(out)
+    given = None if model is None else Path(model)
+    if data.get("schema") == "plantar.inertia/1":
+        if target != "urdf":
+            raise ExportError(
+                located("cannot hold a result of plantar.inertia/1", value=target, valid="urdf")
+            )
+        if given is None and "robot_model" not in data:
+            raise ExportError(located("the result names no URDF", valid="--model with the robot's URDF"))
+        from plantar.exporters.urdf.inertia import with_inertial_parameters
+
+        text, notes = with_inertial_parameters(data, given or robot_urdf(data, base))
+    else:
+        feet, remarks = feet_of_result(data, base, with_offset=with_offset)
+        module = import_module(f"plantar.exporters.{TARGETS[target][0]}")
+        if given is None and getattr(module, "EXTENDS", False):
+            given = robot_urdf(data, base)
+        if given is not None and not getattr(module, "EXTENDS", False):
+            raise ExportError(located("this target takes no model", value=target, valid="no --model"))
+        text, notes = module.write(Job(data, feet, given, path, with_offset, remarks))
+        notes = (*remarks, *notes)
+    write_text(path, text)
+    return unique(notes)

@@ -1,0 +1,215 @@
+"""The bush of each foot as a result gives it: springs, dampers, rest positions, and where they sit.
+
+The identified law is torque = K·deflection + C·rate + offset, with the torque that the ground puts on the
+sole. A simulator's joint from ankle to sole pushes back with exactly that, so K and C go over unchanged, and
+the joint's rest position is -offset/K.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from plantar.conventions import (
+    AXES,
+    DAMPING_UNIT,
+    OFFSET_UNIT,
+    STIFFNESS_UNIT,
+    Array,
+    Axis,
+    rotation_from_rpy,
+)
+from plantar.errors import ExportError, located
+from plantar.exporters.source import robot_model, robot_urdf
+from plantar.exporters.urdf.tree import UrdfTree
+from plantar.notes import Note
+
+SIDES = {"left": "LLEG", "right": "RLEG"}
+DAMPING_TIME = 0.002  # s: C/K written where none was identified, that of published bush models (5e5, 1e3)
+KNOWN_TERMS = ("stiffness", "damping", "offset")
+
+
+@dataclass(frozen=True)
+class Spring:
+    """One axis: stiffness, damping and offset, in N, m, rad and s."""
+
+    axis: Axis
+    stiffness: float
+    damping: float
+    offset: float
+
+    @property
+    def rest(self) -> float:
+        """Where the spring pushes with nothing [rad, or m for z]."""
+        return -self.offset / self.stiffness
+
+    @property
+    def units(self) -> tuple[str, str, str]:
+        return STIFFNESS_UNIT[self.axis], DAMPING_UNIT[self.axis], OFFSET_UNIT[self.axis]
+
+
+@dataclass(frozen=True)
+class FootBush:
+    """One foot: its springs in the chain's order (z, pitch, roll) and its geometry in the ankle's frame.
+
+    `centre` (3,) [m] and `rotation` (3, 3) place the bush in the ankle; `sole` (n, 3) is the sole's outline.
+    """
+
+    name: str
+    ankle: str
+    springs: tuple[Spring, ...]
+    centre: Array
+    rotation: Array
+    sole: Array
+
+    def spring(self, axis: Axis) -> Spring | None:
+        return next((spring for spring in self.springs if spring.axis == axis), None)
+
+    def joint(self, axis: Axis) -> str:
+        """The bush joint's name: as in OpenHRP's models for left and right, else by the foot's name."""
+        return f"{SIDES[self.name]}_BUSH_{axis.upper()}" if self.name in SIDES else f"{self.name}_bush_{axis}"
+
+    def link(self, axis: Axis) -> str:
+        """The light link that the axis moves; the last one in the chain is the sole."""
+        last = self.springs[-1].axis
+        return f"{self.name}_bush_sole" if axis == last else f"{self.name}_bush_{axis}_link"
+
+    @property
+    def sole_link(self) -> str:
+        return self.link(self.springs[-1].axis)
+
+    def direction(self, axis: Axis) -> Array:
+        """The axis as a unit vector in the ankle's frame, (3,): pitch about y, roll about x, z along z."""
+        return self.rotation[:, {"roll": 0, "pitch": 1, "z": 2}[axis]]
+
+    def depth(self, point: Array) -> float:
+        """How far a point of the ankle's frame lies below the bush centre, along the bush's z [m]."""
+        return float(-(self.rotation[:, 2] @ (np.asarray(point) - self.centre)))
+
+    def below(self, point: Array) -> bool:
+        """Whether a frame of the ankle goes with the sole: under the bush centre, or in the sole's plane."""
+        return self.depth(point) > min(1e-4, self.sole_depth - 1e-3)
+
+    @property
+    def sole_depth(self) -> float:
+        """How far the sole's plane lies below the bush centre [m]."""
+        return float(np.mean([self.depth(corner) for corner in self.sole]))
+
+
+def feet_of_result(
+    result: Mapping[str, Any], base: Path, *, with_offset: bool
+) -> tuple[tuple[FootBush, ...], tuple[Note, ...]]:
+    """Every foot of a plantar.feet/1 result, and notes on what no target will hold.
+
+    Raises ExportError: no foot, a foot without stiffness, a stiffness that is not positive, no geometry.
+    """
+    rows = [row for row in result.get("parameters", ()) if isinstance(row, Mapping)]
+    names = list(dict.fromkeys(str(row.get("foot")) for row in rows))
+    if not names:
+        raise ExportError(located("the result holds no parameters", valid="a result of identify feet"))
+    entries = robot_model(result).get("feet", {})
+    notes: list[Note] = []
+    feet = []
+    for name in names:
+        springs = tuple(
+            spring
+            for axis in ("z", "pitch", "roll")
+            if (spring := _spring(result, rows, name, axis, with_offset, notes)) is not None
+        )
+        if not {"pitch", "roll"} & {spring.axis for spring in springs}:
+            raise ExportError(
+                located(f"foot '{name}' has no stiffness in pitch or roll", valid="a result of identify feet")
+            )
+        for axis in AXES:
+            if axis not in {spring.axis for spring in springs}:
+                notes.append(
+                    Note("export_rigid", "info", f"{name} {axis}: not identified, so rigid in the export")
+                )
+        if name not in entries:
+            raise ExportError(
+                located(f"the result's robot_model has no foot '{name}'", valid=", ".join(entries))
+            )
+        centre, rotation, sole = _geometry(entries[name], result, base)
+        feet.append(FootBush(name, str(entries[name]["ankle"]), springs, centre, rotation, sole))
+    return tuple(feet), tuple(notes)
+
+
+def _spring(
+    result: Mapping[str, Any],
+    rows: list[Mapping[str, Any]],
+    foot: str,
+    axis: Axis,
+    with_offset: bool,
+    notes: list[Note],
+) -> Spring | None:
+    mine = {str(row["name"]): row for row in rows if row.get("foot") == foot and row.get("axis") == axis}
+    where = f"{foot} {axis}"
+    found = {name: row["value"] for name, row in mine.items() if row.get("value") is not None}
+    if "stiffness" not in found:
+        return None
+    values = {name: _number(value, f"{where} {name}") for name, value in found.items()}
+    stiffness = values["stiffness"]
+    damping = values.get("damping", DAMPING_TIME * stiffness)
+    if stiffness <= 0:
+        message = f"{where}: the stiffness is not positive; no simulator can stand on it"
+        raise ExportError(located(message, value=stiffness, valid="a result whose stiffness is usable"))
+    if "damping" not in values:
+        text = f"{where}: no damping identified; exported as K x {DAMPING_TIME} s, for stable simulators"
+        notes.append(Note("export_damping", "warning", text))
+    if damping < 0:
+        text = f"{where}: the identified damping {damping:.4g} is negative (feeds energy in); exported as 0"
+        notes.append(Note("export_damping", "warning", text))
+        damping = 0.0
+    for name in ("stiffness", "damping"):
+        verdict = mine.get(name, {}).get("verdict", "usable")
+        if verdict != "usable":
+            notes.append(
+                Note("export_verdict", "warning", f"{where}: the verdict on the {name} is '{verdict}'")
+            )
+    extra = [name for name in values if name not in KNOWN_TERMS]
+    if extra:
+        text = f"{where}: the target holds a linear spring and damper; left out: {', '.join(extra)}"
+        notes.append(Note("export_terms", "warning", text))
+    offsets = [
+        _number(row.get("value"), f"{where} offset")
+        for row in (*result.get("offsets", ()), *(row for name, row in mine.items() if name == "offset"))
+        if row.get("foot") == foot and row.get("axis") == axis
+    ]
+    offset = float(np.mean(offsets)) if offsets else 0.0
+    if with_offset and len(offsets) > 1:
+        text = f"{where}: offset {offset:.4g}, the mean of {len(offsets)} motions"
+        text += f" from {min(offsets):.4g} to {max(offsets):.4g}"
+        notes.append(Note("export_offset", "info", text))
+    return Spring(axis, stiffness, damping, offset if with_offset else 0.0)
+
+
+def _number(value: object, what: str) -> float:
+    if not isinstance(value, int | float) or not math.isfinite(value):
+        raise ExportError(located(f"{what} is not a number", value=str(value), valid="a finite value"))
+    return float(value)
+
+
+def _geometry(entry: Mapping[str, Any], result: Mapping[str, Any], base: Path) -> tuple[Array, Array, Array]:
+    """Bush centre, bush axes and sole outline in the ankle link's frame."""
+    try:
+        ankle = entry["ankle"]
+        frames = []
+        for part in (entry["bush"], entry["sole"]):
+            rotation = rotation_from_rpy(np.array(part.get("rpy", (0, 0, 0)), float))
+            origin = np.array(part["xyz"], float)
+            if part.get("link", ankle) != ankle:
+                above = UrdfTree.load(robot_urdf(result, base)).fixed_pose(ankle, part["link"])
+                rotation, origin = above[:3, :3] @ rotation, above[:3, :3] @ origin + above[:3, 3]
+            frames.append((rotation, origin))
+        outline = np.array(entry["sole"]["polygon"], float)
+        corners = np.column_stack([outline, np.zeros(len(outline))]) @ frames[1][0].T + frames[1][1]
+    except (KeyError, TypeError, ValueError, IndexError, AttributeError) as error:
+        raise ExportError(
+            located(f"robot_model: a foot's entry is broken: {error}", valid="ankle, bush, sole")
+        ) from error
+    return frames[0][1], frames[0][0], corners

@@ -1,0 +1,57 @@
+"""The comment at an export's head: what was written, in which units, and what the target could not hold."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from plantar.exporters.bush import FootBush
+from plantar.notes import Note
+
+
+def head(
+    result: Mapping[str, Any],
+    feet: Iterable[FootBush],
+    target: str,
+    notes: Iterable[Note],
+    *,
+    with_offset: bool,
+) -> list[str]:
+    """Lines of plain text, without comment marks."""
+    lines = [
+        f"Feet of '{result.get('robot', 'robot')}', identified by plantar {result.get('plantar', '')},",
+        f"for {target}.",
+    ]
+    for foot in feet:
+        for spring in foot.springs:
+            k, c, o = spring.units
+            line = f"{foot.joint(spring.axis)}: K = {spring.stiffness:.6g} {k}, C = {spring.damping:.6g} {c}"
+            lines.append(line + (f", offset = {spring.offset:.4g} {o}" if with_offset else ""))
+    if with_offset:
+        lines.append("Each spring rests at -offset/K.")
+    else:
+        lines.append("Each spring rests at 0: the identified offset is mostly the sensors' zero.")
+    lines += [f"{note.severity}: {note.text}" for note in notes]
+    return [" ".join(line.split()) for line in lines]
+
+
+def moved_note(foot: FootBush, moved: Iterable[str]) -> Note:
+    return Note(
+        "export_moved", "info", f"{foot.name}: moved from '{foot.ankle}' to the sole: {', '.join(moved)}"
+    )
+
+
+def updated_note(foot: FootBush) -> Note:
+    return Note(
+        "export_updated", "info", f"{foot.name}: the model has the bush joints; their values are updated"
+    )
+
+
+def plate_note(foot: FootBush) -> Note:
+    text = "the model has no collision shape under the bush; a plate under the sole's outline was added"
+    return Note("export_plate", "info", f"{foot.name}: {text}")
+
+
+def mesh_note(foot: FootBush) -> Note:
+    text = f"a collision mesh of '{foot.ankle}' cannot be read; taken for the foot and moved to the sole"
+    return Note("export_mesh", "warning", f"{foot.name}: {text}")

@@ -1,0 +1,90 @@
+"""Drake: SDFormat with free bush joints under a `drake:linear_bushing_rpy` in each foot.
+
+Drake's bushing acts between frame A on the ankle and frame C on the sole with torque constants in the order
+roll, pitch, yaw of `R_AC = Rz(yaw) Ry(pitch) Rx(roll)`, which at yaw 0 is plantar's own, and force constants
+x, y, z (drake.mit.edu, LinearBushingRollPitchYaw and the page on parsing multibody files). The joints keep
+x, y and yaw rigid; a collision filter group keeps ankle and sole apart.
+"""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from plantar.conventions import rotation_from_rpy
+from plantar.exporters.bush import FootBush, Spring
+from plantar.exporters.comment import head
+from plantar.exporters.poses import pose
+from plantar.exporters.sdf.target import insert_bushes
+from plantar.exporters.sdf.tree import SdfTree, set_pose
+from plantar.exporters.xml_file import numbers, to_text
+from plantar.notes import Note
+
+if TYPE_CHECKING:
+    from plantar.exporters.job import Job
+
+EXTENDS = True
+MESHES = (".obj", ".vtk", ".gltf")  # what Drake makes collision shapes of
+URI = "http://drake.mit.edu"  # the name space of Drake's own tags
+
+
+def write(job: Job) -> tuple[str, tuple[Note, ...]]:
+    """The model with its feet on bushes, as text."""
+    notes: list[Note] = []
+    tree = insert_bushes(job, notes, springs=False, meshes=MESHES)
+    ET.register_namespace("drake", URI)
+    for foot in job.feet:
+        _bushing(tree, foot)
+        _filter(tree, foot)
+    if job.with_offset:
+        text = "the bushing has no rest position: its frame on the ankle is tilted, exact for small angles"
+        notes.append(Note("export_offset", "info", text))
+    lines = head(job.result, job.feet, "Drake", (*job.remarks, *notes), with_offset=job.with_offset)
+    return to_text(tree.root, lines), tuple(notes)
+
+
+def _bushing(tree: SdfTree, foot: FootBush) -> None:
+    frame_a = f"{foot.name}_bushing_A"
+    for old in list(tree.model):
+        ours = (
+            old.tag == tag("linear_bushing_rpy")
+            and (old.findtext(tag("bushing_frameA")) or "").strip() == frame_a
+        )
+        if ours or old.get("name") == frame_a:
+            tree.model.remove(old)
+    pitch, roll, z = (foot.spring(axis) for axis in ("pitch", "roll", "z"))
+    tilt = rotation_from_rpy(np.array([_rest(roll), _rest(pitch), 0.0]))
+    rest = pose(np.array([0, 0, _rest(z)]), rotation=tilt)
+    frame = ET.SubElement(tree.model, "frame", name=frame_a, attached_to=foot.ankle)
+    set_pose(frame, pose(foot.centre, rotation=foot.rotation) @ rest, foot.ankle)
+    bushing = ET.SubElement(tree.model, tag("linear_bushing_rpy"))
+    ET.SubElement(bushing, tag("bushing_frameA")).text = frame_a
+    ET.SubElement(bushing, tag("bushing_frameC")).text = foot.sole_link
+    for kind, springs in (("torque", (roll, pitch, None)), ("force", (None, None, z))):
+        stiffness = [0.0 if spring is None else spring.stiffness for spring in springs]
+        damping = [0.0 if spring is None else spring.damping for spring in springs]
+        ET.SubElement(bushing, tag(f"bushing_{kind}_stiffness")).text = numbers(stiffness)
+        ET.SubElement(bushing, tag(f"bushing_{kind}_damping")).text = numbers(damping)
+
+
+def _rest(spring: Spring | None) -> float:
+    return 0.0 if spring is None else spring.rest
+
+
+def _filter(tree: SdfTree, foot: FootBush) -> None:
+    name = f"{foot.name}_bush_filter"
+    if any(e.get("name") == name for e in tree.model.findall(tag("collision_filter_group"))):
+        return
+    group = ET.SubElement(tree.model, tag("collision_filter_group"), name=name)
+    members = [foot.ankle, *(foot.link(spring.axis) for spring in foot.springs), *tree.parents(foot.ankle)]
+    for member in members:
+        if member in tree.links:
+            ET.SubElement(group, tag("member")).text = member
+    ET.SubElement(group, tag("ignored_collision_filter_group")).text = name
+
+
+def tag(name: str) -> str:
+    """One of Drake's own tags, with its name space."""
+    return f"{{{URI}}}{name}"

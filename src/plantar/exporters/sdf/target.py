@@ -1,0 +1,157 @@
+"""SDFormat: light links in series, z slide, pitch and roll, between ankle and sole, with spring and damper.
+
+A joint axis carries <dynamics> with <damping>, <spring_reference> and <spring_stiffness>, in N·m/rad and
+N·m·s/rad (N/m, N·s/m for prismatic joints): sdformat.org/spec, joint/axis/dynamics.
+"""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from collections.abc import Collection
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from plantar.conventions import Array
+from plantar.exporters.bush import FootBush, Spring
+from plantar.exporters.comment import head, mesh_note, moved_note, plate_note, updated_note
+from plantar.exporters.poses import inverse, pose
+from plantar.exporters.sdf.from_urdf import sdf_from_urdf
+from plantar.exporters.sdf.tree import SdfTree, pose_of, relative, set_pose
+from plantar.exporters.shapes import SOLE_INERTIA, SOLE_MASS, plate, reaches_sole
+from plantar.exporters.xml_file import numbers, to_text, vector
+from plantar.notes import Note
+
+if TYPE_CHECKING:
+    from plantar.exporters.job import Job
+
+EXTENDS = True
+REACH = {"z": 0.05, "pitch": 0.6, "roll": 0.6}  # m, rad: limits far beyond any bush
+AXIS = {"z": "0 0 1", "pitch": "0 1 0", "roll": "1 0 0"}
+
+
+def write(job: Job) -> tuple[str, tuple[Note, ...]]:
+    """The model with its feet on bushes, as text."""
+    notes: list[Note] = []
+    tree = insert_bushes(job, notes, springs=True)
+    text = "SDFormat cannot exclude one pair of links: leave self_collide off, or ankle and sole touch"
+    notes.append(Note("export_sdf_collision", "info", text))
+    lines = head(job.result, job.feet, "SDFormat", (*job.remarks, *notes), with_offset=job.with_offset)
+    return to_text(tree.root, lines), tuple(notes)
+
+
+def insert_bushes(
+    job: Job, notes: list[Note], *, springs: bool, meshes: Collection[str] | None = None
+) -> SdfTree:
+    """The job's model with a chain of bush joints in each foot; without `springs` the joints move freely.
+
+    `meshes`: the mesh endings that the target reads, for a model made from a URDF.
+    """
+    assert job.model is not None
+    ankles = tuple(foot.ankle for foot in job.feet)
+    if job.model.suffix.lower() == ".urdf":
+        tree = SdfTree(sdf_from_urdf(job.model, notes, meshes), job.model, ankles)
+    else:
+        tree = SdfTree.load(job.model, ankles)
+    for foot in job.feet:
+        present = [spring for spring in foot.springs if foot.joint(spring.axis) in tree.joints]
+        for spring in present:
+            _dynamics(tree.joints[foot.joint(spring.axis)], spring if springs else None)
+        if len(present) == len(foot.springs):
+            notes.append(updated_note(foot))
+            continue
+        _insert(tree, foot, notes, springs)
+    return tree
+
+
+def _insert(tree: SdfTree, foot: FootBush, notes: list[Note], springs: bool) -> None:
+    ankle, bush = tree.links[foot.ankle], pose(foot.centre, rotation=foot.rotation)
+    low = [(joint, child) for joint, child in tree.fixed_children(foot.ankle)
+           if foot.below(relative(tree, child, foot.ankle)[:3, 3])]  # fmt: skip
+    sole = _add_chain(tree, foot, bush, springs)
+    moved = []
+    for joint, child in low:
+        place = tree.in_model(joint.get("name", ""))
+        parent = joint.find("parent")
+        assert parent is not None
+        parent.text = foot.sole_link
+        assert np.allclose(place, tree.in_model(joint.get("name", "")))
+        moved.append(f"{'link' if tree.links[child].find('collision') is not None else 'frame'} {child}")
+    moved += _move_shapes(tree, ankle, sole, foot, bush, notes)
+    if moved:
+        notes.append(moved_note(foot, moved))
+    if not any(word.startswith(("collision", "link")) for word in moved):
+        size, centre = plate(foot)
+        collision = ET.SubElement(sole, "collision", name=f"{foot.name}_bush_plate")
+        set_pose(collision, pose(centre))
+        box = ET.SubElement(ET.SubElement(collision, "geometry"), "box")
+        ET.SubElement(box, "size").text = numbers(size)
+        notes.append(plate_note(foot))
+    mass = ankle.find("inertial/mass")
+    added = SOLE_MASS * len(foot.springs)
+    if mass is not None and (value := vector(mass.text, 1, "mass")[0]) > 2 * added:
+        mass.text = numbers([value - added])
+
+
+def _add_chain(tree: SdfTree, foot: FootBush, bush: Array, springs: bool) -> ET.Element:
+    parent, place = foot.ankle, bush
+    absolute = tree.in_model(foot.ankle) @ bush
+    link = tree.links[foot.ankle]
+    for spring in foot.springs:
+        link = ET.SubElement(tree.model, "link", name=foot.link(spring.axis))
+        if tree.relative_poses:
+            set_pose(link, place, parent)
+        else:
+            set_pose(link, absolute)
+        inertial = ET.SubElement(link, "inertial")
+        ET.SubElement(inertial, "mass").text = numbers([SOLE_MASS])
+        tensor = ET.SubElement(inertial, "inertia")
+        for key in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"):
+            ET.SubElement(tensor, key).text = numbers([SOLE_INERTIA if key[1] == key[2] else 0.0])
+        name = foot.joint(spring.axis)
+        joint = ET.SubElement(
+            tree.model, "joint", name=name, type="prismatic" if spring.axis == "z" else "revolute"
+        )
+        ET.SubElement(joint, "parent").text = parent
+        ET.SubElement(joint, "child").text = foot.link(spring.axis)
+        axis = ET.SubElement(joint, "axis")
+        ET.SubElement(axis, "xyz").text = AXIS[spring.axis]
+        limit = ET.SubElement(axis, "limit")
+        for key, sign in (("lower", -1), ("upper", 1)):
+            ET.SubElement(limit, key).text = numbers([sign * REACH[spring.axis]])
+        _dynamics(joint, spring if springs else None)
+        tree.links[foot.link(spring.axis)], tree.joints[name] = link, joint
+        parent, place = foot.link(spring.axis), np.eye(4)
+    return link
+
+
+def _dynamics(joint: ET.Element, spring: Spring | None) -> None:
+    axis = joint.find("axis")
+    axis = ET.SubElement(joint, "axis") if axis is None else axis
+    for old in axis.findall("dynamics"):
+        axis.remove(old)
+    if spring is not None:
+        dynamics = ET.SubElement(axis, "dynamics")
+        ET.SubElement(dynamics, "damping").text = numbers([spring.damping])
+        ET.SubElement(dynamics, "spring_reference").text = numbers([spring.rest])
+        ET.SubElement(dynamics, "spring_stiffness").text = numbers([spring.stiffness])
+
+
+def _move_shapes(
+    tree: SdfTree, ankle: ET.Element, sole: ET.Element, foot: FootBush, bush: Array, notes: list[Note]
+) -> list[str]:
+    moved = []
+    for tag in ("collision", "visual"):
+        for shape in ankle.findall(tag):
+            points = tree.points(shape)
+            if points is None and tag == "collision":
+                notes.append(mesh_note(foot))
+            elif points is None or not reaches_sole(points, foot):
+                continue
+            ankle.remove(shape)
+            place = shape.find("pose")
+            if place is None or not place.get("relative_to"):
+                set_pose(shape, inverse(bush) @ pose_of(shape))
+            sole.append(shape)
+            moved.append(f"{tag} {shape.get('name', '')}")
+    return moved

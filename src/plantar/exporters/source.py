@@ -1,0 +1,60 @@
+"""The result to export: read, checked for what every target needs, and its URDF found."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from plantar.errors import ExportError, located
+from plantar.results.dynamics import INERTIA_SCHEMA, DynamicsResult
+from plantar.results.feet import FEET_SCHEMA, FeetResult
+from plantar.results.io import read_result, result_path
+
+SCHEMAS = (FEET_SCHEMA, INERTIA_SCHEMA)
+ResultInput = FeetResult | DynamicsResult | Mapping[str, Any] | str | os.PathLike[str]
+
+
+def open_result(result: ResultInput) -> tuple[Mapping[str, Any], Path]:
+    """The result as `result.json` holds it, and the directory that its relative paths start from."""
+    base = Path()
+    if isinstance(result, FeetResult | DynamicsResult):
+        result = result.to_dict()
+    elif isinstance(result, str | os.PathLike):
+        file = result_path(result)
+        base, result = file.parent, read_result(file, error=ExportError)
+    elif not isinstance(result, Mapping):
+        kind = type(result).__name__
+        raise ExportError(
+            located("is not a result", value=kind, valid="a FeetResult or the path of a result.json")
+        )
+    schema = result.get("schema")
+    if schema not in SCHEMAS:
+        raise ExportError(
+            located("a result of this schema cannot be exported", value=str(schema), valid=", ".join(SCHEMAS))
+        )
+    return result, base
+
+
+def robot_model(result: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The result's `robot_model`; ExportError where an older result has none."""
+    entry = result.get("robot_model")
+    if not isinstance(entry, Mapping):
+        raise ExportError(
+            located("the result holds no 'robot_model'", valid="a result of this version of identify")
+        )
+    return entry
+
+
+def robot_urdf(result: Mapping[str, Any], base: Path) -> Path:
+    """The URDF of the result: absolute, or relative to the result or to the working directory."""
+    named = robot_model(result).get("urdf")
+    if not isinstance(named, str):
+        raise ExportError(located("the result names no URDF", valid="--model with a robot model"))
+    for candidate in (base / named, Path(named)):
+        if candidate.is_file():
+            return candidate
+    raise ExportError(
+        located("the result's URDF is not there", path=named, valid="--model with a robot model")
+    )

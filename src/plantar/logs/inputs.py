@@ -1,0 +1,50 @@
+"""Robots and logs as a caller may give them: loaded ones, or paths of their files."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+
+from plantar.errors import LogError, RobotError, located
+from plantar.logs.motion_log import MotionLog
+from plantar.logs.readers import open_log
+from plantar.robot.model import RobotModel, load_robot
+
+PathInput = str | os.PathLike[str]
+RobotInput = RobotModel | PathInput
+LogInput = MotionLog | PathInput
+LogInputs = LogInput | Iterable[LogInput]
+
+
+def robot_of(robot: RobotInput) -> RobotModel:
+    """The robot itself, or read from its file. Raises RobotError for anything else."""
+    if isinstance(robot, RobotModel):
+        return robot
+    if isinstance(robot, str | os.PathLike):
+        return load_robot(robot)
+    kind = type(robot).__name__
+    raise RobotError(located("is not a robot", value=kind, valid="a RobotModel or the path of a robot file"))
+
+
+def logs_of(logs: LogInputs, robot: RobotModel) -> tuple[MotionLog, ...]:
+    """One log or several, each itself or read from its file. Raises LogError for anything else."""
+    if isinstance(logs, MotionLog | str | os.PathLike):
+        return (_log_of(logs, robot),)
+    if not isinstance(logs, Iterable):
+        raise _no_log(logs)
+    return tuple(_log_of(log, robot) for log in logs)
+
+
+def _log_of(log: LogInput, robot: RobotModel) -> MotionLog:
+    if isinstance(log, MotionLog):
+        return log
+    if isinstance(log, str | os.PathLike):
+        return open_log(log, robot)
+    raise _no_log(log)
+
+
+def _no_log(given: object) -> LogError:
+    kind = type(given).__name__
+    return LogError(
+        located("is not a log", value=kind, valid="a MotionLog, the path of a log, or a list of them")
+    )

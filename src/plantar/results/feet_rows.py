@@ -1,0 +1,197 @@
+"""The rows of a feet result: numbers, offsets, scores, and what stands behind them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+from typing import Any, Literal
+
+from plantar.conventions import Axis
+from plantar.logs.motion_log import MotionLog
+from plantar.results.stored import row_of, rows_of
+
+Verdict = Literal["usable", "weak", "unidentifiable"]
+
+
+@dataclass(frozen=True)
+class Input:
+    """A log that was used: `role` says for what; `sha256` is None for a log that never was a file."""
+
+    path: str
+    sha256: str | None
+    role: Literal["fit", "validate"]
+
+    @classmethod
+    def of(cls, log: MotionLog, role: Literal["fit", "validate"]) -> Input:
+        return cls(str(log.path) if log.path else log.name, log.sha256, role)
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One number of a bush's model. `std` and `interval95` hold with coloured residuals; `relative_std_percent` is the
+    paper's, for white ones. None stands where nothing can be computed."""
+
+    foot: str
+    axis: Axis
+    name: str
+    unit: str
+    value: float | None
+    std: float | None
+    interval95: tuple[float, float] | None
+    relative_std_percent: float | None
+    verdict: Verdict
+    reason: str
+    advice: str | None = None
+
+    @property
+    def half_width(self) -> float | None:
+        """Half of the 95 % interval, in `unit`; None where there is no interval."""
+        return None if self.interval95 is None else (self.interval95[1] - self.interval95[0]) / 2
+
+    @property
+    def half_width_percent(self) -> float | None:
+        """Half of the 95 % interval in percent of the value; None where either is missing or the value is 0."""
+        half = self.half_width
+        return None if half is None or not self.value else 100 * half / abs(self.value)
+
+
+@dataclass(frozen=True)
+class Offset:
+    """The model's offset in one recording: it absorbs the zeros of force sensor and attitude there."""
+
+    foot: str
+    axis: Axis
+    motion: str
+    unit: str
+    value: float
+    std: float
+
+
+@dataclass(frozen=True)
+class ValidationRow:
+    """Measured against reconstructed torque over one recording [N·m]. `zero_mean_abs` is the trivial predictor's error:
+    the offset alone, found in the same way."""
+
+    kind: Literal["direct", "cross"]
+    motion: str
+    foot: str
+    axis: Axis
+    mean_abs_error: float
+    rms_error: float
+    max_abs: float
+    percent_of_max: float | None
+    zero_mean_abs: float
+    samples: int
+
+
+@dataclass(frozen=True)
+class LinearEquivalent:
+    """Spring [N·m/rad] and damper [N·m·s/rad] that fit the same motions best."""
+
+    stiffness: float
+    damping: float
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One model tried on held-out motions: rms of what it misses [N·m], its number of parameters, and why it was
+    refused (None where it was not)."""
+
+    model: str
+    held_out_rms: float
+    parameters: int
+    refused: str | None
+    chosen: bool
+
+
+@dataclass(frozen=True)
+class AxisModel:
+    """The bush model of one axis of one foot, and why it was chosen.
+
+    `load_arm` [m]: torque beside the bush's for each newton of vertical force, of feet that step. `held_out` says what
+    was held out, `ranking` holds every model tried; both are None where none was compared.
+    """
+
+    foot: str
+    axis: Axis
+    model: str
+    reason: str
+    linear_equivalent: LinearEquivalent
+    load_arm: float = 0.0
+    held_out: str | None = None
+    ranking: tuple[Candidate, ...] | None = None
+
+    def to_dict(self) -> dict[str, Any]:
+        """The entry of `laws` in `result.json`, which calls a model a law."""
+        content = {("law" if key == "model" else key): value for key, value in asdict(self).items()}
+        if not self.load_arm:
+            del content["load_arm"]
+        if self.ranking is None:
+            return {key: value for key, value in content.items() if key not in ("held_out", "ranking")}
+        ranking = [asdict(row) for row in self.ranking]
+        return content | {"ranking": [{"law": row.pop("model"), **row} for row in ranking]}
+
+    @classmethod
+    def from_dict(cls, entry: object, place: str, path: Path | None) -> AxisModel:
+        """What `to_dict` wrote; `place` and `path` say in an error where it stands."""
+        if not isinstance(entry, Mapping):
+            return row_of(cls, entry, place, path)
+        content = {("model" if key == "law" else key): value for key, value in entry.items()}
+        tried = content.pop("ranking", None)
+        found = row_of(cls, content, place, path)
+        if tried is None:
+            return found
+        tried = [{**row, "model": row.get("law")} if isinstance(row, Mapping) else row for row in tried]
+        return replace(
+            found, ranking=rows_of(Candidate, {f"{place}.ranking": tried}, f"{place}.ranking", path)
+        )
+
+
+@dataclass(frozen=True)
+class DelayEstimate:
+    """How late the sensors are against the IMU [s], > 0: late; the logs were corrected for it.
+
+    `std` [s] of the wrenches' delay; `measured`: whether any log showed it. `feet` has each foot's own delay where they
+    differ, else nothing; `encoder_delay` is that of the joint positions.
+    """
+
+    wrench_delay: float
+    std: float
+    measured: bool
+    unit: Literal["s"] = "s"
+    feet: Mapping[str, float] = field(default_factory=dict)
+    encoder_delay: float = 0.0
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """What limits one number: the half width of its 95 % interval [% of the value], the share of each cause in its
+    variance (0 to 1), the largest cause, and what to record against it."""
+
+    foot: str
+    axis: Axis
+    name: str
+    limit: str
+    variance_shares: Mapping[str, float]
+    half_width_percent: float
+    text: str
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """The same logs under another choice, such as one shared offset."""
+
+    name: str
+    settings: Mapping[str, Any]
+    parameters: tuple[Parameter, ...]
+    validation: tuple[ValidationRow, ...]
+
+    @classmethod
+    def from_dict(cls, entry: object, place: str, path: Path | None) -> Comparison:
+        """What `asdict` wrote; `place` and `path` say in an error where it stands."""
+        if not isinstance(entry, Mapping):
+            return row_of(cls, entry, place, path)
+        parameters = rows_of(Parameter, entry, "parameters", path)
+        validation = rows_of(ValidationRow, entry, "validation", path)
+        return row_of(cls, {**entry, "parameters": parameters, "validation": validation}, place, path)

@@ -1,0 +1,106 @@
+"""What a feet result says in text: the table to paste into a mail, then reasons, prediction and warnings."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from plantar.results.feet_rows import DelayEstimate, Parameter, ValidationRow
+from plantar.results.numbers import number, percent, unit, with_uncertainty
+
+HEADS = ("foot", "axis", "parameter", "value", "unit", "±", "verdict")
+PREDICTION_HEADS = ("motions", "foot", "axis", "mean |error|", "offset alone", "")
+SYMBOLS = {"stiffness": "K", "damping": "C"}
+KINDS = {"direct": "fitted", "cross": "unseen"}
+
+
+def parameter_cells(rows: Sequence[Parameter]) -> list[tuple[str, ...]]:
+    """Table 1: value ± half width of the 95 % interval, unit, the half width in percent, verdict."""
+    values = [with_uncertainty(row.value, row.half_width) for row in rows]
+    room = max((len(value.split(" ± ")[0]) for value in values), default=0)
+    return [
+        (
+            row.foot,
+            row.axis,
+            _term(row),
+            " " * (room - len(value.split(" ± ")[0])) + value,  # decimal places under each other
+            unit(row.unit),
+            percent(row.half_width_percent),
+            row.verdict,
+        )
+        for row, value in zip(rows, values, strict=True)
+    ]
+
+
+def reasons(rows: Sequence[Parameter]) -> list[str]:
+    """Why each number that is not usable is not; numbers with the same reason stand together."""
+    weak = [row for row in rows if row.verdict != "usable"]
+    return [
+        f"  {', '.join(names)} ({verdict}): {reason}"
+        for (verdict, reason), names in _grouped(weak, [(row.verdict, row.reason) for row in weak]).items()
+    ]
+
+
+def advice(rows: Sequence[Parameter]) -> list[str]:
+    """What to record next, and for which numbers."""
+    weak = [row for row in rows if row.verdict != "usable" and row.advice]
+    groups = _grouped(weak, [(row.advice or "",) for row in weak])
+    return [f"  for {', '.join(names)}: {text}" for (text,), names in groups.items()]
+
+
+def _grouped(rows: Sequence[Parameter], keys: Sequence[tuple[str, ...]]) -> dict[tuple[str, ...], list[str]]:
+    groups: dict[tuple[str, ...], list[str]] = {}
+    for row, key in zip(rows, keys, strict=True):
+        groups.setdefault(key, []).append(f"{row.foot} {row.axis} {_term(row)}")
+    return groups
+
+
+def _term(row: Parameter) -> str:
+    return row.name.replace("_", " ")
+
+
+def title_of_axis(rows: Sequence[Parameter], foot: str, axis: str) -> str:
+    """One axis in a line, such as `left pitch: K = 434.0 ± 0.3 N·m/rad (usable), C = ...`."""
+    terms = [
+        f"{SYMBOLS[row.name]} = {with_uncertainty(row.value, row.half_width)} "
+        f"{unit(row.unit)} ({row.verdict})"
+        for row in rows
+        if (row.foot, row.axis) == (foot, axis) and row.name in SYMBOLS
+    ]
+    return f"{foot} {axis}: {', '.join(terms)}"
+
+
+def prediction_cells(rows: Sequence[ValidationRow]) -> list[tuple[str, ...]]:
+    """Tables 2 and 3 in short: the mean error of each foot and axis over all samples, beside the offset alone's."""
+    groups: dict[tuple[str, str, str], list[ValidationRow]] = {}
+    for row in rows:
+        groups.setdefault((row.kind, row.foot, row.axis), []).append(row)
+    return [
+        (
+            f"{len(group)} {KINDS[kind]}",
+            foot,
+            axis,
+            number(_mean([row.mean_abs_error for row in group], group), 3),
+            number(_mean([row.zero_mean_abs for row in group], group), 3),
+            "" if all(row.mean_abs_error < row.zero_mean_abs for row in group) else _lost(group),
+        )
+        for (kind, foot, axis), group in groups.items()
+    ]
+
+
+def delay_line(delay: DelayEstimate | None) -> list[str]:
+    """How late the force sensors were taken to be."""
+    if delay is None:
+        return []
+    late = with_uncertainty(1e3 * delay.wrench_delay, 1.96e3 * delay.std if delay.std > 0 else None)
+    known = "measured" if delay.measured else "as given" if delay.std == 0 else "not measured from these logs"
+    return [f"Force sensors {late} ms late, {known}"]
+
+
+def _mean(values: Sequence[float], group: Sequence[ValidationRow]) -> float:
+    samples = [row.samples for row in group]
+    return sum(value * count for value, count in zip(values, samples, strict=True)) / max(sum(samples), 1)
+
+
+def _lost(group: Sequence[ValidationRow]) -> str:
+    names = [row.motion for row in group if not row.mean_abs_error < row.zero_mean_abs]
+    return f"no better than the offset alone: {', '.join(names)}"

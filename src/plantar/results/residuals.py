@@ -1,0 +1,155 @@
+"""Reading `residuals.parquet` or `.csv`: what was measured and reconstructed, sample by sample."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plantar.conventions import AXES, Array, Mask
+from plantar.errors import PlantarError, located
+
+FILE_NAMES: Final = ("residuals.parquet", "residuals.csv", "residuals.csv.gz")
+SIZE_LIMIT: Final = 2_000_000_000
+"""Largest file that is read [bytes]."""
+
+_REQUIRED: Final = ("motion", "foot", "time", "used")
+_QUANTITIES: Final = ("deflection", "rate", "torque", "predicted")
+
+
+@dataclass(frozen=True)
+class Track:
+    """One foot in one motion, N samples in time's order.
+
+    `time` (N,) [s]; `used` (N,): whether a sample was used for the fit or the score; `support` (N,): double, single,
+    air or transition. `values` has the other columns, (N,) each, NaN where not computed: `pitch.deflection` and
+    `roll.deflection` [rad], their `.rate` [rad/s], measured `.torque` and the model's `.predicted` [N·m] about the
+    bush; `force_z` [N], and the centre of pressure `cop_x`, `cop_y` in the sole's frame [m].
+    """
+
+    motion: str
+    role: str
+    foot: str
+    time: Array
+    used: Mask
+    support: NDArray[np.str_]
+    values: Mapping[str, Array]
+
+    @property
+    def axes(self) -> tuple[str, ...]:
+        return tuple(a for a in AXES if f"{a}.deflection" in self.values and f"{a}.torque" in self.values)
+
+
+def residuals_path(directory: Path) -> Path | None:
+    """The residuals in `directory`, or None where there are none."""
+    return next((directory / name for name in FILE_NAMES if (directory / name).is_file()), None)
+
+
+def read_residuals(path: str | os.PathLike[str]) -> tuple[Track, ...]:
+    """Every sample that an identification of the feet looked at, beside what its model says of it.
+
+    Args:
+        path: `residuals.parquet`, `.csv` or `.csv.gz`, or the folder of a result that holds one of them.
+
+    Returns:
+        A `Track` for each motion and foot, in the order in which the file first names them.
+
+    Raises:
+        PlantarError: an unreadable file, a missing column or a time that is not finite.
+
+    Example:
+        >>> import plantar
+        >>> track = plantar.read_residuals("out/feet")[0]
+        >>> track.motion, track.foot, track.axes
+        ('sway_1', 'left', ('pitch', 'roll'))
+        >>> error = track.values["pitch.torque"] - track.values["pitch.predicted"]
+        >>> bool(abs(error[track.used]).mean() < 0.5)
+        True
+    """
+    file = Path(path)
+    if file.is_dir():
+        found = residuals_path(file)
+        if found is None:
+            raise PlantarError(located("holds no residuals", path=file, valid=", ".join(FILE_NAMES)))
+        file = found
+    return tracks_of(read_table(file), file)
+
+
+def tracks_of(table: Any, path: Path | None = None) -> tuple[Track, ...]:
+    """The tracks of a residual table (Arrow), as in `FeetResult.residuals`; `path` says in an error where it is from.
+
+    Raises PlantarError for a missing column or a time that is not finite.
+    """
+    missing = [name for name in _REQUIRED if name not in table.column_names]
+    if missing:
+        raise PlantarError(located("is missing", path=path, column=missing[0], valid=", ".join(_REQUIRED)))
+    names = {"force_z", "cop_x", "cop_y"} | {f"{axis}.{what}" for axis in AXES for what in _QUANTITIES}
+    motion, motions = _labels(table, "motion")
+    foot, feet = _labels(table, "foot")
+    text = {name: _labels(table, name) for name in ("role", "support") if name in table.column_names}
+    time = _floats(table, "time", path)
+    if not np.isfinite(time).all():
+        raise PlantarError(located("is not finite", path=path, column="time", valid="seconds"))
+    used = _floats(table, "used", path) > 0.5
+    values = {name: _floats(table, name, path) for name in table.column_names if name in names}
+    tracks = []
+    for m, motion_name in enumerate(motions):
+        for f, foot_name in enumerate(feet):
+            rows = np.flatnonzero((motion == m) & (foot == f))
+            if not rows.size:
+                continue
+            rows = rows[np.argsort(time[rows], kind="stable")]
+            role = text["role"][1][text["role"][0][rows[0]]] if "role" in text else ""
+            support = _text(text.get("support"), rows)
+            columns = {name: column[rows] for name, column in values.items()}
+            tracks.append(Track(motion_name, role, foot_name, time[rows], used[rows], support, columns))
+    return tuple(tracks)
+
+
+def read_table(path: Path) -> Any:
+    """A residual file as an Arrow table; PlantarError where it cannot be read."""
+    import pyarrow as pa
+    import pyarrow.csv
+    import pyarrow.parquet
+
+    try:
+        if path.stat().st_size > SIZE_LIMIT:
+            raise PlantarError(
+                located(f"is larger than {SIZE_LIMIT} bytes", path=path, valid="a smaller file")
+            )
+        if path.suffix == ".parquet":
+            return pyarrow.parquet.read_table(path)
+        text = {name: pa.string() for name in ("motion", "role", "foot", "support")}
+        return pyarrow.csv.read_csv(path, convert_options=pyarrow.csv.ConvertOptions(column_types=text))
+    except (OSError, pa.ArrowException) as error:
+        raise PlantarError(located(f"cannot be read: {error}", path=path)) from error
+
+
+def _labels(table: Any, name: str) -> tuple[NDArray[np.intp], list[str]]:
+    """A text column as codes and the texts in order of first appearance."""
+    column = table.column(name).cast("string").combine_chunks().fill_null("").dictionary_encode()
+    return np.asarray(column.indices, dtype=np.intp), [str(text) for text in column.dictionary.to_pylist()]
+
+
+def _text(labels: tuple[NDArray[np.intp], list[str]] | None, rows: NDArray[np.intp]) -> NDArray[np.str_]:
+    if labels is None:
+        return np.full(rows.size, "", dtype=np.str_)
+    codes, texts = labels
+    return np.array(texts, dtype=np.str_)[codes[rows]]
+
+
+def _floats(table: Any, name: str, path: Path | None) -> Array:
+    import pyarrow as pa
+
+    try:
+        column = table.column(name).combine_chunks()
+        if pa.types.is_string(column.type):
+            column = column.cast("bool")
+        return np.asarray(column.cast("float64").to_numpy(zero_copy_only=False), dtype=np.float64)
+    except pa.ArrowException as error:
+        raise PlantarError(located(f"is not numeric: {error}", path=path, column=name)) from error

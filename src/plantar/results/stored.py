@@ -1,0 +1,72 @@
+"""Rows of a result read back from JSON into their types; a file may come from anywhere, so every row is checked."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any, TypeVar, get_type_hints
+
+from pydantic import TypeAdapter, ValidationError
+
+from plantar.errors import PlantarError, located
+
+Row = TypeVar("Row")
+_INTERVALS = (tuple[float, float], tuple[float, float] | None)
+
+
+def rows_of(
+    kind: type[Row], content: Mapping[str, Any], key: str, path: Path | None, *, required: bool = False
+) -> tuple[Row, ...]:
+    """The list under `key` as rows of the dataclass `kind`; none where a key that is not `required` is missing.
+
+    Raises PlantarError that names the row and its key where one does not fit. Keys that `kind` lacks are left out.
+    """
+    entries = value_of(list[Any], content if required else {key: [], **content}, key, path)
+    return tuple(row_of(kind, entry, f"{key}.{place}", path) for place, entry in enumerate(entries))
+
+
+def row_of(kind: type[Row], entry: object, place: str, path: Path | None) -> Row:
+    """One row as a `kind`, a dataclass; `place` says in an error where it stands in the file."""
+    if isinstance(entry, Mapping):
+        hints = _hints(kind)  # type: ignore[arg-type]  # classes are hashable
+        entry = {name: _infinite(value, hints.get(name)) for name, value in entry.items()}
+    return _checked(kind, entry, place, path)
+
+
+def value_of(kind: type[Row], content: Mapping[str, Any], key: str, path: Path | None) -> Row:
+    """The value under `key` as a plain type, such as str or dict[str, float]; PlantarError where it does not fit."""
+    if key not in content:
+        raise PlantarError(located("is missing", path=path, column=key, valid="a whole result.json"))
+    return _checked(kind, _infinite(content[key], kind), key, path)
+
+
+def _checked(kind: type[Row], entry: object, place: str, path: Path | None) -> Row:
+    try:
+        checked: Row = _adapter(kind).validate_python(entry)  # type: ignore[arg-type]  # classes are hashable
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        where = ".".join(map(str, (place, *first["loc"])))
+        raise PlantarError(located(first["msg"], path=path, column=where)) from error
+    return checked
+
+
+def _infinite(value: object, hint: object) -> object:
+    """JSON has no number that is not finite and holds null: NaN again where a number must stand, an open interval."""
+    if value is None and hint is float:
+        return math.nan
+    if isinstance(value, list) and len(value) == 2 and hint in _INTERVALS:
+        low, high = value
+        return (-math.inf if low is None else low, math.inf if high is None else high)
+    return value
+
+
+@cache
+def _hints(kind: Any) -> dict[str, Any]:
+    return get_type_hints(kind)
+
+
+@cache
+def _adapter(kind: Any) -> TypeAdapter[Any]:
+    return TypeAdapter(kind)
