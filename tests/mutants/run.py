@@ -13,21 +13,23 @@ import argparse
 import importlib.util
 import os
 import shutil
-import signal
 import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from queue import SimpleQueue
+from typing import TypeVar
 
 from drawn import DRAWN
 from mutant import Mutant, StaleMutant
 from once_unnoticed import ONCE_UNNOTICED
 
+Item = TypeVar("Item")
+Found = TypeVar("Found")
 Tests = tuple[str, ...]  # folders and files below `tests`
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -100,13 +102,13 @@ class Copy:
         began = time.monotonic()
         with subprocess.Popen(
             [*command, *(f"tests/{name}" for name in tests)], cwd=ROOT, env=self._environment,
-            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, start_new_session=True,
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
         ) as running:  # fmt: skip
             try:
                 said, _ = running.communicate(timeout=patience)
                 code: int | None = running.returncode
             except subprocess.TimeoutExpired:
-                os.killpg(running.pid, signal.SIGKILL)
+                running.kill()
                 said, code = running.communicate()[0], None
         return Outcome(code, time.monotonic() - began, said)
 
@@ -128,6 +130,15 @@ def tried(mutant: Mutant, copy: Copy, tests: Sequence[str], patience: float) -> 
         source.write_text(text)
 
 
+def side_by_side(work: Callable[[Item], Found], items: Sequence[Item], jobs: int) -> list[Found]:
+    """What `work` finds of each item. Where it raises, or the user interrupts, what has not begun does not begin."""
+    pool = ThreadPoolExecutor(jobs)
+    try:
+        return list(pool.map(work, items))
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
 def usual_seconds(sets: Sequence[Tests], copies: SimpleQueue[Copy], jobs: int) -> dict[Tests, float]:
     """How long each set of tests takes on the source as it is. BrokenRun where one does not pass."""
 
@@ -141,8 +152,7 @@ def usual_seconds(sets: Sequence[Tests], copies: SimpleQueue[Copy], jobs: int) -
             raise BrokenRun(f"without a mutant: tests {' '.join(tests)} do not pass:\n{outcome.said}")
         return outcome.seconds
 
-    with ThreadPoolExecutor(jobs) as pool:
-        return dict(zip(sets, pool.map(one, sets), strict=True))
+    return dict(zip(sets, side_by_side(one, sets, jobs), strict=True))
 
 
 def survivors_of(judged: Mapping[Mutant, Tests], jobs: int) -> list[Mutant]:
@@ -168,8 +178,7 @@ def survivors_of(judged: Mapping[Mutant, Tests], jobs: int) -> list[Mutant]:
             )
             return not passed
 
-        with ThreadPoolExecutor(jobs) as pool:
-            found = list(pool.map(caught, judged))
+        found = side_by_side(caught, list(judged), jobs)
     return [mutant for mutant, noticed in zip(judged, found, strict=True) if not noticed]
 
 
