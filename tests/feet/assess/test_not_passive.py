@@ -25,7 +25,14 @@ def test_a_stiffness_beside_negative_damping_is_weak() -> None:
 
 @pytest.mark.parametrize(
     ("half_width", "verdict"),
-    [(0.2, "usable"), (0.28, "usable"), (0.32, "weak"), (0.4, "weak"), (0.99, "weak"), (1.01, "unidentifiable")],
+    [
+        (0.2, "usable"),
+        (0.28, "usable"),
+        (0.32, "weak"),
+        (0.4, "weak"),
+        (0.99, "weak"),
+        (1.01, "unidentifiable"),
+    ],
 )
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_a_further_term_is_judged_by_its_width(half_width: float, verdict: str, sign: float) -> None:

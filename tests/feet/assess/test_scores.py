@@ -49,5 +49,7 @@ def test_the_trivial_predictor_knows_the_first_second_alone(found: FeetResult) -
     time, torque = np.array(table["time"])[mine], np.array(table["pitch.torque"])[mine]
     first = time < time[0] + 1.0
     row = next(r for r in found.validation if (r.kind, r.foot, r.axis) == ("cross", "left", "pitch"))
-    assert row.zero_mean_abs == pytest.approx(np.mean(np.abs(torque[~first] - torque[first].mean())), rel=1e-6)
+    assert row.zero_mean_abs == pytest.approx(
+        np.mean(np.abs(torque[~first] - torque[first].mean())), rel=1e-6
+    )
     assert row.zero_mean_abs > 1.02 * np.mean(np.abs(torque[~first] - torque[~first].mean()))

@@ -83,7 +83,9 @@ def test_an_unknown_vertical_compliance_widens_by_what_its_moment_arm_moves(
 
     assert "z_unknown" in codes(found)
     expected = SOFT_RUBBER * np.abs(np.sum(effects(axis, foot, moment), axis=0))
-    assert expected[0] == pytest.approx(SOFT_RUBBER * (WEIGHT / 2) ** 2, rel=0.3), "c·Fz² of stiffness, roughly"
+    assert expected[0] == pytest.approx(SOFT_RUBBER * (WEIGHT / 2) ** 2, rel=0.3), (
+        "c·Fz² of stiffness, roughly"
+    )
     assert added(found, foot, axis, "stiffness", "lever") == pytest.approx(expected[0], rel=0.05)
 
 
@@ -112,7 +114,9 @@ def test_causes_of_known_size_add_degrees_of_freedom(alone: FeetResult) -> None:
     ratios = []
     for (foot, axis, name), row in limits(alone).items():
         parameter = alone.parameter(foot, axis, name)
-        own = [row["variance_shares"][cause] for cause in ("noise", "model") if cause in row["variance_shares"]]
+        own = [
+            row["variance_shares"][cause] for cause in ("noise", "model") if cause in row["variance_shares"]
+        ]
         freedom = FEWEST_COSINES / own[0] ** 2
         low, high = parameter.interval95
         assert (high - low) / 2 / parameter.std == pytest.approx(special.stdtrit(freedom, 0.975), rel=1e-3)
