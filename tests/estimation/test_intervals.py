@@ -71,7 +71,7 @@ def test_intervals_cover_the_truth_in_95_of_100_cases(colour: float) -> None:
 
 
 def test_the_mean_of_scores_is_no_cosine() -> None:
-    """Scores of a fit with an offset have no mean; where a shared offset leaves one, it says nothing of their colour."""
+    """A fit with own offsets leaves scores without mean; what a shared one leaves says nothing of their colour."""
     scores = np.random.default_rng(3).normal(size=(400, 1))
     plain, moved = (cosine_covariance(scores + mean, 40.0)[0][0, 0] for mean in (0.0, 5.0))
     assert moved == pytest.approx(plain, rel=1e-9)

@@ -33,7 +33,8 @@ ESTIMATION = (
         "len(one.response) * one.noise", "one.noise",
     ),
     Mutant(
-        "estimation/errors_in_variables.py", "offsets move the wrong way", "-float(mean @ change)", "float(mean @ change)",
+        "estimation/errors_in_variables.py", "offsets move the wrong way",
+        "-float(mean @ change)", "float(mean @ change)",
     ),
     Mutant(
         "estimation/velocity_drift.py", "deviations in reversed time", "np.sqrt(variance[::-1])", "np.sqrt(variance)",

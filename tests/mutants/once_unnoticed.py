@@ -10,7 +10,8 @@ INTERVALS = (
         "moved_by(moment_arms), vertical.compliance_std[foot]", "moved_by(moment_arms), 0.0",
     ),
     Mutant(
-        "feet/fit/systematic.py", "no cause for the yaw torque's zero", 'if fit.axis == "roll":', 'if fit.axis == "none":',
+        "feet/fit/systematic.py", "no cause for the yaw torque's zero",
+        'if fit.axis == "roll":', 'if fit.axis == "none":',
     ),
     Mutant(
         "feet/fit/vertical_stiffness.py", "deviation of a reciprocal by the value, not its square",
@@ -54,7 +55,8 @@ GUARDS = (
         '"usable" if width < 2 * USABLE_WIDTH else "weak"', '"usable"',
     ),
     Mutant(
-        "feet/exclusion/edge_rolling.py", "samples beside a lean serve", "contact.leave_out(beside &", "contact.leave_out(False &",
+        "feet/exclusion/edge_rolling.py", "samples beside a lean serve",
+        "contact.leave_out(beside &", "contact.leave_out(False &",
     ),
     Mutant(
         "whole_body/sensor_faults.py", "a mended channel may spoil other rows",
@@ -74,7 +76,8 @@ GUARDS = (
         '((1.0, "positive"), (-1.0, "negative"))', '((1.0, "positive"),)',
     ),
     Mutant(
-        "dynamics/consistency.py", "off-diagonals packed without the root of two", "(1.0 if i == j else np.sqrt(2))", "1.0",
+        "dynamics/consistency.py", "off-diagonals packed without the root of two",
+        "(1.0 if i == j else np.sqrt(2))", "1.0",
     ),
 )  # fmt: skip
 

@@ -4,7 +4,7 @@ Each mutant stands alone in a copy of the source in a temporary folder; pytest r
 copy, which PYTHONPATH puts before the installed package. Nothing is changed in place. A mutant is caught when a test
 fails or takes far longer than without it; it is stale when the text that it replaces has left the source.
 
-    python tests/mutants/run.py [--list drawn|once_unnoticed] [--only TEXT] [--near | --tests PATH ...] [--jobs N] [--least SHARE]
+    python tests/mutants/run.py [--list drawn|once_unnoticed] [--only TEXT] [--near | --tests PATH ...]
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A whole log of soles that tip: what leans is left out with what the filter smears beside it, what stays flat serves."""
+"""Logs of soles that tip: what leans is left out with what the filter smears beside it, what stays flat serves."""
 
 from __future__ import annotations
 
@@ -132,7 +132,7 @@ def resting(t: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize(("side", "other"), [("positive", "negative"), ("negative", "positive")])
 def test_a_torque_that_stops_growing_is_tipping_on_either_side(tmp_path: Path, side: str, other: str) -> None:
-    """Feet whose centre of pressure means nothing: the bend of the torque over the angle tells, at 420 or 455 N·m/rad."""
+    """Feet whose centre of pressure means nothing: the bend of the torque over the angle tells."""
     limits = {"positive": (-np.inf, LIMIT), "negative": (-LIMIT, np.inf)}[side]
     robot = short_soled(tmp_path, 0.13, contact="always")
     found = identify_feet(robot, [noisy(record(pitching(resting, *limits)), 3)], settings=SPRING_AND_DAMPER)
