@@ -13,13 +13,17 @@ RUNNING := .venv/.running
 export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: demo test check format clean
+.PHONY: demo test mutants check format clean
 
 demo: $(RUNNING)
 	$(BIN)/plantar demo
 
 test: $(INSTALLED)
 	$(BIN)/python -m pytest -n $(JOBS)
+
+# Do the tests notice? Careless changes one by one, in a copy of the source; ROOM=feet/fit takes those of one room.
+mutants: $(INSTALLED)
+	$(BIN)/python tests/mutants/run.py --jobs $(JOBS) --only "$(ROOM)"
 
 check: $(INSTALLED)
 	$(BIN)/ruff check .

@@ -131,6 +131,23 @@ def test_a_robot_in_the_air_has_no_balance(log: MotionLog) -> None:
         measured_balance(hrp2.robot(), log.with_columns(empty))
 
 
+def test_what_is_less_than_a_twentieth_of_the_weight_carries_nobody(log: MotionLog) -> None:
+    """10 N on each foot of a robot of some 50 kg: a sensor's zero, no load."""
+    robot = hrp2.robot()
+    twentieth = 0.05 * robot.mass * 9.80665
+    for share, carries in ((10.0 / twentieth, False), (0.95, False), (1.05, True)):
+        pressed = {
+            name: np.full(len(log), share * twentieth) if name.endswith("force.z") else 0 * values
+            for name, values in log.columns.items()
+            if name.startswith("wrench.")
+        }
+        if carries:
+            assert np.isfinite(measured_balance(robot, log.with_columns(pressed)).zmp).all()
+        else:
+            with pytest.raises(DataError, match="no foot carries"):
+                measured_balance(robot, log.with_columns(pressed))
+
+
 def test_polygons_are_apart_or_overlap_by_a_width() -> None:
     square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     assert separation(square, square + [1.5, 0.3]) == pytest.approx(0.5)

@@ -56,6 +56,8 @@ def test_values_and_deviations_are_those_of_the_stacked_problem(rows: str) -> No
     assert fit.rank == 234
     np.testing.assert_allclose(fit.values, values, rtol=1e-9, atol=1e-10)
     np.testing.assert_allclose(fit.std, std, rtol=1e-9)
+    missed = tau[:, :taken].ravel() - y @ values
+    assert fit.residual_rms == pytest.approx(np.sqrt(np.mean(missed**2)), rel=1e-9)
     assert fit.condition_number == pytest.approx(np.linalg.cond(y), rel=1e-8)
     other = random_motion(model, 11, 2)
     expected = regressor(model, *other)[:, :taken][:, :, fit.base.kept] @ values

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from plantar.conventions import Array
-from plantar.estimation.delay import Delay, Pair, estimate_delay
+from plantar.estimation.delay import Delay, Pair, closes, estimate_delay
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.resampling import interpolate
 
@@ -78,3 +78,29 @@ def test_the_frame_of_a_turning_sensor_is_not_late(delay: float) -> None:
 
 def test_no_delay_is_claimed_beyond_what_delays_are() -> None:
     assert estimate_delay([late_pair(0.2, 0)]) is None
+
+
+def tone(frequency: float, delay: float = 0.0) -> Pair:
+    """A sine without noise on each axis, measured `delay` late."""
+    time = PERIOD * np.arange(SAMPLES)
+    phases = np.arange(6)
+    predicted, measured = (
+        300 * np.sin(2 * np.pi * frequency * (time - late)[:, None] + phases) for late in (0.0, delay)
+    )
+    return Pair("tone", measured, differentiate(measured, PERIOD), predicted, PERIOD)
+
+
+@pytest.mark.parametrize("frequency", [0.6, 1.2])
+def test_without_noise_a_model_is_trusted_to_three_thousandths(frequency: float) -> None:
+    """An error of that share of the amplitude, a quarter of a period off, looks like a delay of as much over ω."""
+    found = estimate_delay([tone(frequency, 0.004)])
+    assert isinstance(found, Delay)
+    assert found.value == pytest.approx(0.004, abs=1e-4)
+    least = 0.003 / (2 * np.pi * frequency) / np.sqrt(found.cells)
+    assert 0.95 * least < found.std < 1.5 * least  # the ends of the recording add a little
+
+
+def test_a_pair_that_only_a_delay_of_half_a_second_would_close_does_not() -> None:
+    """So slow that half a second is a small step along its rate: no sensor is as late, something else is wrong."""
+    assert closes(tone(0.15, 0.03))
+    assert not closes(tone(0.15, 0.5))

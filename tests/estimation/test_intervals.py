@@ -68,3 +68,10 @@ def test_intervals_cover_the_truth_in_95_of_100_cases(colour: float) -> None:
     assert (hits / cases <= 0.99).all(), hits / cases
     if colour == 0.98:
         assert (white_hits / cases < 0.7).all(), "the white formula is not to be trusted here"
+
+
+def test_the_mean_of_scores_is_no_cosine() -> None:
+    """A fit with own offsets leaves scores without mean; what a shared one leaves says nothing of their colour."""
+    scores = np.random.default_rng(3).normal(size=(400, 1))
+    plain, moved = (cosine_covariance(scores + mean, 40.0)[0][0, 0] for mean in (0.0, 5.0))
+    assert moved == pytest.approx(plain, rel=1e-9)

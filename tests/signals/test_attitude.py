@@ -80,3 +80,18 @@ def test_lying_on_its_side_and_upside_down() -> None:
 def test_one_sample() -> None:
     found = attitude_from_inertial(np.zeros((1, 3)), np.array([[0.0, 0.0, 9.8]]), 0.01)
     np.testing.assert_allclose(np.abs(found), [[1, 0, 0, 0]], atol=1e-12)
+
+
+def test_gyroscope_and_accelerometer_share_at_0_03_hz() -> None:
+    """A body at rest whose accelerometer wanders by a degree: at 0.03 Hz half of that is believed, at 0.06 Hz none."""
+    period, count = 0.02, 30_000
+    time = period * np.arange(count)
+    inside = slice(count // 4, 3 * count // 4)
+    shares = []
+    for frequency in (0.015, 0.03, 0.06):
+        lean = np.radians(1.0) * np.sin(2 * np.pi * frequency * time)
+        acceleration = 9.81 * np.column_stack([np.sin(lean), np.zeros(count), np.cos(lean)])
+        found = attitude_from_inertial(np.zeros((count, 3)), acceleration, period)
+        up = Rotation.from_quat(found, scalar_first=True).inv().apply([0.0, 0.0, 1.0])
+        shares.append((up[inside, 0] @ lean[inside]) / (lean[inside] @ lean[inside]))
+    assert shares == pytest.approx([1.0, 0.5, 0.0], abs=0.03)

@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from biped import record, sway, times
 from plantar.logs.motion_log import MotionLog
-from plantar.signals.resampling import evenly_sampled, interpolate, sampling, shifted
+from plantar.signals.resampling import evenly_sampled, interpolate, sampling, shifted, without_holes
 from plantar.signals.segments import runs
 
 PERIOD = 0.005
@@ -116,3 +116,16 @@ def test_a_shift_keeps_nan_where_values_are_missing() -> None:
     moved = shifted(values, PERIOD, 0.0)
     assert moved.shape == values.shape
     np.testing.assert_array_equal(np.isnan(moved), np.isnan(values))
+
+
+def test_short_holes_are_filled_and_a_tenth_of_a_second_stays_a_hole() -> None:
+    """At 200 Hz: 30 ms are bridged by a line; in 100 ms a robot moves, and nobody saw it."""
+    values = tone(0.5)
+    values[1000:1006] = np.nan
+    values[2000:2020] = np.nan
+    filled = without_holes(MotionLog("a", TIME, {"joint.a.position": values}))
+    column = filled.columns["joint.a.position"]
+    np.testing.assert_allclose(column[1000:1006], tone(0.5)[1000:1006], atol=1e-3)
+    assert np.isnan(column[2000:2020]).all()
+    assert np.isnan(column).sum() == 20
+    assert {note.code for note in filled.notes} == {"holes_filled"}

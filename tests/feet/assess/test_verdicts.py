@@ -24,6 +24,7 @@ GOOD = Evidence(seconds=60.0, excitation=0.02, explained=0.98)
     [
         (400.0, (390.0, 410.0), GOOD, "usable", "60 s"),
         (400.0, (320.0, 480.0), GOOD, "weak", "±20 %"),
+        (400.0, (240.0, 560.0), GOOD, "weak", "±40 %"),
         (400.0, (100.0, 700.0), GOOD, "unidentifiable", "±75 %"),
         (400.0, (-10.0, 810.0), GOOD, "unidentifiable", "reaches zero"),
         (-40.0, (-50.0, -30.0), GOOD, "unidentifiable", "negative"),

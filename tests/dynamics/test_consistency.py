@@ -1,0 +1,58 @@
+"""The nearest body to parameters that no body has, against a search over bodies that are written as P = L Lᵀ."""
+
+from __future__ import annotations
+
+import numpy as np
+import pinocchio as pin
+import pytest
+from scipy import optimize
+
+from plantar.dynamics.consistency import Normal, Prior, consistent_fit, is_consistent, pseudo_inertia
+
+LOWER = np.tril_indices(4)
+
+
+def parameters_of(matrix: np.ndarray) -> np.ndarray:
+    """The ten parameters of a pseudo-inertia [[S, h], [hᵀ, m]]: inertia = tr(S) 1 - S."""
+    inertia = np.trace(matrix[:3, :3]) * np.eye(3) - matrix[:3, :3]
+    entries = [inertia[i, j] for i, j in ((0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2))]
+    return np.array([matrix[3, 3], *matrix[:3, 3], *entries])
+
+
+def nearest(target: np.ndarray, weights: np.ndarray, start: np.ndarray) -> np.ndarray:
+    """Weighted least distance from `target` over all positive semidefinite pseudo-inertias."""
+
+    def missed(entries: np.ndarray) -> np.ndarray:
+        lower = np.zeros((4, 4))
+        lower[LOWER] = entries
+        return weights * (parameters_of(lower @ lower.T) - target)
+
+    first = np.linalg.cholesky(pseudo_inertia(start))[LOWER]
+    return parameters_of_lower(optimize.least_squares(missed, first, xtol=1e-14, ftol=1e-14, gtol=1e-14).x)
+
+
+def parameters_of_lower(entries: np.ndarray) -> np.ndarray:
+    lower = np.zeros((4, 4))
+    lower[LOWER] = entries
+    return parameters_of(lower @ lower.T)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_fit_is_the_nearest_body(seed: int) -> None:
+    """A centre of mass and products of inertia that the mass cannot have: off the diagonal of P."""
+    random = np.random.default_rng(seed)
+    body = pin.Inertia.FromEllipsoid(2.0, 0.3, 0.2, 0.25)
+    body.lever = np.array([0.05, -0.03, 0.08])
+    cad = body.toDynamicParameters()
+    prior = Prior.around(cad)
+    scale = np.array([1.0, *[0.3] * 3, *[0.05] * 6])
+    target = cad + scale * random.normal(0, 1.5, 10)
+    assert not is_consistent(target)
+    weights = 1 / scale
+    regressor = np.diag(weights)
+    found = consistent_fit(Normal.of(regressor, weights * target, prior), prior, 1e-9)
+    expected = nearest(target, weights, cad)
+    assert np.linalg.eigvalsh(pseudo_inertia(found))[0] > -1e-7
+    distance = [np.linalg.norm(weights * (one - target)) for one in (found, expected)]
+    assert distance[0] == pytest.approx(distance[1], rel=5e-3)
+    np.testing.assert_allclose(weights * found, weights * expected, atol=0.05)

@@ -1,0 +1,55 @@
+"""A model against a motion that it has not seen: honest about the offset, and about the trivial predictor."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from biped import record, sway
+from feet_trials import PUNCTUAL
+from plantar.feet.identify import identify_feet
+from plantar.logs.motion_log import MotionLog
+from plantar.results.feet import FeetResult
+from plantar.robot.model import RobotModel
+
+STEP, AT = 3.0, 2.0  # N·m, s
+SPRING_AND_DAMPER = replace(PUNCTUAL, model="kelvin_voigt")
+
+
+def stepped(log: MotionLog) -> MotionLog:
+    """The left foot's pitch torque jumps by STEP at AT and stays there, as when a sensor's zero is set anew."""
+    column = log.columns["wrench.left.torque.y"]
+    return log.with_columns({"wrench.left.torque.y": column + STEP * (log.time > AT)})
+
+
+@pytest.fixture(scope="module")
+def found(robot: RobotModel) -> FeetResult:
+    unseen = stepped(record(sway("unseen", 2)))
+    return identify_feet(robot, [record(sway("seen", 1))], [unseen], settings=SPRING_AND_DAMPER)
+
+
+def test_a_step_after_the_first_second_is_an_error_in_full(found: FeetResult) -> None:
+    rows = {(row.foot, row.axis): row for row in found.validation if row.kind == "cross"}
+    assert len(rows) == 4
+    wrong = rows.pop(("left", "pitch"))
+    assert wrong.mean_abs_error == pytest.approx(STEP, rel=0.08)  # but for the second before the step
+    assert wrong.rms_error == pytest.approx(STEP, rel=0.08)
+    assert all(row.mean_abs_error < 0.05 for row in rows.values())
+
+
+def test_the_trivial_predictor_knows_the_first_second_alone(found: FeetResult) -> None:
+    """Its constant is the torque's mean there; it is scored on what comes after."""
+    table = found.residuals.filter(
+        (found.residuals["motion"].cast("string").to_numpy(zero_copy_only=False) == "unseen").tolist()
+    ).to_pydict()
+    foot, used = np.array(table["foot"]), np.array(table["used"])
+    mine = (foot == "left") & used
+    time, torque = np.array(table["time"])[mine], np.array(table["pitch.torque"])[mine]
+    first = time < time[0] + 1.0
+    row = next(r for r in found.validation if (r.kind, r.foot, r.axis) == ("cross", "left", "pitch"))
+    assert row.zero_mean_abs == pytest.approx(
+        np.mean(np.abs(torque[~first] - torque[first].mean())), rel=1e-6
+    )
+    assert row.zero_mean_abs > 1.02 * np.mean(np.abs(torque[~first] - torque[~first].mean()))

@@ -1,0 +1,68 @@
+"""Models with memory: through the filter as the torque, and not where every stance begins anew too often."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+
+from biped import TRUTH, BushModel, record, sway
+from biped_robot import FEET
+from feet_trials import PUNCTUAL, noisy
+from plantar.feet.identify import identify_feet
+from plantar.models import MODELS
+from plantar.robot.model import RobotModel
+from plantar.signals.filters import low_pass
+
+PERIOD, CUTOFF = 0.01, 5.0
+
+
+@dataclass(frozen=True)
+class Slipping(BushModel):
+    """A bush with an elastoplastic element beside its spring: `slip` [N·m] from `angle` [rad] on."""
+
+    slip: float = 4.0
+    angle: float = 0.006
+
+    def torque(self, deflection: np.ndarray, rate: np.ndarray) -> np.ndarray:
+        state, states = 0.0, [0.0]
+        for step in np.diff(deflection) / self.angle:
+            state = min(max(state + step, -1.0), 1.0)
+            states.append(state)
+        return super().torque(deflection, rate) + self.slip * np.array(states)
+
+
+SLIPPING = {key: Slipping(law.stiffness, law.damping, law.offset) for key, law in TRUTH.items()}
+
+
+def test_predictions_of_a_model_with_memory_are_filtered_as_the_torque_is(robot: RobotModel) -> None:
+    """An element that slips at 2 mrad makes corners; behind a filter of 5 Hz there are none."""
+    truth = {key: replace(law, angle=0.002) for key, law in SLIPPING.items()}
+    log = record(sway("sway", 3, truth=truth))
+    found = identify_feet(robot, [log], settings=replace(PUNCTUAL, model="elastoplastic", cutoff=CUTOFF))
+    table = found.residuals.to_pydict()
+    for foot in FEET:
+        mine = (np.array(table["foot"]) == foot) & np.array(table["used"])
+        torque, predicted = (np.array(table[f"pitch.{name}"])[mine] for name in ("torque", "predicted"))
+        sharp = [np.std((one - low_pass(one, PERIOD, 2 * CUTOFF))[50:-50]) for one in (torque, predicted)]
+        assert sharp[1] < 1.5 * sharp[0]
+        assert np.std(torque - predicted) < 0.005 * np.std(torque)
+
+
+@pytest.mark.parametrize(
+    ("duration", "every", "tried"), [(24.0, 3.5, False), (9.0, 4.5, False), (24.0, 12.0, True)]
+)
+def test_memory_is_tried_where_the_usual_stance_is_long(
+    robot: RobotModel, duration: float, every: float, tried: bool
+) -> None:
+    """The left foot is lifted for half a second every so often, the right one never. Where it steps, no other model is
+    tried at all; where it is lifted once, those without memory are."""
+    starts = np.arange(every, duration - 1.0, every)
+    lifts = tuple(("left", float(start), float(start) + 0.5) for start in starts)
+    motion = sway("steps", 4, duration=duration, lifts=lifts, truth=SLIPPING)
+    found = identify_feet(robot, [noisy(record(motion), 2)], settings=PUNCTUAL)
+    for law in found.to_dict()["laws"]:
+        ranked = [MODELS[row["law"]] for row in law.get("ranking", ())]
+        assert bool(ranked) is (len(lifts) < 2 or law["foot"] == "right")
+        assert any(model.remembers for model in ranked) is (tried or law["foot"] == "right"), law["foot"]
