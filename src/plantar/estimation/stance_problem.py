@@ -67,6 +67,12 @@ class StanceProblem:
         return replace(free, prior=_offset_prior(blocks, free.solve()))
 
     @property
+    def own_share(self) -> float:
+        """How much of a usual stance's offset is its own, 0 to 1."""
+        usual = float(np.median(self.products[:, -2, -2]))
+        return usual / (usual + self.prior)
+
+    @property
     def recordings(self) -> int:
         return int(self.recording.max()) + 1
 

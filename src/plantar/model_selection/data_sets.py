@@ -7,13 +7,40 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from plantar.conventions import Array, Mask
 from plantar.models import BushModel, BushMotion
-from plantar.signals.filters import low_pass
+from plantar.signals.filters import SHORTEST_RUN, low_pass
 
 SAMPLES_PER_CYCLE = 7  # of the filter's cutoff, that thinning keeps
 THIN_BAND = 4.0  # cutoffs, that survive thinning
+SAMPLES_PER_CYCLE_IN_STANCES = 16  # so that the path keeps the band that survives thinning
+SHORTEST_STANCE_RUN = 8  # samples of a stance, for it to be filtered by itself
+
+
+@dataclass(frozen=True)
+class StepColumns:
+    """Of a foot that steps, for each sample (N,): its `stance`, and the `load` [N], whose own torque is a nuisance.
+
+    `share` (0 to 1) of a stance's mean is taken off its samples: 1 where the offsets of stances are free, 0 where they
+    are all alike (random effects as a partial centring; W. A. Fuller, G. E. Battese, J. Econometrics 2, 1974).
+    """
+
+    stance: NDArray[np.intp]
+    load: Array
+    share: float
+
+    def thinned(self, stride: int) -> StepColumns:
+        """Every nth sample."""
+        return StepColumns(self.stance[::stride], self.load[::stride], self.share)
+
+    def centred(self, rows: Array, used: Mask) -> Array:
+        """Rows (n, m) of the used samples less that share of their stances' means; the mean of all stays."""
+        _, place = np.unique(self.stance[used], return_inverse=True)
+        count = np.bincount(place)
+        sums = np.column_stack([np.bincount(place, column) for column in rows.T])
+        return np.asarray(rows - self.share * ((sums / count[:, None])[place] - rows.mean(axis=0)))
 
 
 @dataclass(frozen=True)
@@ -27,24 +54,33 @@ class DataSet:
     motion: BushMotion
     torque: Array
     used: Mask
+    steps: StepColumns | None = None
+
+    @property
+    def shortest_run(self) -> int:
+        """Samples that a run must exceed to be filtered."""
+        return SHORTEST_RUN if self.steps is None else SHORTEST_STANCE_RUN
 
     def thinned(self, cutoff: float) -> DataSet:
         """Every nth sample, after a filter well above `cutoff` [Hz]; itself where it is slow already."""
         period = self.motion.period
-        stride = int(1 / (period * SAMPLES_PER_CYCLE * cutoff) + 1e-6)
+        samples = SAMPLES_PER_CYCLE if self.steps is None else SAMPLES_PER_CYCLE_IN_STANCES
+        stride = int(1 / (period * samples * cutoff) + 1e-6)
         if stride < 2:
             return self
         band = THIN_BAND * cutoff
         motion = self.motion
         pairs = np.column_stack([motion.deflection, motion.rate])
-        path = low_pass(pairs, period, band)
+        path = low_pass(pairs, period, band, self.shortest_run)
         across = None if motion.across is None else low_pass(motion.across, period, band)[::stride]
         across_rate = (
             None if motion.across_rate is None else low_pass(motion.across_rate, period, band)[::stride]
         )
         torque = np.where(np.isfinite(path[:, 0]), self.torque, np.nan)
         thin = BushMotion(path[::stride, 0], path[::stride, 1], period * stride, across, across_rate)
-        return DataSet(self.label, thin, low_pass(torque, period, band)[::stride], self.used[::stride])
+        smooth = low_pass(torque, period, band, self.shortest_run)[::stride]
+        steps = None if self.steps is None else self.steps.thinned(stride)
+        return DataSet(self.label, thin, smooth, self.used[::stride], steps)
 
 
 @dataclass(frozen=True)
@@ -54,17 +90,21 @@ class FilteredDataSet:
     A law with memory does not commute with a filter: its state follows the path, and its columns then go through the
     filter that the torque went through. The path itself is filtered too: jitter of the measured angle would wear the
     state down at every turn (a Bouc-Wen element forgets under dither), which the rubber, not shaken, does not do.
+    Where the foot steps, turns are too quick for that: the state follows the wide-band `path`.
 
     With `drift`, response and columns come without their line in time: the IMU's attitude drifts slowly, differently in
-    each recording, which is the same as fitting such a line beside the offset.
+    each recording, which is the same as fitting such a line beside the offset. Where the foot steps, it is what `steps`
+    holds that is taken off instead.
     """
 
     label: str
     motion: BushMotion
+    path: BushMotion
     response: Array
     used: Mask
     cutoff: float
     drift: bool
+    steps: StepColumns | None = None
 
     @classmethod
     def of(cls, data_set: DataSet, cutoff: float, *, drift: bool = True) -> FilteredDataSet:
@@ -73,18 +113,33 @@ class FilteredDataSet:
         whole = np.isfinite(motion.deflection) & np.isfinite(motion.rate) & np.isfinite(data_set.torque)
         values = np.column_stack([motion.deflection, motion.rate, data_set.torque])
         values[~whole] = np.nan
-        smooth = low_pass(values, motion.period, cutoff)
+        smooth = low_pass(values, motion.period, cutoff, data_set.shortest_run)
         across = None if motion.across is None else low_pass(motion.across, motion.period, cutoff)
         across_rate = (
             None if motion.across_rate is None else low_pass(motion.across_rate, motion.period, cutoff)
         )
-        path = BushMotion(smooth[:, 0], smooth[:, 1], motion.period, across, across_rate)
-        used = data_set.used & np.isfinite(smooth).all(axis=1)
-        raw = cls(data_set.label, path, smooth[used, 2], used, cutoff, drift)
-        return replace(raw, response=raw.without_drift(raw.response))
+        slow = BushMotion(smooth[:, 0], smooth[:, 1], motion.period, across, across_rate)
+        known = np.isfinite(smooth).all(axis=1)
+        away = np.where(known, 0.0, np.nan)
+        quick = replace(motion, deflection=motion.deflection + away, rate=motion.rate + away)
+        path = slow if data_set.steps is None else quick
+        used = data_set.used & known
+        raw = cls(data_set.label, slow, path, smooth[used, 2], used, cutoff, drift, data_set.steps)
+        return replace(raw, response=raw.without_nuisance(raw.response))
 
-    def without_drift(self, rows: Array) -> Array:
-        """Samples that serve, (n, ...), without their line in time; their means stay."""
+    def without_nuisance(self, rows: Array) -> Array:
+        """Samples that are used, (n, ...), without what is their recording's own; their means stay."""
+        if self.steps is None:
+            return self._without_drift(rows)
+        flat = self.steps.centred(rows.reshape(len(rows), -1), self.used)
+        load = self.steps.centred(self.steps.load[self.used, None], self.used)[:, 0]
+        load = load - load.mean()
+        power = float(load @ load)
+        flat = flat - np.outer(load, load @ flat / power) if power > 0 else flat
+        return np.asarray(flat).reshape(rows.shape)
+
+    def _without_drift(self, rows: Array) -> Array:
+        """Used samples without their line in time."""
         time = np.flatnonzero(self.used).astype(np.float64)
         time -= time.mean() if time.size else 0.0
         power = float(time @ time)
@@ -96,7 +151,7 @@ class FilteredDataSet:
     @cached_property
     def base(self) -> Array:
         """The linear columns, deflection and rate, at the samples that serve, (n, 2)."""
-        return self.without_drift(np.column_stack([self.motion.deflection, self.motion.rate])[self.used])
+        return self.without_nuisance(np.column_stack([self.motion.deflection, self.motion.rate])[self.used])
 
     @cached_property
     def run_of(self) -> Array:
@@ -110,8 +165,9 @@ class FilteredDataSet:
         """Columns (N, e, b) of a law through the filter, at the samples that serve: (n, e, b)."""
         if extra.shape[1] == 0:
             return extra[self.used]
-        smooth = low_pass(extra.reshape(len(extra), -1), self.motion.period, self.cutoff)
-        return self.without_drift(smooth[self.used].reshape(-1, *extra.shape[1:]))
+        shortest = SHORTEST_RUN if self.steps is None else SHORTEST_STANCE_RUN
+        smooth = low_pass(extra.reshape(len(extra), -1), self.motion.period, self.cutoff, shortest)
+        return self.without_nuisance(smooth[self.used].reshape(-1, *extra.shape[1:]))
 
 
 def prepare_data_sets(
@@ -126,5 +182,5 @@ def filtered_columns(
     model: BushModel, prepared: Sequence[FilteredDataSet], shapes: Array, initial_states: Sequence[Array]
 ) -> list[Array]:
     """A law's columns beside the linear two at the samples that serve, (n, e, b) for each trial."""
-    extras = model.extra([each.motion for each in prepared], shapes, initial_states)
+    extras = model.extra([each.path for each in prepared], shapes, initial_states)
     return [each.filtered(extra) for each, extra in zip(prepared, extras, strict=True)]

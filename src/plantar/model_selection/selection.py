@@ -69,6 +69,7 @@ def choose_model(
     cutoff: float = 5.0,
     *,
     shared_offset: bool = False,
+    least_gain: float = LEAST_GAIN,
 ) -> ModelChoice:
     """Fit every law, hold pieces out in turn, and choose. Laws must include Kelvin-Voigt.
 
@@ -109,14 +110,14 @@ def choose_model(
         if model.elaborates in names:
             place = names.index(model.elaborates)
             seed = scores[place].fit
-            if not _clear(scores, errors, simple=linear, rich=place):
+            if not _clear(scores, errors, least_gain, simple=linear, rich=place):
                 untried.append(model.name)
                 continue
         enter(Candidate.of(model, prepared, folds, shared_offset, seed))
         if seed is not None and not _adds(scores[-1].fit, seed):
             untried.append(scores.pop().model.name)
             errors.pop()
-    winner = _winner(scores, errors, linear)
+    winner = _winner(scores, errors, linear, least_gain)
     chosen = replace(scores[winner], chosen=True)
     ranking = [chosen if place == winner else score for place, score in enumerate(scores)]
     held_out = "whole recordings" if whole else f"{FOLDS} contiguous parts of each recording"
@@ -128,7 +129,7 @@ def choose_model(
         reason=_reason(chosen, scores[linear], held_out),
         untried=tuple(untried),
         reach=reach(motions),
-        caution=_caution(scores, errors, winner),
+        caution=_caution(scores, errors, winner, least_gain),
     )
 
 
@@ -146,7 +147,7 @@ def _adds(fit: ModelFit, simpler: ModelFit) -> bool:
     return all(abs(fit.values[k]) > TOLD * np.sqrt(fit.covariance[k, k]) for k in added)
 
 
-def _winner(scores: Sequence[ModelScore], errors: Sequence[Array], linear: int) -> int:
+def _winner(scores: Sequence[ModelScore], errors: Sequence[Array], linear: int, least_gain: float) -> int:
     """The simplest law that the best one does not clearly beat; spring and damper where that one is a makeshift."""
     allowed = [place for place, score in enumerate(scores) if score.refused is None]
     best = min(allowed, key=lambda place: scores[place].held_out_rms)
@@ -154,14 +155,20 @@ def _winner(scores: Sequence[ModelScore], errors: Sequence[Array], linear: int) 
     winner = next(
         place
         for place in simple_first
-        if place == best or not _clear(scores, errors, simple=place, rich=best)
+        if place == best or not _clear(scores, errors, least_gain, simple=place, rich=best)
     )
     # Where a law that cannot be identified is clearly better, another one that can be takes its part badly.
     refused = (place for place, score in enumerate(scores) if score.refused is not None)
-    return linear if any(_clear(scores, errors, simple=winner, rich=place) for place in refused) else winner
+    return (
+        linear
+        if any(_clear(scores, errors, least_gain, simple=winner, rich=place) for place in refused)
+        else winner
+    )
 
 
-def _clear(scores: Sequence[ModelScore], errors: Sequence[Array], *, simple: int, rich: int) -> bool:
+def _clear(
+    scores: Sequence[ModelScore], errors: Sequence[Array], least_gain: float, *, simple: int, rich: int
+) -> bool:
     """Whether the richer law's gain over the simpler one is clear.
 
     What a law adds to the one that it elaborates has been told from zero before: it only must not predict worse.
@@ -170,18 +177,20 @@ def _clear(scores: Sequence[ModelScore], errors: Sequence[Array], *, simple: int
         return scores[rich].held_out_rms < scores[simple].held_out_rms
     fall = errors[simple] - errors[rich]
     standard_error = float(np.std(fall) * np.sqrt(len(fall)))
-    enough = scores[rich].held_out_rms < (1 - LEAST_GAIN) * scores[simple].held_out_rms
+    enough = scores[rich].held_out_rms < (1 - least_gain) * scores[simple].held_out_rms
     return enough and float(fall.sum()) > standard_error
 
 
-def _caution(scores: Sequence[ModelScore], errors: Sequence[Array], winner: int) -> str | None:
+def _caution(
+    scores: Sequence[ModelScore], errors: Sequence[Array], winner: int, least_gain: float
+) -> str | None:
     """Whether a law that was refused predicts clearly better: then the bush is not as the chosen law says."""
     better = [
         place
         for place, score in enumerate(scores)
         if score.refused is not None
         and score.held_out_rms < (1 - TELLING_GAIN) * scores[winner].held_out_rms
-        and _clear(scores, errors, simple=winner, rich=place)
+        and _clear(scores, errors, least_gain, simple=winner, rich=place)
     ]
     if not better:
         return None

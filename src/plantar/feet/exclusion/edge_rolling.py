@@ -75,8 +75,14 @@ def _flat(
         if not edge.any():
             rest.append(recording)
             continue
+        reach = round(BESIDE / recording.cutoff / recording.period)
         if model is None:
-            rest.append(recording.without(name, edge, Reason.NEAR_THE_EDGE))
+            beside = widened(edge, reach) & contact.standing
+            rest.append(
+                recording.without(name, edge, Reason.NEAR_THE_EDGE).without(
+                    name, beside, Reason.BESIDE_TIPPING
+                )
+            )
             continue
         stiffness, damping, zero = model
         bush = filtered(recording.raw[name], recording.period, QUICK_CUTOFF)
@@ -88,7 +94,7 @@ def _flat(
         for border in depth.T:
             visits = contact.standing & (border < settings.edge_margin + zero / load)
             leans |= leaning(excess, border, load, visits, used, recording.period)
-        beside = widened(leans, round(BESIDE / recording.cutoff / recording.period))
+        beside = widened(leans | (contact.standing & outside), reach)
         rest.append(
             recording.without(name, leans & contact.standing, Reason.ON_THE_EDGE).without(
                 name, beside & contact.standing, Reason.BESIDE_TIPPING

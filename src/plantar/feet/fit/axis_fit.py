@@ -8,20 +8,24 @@ import numpy as np
 
 from plantar.conventions import Axis
 from plantar.estimation import Block, LinearFit, fit_blocks
+from plantar.estimation.stance_problem import StanceProblem
 from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.corrections import about_true_zero, unattenuated
+from plantar.feet.fit.corrections import about_true_zero, over_stances, unattenuated
 from plantar.feet.fit.regression_data import blocks_of, data_set_of
 from plantar.feet.recording import Recording
 from plantar.feet.settings import AUTOMATIC, FeetSettings
 from plantar.model_selection.data_sets import DataSet
 from plantar.model_selection.model_fit import ModelFit, fit_model
-from plantar.model_selection.selection import ModelChoice, choose_model
+from plantar.model_selection.selection import LEAST_GAIN, ModelChoice, choose_model
 from plantar.models import MODELS, BushModel, KelvinVoigt
 
 LEAST_EXPLAINED = 0.5  # of the torque's variance by spring and damper: below it no law of the bush will help
 FULLY_EXPLAINED = 0.99995  # above it what is left is the sensors' noise
-STEPS = "the foot steps: each stance begins with a memory of its own, which no richer model was asked to find"
 SHORT_STANCE = 5.0  # s: the usual stance of walking is shorter, and tells nothing of a memory
+# A short stance begins with an unknown state and offset and ends before it has gone far: of memories
+# it tells the simplest, and only where that one explains much.
+CANDIDATES_IN_STANCES = ("kelvin_voigt", "elastoplastic")
+LEAST_GAIN_IN_STANCES = 0.3  # of the held-out rms error
 CANDIDATES = (
     "kelvin_voigt", "hardening", "coulomb", "elastoplastic", "hardening_elastoplastic", "bouc_wen",
     "standard_linear_solid",
@@ -56,29 +60,38 @@ def _fitted(
     linear = fit_blocks(blocks, shared_offset=shared)
     if isinstance(asked, KelvinVoigt):
         return _of_linear(foot, axis, linear, None, "asked for")
-    if blocks[0].stances is not None and asked is None:
-        return _of_linear(foot, axis, linear, None, STEPS)
-    cutoff = min(recording.cutoff for recording in recordings)
-    data_sets = [
-        data_set_of(recording, foot, axis) for recording in recordings if recording.name in linear.offsets
-    ]
+    steps = blocks[0].stances is not None and not shared
+    share = StanceProblem.drawn_together(blocks).own_share if steps else 0.0
+    fitted = [recording for recording in recordings if recording.name in linear.offsets]
+    data_sets = [data_set_of(recording, foot, axis, share) for recording in fitted]
+    cutoff = fitted[0].cutoff
     if asked is not None:
         fit = fit_model(asked, data_sets, cutoff, shared_offset=shared)
-        return _of_model(foot, axis, fit, linear, None, "asked for")
+        found = _of_model(foot, axis, fit, linear, None, "asked for")
+        return over_stances(found, fitted) if steps else found
     explained = _explained(linear, blocks)
     if not LEAST_EXPLAINED < explained < FULLY_EXPLAINED:
         return _of_linear(foot, axis, linear, None, _untried(explained))
-    models = [MODELS[name] for name in CANDIDATES if not MODELS[name].remembers or _remembers(data_sets)]
-    choice = choose_model(data_sets, models, cutoff, shared_offset=shared)
+    names = CANDIDATES_IN_STANCES if steps else CANDIDATES
+    models = [MODELS[name] for name in names if steps or not MODELS[name].remembers or _remembers(data_sets)]
+    gain = LEAST_GAIN_IN_STANCES if steps else LEAST_GAIN
+    choice = choose_model(data_sets, models, cutoff, shared_offset=shared, least_gain=gain)
     if choice.fit.model.name == KelvinVoigt.name:
         return _of_linear(foot, axis, linear, choice, choice.reason)
-    return _of_model(foot, axis, choice.fit, linear, choice, choice.reason)
+    found = _of_model(foot, axis, choice.fit, linear, choice, choice.reason)
+    return over_stances(found, fitted) if steps else found
 
 
 def _explained(fit: LinearFit, blocks: Sequence[Block]) -> float:
-    """Share of the torque's variance, within recordings, that spring and damper explain."""
-    varied = sum(float(np.sum((block.response - block.response.mean()) ** 2)) for block in blocks)
-    missed = sum(float(residual @ residual) for residual in fit.residuals.values())
+    """Share of the torque's variance, within recordings or stances, that spring and damper explain."""
+    varied = missed = 0.0
+    for block in blocks:
+        parts = [slice(None)] if block.stances is None else block.stances.split()
+        residual = fit.residuals[block.label]
+        for rows in parts:
+            varied += float(np.sum((block.response[rows] - block.response[rows].mean()) ** 2))
+            own = 0.0 if block.stances is None else residual[rows].mean()
+            missed += float(np.sum((residual[rows] - own) ** 2))
     return 1 - missed / varied if varied > 0 else 0.0
 
 
@@ -90,7 +103,7 @@ def _untried(explained: float) -> str:
 
 
 def _remembers(data_sets: Sequence[DataSet]) -> bool:
-    """Whether stances last long enough for a law with memory: each begins with an unknown state."""
+    """Whether stances last long enough for a model with memory: each begins with an unknown state."""
     stances = [run for data_set in data_sets for run in data_set.motion.runs]
     seconds = sum(
         (run.stop - run.start) * data_set.motion.period

@@ -19,6 +19,28 @@ NEGLIGIBLE, TINY = 0.1, 1e-3  # of a deviation and of a value: a smaller bias is
 NOISE_DOUBT = 0.3  # of what noise takes off: it may not be white
 
 
+def over_stances(fit: AxisFit, recordings: Sequence[Recording]) -> AxisFit:
+    """The fit with its linear parameters found anew over weighted stances, whose offsets are drawn together.
+
+    Shape and memory stay as they are. Deviations are the larger ones of both fits.
+    """
+    size = len(fit.values)
+    found = fit_blocks(blocks_of(recordings, fit.foot, fit.axis, fit=fit))
+    wider = np.ones(len(fit.covariance))
+    wider[:size] = np.maximum(1.0, found.std / fit.std[:size])
+    freedom = fit.freedom.copy()
+    freedom[:size] = np.where(wider[:size] > 1, found.freedom[:size], freedom[:size])
+    return replace(
+        fit,
+        values=found.values,
+        covariance=fit.covariance * np.outer(wider, wider),
+        freedom=freedom,
+        load_arm=float(found.common_nuisance[0]),
+        offsets=found.offsets,
+        offset_std={label: found.offset_std(label) for label in found.offsets},
+    )
+
+
 def about_true_zero(fit: AxisFit, recordings: Sequence[Recording], shared: bool) -> AxisFit:
     """The fit with an unknown zero of the deflection in each recording, where its law's shape depends on it.
 

@@ -10,11 +10,12 @@ from plantar.conventions import ROTATIONAL_AXES, Array, Axis
 from plantar.estimation import Block
 from plantar.estimation.blocks import StanceRows
 from plantar.feet.fit.axis import AxisFit, FittedModel
-from plantar.feet.recording import Recording
-from plantar.model_selection.data_sets import DataSet
+from plantar.feet.recording import SHORTEST_STANCE_RUN, Recording
+from plantar.model_selection.data_sets import DataSet, StepColumns
 from plantar.models import BushMotion, KelvinVoigt
-from plantar.signals.filters import low_pass
+from plantar.signals.filters import SHORTEST_RUN, low_pass
 
+PATH_BAND = 4.0  # times the fit's cutoff, of the path that a memory follows through short stances
 FEWEST_SAMPLES = 50  # of one recording, for it to take part in a fit
 
 
@@ -89,13 +90,17 @@ def model_columns(
 ) -> Array:
     """Regressor (N, k) of a fit's law along a recording, Kelvin-Voigt's without one; NaN in the air."""
     motion = motion_of(recording, foot, axis)
+    linear = np.column_stack([motion.deflection, motion.rate])
     if fit is None or isinstance(fit.model, KelvinVoigt):
-        return np.column_stack([motion.deflection, motion.rate])
+        return linear
+    path = path_of(recording, foot, axis)
     initial_states = fit.initial_states.get(recording.name) if initial_states is None else initial_states
-    if initial_states is None or len(initial_states) != len(motion.runs):
-        initial_states = fit.model.initial_states(motion, fit.shape)
-    columns = fit.model.columns(motion, fit.shape, initial_states)
-    columns[:, 2:] = low_pass(columns[:, 2:], recording.period, recording.cutoff)
+    if initial_states is None or len(initial_states) != len(path.runs):
+        initial_states = fit.model.initial_states(path, fit.shape)
+    columns = fit.model.columns(path, fit.shape, initial_states)
+    columns[:, :2] = linear
+    shortest = SHORTEST_RUN if recording.stances[foot] is None else SHORTEST_STANCE_RUN
+    columns[:, 2:] = low_pass(columns[:, 2:], recording.period, recording.cutoff, shortest)
     return columns
 
 
@@ -108,7 +113,25 @@ def motion_of(recording: Recording, foot: str, axis: Axis) -> BushMotion:
     return BushMotion(deflection, rate, recording.period)
 
 
-def data_set_of(recording: Recording, foot: str, axis: Axis) -> DataSet:
-    """One recording of one axis, as the laws take it."""
-    torque = recording.bushes[foot].torque[:, ROTATIONAL_AXES.index(axis)]
-    return DataSet(recording.name, motion_of(recording, foot, axis), torque, recording.used(foot))
+def path_of(recording: Recording, foot: str, axis: Axis) -> BushMotion:
+    """The motion that a model's memory follows: of a foot that steps with a wider band, since it turns quickly."""
+    slow, stances = motion_of(recording, foot, axis), recording.stances[foot]
+    if stances is None:
+        return slow
+    column, raw = ROTATIONAL_AXES.index(axis), recording.raw[foot]
+    both = np.column_stack([raw.deflection[:, column], raw.rate[:, column]])
+    both[stances.number < 0] = np.nan
+    quick = low_pass(both, recording.period, PATH_BAND * recording.cutoff, SHORTEST_STANCE_RUN)
+    quick[~np.isfinite(slow.deflection)] = np.nan
+    return BushMotion(quick[:, 0], quick[:, 1], recording.period)
+
+
+def data_set_of(recording: Recording, foot: str, axis: Axis, own_share: float = 0.0) -> DataSet:
+    """One recording of one axis, as the models take it; `own_share`: of the offsets of stances, that is their own."""
+    column, stances = ROTATIONAL_AXES.index(axis), recording.stances[foot]
+    torque, used = recording.bushes[foot].torque[:, column], recording.used(foot)
+    if stances is None:
+        return DataSet(recording.name, motion_of(recording, foot, axis), torque, used)
+    steps = StepColumns(stances.number, load_of(recording, foot), own_share)
+    measured = recording.raw[foot].torque[:, column]
+    return DataSet(recording.name, path_of(recording, foot, axis), measured, used, steps)
