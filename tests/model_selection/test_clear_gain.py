@@ -12,7 +12,7 @@ from plantar.conventions import Array
 from plantar.model_selection.cross_validation import folds_of
 from plantar.model_selection.data_sets import FilteredDataSet, prepare_data_sets
 from plantar.model_selection.model_fit import ModelFit, fit_model
-from plantar.model_selection.selection import ModelScore, _adds, _caution, _clear
+from plantar.model_selection.selection import LEAST_GAIN, ModelScore, _adds, _caution, _clear
 from plantar.models import Elastoplastic, HardeningElastoplastic, KelvinVoigt
 
 
@@ -41,21 +41,27 @@ def test_a_gain_that_one_piece_carries_is_not_clear(fit: ModelFit) -> None:
     rich[0] = 10.0
     scores, errors = contest(fit, simple, rich)
     assert scores[1].held_out_rms < 0.9 * scores[0].held_out_rms
-    assert not _clear(scores, errors, simple=0, rich=1)
+    assert not _clear(scores, errors, LEAST_GAIN, simple=0, rich=1)
 
 
-def test_a_gain_on_most_pieces_is_clear_from_a_tenth_on(fit: ModelFit) -> None:
+@pytest.mark.parametrize(
+    ("asked", "share", "clear"),
+    [(LEAST_GAIN, 0.92, False), (LEAST_GAIN, 0.88, True), (0.3, 0.72, False), (0.3, 0.68, True)],
+)
+def test_a_gain_on_most_pieces_is_clear_from_the_one_asked_for_on(
+    fit: ModelFit, asked: float, share: float, clear: bool
+) -> None:
+    """A tenth is asked for where nothing else is."""
     even = 10.0 + np.linspace(-1.0, 1.0, 8)
-    for share, clear in ((0.92, False), (0.88, True)):
-        scores, errors = contest(fit, even, share**2 * even)
-        assert _clear(scores, errors, simple=0, rich=1) is clear
+    scores, errors = contest(fit, even, share**2 * even)
+    assert _clear(scores, errors, asked, simple=0, rich=1) is clear
 
 
 def test_a_refused_model_is_told_of_where_it_is_far_better(fit: ModelFit) -> None:
     even = 10.0 + np.linspace(-1.0, 1.0, 8)
     for share, told in ((0.8, False), (0.6, True)):
         scores, errors = contest(fit, even, share**2 * even, refused="not told from nothing")
-        said = _caution(scores, errors, 0)
+        said = _caution(scores, errors, 0, LEAST_GAIN)
         assert (said is not None) is told
     assert said is not None
     assert "elastoplastic predicts held-out motion better" in said

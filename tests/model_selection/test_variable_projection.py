@@ -65,7 +65,7 @@ def test_drift_is_taken_off_and_means_stay() -> None:
     (each,) = prepare_data_sets(campaign(1, Rubber())[:1], 5.0)
     time = np.flatnonzero(each.used).astype(float)
     rows = np.column_stack([3.0 + 0.01 * time, np.sin(0.05 * time) - 2.0])
-    clear = each.without_drift(rows)
+    clear = each.without_nuisance(rows)
     np.testing.assert_allclose(clear.mean(axis=0), rows.mean(axis=0), atol=1e-9)
     np.testing.assert_allclose(clear[:, 0], rows[:, 0].mean(), atol=1e-9)
     assert (time - time.mean()) @ clear[:, 1] == pytest.approx(0.0, abs=1e-6)

@@ -139,7 +139,7 @@ FIT = (
     ),
     Mutant(
         "feet/fit/regression_data.py", "columns of a model with memory unfiltered",
-        "low_pass(columns[:, 2:], recording.period, recording.cutoff)", "columns[:, 2:]",
+        "low_pass(columns[:, 2:], recording.period, recording.cutoff, shortest)", "columns[:, 2:]",
     ),
 )  # fmt: skip
 
