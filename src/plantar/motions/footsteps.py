@@ -24,7 +24,7 @@ CARRIED = 0.15  # of the swing: lifts before it goes forward, and is in place be
 TRAVEL, MOST_TRAVEL = 0.2, 0.4
 # m: usual and largest error of a robot's belief where the floor is under a foot that lands; servos, links and floors
 # give as much. Without it every landing would be as soft as no robot's is.
-MISJUDGED, MOST_MISJUDGED = 0.0007, 0.0015
+MISJUDGED, MOST_MISJUDGED = 0.0015, 0.003
 
 
 @dataclass(frozen=True)
