@@ -22,9 +22,10 @@ CARRIED = 0.15  # of the swing: lifts before it goes forward, and is in place be
 # The ZMP passes from the heel's side to the toes' while one foot stands: by so much of a step on either side of the
 # sole's middle, and by no more than so much of the half length.
 TRAVEL, MOST_TRAVEL = 0.2, 0.4
-# m: usual and largest error of a robot's belief where the floor is under a foot that lands; servos, links and floors
-# give as much. Without it every landing would be as soft as no robot's is.
-MISJUDGED, MOST_MISJUDGED = 0.0015, 0.003
+# Usual and largest error of a robot's belief how high the floor is where a foot lands: a few millimetres, from servos,
+# links and floors. Without it every landing would be as soft as no robot's is; on narrow soles robots are more exact
+# or fall, so that these are shares of the sole's half width.
+MISJUDGED, MOST_MISJUDGED = 0.03, 0.06
 
 
 @dataclass(frozen=True)
@@ -98,15 +99,16 @@ class Footsteps:
 def footsteps(gait: Gait, soles: Mapping[str, pin.SE3], middles: Mapping[str, Array]) -> Footsteps:
     """Steps of `gait` from soles that stand level, left foot first.
 
-    `middles`: of each sole's outline in the sole's frame, x and y [m], and half its length [m], (3,).
+    `middles`: of each sole's outline in the sole's frame, x and y, and half its length and width, (4,)
+    [m].
     """
     places = {foot: np.array([*sole.translation[:2], _yaw(sole)]) for foot, sole in soles.items()}
     path = np.mean(list(places.values()), axis=0)
     aside = {foot: place - path for foot, place in places.items()}
     start, double = dict(places), max(gait.period * DOUBLE, SHORTEST_DOUBLE)
     random = np.random.default_rng(gait.trial)
-    floors = np.clip(random.normal(0.0, MISJUDGED, gait.steps), -MOST_MISJUDGED, MOST_MISJUDGED)
-    half_length = min(middle[2] for middle in middles.values())
+    half_length, half_width = np.min([middle[2:] for middle in middles.values()], axis=0)
+    floors = half_width * np.clip(random.normal(0, MISJUDGED, gait.steps), -MOST_MISJUDGED, MOST_MISJUDGED)
     travel = min(TRAVEL * gait.step, MOST_TRAVEL * half_length)
     shift = max(SHIFT, gait.period)
     begin = REST + shift

@@ -27,8 +27,8 @@ CORRECTIONS = 2  # times the pendulum is corrected for the limbs that it does no
 def walk_plan(body: Body, name: str, start: Stance, gait: Gait) -> Plan:
     """A walk of `gait` from two soles that stand level.
 
-    The centre of mass keeps its height, the chest stays upright and faces the way. Raises MotionError when a foot
-    cannot reach its place.
+    The centre of mass keeps its height, chest and root link keep their attitude and face the way. Raises MotionError
+    when a foot cannot reach its place.
     """
     middles = {foot: _middle(body, foot) for foot in start.soles}
     steps = footsteps(gait, start.soles, middles)
@@ -55,12 +55,14 @@ def _follow(
     """Configurations (K, nq) at the knots; from those `near` where there are some."""
     soles, heading = steps.soles(knots), steps.heading(knots)
     chest = body.pose(start.configuration, CHEST)
+    root = pin.XYZQUATToSE3(start.configuration[:7]).rotation
     q, found = start.configuration, np.empty((knots.size, start.configuration.size))
     for place, time in enumerate(knots):
         targets = {foot: pin.SE3(poses[place]) for foot, poses in soles.items()}
-        facing = pin.exp3(np.array([0.0, 0.0, heading[place] - heading[0]])) @ chest.rotation
-        upright = body.chest_task(pin.SE3(facing, chest.translation), position=False)
-        tasks = [*body.foot_tasks(targets), upright, body.centre_task(centre[place], height=10.0)]
+        facing = pin.exp3(np.array([0.0, 0.0, heading[place] - heading[0]]))
+        upright = body.chest_task(pin.SE3(facing @ chest.rotation, chest.translation), position=False)
+        level = body.root_task(facing @ root)
+        tasks = [*body.foot_tasks(targets), upright, level, body.centre_task(centre[place], height=10.0)]
         q = q if near is None else near[place]
         q = body.solve(q, tasks, start.configuration, ITERATIONS if place or near is not None else 60)
         check_reached(body, q, targets, name, float(time))
@@ -76,7 +78,7 @@ def _zmp(body: Body, plan: Plan, knots: Array) -> Array:
 
 
 def _middle(body: Body, foot: str) -> Array:
-    """Middle of a sole's outline in the sole's frame, x and y, and half its length, (3,)."""
+    """Middle of a sole's outline in the sole's frame, x and y, and half its length and width, (4,)."""
     polygon = body.robot.feet[foot].sole.polygon
     low, high = polygon.min(axis=0), polygon.max(axis=0)
-    return np.array([*(high + low) / 2, (high[0] - low[0]) / 2])
+    return np.array([*(high + low) / 2, *(high - low) / 2])

@@ -53,6 +53,7 @@ class StateEstimator:
             frame = pin.Frame(f"plantar.{name}.bush", carrier, 0, pose, pin.FrameType.OP_FRAME)
             self.frames[name] = int(self.model.addFrame(frame, False))
         self.data = self.model.createData()
+        self._neutral: Array = pin.neutral(self.model)
         self._joints = [self.model.joints[self.model.getJointId(name)] for name in joints]
         self._q = [int(model.joint(name).qposadr[0]) for name in joints]
         self._v = [int(model.joint(name).dofadr[0]) for name in joints]
@@ -69,7 +70,7 @@ class StateEstimator:
 
     def configuration(self, positions: Array, base: pin.SE3) -> Array:
         """Pinocchio's q for joint positions in the order of `joints`."""
-        q: Array = pin.neutral(self.model)
+        q = self._neutral.copy()
         q[:7] = pin.SE3ToXYZQUAT(base)
         for joint, value in zip(self._joints, positions, strict=True):
             q[joint.idx_q : joint.idx_q + joint.nq] = (

@@ -22,6 +22,7 @@ from plantar.twin.stabiliser import Asked
 
 CORRECTED: Final = 8.0  # 1/s: how fast the force sensors' torque and load are brought to what is asked
 FORGOTTEN: Final = 0.15  # s, in which corrections of a foot in the air fade
+YIELDING: Final = 30.0  # 1/s: how fast a leg gives way to a floor that comes before its time
 LEVELLED: Final = 0.05  # s, in which a foot that swings takes up its height, and gives it up when it stands
 LEG_STIFFNESS: Final = 1e6  # N/m of a leg's servos, beside which the bush's is the soft one
 MOST_TURNED, MOST_LENGTHENED = 0.25, 0.03  # rad and m: a leg that corrects more has lost its balance
@@ -83,6 +84,7 @@ class FootControl:
             else:
                 self.turned[foot] *= 1 - period / FORGOTTEN
                 self.lowered[foot] *= 1 - period / FORGOTTEN
+                self.lowered[foot] -= YIELDING * period * state.load[foot] * self.vertical[foot]
             sole = self.walk.soles[foot][sample, :3, :3]
             lean = (sole.T @ state.lean)[:2]
             level = 0.0 if stands else self._height_lost(foot, carrying, state)

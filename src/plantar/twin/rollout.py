@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from plantar.conventions import Array, rotation_from_quaternion
+from plantar.conventions import Array
 from plantar.errors import MotionError, located
 from plantar.motions.plan import RATE, Plan
 from plantar.robot import RobotModel
@@ -165,8 +165,9 @@ def _place(data: mujoco.MjData, plan: Plan, joints: tuple[str, ...]) -> None:
 
 
 def _check_upright(plan: Plan, sample: int, data: mujoco.MjData) -> None:
-    up = plan.base[sample, 2, :3] @ rotation_from_quaternion(data.qpos[3:7])[2]  # yaw never lets a robot fall
-    lean = np.arccos(min(1.0, float(up)))
+    w, x, y, z = data.qpos[3:7].tolist()
+    up = np.array([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)])  # in the root
+    lean = np.arccos(min(1.0, float(plan.base[sample, 2, :3] @ up)))  # yaw never lets a robot fall
     if not lean < FALLEN:
         message = f"{plan.name}: the robot falls, it leans {np.degrees(lean):.0f}° away from its plan"
         raise MotionError(located(message, time=float(plan.time[sample]), valid="a smaller or slower motion"))
