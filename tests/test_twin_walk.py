@@ -123,11 +123,12 @@ def test_a_plain_log_holds_what_public_logs_hold(tmp_path) -> None:
 
 
 def test_a_device_late_by_its_clock_shows_in_the_log() -> None:
-    recording = record(walked(), hrp2.robot(), WORLD, preset_named("plain_log"), 4)
+    recording = record(walked(), hrp2.robot(), WORLD, preset_named("plain_log"), 6)
     rollout, joint = walked(), "RLEG_JOINT3"
     exact, rate = (
         values[::4, rollout.joints.index(joint)] for values in (rollout.positions, rollout.velocities)
     )
     error = recording.log.columns[f"joint.{joint}.position"] - exact
     clock = recording.truth.facts["drawn"]["joint.clock"]
-    assert error @ rate / (rate @ rate) == pytest.approx(clock, abs=3e-4)
+    assert abs(clock) > 1.5e-3
+    assert error @ rate / (rate @ rate) == pytest.approx(clock, abs=8e-4)

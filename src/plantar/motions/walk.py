@@ -21,13 +21,16 @@ from plantar.motions.track import splined
 
 KNOTS = 50.0  # Hz: a swing of 0.5 s has 25
 ITERATIONS = 2  # Gauss-Newton steps a knot
+SETTLED = (
+    60  # of them before the first: a robot without a posture of its own stands with its pelvis as it came
+)
 CORRECTIONS = 2  # times the pendulum is corrected for the limbs that it does not know
 
 
 def walk_plan(body: Body, name: str, start: Stance, gait: Gait) -> Plan:
     """A walk of `gait` from two soles that stand level.
 
-    The centre of mass keeps its height, chest and root link keep their attitude and face the way. Raises MotionError
+    The centre of mass keeps its height, the root link is level, and it and the chest face the way. Raises MotionError
     when a foot cannot reach its place.
     """
     middles = {foot: _middle(body, foot) for foot in start.soles}
@@ -56,15 +59,18 @@ def _follow(
     soles, heading = steps.soles(knots), steps.heading(knots)
     chest = body.pose(start.configuration, CHEST)
     root = pin.XYZQUATToSE3(start.configuration[:7]).rotation
+    level = pin.exp3(np.array([0.0, 0.0, np.arctan2(root[1, 0], root[0, 0])]))
     q, found = start.configuration, np.empty((knots.size, start.configuration.size))
+    rest = start.configuration if near is None else near[0]
     for place, time in enumerate(knots):
         targets = {foot: pin.SE3(poses[place]) for foot, poses in soles.items()}
         facing = pin.exp3(np.array([0.0, 0.0, heading[place] - heading[0]]))
         upright = body.chest_task(pin.SE3(facing @ chest.rotation, chest.translation), position=False)
-        level = body.root_task(facing @ root)
-        tasks = [*body.foot_tasks(targets), upright, level, body.centre_task(centre[place], height=10.0)]
+        pelvis = body.root_task(facing @ level)
+        tasks = [*body.foot_tasks(targets), upright, pelvis, body.centre_task(centre[place], height=10.0)]
         q = q if near is None else near[place]
-        q = body.solve(q, tasks, start.configuration, ITERATIONS if place or near is not None else 60)
+        q = body.solve(q, tasks, rest, ITERATIONS if place or near is not None else SETTLED)
+        rest = rest if place else q
         check_reached(body, q, targets, name, float(time))
         found[place] = q
     return found

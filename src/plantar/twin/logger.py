@@ -34,8 +34,8 @@ class Logger:
     """
 
     rate: float = 50.0
-    clock: float = 0.002
-    jitter: float = 0.001
+    clock: float = 0.003
+    jitter: float = 0.002
     air: tuple[tuple[float, float], ...] = ((-25.0, -15.0), (-25.0, -15.0), (-80.0, -25.0))
 
     def logged(

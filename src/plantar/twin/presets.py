@@ -104,7 +104,7 @@ PRESETS: Final[Mapping[str, Preset]] = MappingProxyType(
             Preset("sensors", SENSORS),
             Preset("realistic", replace(SENSORS, wrench_delay=0.005), SLIP_TORQUE),
             Preset("harsh", HARSH, (2 * SLIP_TORQUE[0], 2 * SLIP_TORQUE[1]), HARDENING, SOFT_FLOOR, SLIPPERY),
-            Preset("plain_log", PLAIN, SLIP_TORQUE, logger=Logger()),
+            Preset("plain_log", PLAIN, logger=Logger()),
         )
     }
 )
