@@ -66,7 +66,8 @@ class FootControl:
         self.lifted = dict.fromkeys(self.feet, 0.0)  # m, against the lean
 
     def correction(self, sample: int, state: State, asked: dict[str, Asked]) -> Array:
-        """What to add to the planned velocities' places, (nv,), to make the feet carry what is asked."""
+        """What to add to the planned joint positions [rad], (nv,) in Pinocchio's order, so that the feet carry what is
+        asked."""
         period = 1 / RATE
         carrying = [foot for foot in self.feet if self.walk.stands[foot][sample]]
         self._correct_loads(carrying, state, asked)
