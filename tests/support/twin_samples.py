@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 
-from plantar.motions import Plan, plan_motion
+from plantar.motions import Plan, Walk, plan_motion
 from plantar.twin.robots import hrp2
 from plantar.twin.simulation.physics import Physics
 from plantar.twin.simulation.rollout import Rollout, roll_out, scene_xml
@@ -17,12 +17,19 @@ def short(plan: Plan, start: float, end: float) -> Plan:
     """The part of a plan between two times [s], on a time base that starts at 0."""
     rows = (plan.time >= start) & (plan.time < end)
     hand = None if plan.hand is None else replace(plan.hand, path=plan.hand.path[rows])
+    walk = plan.walk and Walk(
+        {foot: poses[rows] for foot, poses in plan.walk.soles.items()},
+        {foot: stands[rows] for foot, stands in plan.walk.stands.items()},
+        plan.walk.zmp[rows],
+        plan.walk.centre[rows],
+    )
     return replace(
         plan,
         time=np.arange(rows.sum()) / 200.0,
         positions=plan.positions[rows],
         base=plan.base[rows],
         hand=hand,
+        walk=walk,
     )
 
 

@@ -19,6 +19,10 @@ if TYPE_CHECKING:
 
 LONGEST = 10.0  # m: no motion is larger
 BUSH_HELP = "Bush of every foot as K_pitch,C_pitch,K_roll,C_roll[,K_z,C_z]; the paper's table 1 if left out."
+PRESET_HELP = (
+    "Imperfections: ideal, sensors, realistic or harsh; or plain_log, what public logs of walking robots hold: 50 Hz, "
+    "the root link's attitude, no gyroscope, devices on clocks of their own, force sensors not zeroed."
+)
 
 
 def run(
@@ -26,9 +30,7 @@ def run(
         str, typer.Argument(help="A motion's name, several with commas between, 'demo' or 'campaign'.")
     ],
     out: Annotated[Path, typer.Option(help="Folder for the robot file, the logs and the truth beside them.")],
-    preset: Annotated[
-        str, typer.Option(help="Imperfections: ideal, sensors, realistic or harsh.")
-    ] = "realistic",
+    preset: Annotated[str, typer.Option(help=PRESET_HELP)] = "realistic",
     seed: Annotated[int, typer.Option(help="Draws the sensors' noise, biases and zeros.", min=0)] = 0,
     robot: Annotated[
         Path | None, typer.Option(help="Robot file of a biped; the HRP-2-like one if left out.")
@@ -46,12 +48,17 @@ def run(
     apart: Annotated[
         float | None, typer.Option(help="Between the soles, in m; as the robot's posture has it if left out.")
     ] = None,
+    period: Annotated[
+        float | None, typer.Option(help="Of one step of a walk, 0.6 to 6 s; as its name says if left out.")
+    ] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")] = False,
 ) -> None:
     """Play motions on the twin, a robot in MuJoCo whose feet are known, and write what it records.
 
     Motions: Tilt1 to Tilt6, Manual_right_roll, Manual_right_pitch, Manual_left_roll, Manual_left_pitch,
-    Manual_both_pitch, Myrand4, Myrand5, Squat. Each log MOTION.parquet has its truth in MOTION.truth.parquet
+    Manual_both_pitch, Myrand4, Myrand5, Squat. Walks: Walk8, Walk12, Walk16, Walk20 or any other step in cm (1 s a
+    step), WalkSlow12 (4 s), WalkQuick12 (0.8 s), WalkTurn, WalkInPlace; Walk12_1, Walk12_2 are trials that land a
+    little otherwise. Each log MOTION.parquet has its truth in MOTION.truth.parquet
     (bush angles, contact forces) and MOTION.truth.json (what was put in). A motion that loses its balance or cannot be
     reached is refused before it is played; one that falls on its bushes, as soon as it does.
 
@@ -74,10 +81,10 @@ def run(
         raise PlantarError(located(message, valid="--bush K_pitch,C_pitch,K_roll,C_roll"))
     report = _reporter(len(names), progress(quiet))
     (recordings,) = play_all(
-        names, model, bushes, preset, [seed], report, sway=sway, vertical=vertical, apart=apart
+        names, model, bushes, preset, [seed], report, sway=sway, vertical=vertical, apart=apart, period=period
     )
     end_progress(quiet)
-    robot_file = write_campaign(out, recordings, model)
+    robot_file = write_campaign(out, recordings, model, preset)
     rows = [
         (
             recording.name,

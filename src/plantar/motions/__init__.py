@@ -1,6 +1,18 @@
-"""Motions that make the bushes move: planned with whole-body inverse kinematics, feet where they stand."""
+"""Motions that make the bushes move: planned with whole-body inverse kinematics, feet where they stand or step."""
 
 from plantar.motions.campaign import CAMPAIGN, DEMO, FIT, Postures, plan_motion, planned_balance
-from plantar.motions.plan import Hand, Plan
+from plantar.motions.gait import WALKS
+from plantar.motions.plan import Hand, Plan, Walk
 
-__all__ = ["CAMPAIGN", "DEMO", "FIT", "Hand", "Plan", "Postures", "plan_motion", "planned_balance"]
+__all__ = [
+    "CAMPAIGN",
+    "DEMO",
+    "FIT",
+    "WALKS",
+    "Hand",
+    "Plan",
+    "Postures",
+    "Walk",
+    "plan_motion",
+    "planned_balance",
+]

@@ -125,6 +125,12 @@ class Body:
         task.set_target(target)
         return task
 
+    def root_task(self, attitude: Array) -> FrameTask:
+        """The root link's attitude (3, 3) in the world."""
+        task = FrameTask(self.robot.model.frames[1].name, position_cost=0.0, orientation_cost=1.0)
+        task.set_target(pin.SE3(attitude, np.zeros(3)))
+        return task
+
     def centre_task(self, target: Array, *, height: float = 0.0) -> ComTask:
         """Centre of mass over a point; `height` is the cost of its z."""
         task = ComTask(cost=np.array([10.0, 10.0, height]))

@@ -1,4 +1,4 @@
-"""The paper's fourteen motions by name."""
+"""The paper's fourteen motions, and walks, by name."""
 
 from __future__ import annotations
 
@@ -12,11 +12,13 @@ from plantar.contact.balance import Balance
 from plantar.errors import MotionError, located
 from plantar.motions.body import Body
 from plantar.motions.feasible import check
+from plantar.motions.gait import WALKS, gait_of, is_walk
 from plantar.motions.manual import manual_plan
 from plantar.motions.plan import Plan
 from plantar.motions.stance import STEP_ASIDE, STEP_FORWARD, Stance, on_one_leg, stand, with_arms
 from plantar.motions.tilt import squat_plan, tilt_plan
 from plantar.motions.upper import sweep_plan
+from plantar.motions.walk import walk_plan
 from plantar.robot.model import RobotModel
 
 FIT: Final = ("Manual_right_roll", "Manual_right_pitch", "Manual_left_roll", "Manual_left_pitch", "Tilt3")
@@ -48,18 +50,24 @@ def plan_motion(
     sway: float | None = None,
     vertical: float | None = None,
     apart: float | None = None,
+    period: float | None = None,
 ) -> Plan:
-    """One of the paper's motions for a robot with two feet and an IMU in its chest.
+    """One of the paper's motions, or a walk, for a robot with two feet and an IMU.
 
     `sway` [m]: how far tilts move the chest (0.02 as in the paper) and how far the operator's hand leads it;
     `vertical` [m]: how far the chest goes down in Tilt4 to Tilt6 (0.07) and squats (0.1); `apart` [m]: between the
-    soles (as in the posture). Raises MotionError, in one line that says when and by how much, where the name is
-    unknown, a place out of reach, a joint's limit passed or the balance lost.
+    soles (as in the posture); `period` [s]: of one step of a walk (as its name says). Raises MotionError, in one line
+    that says when and by how much, where the name is unknown, a place out of reach, a joint's limit passed or the
+    balance lost.
     """
-    if name not in CAMPAIGN:
-        raise MotionError(located(f"unknown motion '{name}'", valid=", ".join(CAMPAIGN)))
+    if name not in CAMPAIGN and not is_walk(name):
+        raise MotionError(located(f"unknown motion '{name}'", valid=", ".join((*CAMPAIGN, *WALKS))))
+    gait = gait_of(name, period) if is_walk(name) else None
     body, postures = Body(robot), postures or Postures()
-    plan = _plan(body, name, postures, sway, vertical, apart)
+    if gait is not None:
+        plan = walk_plan(body, name, _standing(body, postures, "A", apart), gait)
+    else:
+        plan = _plan(body, name, postures, sway, vertical, apart)
     check(body, plan)
     return plan
 

@@ -20,11 +20,12 @@ LEAST = 10.0  # N
 def check(body: Body, plan: Plan) -> Balance:
     """The plan's balance; MotionError where a joint's limits, its torque or the balance does not hold.
 
-    The operator's hand is a help that is not counted on: with one, the robot is led without haste (no inertia).
+    The operator's hand is a help that is not counted on: with one, the robot is led without haste (no inertia). Of a
+    walk it is the balance of the support that comes nearest to falling.
     """
     _check_limits(body, plan)
     motion = configurations(body, plan)
-    balance = _balance(body, plan, *motion)
+    balance = min(_supports(body, plan, *motion), key=lambda support: support.worst()[1])
     require_balance(balance)
     _check_torques(body, plan, *motion)
     return balance
@@ -40,6 +41,31 @@ def _balance(body: Body, plan: Plan, q: Array, v: Array, a: Array, time: Array) 
     return Balance(plan.name, time, zmp, sole_outlines(body.robot, plan.stance))
 
 
+def _supports(body: Body, plan: Plan, q: Array, v: Array, a: Array, time: Array) -> list[Balance]:
+    """The balance over each support in turn: one, but for a walk."""
+    whole = _balance(body, plan, q, v, a, time)
+    if plan.walk is None:
+        return [whole]
+    rows = _rows(plan, time)
+    stands = np.array([plan.walk.stands[foot][rows] for foot in sorted(plan.walk.stands)])
+    changes = np.flatnonzero(np.diff(stands, axis=1).any(axis=0)) + 1
+    found = []
+    for part in np.split(np.arange(time.size), changes):
+        soles = {
+            foot: plan.walk.soles[foot][rows[part[0]]]
+            for foot, on_floor in zip(sorted(plan.walk.stands), stands[:, part[0]], strict=True)
+            if on_floor
+        }
+        found.append(Balance(plan.name, time[part], whole.zmp[part], sole_outlines(body.robot, soles)))
+    return found
+
+
+def _rows(plan: Plan, time: Array) -> Array:
+    """The plan's rows nearest to `time` (N,) [s]."""
+    rows = np.round(time * (len(plan.time) - 1) / plan.time[-1]).astype(int)
+    return np.asarray(np.minimum(rows, len(plan.time) - 1))
+
+
 def configurations(body: Body, plan: Plan) -> tuple[Array, Array, Array, Array]:
     """q (N, nq), v and a (N, nv) of the plan and their time (N,), at 50 Hz.
 
@@ -47,7 +73,7 @@ def configurations(body: Body, plan: Plan) -> tuple[Array, Array, Array, Array]:
     held point follows the hand; the speed of that is left out.
     """
     time = np.arange(0.0, plan.time[-1] + 1e-9, 1 / CHECK_RATE)
-    rows = np.minimum(np.round(time * (len(plan.time) - 1) / plan.time[-1]).astype(int), len(plan.time) - 1)
+    rows = _rows(plan, time)
     spline = CubicSpline(plan.time, plan.positions)
     q = np.tile(pin.neutral(body.model), (time.size, 1))
     v, a = np.zeros((time.size, body.model.nv)), np.zeros((time.size, body.model.nv))
@@ -109,8 +135,9 @@ def _check_torques(body: Body, plan: Plan, q: Array, v: Array, a: Array, time: A
     """Joint torques with the ground's wrench shared among the feet by least effort, ten times a second."""
     model, data = body.model, body.data
     limits = model.upperEffortLimit[6:]
-    frames = [model.getFrameId(body.sole(name)) for name in sorted(plan.standing)]
+    rows = _rows(plan, time)
     for row in range(0, len(time), int(CHECK_RATE / 10)):
+        frames = [model.getFrameId(body.sole(name)) for name in plan.standing_at(int(rows[row]))]
         tau = pin.rnea(model, data, q[row], v[row], a[row])
         pin.computeJointJacobians(model, data, q[row])
         pin.updateFramePlacements(model, data)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from plantar.conventions import Array
@@ -24,11 +25,26 @@ class Hand:
 
 
 @dataclass(frozen=True)
+class Walk:
+    """What a walk's balance is led by, at the plan's time.
+
+    By foot, `soles` (N, 4, 4): poses in the world, and `stands` (N,): whether the foot is on the floor. `zmp` (N, 2)
+    and `centre` (N, 3), the centre of mass [m].
+    """
+
+    soles: Mapping[str, Array]
+    stands: Mapping[str, Array]
+    zmp: Array
+    centre: Array
+
+
+@dataclass(frozen=True)
 class Plan:
     """Joint positions (N, n) [rad or m] in the order of `joints`, at `time` (N,) [s].
 
     `base` (N, 4, 4) is the root link's pose in the world on rigid feet, the floor at z = 0; `standing` names the
-    feet on the floor; `stance` says where the soles stand, (4, 4) each.
+    feet on the floor; `stance` says where the soles stand, (4, 4) each. A plan with a `walk` starts in that stance and
+    leaves it.
     """
 
     name: str
@@ -39,3 +55,10 @@ class Plan:
     standing: frozenset[str]
     stance: dict[str, Array]
     hand: Hand | None = None
+    walk: Walk | None = None
+
+    def standing_at(self, row: int) -> list[str]:
+        """The feet on the floor at a row, by name in order."""
+        if self.walk is None:
+            return sorted(self.standing)
+        return sorted(foot for foot, stands in self.walk.stands.items() if stands[row])

@@ -63,7 +63,8 @@ def splined(
     if np.ptp(found[:, :7], axis=0).max() < 1e-12:
         base = np.tile(pin.XYZQUATToSE3(found[0, :7]).homogeneous, (time.size, 1, 1))
     else:
-        quaternions = found[:, 3:7] * np.sign(found[:, 3:7] @ found[0, 3:7])[:, None]
+        alike = np.sign(np.sum(found[1:, 3:7] * found[:-1, 3:7], axis=1))  # q and -q are one attitude
+        quaternions = found[:, 3:7] * np.cumprod([1.0, *alike])[:, None]
         floating = _through(knots, np.column_stack([found[:, :3], quaternions]), time)
         floating[:, 3:] /= np.linalg.norm(floating[:, 3:], axis=1, keepdims=True)
         base = np.array([pin.XYZQUATToSE3(row).homogeneous for row in floating])

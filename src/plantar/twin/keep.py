@@ -10,7 +10,7 @@ import numpy as np
 
 from plantar.conventions import Array
 from plantar.motions.campaign import Postures
-from plantar.motions.plan import Hand, Plan
+from plantar.motions.plan import Hand, Plan, Walk
 from plantar.robot.model import Placement, RobotModel
 from plantar.twin import cache
 from plantar.twin.simulation.physics import Physics
@@ -45,6 +45,10 @@ def plan_arrays(plan: Plan) -> dict[str, Array]:
         held = plan.hand.held
         arrays |= {"hand/link": np.array(held.link), "hand/xyz": held.xyz, "hand/rpy": held.rpy}
         arrays |= {"hand/path": plan.hand.path, "hand/law": np.array([plan.hand.spring, plan.hand.damper])}
+    if plan.walk is not None:
+        arrays |= {"walk/zmp": plan.walk.zmp, "walk/centre": plan.walk.centre}
+        arrays |= {f"walk/soles/{foot}": poses for foot, poses in plan.walk.soles.items()}
+        arrays |= {f"walk/stands/{foot}": stands for foot, stands in plan.walk.stands.items()}
     return arrays
 
 
@@ -53,6 +57,10 @@ def plan_from(name: str, arrays: Mapping[str, Array]) -> Plan:
     if "hand/path" in arrays:
         held = Placement(str(arrays["hand/link"]), arrays["hand/xyz"], arrays["hand/rpy"])
         hand = Hand(held, arrays["hand/path"], *(float(value) for value in arrays["hand/law"]))
+    walk = None
+    if "walk/zmp" in arrays:
+        soles, stands = _table(arrays, "walk/soles"), _table(arrays, "walk/stands")
+        walk = Walk(soles, stands, arrays["walk/zmp"], arrays["walk/centre"])
     standing = frozenset(str(foot) for foot in arrays["standing"])
     joints = tuple(str(joint) for joint in arrays["joints"])
     return Plan(
@@ -64,6 +72,7 @@ def plan_from(name: str, arrays: Mapping[str, Array]) -> Plan:
         standing,
         _table(arrays, "stance"),
         hand,
+        walk,
     )
 
 

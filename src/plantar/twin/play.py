@@ -12,13 +12,14 @@ from typing import TypeVar
 from plantar.errors import MotionError
 from plantar.motions.campaign import Postures, plan_motion
 from plantar.motions.plan import Plan
-from plantar.robot.model import RobotModel
+from plantar.robot.model import RobotModel, load_robot
 from plantar.twin import cache
 from plantar.twin.bush import PAPER, Feet
 from plantar.twin.keep import plan_arrays, plan_from, plan_key, rollout_arrays, rollout_from, rollout_key
 from plantar.twin.presets import DEFAULT, preset_named
 from plantar.twin.recording import TwinRecording, record
 from plantar.twin.robots import hrp2
+from plantar.twin.sensing.logger import write_robot
 from plantar.twin.simulation.physics import Physics
 from plantar.twin.simulation.rollout import Rollout, roll_out, scene_xml
 
@@ -54,11 +55,12 @@ def play_all(
     sway: float | None = None,
     vertical: float | None = None,
     apart: float | None = None,
+    period: float | None = None,
 ) -> list[list[TwinRecording]]:
     """Play motions on both cores; one list of recordings for each seed, from one rollout a motion.
 
-    `sway`, `vertical`, `apart`: sizes of the motions given by name, see `plan_motion`. Raises MotionError, before
-    anything is played, where one of them cannot be.
+    `sway`, `vertical`, `apart`, `period`: sizes of the motions given by name, see `plan_motion`. Raises MotionError,
+    before anything is played, where one of them cannot be.
     """
     robot, names = robot or hrp2.robot(), list(motions)
     chosen = preset_named(preset)
@@ -67,7 +69,7 @@ def play_all(
     def plan(motion: str | Plan) -> Plan:
         if isinstance(motion, Plan):
             return motion
-        return planned(motion, robot, sway=sway, vertical=vertical, apart=apart)
+        return planned(motion, robot, sway=sway, vertical=vertical, apart=apart, period=period)
 
     plans = on_cores(plan, names)
     rollouts = roll_all([(plan, physics) for plan in plans], robot, progress)
@@ -137,13 +139,23 @@ def on_cores(work: Callable[[Job], Done], jobs: Sequence[Job]) -> list[Done]:
 
 
 def write_campaign(
-    directory: str | os.PathLike[str], recordings: Iterable[TwinRecording], robot: RobotModel | None = None
+    directory: str | os.PathLike[str],
+    recordings: Iterable[TwinRecording],
+    robot: RobotModel | None = None,
+    preset: str = DEFAULT,
 ) -> Path:
-    """Write the robot file with its URDF, and each recording's log and truth; returns the robot file's path."""
+    """Write the robot file with its URDF, and each recording's log and truth; returns the robot file's path.
+
+    A robot of one's own keeps its file, unless the preset's log has another IMU: then its copy is named after it.
+    """
     directory = Path(directory)
     for recording in recordings:
         recording.write(directory)
-    return hrp2.write(directory) if robot is None else robot.path
+    if preset_named(preset).logger is None:
+        return hrp2.write(directory) if robot is None else robot.path
+    if robot is None:
+        return write_robot(load_robot(hrp2.write(directory)), directory / "robot.yaml")
+    return write_robot(robot, directory / f"{robot.path.stem}_{preset}.yaml")
 
 
 def postures_of(robot: RobotModel) -> Postures:

@@ -9,6 +9,7 @@ from typing import Final
 
 from plantar.errors import PlantarError, located
 from plantar.twin.bush import Feet
+from plantar.twin.sensing.logger import Logger
 from plantar.twin.sensing.sensors import DEGREE, Sensors
 from plantar.twin.simulation.mjcf import FLOOR
 from plantar.twin.simulation.physics import Physics, Slip
@@ -34,6 +35,7 @@ class Preset:
     hardening: float = 0.0
     floor: tuple[float, float, float] = FLOOR
     slips: tuple[Slip, ...] = ()
+    logger: Logger | None = None
 
     def physics(self, bushes: Feet | None) -> Physics:
         """The world in which these bushes stand; rigid feet (None) have no rubber, the floor stays."""
@@ -80,6 +82,20 @@ HARSH: Final = replace(
     filtered_attitude=True,
 )  # fmt: skip
 
+# The attitude is an estimator's, which leans by a quarter of a degree and wanders; the force sensors are a decade old.
+PLAIN: Final = replace(
+    SENSORS,
+    encoder=1e-4,
+    encoder_rate=5e-3,
+    attitude=0.02 * DEGREE,
+    attitude_bias=0.25 * DEGREE,
+    attitude_drift=0.1 * DEGREE,
+    force=2.0,
+    torque=0.3,
+    force_zero=0.0,
+    torque_zero=1.0,
+)
+
 PRESETS: Final[Mapping[str, Preset]] = MappingProxyType(
     {
         preset.name: preset
@@ -88,6 +104,7 @@ PRESETS: Final[Mapping[str, Preset]] = MappingProxyType(
             Preset("sensors", SENSORS),
             Preset("realistic", replace(SENSORS, wrench_delay=0.005), SLIP_TORQUE),
             Preset("harsh", HARSH, (2 * SLIP_TORQUE[0], 2 * SLIP_TORQUE[1]), HARDENING, SOFT_FLOOR, SLIPPERY),
+            Preset("plain_log", PLAIN, logger=Logger()),
         )
     }
 )

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import json
 import os
+import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
@@ -20,6 +22,7 @@ from plantar.twin.presets import Preset
 from plantar.twin.robots.foot import cut_feet
 from plantar.twin.robots.from_robot import describe
 from plantar.twin.sensing.exact import exact_columns, truth_columns
+from plantar.twin.sensing.logger import with_base_attitude
 from plantar.twin.sensing.sensors import sense
 from plantar.twin.simulation.physics import Physics
 from plantar.twin.simulation.rollout import Rollout
@@ -62,7 +65,12 @@ def record(rollout: Rollout, robot: RobotModel, physics: Physics, preset: Preset
     """Sensors of `preset` on a rollout; cheap, so many seeds need one rollout."""
     feet = cut_feet(describe(robot), robot)
     exact = exact_columns(rollout, robot, feet)
-    columns, drawn = sense(exact, rollout.time, robot, preset.sensors, seed, rollout.name)
+    time, logged = rollout.time, dict[str, float]()
+    if preset.logger is not None:
+        random = np.random.default_rng([seed, zlib.crc32(rollout.name.encode()), 1])
+        time, exact, logged = preset.logger.logged(exact, rollout, robot, random)
+        robot = with_base_attitude(robot)
+    columns, drawn = sense(exact, time, robot, preset.sensors, seed, rollout.name)
     facts = {
         "motion": rollout.name,
         "preset": preset.name,
@@ -72,10 +80,11 @@ def record(rollout: Rollout, robot: RobotModel, physics: Physics, preset: Preset
         "floor": list(physics.floor),
         "friction": physics.friction,
         "sensors": vars(preset.sensors),
-        "drawn": drawn,
+        "logger": None if preset.logger is None else vars(preset.logger),
+        "drawn": drawn | logged,
     }
     truth = Truth(rollout.time, truth_columns(rollout, feet), facts)
-    return TwinRecording(MotionLog(rollout.name, rollout.time, columns), truth)
+    return TwinRecording(MotionLog(rollout.name, time, columns), truth)
 
 
 def _write_parquet(path: Path, time: Array, columns: Mapping[str, Array]) -> None:

@@ -69,6 +69,8 @@ def sense(
         ):
             for place, axis in enumerate("xyz"):
                 column = f"{prefix}.{quantity}.{axis}"
+                if column not in columns:
+                    continue
                 zero = drawn[f"{column}.bias"] = random.normal(0, bias) if bias else 0.0
                 columns[column] = columns[column] + zero + _white(white[place], time, random)
         names = [f"{prefix}.orientation.{axis}" for axis in "wxyz"]

@@ -26,6 +26,9 @@ CORNER: Final = 0.001  # radius of the sole's contact points [m]
 SERVO_ANGLE: Final = 0.01  # a position error that asks for the joint's full torque [rad]
 SERVO_TIME: Final = 0.01  # damping over stiffness [s]
 ROTOR: Final = 2.5e-3  # reflected rotor inertia per torque limit [kg·m²/(N·m)]
+POINT: Final = (
+    1e-9  # kg·m²: a gram at a millimetre; what a URDF gives as less is a point mass, which MuJoCo refuses
+)
 HAND: Final = ("hand.x", "hand.y", "hand.z")
 
 
@@ -145,7 +148,7 @@ def _add_inertia(element: Element, body: Body) -> None:
     i = body.inertia
     full = [i[0, 0], i[1, 1], i[2, 2], i[0, 1], i[0, 2], i[1, 2]]
     mass = max(body.mass, 1e-4)  # a link that only carries a frame
-    if np.linalg.eigvalsh(i)[0] <= 0:
+    if np.linalg.eigvalsh(i)[0] < POINT:
         full = [1e-7, 1e-7, 1e-7, 0.0, 0.0, 0.0]
     SubElement(
         element, "inertial", pos=numbers(body.com), mass=f"{mass:.12g}", fullinertia=numbers(np.array(full))

@@ -17,6 +17,7 @@ from plantar.twin.robots.description import Description
 from plantar.twin.simulation.mjcf import SERVO_TIME, Scene, mjcf_text, quaternion_from_rotation
 from plantar.twin.simulation.physics import Physics
 from plantar.twin.simulation.stepping import Stepper
+from plantar.twin.walking.control import WalkingControl
 
 FALLEN = 0.35  # rad: a root this far from its plan is no longer balancing
 
@@ -70,16 +71,23 @@ def roll_out(
     control = _targets(plan, joints, physics.timestep)
     _place(data, plan, joints)
     stepper = Stepper(model, data, physics, robot)
-    stepper.blind(np.repeat(control[:1], round(physics.settle / physics.timestep), axis=0))
-    recorder = _Recorder(model, joints, robot, plan.time.size)
     parts = control.shape[0] // plan.time.size
+    walking = None if plan.walk is None else WalkingControl(model, robot, plan, physics, joints)
+    if walking is None:
+        stepper.blind(np.repeat(control[:1], round(physics.settle / physics.timestep), axis=0))
+    else:
+        stand = np.repeat(control[:1], parts, axis=0)
+        for _ in range(round(physics.settle * RATE)):
+            stepper.sensed(stand[0] + walking.correction)
+            stepper.blind(walking.led(0, data, stand)[1:])
+    recorder = _Recorder(model, joints, robot, plan.time.size)
     for sample in range(plan.time.size):
         stepper.at(plan.time[sample])
         recorder.state(sample, data)
         rows = control[sample * parts : (sample + 1) * parts]
-        stepper.sensed(rows[0])
+        stepper.sensed(rows[0] if walking is None else rows[0] + walking.correction)
         recorder.outputs(sample, data)
-        stepper.blind(rows[1:])
+        stepper.blind((rows if walking is None else walking.led(sample, data, rows))[1:])
         _check_upright(plan, sample, data)
         if progress is not None and sample % int(RATE) == 0:
             progress(sample / plan.time.size)
@@ -157,8 +165,9 @@ def _place(data: mujoco.MjData, plan: Plan, joints: tuple[str, ...]) -> None:
 
 
 def _check_upright(plan: Plan, sample: int, data: mujoco.MjData) -> None:
-    planned = quaternion_from_rotation(plan.base[sample, :3, :3])
-    lean = 2 * np.arccos(min(1.0, abs(float(planned @ data.qpos[3:7]))))
+    w, x, y, z = data.qpos[3:7].tolist()
+    up = np.array([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)])  # in the root
+    lean = np.arccos(min(1.0, float(plan.base[sample, 2, :3] @ up)))  # yaw never lets a robot fall
     if not lean < FALLEN:
         message = f"{plan.name}: the robot falls, it leans {np.degrees(lean):.0f}° away from its plan"
         raise MotionError(located(message, time=float(plan.time[sample]), valid="a smaller or slower motion"))

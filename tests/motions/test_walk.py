@@ -1,0 +1,131 @@
+"""Walks: the plan is a walk, in balance, smooth and at rest at both ends."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+from plantar.contact.balance import planned_wrench, sole_outlines, zero_moment_point
+from plantar.contact.polygon import convex_hull, inside_distance
+from plantar.errors import MotionError
+from plantar.motions import Plan, plan_motion
+from plantar.motions.body import Body
+from plantar.motions.feasible import check, configurations
+from plantar.motions.footsteps import CLEARANCE, footsteps
+from plantar.motions.gait import Gait, gait_of, is_walk
+from plantar.motions.preview import centre_over
+from plantar.motions.stance import stand
+from plantar.motions.walk import walk_plan
+from plantar.twin.robots import hrp2
+
+BUILT = Gait(step=0.12, period=1.0, turn=0.1, steps=3, trial=0)
+
+
+@cache
+def built() -> tuple[Body, Plan]:
+    """Three steps that turn a little."""
+    body = Body(hrp2.robot())
+    return body, walk_plan(body, "Walk", stand(body, hrp2.postures().standing, {}), BUILT)
+
+
+def test_the_whole_bodys_zmp_stays_inside_the_feet_that_stand() -> None:
+    body, plan = built()
+    q, v, a, time = configurations(body, plan)
+    zmp = zero_moment_point(planned_wrench(body.model, q, v, a), 10.0)
+    rows = np.rint(time * 200).astype(int)
+    assert np.abs(zmp - plan.walk.zmp[rows]).max() < 0.004  # the pendulum alone misses by centimetres
+    for place, row in enumerate(rows[::4]):
+        standing = plan.standing_at(int(row))
+        outlines = sole_outlines(body.robot, {foot: plan.walk.soles[foot][row] for foot in standing})
+        corners = convex_hull(np.vstack(list(outlines.values())))
+        assert inside_distance(zmp[::4][place : place + 1], corners)[0] > 0.02
+    assert {len(plan.standing_at(int(row))) for row in rows} == {1, 2}
+    assert check(body, plan).worst()[1] > 0.02
+
+
+def test_soles_go_where_the_steps_say() -> None:
+    """By the URDF alone: swings as high as planned, standing feet still, and the last step brings them level."""
+    body, plan = built()
+    model, data = body.robot.floating_model, body.robot.floating_model.createData()
+    q = configurations(body, plan)[0][::4]
+    rows = np.arange(0, len(plan.time), 16)[: len(q)]
+    for foot in ("left", "right"):
+        joint, pose = body.robot.frame(body.robot.feet[foot].sole.placement)
+        joint = model.getJointId(body.robot.model.names[joint])
+        soles = []
+        for row in q:
+            pin.forwardKinematics(model, data, row)
+            soles.append((data.oMi[joint] * pose).homogeneous)
+        assert np.abs(np.array(soles) - plan.walk.soles[foot][rows]).max() < 1.5e-3
+        height = plan.walk.soles[foot][:, 2, 3]
+        assert height.max() == pytest.approx(CLEARANCE, abs=0.004)
+        assert np.abs(height[plan.walk.stands[foot]]).max() < 0.06 * 0.069 + 1e-9
+    ends = [plan.walk.soles[foot][-1] for foot in ("left", "right")]
+    apart = ends[0][:3, :3].T @ (ends[0][:3, 3] - ends[1][:3, 3])
+    assert apart == pytest.approx([0.0, 0.19, 0.0], abs=1e-9)
+    assert np.arctan2(ends[0][1, 0], ends[0][0, 0]) == pytest.approx(
+        0.2
+    )  # turned by the first two of three steps
+
+
+def test_joints_are_continuous_and_at_rest_at_both_ends() -> None:
+    _, plan = built()
+    speeds = np.diff(plan.positions, axis=0) * 200
+    assert np.abs(speeds[[0, -1]]).max() < 1e-3
+    assert np.abs(speeds).max() < 3.0
+    assert np.abs(np.diff(speeds, axis=0)).max() * 200 < 60.0  # rad/s²
+    assert np.abs(plan.positions[:200] - plan.positions[0]).max() < 2e-3  # a second of rest and more
+    assert np.abs(plan.positions[-200:] - plan.positions[-1]).max() < 2e-3
+
+
+def test_feet_alternate_and_equal_trials_are_equal() -> None:
+    soles = {
+        foot: pin.SE3(np.eye(3), np.array([0.0, y, 0.0])) for foot, y in (("left", 0.1), ("right", -0.1))
+    }
+    middles = dict.fromkeys(soles, np.array([0.0, 0.0, 0.1, 0.05]))
+    first, again, other = (
+        footsteps(gait_of(name), soles, middles) for name in ("Walk12_1", "Walk12_1", "Walk12_2")
+    )
+    assert [swing.foot for swing in first.swings] == ["left", "right"] * 12
+    assert [swing.goal[0] for swing in first.swings[:3]] == pytest.approx([0.12, 0.24, 0.36])
+    assert all(later.start >= swing.end for swing, later in zip(first.swings, first.swings[1:], strict=False))
+    floors = [[swing.floor for swing in steps.swings] for steps in (first, again, other)]
+    assert floors[0] == floors[1] != floors[2]
+    assert 0 < np.abs(floors[0]).max() <= 0.06 * 0.05
+
+
+def test_the_pendulum_obeys_its_law() -> None:
+    time = np.arange(0, 8, 0.01)
+    zmp = np.column_stack([0.05 * np.tanh(5 * (time - 4)), np.zeros_like(time)])
+    centre = centre_over(zmp, 0.8, 0.01)
+    acceleration = np.diff(centre, 2, axis=0) / 0.01**2
+    assert centre[1:-1] - acceleration * 0.8 / 9.80665 == pytest.approx(zmp[1:-1], abs=1e-9)
+    assert centre[[0, -1]] == pytest.approx(zmp[[0, -1]])
+    assert centre[370, 0] > zmp[370, 0] + 0.005  # it leads: the future is known
+
+
+def test_names_say_the_gait() -> None:
+    assert gait_of("Walk12") == Gait(0.12, 1.0, 0.0, 24, 0)
+    assert gait_of("WalkSlow8_3") == Gait(0.08, 4.0, 0.0, 6, 3)
+    assert gait_of("WalkQuick20").period == 0.8
+    assert gait_of("WalkInPlace", period=2.0) == Gait(0.0, 2.0, 0.0, 12, 0)
+    assert gait_of("WalkTurn").turn > 0
+    assert not is_walk("Walk")
+    assert not is_walk("Walk0")
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "message"),
+    [
+        ("Walk99", {}, r"t = [\d.]+ s: Walk99: the (left|right) foot cannot reach its place"),
+        ("Walk12", {"period": 0.1}, r"value 0.1: Walk12: no period of a step .valid: 0.6 to 6 s"),
+        ("Walkabout", {}, r"unknown motion 'Walkabout' .*Walk12"),
+    ],
+)
+def test_what_no_robot_walks_is_refused(name: str, options: dict[str, float], message: str) -> None:
+    with pytest.raises(MotionError, match=message) as caught:
+        plan_motion(name, hrp2.robot(), hrp2.postures(), **options)
+    assert "\n" not in str(caught.value)
