@@ -72,11 +72,12 @@ def _stored_model(result: Mapping[str, Any], foot: str, axis: Axis) -> FittedMod
         return None
     values = np.array(numbers, dtype=float)
     count = len(model.terms)
+    aside, above = entry.get("moment_arms", (0.0, 0.0))
     return FittedModel(
         foot=foot,
         axis=axis,
         model=model,
         values=values[:count],
         shape=values[count:],
-        load_arm=float(entry.get("load_arm", 0.0)),
+        moment_arms=(float(aside), float(above)),
     )
