@@ -72,7 +72,7 @@ def test_the_results_moment_arm_of_the_load_is_predicted_with(robot: RobotModel)
     known = FeetSettings(model="kelvin_voigt", wrench_delay=0.0)
     found = identify_feet(robot, [log], settings=known)
     right = {(row.foot, row.axis): row.mean_abs_error for row in validate_feet(found, robot, log)}
-    first = replace(found.models[0], load_arm=0.02)
+    first = replace(found.models[0], moment_arms=(0.02, 0.0))
     rows = validate_feet(replace(found, models=(first, *found.models[1:])), robot, log)
     worse = [(row.foot, row.axis) for row in rows if row.mean_abs_error > 10 * right[row.foot, row.axis]]
     assert worse == [(first.foot, first.axis)]

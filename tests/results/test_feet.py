@@ -90,10 +90,10 @@ def test_the_file_has_the_contracts_keys_in_their_order(result: FeetResult) -> N
 def test_the_moment_arm_of_the_load_stands_only_where_there_is_one(
     result: FeetResult, tmp_path: Path
 ) -> None:
-    with_arm = replace(result.models[0], load_arm=0.004)
+    with_arm = replace(result.models[0], moment_arms=(0.004, 0.0))
     again = FeetResult.load(replace(result, models=(with_arm, *result.models[1:])).save(tmp_path))
-    assert [row.load_arm for row in again.models] == [0.004, 0.0, 0.0, 0.0]
-    assert ["load_arm" in row for row in again.to_dict()["laws"]] == [True, False, False, False]
+    assert [row.moment_arms[0] for row in again.models] == [0.004, 0.0, 0.0, 0.0]
+    assert ["moment_arms" in row for row in again.to_dict()["laws"]] == [True, False, False, False]
 
 
 def test_a_file_of_another_version_keeps_its_version(result: FeetResult, tmp_path: Path) -> None:
@@ -107,7 +107,7 @@ def test_a_file_of_another_version_keeps_its_version(result: FeetResult, tmp_pat
 def test_numbers_that_are_not_finite_come_back(result: FeetResult, tmp_path: Path) -> None:
     row = replace(result.parameters[0], interval95=(-math.inf, 5.0), std=math.inf)
     offset = replace(result.offsets[0], std=math.nan)
-    model = AxisModel("left", "roll", "hardening", "r", LinearEquivalent(1.0, 2.0), 0.0, "h",
+    model = AxisModel("left", "roll", "hardening", "r", LinearEquivalent(1.0, 2.0), (0.0, 0.0), "h",
                       (Candidate("iwan", math.inf, 3, "too slow", False),))  # fmt: skip
     odd = replace(result, parameters=(row,), offsets=(offset,), models=(model,))
     again = FeetResult.load(odd.save(tmp_path))

@@ -30,7 +30,8 @@ class Block:
     the variance of what is noise in the regressor's columns.
 
     Where a foot steps, rows have `stances`, and `common_nuisance` (n, j) are columns that all recordings share beside
-    the regressor's.
+    the regressor's; `common_spread` (j,) is the deviation of their coefficients about zero before any data, infinite
+    where nothing is known.
     """
 
     label: str
@@ -41,6 +42,7 @@ class Block:
     noise: Array | None = None
     stances: StanceRows | None = None
     common_nuisance: Array | None = None
+    common_spread: Array | None = None
 
     @property
     def duration(self) -> float:

@@ -13,7 +13,7 @@ import numpy as np
 
 from plantar.conventions import Array
 from plantar.estimation.blocks import Block, LinearFit
-from plantar.estimation.stance_problem import StanceProblem, design
+from plantar.estimation.stance_problem import StanceProblem, common_columns, design
 
 FEWEST_RECORDINGS = (
     5  # whose scatter gives a deviation of its own: of fewer, Student's t is too wide to be of use
@@ -27,19 +27,27 @@ def fit_stances(blocks: Sequence[Block]) -> LinearFit:
     """
     problem, size = StanceProblem.drawn_together(blocks), blocks[0].regressor.shape[1]
     solution = problem.solve()
-    covariance, freedom = _deviations(problem, solution.values[:size])
+    covariance, freedom = _deviations(problem, solution.values)
+    values, covariance = _with_prior(solution.values, covariance, blocks[0].common_spread)
+    common, covariance, freedom = values[size:], covariance[:size, :size], freedom[:size]
+    # Each recording's offset follows the values: what they no longer explain of its mean is its own.
+    moved = values - solution.values
+    own_values = [
+        np.append(own[:-1], own[-1] - _weighted_mean(block) @ moved)
+        for block, own in zip(blocks, solution.own, strict=True)
+    ]
     labels = [block.label for block in blocks]
     residuals = [
-        block.response - design(block, own.size - 1) @ np.concatenate([solution.values, own])
-        for block, own in zip(blocks, solution.own, strict=True)
+        block.response - design(block, own.size - 1) @ np.concatenate([values, own])
+        for block, own in zip(blocks, own_values, strict=True)
     ]
     offsets = [_offset_variance(*each, covariance) for each in zip(blocks, residuals, strict=True)]
     rows = sum(block.rows for block in blocks)
     noise = solution.squares / max(rows - len(problem.products) - problem.common, 1.0)
     stances = np.bincount(problem.recording)
     return LinearFit(
-        values=solution.values[:size],
-        offsets=dict(zip(labels, solution.own[:, -1].tolist(), strict=True)),
+        values=values[:size],
+        offsets={label: float(own[-1]) for label, own in zip(labels, own_values, strict=True)},
         covariance=_beside(covariance, np.diag(offsets)),
         white_covariance=_beside(
             noise * solution.inverse[:size, :size], np.zeros((len(blocks), len(blocks)))
@@ -49,7 +57,7 @@ def fit_stances(blocks: Sequence[Block]) -> LinearFit:
         rank=int(np.linalg.matrix_rank(solution.inverse)),
         condition_number=float(np.sqrt(np.linalg.cond(solution.inverse))),
         shared_offset=False,
-        common_nuisance=solution.values[size:],
+        common_nuisance=common,
     )
 
 
@@ -65,6 +73,29 @@ def _deviations(problem: StanceProblem, values: Array) -> tuple[Array, Array]:
     least = np.maximum(np.diag(covariance), np.finfo(float).tiny)
     growth = np.sqrt(np.maximum(np.diag(between) / least, 1.0))
     return covariance * np.outer(growth, growth), np.where(growth > 1, of_between, freedom)
+
+
+def _with_prior(values: Array, covariance: Array, spread: Array | None) -> tuple[Array, Array]:
+    """Values (k + j,) and their covariance, with what was known of the last j before: zero, give or take `spread`.
+
+    The update of a Kalman filter: it weighs the prior against the deviations that the jackknife found.
+    """
+    if spread is None:
+        return values, covariance
+    first = len(values) - len(spread)
+    for place, deviation in enumerate(spread, start=first):
+        variance = covariance[place, place] + deviation**2
+        if np.isfinite(deviation) and variance > 0:
+            gain = covariance[:, place] / variance
+            values = values - gain * values[place]
+            covariance = covariance - variance * np.outer(gain, gain)
+    return values, covariance
+
+
+def _weighted_mean(block: Block) -> Array:
+    """Mean of the common columns (k + j,), by the weights of the rows."""
+    assert block.stances is not None, "a block of a foot that steps"
+    return np.asarray(np.average(common_columns(block), axis=0, weights=block.stances.weight))
 
 
 def _jackknife(refits: Array) -> tuple[Array, Array]:

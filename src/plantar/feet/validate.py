@@ -101,5 +101,5 @@ def _stored_model(result: FeetResult, foot: str, axis: Axis) -> FittedModel | No
         model=model,
         values=values[:count],
         shape=values[count:],
-        load_arm=0.0 if entry is None else entry.load_arm,
+        moment_arms=(0.0, 0.0) if entry is None else entry.moment_arms,
     )

@@ -21,19 +21,19 @@ SHORTEST_STANCE_RUN = 8  # samples of a stance, for it to be filtered by itself
 
 @dataclass(frozen=True)
 class StepColumns:
-    """Of a foot that steps, for each sample (N,): its `stance`, and the `load` [N], whose own torque is a nuisance.
+    """Of a foot that steps, for each sample: its `stance` (N,), and columns whose own torque is a `nuisance` (N, m).
 
     `share` (0 to 1) of a stance's mean is taken off its samples: 1 where the offsets of stances are free, 0 where they
     are all alike (random effects as a partial centring; W. A. Fuller, G. E. Battese, J. Econometrics 2, 1974).
     """
 
     stance: NDArray[np.intp]
-    load: Array
+    nuisance: Array
     share: float
 
     def thinned(self, stride: int) -> StepColumns:
         """Every nth sample."""
-        return StepColumns(self.stance[::stride], self.load[::stride], self.share)
+        return StepColumns(self.stance[::stride], self.nuisance[::stride], self.share)
 
     def centred(self, rows: Array, used: Mask) -> Array:
         """Rows (n, m) of the used samples less that share of their stances' means; the mean of all stays."""
@@ -132,11 +132,11 @@ class FilteredDataSet:
         if self.steps is None:
             return self._without_drift(rows)
         flat = self.steps.centred(rows.reshape(len(rows), -1), self.used)
-        load = self.steps.centred(self.steps.load[self.used, None], self.used)[:, 0]
-        load = load - load.mean()
-        power = float(load @ load)
-        flat = flat - np.outer(load, load @ flat / power) if power > 0 else flat
-        return np.asarray(flat).reshape(rows.shape)
+        nuisance = self.steps.centred(self.steps.nuisance[self.used], self.used)
+        nuisance = nuisance - nuisance.mean(axis=0)
+        return np.asarray(flat - nuisance @ np.linalg.lstsq(nuisance, flat, rcond=None)[0]).reshape(
+            rows.shape
+        )
 
     def _without_drift(self, rows: Array) -> Array:
         """Used samples without their line in time."""

@@ -109,8 +109,8 @@ class Candidate:
 class AxisModel:
     """The bush model of one axis of one foot, and why it was chosen.
 
-    `load_arm` [m]: torque beside the bush's for each newton of vertical force, of feet that step. `held_out` says what
-    was held out, `ranking` holds every model tried; both are None where none was compared.
+    `moment_arms` [m]: by how much walks show the bush's centre aside and above its place. `held_out` says what was held
+    out, `ranking` holds every model tried; both are None where none was compared.
     """
 
     foot: str
@@ -118,15 +118,15 @@ class AxisModel:
     model: str
     reason: str
     linear_equivalent: LinearEquivalent
-    load_arm: float = 0.0
+    moment_arms: tuple[float, float] = (0.0, 0.0)
     held_out: str | None = None
     ranking: tuple[Candidate, ...] | None = None
 
     def to_dict(self) -> dict[str, Any]:
         """The entry of `laws` in `result.json`, which calls a model a law."""
         content = {("law" if key == "model" else key): value for key, value in asdict(self).items()}
-        if not self.load_arm:
-            del content["load_arm"]
+        if not any(self.moment_arms):
+            del content["moment_arms"]
         if self.ranking is None:
             return {key: value for key, value in content.items() if key not in ("held_out", "ranking")}
         ranking = [asdict(row) for row in self.ranking]

@@ -17,7 +17,7 @@ from plantar.notes import Note
 class FittedModel:
     """What a fit predicts one axis of one foot by: `values` (k,) as `model.terms`, `shape` (s,) as `model.shape_terms`.
 
-    `load_arm` [m]: torque beside the bush's for each newton of vertical force, of feet that step. Of the recordings
+    `moment_arms` [m]: by how much the bush's centre is aside and above its place, as walks show it. Of the recordings
     that were fitted: `offsets` [N.m], and `initial_states` of the model's memory in each recording's runs.
     """
 
@@ -26,7 +26,7 @@ class FittedModel:
     model: BushModel
     values: Array
     shape: Array
-    load_arm: float = 0.0
+    moment_arms: tuple[float, float] = (0.0, 0.0)
     offsets: Mapping[str, float] = field(default_factory=dict)
     initial_states: Mapping[str, Array] = field(default_factory=dict)
 

@@ -121,7 +121,7 @@ def _of_linear(foot: str, axis: Axis, fit: LinearFit, choice: ModelChoice | None
         model=KelvinVoigt(),
         values=fit.values,
         shape=np.zeros(0),
-        load_arm=_load_arm(fit),
+        moment_arms=_moment_arms(fit),
         offsets=fit.offsets,
         covariance=fit.covariance[:size, :size],
         freedom=fit.freedom[:size],
@@ -142,7 +142,7 @@ def _of_model(
         model=fit.model,
         values=fit.values,
         shape=fit.shape,
-        load_arm=_load_arm(linear),
+        moment_arms=_moment_arms(linear),
         offsets=fit.offsets,
         initial_states=fit.initial_states,
         covariance=fit.covariance,
@@ -155,6 +155,7 @@ def _of_model(
     )
 
 
-def _load_arm(fit: LinearFit) -> float:
-    """The torque for each newton of load that a fit of stances found, 0 of others."""
-    return float(fit.common_nuisance[0]) if fit.common_nuisance.size else 0.0
+def _moment_arms(fit: LinearFit) -> tuple[float, float]:
+    """Where a fit of stances found the bush's centre, zeros of others."""
+    aside, above = fit.common_nuisance if fit.common_nuisance.size else (0.0, 0.0)
+    return float(aside), float(above)

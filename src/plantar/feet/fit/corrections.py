@@ -35,7 +35,7 @@ def over_stances(fit: AxisFit, recordings: Sequence[Recording]) -> AxisFit:
         values=found.values,
         covariance=fit.covariance * np.outer(wider, wider),
         freedom=freedom,
-        load_arm=float(found.common_nuisance[0]),
+        moment_arms=(float(found.common_nuisance[0]), float(found.common_nuisance[1])),
         offsets=found.offsets,
         offset_std={label: found.offset_std(label) for label in found.offsets},
     )

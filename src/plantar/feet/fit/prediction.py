@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from plantar.conventions import ROTATIONAL_AXES, Array, Mask
 from plantar.feet.fit.axis import FittedModel
 from plantar.feet.fit.initial_state import unseen_initial_states
-from plantar.feet.fit.regression_data import load_of, model_columns
+from plantar.feet.fit.regression_data import model_columns, moment_columns
 from plantar.feet.recording import Recording
 from plantar.results.scores import first_second
 
@@ -55,9 +55,10 @@ def predict(recording: Recording, fitted: FittedModel) -> Prediction | None:
 def reconstructed(recording: Recording, fitted: FittedModel, states: Array | None = None) -> Array:
     """The torque (N,) of the bush and of the load, without an offset; `states` (runs,) as in `model_columns`."""
     torque = model_columns(recording, fitted.foot, fitted.axis, fitted, states) @ fitted.values
-    if fitted.load_arm == 0:
+    if not any(fitted.moment_arms):
         return np.asarray(torque)
-    return np.asarray(torque + fitted.load_arm * load_of(recording, fitted.foot))
+    arms = np.array(fitted.moment_arms)
+    return np.asarray(torque + moment_columns(recording, fitted.foot, fitted.axis) @ arms)
 
 
 def _by_stance(values: Array, used: Mask, number: NDArray[np.intp]) -> Array:

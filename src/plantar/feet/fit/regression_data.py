@@ -16,6 +16,9 @@ from plantar.models import BushMotion, KelvinVoigt
 from plantar.signals.filters import SHORTEST_RUN, low_pass
 
 PATH_BAND = 4.0  # times the fit's cutoff, of the path that a memory follows through short stances
+# m, before any data, of the centre's place: aside anything (the torque of the load is its own), in height some
+# millimetres of the robot file's and of the slide under load.
+MOMENT_SPREAD = np.array([np.inf, 0.006])
 FEWEST_SAMPLES = 50  # of one recording, for it to take part in a fit
 
 
@@ -53,7 +56,8 @@ def blocks_of(
                 nuisance=_nuisance(recording, foot, column, fit) if drift else None,
                 noise=noise,
                 stances=_stance_rows(recording, foot) if steps else None,
-                common_nuisance=load_of(recording, foot)[used, None] if steps else None,
+                common_nuisance=moment_columns(recording, foot, axis)[used] if steps else None,
+                common_spread=MOMENT_SPREAD if steps else None,
             )
         )
     return blocks
@@ -85,6 +89,18 @@ def load_of(recording: Recording, foot: str) -> Array:
     return np.nan_to_num(low_pass(recording.bushes[foot].force_z, recording.period, recording.cutoff))
 
 
+def moment_columns(recording: Recording, foot: str, axis: Axis) -> Array:
+    """Torque (N, 2) for each metre by which the bush's centre is beside and above its place in the robot file.
+
+    A centre that is dz higher takes dz·F_x off the pitch torque and adds dz·F_y to the roll torque; the compressed z
+    slide is such a height. One that is aside adds a torque as large as the load.
+    """
+    column = ROTATIONAL_AXES.index(axis)
+    across = (1.0, -1.0)[column] * recording.bushes[foot].wrench[:, column]
+    height = np.nan_to_num(low_pass(across, recording.period, recording.cutoff))
+    return np.column_stack([load_of(recording, foot), height])
+
+
 def model_columns(
     recording: Recording, foot: str, axis: Axis, fit: FittedModel | None, initial_states: Array | None = None
 ) -> Array:
@@ -107,7 +123,8 @@ def model_columns(
 def motion_of(recording: Recording, foot: str, axis: Axis) -> BushMotion:
     """Deflection and rate of one axis, NaN where the foot does not stand: a bush in the air forgets."""
     column, bush = ROTATIONAL_AXES.index(axis), recording.bushes[foot]
-    away = ~recording.contacts[foot].loaded
+    stances = recording.stances[foot]
+    away = ~recording.contacts[foot].loaded if stances is None else stances.number < 0
     deflection, rate = bush.deflection[:, column].copy(), bush.rate[:, column].copy()
     deflection[away] = rate[away] = np.nan
     return BushMotion(deflection, rate, recording.period)
@@ -132,6 +149,6 @@ def data_set_of(recording: Recording, foot: str, axis: Axis, own_share: float = 
     torque, used = recording.bushes[foot].torque[:, column], recording.used(foot)
     if stances is None:
         return DataSet(recording.name, motion_of(recording, foot, axis), torque, used)
-    steps = StepColumns(stances.number, load_of(recording, foot), own_share)
+    steps = StepColumns(stances.number, load_of(recording, foot)[:, None], own_share)
     measured = recording.raw[foot].torque[:, column]
     return DataSet(recording.name, path_of(recording, foot, axis), measured, used, steps)
