@@ -10,8 +10,11 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from plantar.notes import Note
+
 VERDICT_STYLE = {"usable": "green", "weak": "yellow", "unidentifiable": "red"}
 SEVERITY_STYLE = {"info": "dim", "warning": "yellow"}
+SCREENFUL = 12  # notes
 PIPE_WIDTH = 150  # columns where stdout is not a terminal
 WORD = re.compile(r"[^\W\d_]{3}")
 
@@ -48,6 +51,15 @@ def table(
     for place, row in enumerate(cells):
         drawn.add_row(*row, style=styles[place] if place < len(styles) else None)
     return drawn
+
+
+def print_notes(out: Console, notes: Sequence[Note]) -> None:
+    """Notes, warnings first; at most SCREENFUL of them, the others counted: the report holds them all."""
+    warnings_first = sorted(notes, key=lambda note: note.severity != "warning")
+    for note in warnings_first[:SCREENFUL]:
+        out.print(f"[{SEVERITY_STYLE[note.severity]}]note ({note.severity}): {escape(note.text)}[/]")
+    if len(notes) > SCREENFUL:
+        out.print(f"[dim]and {len(notes) - SCREENFUL} more notes: see the report[/]")
 
 
 def number(value: float | None, digits: int = 4) -> str:

@@ -22,7 +22,7 @@ from plantar.feet.sensors.sensor_delay import SensorDelay
 from plantar.feet.settings import FeetSettings
 from plantar.logs.inputs import LogInputs, RobotInput, logs_of, robot_of
 from plantar.models import KelvinVoigt
-from plantar.notes import Note, unique
+from plantar.notes import Note, joined
 from plantar.results.feet import AxisModel, DelayEstimate, Diagnosis, FeetResult, Input, Offset
 from plantar.results.feet_rows import Candidate, LinearEquivalent
 from plantar.robot.model import Foot, Placement, RobotModel
@@ -102,7 +102,10 @@ def fit_prepared(
             for phase in contact.phases(recording.name, foot, recording.time)
         ),
         validation=tuple(sorted(rows, key=lambda row: row.kind != "direct")),
-        notes=unique([*ready.notes, *_feet_notes(robot, ready.fitted), *_model_notes(fits)]),
+        notes=joined(
+            [*ready.notes, *_feet_notes(robot, ready.fitted), *_model_notes(fits)],
+            [recording.name for recording in ready.recordings],
+        ),
         robot_model=_robot_model(robot),
         models=tuple(_axis_model(fit) for fit in fits),
         sensor_delay=delay_estimate(ready.sensor_delay),

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from rich.console import Console
-from rich.markup import escape
 
-from plantar.cli.terminal import SEVERITY_STYLE, VERDICT_STYLE, number, table
+from plantar.cli.terminal import VERDICT_STYLE, number, table
 from plantar.results.dynamics import DynamicsResult
 
 LINK_COLUMNS = ("m", "mx", "my", "mz")
@@ -51,5 +50,4 @@ def _print_rest(out: Console, result: DynamicsResult) -> None:
         columns = ("motion", "of", "unit", "rms", "rms by URDF", "mean |error|", "mean alone", "error %")
         out.print()
         out.print(table(title, columns, cells))
-    for note in result.notes:
-        out.print(f"[{SEVERITY_STYLE[note.severity]}]{note.severity}: {escape(note.text)}[/]")
+    print_notes(out, result.notes)

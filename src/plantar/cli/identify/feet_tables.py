@@ -5,12 +5,16 @@ from __future__ import annotations
 from rich.console import Console
 from rich.markup import escape
 
-from plantar.cli.terminal import SEVERITY_STYLE, VERDICT_STYLE, number, table
+from plantar.cli.terminal import VERDICT_STYLE, number, print_notes, table
 from plantar.results.feet import FeetResult, Parameter, ValidationRow
 
 
 def print_feet(out: Console, result: FeetResult) -> None:
-    """Parameters, reasons where one is not usable, validation, offsets, notes."""
+    """Warnings about the logs, parameters, reasons where one is not usable, validation, other notes."""
+    warnings = [note for note in result.notes if note.severity == "warning"]
+    if warnings:
+        print_notes(out, warnings)
+        out.print()
     out.print(parameter_table(result))
     for row in result.parameters:
         if row.verdict != "usable":
@@ -24,7 +28,7 @@ def print_feet(out: Console, result: FeetResult) -> None:
         if rows:
             out.print()
             out.print(validation_table(title, rows))
-    print_notes(out, result)
+    print_notes(out, [note for note in result.notes if note.severity != "warning"])
 
 
 def parameter_table(result: FeetResult) -> object:
@@ -63,9 +67,3 @@ def validation_table(title: str, rows: list[ValidationRow]) -> object:
         "",
     )
     return table(f"{title} [N·m]", columns, cells, ["yellow" if bad else "" for bad in lost])
-
-
-def print_notes(out: Console, result: FeetResult) -> None:
-    """Every note, warnings first."""
-    for note in sorted(result.notes, key=lambda note: note.severity != "warning"):
-        out.print(f"[{SEVERITY_STYLE[note.severity]}]note ({note.severity}): {escape(note.text)}[/]")

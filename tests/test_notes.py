@@ -1,0 +1,45 @@
+"""Notes that are alike are said once, of all logs together."""
+
+from __future__ import annotations
+
+import io
+
+from rich.console import Console
+
+from plantar.cli.terminal import SCREENFUL, print_notes
+from plantar.notes import Note, joined
+
+LOGS = ["walk_1", "walk_2", "walk_3", "walk_4"]
+
+
+def test_what_is_said_alike_of_several_logs_is_one_note() -> None:
+    notes = [Note("gyroscope_missing", "warning", f"{log}: no angular velocity") for log in LOGS]
+    assert joined(notes, LOGS) == (
+        Note("gyroscope_missing", "warning", "4 logs (walk_1, walk_2, walk_3, ...): no angular velocity"),
+    )
+
+
+def test_what_differs_stays_apart_and_in_order() -> None:
+    notes = [
+        Note("weight", "warning", "walk_1: carries 60 kg"),
+        Note("delay", "info", "walks are 3 ms late: corrected"),
+        Note("weight", "warning", "walk_2: carries 61 kg"),
+        Note("weight", "warning", "walk_1: carries 60 kg"),
+    ]
+    assert joined(notes, LOGS) == tuple(notes[:3])
+
+
+def test_a_note_of_one_log_keeps_its_name() -> None:
+    note = Note("spikes", "info", "walk_3: lone samples bridged")
+    assert joined([note], LOGS) == (note,)
+
+
+def test_the_terminal_shows_a_screenful_warnings_first() -> None:
+    notes = [Note("a", "info", f"remark {k}") for k in range(SCREENFUL + 3)]
+    notes.append(Note("b", "warning", "look here"))
+    out = io.StringIO()
+    print_notes(Console(file=out, width=100), notes)
+    lines = out.getvalue().splitlines()
+    assert "look here" in lines[0]
+    assert len(lines) == SCREENFUL + 1
+    assert "4 more notes" in lines[-1]
