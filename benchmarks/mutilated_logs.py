@@ -182,7 +182,9 @@ def main() -> None:
     parser.add_argument("--only", nargs="*", help="robots")
     parser.add_argument("--mutilations", nargs="*", default=list(MUTILATIONS), choices=list(MUTILATIONS))
     parser.add_argument("--commands", nargs="*", default=list(VERBS[:-1]), choices=VERBS)
-    parser.add_argument("--keep", type=Path, help="folder for the mutilated logs; a temporary one if left out")
+    parser.add_argument(
+        "--keep", type=Path, help="folder for the mutilated logs; a temporary one if left out"
+    )
     parser.add_argument("--verbose", action="store_true", help="name every outcome")
     given = parser.parse_args()
     for module, _ in COMMANDS.values():
@@ -203,7 +205,9 @@ def main() -> None:
                     folder.mkdir(parents=True, exist_ok=True)
                     again = (f"python benchmarks/mutilated_logs.py --data {given.data} --only {source.name} --first "
                              f"{seed} --mutilations {mutilation}")  # fmt: skip
-                    run = trial(source, mutilation, place, seed, clean / "result.json", folder, given.commands)
+                    run = trial(
+                        source, mutilation, place, seed, clean / "result.json", folder, given.commands
+                    )
                     for verb, outcome, seconds in run:
                         counts[source.name, verb][outcome.kind] += 1
                         counts["all", mutilation][outcome.kind] += 1
@@ -214,7 +218,9 @@ def main() -> None:
                             print(f"         again: {again} --verbose", flush=True)
     print(f"{'':40} {RESULT:>8} {REFUSED:>8} {FAILED:>8}")
     for (first, second), found in counts.items():
-        print(f"{first + ' ' + second:40} " + " ".join(f"{found[kind]:8}" for kind in (RESULT, REFUSED, FAILED)))
+        print(
+            f"{first + ' ' + second:40} " + " ".join(f"{found[kind]:8}" for kind in (RESULT, REFUSED, FAILED))
+        )
     sys.exit(any(found[FAILED] for found in counts.values()))
 
 

@@ -163,7 +163,9 @@ def renamed(table: Table, _: Draw) -> Table:
 
 def scaled(table: Table, rng: Draw) -> Table:
     """One kind of channel in another unit, with another sign, or zero."""
-    kind = str(rng.choice(["position", "force", "torque", "wrench", "angular_velocity", "orientation", "effort"]))
+    kind = str(
+        rng.choice(["position", "force", "torque", "wrench", "angular_velocity", "orientation", "effort"])
+    )
     factor = float(rng.choice([-1.0, 0.0, 1e-3, 57.3, 1e3]))
     return with_values(table, channels(table, kind), lambda values: factor * values)
 

@@ -20,10 +20,16 @@ SHORTEST = 0.5  # s of a log from which anything can be said
 
 
 def check_log(robot: RobotModel, log: MotionLog) -> list[Finding]:
-    """Every finding about one log, in the order time, joints, IMU, wrenches, stuck channels."""
+    """Every finding about one log, in the order time, joints, IMU, wrenches, stuck channels.
+
+    Of a log whose time cannot be right only that is said: rates and seconds mean nothing.
+    """
+    time = list(_time(log))
+    if any(finding.fatal for finding in time):
+        return time
     imu = check_imu(robot.imu.name, log) if robot.imu is not None else ()
     channels = check_channels(robot, log)
-    return [*_time(log), *_joints(robot, log), *imu, *_wrenches(robot, log), *channels]
+    return [*time, *_joints(robot, log), *imu, *_wrenches(robot, log), *channels]
 
 
 def _time(log: MotionLog) -> Iterator[Finding]:
@@ -83,6 +89,10 @@ def _wrenches(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         )
         load = wrench[:, :3] @ axis * sensor.sign if axis is not None else wrench[:, 2] * sensor.sign
         loads[foot.name] = load
+        if not np.isfinite(load).any():
+            text = f"columns 'wrench.{sensor.name}.force.*': never hold a value together; what the foot carries is unknown"
+            yield Finding("dead_channel", text)
+            continue
         usual = float(np.nanmedian(load))
         if foot.contact == "auto" and usual < -0.2 * robot.mass * GRAVITY:
             text = f"column '{vertical}', value {usual:.4g}: pulls the standing foot down"
@@ -107,7 +117,9 @@ def _wrenches(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     weight = robot.mass * GRAVITY
     automatic = bool(loads) and all(foot.contact == "auto" for foot in robot.feet.values())
     if automatic and len(loads) == len(robot.feet):
-        carried = float(np.nanmedian(np.sum(list(loads.values()), axis=0)))
+        together = np.sum(list(loads.values()), axis=0)
+        together = together[np.isfinite(together)]
+        carried = float(np.median(together)) if together.size else 0.0
         if 0.07 < carried / weight < 0.14:
             text = f"columns 'wrench.*.force.z': the feet carry {carried:.4g}, which looks like kgf"
             yield Finding("force_unit", f"{text} (valid: N, about {weight:.0f})", True)

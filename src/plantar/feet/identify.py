@@ -74,7 +74,14 @@ def fit_prepared(
             for phase in contact.phases(recording.name, foot, recording.time)
         ),
         validation=tuple(sorted(rows, key=lambda row: row.kind != "direct")),
-        notes=unique([*ready.notes, *_feet_notes(robot, ready.fitted), *_model_notes(fits)]),
+        notes=unique(
+            [
+                *ready.notes,
+                *_feet_notes(robot, ready.fitted),
+                *_model_notes(fits),
+                *(note for each in found for note in each.notes),
+            ]
+        ),
         robot_model=_robot_model(robot),
         extras={
             "laws": [fit.to_dict() for fit in fits],
