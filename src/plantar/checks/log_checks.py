@@ -88,11 +88,11 @@ def _wrenches(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
             else None
         )
         load = wrench[:, :3] @ axis * sensor.sign if axis is not None else wrench[:, 2] * sensor.sign
-        loads[foot.name] = load
         if not np.isfinite(load).any():
-            text = f"columns 'wrench.{sensor.name}.force.*': never hold a value together; what the foot carries is unknown"
+            text = f"columns 'wrench.{sensor.name}.force.*': never hold a value together: the load is unknown"
             yield Finding("dead_channel", text)
             continue
+        loads[foot.name] = load
         usual = float(np.nanmedian(load))
         if foot.contact == "auto" and usual < -0.2 * robot.mass * GRAVITY:
             text = f"column '{vertical}', value {usual:.4g}: pulls the standing foot down"
