@@ -23,8 +23,8 @@ ROOMS = (
 )  # fmt: skip
 # So does a folder or a file inside `feet`: from those before it.
 FEET = (
-    "settings", "recording", "sensors", "fit", "exclusion", "assess", "prepare_log", "prepare", "foot_fit",
-    "identify", "validate", "select_motions",
+    "settings", "recording", "sensors", "fit", "exclusion", "assess", "internal_error", "prepare_log", "prepare",
+    "foot_fit", "identify", "validate", "select_motions",
 )  # fmt: skip
 LARGEST_ROOM = 0.15  # of all lines
 FULLEST_FOLDER = 16  # Python files
@@ -47,9 +47,7 @@ UNTESTED = frozenset(
         "feet.fit.axis_fit",
         "feet.fit.corrections",
         "feet.fit.initial_state",
-        "feet.fit.regression_data",
         "feet.fit.systematic",
-        "feet.foot_fit",
         "feet.prepare",
         "feet.select_motions",
         "model_selection.initial_state",
@@ -61,6 +59,8 @@ UNTESTED = frozenset(
         "whole_body.whole_logs",
     }
 )
+# The one place that catches what nobody thought of: an axis is given up, the result says so.
+CATCHES_ALL = "src/plantar/feet/internal_error.py"
 ENTRANCES = ("__init__", "__main__")  # they name what others hold
 LONGEST = 350  # lines
 
@@ -217,7 +217,8 @@ def test_files_are_short_say_what_they_are_and_are_well_named() -> None:
 def test_errors_are_caught_by_name() -> None:
     """A bare or general `except` hides what nobody thought of, unless it raises again."""
     wrong = []
-    for path in FILES:
+    assert (ROOT / CATCHES_ALL).is_file()
+    for path in set(FILES) - {ROOT / CATCHES_ALL}:
         for node in ast.walk(ast.parse(path.read_text())):
             if isinstance(node, ast.ExceptHandler):
                 kind = ast.unparse(node.type) if node.type else "everything"

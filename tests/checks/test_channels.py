@@ -47,3 +47,40 @@ def test_coarse_encoders_and_still_joints_are_not_dead(robot: RobotModel) -> Non
     )
     for each in (coarse, still, silent):
         assert not [finding for finding in check_log(robot, each) if "encoder" in finding.text]
+
+
+def test_a_joint_that_stands_and_then_moves_far_is_not_dead(robot: RobotModel) -> None:
+    """As of a robot that stands before it falls: the mean of its velocity is motion, not a bias."""
+    log = record(sway())
+    position, velocity = f"joint.{JOINT}.position", f"joint.{JOINT}.velocity"
+    late = np.maximum(log.time - 8.0, 0.0)
+    falls = log.with_columns({position: 0.05 * late**2, velocity: 0.1 * late})
+    assert not dead(falls, robot)
+    # The same with a bias, which the rest of the log shows, and with one that the joint's motion hides.
+    assert not dead(falls.with_columns({velocity: 0.1 * late + 0.02}), robot)
+    assert not dead(falls.with_columns({velocity: 0.08 * late}), robot)
+
+
+def test_a_velocity_that_cannot_be_trusted_refuses_no_log(robot: RobotModel) -> None:
+    """Noise adds up to a path, and so does a velocity that parts from its position also while both move."""
+    log = held(record(sway()), 700, 1300)
+    velocity = f"joint.{JOINT}.velocity"
+    noise = np.random.default_rng(0).normal(0.0, 5.0, len(log))
+    for other in (noise, 3.0 * np.cos(log.time)):
+        found = check_log(robot, log.with_columns({velocity: other}))
+        assert [(each.code, each.fatal) for each in found if "encoder" in each.text] == [
+            ("stuck_channel", False)
+        ]
+
+
+def test_a_gap_of_the_log_turns_nothing(robot: RobotModel) -> None:
+    log = record(sway())
+    position, velocity = f"joint.{JOINT}.position", f"joint.{JOINT}.velocity"
+    still = log.with_columns({position: np.full(len(log), 0.1), velocity: 0.01 * np.sin(log.time)})
+    later = np.where(log.time > 3.0, log.time + 100.0, log.time)
+    assert not dead(MotionLog(log.name, later, still.columns), robot)
+
+
+def dead(log: MotionLog, robot: RobotModel) -> list[str]:
+    """What is said about encoders that may be dead."""
+    return [finding.text for finding in check_log(robot, log) if "encoder" in finding.text]

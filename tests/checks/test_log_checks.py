@@ -224,3 +224,14 @@ def test_real_recordings_raise_no_fatal_alarm(shared_data: Path) -> None:
     ):
         robot = load_robot(shared_data / folder / "robot.yaml")
         assert [f for f in check_log(robot, open_log(shared_data / folder / file)) if f.fatal] == []
+
+
+def test_of_a_log_in_another_unit_of_time_only_that_is_said(robot: RobotModel, log: MotionLog) -> None:
+    assert names_of(check_log(robot, milliseconds(swapped(log)))) == ["time_unit"]
+
+
+def test_a_load_that_cannot_be_known_is_told_once(robot: RobotModel, log: MotionLog) -> None:
+    """The load is not the sensor's z alone where the sensor leans: a lost x loses it."""
+    found = check_log(robot, constant("wrench.left.force.x", np.nan)(log))
+    assert [(finding.code, finding.fatal) for finding in found] == [("dead_channel", False)]
+    assert "wrench.left.force" in found[0].text

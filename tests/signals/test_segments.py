@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from plantar.signals.segments import runs
+from plantar.signals.segments import runs, steps_in
 
 
 def test_runs_are_the_stretches_of_true() -> None:
     assert runs(np.array([1, 1, 0, 1, 0, 0, 1], dtype=bool)) == [slice(0, 2), slice(3, 4), slice(6, 7)]
     assert runs(np.zeros(4, dtype=bool)) == []
     assert runs(np.ones(4, dtype=bool)) == [slice(0, 4)]
+
+
+def test_a_time_takes_at_least_one_sample() -> None:
+    assert [steps_in(0.05, period) for period in (0.001, 0.02, 0.1, 0.5)] == [50, 2, 1, 1]

@@ -11,15 +11,16 @@ from plantar.conventions import GRAVITY, Array
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding
 from plantar.robot.model import Foot, RobotModel
+from plantar.signals.resampling import GAP_PERIODS
 from plantar.signals.segments import runs
 
 SHORTEST, FEWEST = 0.2, 10  # s and samples at one value: less happens by chance
 LIVELY = 0.9  # share of the other steps that change the value: of a coarse or slow channel nothing is said
 NOTABLE = 0.005  # share of the log
-TURNED, STEPS = (
-    0.02,
-    5.0,
-)  # rad, and steps of a coarse encoder: by so much a joint moves, whose position stands still
+TURNED = 0.02  # rad by which a joint moves, whose position stands still
+STEPS = 5.0  # of a coarse encoder: likewise
+BEYOND_DOUBT = 5.0  # times what the velocity is off by in such a time: no noise adds up to as much
+LEAST_ELSEWHERE = 0.2  # of a run's length, for the rest of the log to show the velocity's bias
 
 
 def check_channels(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
@@ -69,28 +70,71 @@ def _moves(values: Array) -> bool:
 
 
 def _dead_encoder(joint: str, log: MotionLog) -> Iterator[Finding]:
-    """A position that stands still while the recorded velocity turns on: its deflections would all be wrong."""
+    """A position that stands still while the recorded velocity turns on: its deflections would all be wrong.
+
+    Fatal where the velocity is known to tell the joint's motion: it turns much further than it parts from the position
+    elsewhere, and than its noise adds up to.
+    """
     position, velocity = log.joint(joint, "position"), log.joint(joint, "velocity")
     if position is None or velocity is None:
         return
-    steps = np.diff(position)
+    steps, time = np.diff(position), np.diff(log.time)
+    known = np.isfinite(steps) & (time < GAP_PERIODS * log.period)
+    turns = np.where(known, np.nan_to_num(velocity[1:] + velocity[:-1]) * time / 2, 0.0)
     least = max(FEWEST, round(SHORTEST / log.period))
-    held = [run for run in runs(steps == 0) if run.stop - run.start >= least]
+    held = [run for run in runs(known & (steps == 0)) if run.stop - run.start >= least]
     if not held:
         return
-    path = np.cumsum(np.nan_to_num(velocity[1:] + velocity[:-1]) * np.diff(log.time) / 2)
-    path = np.concatenate(
-        [[0.0], path - np.linspace(0.0, path[-1], len(path))]
-    )  # a constant error turns nothing
-    moving = np.abs(steps[np.isfinite(steps) & (steps != 0)])
+    parted, seconds = turns - np.where(known, steps, 0.0), np.where(known, time, 0.0)
+    turned, run = max(((_turned(turns, parted, seconds, run), run) for run in held), key=lambda pair: pair[0])
+    moving = np.abs(steps[known & (steps != 0)])
     coarse = float(np.median(moving)) if moving.size else 0.0
-    turned = [float(np.ptp(path[run.start : run.stop + 1])) for run in held]
-    if max(turned) < max(TURNED, STEPS * coarse):
+    if turned < max(TURNED, STEPS * coarse):
         return
-    run = held[int(np.argmax(turned))]
+    doubt = max(_elsewhere(parted, seconds, run), _noise_path(turns[run]))
     where = f"column 'joint.{joint}.position', t = {log.time[run.start]:g} to {log.time[run.stop]:g} s"
-    text = f"{where}, value {position[run.start]:.6g}: stands still while its velocity turns {max(turned):.2g} rad"
-    yield Finding("dead_channel", f"{text}; the encoder is dead (valid: leave such cells empty)", True)
+    text = f"{where}, value {position[run.start]:.6g}: stands still while its velocity turns {turned:.2g} rad"
+    if turned > BEYOND_DOUBT * doubt:
+        yield Finding("dead_channel", f"{text}; the encoder is dead (valid: leave such cells empty)", True)
+    else:
+        why = f"the velocity alone is off by {doubt:.2g} rad in such a time; is the encoder dead?"
+        yield Finding("stuck_channel", f"{text}; {why} (valid: leave such cells empty)")
+
+
+def _turned(turns: Array, parted: Array, seconds: Array, run: slice) -> float:
+    """How far the velocity's `turns` (n,) [rad] lead within a run, as they are or less their usual bias: the less.
+
+    The bias is what the velocity parts from the position by elsewhere. Where the run leaves hardly any elsewhere it is
+    the velocity's mean: a constant turns nothing.
+    """
+    own = float(seconds[run].sum())
+    others = float(seconds.sum()) - own
+    if others > LEAST_ELSEWHERE * own:
+        bias = float(parted.sum() - parted[run].sum()) / others
+    else:
+        bias = float(turns[run].sum()) / own
+    return min(_reach(turns[run]), _reach(turns[run] - bias * seconds[run]))
+
+
+def _reach(turns: Array) -> float:
+    """The largest angle between two moments of a path of `turns` (n,)."""
+    return float(np.ptp(np.concatenate([[0.0], np.cumsum(turns)])))
+
+
+def _elsewhere(parted: Array, seconds: Array, run: slice) -> float:
+    """How far the velocity usually parts from the position [rad] in stretches as long as `run` outside of it."""
+    rest, times = np.delete(parted, run), np.delete(seconds, run)
+    if times.sum() <= 0:
+        return 0.0
+    path = np.cumsum(rest - times * rest.sum() / times.sum())
+    length = min(run.stop - run.start, len(path))
+    stretches = path[: len(path) // length * length].reshape(-1, length)
+    return float(np.median(np.ptp(stretches, axis=1)))
+
+
+def _noise_path(turns: Array) -> float:
+    """How far white noise as strong as these `turns` (n,) differ from sample to sample would lead [rad]."""
+    return float(np.std(np.diff(turns)) / np.sqrt(2) * np.sqrt(len(turns)))
 
 
 def _stuck(sensor: str, log: MotionLog) -> Iterator[Finding]:

@@ -21,11 +21,16 @@ SHORTEST = 0.5  # s of a log from which anything can be said
 
 
 def check_log(robot: RobotModel, log: MotionLog) -> list[Finding]:
-    """Every finding about one log, in the order joint names, time, joints, IMU, wrenches, stuck channels."""
+    """Every finding about one log, in the order joint names, time, joints, IMU, wrenches, stuck channels.
+
+    Of a log whose time cannot be right only that is said: rates and seconds mean nothing.
+    """
+    names, time = check_joint_names(robot, log), list(_time(log))
+    if any(finding.fatal for finding in time):
+        return [*names, *time]
     imu = check_imu(robot.imu.name, log) if robot.imu is not None else ()
     channels = check_channels(robot, log)
-    names = check_joint_names(robot, log)
-    return [*names, *_time(log), *_joints(robot, log), *imu, *_wrenches(robot, log), *channels]
+    return [*names, *time, *_joints(robot, log), *imu, *_wrenches(robot, log), *channels]
 
 
 def _time(log: MotionLog) -> Iterator[Finding]:
@@ -84,6 +89,10 @@ def _wrenches(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
             else None
         )
         load = wrench[:, :3] @ axis * sensor.sign if axis is not None else wrench[:, 2] * sensor.sign
+        if not np.isfinite(load).any():
+            text = f"columns 'wrench.{sensor.name}.force.*': never hold a value together: the load is unknown"
+            yield Finding("dead_channel", text)
+            continue
         loads[foot.name] = load
         usual = float(np.nanmedian(load))
         if foot.contact == "auto" and usual < -0.2 * robot.mass * GRAVITY:
@@ -109,7 +118,9 @@ def _wrenches(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     weight = robot.mass * GRAVITY
     automatic = bool(loads) and all(foot.contact == "auto" for foot in robot.feet.values())
     if automatic and len(loads) == len(robot.feet):
-        carried = float(np.nanmedian(np.sum(list(loads.values()), axis=0)))
+        together = np.sum(list(loads.values()), axis=0)
+        together = together[np.isfinite(together)]
+        carried = float(np.median(together)) if together.size else 0.0
         if 0.07 < carried / weight < 0.14:
             text = f"columns 'wrench.*.force.z': the feet carry {carried:.4g}, which looks like kgf"
             yield Finding("force_unit", f"{text} (valid: N, about {weight:.0f})", True)

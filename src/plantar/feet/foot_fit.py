@@ -9,16 +9,18 @@ from typing import Any
 from plantar.contact.reasons import Reason
 from plantar.conventions import ROTATIONAL_AXES, Axis, Mask
 from plantar.feet.assess.diagnosis import advised, diagnose_axis
-from plantar.feet.assess.parameter_rows import axis_rows, missing_rows
+from plantar.feet.assess.parameter_rows import axis_rows, missing_rows, unseen_rows
 from plantar.feet.assess.residual_table import Predictions
 from plantar.feet.assess.scores import score_axis
 from plantar.feet.exclusion.outliers import outlier_masks
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.fit.systematic import inflated, systematic_causes
+from plantar.feet.internal_error import gives_up, internal_errors
 from plantar.feet.prepare import PreparedLogs
 from plantar.feet.recording import Recording
 from plantar.models import BushModel
+from plantar.notes import Note
 from plantar.results.feet import Parameter, ValidationRow
 
 ROUNDS = 3  # of leaving outliers out: a large one hides smaller ones
@@ -33,6 +35,7 @@ class FootFit:
     validation: list[ValidationRow] = field(default_factory=list)
     diagnosis: list[dict[str, Any]] = field(default_factory=list)
     predictions: Predictions = field(default_factory=dict)
+    notes: tuple[Note, ...] = ()
 
 
 def fit_foot(ready: PreparedLogs, foot: str, progress: Callable[[str], None]) -> tuple[FootFit, PreparedLogs]:
@@ -41,45 +44,69 @@ def fit_foot(ready: PreparedLogs, foot: str, progress: Callable[[str], None]) ->
     What is left out is decided for both axes before either is scored.
     """
     progress(f"fit {foot}")
-    fits, ready = _fits_without_outliers(ready, foot)
-    found, shared = FootFit(), ready.settings.offset == "shared"
+    given_up: dict[Axis, str] = {}
+    fits, ready = _fits_without_outliers(ready, foot, given_up)
+    found = FootFit()
     for axis in ROTATIONAL_AXES:
-        fit = fits.get(axis)
-        if fit is None:
-            found.parameters.extend(missing_rows(foot, axis))
-            continue
-        causes = systematic_causes(fit, ready.fitted, ready.sensor_delay, ready.vertical, shared)
-        wide = inflated(fit, causes)
-        scores, predictions = score_axis(ready.recordings, wide)
-        rows = axis_rows(wide, ready.fitted, predictions, scores)
-        limits = diagnose_axis(fit, wide, causes, rows)
-        found.fits.append(wide)
-        found.predictions.update(predictions)
-        found.validation.extend(scores)
-        found.diagnosis.extend(limits)
-        found.parameters.extend(advised(rows, limits))
-    return found, ready
+        if axis in fits:
+            with gives_up(axis, given_up):
+                found = _with_axis(found, ready, fits[axis])
+        if axis in given_up:
+            found.parameters.extend(missing_rows(foot, axis, given_up[axis]))
+        elif axis not in fits:
+            found.parameters.extend(unseen_rows(foot, axis))
+    return replace(found, notes=internal_errors(foot, given_up)), ready
 
 
-def _fits_without_outliers(ready: PreparedLogs, foot: str) -> tuple[dict[Axis, AxisFit], PreparedLogs]:
+def _with_axis(found: FootFit, ready: PreparedLogs, fit: AxisFit) -> FootFit:
+    """What was found, and one axis: its fit widened, scored, judged and diagnosed."""
+    shared = ready.settings.offset == "shared"
+    causes = systematic_causes(fit, ready.fitted, ready.sensor_delay, ready.vertical, shared)
+    wide = inflated(fit, causes)
+    scores, predictions = score_axis(ready.recordings, wide)
+    rows = axis_rows(wide, ready.fitted, predictions, scores)
+    limits = diagnose_axis(fit, wide, causes, rows)
+    return FootFit(
+        fits=[*found.fits, wide],
+        parameters=[*found.parameters, *advised(rows, limits)],
+        validation=[*found.validation, *scores],
+        diagnosis=[*found.diagnosis, *limits],
+        predictions={**found.predictions, **predictions},
+    )
+
+
+def _fits_without_outliers(
+    ready: PreparedLogs, foot: str, given_up: dict[Axis, str]
+) -> tuple[dict[Axis, AxisFit], PreparedLogs]:
     """The fit of each axis that has samples. Clean recordings are fitted once; others again without what leaves a model
     by far, under the models first chosen, and at last with the choice made anew."""
-    fits, several = _fits(ready, foot, {}), False
+    fits, several = _fits(ready, foot, {}, given_up), False
     for _ in range(ROUNDS):
-        masks = {axis: outlier_masks(ready.fitted, fit) for axis, fit in fits.items()}
+        masks: dict[Axis, Mapping[str, Mask]] = {}
+        for axis, fit in fits.items():
+            with gives_up(axis, given_up):
+                masks[axis] = outlier_masks(ready.fitted, fit)
         if not any(masks.values()):
             break
         several = True
         ready = replace(ready, fitted=tuple(_without(one, foot, masks) for one in ready.fitted))
-        fits = _fits(ready, foot, {axis: fit.model for axis, fit in fits.items()})
-    return (_fits(ready, foot, {}) if several else fits), ready
+        fits = _fits(ready, foot, {axis: fit.model for axis, fit in fits.items()}, given_up)
+    fits = _fits(ready, foot, {}, given_up) if several else fits
+    return {axis: fit for axis, fit in fits.items() if axis not in given_up}, ready
 
 
-def _fits(ready: PreparedLogs, foot: str, models: Mapping[Axis, BushModel]) -> dict[Axis, AxisFit]:
-    found = {
-        axis: fit_axis(ready.fitted, foot, axis, ready.settings, models.get(axis)) for axis in ROTATIONAL_AXES
-    }
-    return {axis: fit for axis, fit in found.items() if fit is not None}
+def _fits(
+    ready: PreparedLogs, foot: str, models: Mapping[Axis, BushModel], given_up: dict[Axis, str]
+) -> dict[Axis, AxisFit]:
+    found = {}
+    for axis in ROTATIONAL_AXES:
+        if axis in given_up:
+            continue
+        with gives_up(axis, given_up):
+            fit = fit_axis(ready.fitted, foot, axis, ready.settings, models.get(axis))
+            if fit is not None:
+                found[axis] = fit
+    return found
 
 
 def _without(recording: Recording, foot: str, masks: Mapping[Axis, Mapping[str, Mask]]) -> Recording:

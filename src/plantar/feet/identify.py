@@ -103,7 +103,12 @@ def fit_prepared(
         ),
         validation=tuple(sorted(rows, key=lambda row: row.kind != "direct")),
         notes=joined(
-            [*ready.notes, *_feet_notes(robot, ready.fitted), *_model_notes(fits)],
+            [
+                *ready.notes,
+                *_feet_notes(robot, ready.fitted),
+                *_model_notes(fits),
+                *(note for each in found for note in each.notes),
+            ],
             [recording.name for recording in ready.recordings],
         ),
         robot_model=_robot_model(robot),

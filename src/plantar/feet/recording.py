@@ -16,7 +16,7 @@ from plantar.conventions import FORCE, Array, Mask
 from plantar.estimation.errors_in_variables import noise_after_filter
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
-from plantar.signals.filters import SHORTEST_RUN, low_pass
+from plantar.signals.filters import low_pass
 from plantar.signals.segments import run_ends
 
 FILTER_EDGE = 1.0  # of the filter's period, left out where a run of samples begins or ends
@@ -73,10 +73,8 @@ def filtered_recording(recording: Recording, cutoff: float) -> Recording:
     smooth = {}
     for name, state in recording.raw.items():
         stances = recording.stances[name]
-        if stances is None:
-            smooth[name] = filtered(state, period, cutoff)
-        else:  # each stance by itself: a filter must not carry what the foot does in the air into it
-            smooth[name] = filtered(_within(state, stances), period, cutoff, SHORTEST_STANCE_RUN)
+        signals = np.column_stack([state.deflection, state.rate, state.torque])
+        smooth[name] = _with_signals(state, _within_stances(signals, period, cutoff, stances))
         values = np.column_stack([smooth[name].deflection, smooth[name].rate, smooth[name].torque])
         valid = np.asarray(np.isfinite(values).all(axis=1))
         recording = recording.without(name, ~valid, Reason.NOT_RECORDED)
@@ -87,18 +85,24 @@ def filtered_recording(recording: Recording, cutoff: float) -> Recording:
     return replace(recording, cutoff=cutoff, bushes=smooth, noise=noise)
 
 
-def filtered(state: BushState, period: float, cutoff: float, shortest: int = SHORTEST_RUN) -> BushState:
+def filtered(state: BushState, period: float, cutoff: float) -> BushState:
     """The state with angles, rates and torques through one zero-phase filter: the law between them stays."""
-    values = low_pass(np.column_stack([state.deflection, state.rate, state.torque]), period, cutoff, shortest)
-    return replace(state, deflection=values[:, 0:2], rate=values[:, 2:4], torque=values[:, 4:6])
+    signals = np.column_stack([state.deflection, state.rate, state.torque])
+    return _with_signals(state, low_pass(signals, period, cutoff))
 
 
-def _within(state: BushState, stances: Stances) -> BushState:
-    """The state, NaN in the air."""
-    away = np.where(stances.number < 0, np.nan, 0.0)[:, None]
-    return replace(
-        state, deflection=state.deflection + away, rate=state.rate + away, torque=state.torque + away
-    )
+def _with_signals(state: BushState, signals: Array) -> BushState:
+    """The state with other angles, rates and torques, (N, 6)."""
+    return replace(state, deflection=signals[:, 0:2], rate=signals[:, 2:4], torque=signals[:, 4:6])
+
+
+def _within_stances(values: Array, period: float, cutoff: float, stances: Stances | None) -> Array:
+    """The filter of what eq. 6 ties together, of (N, k). Of a foot that steps, each stance passes by itself and the air
+    is NaN: the filter must not carry what the foot does in the air into a stance."""
+    if stances is None:
+        return low_pass(values, period, cutoff)
+    standing = np.where((stances.number < 0)[:, None], np.nan, values)
+    return low_pass(standing, period, cutoff, SHORTEST_STANCE_RUN)
 
 
 def _noise(state: BushState, period: float, cutoff: float) -> Array:
@@ -116,15 +120,17 @@ def moved_centre(recording: Recording, compliance: Mapping[str, float]) -> Recor
     bushes = {
         foot: replace(
             bush,
-            torque=bush.torque
-            + compliance[foot] * moment_arm_effect(bush, recording.period, recording.cutoff),
+            torque=bush.torque + compliance[foot] * moment_arm_effect(recording, foot),
         )
         for foot, bush in recording.bushes.items()
     }
     return replace(recording, bushes=bushes)
 
 
-def moment_arm_effect(bush: BushState, period: float, cutoff: float) -> Array:
-    """Change of pitch and roll torque for each m/N of vertical compliance, (N, 2) [N·m per m/N], filtered alike."""
+def moment_arm_effect(recording: Recording, foot: str) -> Array:
+    """Change of pitch and roll torque for each m/N of vertical compliance, (N, 2) [N·m per m/N], filtered as they are:
+    it is known wherever they are."""
+    bush = recording.bushes[foot]
     x, y, z = bush.wrench[:, FORCE].T
-    return low_pass(np.column_stack([-z * x, np.cos(bush.deflection[:, 0]) * z * y]), period, cutoff)
+    effect = np.column_stack([-z * x, np.cos(bush.deflection[:, 0]) * z * y])
+    return _within_stances(effect, recording.period, recording.cutoff, recording.stances[foot])

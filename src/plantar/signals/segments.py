@@ -20,3 +20,8 @@ def run_ends(valid: Mask, reach: int) -> Mask:
         ends[run.start : min(run.stop, run.start + reach)] = True
         ends[max(run.start, run.stop - reach) : run.stop] = True
     return ends
+
+
+def steps_in(seconds: float, period: float) -> int:
+    """How many samples a time takes, at least one: of a slow log, a short time is the next sample."""
+    return max(1, round(seconds / period))

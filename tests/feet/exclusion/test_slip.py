@@ -148,3 +148,10 @@ def test_a_gyroscope_takes_the_attitudes_noise_off(robot: RobotModel) -> None:
     motion = sole_motion(robot, recording, flat, np.zeros(TIME.size))
     assert motion is not None
     assert np.nanstd(motion.velocity["left"]) < 0.004
+
+
+@pytest.mark.parametrize("rate", [3, 10, 25])
+def test_slow_logs_of_standing_soles_show_no_slide(robot: RobotModel, rate: int) -> None:
+    """The lag between compared velocities is shorter than a sample there."""
+    slow = STANDING.select(slice(None, None, round(1 / rate / PERIOD)))
+    assert not any(slips(reason).any() for reason in reasons(robot, slow).values())

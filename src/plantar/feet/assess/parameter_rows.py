@@ -39,10 +39,14 @@ def axis_rows(
     return rows
 
 
-def missing_rows(foot: str, axis: Axis) -> list[Parameter]:
+def unseen_rows(foot: str, axis: Axis) -> list[Parameter]:
     """Stiffness and damping of a foot that no log shows."""
     reason = f"the {foot} foot has no samples that serve in these logs"
-    advice = f"record motions in which the {foot} foot stands"
+    return missing_rows(foot, axis, reason, f"record motions in which the {foot} foot stands")
+
+
+def missing_rows(foot: str, axis: Axis, reason: str, advice: str = "") -> list[Parameter]:
+    """Stiffness and damping without values, and why."""
     model = KelvinVoigt()
     return [
         Parameter(

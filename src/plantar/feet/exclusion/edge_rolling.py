@@ -22,7 +22,7 @@ from plantar.feet.recording import Recording, filtered
 from plantar.feet.settings import FeetSettings
 from plantar.robot.model import RobotModel
 from plantar.signals.filters import low_pass
-from plantar.signals.segments import runs
+from plantar.signals.segments import runs, steps_in
 
 LEAST_LEAN = 0.003  # rad: less hardly disturbs a deflection
 SURE = 6.0  # times the usual change of the excess over NOISE_TIME: a lean beyond doubt
@@ -111,7 +111,7 @@ def leaning(excess: Array, depth: Array, load: Array, visits: Mask, flat: Mask, 
     when it is not there.
     """
     rest = flat & np.isfinite(excess).all(axis=1) & ~widened(visits, round(SMEAR / period))
-    least = max(LEAST_LEAN, SURE * _usual_change(excess, rest, round(NOISE_TIME / period)))
+    least = max(LEAST_LEAN, SURE * _usual_change(excess, rest, steps_in(NOISE_TIME, period)))
     sure = _lean(excess, visits, rest, period) > least
     if sure.sum() * period < FEWEST:
         return sure
@@ -127,7 +127,7 @@ def leaning(excess: Array, depth: Array, load: Array, visits: Mask, flat: Mask, 
 def _lean(excess: Array, visits: Mask, flat: Mask, period: float) -> Array:
     """Lean of the sole during visits to an edge, (N,) [rad], 0 elsewhere; infinite where no flat sole is near."""
     lean = np.zeros(len(visits))
-    near, far = round(NEAR / period), round(FLAT_SEARCH / period)
+    near, far = steps_in(NEAR, period), steps_in(FLAT_SEARCH, period)
     for visit in runs(joined(visits, round(VISIT_PAUSE / period))):
         first = max(0, visit.start - far)
         before = first + np.flatnonzero(flat[first : visit.start])[-near:]

@@ -19,6 +19,7 @@ from plantar.feet.sensors.tilt_error import unit_quaternions
 from plantar.robot.model import RobotModel
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.orientation import attitude
+from plantar.signals.segments import steps_in
 
 DRIFT_RATE = 50.0  # Hz, enough for the drift
 GYROSCOPE = 2.5  # Hz, above which an attitude's change is the gyroscope's: it is the quieter one there
@@ -141,13 +142,14 @@ def _drift(
     How noisy it is and how fast its slope wanders is read off its differences, whose medians no slide moves. What the
     velocity may have lost between two samples is known from how it shakes.
     """
-    noise = max(LEAST_NOISE, _usual(seen[(lag := round(LAG / period)) :] - seen[:-lag]) / np.sqrt(2))
-    far = max(1, min(round(SLOPE_TIME / period), (len(seen) - 1) // 2))
+    lag = steps_in(LAG, period)
+    noise = max(LEAST_NOISE, _usual(seen[lag:] - seen[:-lag]) / np.sqrt(2))
+    far = min(steps_in(SLOPE_TIME, period), max(1, (len(seen) - 1) // 2))
     lost = np.sum(shaking**2, axis=1) / 2 * period**2
     bent = _usual(seen[2 * far :] - 2 * seen[far:-far] + seen[: -2 * far]) ** 2
     bent -= 6 * noise**2 + 2 * far * float(np.median(lost))
     wander = max(LEAST_WANDER**2, 1.5 * bent / (far * period) ** 3)
-    step = max(1, round(1 / DRIFT_RATE / period))
+    step = steps_in(1 / DRIFT_RATE, period)
     places = np.arange(0, len(seen), step)
     jump = np.add.reduceat(lost, places)
     thinned = step * period

@@ -85,8 +85,9 @@ def _stance_rows(recording: Recording, foot: str) -> StanceRows:
 
 
 def load_of(recording: Recording, foot: str) -> Array:
-    """The vertical force through the fit's filter, (N,) [N], 0 where it is not known."""
-    return np.nan_to_num(low_pass(recording.bushes[foot].force_z, recording.period, recording.cutoff))
+    """The vertical force through the fit's filter, (N,) [N], 0 where it is not known: where nothing is used."""
+    force = recording.bushes[foot].force_z
+    return np.nan_to_num(low_pass(force, recording.period, recording.cutoff, _shortest_run(recording, foot)))
 
 
 def moment_columns(recording: Recording, foot: str, axis: Axis) -> Array:
@@ -115,9 +116,14 @@ def model_columns(
         initial_states = fit.model.initial_states(path, fit.shape)
     columns = fit.model.columns(path, fit.shape, initial_states)
     columns[:, :2] = linear
-    shortest = SHORTEST_RUN if recording.stances[foot] is None else SHORTEST_STANCE_RUN
+    shortest = _shortest_run(recording, foot)
     columns[:, 2:] = low_pass(columns[:, 2:], recording.period, recording.cutoff, shortest)
     return columns
+
+
+def _shortest_run(recording: Recording, foot: str) -> int:
+    """Samples that the fit's filter needs in one run."""
+    return SHORTEST_RUN if recording.stances[foot] is None else SHORTEST_STANCE_RUN
 
 
 def motion_of(recording: Recording, foot: str, axis: Axis) -> BushMotion:

@@ -58,9 +58,7 @@ def systematic_causes(
         return effect_of(blocks, changes, shared_offset=shared)
 
     rates = [differentiate(one.bushes[foot].torque[:, column], one.period)[used] for one, used in parts]
-    moment_arms = [
-        moment_arm_effect(one.bushes[foot], one.period, one.cutoff)[used, column] for one, used in parts
-    ]
+    moment_arms = [moment_arm_effect(one, foot)[used, column] for one, used in parts]
     causes = [
         Cause(
             "delay", moved_by([np.nan_to_num(rate) for rate in rates]), sensor_delay.std, sensor_delay.freedom

@@ -1,0 +1,81 @@
+"""A fault of plantar in one axis: that axis is given up with the reason, everything else stays."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from biped import record, sway
+from feet_trials import PUNCTUAL
+from plantar.errors import DataError
+from plantar.estimation.intervals import relative_std_percent
+from plantar.feet import foot_fit
+from plantar.feet.identify import identify_feet
+from plantar.feet.internal_error import described
+from plantar.results.feet import FeetResult
+from plantar.robot.model import RobotModel
+
+BROKEN = ("left", "roll")
+STEPS = ["fit_axis", "outlier_masks", "systematic_causes", "score_axis", "axis_rows", "diagnose_axis"]
+
+
+def breaking(step: Callable[..., Any], error: Exception) -> Callable[..., Any]:
+    """The step, which raises where it is about the broken axis."""
+
+    def broken(*given: Any) -> Any:
+        about = [(one.foot, one.axis) for one in given if hasattr(one, "axis")]
+        if BROKEN in about or given[1:3] == BROKEN:
+            raise error
+        return step(*given)
+
+    return broken
+
+
+@pytest.fixture(scope="module")
+def whole(robot: RobotModel) -> FeetResult:
+    return identify_feet(robot, [record(sway())], settings=PUNCTUAL)
+
+
+@pytest.mark.parametrize("step", STEPS)
+def test_an_unexpected_error_gives_up_its_axis_alone(
+    robot: RobotModel, whole: FeetResult, monkeypatch: pytest.MonkeyPatch, step: str
+) -> None:
+    fault = np.linalg.LinAlgError("Eigenvalues did\nnot converge")
+    monkeypatch.setattr(foot_fit, step, breaking(getattr(foot_fit, step), fault))
+    found = identify_feet(robot, [record(sway())], settings=PUNCTUAL)
+    lost = [row for row in found.parameters if (row.foot, row.axis) == BROKEN]
+    assert {row.name for row in lost} == {"stiffness", "damping"}
+    assert {(row.verdict, row.value) for row in lost} == {("unidentifiable", None)}
+    assert re.fullmatch(
+        r"a fault of plantar, please report: LinAlgError in feet/foot_fit.py, line \d+: Eigenvalues did not converge",
+        lost[0].reason,
+    )
+    notes = [note for note in found.notes if note.code == "internal_error"]
+    assert [(note.severity, note.text) for note in notes] == [("warning", f"left roll: {lost[0].reason}")]
+    assert rest_of(found.parameters) == rest_of(whole.parameters)
+    assert rest_of(found.validation) == rest_of(whole.validation)
+    assert not [row for row in (*found.validation, *found.offsets) if (row.foot, row.axis) == BROKEN]
+
+
+@pytest.mark.parametrize("error", [DataError("a line"), MemoryError(), RuntimeWarning("overflow")])
+def test_what_is_no_fault_of_plantar_is_raised_on(
+    robot: RobotModel, monkeypatch: pytest.MonkeyPatch, error: Exception
+) -> None:
+    monkeypatch.setattr(foot_fit, "score_axis", breaking(foot_fit.score_axis, error))
+    with pytest.raises(type(error)):
+        identify_feet(robot, [record(sway())], settings=PUNCTUAL)
+
+
+def rest_of(rows: Any) -> list[Any]:
+    return [row for row in rows if (row.foot, row.axis) != BROKEN]
+
+
+def test_an_error_is_described_by_its_innermost_place_in_plantar() -> None:
+    with pytest.raises(TypeError) as caught:
+        relative_std_percent("none", 1.0)  # type: ignore[arg-type]
+    assert described(caught.value).startswith("TypeError in estimation/intervals.py, line ")
+    assert described(ValueError("two\nlines")) == "ValueError outside plantar: two lines"

@@ -1,0 +1,48 @@
+"""A recording's signals pass one filter, wherever runs are short: what is used is known."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from biped import record, sway
+from plantar.feet.fit.regression_data import blocks_of
+from plantar.feet.prepare_log import checked, prepare
+from plantar.feet.recording import Recording, filtered_recording, moved_centre
+from plantar.robot.model import RobotModel
+
+CUTOFF = 2.0  # Hz, below a slow log's Nyquist frequency
+LIFTS = tuple(("left", 1.5 + 4.0 * place, 3.5 + 4.0 * place) for place in range(10))
+
+
+@pytest.fixture(scope="module")
+def walk(robot: RobotModel) -> Recording:
+    """A foot that steps at 10 Hz, in stances of about twenty samples, the force sensors silent for a second a swing."""
+    log = record(sway(duration=42.0, lifts=LIFTS)).select(slice(None, None, 10))
+    silent = np.mod(log.time - 1.5, 4.0) < 1.0
+    log = log.with_columns(
+        {
+            name: np.where(silent, np.nan, values)
+            for name, values in log.columns.items()
+            if "wrench.left" in name
+        }
+    )
+    return filtered_recording(prepare(robot, checked(robot, log), "fit"), CUTOFF)
+
+
+def test_the_moment_arms_torque_is_known_wherever_a_sample_is_used(walk: Recording) -> None:
+    assert walk.stances["left"] is not None
+    used = walk.used("left")
+    assert used.sum() > 50
+    rigid, soft = (
+        moved_centre(walk, {"left": value, "right": value}).bushes["left"] for value in (0.0, 1e-5)
+    )
+    np.testing.assert_array_equal(rigid.torque[used], walk.bushes["left"].torque[used])
+    assert np.isfinite(soft.torque[used]).all()
+    assert not np.allclose(soft.torque[used], rigid.torque[used])
+
+
+def test_the_load_of_a_used_sample_is_not_taken_for_none(walk: Recording) -> None:
+    for block in blocks_of([walk], "left", "pitch"):
+        assert block.common_nuisance is not None
+        assert block.common_nuisance.min() > 50.0
