@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,6 +43,17 @@ class Block:
     stances: StanceRows | None = None
     common_nuisance: Array | None = None
     common_spread: Array | None = None
+
+    def part(self, rows: NDArray[np.intp]) -> Block:
+        """The block with these rows alone."""
+        return replace(
+            self,
+            regressor=self.regressor[rows],
+            response=self.response[rows],
+            nuisance=None if self.nuisance is None else self.nuisance[rows],
+            stances=self.stances and StanceRows(self.stances.number[rows], self.stances.weight[rows]),
+            common_nuisance=None if self.common_nuisance is None else self.common_nuisance[rows],
+        )
 
     @property
     def duration(self) -> float:

@@ -18,6 +18,7 @@ from plantar.feet.sensors.sensor_delay import SensorDelay
 from plantar.signals.filters import differentiate
 
 SUSPECTED = 2.0  # deviations of a term that the law leaves out
+STANCE_END = 0.1  # of a stance at either end, without which a fit over stances is made again
 SLOPE_UNSURE = (
     0.04  # of the slope of an element found in short stances: what its share of the spring is unsure by
 )
@@ -67,7 +68,7 @@ def systematic_causes(
     ]
     if blocks[0].stances is not None:
         # The zeros were read in the air, and within a stance no cube is told from how a sole lands and lifts.
-        return causes + _shared_slope(fit)
+        return [*causes, _ends_of_stances(blocks), *_shared_slope(fit)]
     causes += _suspected_hardening(fit, blocks, shared)
     if fit.axis == "roll":
         # Roll's torque is cos(pitch)·τ_x - sin(pitch)·τ_z: the zero of τ_z, as large as the others', does not stay a
@@ -79,6 +80,22 @@ def systematic_causes(
         )
         causes.append(Cause("yaw torque zero", np.sqrt(np.sum(effects**2, axis=0)), usual))
     return causes
+
+
+def _ends_of_stances(blocks: Sequence[Block]) -> Cause:
+    """What a sole that is not flat at both ends of a stance may do: at most what the fit moves by without these samples.
+
+    A bound either way is a deviation of the bound over √3 (GUM, type B).
+    """
+    inner = []
+    for block in blocks:
+        assert block.stances is not None, "blocks of a foot that steps"
+        kept = np.concatenate(
+            [rows[(cut := round(STANCE_END * len(rows))) : len(rows) - cut] for rows in block.stances.split()]
+        )
+        inner.append(block.part(np.sort(kept)))
+    effect = fit_blocks(inner).values - fit_blocks(blocks).values
+    return Cause("ends of stances", effect, 1 / np.sqrt(3))
 
 
 def _shared_slope(fit: AxisFit) -> list[Cause]:
