@@ -83,7 +83,7 @@ def systematic_causes(
 
 
 def _ends_of_stances(blocks: Sequence[Block]) -> Cause:
-    """What a sole that is not flat at both ends of a stance may do: at most what the fit moves by without these samples.
+    """What a sole that is not flat at the ends of stances may do: at most what the fit moves by without these samples.
 
     A bound either way is a deviation of the bound over √3 (GUM, type B).
     """
