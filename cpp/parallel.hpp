@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <exception>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -15,16 +17,33 @@ inline unsigned worthwhile_threads(std::size_t count, std::size_t least, unsigne
 }
 
 // work(thread, begin, end) for equal contiguous parts of [0, count), the boundaries at multiples of `grain`.
+// What any part throws (memory that runs out) is thrown here, once all threads have ended.
 template <class Work>
 void parallel_parts(std::size_t count, std::size_t grain, unsigned threads, Work work) {
   const std::size_t grains = (count + grain - 1) / grain;
   const auto boundary = [&](unsigned t) { return std::min(count, grains * t / threads * grain); };
+  std::vector<std::exception_ptr> failures(threads);
+  const auto part = [&](unsigned t) noexcept {
+    try {
+      work(t, boundary(t), boundary(t + 1));
+    } catch (...) {
+      failures[t] = std::current_exception();
+    }
+  };
   std::vector<std::thread> others;
-  for (unsigned t = 1; t < threads; ++t) {
-    others.emplace_back([&, t] { work(t, boundary(t), boundary(t + 1)); });
+  others.reserve(threads);
+  unsigned started = 1;
+  try {
+    for (; started < threads; ++started) others.emplace_back(part, started);
+  } catch (const std::system_error&) {
+    // No more threads to be had: the parts that are left run here.
   }
-  work(0u, boundary(0), boundary(1));
+  part(0u);
+  for (unsigned t = started; t < threads; ++t) part(t);
   for (std::thread& thread : others) thread.join();
+  for (const std::exception_ptr& failure : failures) {
+    if (failure) std::rethrow_exception(failure);
+  }
 }
 
 }  // namespace plantar
