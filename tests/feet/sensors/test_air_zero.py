@@ -54,6 +54,18 @@ def test_a_swing_that_touches_the_ground_moves_it_little() -> None:
     assert zero.middle[2] == pytest.approx(ZERO[2], abs=1.0)
 
 
+@pytest.mark.parametrize("swings", [2, 8])
+def test_a_foot_that_rests_on_the_ground_before_and_after_is_not_in_the_air(swings: int) -> None:
+    """The robot stands still with little on this foot, as much as a quarter of its weight."""
+    time, wrench = walked(swings)
+    rest = (time < 0.9) | (time > 2.0 * swings)
+    wrench[rest, 2] = ZERO[2] + WEIGHT / 4
+    zero = air_zero(time, wrench, wrench[:, 2], WEIGHT)
+    assert zero is not None
+    assert zero.swings == swings
+    assert zero.at(time).mean(axis=0) == pytest.approx(ZERO, abs=0.3)
+
+
 @pytest.mark.parametrize("kind", ["stands", "sways", "one swing", "hardly loaded", "nothing known"])
 def test_nothing_is_said_of_a_foot_that_does_not_step(kind: str) -> None:
     time, wrench = walked(1 if kind == "one swing" else 8)

@@ -21,6 +21,7 @@ LOADED = 0.5  # of the weight, that a foot carries in its stances: one that does
 LARGEST_ZERO = 0.2  # of the weight: a foot that reads more at its lightest is not in the air
 IN_AIR = 0.4  # of the way from air to stance: so high that a foot which only sways is seen to go on changing
 FLAT = 0.015  # of the weight: what a foot reads in the middle of a swing hardly changes
+ALIKE = 0.1  # of the weight: swings read so alike, drift and all; a robot at rest puts a quarter or more on a foot
 
 
 @dataclass(frozen=True)
@@ -59,7 +60,7 @@ def air_zero(time: Array, wrench: Array, force_z: Array, weight: float) -> AirZe
     low, high = np.percentile(force_z[known], [2, 98])
     if high < LOADED * weight or abs(low) > LARGEST_ZERO * weight:
         return None
-    places, values = [], []
+    places, values, loads = [], [], []
     for swing in runs(known & (force_z < low + IN_AIR * (high - low))):
         quarter = (swing.stop - swing.start) // 4
         middle = slice(swing.start + quarter, swing.stop - quarter)
@@ -67,9 +68,12 @@ def air_zero(time: Array, wrench: Array, force_z: Array, weight: float) -> AirZe
         if long_enough and np.std(force_z[middle]) < FLAT * weight:
             places.append(float(np.mean(time[middle])))
             values.append(np.median(wrench[middle], axis=0))
-    if len(values) < FEWEST_SWINGS:
+            loads.append(float(np.median(force_z[middle])))
+    # A robot that stands still before its first step and after its last one reads the same for a while, too.
+    swung = np.array(loads) < min(loads, default=0.0) + ALIKE * weight
+    if np.count_nonzero(swung) < FEWEST_SWINGS:
         return None
-    seen, when = np.array(values), np.array(places)
+    seen, when = np.array(values)[swung], np.array(places)[swung]
     about, drift = float(when.mean()), np.zeros(6)
     if len(seen) >= FEWEST_FOR_DRIFT:
         slope = _usual_slope(when, seen)
