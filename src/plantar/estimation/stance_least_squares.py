@@ -8,12 +8,13 @@ Statistics 9, 1981).
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from plantar.conventions import Array
 from plantar.estimation.blocks import Block, LinearFit
-from plantar.estimation.stance_problem import StanceProblem, common_columns, design
+from plantar.estimation.stance_problem import Solution, StanceProblem, common_columns, design
 
 FEWEST_RECORDINGS = (
     5  # whose scatter gives a deviation of its own: of fewer, Student's t is too wide to be of use
@@ -27,8 +28,9 @@ def fit_stances(blocks: Sequence[Block]) -> LinearFit:
     """
     problem, size = StanceProblem.drawn_together(blocks), blocks[0].regressor.shape[1]
     solution = problem.solve()
-    covariance, freedom = _deviations(problem, solution.values)
-    values, covariance = _with_prior(solution.values, covariance, blocks[0].common_spread)
+    towards = _Prior.of(problem, solution, blocks[0].common_spread)
+    values = towards.drawn(solution.values)
+    covariance, freedom = _deviations(problem, values, towards)
     common, covariance, freedom = values[size:], covariance[:size, :size], freedom[:size]
     # Each recording's offset follows the values: what they no longer explain of its mean is its own.
     moved = values - solution.values
@@ -61,35 +63,60 @@ def fit_stances(blocks: Sequence[Block]) -> LinearFit:
     )
 
 
-def _deviations(problem: StanceProblem, values: Array) -> tuple[Array, Array]:
-    """Covariance (k, k) of the first `values` (k,) and its degrees of freedom (k,)."""
+@dataclass(frozen=True)
+class _Prior:
+    """What was known of common columns before: each coefficient at `places` is zero, give or take its spread.
+
+    `keeps` is the share of a coefficient that the data's own deviation lets stand, `follows` (k, j) how the other
+    values follow it in the least squares, `unsure` (k, k) the covariance that the prior leaves.
+    """
+
+    places: tuple[int, ...]
+    keeps: tuple[float, ...]
+    follows: Array
+    unsure: Array
+
+    @classmethod
+    def of(cls, problem: StanceProblem, solution: Solution, spread: Array | None) -> _Prior:
+        size = len(solution.values)
+        first = size - (0 if spread is None else len(spread))
+        known = (
+            [] if spread is None else [first + int(place) for place in np.flatnonzero(np.isfinite(spread))]
+        )
+        if not known or len(problem.products) == 1:
+            return cls((), (), np.zeros((size, 0)), np.zeros((size, size)))
+        variance = np.diag(_jackknife(problem.without_each_stance())[0])
+        keeps, follows, unsure = [], [], np.zeros((size, size))
+        for place in known:
+            prior = float(spread[place - first]) ** 2 if spread is not None else 0.0
+            keep = prior / (prior + variance[place])
+            along = solution.inverse[:, place] / max(solution.inverse[place, place], np.finfo(float).tiny)
+            keeps.append(keep)
+            follows.append(along)
+            unsure += keep * (1 - keep) * variance[place] * np.outer(along, along)
+        return cls(tuple(known), tuple(keeps), np.column_stack(follows), unsure)
+
+    def drawn(self, values: Array) -> Array:
+        """Values (..., k) with these coefficients drawn to zero and the others following."""
+        moved = values.copy()
+        for column, (place, keep) in enumerate(zip(self.places, self.keeps, strict=True)):
+            moved = moved + ((keep - 1) * moved[..., place])[..., None] * self.follows[:, column]
+        return moved
+
+
+def _deviations(problem: StanceProblem, values: Array, towards: _Prior) -> tuple[Array, Array]:
+    """Covariance (k, k) of `values` (k,) and its degrees of freedom (k,)."""
     size = len(values)
     if len(problem.products) == 1:  # nothing to compare with: anything is possible
         return np.diag(values**2), np.ones(size)
-    covariance, freedom = _jackknife(problem.without_each_stance()[:, :size])
-    if problem.recordings < FEWEST_RECORDINGS:
-        return covariance, freedom
-    between, of_between = _jackknife(problem.without_each_recording()[:, :size])
-    least = np.maximum(np.diag(covariance), np.finfo(float).tiny)
-    growth = np.sqrt(np.maximum(np.diag(between) / least, 1.0))
-    return covariance * np.outer(growth, growth), np.where(growth > 1, of_between, freedom)
-
-
-def _with_prior(values: Array, covariance: Array, spread: Array | None) -> tuple[Array, Array]:
-    """Values (k + j,) and their covariance, with what was known of the last j before: zero, give or take `spread`.
-
-    The update of a Kalman filter: it weighs the prior against the deviations that the jackknife found.
-    """
-    if spread is None:
-        return values, covariance
-    first = len(values) - len(spread)
-    for place, deviation in enumerate(spread, start=first):
-        variance = covariance[place, place] + deviation**2
-        if np.isfinite(deviation) and variance > 0:
-            gain = covariance[:, place] / variance
-            values = values - gain * values[place]
-            covariance = covariance - variance * np.outer(gain, gain)
-    return values, covariance
+    covariance, freedom = _jackknife(towards.drawn(problem.without_each_stance()))
+    if problem.recordings >= FEWEST_RECORDINGS:
+        between, of_between = _jackknife(towards.drawn(problem.without_each_recording()))
+        least = np.maximum(np.diag(covariance), np.finfo(float).tiny)
+        growth = np.sqrt(np.maximum(np.diag(between) / least, 1.0))
+        covariance = covariance * np.outer(growth, growth)
+        freedom = np.where(growth > 1, of_between, freedom)
+    return covariance + towards.unsure, freedom
 
 
 def _weighted_mean(block: Block) -> Array:

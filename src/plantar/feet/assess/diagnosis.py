@@ -17,6 +17,7 @@ REMEDY = {
     "delay": "add a recording of arm sweeps at 0.3 to 1 Hz without an operator: it shows the wrenches' delay",
     "lever": "add a slow shift of the weight from foot to foot: it shows the vertical compliance",
     "yaw torque zero": "zero the force sensors with the feet in the air before recording",
+    "between walks": "add walks: five or more show by themselves how much they differ",
     "ends of stances": "walk with longer stances, or stand and sway: landing and lifting disturb the fit",
     "memory in stances": "add a recording of standing and swaying: short steps hardly tell spring and memory apart",
     "hardening": "record larger motions, or ask for --model hardening: the spring stiffens, and the law leaves it out",

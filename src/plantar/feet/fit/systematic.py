@@ -10,6 +10,7 @@ import numpy as np
 from plantar.conventions import ROTATIONAL_AXES, Array
 from plantar.estimation import Block, effect_of, fit_blocks
 from plantar.estimation.intervals import pooled_freedom
+from plantar.estimation.stance_least_squares import FEWEST_RECORDINGS
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.regression_data import blocks_of
 from plantar.feet.fit.vertical_stiffness import VerticalStiffness
@@ -18,6 +19,7 @@ from plantar.feet.sensors.sensor_delay import SensorDelay
 from plantar.signals.filters import differentiate
 
 SUSPECTED = 2.0  # deviations of a term that the law leaves out
+WALKS_DIFFER = 0.04  # share of K by which walks of one robot differ, beyond what their own stances show
 STANCE_END = 0.1  # of a stance at either end, without which a fit over stances is made again
 SLOPE_UNSURE = (
     0.04  # of the slope of an element found in short stances: what its share of the spring is unsure by
@@ -68,7 +70,7 @@ def systematic_causes(
     ]
     if blocks[0].stances is not None:
         # The zeros were read in the air, and within a stance no cube is told from how a sole lands and lifts.
-        return [*causes, _ends_of_stances(blocks), *_shared_slope(fit)]
+        return [*causes, _ends_of_stances(blocks), *_between_walks(fit, len(blocks)), *_shared_slope(fit)]
     causes += _suspected_hardening(fit, blocks, shared)
     if fit.axis == "roll":
         # Roll's torque is cos(pitch)·τ_x - sin(pitch)·τ_z: the zero of τ_z, as large as the others', does not stay a
@@ -96,6 +98,15 @@ def _ends_of_stances(blocks: Sequence[Block]) -> Cause:
         inner.append(block.part(np.sort(kept)))
     effect = fit_blocks(inner).values - fit_blocks(blocks).values
     return Cause("ends of stances", effect, 1 / np.sqrt(3))
+
+
+def _between_walks(fit: AxisFit, recordings: int) -> list[Cause]:
+    """By how much another walk may differ, where there are too few for their scatter to say it."""
+    if recordings >= FEWEST_RECORDINGS:
+        return []
+    effect = np.zeros(len(fit.values))
+    effect[:2] = np.abs(fit.values[:2])
+    return [Cause("between walks", effect, WALKS_DIFFER / np.sqrt(recordings))]
 
 
 def _shared_slope(fit: AxisFit) -> list[Cause]:
