@@ -48,7 +48,6 @@ UNTESTED = frozenset(
         "feet.fit.axis_fit",
         "feet.fit.corrections",
         "feet.fit.initial_state",
-        "feet.fit.regression_data",
         "feet.fit.systematic",
         "feet.fit.vertical_stiffness",
         "feet.prepare",
