@@ -165,7 +165,7 @@ def test_validate(campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[
     [
         ("", "is empty"),
         ("time,joint.a.position\n0,1\n0,2\n0,3\n", "does not increase"),
-        ("time,joint.a.position\n0,1\n0.1,2\n0.2,3\n", "is missing"),
+        ("time,joint.a.position\n0,1\n0.1,2\n0.2,3\n", "joint_names"),
         ("time,joint.a.position\n0,1\n0.1,x\n", "value 'x'"),
     ],
 )

@@ -45,4 +45,4 @@ def test_the_moment_arms_torque_is_known_wherever_a_sample_is_used(walk: Recordi
 def test_the_load_of_a_used_sample_is_not_taken_for_none(walk: Recording) -> None:
     for block in blocks_of([walk], "left", "pitch"):
         assert block.common_nuisance is not None
-        assert block.common_nuisance.min() > 50.0
+        assert block.common_nuisance[:, 0].min() > 50.0

@@ -86,4 +86,4 @@ def test_a_quiet_log_is_put_right_by_what_the_others_of_its_imu_show(tmp_path: P
     alone = identify_feet(robot, [quiet], settings=KNOWN)
     assert not any(note.code == "attitude_pulled" for note in alone.notes)
     together = identify_feet(robot, [*lively, quiet], settings=KNOWN)
-    assert any(note.code == "attitude_pulled" and note.text.startswith("quiet") for note in together.notes)
+    assert any(note.code == "attitude_pulled" and "quiet" in note.text for note in together.notes)
