@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from plantar.contact.phases import FootContact
+from plantar.contact.phases import SETTLING_SHARE, FootContact
+from plantar.contact.polygon import inside_distance
 from plantar.conventions import Array
 from plantar.signals.segments import runs
 
 FEWEST_STANCES = 3  # in one recording: a robot that walks; fewer are a robot that stands and shifts its feet
+ROLLING_SHARE = 0.1  # of the sole's half width: a centre of pressure so near to the outline may roll about it
 LONGEST_STANCE = 5.0  # s, their median: in longer ones a foot moves as in any standing motion, and drifts
 
 
@@ -44,3 +46,23 @@ def stances_of(contact: FootContact, force: Array, weight: float, period: float)
     for place, run in enumerate(found):
         number[run] = place
     return Stances(number, np.clip(np.nan_to_num(force) / weight, 0.0, 1.0))
+
+
+def without_rolling(stances: Stances, cop: Array, polygon: Array) -> Stances:
+    """The stances without the samples in which the sole rolls on its outline as it lands and lifts.
+
+    A heel that strikes leans by milliradians, which a filter would carry far into the stance. cop: centre of pressure
+    in the sole's frame, (N, 2) [m]; polygon: the sole's corners, (n, 2) [m]. At most SETTLING_SHARE of a stance goes at
+    either end, which no fit uses anyway.
+    """
+    depth = inside_distance(cop, polygon)
+    middle = inside_distance(polygon.mean(axis=0)[None], polygon)
+    flat = np.nan_to_num(depth, nan=-1.0) > ROLLING_SHARE * float(middle[0])
+    number = stances.number.copy()
+    for stance in range(stances.count):
+        rows = np.flatnonzero(number == stance)
+        most = int(SETTLING_SHARE * len(rows))
+        for end in (rows[:most], rows[len(rows) - most :][::-1]):
+            rolls = np.flatnonzero(~flat[end])
+            number[end[: rolls[-1] + 1 if rolls.size else 0]] = -1
+    return replace(stances, number=number)

@@ -10,7 +10,7 @@ from plantar.checks.log_checks import check_log
 from plantar.contact.deflection import BushState, bush_states
 from plantar.contact.phases import FootContact, carried_weight, detect_contact, shaken
 from plantar.contact.reasons import Reason
-from plantar.contact.stances import Stances, stances_of
+from plantar.contact.stances import Stances, stances_of, without_rolling
 from plantar.conventions import FORCE, GRAVITY, Array
 from plantar.errors import DataError, RobotError, located
 from plantar.feet.recording import Recording, Role
@@ -160,7 +160,10 @@ def _contacts(
     stances = {name: stances_of(contacts[name], force[name], weight, log.period) for name in bushes}
     for name, state in bushes.items():
         # Zeroed under load, its force is no share of the weight; a foot that steps strikes the floor by nature.
-        if not always[name] and stances[name] is None:
+        found = stances[name]
+        if found is not None:
+            stances[name] = without_rolling(found, state.cop, robot.feet[name].sole.polygon)
+        elif not always[name]:
             impacts = shaken(state.wrench[:, FORCE], weight, log.period)
             contacts[name] = contacts[name].without(impacts, Reason.IMPACT)
     return contacts, stances

@@ -74,7 +74,7 @@ def filtered_recording(recording: Recording, cutoff: float) -> Recording:
     for name, state in recording.raw.items():
         stances = recording.stances[name]
         signals = np.column_stack([state.deflection, state.rate, state.torque])
-        smooth[name] = _with_signals(state, _within_stances(signals, period, cutoff, stances))
+        smooth[name] = _with_signals(state, within_stances(signals, period, cutoff, stances))
         values = np.column_stack([smooth[name].deflection, smooth[name].rate, smooth[name].torque])
         valid = np.asarray(np.isfinite(values).all(axis=1))
         recording = recording.without(name, ~valid, Reason.NOT_RECORDED)
@@ -96,7 +96,7 @@ def _with_signals(state: BushState, signals: Array) -> BushState:
     return replace(state, deflection=signals[:, 0:2], rate=signals[:, 2:4], torque=signals[:, 4:6])
 
 
-def _within_stances(values: Array, period: float, cutoff: float, stances: Stances | None) -> Array:
+def within_stances(values: Array, period: float, cutoff: float, stances: Stances | None) -> Array:
     """The filter of what eq. 6 ties together, of (N, k). Of a foot that steps, each stance passes by itself and the air
     is NaN: the filter must not carry what the foot does in the air into a stance."""
     if stances is None:
@@ -133,4 +133,4 @@ def moment_arm_effect(recording: Recording, foot: str) -> Array:
     bush = recording.bushes[foot]
     x, y, z = bush.wrench[:, FORCE].T
     effect = np.column_stack([-z * x, np.cos(bush.deflection[:, 0]) * z * y])
-    return _within_stances(effect, recording.period, recording.cutoff, recording.stances[foot])
+    return within_stances(effect, recording.period, recording.cutoff, recording.stances[foot])

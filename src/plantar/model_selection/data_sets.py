@@ -16,6 +16,7 @@ from plantar.signals.filters import SHORTEST_RUN, low_pass
 SAMPLES_PER_CYCLE = 7  # of the filter's cutoff, that thinning keeps
 THIN_BAND = 4.0  # cutoffs, that survive thinning
 SAMPLES_PER_CYCLE_IN_STANCES = 16  # so that the path keeps the band that survives thinning
+RANK_TOLERANCE = 1e-10  # of the largest singular value: a smaller one is no column of its own
 SHORTEST_STANCE_RUN = 8  # samples of a stance, for it to be filtered by itself
 
 
@@ -132,11 +133,17 @@ class FilteredDataSet:
         if self.steps is None:
             return self._without_drift(rows)
         flat = self.steps.centred(rows.reshape(len(rows), -1), self.used)
+        own = self._nuisance
+        return np.asarray(flat - own @ (own.T @ flat)).reshape(rows.shape)
+
+    @cached_property
+    def _nuisance(self) -> Array:
+        """Orthonormal columns (n, m) of what is the recording's own, about their means; of a foot that steps."""
+        assert self.steps is not None, "asked only where the foot steps"
         nuisance = self.steps.centred(self.steps.nuisance[self.used], self.used)
         nuisance = nuisance - nuisance.mean(axis=0)
-        return np.asarray(flat - nuisance @ np.linalg.lstsq(nuisance, flat, rcond=None)[0]).reshape(
-            rows.shape
-        )
+        left, size, _ = np.linalg.svd(nuisance, full_matrices=False)
+        return np.asarray(left[:, size > RANK_TOLERANCE * max(float(size.max(initial=0.0)), 1e-300)])
 
     def _without_drift(self, rows: Array) -> Array:
         """Used samples without their line in time."""

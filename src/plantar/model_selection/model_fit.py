@@ -17,7 +17,7 @@ from plantar.estimation.intervals import interval95
 from plantar.model_selection.data_sets import DataSet, FilteredDataSet, prepare_data_sets
 from plantar.model_selection.grid import Pieces
 from plantar.model_selection.partialled_out import robust_covariance
-from plantar.model_selection.variable_projection import Point, Problem, settle
+from plantar.model_selection.variable_projection import Point, Problem, descended, settle
 from plantar.models import BESIDE, BushModel
 
 AT_LIMIT = 0.02  # of a shape: so near to its range's end it counts as there
@@ -108,6 +108,15 @@ def fit_model(
     shapes = model.candidates([each.motion for each in prepared])
     limits = np.array([shapes.min(axis=0), shapes.max(axis=0)])
     return refine(Pieces.of(model, prepared, folds, shapes), prepared, limits, shared_offset=shared_offset)
+
+
+def fit_again(before: ModelFit, data_sets: Sequence[DataSet]) -> ModelFit:
+    """The fit of the same recordings with other torques, from where it came to rest before."""
+    prepared = prepare_data_sets(data_sets, before.cutoff, drift=not before.shared_offset)
+    problem = Problem(before.model, prepared, before.shared_offset)
+    states = [before.initial_states[each.label] for each in prepared]
+    point = descended(problem, problem.at(before.shape, states), before.limits)
+    return _finished(problem, point, before.limits)
 
 
 def refine(

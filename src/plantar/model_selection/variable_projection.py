@@ -13,10 +13,12 @@ import numpy as np
 from plantar.conventions import Array
 from plantar.model_selection.data_sets import FilteredDataSet, filtered_columns
 from plantar.model_selection.grid import Pieces, fit_pieces
+from plantar.model_selection.landing import STATE, Hysteresis, landing_states
 from plantar.model_selection.partialled_out import Linearised
 from plantar.models import BushModel
 
 ITERATIONS = 16
+LANDINGS = 3  # times that the states at landings are found anew with better parameters
 WIDEST_SCAN, NARROWEST_SCAN, NARROWING = 1.0, 0.05, 0.2  # of the starts about where the steps came to rest
 HALVINGS = 4
 SETTLED = 1e-4  # relative fall of the squares below which the refinement has arrived
@@ -99,9 +101,37 @@ def settle(problem: Problem, pieces: Pieces, limits: Array, *, refined: bool = T
             begin[data_set][run - runs[data_set]] = pieces.initial_states[data_set][
                 start, run - runs[data_set]
             ]
-    point = problem.at(shapes[best], begin)
-    width = WIDEST_SCAN
-    for _ in range(ITERATIONS if refined and (shapes.shape[1] or model.remembers) else 0):
+    if not refined or not (shapes.shape[1] or model.remembers):
+        return problem.at(shapes[best], begin)
+    point = descended(problem, problem.at(shapes[best], begin), limits)
+    for _ in range(LANDINGS):
+        landed = _from_landings(problem, point)
+        other = landed and descended(problem, landed, limits)
+        if other is None or other.squares > (1 - SETTLED) * point.squares:
+            break
+        point = other
+    return point
+
+
+def _from_landings(problem: Problem, point: Point) -> Point | None:
+    """The point with the states that the air leaves for each landing; None for a foot that does not step.
+
+    What the states of all stances have in common hardly shows in any one of them: from a wrong guess no step by step
+    search finds it.
+    """
+    if STATE not in problem.model.terms or any(each.steps is None for each in problem.prepared):
+        return None
+    states = []
+    for each, begin, offset in zip(problem.prepared, point.initial_states, point.offsets, strict=True):
+        bush = Hysteresis(problem.model, point.values, point.shape, float(offset))
+        states.append(landing_states(bush, [each.path.deflection[run] for run in each.path.runs], begin))
+    return problem.at(point.shape, states)
+
+
+def descended(problem: Problem, point: Point, limits: Array) -> Point:
+    """Where steps and scans from a point come to rest."""
+    model, width = problem.model, WIDEST_SCAN
+    for _ in range(ITERATIONS):
         moved = _step(problem, point, limits)
         if moved is None or moved.squares > (1 - SETTLED) * point.squares:
             scanned = _scan(problem, moved or point, width) if model.remembers else None

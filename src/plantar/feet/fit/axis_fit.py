@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from plantar.feet.fit.regression_data import blocks_of, data_set_of
 from plantar.feet.recording import Recording
 from plantar.feet.settings import AUTOMATIC, FeetSettings
 from plantar.model_selection.data_sets import DataSet
-from plantar.model_selection.model_fit import ModelFit, fit_model
+from plantar.model_selection.model_fit import ModelFit, fit_again, fit_model
 from plantar.model_selection.selection import LEAST_GAIN, ModelChoice, choose_model
 from plantar.models import MODELS, BushModel, KelvinVoigt
 
@@ -28,6 +29,7 @@ CANDIDATES_IN_STANCES = ("kelvin_voigt", "elastoplastic")
 LEAST_GAIN_IN_STANCES = (
     0.5  # of the held-out rms error: states that are free in every stance take up much by themselves
 )
+CENTRE_ROUNDS = 2  # of finding memory and centre in turn
 CANDIDATES = (
     "kelvin_voigt", "hardening", "coulomb", "elastoplastic", "hardening_elastoplastic", "bouc_wen",
     "standard_linear_solid",
@@ -67,10 +69,13 @@ def _fitted(
     fitted = [recording for recording in recordings if recording.name in linear.offsets]
     data_sets = [data_set_of(recording, foot, axis, share) for recording in fitted]
     cutoff = fitted[0].cutoff
+
+    def found(fit: ModelFit, choice: ModelChoice | None, reason: str) -> AxisFit:
+        beside = _of_linear(foot, axis, linear, choice, reason)
+        return _about_its_centre(beside, fit, fitted, share) if steps else _with_model(beside, fit)
+
     if asked is not None:
-        fit = fit_model(asked, data_sets, cutoff, shared_offset=shared)
-        found = _of_model(foot, axis, fit, linear, None, "asked for")
-        return over_stances(found, fitted) if steps else found
+        return found(fit_model(asked, data_sets, cutoff, shared_offset=shared), None, "asked for")
     explained = _explained(linear, blocks)
     if not LEAST_EXPLAINED < explained < FULLY_EXPLAINED:
         return _of_linear(foot, axis, linear, None, _untried(explained))
@@ -80,8 +85,20 @@ def _fitted(
     choice = choose_model(data_sets, models, cutoff, shared_offset=shared, least_gain=gain)
     if choice.fit.model.name == KelvinVoigt.name:
         return _of_linear(foot, axis, linear, choice, choice.reason)
-    found = _of_model(foot, axis, choice.fit, linear, choice, choice.reason)
-    return over_stances(found, fitted) if steps else found
+    return found(choice.fit, choice, choice.reason)
+
+
+def _about_its_centre(
+    linear: AxisFit, fit: ModelFit, recordings: Sequence[Recording], share: float
+) -> AxisFit:
+    """A fit of stances whose memory is found about the bush's centre; where that is, the linear parameters tell."""
+    found = over_stances(_with_model(linear, fit), recordings)
+    for _ in range(CENTRE_ROUNDS):
+        above = found.moment_arms[1]
+        data_sets = [data_set_of(each, linear.foot, linear.axis, share, above) for each in recordings]
+        fit = fit_again(fit, data_sets)
+        found = over_stances(_with_model(linear, fit), recordings)
+    return found
 
 
 def _explained(fit: LinearFit, blocks: Sequence[Block]) -> float:
@@ -135,25 +152,19 @@ def _of_linear(foot: str, axis: Axis, fit: LinearFit, choice: ModelChoice | None
     )
 
 
-def _of_model(
-    foot: str, axis: Axis, fit: ModelFit, linear: LinearFit, choice: ModelChoice | None, reason: str
-) -> AxisFit:
-    return AxisFit(
-        foot=foot,
-        axis=axis,
+def _with_model(linear: AxisFit, fit: ModelFit) -> AxisFit:
+    """The fit of a richer model in place of the linear one, whose stiffness and damping stay as its equivalent."""
+    return replace(
+        linear,
         model=fit.model,
         values=fit.values,
         shape=fit.shape,
-        moment_arms=_moment_arms(linear),
         offsets=fit.offsets,
         initial_states=fit.initial_states,
         covariance=fit.covariance,
         freedom=fit.freedom,
         white_std=fit.white_std,
         offset_std=fit.offset_std,
-        equivalent=(float(linear.values[0]), float(linear.values[1])),
-        choice=choice,
-        reason=reason,
     )
 
 

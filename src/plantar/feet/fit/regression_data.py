@@ -10,7 +10,7 @@ from plantar.conventions import ROTATIONAL_AXES, Array, Axis
 from plantar.estimation import Block
 from plantar.estimation.blocks import StanceRows
 from plantar.feet.fit.axis import AxisFit, FittedModel
-from plantar.feet.recording import SHORTEST_STANCE_RUN, Recording
+from plantar.feet.recording import SHORTEST_STANCE_RUN, Recording, within_stances
 from plantar.model_selection.data_sets import DataSet, StepColumns
 from plantar.models import BushMotion, KelvinVoigt
 from plantar.signals.filters import SHORTEST_RUN, low_pass
@@ -86,8 +86,13 @@ def _stance_rows(recording: Recording, foot: str) -> StanceRows:
 
 def load_of(recording: Recording, foot: str) -> Array:
     """The vertical force through the fit's filter, (N,) [N], 0 where it is not known: where nothing is used."""
-    force = recording.bushes[foot].force_z
-    return np.nan_to_num(low_pass(force, recording.period, recording.cutoff, _shortest_run(recording, foot)))
+    return _filtered_as_torque(recording, foot, recording.bushes[foot].force_z)
+
+
+def _filtered_as_torque(recording: Recording, foot: str, values: Array) -> Array:
+    """Values (N,) through the filter that the torque went through, 0 where they are not known."""
+    smooth = within_stances(values[:, None], recording.period, recording.cutoff, recording.stances[foot])
+    return np.nan_to_num(smooth[:, 0])
 
 
 def moment_columns(recording: Recording, foot: str, axis: Axis) -> Array:
@@ -97,9 +102,13 @@ def moment_columns(recording: Recording, foot: str, axis: Axis) -> Array:
     slide is such a height. One that is aside adds a torque as large as the load.
     """
     column = ROTATIONAL_AXES.index(axis)
-    across = (1.0, -1.0)[column] * recording.bushes[foot].wrench[:, column]
-    height = np.nan_to_num(low_pass(across, recording.period, recording.cutoff))
-    return np.column_stack([load_of(recording, foot), height])
+    across = _across(recording, foot, column)
+    return np.column_stack([load_of(recording, foot), _filtered_as_torque(recording, foot, across)])
+
+
+def _across(recording: Recording, foot: str, column: int) -> Array:
+    """The horizontal force that a higher centre turns into torque, (N,) [N], unfiltered."""
+    return np.asarray((1.0, -1.0)[column] * recording.bushes[foot].wrench[:, column])
 
 
 def model_columns(
@@ -149,12 +158,18 @@ def path_of(recording: Recording, foot: str, axis: Axis) -> BushMotion:
     return BushMotion(quick[:, 0], quick[:, 1], recording.period)
 
 
-def data_set_of(recording: Recording, foot: str, axis: Axis, own_share: float = 0.0) -> DataSet:
-    """One recording of one axis, as the models take it; `own_share`: of the offsets of stances, that is their own."""
+def data_set_of(
+    recording: Recording, foot: str, axis: Axis, own_share: float = 0.0, above: float = 0.0
+) -> DataSet:
+    """One recording of one axis, as the models take it.
+
+    Of a foot that steps: `own_share` of the offsets of stances is their own; the bush's centre is `above` its place in
+    the robot file [m].
+    """
     column, stances = ROTATIONAL_AXES.index(axis), recording.stances[foot]
     torque, used = recording.bushes[foot].torque[:, column], recording.used(foot)
     if stances is None:
         return DataSet(recording.name, motion_of(recording, foot, axis), torque, used)
     steps = StepColumns(stances.number, load_of(recording, foot)[:, None], own_share)
-    measured = recording.raw[foot].torque[:, column]
+    measured = recording.raw[foot].torque[:, column] - above * _across(recording, foot, column)
     return DataSet(recording.name, path_of(recording, foot, axis), measured, used, steps)
