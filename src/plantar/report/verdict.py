@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from plantar.report.content import Mark
-from plantar.report.records import FeetResult, Parameter, Validation
+from plantar.results.feet import FeetResult, Parameter, ValidationRow
 from plantar.results.numbers import unit, with_uncertainty
 
 MARKS: Final[dict[str, Mark]] = {"usable": "good", "weak": "weak", "unidentifiable": "bad"}
@@ -70,7 +70,7 @@ def symbol(name: str) -> str:
 
 
 def _phrase(row: Parameter, alone: bool) -> str:
-    text = f"{symbol(row.name)} = {with_uncertainty(row.value, row.half_width)} {unit(row.unit)}"
+    text = f"{symbol(row.name)} = {with_uncertainty(row.value, row.half_width)} {unit(row.unit)}".rstrip()
     return text if alone or not row.verdict else f"{text} ({row.verdict})"
 
 
@@ -99,8 +99,8 @@ def trust(result: FeetResult) -> tuple[str, ...]:
     return tuple(sentences)
 
 
-def _skill(validation: Sequence[Validation], kind: str) -> list[str]:
-    rows = [row for row in validation if row.kind == kind and row.has_skill is not None]
+def _skill(validation: Sequence[ValidationRow], kind: str) -> list[str]:
+    rows = [row for row in validation if row.kind == kind]
     if not rows:
         return ["No unseen motion was given, so nothing here is cross-validated."] if kind == "cross" else []
     what = "On motions it has not seen" if kind == "cross" else "On the motions that it was fitted to"

@@ -133,6 +133,18 @@ class FeetResult:
                 return row
         raise KeyError((foot, axis, name))
 
+    @property
+    def soles(self) -> dict[str, tuple[tuple[float, float], ...]]:
+        """Each foot's sole outline, x forward and y left in the sole's frame [m], where the result knows it."""
+        feet = value_of(dict[str, dict[str, Any]], {"feet": {}, **self.robot_model}, "feet", None)
+        found = {
+            name: value_of(dict[str, Any], {"sole": {}, **foot}, "sole", None) for name, foot in feet.items()
+        }
+        kind = tuple[tuple[float, float], ...]
+        return {
+            name: value_of(kind, sole, "polygon", None) for name, sole in found.items() if "polygon" in sole
+        }
+
     def to_table(self) -> pa.Table:
         """The parameters as an Arrow table, one row each; `.to_pandas()` where pandas is installed.
 
