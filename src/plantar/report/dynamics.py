@@ -12,6 +12,7 @@ from plantar.report.content import Cell, Column, Figure, Section, Table
 from plantar.report.page import render
 from plantar.report.tables import input_table, settings_table, skill_cell, verdict_cell
 from plantar.report.verdict import listed
+from plantar.report.warning_groups import warning_groups
 from plantar.results.dynamics import JOINTS_SCHEMA, DynamicsResult, DynamicsScore
 from plantar.results.io import result_path
 from plantar.results.numbers import interval, number, percent, unit, with_uncertainty
@@ -55,6 +56,8 @@ def write_dynamics_report(
         styles=["report.css"],
         title=f"{subject} of {read.robot}",
         result=read,
+        warnings=warning_groups(read.notes),
+        notes=[note for note in read.notes if note.severity != "warning"],
         verdict=verdict,
         tables=made,
         sections=sections,

@@ -10,10 +10,13 @@ import numpy as np
 
 from plantar.files import write_text
 from plantar.report import tables
+from plantar.report.charts.loop import loop_charts
 from plantar.report.content import Figure, Section, Table
 from plantar.report.motions import motion_views
 from plantar.report.page import render
-from plantar.report.verdict import foot_verdicts, trust
+from plantar.report.verdict import foot_verdicts, trust, widest
+from plantar.report.walks import walk_section
+from plantar.report.warning_groups import warning_groups
 from plantar.results.feet import FeetResult
 from plantar.results.io import result_path
 from plantar.results.residuals import read_residuals, residuals_path
@@ -35,7 +38,8 @@ def write_feet_report(
     path = result_path(result)
     content = FeetResult.load(path, residuals=False)
     residuals = residuals_path(path.parent)
-    motions, stride = motion_views(content, read_residuals(residuals) if residuals is not None else ())
+    tracks = read_residuals(residuals) if residuals is not None else ()
+    motions, stride = motion_views(content, tracks)
     page = render(
         "feet.html.j2",
         styles=["uPlot.min.css", "report.css"],
@@ -44,7 +48,11 @@ def write_feet_report(
         result=content,
         verdicts=foot_verdicts(content.parameters),
         trust=trust(content),
-        diagnosis=content.diagnosis,
+        loops=loop_charts(content, tracks),
+        widest=widest(content),
+        walks=walk_section(content, tracks),
+        warnings=warning_groups(content.notes),
+        notes=[note for note in content.notes if note.severity != "warning"],
         tables=_tables(content),
         sections=sections,
         motions=motions,
