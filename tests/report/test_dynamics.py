@@ -33,9 +33,11 @@ INERTIA: dict[str, Any] = SHARED | {
         {"link": f"link_{i}", "name": "m", "unit": "kg", "value": 1.5 + i, "cad": 1.4 + i} for i in range(50)
     ],
     "validation": [
-        {"kind": "cross", "motion": "walk", "axis": "torque.x", "unit": "N.m", "max_abs": 40.0, "samples": 500, "mean_abs_error": 1.5, "rms_error": 2.2,
+        {"kind": "cross", "motion": "walk", "axis": "torque.x", "unit": "N.m", "max_abs": 40.0, "samples": 500,
+         "mean_abs_error": 1.5, "rms_error": 2.2,
          "zero_mean_abs": 12.0, "cad_rms_error": 20.5},
-        {"kind": "cross", "motion": "walk", "axis": "force.z", "unit": "N", "max_abs": 700.0, "samples": 500, "mean_abs_error": 9.0, "rms_error": 7.9,
+        {"kind": "cross", "motion": "walk", "axis": "force.z", "unit": "N", "max_abs": 700.0, "samples": 500,
+         "mean_abs_error": 9.0, "rms_error": 7.9,
          "zero_mean_abs": 5.0, "cad_rms_error": 13.3},
     ],
 }  # fmt: skip

@@ -139,7 +139,8 @@ def _result(columns: dict[str, np.ndarray], phases: list[dict[str, Any]]) -> dic
             validation.append(
                 {"kind": "direct" if role == "fit" else "cross", "motion": motion, "foot": foot, "axis": axis,
                  "mean_abs_error": error.mean(), "rms_error": np.sqrt((error**2).mean()), "max_abs": largest,
-                 "percent_of_max": 100 * error.mean() / largest, "zero_mean_abs": zero, "samples": int(chosen.sum())})  # fmt: skip
+                 "percent_of_max": 100 * error.mean() / largest, "zero_mean_abs": zero,
+                 "samples": int(chosen.sum())})  # fmt: skip
             offsets.append(
                 {"foot": foot, "axis": axis, "motion": motion, "unit": "N.m", "value": offset, "std": 0.02}
             )

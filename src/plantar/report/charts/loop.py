@@ -15,7 +15,7 @@ from plantar.results.residuals import Track
 
 WIDTH, HEIGHT = 300.0, 240.0
 PLACE: Final = (50.0, 8.0, 240.0, 190.0)  # left, top, width, height of the panel
-LINEAR, NEAREST = "K", "spring and damper"  # names of the straight line
+LINEAR, NEAREST = "K", "linear K"  # names of the straight line
 MOST_POINTS: Final = 2500  # of the measured torque, and as many of the model's
 
 

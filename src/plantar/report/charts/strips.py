@@ -15,6 +15,7 @@ from plantar.results.walk_rows import StanceStiffness, WalkStiffness
 WIDTH = 600.0
 PLACE: Final = (62.0, 10.0, 528.0, 240.0)
 MOST_WALKS: Final = 30  # in one chart
+MOST_STANCES: Final = 1000  # in one chart: those that say most
 LARGEST, SMALLEST = 6.0, 1.5  # pixels, radius of a stance's dot
 USUAL: Final = 0.9  # of the stances' shares, that set the scale beside walks and band
 STRIP_REMARK: Final = (
@@ -62,19 +63,22 @@ def _chart(
     unseen = {row.motion for row in stances if row.role == "validate"}
     if (first := next((k for k, motion in enumerate(drawn) if motion in unseen), 0)) > 0:
         marks.append(Path("edge", f"M{float(x(first)):.1f} 0v{height:.1f}"))
-    largest = max((row.share for row in stances), default=1.0)
+    heaviest = sorted(stances, key=lambda row: -row.share)[:MOST_STANCES]
+    largest, least = heaviest[0].share, heaviest[-1].share
     names = []
     for place, motion in enumerate(drawn):
         middle = float(x(place + 0.5))
-        own = [row for row in stances if row.motion == motion]
+        own = [row for row in stances if row.motion == motion and row.share >= least]
         for row, at in zip(own, np.linspace(place + 0.15, place + 0.85, len(own)), strict=True):
             marks.append(_dot(row, float(x(at)), y, np.sqrt(row.share / largest)))
         marks += [mark for row in walks if row.motion == motion for mark in _bar(row, middle, y)]
         names.append(slanted(motion, left + middle, top + height))
     paths, texts = frame(PLACE, x, y, "", "K [N·m/rad]", numbers=False)
-    away = sum(not y.low <= row.stiffness <= y.high for row in stances if row.motion in drawn)
+    away = sum(not y.low <= row.stiffness <= y.high for row in heaviest if row.motion in drawn)
     remarks = [f"{away} stances lie beyond the scale, at its edge."] if away else []
     remarks += [f"The first {MOST_WALKS} of {len(motions)} recordings."] if len(drawn) < len(motions) else []
+    if len(heaviest) < len(stances):
+        remarks.append(f"The {MOST_STANCES} stances that say most, of {len(stances)}.")
     kinds = [("fitted walk", "walk fit"), ("unseen walk", "walk validate"), ("stance", "stance")]
     roles = {f"walk {row.role}" for row in stances}
     together = f"all together: {with_uncertainty(pooled.value, pooled.half_width)} {unit(pooled.unit)}"
