@@ -32,7 +32,8 @@ def test_warnings_verdicts_with_their_loops_walks_and_tables_come_in_this_order(
         page.index(text)
         for text in (
             "delay of the wrenches unknown", "<h2>left foot</h2>", "Each stance less its offset",
-            "K by stance and by walk", "torque of unseen walks", "zero of the force sensor", "Table 1.", 'id="motions"', "zero taken off",
+            "K by stance and by walk", "torque of unseen walks", "zero of the force sensor",
+            "Table 1.", 'id="motions"', "zero taken off",
         )
     ]  # fmt: skip
     assert places == sorted(places)
