@@ -73,3 +73,10 @@ def test_the_residuals_say_what_is_not_the_bushs(found: FeetResult) -> None:
     )
     stiffness, damping = (found.parameter("left", "pitch", name).value for name in ("stiffness", "damping"))
     assert predicted - offset == pytest.approx(stiffness * angle + damping * rate, abs=1e-6)
+
+
+def test_the_zero_is_taken_off(found: FeetResult) -> None:
+    assert found.residuals is not None
+    table = found.residuals.to_pydict()
+    swings = (np.array(table["foot"]) == "left") & (np.array(table["support"]) == "air")
+    assert np.median(np.array(table["force_z"])[swings]) == pytest.approx(0.0, abs=0.5)
