@@ -44,7 +44,6 @@ UNTESTED = frozenset(
         "feet.assess.residual_table",
         "feet.assess.scores",
         "feet.exclusion.torque_saturation",
-        "feet.fit.axis_fit",
         "feet.fit.corrections",
         "feet.fit.initial_state",
         "feet.fit.systematic",

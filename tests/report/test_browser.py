@@ -52,6 +52,15 @@ def test_plots_are_drawn(visit: Visit) -> None:
         assert seen == pytest.approx((low - 0.05 * (high - low), high + 0.05 * (high - low)))
 
 
+def test_a_bush_in_the_air_is_not_drawn(visit: Visit) -> None:
+    """In the first motion the left foot is lifted; in the last ones both stand."""
+    lines = "host => host.plot.series.slice(1).map((line) => line.label)"
+    assert visit.plot(0, "angles", axis="pitch").evaluate(lines) == ["right"]
+    assert visit.plot(0, "force").evaluate(lines) == ["left", "right"]
+    visit.page.click("#open-all")
+    assert visit.plot(5, "angles", axis="pitch").evaluate(lines) == ["left", "right"]
+
+
 def test_only_what_is_seen_is_drawn(visit: Visit) -> None:
     visit.plot(0, "angles", axis="pitch")
     drawn = visit.page.locator(".canvas.drawn").count()

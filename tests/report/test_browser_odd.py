@@ -13,7 +13,7 @@ import pyarrow.parquet
 import pytest
 
 from plantar.report import write_feet_report
-from report_samples import write_campaign
+from report_samples import MOTIONS, write_campaign
 from report_visit import INK, Visit, launched
 
 
@@ -56,7 +56,8 @@ def test_two_feet_with_times_of_their_own(browser: Any, tmp_path: Path) -> None:
     pyarrow.parquet.write_table(pa.table(columns), tmp_path / "residuals.parquet")
     (tmp_path / "result.json").write_text(json.dumps(campaign.result | {"phases": []}), encoding="utf-8")
     visit = Visit(browser, write_feet_report(tmp_path))
-    host = visit.plot(0, "angles", axis="pitch")
+    visit.page.click("#open-all")
+    host = visit.plot(MOTIONS.index(("tilt3", "fit", "both")), "angles", axis="pitch")
     assert host.evaluate("host => host.plot.data[0].length") == 800
     assert host.evaluate(INK)["red"] > 15
     visit.context.close()

@@ -24,28 +24,35 @@ INERTIA: dict[str, Any] = SHARED | {
     "rank": 234,
     "condition_number": 4.1e5,
     "base_parameters": [
-        {"expression": "m(torso) + 0.3·mx(head)", "value": 12.34, "std": 0.02, "relative_std_percent": 0.16},
-        {"expression": "Izz(l_foot)", "value": None, "std": None, "relative_std_percent": None},
+        {"expression": "m(torso) + 0.3·mx(head)", "value": 12.34, "std": 0.02,
+         "interval95": [12.30, 12.38], "relative_std_percent": 0.16},
+        {"expression": "Izz(l_foot)", "value": None, "std": None, "interval95": [None, None],
+         "relative_std_percent": None},
     ],
     "inertial_parameters": [
         {"link": f"link_{i}", "name": "m", "unit": "kg", "value": 1.5 + i, "cad": 1.4 + i} for i in range(50)
     ],
     "validation": [
-        {"kind": "cross", "motion": "walk", "axis": "torque.x", "mean_abs_error": 1.5, "rms_error": 2.2,
+        {"kind": "cross", "motion": "walk", "axis": "torque.x", "unit": "N.m", "max_abs": 40.0, "samples": 500,
+         "mean_abs_error": 1.5, "rms_error": 2.2,
          "zero_mean_abs": 12.0, "cad_rms_error": 20.5},
-        {"kind": "cross", "motion": "walk", "axis": "force.z", "mean_abs_error": 9.0, "rms_error": 7.9,
+        {"kind": "cross", "motion": "walk", "axis": "force.z", "unit": "N", "max_abs": 700.0, "samples": 500,
+         "mean_abs_error": 9.0, "rms_error": 7.9,
          "zero_mean_abs": 5.0, "cad_rms_error": 13.3},
     ],
 }  # fmt: skip
-JOINTS: dict[str, Any] = SHARED | {
+JOINTS: dict[str, Any] = INERTIA | {
     "schema": "plantar.joints/1",
     "parameters": [
         {"joint": "a1", "name": "viscous", "unit": "N.m.s/rad", "value": 3.2, "std": 0.1,
-         "interval95": [3.0, 3.4], "verdict": "usable"},
+         "interval95": [3.0, 3.4], "verdict": "usable", "reason": ""},
         {"joint": "a2", "name": "coulomb", "unit": "N.m", "value": 0.2, "std": 0.4,
          "interval95": [-0.6, 1.0], "verdict": "weak", "reason": "the joint hardly turns"},
     ],
-    "validation": [{"motion": "second", "joint": "all", "relative_error_percent": 2.31}],
+    "validation": [
+        {"kind": "cross", "motion": "second", "joint": "all", "unit": "N.m", "mean_abs_error": 0.4, "rms_error": 0.5,
+         "max_abs": 30.0, "zero_mean_abs": 6.0, "cad_rms_error": 2.5, "samples": 500, "relative_error_percent": 2.31}
+    ],
 }  # fmt: skip
 
 

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
-from plantar.report.records import Offset, Validation
 from plantar.report.tables import offset_table, validation_table
+from plantar.results.feet import Offset, ValidationRow
 
 
 def test_an_offsets_plus_minus_is_half_of_the_95_percent_interval() -> None:
     table = offset_table([
         Offset(foot="left", axis="pitch", motion="tilt", unit="N.m", value=-1.5, std=0.1),
-        Offset(foot="left", axis="roll", motion="tilt", unit="N.m", value=0.25),
+        Offset(foot="left", axis="roll", motion="tilt", unit="N.m", value=0.25, std=math.nan),
     ])  # fmt: skip
     assert [(column.heading, column.unit) for column in table.columns[1:]] == [
         ("left pitch", "N·m"),
@@ -22,9 +24,9 @@ def test_an_offsets_plus_minus_is_half_of_the_95_percent_interval() -> None:
 
 @pytest.mark.parametrize("kind", ["direct", "cross"])
 def test_errors_of_torques_stand_under_newton_metres(kind: str) -> None:
-    row = Validation(
+    row = ValidationRow(
         kind=kind, motion="squat", foot="right", axis="roll", mean_abs_error=0.125, rms_error=0.25, max_abs=16.5,
-        percent_of_max=0.76, zero_mean_abs=0.5,
+        percent_of_max=0.76, zero_mean_abs=0.5, samples=400,
     )  # fmt: skip
     table = validation_table([row], kind)
     shown = {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from plantar.results.numbers import interval, number, with_uncertainty
+from plantar.results.numbers import interval, number, unit, with_uncertainty
 
 
 @pytest.mark.parametrize(
@@ -19,6 +19,8 @@ from plantar.results.numbers import interval, number, with_uncertainty
         (float("nan"), 1.0, "–"),
         (3.0, float("inf"), "3.000"),
         (2.0, 0.0, "2.000"),
+        (1.37e8, 1.33e8, "1.4e8 ± 1.3e8"),
+        (-2.0e7, 4.0e5, "−2.00e7 ± 0.04e7"),
     ],
 )
 def test_values_are_rounded_to_their_uncertainty(value: float | None, half: float | None, text: str) -> None:
@@ -27,7 +29,14 @@ def test_values_are_rounded_to_their_uncertainty(value: float | None, half: floa
 
 def test_intervals_and_numbers_read_well() -> None:
     assert interval((947.02, 951.37)) == "947.0 to 951.4"
+    assert interval((3857549.0, 2.701e8)) == "0.04e8 to 2.70e8"
+    assert interval((-1.0, 2.5e7)) == "−0.00e7 to 2.50e7"
     assert interval(None) == "–"
     assert number(0.0) == "0"
     assert number(123456.0, 3) == "123456"
     assert number(1.234e-9, 3) == "1.23e−9"
+
+
+def test_units_are_printed_as_people_write_them() -> None:
+    assert unit("N.m.s/rad") == "N·m·s/rad"
+    assert unit("1") == ""

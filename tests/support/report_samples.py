@@ -120,7 +120,7 @@ def _result(columns: dict[str, np.ndarray], phases: list[dict[str, Any]]) -> dic
             verdict = "usable" if not bad else "weak" if name == "stiffness" else "unidentifiable"
             row = {"foot": foot, "axis": axis, "name": name, "unit": unit, "value": value, "std": std,
                    "interval95": [value - 2 * std, value + 2 * std], "relative_std_percent": 0.01,
-                   "verdict": verdict}  # fmt: skip
+                   "verdict": verdict, "reason": "", "advice": None}  # fmt: skip
             if bad:
                 row["reason"] = f"roll hardly moves (0.3 mrad) <script>alert('{name}')</script>"
                 row["advice"] = "record manual_right_roll with 20 mrad or more"
@@ -139,7 +139,8 @@ def _result(columns: dict[str, np.ndarray], phases: list[dict[str, Any]]) -> dic
             validation.append(
                 {"kind": "direct" if role == "fit" else "cross", "motion": motion, "foot": foot, "axis": axis,
                  "mean_abs_error": error.mean(), "rms_error": np.sqrt((error**2).mean()), "max_abs": largest,
-                 "percent_of_max": 100 * error.mean() / largest, "zero_mean_abs": zero})  # fmt: skip
+                 "percent_of_max": 100 * error.mean() / largest, "zero_mean_abs": zero,
+                 "samples": int(chosen.sum())})  # fmt: skip
             offsets.append(
                 {"foot": foot, "axis": axis, "motion": motion, "unit": "N.m", "value": offset, "std": 0.02}
             )
@@ -161,9 +162,27 @@ def _result(columns: dict[str, np.ndarray], phases: list[dict[str, Any]]) -> dic
             {"code": "imu.drift", "severity": "info", "text": f"yaw is not used in {HOSTILE}"},
             {"code": "contact.edge", "severity": "warning", "text": "the right sole tips in tilt3 at 24.0 s"},
         ],
-        "comparisons": [{"name": "offset shared", "parameters": shared, "validation": worse}],
+        "comparisons": [
+            {
+                "name": "offset shared",
+                "settings": {"offset": "shared"},
+                "parameters": shared,
+                "validation": worse,
+            }
+        ],
         "diagnosis": [
-            "left pitch: noise limits it",
-            "Record 60 s of manual_right_roll to halve the widest interval.",
+            {
+                "foot": foot,
+                "axis": axis,
+                "name": "stiffness",
+                "limit": "noise",
+                "variance_shares": {"noise": 1.0},
+                "half_width_percent": width,
+                "text": text,
+            }
+            for foot, axis, width, text in (
+                ("right", "roll", 0.3, "Record 60 s of manual_right_roll to halve the widest interval."),
+                ("left", "pitch", 0.2, "left pitch: noise limits it"),
+            )
         ],
     }

@@ -12,6 +12,7 @@ from plantar.feet.assess.diagnosis import advised, diagnose_axis
 from plantar.feet.assess.parameter_rows import axis_rows, missing_rows, unseen_rows
 from plantar.feet.assess.residual_table import Predictions
 from plantar.feet.assess.scores import score_axis
+from plantar.feet.assess.stance_stiffness import stance_stiffness, walk_stiffness
 from plantar.feet.exclusion.outliers import outlier_masks
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.axis_fit import fit_axis
@@ -22,6 +23,7 @@ from plantar.feet.recording import Recording
 from plantar.models import BushModel
 from plantar.notes import Note
 from plantar.results.feet import Parameter, ValidationRow
+from plantar.results.walk_rows import StanceStiffness, WalkStiffness
 
 ROUNDS = 3  # of leaving outliers out: a large one hides smaller ones
 
@@ -35,6 +37,8 @@ class FootFit:
     validation: list[ValidationRow] = field(default_factory=list)
     diagnosis: list[dict[str, Any]] = field(default_factory=list)
     predictions: Predictions = field(default_factory=dict)
+    stances: list[StanceStiffness] = field(default_factory=list)
+    walks: list[WalkStiffness] = field(default_factory=list)
     notes: tuple[Note, ...] = ()
 
 
@@ -72,6 +76,8 @@ def _with_axis(found: FootFit, ready: PreparedLogs, fit: AxisFit) -> FootFit:
         validation=[*found.validation, *scores],
         diagnosis=[*found.diagnosis, *limits],
         predictions={**found.predictions, **predictions},
+        stances=[*found.stances, *stance_stiffness(ready.recordings, wide)],
+        walks=[*found.walks, *walk_stiffness(ready.recordings, wide)],
     )
 
 

@@ -116,6 +116,9 @@ def fit_prepared(
         sensor_delay=delay_estimate(ready.sensor_delay),
         compliance=dict(ready.vertical.compliance),
         diagnosis=tuple(Diagnosis(**row) for each in found for row in each.diagnosis),
+        stances=tuple(row for each in found for row in each.stances),
+        walks=tuple(row for each in found for row in each.walks),
+        swing_zeros=tuple(row for recording in ready.recordings for row in recording.zeros),
         residuals=residual_table(ready.recordings, predictions),
     )
 

@@ -14,7 +14,7 @@ from plantar.contact.stances import Stances, stances_of, without_rolling
 from plantar.conventions import FORCE, GRAVITY, Array
 from plantar.errors import DataError, RobotError, located
 from plantar.feet.recording import Recording, Role
-from plantar.feet.sensors.air_zero import air_zero
+from plantar.feet.sensors.air_zero import AirZero, air_zero
 from plantar.feet.sensors.tilt_error import NO_TILT_ERROR, TiltError, right_attitude
 from plantar.feet.settings import DEFAULT_CUTOFF
 from plantar.logs.motion_log import MotionLog
@@ -64,8 +64,13 @@ def prepare(
     positions = log.positions(robot)
     wrenches = {name: log.wrench(foot.wrench.name) for name, foot in robot.feet.items()}
     raw = bush_states(robot, positions, velocities, orientation, rates, wrenches)
-    if (tared := _without_zeros(robot, log, wrenches, raw, notes)) is not None:
-        wrenches, raw = tared, bush_states(robot, positions, velocities, orientation, rates, tared)
+    zeros = _air_zeros(robot, log, wrenches, raw)
+    if zeros:
+        wrenches = wrenches | {name: wrenches[name] - zero.at(log.time) for name, zero in zeros.items()}
+        raw = bush_states(robot, positions, velocities, orientation, rates, wrenches)
+        notes += [
+            Note("air_zero", "info", f"{log.name}: {name} foot: {zero.text}") for name, zero in zeros.items()
+        ]
     contacts, stances = _contacts(robot, log, raw, CONTACT_BAND * highest_cutoff, notes)
     places = {name: state.sole_position[:, :2] for name, state in raw.items()}
     if (right := right_attitude(log, imu, orientation, tilt_error, raw, contacts)) is not None:
@@ -82,24 +87,20 @@ def prepare(
         noise={name: np.zeros((2, 2)) for name in raw},
         places=places,
         notes=tuple(notes),
+        zeros=tuple(row for name, zero in zeros.items() for row in zero.rows(log.name, name)),
     )
 
 
-def _without_zeros(
-    robot: RobotModel,
-    log: MotionLog,
-    wrenches: Mapping[str, Array],
-    raw: Mapping[str, BushState],
-    notes: list[Note],
-) -> dict[str, Array] | None:
-    """The wrenches without the zeros that sensors show while their feet swing; None where no foot does."""
-    tared, weight = dict(wrenches), robot.mass * GRAVITY
+def _air_zeros(
+    robot: RobotModel, log: MotionLog, wrenches: Mapping[str, Array], raw: Mapping[str, BushState]
+) -> dict[str, AirZero]:
+    """The zeros that sensors show while their feet swing; of feet that do not swing none."""
+    weight, found = robot.mass * GRAVITY, {}
     for name, foot in robot.feet.items():
         zero = air_zero(log.time, wrenches[name], raw[name].force_z, weight)
         if zero is not None and foot.contact != "always":
-            tared[name] = wrenches[name] - zero.at(log.time)
-            notes.append(Note("air_zero", "info", f"{log.name}: {name} foot: {zero.text}"))
-    return None if all(tared[name] is wrenches[name] for name in tared) else tared
+            found[name] = zero
+    return found
 
 
 def _require(robot: RobotModel) -> Imu:

@@ -16,6 +16,7 @@ from plantar.conventions import FORCE, Array, Mask
 from plantar.estimation.errors_in_variables import noise_after_filter
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
+from plantar.results.walk_rows import SwingZero
 from plantar.signals.filters import low_pass
 from plantar.signals.segments import run_ends
 
@@ -32,6 +33,7 @@ class Recording:
     `cutoff` [Hz] is that of `bushes`, infinite before they are filtered. `stances`: of feet that step, else None.
     `noise` (2, 2) of each foot: variance of white noise that is left in deflection and rate, of pitch and roll.
     `places` (N, 2) of each foot: of the sole from the IMU [m] in the attitude as recorded, which slides are judged by.
+    `zeros`: of force sensors, as read while their foot swings; they are taken off already.
     """
 
     log: MotionLog
@@ -44,6 +46,7 @@ class Recording:
     noise: Mapping[str, Array]
     places: Mapping[str, Array]
     notes: tuple[Note, ...]
+    zeros: tuple[SwingZero, ...] = ()
 
     @property
     def name(self) -> str:

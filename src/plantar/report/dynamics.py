@@ -7,18 +7,15 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from plantar.errors import PlantarError, located
 from plantar.files import write_text
 from plantar.report.content import Cell, Column, Figure, Section, Table
 from plantar.report.page import render
-from plantar.report.records import InertiaResult, JointsResult, Result, Row, checked
 from plantar.report.tables import input_table, settings_table, skill_cell, verdict_cell
 from plantar.report.verdict import listed
-from plantar.results.io import read_result, result_path
-from plantar.results.numbers import MISSING, interval, number, percent, unit, with_uncertainty
-
-INERTIA: Final = "plantar.inertia/1"
-JOINTS: Final = "plantar.joints/1"
+from plantar.report.warning_groups import warning_groups
+from plantar.results.dynamics import JOINTS_SCHEMA, DynamicsResult, DynamicsScore
+from plantar.results.io import result_path
+from plantar.results.numbers import interval, number, percent, unit, with_uncertainty
 
 _HEADINGS: Final = {
     "kind": "kind",
@@ -48,30 +45,19 @@ def write_dynamics_report(
     `PlantarError` for a result that cannot be read.
     """
     path = result_path(result)
-    content = read_result(path)
-    read: Result
-    if content["schema"] == INERTIA:
-        inertia = checked(content, InertiaResult, INERTIA, path)
-        read, subject, verdict, made = (
-            inertia,
-            "Inertial parameters",
-            _inertia_verdict(inertia),
-            _inertia(inertia),
-        )
-    elif content["schema"] == JOINTS:
-        joints = checked(content, JointsResult, JOINTS, path)
-        read, subject, verdict, made = joints, "Joint parameters", _joints_verdict(joints), [_joints(joints)]
+    read = DynamicsResult.load(path, beside=False)
+    if read.schema == JOINTS_SCHEMA:
+        subject, verdict, made = "Joint parameters", _joints_verdict(read), [_joints(read)]
     else:
-        valid = f"{INERTIA} or {JOINTS}"
-        raise PlantarError(
-            located("is another kind of result", path=path, value=content["schema"], valid=valid)
-        )
+        subject, verdict, made = "Inertial parameters", _inertia_verdict(read), _inertia(read)
     made += [_validation(read)] if read.validation else []
     page = render(
         "dynamics.html.j2",
         styles=["report.css"],
         title=f"{subject} of {read.robot}",
         result=read,
+        warnings=warning_groups(read.notes),
+        notes=[note for note in read.notes if note.severity != "warning"],
         verdict=verdict,
         tables=made,
         sections=sections,
@@ -83,17 +69,13 @@ def write_dynamics_report(
     return target
 
 
-def _inertia_verdict(result: InertiaResult) -> list[str]:
-    sentences = []
-    if result.rank is not None:
-        text = f"The logs determine {result.rank} base parameters"
-        if result.condition_number is not None:
-            text += f", with a condition number of {number(result.condition_number, 2)}"
-        sentences.append(f"{text}.")
-    return sentences + _prediction(result)
+def _inertia_verdict(result: DynamicsResult) -> list[str]:
+    condition = number(result.condition_number, 2)
+    text = f"The logs determine {result.rank} base parameters, with a condition number of {condition}."
+    return [text, *_prediction(result)]
 
 
-def _joints_verdict(result: JointsResult) -> list[str]:
+def _joints_verdict(result: DynamicsResult) -> list[str]:
     sentences = []
     for verdict, lead in (("usable", "Trust"), ("weak", "Use with care"), ("unidentifiable", "Do not use")):
         names = [
@@ -105,17 +87,17 @@ def _joints_verdict(result: JointsResult) -> list[str]:
     return sentences + _prediction(result)
 
 
-def _prediction(result: Result) -> list[str]:
-    judged = [row for row in result.validation if row.has_skill is not None]
-    if not judged:
+def _prediction(result: DynamicsResult) -> list[str]:
+    count = len(result.validation)
+    if not count:
         return []
-    better = sum(row.has_skill is True for row in judged)
-    return [f"The model beats the trivial predictor in {better} of {len(judged)} rows of the validation."]
+    better = sum(row.has_skill for row in result.validation)
+    return [f"The model beats the trivial predictor in {better} of {count} rows of the validation."]
 
 
-def _inertia(result: InertiaResult) -> list[Table]:
+def _inertia(result: DynamicsResult) -> list[Table]:
     base = [
-        (row.expression, with_uncertainty(row.value, None if row.std is None else 1.96 * row.std),
+        (row.expression, with_uncertainty(row.value, (row.interval95[1] - row.interval95[0]) / 2),
          number(row.std, 2), percent(row.relative_std_percent))
         for row in result.base_parameters
     ]  # fmt: skip
@@ -127,7 +109,7 @@ def _inertia(result: InertiaResult) -> list[Table]:
     )
     inertial = [
         (row.link, row.name, unit(row.unit), number(row.value), number(row.cad),
-         MISSING if row.value is None or row.cad is None else number(row.value - row.cad, 3))
+         number(row.value - row.cad, 3))
         for row in result.inertial_parameters
     ]  # fmt: skip
     columns = [Column(name, numeric=False) for name in ("link", "parameter", "unit")]
@@ -138,10 +120,10 @@ def _inertia(result: InertiaResult) -> list[Table]:
     ]
 
 
-def _joints(result: JointsResult) -> Table:
+def _joints(result: DynamicsResult) -> Table:
     rows = [
         (row.joint, row.name.replace("_", " "), unit(row.unit), number(row.value), number(row.std, 2),
-         interval(row.interval95), verdict_cell(row), row.reason or "")
+         interval(row.interval95), verdict_cell(row), row.reason)
         for row in result.parameters
     ]  # fmt: skip
     columns = [Column(name, numeric=False) for name in ("joint", "parameter", "unit")]
@@ -150,7 +132,7 @@ def _joints(result: JointsResult) -> Table:
     return Table.of("Joint parameters", columns, rows)
 
 
-def _validation(result: Result) -> Table:
+def _validation(result: DynamicsResult) -> Table:
     """Every number that the rows bring, the known ones first: CAD's errors stand beside the model's."""
     contents = [_content(row) for row in result.validation]
     present = dict.fromkeys(key for content in contents for key in content)
@@ -167,12 +149,8 @@ def _validation(result: Result) -> Table:
     return Table.of("Validation", [*columns, Column("skill", numeric=False)], rows)
 
 
-def _content(row: Row) -> dict[str, Any]:
-    content = row.model_dump(exclude_none=True)
-    plain = {
-        key: value for key, value in content.items() if value != "" and isinstance(value, str | int | float)
-    }
-    return {key: float(value) if isinstance(value, int | float) else value for key, value in plain.items()}
+def _content(row: DynamicsScore) -> dict[str, Any]:
+    return {key: float(value) if isinstance(value, int) else value for key, value in row.to_dict().items()}
 
 
 def _text(value: object) -> str:

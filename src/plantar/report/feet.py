@@ -10,13 +10,15 @@ import numpy as np
 
 from plantar.files import write_text
 from plantar.report import tables
+from plantar.report.charts.loop import loop_charts
 from plantar.report.content import Figure, Section, Table
 from plantar.report.motions import motion_views
 from plantar.report.page import render
-from plantar.report.records import FeetResult, checked
-from plantar.report.verdict import foot_verdicts, trust
-from plantar.results.feet import FEET_SCHEMA
-from plantar.results.io import read_result, result_path
+from plantar.report.verdict import foot_verdicts, trust, widest
+from plantar.report.walks import walk_section
+from plantar.report.warning_groups import warning_groups
+from plantar.results.feet import FeetResult
+from plantar.results.io import result_path
 from plantar.results.residuals import read_residuals, residuals_path
 
 
@@ -34,9 +36,10 @@ def write_feet_report(
     page is one file that needs no network. Raises `PlantarError` for a result or residuals that cannot be read.
     """
     path = result_path(result)
-    content = checked(read_result(path, FEET_SCHEMA), FeetResult, FEET_SCHEMA, path)
+    content = FeetResult.load(path, residuals=False)
     residuals = residuals_path(path.parent)
-    motions, stride = motion_views(content, read_residuals(residuals) if residuals is not None else ())
+    tracks = read_residuals(residuals) if residuals is not None else ()
+    motions, stride = motion_views(content, tracks)
     page = render(
         "feet.html.j2",
         styles=["uPlot.min.css", "report.css"],
@@ -45,7 +48,11 @@ def write_feet_report(
         result=content,
         verdicts=foot_verdicts(content.parameters),
         trust=trust(content),
-        diagnosis=content.diagnosis_lines,
+        loops=loop_charts(content, tracks),
+        widest=widest(content),
+        walks=walk_section(content, tracks),
+        warnings=warning_groups(content.notes),
+        notes=[note for note in content.notes if note.severity != "warning"],
         tables=_tables(content),
         sections=sections,
         motions=motions,
@@ -62,10 +69,7 @@ def write_feet_report(
 
 def _soles(result: FeetResult) -> dict[str, list[list[float]]]:
     """Each foot's sole outline, x forward and y left [mm], where the result knows it."""
-    feet = result.robot_model.feet if result.robot_model is not None else {}
-    outlines = {
-        name: [[1e3 * x, 1e3 * y] for x, y in foot.sole.polygon] for name, foot in feet.items() if foot.sole
-    }
+    outlines = {name: [[1e3 * x, 1e3 * y] for x, y in outline] for name, outline in result.soles.items()}
     return {name: outline for name, outline in outlines.items() if np.isfinite(outline).all()}
 
 

@@ -6,9 +6,10 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
+from plantar.contact.phases import Phase
 from plantar.conventions import AXES
 from plantar.report.payload import Payload, encode
-from plantar.report.records import FeetResult, Phase
+from plantar.results.feet import FeetResult
 from plantar.results.numbers import number
 from plantar.results.residuals import Track
 
@@ -92,7 +93,7 @@ def _view(result: FeetResult, name: str, tracks: Sequence[Track], payload: Paylo
 
 
 def _summary(result: FeetResult, name: str, duration: float) -> str:
-    rows = [row for row in result.validation if row.motion == name and row.mean_abs_error is not None]
+    rows = [row for row in result.validation if row.motion == name]
     errors = [f"{row.foot} {row.axis} {number(row.mean_abs_error, 2)}" for row in rows if row.axis != "z"]
     text = f"{number(duration, 3)} s"
     return f"{text}; mean |error| {', '.join(errors)} N·m" if errors else text

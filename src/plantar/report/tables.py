@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import PurePath
 from typing import Any
 
+from plantar.contact.phases import Phase
 from plantar.report.content import Cell, Column, Table
-from plantar.report.records import Comparison, FeetResult, Input, Offset, Parameter, Phase, Validation
 from plantar.report.verdict import MARKS, symbol, why_of
+from plantar.results.dynamics import DynamicsScore, JointParameter
+from plantar.results.feet import Comparison, FeetResult, Input, Offset, Parameter, ValidationRow
 from plantar.results.numbers import MISSING, interval, number, percent, unit, with_uncertainty
 
 
@@ -49,8 +51,8 @@ def parameter_table(parameters: Sequence[Parameter]) -> Table:
     return Table.of("Table 1. Identified parameters", columns, rows, remark=remark)
 
 
-def verdict_cell(row: Parameter) -> Cell:
-    return Cell(row.verdict or MISSING, MARKS.get(row.verdict, ""), row.reason or "")
+def verdict_cell(row: Parameter | JointParameter) -> Cell:
+    return Cell(row.verdict, MARKS[row.verdict], row.reason)
 
 
 def offset_table(offsets: Sequence[Offset]) -> Table:
@@ -71,7 +73,7 @@ def offset_table(offsets: Sequence[Offset]) -> Table:
     return Table.of("Offsets of each motion", columns, rows, remark=remark)
 
 
-def validation_table(validation: Sequence[Validation], kind: str) -> Table:
+def validation_table(validation: Sequence[ValidationRow], kind: str) -> Table:
     """Table 2 (`direct`) or table 3 (`cross`), the trivial predictor beside the model."""
     rows = [
         (
@@ -109,9 +111,9 @@ def validation_table(validation: Sequence[Validation], kind: str) -> Table:
     return Table.of(title, columns, rows, remark=remark)
 
 
-def skill_cell(row: Validation) -> Cell:
+def skill_cell(row: ValidationRow | DynamicsScore) -> Cell:
     """How much smaller the error is than the trivial predictor's."""
-    if row.has_skill is None or row.mean_abs_error is None or not row.zero_mean_abs:
+    if not (row.zero_mean_abs > 0 and row.mean_abs_error >= 0):
         return Cell(MISSING)
     share = 100 * (1 - row.mean_abs_error / row.zero_mean_abs)
     if not row.has_skill:
@@ -191,16 +193,16 @@ def input_table(inputs: Sequence[Input]) -> Table:
     return Table.of("Inputs", columns, rows)
 
 
-def settings_table(settings: dict[str, Any]) -> Table:
+def settings_table(settings: Mapping[str, Any]) -> Table:
     """Settings with nested ones as `outer.inner`."""
     rows = [(key, text) for key, text in _flat(settings, "")]
     return Table.of("Settings", [Column("setting", numeric=False), Column("value", numeric=False)], rows)
 
 
-def _flat(settings: dict[str, Any], prefix: str, depth: int = 0) -> list[tuple[str, str]]:
+def _flat(settings: Mapping[str, Any], prefix: str, depth: int = 0) -> list[tuple[str, str]]:
     lines: list[tuple[str, str]] = []
     for key, value in settings.items():
-        if isinstance(value, dict) and value and depth < 4:
+        if isinstance(value, Mapping) and value and depth < 4:
             lines += _flat(value, f"{prefix}{key}.", depth + 1)
         else:
             lines.append(

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from plantar.report.content import Mark
-from plantar.report.records import FeetResult, Parameter, Validation
+from plantar.results.feet import Diagnosis, FeetResult, Parameter, ValidationRow
 from plantar.results.numbers import unit, with_uncertainty
 
 MARKS: Final[dict[str, Mark]] = {"usable": "good", "weak": "weak", "unidentifiable": "bad"}
@@ -20,6 +20,7 @@ class Statement:
     """One axis of one foot: a sentence, how it is marked, and what lies behind it."""
 
     subject: str
+    axis: str
     text: str
     mark: Mark
     reasons: tuple[str, ...]
@@ -40,10 +41,10 @@ def foot_verdicts(parameters: Sequence[Parameter]) -> tuple[FootVerdict, ...]:
 def _statements(foot: str, parameters: Sequence[Parameter]) -> Iterable[Statement]:
     rows = [parameter for parameter in parameters if parameter.foot == foot]
     for axis in dict.fromkeys(row.axis for row in rows):
-        yield statement(f"{foot} {axis}", [row for row in rows if row.axis == axis])
+        yield statement(f"{foot} {axis}", axis, [row for row in rows if row.axis == axis])
 
 
-def statement(subject: str, rows: Sequence[Parameter]) -> Statement:
+def statement(subject: str, axis: str, rows: Sequence[Parameter]) -> Statement:
     """`left pitch: K = 480 ± 1 N·m/rad, C = ... — usable`; a number that cannot be trusted is not given."""
     marks = [MARKS.get(row.verdict, "") for row in rows]
     worst = max(marks, key=lambda mark: _ORDER[mark])
@@ -61,7 +62,7 @@ def statement(subject: str, rows: Sequence[Parameter]) -> Statement:
         if why := why_of(row):
             behind.setdefault(why, []).append(symbol(row.name))
     reasons = tuple(f"{listed(names)}: {why}" for why, names in behind.items())
-    return Statement(subject, text, worst, reasons)
+    return Statement(subject, axis, text, worst, reasons)
 
 
 def symbol(name: str) -> str:
@@ -70,13 +71,20 @@ def symbol(name: str) -> str:
 
 
 def _phrase(row: Parameter, alone: bool) -> str:
-    text = f"{symbol(row.name)} = {with_uncertainty(row.value, row.half_width)} {unit(row.unit)}"
+    text = f"{symbol(row.name)} = {with_uncertainty(row.value, row.half_width)} {unit(row.unit)}".rstrip()
     return text if alone or not row.verdict else f"{text} ({row.verdict})"
 
 
 def why_of(row: Parameter) -> str:
     """The verdict's reason and what to record next."""
     return ". Next: ".join(part for part in (row.reason, row.advice) if part)
+
+
+def widest(result: FeetResult) -> Diagnosis | None:
+    """What limits the widest interval among the numbers that may be used; None where none is known."""
+    given = {(row.foot, row.axis, row.name) for row in result.parameters if row.verdict != "unidentifiable"}
+    known = [row for row in result.diagnosis if (row.foot, row.axis, row.name) in given]
+    return max(known, key=lambda row: row.half_width_percent, default=None)
 
 
 def trust(result: FeetResult) -> tuple[str, ...]:
@@ -99,8 +107,8 @@ def trust(result: FeetResult) -> tuple[str, ...]:
     return tuple(sentences)
 
 
-def _skill(validation: Sequence[Validation], kind: str) -> list[str]:
-    rows = [row for row in validation if row.kind == kind and row.has_skill is not None]
+def _skill(validation: Sequence[ValidationRow], kind: str) -> list[str]:
+    rows = [row for row in validation if row.kind == kind]
     if not rows:
         return ["No unseen motion was given, so nothing here is cross-validated."] if kind == "cross" else []
     what = "On motions it has not seen" if kind == "cross" else "On the motions that it was fitted to"

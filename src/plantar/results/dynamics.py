@@ -172,11 +172,12 @@ class DynamicsResult:
         return path
 
     @classmethod
-    def load(cls, path: str | os.PathLike[str]) -> DynamicsResult:
+    def load(cls, path: str | os.PathLike[str], *, beside: bool = True) -> DynamicsResult:
         """A result read back from `result.json` or its folder, with the URDF and the residuals beside it.
 
         Args:
             path: the file, or the folder that holds it.
+            beside: also read the URDF and the residuals; without them `urdf` is empty and `residuals` None.
 
         Returns:
             The result; its `to_dict` is the file's content. Keys that this version does not know are left out.
@@ -195,7 +196,7 @@ class DynamicsResult:
         if schema not in (INERTIA_SCHEMA, JOINTS_SCHEMA):
             valid = f"{INERTIA_SCHEMA}, {JOINTS_SCHEMA}"
             raise PlantarError(located("is another kind of result", path=file, value=schema, valid=valid))
-        beside = residuals_path(file.parent)
+        residuals = residuals_path(file.parent) if beside else None
         return cls(
             schema=schema,
             robot=value_of(str, content, "robot", file),
@@ -210,8 +211,8 @@ class DynamicsResult:
             parameters=rows_of(JointParameter, content, "parameters", file),
             validation=rows_of(DynamicsScore, content, "validation", file),
             notes=rows_of(Note, content, "notes", file),
-            urdf=read_bounded(file.parent / URDF, RESULT_LIMIT).decode(errors="replace"),
-            residuals=None if beside is None else read_table(beside),
+            urdf=read_bounded(file.parent / URDF, RESULT_LIMIT).decode(errors="replace") if beside else "",
+            residuals=None if residuals is None else read_table(residuals),
             created=value_of(str, content, "created", file),
             version=value_of(str, content, "plantar", file),
         )

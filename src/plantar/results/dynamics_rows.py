@@ -66,5 +66,10 @@ class DynamicsScore:
     axis: str | None = None
     joint: str | None = None
 
+    @property
+    def has_skill(self) -> bool:
+        """Whether the model beats the trivial predictor."""
+        return self.mean_abs_error < self.zero_mean_abs
+
     def to_dict(self) -> dict[str, Any]:
         return {key: value for key, value in asdict(self).items() if value is not None}

@@ -31,6 +31,7 @@ from plantar.results.feet_rows import (
 from plantar.results.io import dump_json, finite, read_result, result_path
 from plantar.results.residuals import read_table, residuals_path
 from plantar.results.stored import row_of, rows_of, value_of
+from plantar.results.walk_rows import StanceStiffness, SwingZero, WalkStiffness
 
 __all__ = [
     "FEET_SCHEMA", "AxisModel", "Comparison", "DelayEstimate", "Diagnosis", "FeetResult", "Input", "Offset",
@@ -38,6 +39,7 @@ __all__ = [
 ]  # fmt: skip
 
 FEET_SCHEMA: Final = "plantar.feet/1"
+_WALKING: Final = ("stances", "walks", "swing_zeros")  # keys of the file only where a foot steps
 
 _TABLE: Final = pa.schema(
     [(name, pa.string()) for name in ("foot", "axis", "name", "unit")]
@@ -60,6 +62,8 @@ class FeetResult:
         sensor_delay: how late the sensors are [s]. compliance: of each foot along z [m/N], 0 where not known.
         diagnosis: what limits each number. comparisons: the same logs under other choices.
         campaign: what `plantar demo` adds, as plain data; None elsewhere.
+        stances, walks: stiffness by each stance and by each recording alone [N·m/rad], where feet step. swing_zeros:
+            what their force sensors read in the air [N, N·m].
         residuals: one row for each sample, foot and motion, or None; columns as in `read_residuals`.
         created: UTC time. version: of plantar.
 
@@ -89,6 +93,9 @@ class FeetResult:
     diagnosis: tuple[Diagnosis, ...] = ()
     comparisons: tuple[Comparison, ...] = ()
     campaign: Mapping[str, Any] | None = None
+    stances: tuple[StanceStiffness, ...] = ()
+    walks: tuple[WalkStiffness, ...] = ()
+    swing_zeros: tuple[SwingZero, ...] = ()
     residuals: pa.Table | None = field(default=None, compare=False)
     created: str = field(default_factory=lambda: datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ"))
     version: str = plantar.__version__
@@ -132,6 +139,18 @@ class FeetResult:
             if (row.foot, row.axis, row.name) == (foot, axis, name):
                 return row
         raise KeyError((foot, axis, name))
+
+    @property
+    def soles(self) -> dict[str, tuple[tuple[float, float], ...]]:
+        """Each foot's sole outline, x forward and y left in the sole's frame [m], where the result knows it."""
+        feet = value_of(dict[str, dict[str, Any]], {"feet": {}, **self.robot_model}, "feet", None)
+        found = {
+            name: value_of(dict[str, Any], {"sole": {}, **foot}, "sole", None) for name, foot in feet.items()
+        }
+        kind = tuple[tuple[float, float], ...]
+        return {
+            name: value_of(kind, sole, "polygon", None) for name, sole in found.items() if "polygon" in sole
+        }
 
     def to_table(self) -> pa.Table:
         """The parameters as an Arrow table, one row each; `.to_pandas()` where pandas is installed.
@@ -182,6 +201,9 @@ class FeetResult:
         }
         content |= {"comparisons": [asdict(row) for row in self.comparisons]} if self.comparisons else {}
         content |= {} if self.campaign is None else {"campaign": dict(self.campaign)}
+        for key in _WALKING:
+            rows = getattr(self, key)
+            content |= {key: [asdict(row) for row in rows]} if rows else {}
         plain: dict[str, Any] = finite(content)
         return plain
 
@@ -246,6 +268,9 @@ class FeetResult:
                 Comparison.from_dict(row, f"comparisons.{k}", path) for k, row in enumerate(comparisons)
             ),
             campaign=value_of(dict[str, Any], content, "campaign", path) if "campaign" in content else None,
+            stances=rows_of(StanceStiffness, content, "stances", path),
+            walks=rows_of(WalkStiffness, content, "walks", path),
+            swing_zeros=rows_of(SwingZero, content, "swing_zeros", path),
             created=value_of(str, content, "created", path),
             version=value_of(str, content, "plantar", path),
         )

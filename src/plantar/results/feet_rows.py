@@ -84,6 +84,11 @@ class ValidationRow:
     zero_mean_abs: float
     samples: int
 
+    @property
+    def has_skill(self) -> bool:
+        """Whether the model beats predicting the offset alone."""
+        return self.mean_abs_error < self.zero_mean_abs
+
 
 @dataclass(frozen=True)
 class LinearEquivalent:

@@ -7,7 +7,11 @@ from typing import Final
 
 MISSING: Final = "–"
 
+LARGE: Final = 1e7
+"""From here on numbers have an exponent."""
+
 _UNITS: Final = {
+    "1": "",
     "N.m/rad": "N·m/rad",
     "N.m/rad3": "N·m/rad³",
     "N.m.s/rad": "N·m·s/rad",
@@ -17,7 +21,7 @@ _UNITS: Final = {
 
 
 def unit(name: str) -> str:
-    """A contract unit in print: `N.m/rad` -> `N·m/rad`."""
+    """A contract unit in print: `N.m/rad` -> `N·m/rad`; nothing for a number without a unit."""
     return _UNITS.get(name, name.replace(".", "·"))
 
 
@@ -47,10 +51,9 @@ def with_uncertainty(value: float | None, half_width: float | None) -> str:
         return MISSING
     if half_width is None or not math.isfinite(half_width) or half_width <= 0:
         return number(value)
-    if abs(value) >= 1e7 or half_width < 1e-6:
+    if half_width < 1e-6:
         return f"{number(value)} ± {number(half_width, 2)}"
-    decimals = decimals_for(half_width)
-    return _minus(f"{value:.{decimals}f} ± {half_width:.{decimals}f}")
+    return " ± ".join(_alike((value, half_width), half_width))
 
 
 def interval(bounds: tuple[float, float] | None) -> str:
@@ -58,10 +61,20 @@ def interval(bounds: tuple[float, float] | None) -> str:
     if bounds is None or not all(map(math.isfinite, bounds)):
         return MISSING
     low, high = bounds
-    if high <= low or max(abs(low), abs(high)) >= 1e7 or high - low < 1e-6:
+    if high <= low or high - low < 1e-6:
         return f"{number(low)} to {number(high)}"
-    decimals = decimals_for((high - low) / 2)
-    return _minus(f"{low:.{decimals}f} to {high:.{decimals}f}")
+    # Under a common exponent an end near zero needs a digit more, or nothing is left of it.
+    finer = 10 if max(abs(low), abs(high)) >= LARGE else 1
+    return " to ".join(_alike((low, high), (high - low) / 2 / finer))
+
+
+def _alike(values: tuple[float, float], uncertainty: float) -> list[str]:
+    """Both values with the decimals that the uncertainty leaves; large ones with the same exponent."""
+    largest = max(map(abs, values))
+    exponent = math.floor(math.log10(largest)) if largest >= LARGE else 0
+    scale = 10.0**exponent
+    decimals, mark = decimals_for(uncertainty / scale), f"e{exponent}" if exponent else ""
+    return [_minus(f"{value / scale:.{decimals}f}{mark}") for value in values]
 
 
 def percent(value: float | None) -> str:

@@ -19,7 +19,7 @@ SIZE_LIMIT: Final = 2_000_000_000
 """Largest file that is read [bytes]."""
 
 _REQUIRED: Final = ("motion", "foot", "time", "used")
-_QUANTITIES: Final = ("deflection", "rate", "torque", "predicted")
+_QUANTITIES: Final = ("deflection", "rate", "torque", "predicted", "offset")
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,9 @@ class Track:
     `time` (N,) [s]; `used` (N,): whether a sample was used for the fit or the score; `support` (N,): double, single,
     air or transition. `values` has the other columns, (N,) each, NaN where not computed: `pitch.deflection` and
     `roll.deflection` [rad], their `.rate` [rad/s], measured `.torque` and the model's `.predicted` [N·m] about the
-    bush; `force_z` [N], and the centre of pressure `cop_x`, `cop_y` in the sole's frame [m].
+    bush. `.offset` [N·m] is the part of the latter that is not the bush's: the offset of the motion or of the stance,
+    and the load's torque about a centre that walks show beside its place. `force_z` [N], and the centre of pressure
+    `cop_x`, `cop_y` in the sole's frame [m].
     """
 
     motion: str

@@ -70,5 +70,8 @@ def test_each_stance_of_a_walk_has_its_offset(robot: RobotModel) -> None:
     predicted = predict(stepped, MODEL)
     assert predicted is not None
     assert worst(stepped, predicted) < CLOSE
+    offset = (predicted.torque - predicted.bush)[predicted.scored]
+    assert np.unique(offset.round(9)).size == 2, "what is not the bush's is the stance's offset"
+    assert np.ptp(offset) == pytest.approx(7.0, abs=CLOSE)
     scored = predicted.trivial[predicted.scored & (number == 1)]
     assert np.ptp(scored) == 0, "one trivial offset a stance"

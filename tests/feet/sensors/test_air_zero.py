@@ -29,6 +29,19 @@ def test_the_zero_is_what_a_lifted_foot_reads() -> None:
     assert zero.at(time).mean(axis=0) == pytest.approx(ZERO, abs=0.3)
 
 
+def test_each_swing_is_a_row_of_the_result() -> None:
+    time, wrench = walked(8, drift=2.0)
+    zero = air_zero(time, wrench, wrench[:, 2], WEIGHT)
+    assert zero is not None
+    rows = zero.rows("walk", "left")
+    assert [row.time for row in rows] == pytest.approx(np.arange(1.5, 17.0, 2.0), abs=0.05)
+    for row in rows:
+        drifted = ZERO + 2.0 * (row.time - time.mean()) * np.array([1, 1, 1, 0, 0, 0])
+        assert (*row.force, *row.torque) == pytest.approx(drifted, abs=0.6)
+        assert (*row.force_zero, *row.torque_zero) == pytest.approx(drifted, abs=0.6)
+    assert {(row.motion, row.foot) for row in rows} == {("walk", "left")}
+
+
 def test_a_drift_is_followed() -> None:
     time, wrench = walked(8, drift=2.0)
     zero = air_zero(time, wrench, wrench[:, 2], WEIGHT)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -56,9 +56,7 @@ def missing_rows(foot: str, axis: Axis, reason: str, advice: str = "") -> list[P
     ]
 
 
-def _evidence(
-    fit: AxisFit, recordings: Sequence[Recording], predictions: Mapping[tuple[str, str, Axis], np.ndarray]
-) -> Evidence:
+def _evidence(fit: AxisFit, recordings: Sequence[Recording], predictions: Predictions) -> Evidence:
     column = ROTATIONAL_AXES.index(fit.axis)
     seconds = moved = varied = missed = leans = loaded = 0.0
     samples = 0
@@ -66,7 +64,7 @@ def _evidence(
         predicted = predictions.get((recording.name, fit.foot, fit.axis))
         if predicted is None:
             continue
-        used, bush = recording.used(fit.foot) & np.isfinite(predicted), recording.bushes[fit.foot]
+        used, bush = recording.used(fit.foot) & np.isfinite(predicted.torque), recording.bushes[fit.foot]
         angle, torque = bush.deflection[used, column], bush.torque[used, column]
         samples += len(angle)
         contact = recording.contacts[fit.foot]
@@ -75,7 +73,7 @@ def _evidence(
         seconds += len(angle) * recording.period
         moved += float(np.sum((angle - angle.mean()) ** 2))
         varied += float(np.sum((torque - torque.mean()) ** 2))
-        missed += float(np.sum((torque - predicted[used]) ** 2))
+        missed += float(np.sum((torque - predicted.torque[used]) ** 2))
     damping = float(fit.numbers[1]) + 2 * float(fit.std[1])
     return Evidence(
         seconds,

@@ -9,20 +9,24 @@ import pyarrow as pa
 
 from plantar.contact.phases import SUPPORTS
 from plantar.conventions import ROTATIONAL_AXES, Array, Axis
+from plantar.feet.fit.prediction import Prediction
 from plantar.feet.recording import Recording
 
-Predictions = dict[tuple[str, str, Axis], Array]  # (motion, foot, axis) -> torque (N,)
+Predictions = dict[tuple[str, str, Axis], Prediction]  # by motion, foot and axis
 
 
 def residual_table(
-    recordings: Sequence[Recording], predictions: Mapping[tuple[str, str, Axis], Array]
+    recordings: Sequence[Recording], predictions: Mapping[tuple[str, str, Axis], Prediction]
 ) -> pa.Table:
-    """One row a sample, foot and motion; predicted torque is NaN where nothing was predicted."""
+    """One row a sample, foot and motion; predicted torque, and what of it is not the bush's, are NaN where nothing was
+    predicted."""
     parts = [_one(recording, foot, predictions) for recording in recordings for foot in recording.bushes]
     return pa.concat_tables(parts)
 
 
-def _one(recording: Recording, foot: str, predictions: Mapping[tuple[str, str, Axis], Array]) -> pa.Table:
+def _one(
+    recording: Recording, foot: str, predictions: Mapping[tuple[str, str, Axis], Prediction]
+) -> pa.Table:
     bush, contact, count = recording.bushes[foot], recording.contacts[foot], len(recording.time)
     columns = {
         "motion": _repeated(recording.name, count),
@@ -40,7 +44,11 @@ def _one(recording: Recording, foot: str, predictions: Mapping[tuple[str, str, A
         columns[f"{axis}.deflection"] = pa.array(bush.deflection[:, column])
         columns[f"{axis}.rate"] = pa.array(bush.rate[:, column])
         columns[f"{axis}.torque"] = pa.array(bush.torque[:, column])
-        columns[f"{axis}.predicted"] = pa.array(np.full(count, np.nan) if predicted is None else predicted)
+        nothing = np.full(count, np.nan)
+        columns[f"{axis}.predicted"] = pa.array(nothing if predicted is None else predicted.torque)
+        columns[f"{axis}.offset"] = pa.array(
+            nothing if predicted is None else predicted.torque - predicted.bush
+        )
     return pa.table(columns)
 
 

@@ -26,7 +26,7 @@ def score_axis(
         prediction = predict(recording, fitted)
         if prediction is None or prediction.scored.sum() < FEWEST_SAMPLES:
             continue
-        predictions[recording.name, foot, axis] = prediction.torque
+        predictions[recording.name, foot, axis] = prediction
         scored = prediction.scored
         measured = recording.bushes[foot].torque[scored, ROTATIONAL_AXES.index(axis)]
         kind: Literal["direct", "cross"] = "direct" if recording.role == "fit" else "cross"

@@ -17,9 +17,11 @@ from plantar.results.scores import first_second
 
 @dataclass(frozen=True)
 class Prediction:
-    """The torque (N,) that a model predicts, that of its offset alone (`trivial`, (N,)), and the samples to score."""
+    """The torque (N,) that a model predicts, of it that of the `bush` (N,) without offset and load, that of the offset
+    alone (`trivial`, (N,)), and the samples to score."""
 
     torque: Array
+    bush: Array
     trivial: Array
     scored: Mask
 
@@ -37,28 +39,34 @@ def predict(recording: Recording, fitted: FittedModel) -> Prediction | None:
         return None
     stances = recording.stances[foot]
     if stances is not None:
-        model = reconstructed(recording, fitted)
+        bush = bush_torque(recording, fitted)
+        model = bush + load_torque(recording, fitted)
         offset = _by_stance(torque - model, used, stances.number)
-        return Prediction(model + offset, _by_stance(torque, used, stances.number), used)
+        return Prediction(model + offset, bush, _by_stance(torque, used, stances.number), used)
     if recording.role == "fit":
-        seen = reconstructed(recording, fitted) + fitted.offsets[recording.name]
-        return Prediction(seen, np.full(len(torque), np.mean(torque[used])), used)
+        bush = bush_torque(recording, fitted)
+        seen = bush + load_torque(recording, fitted) + fitted.offsets[recording.name]
+        return Prediction(seen, bush, np.full(len(torque), np.mean(torque[used])), used)
     first = first_second(recording.time, used)
     if not (used & ~first).any():
         return None
     states = unseen_initial_states(fitted, recording, first)
-    model = reconstructed(recording, fitted, states)
+    bush = bush_torque(recording, fitted, states)
+    model = bush + load_torque(recording, fitted)
     unseen = model + float(np.mean((torque - model)[first]))
-    return Prediction(unseen, np.full(len(torque), np.mean(torque[first])), used & ~first)
+    return Prediction(unseen, bush, np.full(len(torque), np.mean(torque[first])), used & ~first)
 
 
-def reconstructed(recording: Recording, fitted: FittedModel, states: Array | None = None) -> Array:
-    """The torque (N,) of the bush and of the load, without an offset; `states` (runs,) as in `model_columns`."""
-    torque = model_columns(recording, fitted.foot, fitted.axis, fitted, states) @ fitted.values
+def bush_torque(recording: Recording, fitted: FittedModel, states: Array | None = None) -> Array:
+    """The torque (N,) of the bush alone; `states` (runs,) as in `model_columns`."""
+    return np.asarray(model_columns(recording, fitted.foot, fitted.axis, fitted, states) @ fitted.values)
+
+
+def load_torque(recording: Recording, fitted: FittedModel) -> Array:
+    """The torque (N,) of the load on a bush whose centre is beside its place, as walks show it."""
     if not any(fitted.moment_arms):
-        return np.asarray(torque)
-    arms = np.array(fitted.moment_arms)
-    return np.asarray(torque + moment_columns(recording, fitted.foot, fitted.axis) @ arms)
+        return np.zeros(len(recording.time))
+    return np.asarray(moment_columns(recording, fitted.foot, fitted.axis) @ np.array(fitted.moment_arms))
 
 
 def _by_stance(values: Array, used: Mask, number: NDArray[np.intp]) -> Array:

@@ -10,7 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from plantar.conventions import Array
+from plantar.conventions import FORCE, TORQUE, Array
+from plantar.results.walk_rows import SwingZero
 from plantar.signals.segments import runs
 
 FEWEST_SWINGS = 2  # fewer do not tell a zero from a robot that is lifted, or a foot that slides along
@@ -27,13 +28,19 @@ ALIKE = 0.1  # of the weight: swings read so alike, drift and all; a robot at re
 @dataclass(frozen=True)
 class AirZero:
     """A sensor's zero: `middle` (6,) [N, N·m] at the time `about` [s], `drift` (6,) [1/s], and by how much single
-    swings `scatter` (6,) about that line; `swings`: how many show it."""
+    swings `scatter` (6,) about that line; `when` (S,) [s] and what each swing `read`, (S, 6)."""
 
     middle: Array
     drift: Array
     scatter: Array
     about: float
-    swings: int
+    when: Array
+    read: Array
+
+    @property
+    def swings(self) -> int:
+        """How many swings show it."""
+        return len(self.when)
 
     @property
     def text(self) -> str:
@@ -47,6 +54,16 @@ class AirZero:
     def at(self, time: Array) -> Array:
         """The zero (N, 6) at times (N,) [s]."""
         return np.asarray(self.middle + (time - self.about)[:, None] * self.drift)
+
+    def rows(self, motion: str, foot: str) -> list[SwingZero]:
+        """Each swing as a row of the result."""
+        parts = (FORCE, TORQUE)
+        return [
+            SwingZero(
+                motion, foot, float(time), *(_vector(six[part]) for six in (read, zero) for part in parts)
+            )
+            for time, read, zero in zip(self.when, self.read, self.at(self.when), strict=True)
+        ]
 
 
 def air_zero(time: Array, wrench: Array, force_z: Array, weight: float) -> AirZero | None:
@@ -83,7 +100,12 @@ def air_zero(time: Array, wrench: Array, force_z: Array, weight: float) -> AirZe
     left = seen - (when - about)[:, None] * drift
     usual = np.median(left, axis=0)
     scatter = 1.4826 * np.median(np.abs(left - usual), axis=0)
-    return AirZero(usual, drift, scatter, about, len(seen))
+    return AirZero(usual, drift, scatter, about, when, seen)
+
+
+def _vector(three: Array) -> tuple[float, float, float]:
+    x, y, z = three.tolist()
+    return x, y, z
 
 
 def _usual_slope(when: Array, seen: Array) -> Array:

@@ -42,21 +42,22 @@ const plantar = {};
     return values;
   };
 
-  // The motion's tracks: {foot, time, used, values: {key: [..]}}.
+  // The motion's tracks: {foot, time, used, air, values: {key: [..]}}; `air` is 1 where the foot is in the air.
   plantar.decode = async (header, base64) => {
     const bytes = await inflate(base64);
     let at = 0;
     return header.tracks.map((track) => {
       const time = readTime(bytes, at, track);
       at += 4 * track.n;
-      const used = bytes.subarray(at, at + track.n).map((flag) => flag & 1);
+      const flags = bytes.subarray(at, at + track.n), inAir = header.supports.indexOf("air");
+      const used = flags.map((flag) => flag & 1), air = flags.map((flag) => (flag >> 1 === inAir ? 1 : 0));
       at += track.n;
       const values = {};
       for (const channel of track.channels) {
         values[channel.key] = readChannel(bytes, at, track, channel);
         at += 2 * track.n;
       }
-      return { foot: track.foot, time, used, values };
+      return { foot: track.foot, time, used, air, values };
     });
   };
 })();

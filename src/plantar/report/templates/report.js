@@ -17,6 +17,14 @@
            time: track.time, values: track.values[key] }]
       : []);
 
+  // A bush in the air carries nothing and its angle says nothing: it is not drawn.
+  const standing = (tracks) => {
+    const shown = tracks.filter((track) => track.air.includes(0));
+    if (shown.length === 0) return tracks;
+    return shown.map((track) => ({ ...track, values: Object.fromEntries(Object.entries(track.values).map(
+      ([key, values]) => [key, values.map((value, i) => (track.air[i] ? null : value))])) }));
+  };
+
   const torqueLines = (track, axis) =>
     [["measured", "red", 1, "torque"], ["reconstructed", "blue", 1.5, "predicted"]].flatMap(
       ([label, colour, width, what]) => {
@@ -30,7 +38,7 @@
     const { tracks, frame, key } = motion;
     const track = tracks.find((one) => one.foot === foot);
     if (kind === "angles") {
-      plantar.timePlot(host, key, frame, UNITS[axis].deflection, lines(tracks, `${axis}.deflection`), null);
+      plantar.timePlot(host, key, frame, UNITS[axis].deflection, lines(standing(tracks), `${axis}.deflection`), null);
     } else if (kind === "force") {
       plantar.timePlot(host, key, frame, "force z [N]", lines(tracks, "force_z"), null);
     } else if (kind === "pressure") {

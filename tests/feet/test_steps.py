@@ -1,0 +1,82 @@
+"""A foot that steps, through the whole identification: each stance, each walk and each swing stands in the result."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from biped import TRUTH, record, sway
+from plantar.feet.identify import identify_feet
+from plantar.feet.settings import FeetSettings
+from plantar.logs.motion_log import MotionLog
+from plantar.results.feet import FeetResult
+from plantar.robot.model import RobotModel
+
+ZERO = 20.0  # N, of the left force sensor along z
+PERIOD, STANDS = 1.5, 1.0  # s, of a step and of its stance
+CLOSE = 0.1  # of K: some seconds of a small roll, with the load's moment arms beside it
+
+
+def stepping(log: MotionLog) -> MotionLog:
+    """The left foot is lifted for a third of each step; the right one carries all, and its torque is not looked at."""
+    loaded = np.mod(log.time, PERIOD) < STANDS
+    changed = {}
+    for part in ("force", "torque"):
+        for axis in "xyz":
+            left, right = (log.columns[f"wrench.{foot}.{part}.{axis}"] for foot in ("left", "right"))
+            changed[f"wrench.left.{part}.{axis}"] = np.where(loaded, left, 0.0)
+            if part == "force":
+                changed[f"wrench.right.{part}.{axis}"] = right + np.where(loaded, 0.0, left)
+    changed["wrench.left.force.z"] = changed["wrench.left.force.z"] + ZERO
+    return log.with_columns(changed)
+
+
+@pytest.fixture(scope="module")
+def found(robot: RobotModel) -> FeetResult:
+    logs = [stepping(record(sway(f"walk_{seed}", seed, duration=15.0))) for seed in (1, 2, 3)]
+    return identify_feet(robot, logs[:2], logs[2:], FeetSettings(model="kelvin_voigt", wrench_delay=0.0))
+
+
+def test_stances_and_walks_of_both_axes_and_all_recordings_are_in_the_result(found: FeetResult) -> None:
+    keys = {(row.foot, row.axis, row.motion, row.role) for row in found.walks}
+    roles = {"walk_1": "fit", "walk_2": "fit", "walk_3": "validate"}
+    assert keys == {
+        ("left", axis, motion, role) for axis in ("pitch", "roll") for motion, role in roles.items()
+    }
+    assert {(row.foot, row.axis, row.motion, row.role) for row in found.stances} == keys
+    for axis in ("pitch", "roll"):
+        truth = TRUTH["left", axis].stiffness
+        walks = [row.stiffness for row in found.walks if row.axis == axis]
+        assert walks == pytest.approx([truth] * 3, rel=CLOSE)
+        stances = [row for row in found.stances if row.axis == axis]
+        assert 24 <= len(stances) <= 30
+        assert np.median([row.stiffness for row in stances]) == pytest.approx(truth, rel=CLOSE)
+        assert all(0.5 < row.end - row.start < STANDS for row in stances)
+
+
+def test_each_swing_shows_the_sensors_zero(found: FeetResult) -> None:
+    for motion in ("walk_1", "walk_2", "walk_3"):
+        rows = [row for row in found.swing_zeros if row.motion == motion]
+        assert {row.foot for row in rows} == {"left"}
+        assert len(rows) >= 8
+        assert [row.force[2] for row in rows] == pytest.approx([ZERO] * len(rows), abs=0.5)
+        assert [row.force_zero[2] for row in rows] == pytest.approx([ZERO] * len(rows), abs=0.5)
+        assert all(STANDS < np.mod(row.time, PERIOD) < PERIOD for row in rows)
+
+
+def test_the_residuals_say_what_is_not_the_bushs(found: FeetResult) -> None:
+    assert found.residuals is not None
+    table = found.residuals.to_pydict()
+    mine = (np.array(table["foot"]) == "left") & np.array(table["used"])
+    angle, rate, predicted, offset = (
+        np.array(table[f"pitch.{name}"])[mine] for name in ("deflection", "rate", "predicted", "offset")
+    )
+    stiffness, damping = (found.parameter("left", "pitch", name).value for name in ("stiffness", "damping"))
+    assert predicted - offset == pytest.approx(stiffness * angle + damping * rate, abs=1e-6)
+
+
+def test_the_zero_is_taken_off(found: FeetResult) -> None:
+    assert found.residuals is not None
+    table = found.residuals.to_pydict()
+    swings = (np.array(table["foot"]) == "left") & (np.array(table["support"]) == "air")
+    assert np.median(np.array(table["force_z"])[swings]) == pytest.approx(0.0, abs=0.5)

@@ -1,0 +1,115 @@
+"""The charts of walks: every stance and walk at its stiffness, every swing at its zero, unseen walks by row."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from plantar.report.charts import strips, unseen
+from plantar.report.charts.chart import Band, Chart, Dot, Path
+from plantar.report.charts.strips import strip_charts
+from plantar.report.charts.unseen import unseen_charts
+from plantar.report.charts.zeros import zero_charts
+from report_walks import STANCES, STIFFNESS, standing_result, walk_result, walk_tracks
+
+
+def dots(chart: Chart, kind: str) -> list[Dot]:
+    return [mark for mark in chart.panels[0].marks if isinstance(mark, Dot) and mark.kind == kind]
+
+
+def number_at(chart: Chart, y: float) -> float:
+    """The number at a height of the first panel, by the texts beside its grid."""
+    panel = chart.panels[0]
+    texts = [text for text in panel.texts if text.x < panel.left and text.anchor == "end" and not text.turned]
+    ticks = sorted((text.y - 4 - panel.top, float(text.text.replace("−", "-"))) for text in texts)
+    return float(np.interp(y, [at for at, _ in ticks], [value for _, value in ticks]))
+
+
+def test_stances_walks_and_all_together_stand_at_their_stiffness() -> None:
+    pitch, roll = strip_charts(walk_result())
+    assert [chart.title.split(":")[0] for chart in (pitch, roll)] == ["left pitch", "left roll"]
+    fitted, not_seen = dots(pitch, "stance fit"), dots(pitch, "stance validate")
+    assert (len(fitted), len(not_seen)) == (2 * STANCES, STANCES)
+    assert [number_at(pitch, dot.y) for dot in fitted[:STANCES]] == pytest.approx(
+        [STIFFNESS + 10 * k for k in range(STANCES)], abs=0.5
+    )
+    assert fitted[4].radius > fitted[0].radius, "one that says more is larger"
+    assert fitted[4].hover == "walk_1, 4.00 to 4.49 s: K = 540.0 N·m/rad"
+    walks = dots(pitch, "walk fit") + dots(pitch, "walk validate")
+    assert [number_at(pitch, dot.y) for dot in walks] == pytest.approx(3 * [STIFFNESS + 5], abs=0.5)
+    (band,) = (mark for mark in pitch.panels[0].marks if isinstance(mark, Band))
+    assert number_at(pitch, band.y) == pytest.approx(STIFFNESS + 8, abs=0.5)
+    assert number_at(pitch, band.y + band.height) == pytest.approx(STIFFNESS - 8, abs=0.5)
+    assert ("all together: 500 ± 8 N·m/rad", "pooled") in pitch.legend
+
+
+def test_a_stance_that_says_little_does_not_set_the_scale() -> None:
+    result = walk_result()
+    wild = replace(result.stances[0], stiffness=-9000.0, share=1e-4)
+    chart = strip_charts(replace(result, stances=(wild, *result.stances[1:])))[0]
+    assert number_at(chart, chart.panels[0].height) > STIFFNESS - 30
+    lowest = max(dots(chart, "stance fit"), key=lambda dot: dot.y)
+    assert lowest.y == pytest.approx(chart.panels[0].height - 2)
+    assert "−9000" in lowest.hover
+    assert chart.remark == "1 stances lie beyond the scale, at its edge."
+
+
+def test_strips_are_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(strips, "MOST_STANCES", 6)
+    monkeypatch.setattr(strips, "MOST_WALKS", 2)
+    chart = strip_charts(walk_result())[0]
+    assert len(dots(chart, "stance fit")) <= 6
+    assert "The first 2 of 3 recordings." in chart.remark
+    assert "The 6 stances that say most, of 15." in chart.remark
+
+
+def test_zeros_of_swings_stand_where_they_were_read() -> None:
+    force, torque = zero_charts(walk_result().swing_zeros)
+    vertical = dots(force, "component z")
+    assert [number_at(force, dot.y) for dot in vertical[:STANCES]] == pytest.approx(
+        [-40.0 + k for k in range(STANCES)], abs=0.5
+    )
+    assert np.all(np.diff([dot.x for dot in vertical]) > 0), "recordings stand one after the other"
+    assert len(dots(torque, "component x")) == 3 * STANCES
+    taken = [mark for mark in force.panels[0].marks if isinstance(mark, Path) and mark.kind == "component z"]
+    assert len(taken) == 3
+    assert number_at(force, float(taken[0].points[1:].split("l")[0].split()[1])) == pytest.approx(
+        -38.0, abs=0.5
+    )
+    assert zero_charts([]) == []
+
+
+def test_one_swing_is_a_chart_too() -> None:
+    (force, _) = zero_charts(walk_result().swing_zeros[:1])
+    assert len(dots(force, "component y")) == 1
+
+
+def test_unseen_walks_alone_are_drawn_with_their_score() -> None:
+    charts = unseen_charts(walk_result(), walk_tracks())
+    assert [chart.title for chart in charts] == [
+        f"left {axis}: torque of unseen walks" for axis in ("pitch", "roll")
+    ]
+    (panel,) = charts[0].panels
+    texts = [text.text for text in panel.texts]
+    assert "walk_3" in texts
+    assert "mean |error| 0.500 N·m, 0.10 of the offset's alone" in texts
+    assert [mark.kind for mark in panel.marks] == ["measured", "model"]
+    measured, model = (mark.points.count("M") for mark in panel.marks)
+    assert measured == model == STANCES, "the air is a gap"
+    assert unseen_charts(walk_result(), walk_tracks(motions=["walk_1", "walk_2"])) == []
+    assert unseen_charts(standing_result(), walk_tracks()) == []
+
+
+def test_unseen_walks_are_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(unseen, "MOST_ROWS", 1)
+    result = walk_result()
+    twice = [
+        *walk_tracks(motions=["walk_3"]),
+        *(replace(t, motion="walk_4") for t in walk_tracks(motions=["walk_3"])),
+    ]
+    more = [replace(row, motion="walk_4") for row in result.stances if row.role == "validate"]
+    charts = unseen_charts(replace(result, stances=(*result.stances, *more)), twice)
+    assert [len(chart.panels) for chart in charts] == [1, 1]
+    assert charts[0].remark == "1 further unseen walks stand under Motions."
