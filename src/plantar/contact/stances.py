@@ -13,6 +13,9 @@ from plantar.conventions import Array
 from plantar.signals.segments import runs
 
 FEWEST_STANCES = 3  # in one recording: a robot that walks; fewer are a robot that stands and shifts its feet
+LONG_STANCE = (
+    2.0  # usual stances, as long as one offset may last: a robot that stands before it walks drifts meanwhile
+)
 ROLLING_SHARE = 0.1  # of the sole's half width: a centre of pressure so near to the outline may roll about it
 LONGEST_STANCE = 5.0  # s, their median: in longer ones a foot moves as in any standing motion, and drifts
 
@@ -20,6 +23,8 @@ LONGEST_STANCE = 5.0  # s, their median: in longer ones a foot moves as in any s
 @dataclass(frozen=True)
 class Stances:
     """One foot's stances through a walk: `number` (N,) of each sample, -1 in the air; `weight` (N,) from 0 to 1.
+
+    A stance far longer than usual, before the first step and after the last, counts as several.
 
     A sample weighs as much as the foot carries: what the ground moves by does not grow with the load, while what the
     bush says does.
@@ -39,12 +44,14 @@ def stances_of(contact: FootContact, force: Array, weight: float, period: float)
     force: vertical, (N,) [N]; weight: the robot's [N].
     """
     found = runs(contact.loaded)
-    seconds = [(run.stop - run.start) * period for run in found]
-    if len(found) < FEWEST_STANCES or np.median(seconds) > LONGEST_STANCE:
+    usual = float(np.median([run.stop - run.start for run in found])) if found else 0.0
+    if len(found) < FEWEST_STANCES or usual * period > LONGEST_STANCE:
         return None
     number = np.full(len(force), -1, dtype=np.intp)
-    for place, run in enumerate(found):
-        number[run] = place
+    for run in found:
+        parts = max(1, round((run.stop - run.start) / (LONG_STANCE * usual)))
+        for part in np.array_split(np.arange(run.start, run.stop), parts):
+            number[part] = number.max() + 1
     return Stances(number, np.clip(np.nan_to_num(force) / weight, 0.0, 1.0))
 
 
@@ -59,8 +66,8 @@ def without_rolling(stances: Stances, cop: Array, polygon: Array) -> Stances:
     middle = inside_distance(polygon.mean(axis=0)[None], polygon)
     flat = np.nan_to_num(depth, nan=-1.0) > ROLLING_SHARE * float(middle[0])
     number = stances.number.copy()
-    for stance in range(stances.count):
-        rows = np.flatnonzero(number == stance)
+    for run in runs(number >= 0):
+        rows = np.arange(run.start, run.stop)
         most = int(SETTLING_SHARE * len(rows))
         for end in (rows[:most], rows[len(rows) - most :][::-1]):
             rolls = np.flatnonzero(~flat[end])

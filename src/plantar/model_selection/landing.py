@@ -57,9 +57,11 @@ def landing_states(bush: Hysteresis, stances: Sequence[Array], initial_states: A
         # The spring alone would take it back to zero torque in this way; with the element it stops sooner.
         farthest = lifted - bush.torque(lifted, last) / bush.values[0]
         back = [np.linspace(*ends, SAMPLES) for ends in zip(lifted, farthest, strict=True)]
-        ways = []
+        ways: list[Array] = []
         for path, state in zip(back, bush.states(back, last), strict=True):
             stop = int(np.argmin(np.abs(bush.torque(path, state))))
-            ways.append(np.concatenate([path[: stop + 1], np.linspace(path[stop], landed[len(ways)], SAMPLES)]))
+            ways.append(
+                np.concatenate([path[: stop + 1], np.linspace(path[stop], landed[len(ways)], SAMPLES)])
+            )
         states[1:] = [state[-1] for state in bush.states(ways, last)]
     return states

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from plantar.conventions import Mask
 
@@ -11,6 +12,14 @@ def runs(valid: Mask) -> list[slice]:
     """The stretches of consecutive true samples, as slices."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], valid, [False]]).astype(np.int8)))
     return [slice(int(start), int(stop)) for start, stop in edges.reshape(-1, 2)]
+
+
+def run_numbers(valid: Mask) -> NDArray[np.intp]:
+    """The place among `runs` of each sample, (N,), -1 outside."""
+    number = np.full(len(valid), -1, dtype=np.intp)
+    for place, run in enumerate(runs(valid)):
+        number[run] = place
+    return number
 
 
 def run_ends(valid: Mask, reach: int) -> Mask:

@@ -19,6 +19,7 @@ REMEDY = {
     "yaw torque zero": "zero the force sensors with the feet in the air before recording",
     "between walks": "add walks: five or more show by themselves how much they differ",
     "ends of stances": "walk with longer stances, or stand and sway: landing and lifting disturb the fit",
+    "zeros of stances": "keep the foot on the floor through a recording: put down again, it lands with another zero",
     "memory in stances": "add a recording of standing and swaying: short steps hardly tell spring and memory apart",
     "hardening": "record larger motions, or ask for --model hardening: the spring stiffens, and the law leaves it out",
     "model": "more of the same will not help: the law misses what the rubber does; try --model auto or other motions",
@@ -62,7 +63,9 @@ def advised(rows: Sequence[Parameter], diagnosis: Sequence[Mapping[str, Any]]) -
     found = []
     for row in rows:
         limit = limits.get((row.foot, row.axis, row.name))
-        if row.verdict != "usable" and limit in ("delay", "lever", "hardening", "yaw torque zero"):
+        if row.verdict != "usable" and limit in (
+            "delay", "lever", "hardening", "yaw torque zero", "zeros of stances",
+        ):  # fmt: skip
             row = replace(row, reason=f"{row.reason}; nearly all of it from {limit}", advice=REMEDY[limit])
         found.append(row)
     return found

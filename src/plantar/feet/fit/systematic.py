@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from plantar.conventions import ROTATIONAL_AXES, Array
 from plantar.estimation import Block, effect_of, fit_blocks
@@ -17,13 +18,15 @@ from plantar.feet.fit.vertical_stiffness import VerticalStiffness
 from plantar.feet.recording import Recording, moment_arm_effect
 from plantar.feet.sensors.sensor_delay import SensorDelay
 from plantar.signals.filters import differentiate
+from plantar.signals.segments import run_numbers
 
 SUSPECTED = 2.0  # deviations of a term that the law leaves out
-WALKS_DIFFER = 0.04  # share of K by which walks of one robot differ, beyond what their own stances show
+WALKS_DIFFER = 0.035  # share of K by which walks of one robot differ, beyond what their own stances show
 STANCE_END = 0.1  # of a stance at either end, without which a fit over stances is made again
 SLOPE_UNSURE = (
-    0.04  # of the slope of an element found in short stances: what its share of the spring is unsure by
+    0.02  # of the slope of an element found in short stances: what its share of the spring is unsure by
 )
+FEWEST_STANDS = 2  # stances of a foot in one recording, for their zeros to differ
 SINGULAR = 1e6  # condition of the fit beyond which nothing moves enough to tell
 KNOWN = 0.2  # of the stiffness: less sure beside such a term, the motions cannot tell one from the other
 
@@ -72,6 +75,9 @@ def systematic_causes(
         # The zeros were read in the air, and within a stance no cube is told from how a sole lands and lifts.
         return [*causes, _ends_of_stances(blocks), *_between_walks(fit, len(blocks)), *_shared_slope(fit)]
     causes += _suspected_hardening(fit, blocks, shared)
+    causes += _zeros_of_stances(
+        blocks, [run_numbers(one.contacts[foot].loaded)[used] for one, used in parts], shared
+    )
     if fit.axis == "roll":
         # Roll's torque is cos(pitch)·τ_x - sin(pitch)·τ_z: the zero of τ_z, as large as the others', does not stay a
         # constant. Each recording has its own.
@@ -113,7 +119,7 @@ def _shared_slope(fit: AxisFit) -> list[Cause]:
     """What a memory that was found in short stances may have taken from the spring, or left to it.
 
     Until it slips, an element is a spring; each stance begins with a state that nobody knows. On walks of a simulated
-    robot whose feet are known, K is off by up to a twelfth of the element's slope.
+    robot whose feet are known, K is off by up to 2.5 % of the element's slope.
     """
     if "slip_torque" not in fit.model.terms:
         return []
@@ -122,6 +128,26 @@ def _shared_slope(fit: AxisFit) -> list[Cause]:
     effect = np.zeros(len(fit.values))
     effect[0] = slope
     return [Cause("memory in stances", effect, SLOPE_UNSURE)]
+
+
+def _zeros_of_stances(
+    blocks: Sequence[Block], stances: Sequence[NDArray[np.intp]], shared: bool
+) -> list[Cause]:
+    """What one offset may cost where a foot was lifted and put down again: how far the fit moves when each stance has
+    an offset of its own, a bound either way.
+
+    It lands elsewhere, turned a little otherwise, on a floor that is not level. `stances`: runs of samples in which the
+    foot does not leave the floor, of every block's recording.
+    """
+    if shared or all(len(np.unique(number)) < FEWEST_STANDS for number in stances):
+        return []
+    freed = []
+    for block, number in zip(blocks, stances, strict=True):
+        own = (number[:, None] == np.unique(number)[1:]).astype(np.float64)
+        kept = [] if block.nuisance is None else [block.nuisance]
+        freed.append(replace(block, nuisance=np.column_stack([*kept, own - own.mean(axis=0)])))
+    effect = fit_blocks(freed).values - fit_blocks(blocks).values
+    return [Cause("zeros of stances", effect, 1 / np.sqrt(3))]
 
 
 def _suspected_hardening(fit: AxisFit, blocks: Sequence[Block], shared: bool) -> list[Cause]:
