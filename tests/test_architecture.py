@@ -53,7 +53,6 @@ UNTESTED = frozenset(
         "model_selection.initial_state",
         "signals.orientation",
         "signals.spikes",
-        "whole_body.identified_urdf",
         "whole_body.regularised_result",
         "whole_body.scores",
         "whole_body.whole_logs",

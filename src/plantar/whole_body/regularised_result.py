@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import xml.etree.ElementTree as ET
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -10,12 +11,14 @@ import numpy as np
 from plantar.conventions import INERTIAL_NAMES, INERTIAL_UNITS
 from plantar.dynamics import parameter_name, solve_triangle
 from plantar.dynamics.consistency import is_consistent
+from plantar.dynamics.equation import PER_LINK
 from plantar.estimation.intervals import interval95, relative_std_percent
 from plantar.notes import Note, unique
 from plantar.results.dynamics import BaseParameter, DynamicsResult, InertialParameter, JointParameter
+from plantar.robot.identified_urdf import write_inertias
+from plantar.robot.model import RobotModel
 from plantar.whole_body.covariance import Uncertainty
 from plantar.whole_body.folds import Samples
-from plantar.whole_body.identified_urdf import identified_urdf
 from plantar.whole_body.regularised_fit import RegularisedFit
 from plantar.whole_body.scores import Place, scored
 from plantar.whole_body.whole_logs import WholeLogs
@@ -40,7 +43,7 @@ def result_of(
     robot = logs.body.robot
     rank, condition, excitation = excitation_of(fit)
     validation, residuals = scored(fit, fitted, unseen, places)
-    model = robot.floating_model if fit.equation.floating else robot.model
+    urdf, moved = identified_urdf(robot, fit)
     return DynamicsResult(
         schema=schema,
         robot=robot.name,
@@ -52,10 +55,20 @@ def result_of(
         inertial_parameters=inertial_rows(fit),
         parameters=parameters,
         validation=validation,
-        notes=unique([*logs.notes, *notes, *excitation, *fit_notes(fit)]),
-        urdf=identified_urdf(robot.urdf, model, fit.inertial),
+        notes=unique([*logs.notes, *notes, *excitation, *fit_notes(fit), *moved]),
+        urdf=urdf,
         residuals=residuals,
     )
+
+
+def identified_urdf(robot: RobotModel, fit: RegularisedFit) -> tuple[str, tuple[Note, ...]]:
+    """The URDF's text with the inertias found, and notes on the links that carry them."""
+    root = ET.fromstring(robot.urdf)
+    model = robot.floating_model if fit.equation.floating else robot.model
+    bodies = dict(zip(fit.equation.links, fit.inertial.reshape(-1, PER_LINK), strict=True))
+    notes = write_inertias(root, model, bodies)
+    ET.indent(root)
+    return ET.tostring(root, encoding="unicode", xml_declaration=True) + "\n", notes
 
 
 def excitation_of(fit: RegularisedFit) -> tuple[int, float, list[Note]]:
