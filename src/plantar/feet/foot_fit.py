@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 from plantar.contact.reasons import Reason
 from plantar.conventions import ROTATIONAL_AXES, Axis, Mask
@@ -21,7 +20,7 @@ from plantar.feet.prepare import PreparedLogs
 from plantar.feet.recording import Recording
 from plantar.models import BushModel
 from plantar.notes import Note
-from plantar.results.feet import Parameter, ValidationRow
+from plantar.results.feet import Diagnosis, Parameter, ValidationRow
 
 ROUNDS = 3  # of leaving outliers out: a large one hides smaller ones
 
@@ -33,7 +32,7 @@ class FootFit:
     fits: list[AxisFit] = field(default_factory=list)
     parameters: list[Parameter] = field(default_factory=list)
     validation: list[ValidationRow] = field(default_factory=list)
-    diagnosis: list[dict[str, Any]] = field(default_factory=list)
+    diagnosis: list[Diagnosis] = field(default_factory=list)
     predictions: Predictions = field(default_factory=dict)
     notes: tuple[Note, ...] = ()
 

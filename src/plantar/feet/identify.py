@@ -23,7 +23,7 @@ from plantar.feet.settings import FeetSettings
 from plantar.logs.inputs import LogInputs, RobotInput, logs_of, robot_of
 from plantar.models import KelvinVoigt
 from plantar.notes import Note, joined
-from plantar.results.feet import AxisModel, DelayEstimate, Diagnosis, FeetResult, Input, Offset
+from plantar.results.feet import AxisModel, DelayEstimate, FeetResult, Input, Offset
 from plantar.results.feet_rows import Candidate, LinearEquivalent
 from plantar.robot.model import Foot, Placement, RobotModel
 
@@ -115,7 +115,7 @@ def fit_prepared(
         models=tuple(_axis_model(fit) for fit in fits),
         sensor_delay=delay_estimate(ready.sensor_delay),
         compliance=dict(ready.vertical.compliance),
-        diagnosis=tuple(Diagnosis(**row) for each in found for row in each.diagnosis),
+        diagnosis=tuple(row for each in found for row in each.diagnosis),
         residuals=residual_table(ready.recordings, predictions),
     )
 

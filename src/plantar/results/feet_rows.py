@@ -166,8 +166,9 @@ class DelayEstimate:
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """What limits one number: the half width of its 95 % interval [% of the value], the share of each cause in its
-    variance (0 to 1), the largest cause, and what to record against it."""
+    """What limits one number: `limit` is the largest cause of its variance, `variance_shares` (0 to 1) the share of
+    each, `half_width_percent` half of its 95 % interval [% of the value], `advice` what to record against `limit`,
+    and `text` all of it in one sentence."""
 
     foot: str
     axis: Axis
@@ -176,6 +177,7 @@ class Diagnosis:
     variance_shares: Mapping[str, float]
     half_width_percent: float
     text: str
+    advice: str = ""
 
 
 @dataclass(frozen=True)
