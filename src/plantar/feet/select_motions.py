@@ -13,9 +13,9 @@ from plantar.errors import DataError
 from plantar.estimation import fit_blocks
 from plantar.estimation.intervals import cosine_covariance
 from plantar.feet.fit.regression_data import blocks_of
-from plantar.feet.prepare import check_names, prepare_all
+from plantar.feet.prepare import prepare_all
 from plantar.feet.settings import FeetSettings
-from plantar.logs.inputs import LogInputs, RobotInput, logs_of, robot_of
+from plantar.logs.inputs import LogInputs, RobotInput, check_names, logs_of, robot_of
 from plantar.models import KelvinVoigt
 
 SEVERAL = 3000  # combinations looked at one by one; beyond that the best set grows one recording at a time

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from plantar.errors import DataError
-from plantar.feet.prepare import check_names
+from plantar.logs.inputs import check_names
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.results.feet import Input
