@@ -10,7 +10,7 @@ import numpy as np
 from plantar.conventions import Array
 from plantar.model_selection.data_sets import FilteredDataSet
 from plantar.model_selection.grid import Numbers, Pieces, fit_pieces, held_out_squares
-from plantar.model_selection.model_fit import ModelFit, refine
+from plantar.model_selection.model_fit import ModelFit
 from plantar.models import BushModel
 
 FOLDS = 5  # contiguous parts that recordings are cut into where they cannot stand for one another
@@ -59,25 +59,21 @@ class Candidate:
         squares = fit_pieces(pieces, everything, shared_offset=shared_offset).squares
         return cls(model, pieces, limits, float(squares.min()))
 
+    def pieces_about(
+        self, fit: ModelFit, prepared: Sequence[FilteredDataSet], folds: Sequence[Numbers]
+    ) -> Pieces:
+        """The pieces with the fit's shape and initial states among those to be tried."""
+        if not self.pieces.shapes.shape[1]:
+            return self.pieces
+        return self.pieces.with_shape(fit.shape, list(fit.initial_states.values()), prepared, folds)
 
-def cross_validate(
-    candidate: Candidate,
-    prepared: Sequence[FilteredDataSet],
-    folds: Sequence[Numbers],
-    whole: bool,
-    shared_offset: bool,
-    *,
-    refined: bool,
-) -> tuple[ModelFit, Array]:
-    """The law's fit to everything, and its squared error on each piece from fits that have not seen it."""
-    pieces = candidate.pieces
-    fit = refine(pieces, prepared, candidate.limits, shared_offset=shared_offset, refined=refined)
-    if pieces.shapes.shape[1] and refined:
-        pieces = pieces.with_shape(fit.shape, list(fit.initial_states.values()), prepared, folds)
+
+def cross_validate(pieces: Pieces, *, whole: bool, shared_offset: bool) -> Array:
+    """A model's squared error on each piece (pieces,) from fits that have not seen it."""
     squares = np.zeros(len(pieces.grams))
     for fold in np.unique(pieces.fold):
         held = pieces.fold == fold
         rest = fit_pieces(pieces, ~held, shared_offset=shared_offset)
         best = int(np.argmin(rest.squares))
         squares[held] = held_out_squares(pieces, rest, held, best, whole=whole)
-    return fit, np.maximum(squares, 0.0)
+    return np.maximum(squares, 0.0)

@@ -161,14 +161,6 @@ class FilteredDataSet:
             number[run] = place
         return number[self.used]
 
-    def filtered(self, extra: Array) -> Array:
-        """Columns (N, e, b) of a law through the filter, at the samples that serve: (n, e, b)."""
-        if extra.shape[1] == 0:
-            return extra[self.used]
-        shortest = SHORTEST_RUN if self.steps is None else SHORTEST_STANCE_RUN
-        smooth = low_pass(extra.reshape(len(extra), -1), self.motion.period, self.cutoff, shortest)
-        return self.without_nuisance(smooth[self.used].reshape(-1, *extra.shape[1:]))
-
 
 def prepare_data_sets(
     data_sets: Sequence[DataSet], cutoff: float, *, drift: bool = True
@@ -181,6 +173,15 @@ def prepare_data_sets(
 def filtered_columns(
     model: BushModel, prepared: Sequence[FilteredDataSet], shapes: Array, initial_states: Sequence[Array]
 ) -> list[Array]:
-    """A law's columns beside the linear two at the samples that serve, (n, e, b) for each trial."""
-    extras = model.extra([each.path for each in prepared], shapes, initial_states)
-    return [each.filtered(extra) for each, extra in zip(prepared, extras, strict=True)]
+    """A model's columns beside the linear two through the filter, at the used samples: (n, e, b) for each data set."""
+    found = []
+    for each, extra in zip(
+        prepared, model.extra([each.path for each in prepared], shapes, initial_states), strict=True
+    ):
+        if extra.shape[1]:
+            shortest = SHORTEST_RUN if each.steps is None else SHORTEST_STANCE_RUN
+            smooth = low_pass(extra.reshape(len(extra), -1), each.motion.period, each.cutoff, shortest)
+            found.append(each.without_nuisance(smooth[each.used].reshape(-1, *extra.shape[1:])))
+        else:
+            found.append(extra[each.used])
+    return found

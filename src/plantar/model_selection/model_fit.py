@@ -17,7 +17,18 @@ from plantar.estimation.intervals import interval95
 from plantar.model_selection.data_sets import DataSet, FilteredDataSet, prepare_data_sets
 from plantar.model_selection.grid import Pieces
 from plantar.model_selection.partialled_out import robust_covariance
-from plantar.model_selection.variable_projection import Point, Problem, settle
+from plantar.model_selection.variable_projection import (
+    ITERATIONS,
+    NARROWEST_SCAN,
+    NARROWING,
+    SETTLED,
+    WIDEST_SCAN,
+    Point,
+    Problem,
+    best_candidate,
+    scan,
+    step,
+)
 from plantar.models import BESIDE, BushModel
 
 AT_LIMIT = 0.02  # of a shape: so near to its range's end it counts as there
@@ -122,8 +133,19 @@ def refine(
 
     Not `refined`, it stays at that candidate: enough to tell that a law is the wrong one.
     """
-    problem = Problem(pieces.model, prepared, shared_offset)
-    return _finished(problem, settle(problem, pieces, limits, refined=refined), limits)
+    problem, remembers = Problem(pieces.model, prepared, shared_offset), pieces.model.remembers
+    point, width = best_candidate(problem, pieces), WIDEST_SCAN
+    for _ in range(ITERATIONS if refined and (len(point.shape) or remembers) else 0):
+        moved = step(problem, point, limits)
+        if moved is None or moved.squares > (1 - SETTLED) * point.squares:
+            scanned = scan(problem, moved or point, width) if remembers else None
+            width *= NARROWING
+            if scanned is None and (not remembers or width < NARROWEST_SCAN):
+                point = moved or point
+                break
+            moved = scanned or moved or point
+        point = moved
+    return _finished(problem, point, limits)
 
 
 def _finished(problem: Problem, point: Point, limits: Array) -> ModelFit:

@@ -17,7 +17,7 @@ from plantar.conventions import Array
 from plantar.errors import DataError
 from plantar.model_selection.cross_validation import FOLDS, Candidate, cross_validate, folds_of
 from plantar.model_selection.data_sets import DataSet, prepare_data_sets
-from plantar.model_selection.model_fit import ModelFit
+from plantar.model_selection.model_fit import ModelFit, refine
 from plantar.models import MODELS, BushModel, KelvinVoigt, reach
 
 LEAST_GAIN = 0.10  # of the held-out rms error
@@ -83,40 +83,49 @@ def choose_model(
         )
     folds, whole = folds_of(prepared)
     rows = sum(len(fold) for fold in folds)
+    motions = [each.motion for each in prepared]
+    applicable = [model for model in models if model.applies(motions)]
+    untried = [model.name for model in models if model not in applicable]
+    simple = sorted(
+        (
+            Candidate.of(model, prepared, folds, shared_offset)
+            for model in applicable
+            if model.elaborates is None
+        ),
+        key=lambda each: each.squares,
+    )
+    linear = [candidate.model.name for candidate in simple].index(KelvinVoigt.name)
     scores: list[ModelScore] = []
     errors: list[Array] = []
-    untried: list[str] = []
-    motions = [each.motion for each in prepared]
-
-    def enter(candidate: Candidate) -> None:
-        least = min((score.fit.rms for score in scores), default=np.inf) ** 2 * rows
-        hopeless = candidate.squares > HOPELESS * least
-        fit, squares = cross_validate(candidate, prepared, folds, whole, shared_offset, refined=not hopeless)
-        scores.append(ModelScore(candidate.model, float(np.sqrt(squares.sum() / rows)), fit, _refusal(fit)))
-        errors.append(squares)
-
-    untried += [model.name for model in models if not model.applies(motions)]
-    simple = [
-        Candidate.of(model, prepared, folds, shared_offset)
-        for model in models
-        if model.elaborates is None and model.name not in untried
+    # Simple models first, the best one before the others; then what elaborates them, near their fits.
+    order: list[Candidate | BushModel] = [
+        *simple,
+        *(each for each in applicable if each.elaborates is not None),
     ]
-    for candidate in sorted(simple, key=lambda each: each.squares):
-        enter(candidate)
-    names = [score.model.name for score in scores]
-    linear = names.index(KelvinVoigt.name)
-    for model in (each for each in models if each.elaborates is not None and each.name not in untried):
-        seed = None
-        if model.elaborates in names:
-            place = names.index(model.elaborates)
-            seed = scores[place].fit
-            if not _clear(scores, errors, least_gain, simple=linear, rich=place):
-                untried.append(model.name)
-                continue
-        enter(Candidate.of(model, prepared, folds, shared_offset, seed))
-        if seed is not None and not _adds(scores[-1].fit, seed):
-            untried.append(scores.pop().model.name)
-            errors.pop()
+    for each in order:
+        simpler = None
+        if isinstance(each, Candidate):
+            candidate = each
+        else:
+            place = next((k for k, score in enumerate(scores) if score.model.name == each.elaborates), None)
+            if place is not None:
+                simpler = scores[place].fit
+                if not _clear(scores, errors, least_gain, simple=linear, rich=place):
+                    untried.append(each.name)
+                    continue
+            candidate = Candidate.of(each, prepared, folds, shared_offset, simpler)
+        least = min((score.fit.rms for score in scores), default=np.inf) ** 2 * rows
+        refined = not candidate.squares > HOPELESS * least
+        fit = refine(
+            candidate.pieces, prepared, candidate.limits, shared_offset=shared_offset, refined=refined
+        )
+        if simpler is not None and not _adds(fit, simpler):
+            untried.append(fit.model.name)
+            continue
+        pieces = candidate.pieces_about(fit, prepared, folds) if refined else candidate.pieces
+        squares = cross_validate(pieces, whole=whole, shared_offset=shared_offset)
+        scores.append(ModelScore(fit.model, float(np.sqrt(squares.sum() / rows)), fit, _refusal(fit)))
+        errors.append(squares)
     winner = _winner(scores, errors, linear, least_gain)
     chosen = replace(scores[winner], chosen=True)
     ranking = [chosen if place == winner else score for place, score in enumerate(scores)]

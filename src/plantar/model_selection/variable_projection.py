@@ -82,16 +82,12 @@ class Problem:
         return Linearised(designs, point.residuals, self.shared_offset, memories, runs, counts)
 
 
-def settle(problem: Problem, pieces: Pieces, limits: Array, *, refined: bool = True) -> Point:
-    """The best fit reached from the best candidate of `pieces`, its shape between `limits` (2, s).
-
-    Not `refined`: the candidate itself.
-    """
-    model, shapes = pieces.model, pieces.shapes
+def best_candidate(problem: Problem, pieces: Pieces) -> Point:
+    """The best of the candidate shapes and initial states of `pieces`."""
     rough = fit_pieces(pieces, np.ones(len(pieces.grams), dtype=bool), shared_offset=problem.shared_offset)
     best = int(np.argmin(rough.squares))
     begin = [np.zeros(len(each.motion.runs)) for each in problem.prepared]
-    if model.remembers:
+    if problem.model.remembers:
         runs = np.concatenate([[0], np.cumsum([len(each) for each in begin])])
         for data_set, run, start in zip(
             pieces.data_set, pieces.run, rough.initial_states[:, best], strict=True
@@ -99,22 +95,10 @@ def settle(problem: Problem, pieces: Pieces, limits: Array, *, refined: bool = T
             begin[data_set][run - runs[data_set]] = pieces.initial_states[data_set][
                 start, run - runs[data_set]
             ]
-    point = problem.at(shapes[best], begin)
-    width = WIDEST_SCAN
-    for _ in range(ITERATIONS if refined and (shapes.shape[1] or model.remembers) else 0):
-        moved = _step(problem, point, limits)
-        if moved is None or moved.squares > (1 - SETTLED) * point.squares:
-            scanned = _scan(problem, moved or point, width) if model.remembers else None
-            width *= NARROWING
-            if scanned is None and (not model.remembers or width < NARROWEST_SCAN):
-                point = moved or point
-                break
-            moved = scanned or moved or point
-        point = moved
-    return point
+    return problem.at(pieces.shapes[best], begin)
 
 
-def _step(problem: Problem, point: Point, limits: Array) -> Point | None:
+def step(problem: Problem, point: Point, limits: Array) -> Point | None:
     """The next point of the refinement, or None where none is better."""
     linear = problem.linearised(point)
     change = linear.solve()
@@ -133,7 +117,7 @@ def _step(problem: Problem, point: Point, limits: Array) -> Point | None:
     return None
 
 
-def _scan(problem: Problem, point: Point, width: float) -> Point | None:
+def scan(problem: Problem, point: Point, width: float) -> Point | None:
     """The point with each run's start moved to the best of several about it, or None where none is better.
 
     A state that stops at its ends makes corners, at which the derivative by the start misleads.
