@@ -46,11 +46,13 @@ def run(
             screen.print(escape(line))
     for limit, advice in {row.limit: row.advice for row in diagnosis if row.advice}.items():
         screen.print(escape(f"Against {limit}: {advice}."))
-    served = [
+    shares = [
         (s["motion"], s["foot"], f"{s['seconds']:.1f}", f"{s['served']:.1f}", s["reasons"]) for s in used
     ]
     screen.print(
         table(
-            "\nWhat served of each log", ("motion", "foot", "seconds", "served", "left out because"), served
+            "\nHow much of each log was used",
+            ("motion", "foot", "seconds", "used", "left out because"),
+            shares,
         )
     )

@@ -150,13 +150,13 @@ def _merged(ready: PreparedLogs, by_foot: Mapping[str, PreparedLogs]) -> Prepare
 
 
 def _model(fits: Sequence[AxisFit]) -> str:
-    """The law of most axes; of equally many, the richer one."""
+    """The model of most axes; of equally many, the richer one."""
     counts = Counter(fit.model.name for fit in fits)
     return max(counts, key=lambda name: (counts[name], name != KelvinVoigt.name), default=KelvinVoigt.name)
 
 
 def _model_notes(fits: Sequence[AxisFit]) -> list[Note]:
-    """Laws richer than spring and damper, and what a chosen law leaves open."""
+    """Models richer than spring and damper, and what a chosen model leaves open."""
     notes = []
     for fit in fits:
         where = f"{fit.foot} {fit.axis}"

@@ -121,7 +121,7 @@ def select_motions(
                 gained[foot, axis][block.label] = MotionInformation(centred.T @ centred, scores)
     if not values:
         raise DataError(
-            "no log has samples of a standing foot that could serve (valid: a robot that stands on its feet)"
+            "no log has samples of a standing foot that can be used (valid: a robot that stands on its feet)"
         )
     choices = {(name,): _promise((name,), gained, values) for name in names}
     best = _best_sets(names, largest, lambda motions: _promise(motions, gained, values))

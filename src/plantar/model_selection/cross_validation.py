@@ -1,4 +1,4 @@
-"""One law of the bush among others: its candidate shapes, its fit, and its error on what the fit has not seen."""
+"""Cross-validation of one bush model: its candidate parameters, and its error on what the fit has not seen."""
 
 from __future__ import annotations
 
@@ -14,13 +14,15 @@ from plantar.model_selection.model_fit import ModelFit
 from plantar.models import BushModel
 
 FOLDS = 5  # contiguous parts that recordings are cut into where they cannot stand for one another
-SEED_REACH = 2.2  # ratio of shapes to those of a simpler law, within which a richer one is looked for
+SEED_REACH = (
+    2.2  # ratio to the nonlinear parameters of a simpler model, within which a richer one's are looked for
+)
 DOMINANT = 0.5  # share of all motion in one recording, above which the others cannot stand for it
 FEWEST_RECORDINGS = 3  # for whole recordings to be held out
 
 
 def folds_of(prepared: Sequence[FilteredDataSet]) -> tuple[list[Numbers], bool]:
-    """Number of the fold of every sample that serves, and whether folds are whole recordings."""
+    """Number of the fold of every used sample, and whether folds are whole recordings."""
     moved = np.array([np.sum((e.base[:, 0] - e.base[:, 0].mean()) ** 2) for e in prepared])
     if len(prepared) >= FEWEST_RECORDINGS and moved.max() <= DOMINANT * moved.sum():
         return [np.full(int(e.used.sum()), place, dtype=np.intp) for place, e in enumerate(prepared)], True
@@ -30,7 +32,7 @@ def folds_of(prepared: Sequence[FilteredDataSet]) -> tuple[list[Numbers], bool]:
 
 @dataclass(frozen=True)
 class Candidate:
-    """A law with its candidate shapes, their limits (2, s), and the squares that the best candidate leaves."""
+    """A model, its candidate nonlinear parameters, their limits (2, s), and the squares that the best one leaves."""
 
     model: BushModel
     pieces: Pieces
@@ -46,7 +48,7 @@ class Candidate:
         shared_offset: bool,
         seed: ModelFit | None = None,
     ) -> Candidate:
-        """`seed` is the fit of a simpler law, near whose first shape term and starts this one's are looked for."""
+        """`seed`: the fit of a simpler model; this one's first nonlinear parameter and initial states are near its."""
         shapes = model.candidates([each.motion for each in prepared])
         limits = np.array([shapes.min(axis=0), shapes.max(axis=0)])
         initial_states = None
@@ -62,7 +64,7 @@ class Candidate:
     def pieces_about(
         self, fit: ModelFit, prepared: Sequence[FilteredDataSet], folds: Sequence[Numbers]
     ) -> Pieces:
-        """The pieces with the fit's shape and initial states among those to be tried."""
+        """The pieces with the fit's nonlinear parameters and initial states among the candidates."""
         if not self.pieces.shapes.shape[1]:
             return self.pieces
         return self.pieces.with_shape(fit.shape, list(fit.initial_states.values()), prepared, folds)

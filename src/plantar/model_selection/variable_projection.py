@@ -1,6 +1,6 @@
-"""From the best candidate to the best fit: the shape, and the start of the memory in every run, refined together.
+"""Variable projection: nonlinear parameters and the initial state of every run, refined together by Gauss-Newton.
 
-Gauss-Newton on the variable projection: at each point the linear parameters are those that fit best there.
+At each point the linear parameters are those that fit best there.
 """
 
 from __future__ import annotations
@@ -17,16 +17,20 @@ from plantar.model_selection.partialled_out import Linearised
 from plantar.models import BushModel
 
 ITERATIONS = 16
-WIDEST_SCAN, NARROWEST_SCAN, NARROWING = 1.0, 0.05, 0.2  # of the starts about where the steps came to rest
+WIDEST_SCAN, NARROWEST_SCAN, NARROWING = (
+    1.0,
+    0.05,
+    0.2,
+)  # of the initial states about where the steps came to rest
 HALVINGS = 4
 SETTLED = 1e-4  # relative fall of the squares below which the refinement has arrived
-BOLDEST = 0.4  # largest step of a shape's logarithm
+BOLDEST = 0.4  # largest step of a nonlinear parameter's logarithm
 SHAPE_STEP, STATE_STEP = 0.01, 0.02  # of the differences that stand for derivatives
 
 
 @dataclass(frozen=True)
 class Point:
-    """A shape and starts, with the linear parameters that fit best there."""
+    """Nonlinear parameters (`shape`) and initial states, with the linear parameters that fit best there."""
 
     shape: Array
     initial_states: list[Array]
@@ -38,7 +42,7 @@ class Point:
 
 @dataclass(frozen=True)
 class Problem:
-    """What is fitted: a law to recordings, with an offset each or a shared one."""
+    """What is fitted: a model to recordings, with an offset each or a shared one."""
 
     model: BushModel
     prepared: Sequence[FilteredDataSet]
@@ -57,7 +61,7 @@ class Problem:
         return Point(shape, initial_states, values, offsets, residuals, float(sum(r @ r for r in residuals)))
 
     def linearised(self, point: Point) -> Linearised:
-        """Columns of values and log shape about a point, residuals as response, starts to be projected out."""
+        """Columns of values and log shape about a point, residuals as response; initial states are projected out."""
         model, shape, count = self.model, point.shape, len(point.shape)
         shapes = np.repeat(shape[None, :], 3 + 2 * count, axis=0)
         for place in range(count):
@@ -83,7 +87,7 @@ class Problem:
 
 
 def best_candidate(problem: Problem, pieces: Pieces) -> Point:
-    """The best of the candidate shapes and initial states of `pieces`."""
+    """The best candidate of `pieces`: nonlinear parameters and initial states."""
     rough = fit_pieces(pieces, np.ones(len(pieces.grams), dtype=bool), shared_offset=problem.shared_offset)
     best = int(np.argmin(rough.squares))
     begin = [np.zeros(len(each.motion.runs)) for each in problem.prepared]
@@ -118,9 +122,9 @@ def step(problem: Problem, point: Point, limits: Array) -> Point | None:
 
 
 def scan(problem: Problem, point: Point, width: float) -> Point | None:
-    """The point with each run's start moved to the best of several about it, or None where none is better.
+    """The point with each run's initial state moved to the best of several about it, or None where none is better.
 
-    A state that stops at its ends makes corners, at which the derivative by the start misleads.
+    A state that stops at its ends makes corners, at which the derivative by the initial state misleads.
     """
     around = np.linspace(-width, width, 9)
     initial_states = [np.clip(start[None, :] + around[:, None], -1.0, 1.0) for start in point.initial_states]

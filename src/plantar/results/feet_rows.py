@@ -123,7 +123,7 @@ class AxisModel:
     ranking: tuple[Candidate, ...] | None = None
 
     def to_dict(self) -> dict[str, Any]:
-        """The entry of `laws` in `result.json`, which calls a model a law."""
+        """The entry of `laws` in `result.json`, where a model is called a law."""
         content = {("law" if key == "model" else key): value for key, value in asdict(self).items()}
         if not any(self.moment_arms):
             del content["moment_arms"]

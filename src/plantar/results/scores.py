@@ -13,7 +13,7 @@ FIRST_SECOND = 1.0  # s of an unseen motion that give its offset and are left ou
 
 
 def first_second(time: Array, used: Mask) -> Mask:
-    """The first second of the samples that serve: an unseen motion's offset comes from these alone."""
+    """The first second of the used samples: an unseen motion's offset comes from these alone."""
     if not used.any():
         return np.zeros_like(used)
     return np.asarray(used & (time < time[used][0] + FIRST_SECOND))

@@ -12,26 +12,26 @@ from plantar.feet.fit.systematic import Cause
 from plantar.results.feet import Diagnosis, Parameter
 
 REMEDY = {
-    "noise": "record the same motion for longer: four times as long halves it",
-    "delay": "add a recording of arm sweeps at 0.3 to 1 Hz without an operator: it shows the wrenches' delay",
+    "noise": "record the same motion for longer: four times as long halves the interval",
+    "delay": "add a recording of arm sweeps at 0.3 to 1 Hz without an operator: it shows the force sensors' delay",
     "lever": "add a slow shift of the weight from foot to foot: it shows the vertical compliance",
     "yaw torque zero": "zero the force sensors with the feet in the air before recording",
     "between walks": "add walks: five or more show by themselves how much they differ",
     "ends of stances": "walk with longer stances, or stand and sway: landing and lifting disturb the fit",
-    "memory in stances": "add a recording of standing and swaying: short steps hardly tell spring and memory apart",
-    "hardening": "record larger motions, or ask for --model hardening: the spring stiffens, and the law leaves it out",
-    "model": "more of the same will not help: the law misses what the rubber does; try --model auto or other motions",
-    "excitation": "move further: twice the amplitude halves it",
+    "memory in stances": "add a recording of standing and swaying: short steps hardly separate spring and hysteresis",
+    "hardening": "record larger motions, or use --model hardening: the spring stiffens, which this model leaves out",
+    "model": "more of the same will not help: the model does not fit the rubber; try --model auto or other motions",
+    "excitation": "use larger motions: twice the amplitude halves the interval",
 }
 # Causes that no more of the same motion makes smaller: the advice against them replaces the axis' own.
 OTHER_MOTION_HELPS = ("delay", "lever", "hardening", "yaw torque zero")
-MODEL_SHARE = 10.0  # times the white deviation: residuals this coloured are the law's, not noise
+MODEL_SHARE = 10.0  # times the white deviation: residuals this coloured are the model's, not noise
 
 
 def diagnose_axis(
     fit: AxisFit, wide: AxisFit, causes: Sequence[Cause], rows: Sequence[Parameter]
 ) -> list[Diagnosis]:
-    """For each parameter the share of each cause in its variance, the largest one, and what it would be without it."""
+    """For each parameter: the share of each cause in its variance, the largest cause, and the interval without it."""
     found = []
     for place, row in enumerate(rows[: len(fit.values)]):
         total = float(wide.std[place])
