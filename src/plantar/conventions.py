@@ -4,7 +4,7 @@ Units are SI (m, kg, s, rad, N, N·m). Quaternions are w x y z, body to world, w
 A wrench is force then torque, of the environment on the robot, so a standing robot reads force.z > 0.
 
 The bush is a series of z slide, pitch and roll between ankle and sole:
-`R_ankle_sole = Ry(pitch) Rx(roll)`. Its law, with K, C > 0 for every axis, is
+`R_ankle_sole = Ry(pitch) Rx(roll)`. Its model, with K, C > 0 for every axis, is
 
     torque = K·deflection + C·rate + offset            (pitch, roll)
     force.z = K_z·z + C_z·ż + offset                   (z > 0: compressed)

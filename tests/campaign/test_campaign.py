@@ -78,7 +78,7 @@ def test_the_demo_writes_what_it_says(demo: tuple[Path, str, str]) -> None:
     wanted = ("figure03_postures", "figure04b_zmp_Tilt3", "figure07_angles_Tilt3", "figure09_direct",
               "figure11_cross_Squat", "simulator")  # fmt: skip
     assert figures == {f"{name}.{kind}" for name in wanted for kind in ("svg", "pdf")}
-    for heading in ("Table 1", "Table 2", "Table 3", "Which motions tell most", "In a simulator"):
+    for heading in ("Table 1", "Table 2", "Table 3", "Which motions are most informative", "In a simulator"):
         assert heading in out
     assert str(folder / "report.html") in "".join(out.split("\n"))
     assert "play 2 motions on the twin: 100 %" in error

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from biped import record, sway
+from plantar.checks.channels import check_channels
 from plantar.checks.log_checks import check_log
 from plantar.errors import DataError
 from plantar.feet.identify import identify_feet
@@ -83,4 +84,4 @@ def test_a_gap_of_the_log_turns_nothing(robot: RobotModel) -> None:
 
 def dead(log: MotionLog, robot: RobotModel) -> list[str]:
     """What is said about encoders that may be dead."""
-    return [finding.text for finding in check_log(robot, log) if "encoder" in finding.text]
+    return [finding.text for finding in check_channels(robot, log) if "encoder" in finding.text]

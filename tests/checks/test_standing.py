@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from plantar.checks.log_checks import check_log
+from plantar.checks.standing import check_balance
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding
 from plantar.twin import PAPER, PRESETS
@@ -69,7 +70,22 @@ def test_a_few_absurd_samples_reverse_nothing(tilt: MotionLog) -> None:
 def test_torques_in_newton_millimetres_are_refused(sway: MotionLog, tilt: MotionLog) -> None:
     for log in (sway, tilt):
         torques = {name: 1000 * values for name, values in log.columns.items() if ".torque." in name}
-        assert [one.code for one in found(log.with_columns(torques)) if one.fatal] == ["torque_unit"]
+        (finding,) = check_balance(hrp2.robot(), log.with_columns(torques))
+        assert (finding.code, finding.fatal) == ("torque_unit", True)
+
+
+def test_wrenches_of_exchanged_feet_are_refused(sway: MotionLog) -> None:
+    """Told where one foot carries more; two that carry the same are alike either way."""
+    sides = {"right_foot": "left_foot", "left_foot": "right_foot"}
+    swapped = {
+        name: sway.column(name.replace(side, sides[side]))
+        for name in sway.columns
+        for side in sides
+        if name.startswith(f"wrench.{side}.")
+    }
+    assert list(check_balance(hrp2.robot(), sway)) == []
+    (finding,) = check_balance(hrp2.robot(), sway.with_columns(swapped))
+    assert (finding.code, finding.fatal) == ("swapped_feet", True)
 
 
 @pytest.mark.parametrize("rpy", [(0.15, 0.0, 0.0), (0.0, -0.15, 0.0), (np.pi / 2, 0.0, 0.0)])

@@ -65,4 +65,7 @@ def test_leaving_out_gives_a_new_contact_and_keeps_the_first_reason() -> None:
     assert not less.used[samples].any()
     assert np.array_equal(less.left_out_for(TIPPING), samples & before)
     assert not less.left_out_for({Reason.OUTLIER}).any()
-    assert LeftOut(Reason.OUTLIER, "roll").text == "outlier: the roll torque leaves its law for a moment"
+    assert (
+        LeftOut(Reason.OUTLIER, "roll").text
+        == "outlier: the roll torque is far from its model for a short time"
+    )

@@ -51,7 +51,8 @@ def test_an_unexpected_error_gives_up_its_axis_alone(
     assert {row.name for row in lost} == {"stiffness", "damping"}
     assert {(row.verdict, row.value) for row in lost} == {("unidentifiable", None)}
     assert re.fullmatch(
-        r"a fault of plantar, please report: LinAlgError in feet/foot_fit.py, line \d+: Eigenvalues did not converge",
+        r"an error inside plantar, please report: LinAlgError in feet/foot_fit.py, line \d+: "
+        "Eigenvalues did not converge",
         lost[0].reason,
     )
     notes = [note for note in found.notes if note.code == "internal_error"]

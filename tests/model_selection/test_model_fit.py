@@ -24,6 +24,7 @@ from plantar.model_selection.grid import Pieces
 from plantar.model_selection.model_fit import fit_model, refine
 from plantar.model_selection.partialled_out import Linearised
 from plantar.model_selection.selection import choose_model
+from plantar.model_selection.variable_projection import Problem, best_candidate
 from plantar.models import MODELS, BoucWen, BushMotion, Elastoplastic, Hardening, KelvinVoigt
 from plantar.signals.filters import low_pass
 
@@ -236,7 +237,8 @@ def test_wrong_starts_do_not_trap_the_refinement() -> None:
     prepared = prepare_data_sets(data_sets, 5.0)
     folds = [np.zeros(int(each.used.sum()), dtype=np.intp) for each in prepared]
     pieces = Pieces.of(model, prepared, folds, np.array([[0.009], [0.0125]]), [np.ones(1)] * 4)
-    fit = refine(pieces, prepared, np.array([[0.002], [0.05]]))
+    problem = Problem(model, prepared, False)
+    fit = refine(problem, best_candidate(problem, pieces), np.array([[0.002], [0.05]]))
     assert fit.rms < 0.02
     np.testing.assert_allclose(fit.values, [434.0, 15.89, 5.0], rtol=0.01)
 

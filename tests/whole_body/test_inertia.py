@@ -252,7 +252,7 @@ def test_what_cannot_serve_is_refused_in_one_line(robot: RobotModel, logs: list[
         identify_inertia(replace(robot, feet={}), logs[:1])
     with pytest.raises(DataError, match="two logs are called 'one'"):
         identify_inertia(robot, [logs[0], logs[0]])
-    with pytest.raises(DataError, match="samples that can serve"):
+    with pytest.raises(DataError, match="samples that can be used"):
         identify_inertia(robot, [logs[0].select(slice(0, 80))])
     columns = {
         name: values for name, values in logs[0].columns.items() if "linear_acceleration.z" not in name

@@ -1,4 +1,4 @@
-"""Which motions tell most: the best sets of the campaign's logs beside the paper's composed motion."""
+"""Which motions are most informative: the best sets of the campaign's logs beside the paper's composed motion."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ def choice_table(found: Selection) -> Table:
         lines.append((marked, logs, percent(choice.usual), worst, number(choice.condition_number, 3)))
     columns = [Column("set", numeric=False), Column("logs", numeric=False), Column("usual half width")]
     columns += [Column("widest"), Column("condition")]
-    return Table.of("Which motions tell most", columns, lines, remark=explained(found))
+    return Table.of("Which motions are most informative", columns, lines, remark=explained(found))
 
 
 def explained(found: Selection) -> str:
     """What the ranking says of the composed motion, in words."""
     text = (
         "95 % half widths that a spring-damper fit to a set promises, in percent of the value, from its information "
-        "matrices and from residuals that are alike from sample to sample; usual is their geometric mean over every K "
+        "matrices and from autocorrelated residuals; usual is their geometric mean over every K "
         "and C. "
     )
     if found.compared is None:

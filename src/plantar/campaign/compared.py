@@ -61,7 +61,7 @@ class CrossBeside:
 
 
 def parameters_beside(result: FeetResult, paper_way: FeetResult, truth: Feet) -> tuple[ParameterBeside, ...]:
-    """Table 1: pitch and roll of every foot, all terms of the law that the twin has too."""
+    """Table 1: pitch and roll of every foot, all terms of the model that the twin has too."""
     theirs = {(row.foot, row.axis, row.name): row for row in paper_way.parameters}
     rows = []
     for row in result.parameters:
@@ -91,7 +91,7 @@ def parameters_beside(result: FeetResult, paper_way: FeetResult, truth: Feet) ->
 
 
 def direct_beside(result: FeetResult, paper_way: FeetResult) -> tuple[DirectBeside, ...]:
-    """Table 2: the motions that served the fit, one after the other."""
+    """Table 2: the fitted motions, one after the other."""
     theirs = dict(_composed(paper_way.validation))
     rows = []
     for place, (mean, largest) in _composed(result.validation):

@@ -57,7 +57,7 @@ class Score:
 
 def candidates(result: FeetResult, guesses: Sequence[str] = tuple(GUESSES)) -> dict[str, Feet | None]:
     """The kinds of feet to compare: identified, rigid (None), and the guesses in use elsewhere."""
-    identified = feet_of(result.to_dict())
+    identified = feet_of(result)
     return {IDENTIFIED: identified, RIGID: None} | {
         name: dict.fromkeys(identified, GUESSES[name]) for name in guesses
     }

@@ -44,7 +44,7 @@ Progress = Callable[[str], None]
 
 @dataclass(frozen=True)
 class Course:
-    """Which motions serve the fit and which are kept unseen; `replayed` go through the simulator again, on feet
+    """Which motions are fitted and which are kept unseen; `replayed` go through the simulator again, on feet
     that are identified, rigid and, by name, guessed."""
 
     fit: tuple[str, ...] = FIT

@@ -19,13 +19,13 @@ COMMANDS = {
     "identify inertia": ("identify.inertia", "Inertial parameters without joint torques (eq. 2)."),
     "identify joints": ("identify.joints", "Friction, springs and offsets of the joints (eq. 3)."),
     "validate": ("validate", "Score a result on logs that it has not seen."),
-    "simulate": ("simulate", "Logs from the twin, with the imperfections asked for."),
-    "export": ("export", "Hand a result to a simulator or controller."),
-    "select": ("select", "Which of these logs tell most about each parameter."),
+    "simulate": ("simulate", "Logs from the twin, with the imperfections that you choose."),
+    "export": ("export", "Write a result in the format of a simulator or controller."),
+    "select": ("select", "Which of these logs are most informative about each parameter."),
     "diagnose": ("diagnose", "What limits each number of a result, and what to record next."),
     "report": ("report", "Write the result's report.html again."),
     "convert": ("convert", "A log in another format."),
-    "init": ("init", "A first robot file from a URDF, and logs if there are any, every guess marked."),
+    "init": ("init", "A first robot file from a URDF and, if given, logs; every guess is marked."),
 }
 SEVERAL = "--validate"  # takes one log or more
 GROUPS = {"identify": "Identify feet, inertial parameters or joints from logs."}

@@ -23,7 +23,7 @@ def run(
     out: Annotated[Path, typer.Option("--out", help=OUT_HELP, metavar="FILE")],
     to: Annotated[str, typer.Option("--to", help="Format of the files in a directory.")] = "parquet",
     robot: Annotated[Path | None, typer.Option("--robot", help=ROBOT_HELP, metavar="ROBOT.yaml")] = None,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Say nothing of what was assumed.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Do not print what was assumed.")] = False,
 ) -> None:
     """A log in another format: a table with plantar's columns, or a ROS 2 bag.
 

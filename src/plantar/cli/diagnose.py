@@ -44,14 +44,15 @@ def run(
             advice = f" Next: {row.advice}." if row.advice else ""
             line = f"{row.foot} {row.axis} {row.name} is {row.verdict}: {row.reason}.{advice}"
             screen.print(escape(line))
-    for limit in dict.fromkeys(row.limit for row in diagnosis):
-        remedy = next(row.text.rsplit("To tighten: ", 1)[-1] for row in diagnosis if row.limit == limit)
-        screen.print(escape(f"Against {limit}: {remedy}."))
-    served = [
+    for limit, advice in {row.limit: row.advice for row in diagnosis if row.advice}.items():
+        screen.print(escape(f"Against {limit}: {advice}."))
+    shares = [
         (s["motion"], s["foot"], f"{s['seconds']:.1f}", f"{s['served']:.1f}", s["reasons"]) for s in used
     ]
     screen.print(
         table(
-            "\nWhat served of each log", ("motion", "foot", "seconds", "served", "left out because"), served
+            "\nHow much of each log was used",
+            ("motion", "foot", "seconds", "used", "left out because"),
+            shares,
         )
     )

@@ -24,7 +24,7 @@ def run(
     model: Annotated[Path | None, typer.Option("--model", help=MODEL_HELP, metavar="MODEL")] = None,
     with_offset: Annotated[bool, typer.Option("--with-offset", help=OFFSET_HELP)] = False,
     quiet: Annotated[
-        bool, typer.Option("--quiet", "-q", help="Say nothing of what the target cannot hold.")
+        bool, typer.Option("--quiet", "-q", help="Do not print what the target cannot hold.")
     ] = False,
 ) -> None:
     """Hand a result to a simulator or controller: springs and dampers in its own format and units.

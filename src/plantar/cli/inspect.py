@@ -23,7 +23,7 @@ def run(
     columns: Annotated[bool, typer.Option("--columns", help="Also the range of every column.")] = False,
     json: Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")] = False,
     quiet: Annotated[
-        bool, typer.Option("--quiet", "-q", help="Only the exit code: 1 where a log cannot serve.")
+        bool, typer.Option("--quiet", "-q", help="Only the exit code: 1 where a log cannot be used.")
     ] = False,
 ) -> None:
     """What is in the logs, what is wrong with them, and what each can identify by itself.

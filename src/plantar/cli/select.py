@@ -16,7 +16,9 @@ from plantar.results.io import dump_json
 def run(
     robot: Annotated[Path, typer.Argument(help="Robot file (YAML).", metavar="ROBOT.yaml")],
     logs: Annotated[list[Path], typer.Argument(help="Logs to choose from.", metavar="LOG...")],
-    compare: Annotated[str, typer.Option(help="Motions, with commas between, to set beside the best.")] = "",
+    compare: Annotated[
+        str, typer.Option(help="Motions to compare with the best set, separated by commas.")
+    ] = "",
     largest: Annotated[int, typer.Option(help="Most logs in a set.", min=1, max=20)] = 6,
     json: Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")] = False,
@@ -33,13 +35,14 @@ def run(
         print(dump_json({"schema": "plantar.selection/1", **_plain(found)}), end="")
         return
     screen = console()
-    screen.print(_table("Each log by itself: 95 % half width it promises [% of the value]", found.alone))
+    screen.print(_table("Each log alone: the expected 95 % half width [% of the value]", found.alone))
     screen.print(_table("\nThe best set of each size", found.best))
     rows = [choice for choice in (found.compared, found.together) if choice is not None]
     screen.print(_table("\nFor comparison", rows))
     smallest = next((c for c in found.best if c.usual < 1.2 * found.best[-1].usual), found.best[-1])
     screen.print(
-        f"\n{len(smallest.motions)} logs tell nearly all: {', '.join(smallest.motions)}.", markup=False
+        f"\n{len(smallest.motions)} logs give nearly all the information: {', '.join(smallest.motions)}.",
+        markup=False,
     )
 
 

@@ -27,7 +27,7 @@ PRESET_HELP = (
 
 def run(
     motion: Annotated[
-        str, typer.Argument(help="A motion's name, several with commas between, 'demo' or 'campaign'.")
+        str, typer.Argument(help="A motion's name, several separated by commas, 'demo' or 'campaign'.")
     ],
     out: Annotated[Path, typer.Option(help="Folder for the robot file, the logs and the truth beside them.")],
     preset: Annotated[str, typer.Option(help=PRESET_HELP)] = "realistic",

@@ -1,4 +1,4 @@
-"""Which foot stands, when, and which samples may serve: every one left out carries its reason."""
+"""Which foot stands, when, and which samples are used: every one left out carries its reason."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ SUPPORTS = (DOUBLE, SINGLE, AIR, TRANSITION)
 
 @dataclass(frozen=True)
 class Phase:
-    """A stretch of one foot's log in one state: `used` says whether it served, `reason` why not."""
+    """A segment of one foot's log in one state: `used` says whether it was used, `reason` why not."""
 
     motion: str
     foot: str
@@ -84,7 +84,7 @@ class FootContact:
         return np.isin(self.code, given)
 
     def phases(self, motion: str, foot: str, time: Array) -> list[Phase]:
-        """The log as stretches of one support and one reason."""
+        """The log as segments of one support and one reason."""
         change = (np.diff(self.support) != 0) | (np.diff(self.code) != 0)
         starts = np.concatenate([[0], np.flatnonzero(change) + 1])
         ends = np.concatenate([starts[1:], [len(time) - 1]])
@@ -142,7 +142,7 @@ def shaken(force: Array, weight: float, period: float) -> Mask:
 
 
 def widened(samples: Mask, before: int, behind: int | None = None) -> Mask:
-    """Each true stretch made longer by `before` samples in front and `behind` (as many where None) at its end."""
+    """Each true segment made longer by `before` samples in front and `behind` (as many where None) at its end."""
     wide, behind = samples.copy(), before if behind is None else behind
     for run in runs(samples):
         wide[max(0, run.start - before) : run.stop + behind] = True
@@ -150,7 +150,7 @@ def widened(samples: Mask, before: int, behind: int | None = None) -> Mask:
 
 
 def joined(samples: Mask, reach: int) -> Mask:
-    """True stretches that are `reach` samples apart or less made one."""
+    """True segments that are `reach` samples apart or less made one."""
     whole = samples.copy()
     for gap in runs(~samples):
         if gap.start and gap.stop < len(samples) and gap.stop - gap.start <= reach:

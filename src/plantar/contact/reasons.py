@@ -11,8 +11,10 @@ class Reason(Enum):
 
     IN_THE_AIR = "in the air: no load on this foot"
     NOT_RECORDED = "not recorded: NaN or a gap in a column that this foot needs"
-    SETTLING = "landing or lifting: just behind or before a change of contact"
-    IMPACT = "impact: the force is shaken faster than the samples resolve, as by a sole that slaps the floor"
+    SETTLING = "landing or lifting: just after or before a change of contact"
+    IMPACT = (
+        "impact: the force changes faster than the sampling rate can resolve, as when the sole hits the floor"
+    )
     FILTER_EDGE = "filter's edge"
     WINDOW = "beyond the window of {}"
     TORQUE_SATURATION = "tipping: the torque stops growing, {}"
@@ -21,13 +23,13 @@ class Reason(Enum):
     )
     OUTSIDE_THE_SOLE = "tipping: the centre of pressure is outside the sole"
     NEAR_THE_EDGE = (
-        "tipping: the centre of pressure is near the sole's edge, and no flat stretch tells whether it leans"
+        "tipping: the centre of pressure is near the sole's edge, and no flat stance shows if it tips"
     )
     BESIDE_TIPPING = "filter's edge: beside a sole that tips"
     SOLES_APART = "slip: the soles move against each other"
     SOLE_TURNS = "slip: the sole turns on the floor"
     SOLE_SLIDES = "slip: the sole moves over the floor"
-    OUTLIER = "outlier: the {} torque leaves its law for a moment"
+    OUTLIER = "outlier: the {} torque is far from its model for a short time"
     SET_ASIDE = "set aside for a first fit"
 
 

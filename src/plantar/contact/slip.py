@@ -14,7 +14,7 @@ from plantar.signals.segments import runs
 
 SLIP_CUTOFF = 10.0  # Hz: motion of the soles above it is noise
 RINGING = 0.07  # by which this filter overshoots a step, within a period of the cutoff
-LEAST_SPEED = 0.002  # m/s, and for yaw at the lever of half a sole, rad/s times YAW_LEVER
+LEAST_SPEED = 0.002  # m/s, and for yaw at the moment arm of half a sole, rad/s times YAW_LEVER
 YAW_MOMENT_ARM = 0.1  # m
 USUAL = 80  # percent of the samples are slower than the noise's usual speed, however much slides
 USUAL_SPEED = 1.794  # that percentile of a plane vector's length, in deviations of its components
@@ -59,7 +59,7 @@ def usual_deviation(speed: Array) -> float:
 def slides(indicators: Sequence[SlipIndicator], way: Array, period: float) -> Mask:
     """Samples (N,) in which a sole slides.
 
-    One witness is sure of it somewhere, each sample of it is possible to one, and it covers LEAST_PATH.
+    One slip indicator is sure of it somewhere, each sample of it is possible to one, and it covers LEAST_PATH.
     way: (N,), the speed [m/s] at which it does; the ringing of its filter beside what is fast counts as rest.
     """
     from scipy.ndimage import maximum_filter1d  # costs start-up
@@ -127,7 +127,7 @@ def unresisted(indicator: SlipIndicator, velocity: Array, friction: Array, perio
     """Samples (N,) in which a velocity (N, 2) [m/s] stands out that friction does not work against, as it must.
 
     friction: (N, 2), the floor's horizontal force on the sole over its load, in the velocity's axes; less than SMOOTH
-    is lost in the sensors' zeros, and no witness against a slide.
+    is lost in the sensors' zeros, and no slip indicator against a slide.
     """
     fast = np.nan_to_num(indicator.speed) > np.maximum(LEAST_SPEED, POSSIBLE * indicator.deviation)
     found = np.zeros(len(fast), dtype=bool)

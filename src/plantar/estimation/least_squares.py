@@ -15,7 +15,7 @@ from plantar.estimation.triangular import TriangularFactor
 def fit_linear(blocks: Sequence[Block], *, shared_offset: bool = False) -> LinearFit:
     """Least squares of response = regressor · values + offset over all blocks.
 
-    With `shared_offset` one offset serves every recording, as in the paper; otherwise each has its own.
+    With `shared_offset` one offset is used for every recording, as in the paper; otherwise each has its own.
     """
     columns = blocks[0].regressor.shape[1]
     places, size = _places(blocks, columns, shared_offset)

@@ -1,4 +1,4 @@
-"""The linear fit that fits the recordings: of long stretches, or of many short stances."""
+"""The linear fit that fits the recordings: of long segments, or of many short stances."""
 
 from __future__ import annotations
 

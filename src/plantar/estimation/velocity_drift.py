@@ -1,9 +1,9 @@
 """The drift of an integrated acceleration, told from true motion: what rests has no velocity; what it shows is drift.
 
 A drift goes on at a slope of its own (a tilt of the attitude) that wanders slowly, and jumps by what was lost between
-two samples where the acceleration shakes. Motion is what stands out of it for a while: weights that forget outliers
-come down from a convex start (graduated non-convexity), so that no first guess decides what is motion. At that start
-the drift is stiff: one that bends freely would follow a slide, and its weights would then forget what rests.
+two samples where the acceleration shakes. Motion is what stands out of it for a while: weights that
+reject outliers come down from a convex problem (graduated non-convexity), so that no first guess decides what is
+motion. At first the drift is stiff: one that bends freely would follow a slide and reject the samples at rest.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """The bush of each foot as a result gives it: springs, dampers, rest positions, and where they sit.
 
-The identified law is torque = K·deflection + C·rate + offset, with the torque that the ground puts on the
+The identified model is torque = K·deflection + C·rate + offset, with the torque that the ground puts on the
 sole. A simulator's joint from ankle to sole pushes back with exactly that, so K and C go over unchanged, and
 the joint's rest position is -offset/K.
 """

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 from plantar.contact.reasons import Reason
 from plantar.conventions import ROTATIONAL_AXES, Axis, Mask
@@ -22,7 +21,7 @@ from plantar.feet.prepare import PreparedLogs
 from plantar.feet.recording import Recording
 from plantar.models import BushModel
 from plantar.notes import Note
-from plantar.results.feet import Parameter, ValidationRow
+from plantar.results.feet import Diagnosis, Parameter, ValidationRow
 from plantar.results.walk_rows import StanceStiffness, WalkStiffness
 
 ROUNDS = 3  # of leaving outliers out: a large one hides smaller ones
@@ -35,7 +34,7 @@ class FootFit:
     fits: list[AxisFit] = field(default_factory=list)
     parameters: list[Parameter] = field(default_factory=list)
     validation: list[ValidationRow] = field(default_factory=list)
-    diagnosis: list[dict[str, Any]] = field(default_factory=list)
+    diagnosis: list[Diagnosis] = field(default_factory=list)
     predictions: Predictions = field(default_factory=dict)
     stances: list[StanceStiffness] = field(default_factory=list)
     walks: list[WalkStiffness] = field(default_factory=list)
@@ -45,11 +44,21 @@ class FootFit:
 def fit_foot(ready: PreparedLogs, foot: str, progress: Callable[[str], None]) -> tuple[FootFit, PreparedLogs]:
     """Pitch and roll of one foot, and the logs without the samples that leave either model by far.
 
-    What is left out is decided for both axes before either is scored.
+    What is left out is decided for both axes before either is scored. Clean recordings are fitted once; others again
+    without their outliers, under the models first chosen, and at last with the choice made anew.
     """
     progress(f"fit {foot}")
     given_up: dict[Axis, str] = {}
-    fits, ready = _fits_without_outliers(ready, foot, given_up)
+    fits, several = _fits(ready, foot, {}, given_up), False
+    for _ in range(ROUNDS):
+        masks = _outliers(ready, fits, given_up)
+        if not any(masks.values()):
+            break
+        several = True
+        ready = replace(ready, fitted=tuple(_without(one, foot, masks) for one in ready.fitted))
+        fits = _fits(ready, foot, {axis: fit.model for axis, fit in fits.items()}, given_up)
+    fits = _fits(ready, foot, {}, given_up) if several else fits
+    fits = {axis: fit for axis, fit in fits.items() if axis not in given_up}
     found = FootFit()
     for axis in ROTATIONAL_AXES:
         if axis in fits:
@@ -81,26 +90,6 @@ def _with_axis(found: FootFit, ready: PreparedLogs, fit: AxisFit) -> FootFit:
     )
 
 
-def _fits_without_outliers(
-    ready: PreparedLogs, foot: str, given_up: dict[Axis, str]
-) -> tuple[dict[Axis, AxisFit], PreparedLogs]:
-    """The fit of each axis that has samples. Clean recordings are fitted once; others again without what leaves a model
-    by far, under the models first chosen, and at last with the choice made anew."""
-    fits, several = _fits(ready, foot, {}, given_up), False
-    for _ in range(ROUNDS):
-        masks: dict[Axis, Mapping[str, Mask]] = {}
-        for axis, fit in fits.items():
-            with gives_up(axis, given_up):
-                masks[axis] = outlier_masks(ready.fitted, fit)
-        if not any(masks.values()):
-            break
-        several = True
-        ready = replace(ready, fitted=tuple(_without(one, foot, masks) for one in ready.fitted))
-        fits = _fits(ready, foot, {axis: fit.model for axis, fit in fits.items()}, given_up)
-    fits = _fits(ready, foot, {}, given_up) if several else fits
-    return {axis: fit for axis, fit in fits.items() if axis not in given_up}, ready
-
-
 def _fits(
     ready: PreparedLogs, foot: str, models: Mapping[Axis, BushModel], given_up: dict[Axis, str]
 ) -> dict[Axis, AxisFit]:
@@ -113,6 +102,17 @@ def _fits(
             if fit is not None:
                 found[axis] = fit
     return found
+
+
+def _outliers(
+    ready: PreparedLogs, fits: Mapping[Axis, AxisFit], given_up: dict[Axis, str]
+) -> dict[Axis, Mapping[str, Mask]]:
+    """Of each axis, the samples (N,) of each recording that leave its model by far."""
+    masks: dict[Axis, Mapping[str, Mask]] = {}
+    for axis, fit in fits.items():
+        with gives_up(axis, given_up):
+            masks[axis] = outlier_masks(ready.fitted, fit)
+    return masks
 
 
 def _without(recording: Recording, foot: str, masks: Mapping[Axis, Mapping[str, Mask]]) -> Recording:

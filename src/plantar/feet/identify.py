@@ -23,7 +23,7 @@ from plantar.feet.settings import FeetSettings
 from plantar.logs.inputs import LogInputs, RobotInput, logs_of, robot_of
 from plantar.models import KelvinVoigt
 from plantar.notes import Note, joined
-from plantar.results.feet import AxisModel, DelayEstimate, Diagnosis, FeetResult, Input, Offset
+from plantar.results.feet import AxisModel, DelayEstimate, FeetResult, Input, Offset
 from plantar.results.feet_rows import Candidate, LinearEquivalent
 from plantar.robot.model import Foot, Placement, RobotModel
 
@@ -115,7 +115,7 @@ def fit_prepared(
         models=tuple(_axis_model(fit) for fit in fits),
         sensor_delay=delay_estimate(ready.sensor_delay),
         compliance=dict(ready.vertical.compliance),
-        diagnosis=tuple(Diagnosis(**row) for each in found for row in each.diagnosis),
+        diagnosis=tuple(row for each in found for row in each.diagnosis),
         stances=tuple(row for each in found for row in each.stances),
         walks=tuple(row for each in found for row in each.walks),
         swing_zeros=tuple(row for recording in ready.recordings for row in recording.zeros),
@@ -153,13 +153,13 @@ def _merged(ready: PreparedLogs, by_foot: Mapping[str, PreparedLogs]) -> Prepare
 
 
 def _model(fits: Sequence[AxisFit]) -> str:
-    """The law of most axes; of equally many, the richer one."""
+    """The model of most axes; of equally many, the richer one."""
     counts = Counter(fit.model.name for fit in fits)
     return max(counts, key=lambda name: (counts[name], name != KelvinVoigt.name), default=KelvinVoigt.name)
 
 
 def _model_notes(fits: Sequence[AxisFit]) -> list[Note]:
-    """Laws richer than spring and damper, and what a chosen law leaves open."""
+    """Models richer than spring and damper, and what a chosen model leaves open."""
     notes = []
     for fit in fits:
         where = f"{fit.foot} {fit.axis}"

@@ -25,7 +25,7 @@ def gives_up(axis: Axis, reasons: dict[Axis, str]) -> Iterator[None]:
     except (PlantarError, MemoryError, Warning):
         raise
     except Exception as error:
-        reasons[axis] = f"a fault of plantar, please report: {described(error)}"
+        reasons[axis] = f"an error inside plantar, please report: {described(error)}"
 
 
 def internal_errors(foot: str, reasons: dict[Axis, str]) -> tuple[Note, ...]:

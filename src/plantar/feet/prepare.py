@@ -7,7 +7,6 @@ from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
-from plantar.errors import DataError
 from plantar.feet.exclusion.edge_rolling import without_edge_rolling
 from plantar.feet.exclusion.slip import without_slip
 from plantar.feet.exclusion.torque_saturation import without_torque_saturation
@@ -18,6 +17,7 @@ from plantar.feet.sensors.coherent_band import coherent_band
 from plantar.feet.sensors.sensor_delay import SensorDelay, estimate_wrench_delay, in_time, known_delay
 from plantar.feet.sensors.tilt_error import NO_TILT_ERROR, log_tilt_error
 from plantar.feet.settings import FeetSettings
+from plantar.logs.inputs import check_names
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note, unique
 from plantar.robot.guesses import guess_notes
@@ -137,13 +137,3 @@ def _recordings(
         recordings = without_edge_rolling(robot, recordings, settings)
         recordings = list(pool.map(lambda recording: without_slip(robot, recording), recordings))
     return recordings, settings
-
-
-def check_names(logs: Sequence[MotionLog]) -> None:
-    """DataError where two logs have one name: results name motions by them."""
-    seen: dict[str, MotionLog] = {}
-    for log in logs:
-        if log.name in seen:
-            message = f"two logs are called '{log.name}': {seen[log.name].source} and {log.source}"
-            raise DataError(f"{message} (valid: file names that differ, since results name motions by them)")
-        seen[log.name] = log

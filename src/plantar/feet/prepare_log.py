@@ -115,8 +115,8 @@ def _require(robot: RobotModel) -> Imu:
 def _velocities(robot: RobotModel, log: MotionLog, band: float, notes: list[Note]) -> Array:
     """Joint velocities (N, n_joints), differentiated from the positions; 0 for joints off the feet's paths.
 
-    Recorded velocities serve only where there is no position: a controller's own filter makes them late, and that goes
-    straight into the damping; coarse steps make small ones vanish.
+    Recorded velocities are used only where there is no position: a controller's own filter makes them late, and that
+    goes straight into the damping; coarse steps make small ones vanish.
     """
     velocities = np.zeros((len(log), len(robot.joint_names)))
     missing = []
@@ -133,7 +133,8 @@ def _velocities(robot: RobotModel, log: MotionLog, band: float, notes: list[Note
             velocities[:, place] = recorded
     if missing:
         names = ", ".join(missing)
-        text = f"{log.name}: between IMU and feet, but not recorded: {names}; angles are right only if they stood at 0"
+        where = f"{log.name}: between IMU and feet, but not recorded: {names}"
+        text = f"{where}; angles are right only if these joints stayed at 0"
         notes.append(Note("path_joint_missing", "warning", text))
     return velocities
 

@@ -89,7 +89,7 @@ def filtered_recording(recording: Recording, cutoff: float) -> Recording:
 
 
 def filtered(state: BushState, period: float, cutoff: float) -> BushState:
-    """The state with angles, rates and torques through one zero-phase filter: the law between them stays."""
+    """The state with angles, rates and torques through one zero-phase filter: the model between them stays."""
     signals = np.column_stack([state.deflection, state.rate, state.torque])
     return _with_signals(state, low_pass(signals, period, cutoff))
 

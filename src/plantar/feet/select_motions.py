@@ -13,9 +13,9 @@ from plantar.errors import DataError
 from plantar.estimation import fit_blocks
 from plantar.estimation.intervals import cosine_covariance
 from plantar.feet.fit.regression_data import blocks_of
-from plantar.feet.prepare import check_names, prepare_all
+from plantar.feet.prepare import prepare_all
 from plantar.feet.settings import FeetSettings
-from plantar.logs.inputs import LogInputs, RobotInput, logs_of, robot_of
+from plantar.logs.inputs import LogInputs, RobotInput, check_names, logs_of, robot_of
 from plantar.models import KelvinVoigt
 
 SEVERAL = 3000  # combinations looked at one by one; beyond that the best set grows one recording at a time
@@ -121,7 +121,7 @@ def select_motions(
                 gained[foot, axis][block.label] = MotionInformation(centred.T @ centred, scores)
     if not values:
         raise DataError(
-            "no log has samples of a standing foot that could serve (valid: a robot that stands on its feet)"
+            "no log has samples of a standing foot that can be used (valid: a robot that stands on its feet)"
         )
     choices = {(name,): _promise((name,), gained, values) for name in names}
     best = _best_sets(names, largest, lambda motions: _promise(motions, gained, values))

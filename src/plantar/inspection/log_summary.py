@@ -38,7 +38,7 @@ class ColumnRange:
 
 @dataclass(frozen=True)
 class FootSummary:
-    """One foot: seconds in each support, mean load [N], seconds that serve, and rms of angle [rad] and rate [rad/s]."""
+    """One foot: seconds in each support, mean load [N], used seconds, and rms of angle [rad] and rate [rad/s]."""
 
     foot: str
     double: float

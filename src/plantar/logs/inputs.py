@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
-from plantar.errors import LogError, RobotError, located
+from plantar.errors import DataError, LogError, RobotError, located
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import open_log
 from plantar.robot.model import RobotModel, load_robot
@@ -33,6 +33,16 @@ def logs_of(logs: LogInputs, robot: RobotModel) -> tuple[MotionLog, ...]:
     if not isinstance(logs, Iterable):
         raise _no_log(logs)
     return tuple(_log_of(log, robot) for log in logs)
+
+
+def check_names(logs: Sequence[MotionLog]) -> None:
+    """DataError where two logs have one name: results name motions by them."""
+    seen: dict[str, MotionLog] = {}
+    for log in logs:
+        if log.name in seen:
+            message = f"two logs are called '{log.name}': {seen[log.name].source} and {log.source}"
+            raise DataError(f"{message} (valid: file names that differ, since results name motions by them)")
+        seen[log.name] = log
 
 
 def _log_of(log: LogInput, robot: RobotModel) -> MotionLog:

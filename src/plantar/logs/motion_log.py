@@ -64,7 +64,9 @@ class MotionLog:
         for name in absurd:
             columns[name] = _frozen(np.where(np.abs(columns[name]) > LARGEST, np.nan, columns[name]))
         if absurd:
-            text = f"{self.name}: infinite or absurd values count as not recorded: {_listing(absurd)}"
+            text = (
+                f"{self.name}: infinite or impossible values are treated as not recorded: {_listing(absurd)}"
+            )
             object.__setattr__(self, "notes", (*self.notes, Note("absurd_values", "warning", text)))
         for name, values in columns.items():
             if values.shape != time.shape:

@@ -1,4 +1,4 @@
-"""One law of the bush among others: its candidate shapes, its fit, and its error on what the fit has not seen."""
+"""Cross-validation of one bush model: its candidate parameters, and its error on what the fit has not seen."""
 
 from __future__ import annotations
 
@@ -10,17 +10,19 @@ import numpy as np
 from plantar.conventions import Array
 from plantar.model_selection.data_sets import FilteredDataSet
 from plantar.model_selection.grid import Numbers, Pieces, fit_pieces, held_out_squares
-from plantar.model_selection.model_fit import ModelFit, refine
+from plantar.model_selection.model_fit import ModelFit
 from plantar.models import BushModel
 
 FOLDS = 5  # contiguous parts that recordings are cut into where they cannot stand for one another
-SEED_REACH = 2.2  # ratio of shapes to those of a simpler law, within which a richer one is looked for
+SEED_REACH = (
+    2.2  # ratio to the nonlinear parameters of a simpler model, within which a richer one's are looked for
+)
 DOMINANT = 0.5  # share of all motion in one recording, above which the others cannot stand for it
 FEWEST_RECORDINGS = 3  # for whole recordings to be held out
 
 
 def folds_of(prepared: Sequence[FilteredDataSet]) -> tuple[list[Numbers], bool]:
-    """Number of the fold of every sample that serves, and whether folds are whole recordings."""
+    """Number of the fold of every used sample, and whether folds are whole recordings."""
     moved = np.array([np.sum((e.base[:, 0] - e.base[:, 0].mean()) ** 2) for e in prepared])
     if len(prepared) >= FEWEST_RECORDINGS and moved.max() <= DOMINANT * moved.sum():
         return [np.full(int(e.used.sum()), place, dtype=np.intp) for place, e in enumerate(prepared)], True
@@ -30,7 +32,7 @@ def folds_of(prepared: Sequence[FilteredDataSet]) -> tuple[list[Numbers], bool]:
 
 @dataclass(frozen=True)
 class Candidate:
-    """A law with its candidate shapes, their limits (2, s), and the squares that the best candidate leaves."""
+    """A model, its candidate nonlinear parameters, their limits (2, s), and the squares that the best one leaves."""
 
     model: BushModel
     pieces: Pieces
@@ -46,7 +48,7 @@ class Candidate:
         shared_offset: bool,
         seed: ModelFit | None = None,
     ) -> Candidate:
-        """`seed` is the fit of a simpler law, near whose first shape term and starts this one's are looked for."""
+        """`seed`: the fit of a simpler model; this one's first nonlinear parameter and initial states are near its."""
         shapes = model.candidates([each.motion for each in prepared])
         limits = np.array([shapes.min(axis=0), shapes.max(axis=0)])
         initial_states = None
@@ -59,25 +61,21 @@ class Candidate:
         squares = fit_pieces(pieces, everything, shared_offset=shared_offset).squares
         return cls(model, pieces, limits, float(squares.min()))
 
+    def pieces_about(
+        self, fit: ModelFit, prepared: Sequence[FilteredDataSet], folds: Sequence[Numbers]
+    ) -> Pieces:
+        """The pieces with the fit's nonlinear parameters and initial states among the candidates."""
+        if not self.pieces.shapes.shape[1]:
+            return self.pieces
+        return self.pieces.with_shape(fit.shape, list(fit.initial_states.values()), prepared, folds)
 
-def cross_validate(
-    candidate: Candidate,
-    prepared: Sequence[FilteredDataSet],
-    folds: Sequence[Numbers],
-    whole: bool,
-    shared_offset: bool,
-    *,
-    refined: bool,
-) -> tuple[ModelFit, Array]:
-    """The law's fit to everything, and its squared error on each piece from fits that have not seen it."""
-    pieces = candidate.pieces
-    fit = refine(pieces, prepared, candidate.limits, shared_offset=shared_offset, refined=refined)
-    if pieces.shapes.shape[1] and refined:
-        pieces = pieces.with_shape(fit.shape, list(fit.initial_states.values()), prepared, folds)
+
+def cross_validate(pieces: Pieces, *, whole: bool, shared_offset: bool) -> Array:
+    """A model's squared error on each piece (pieces,) from fits that have not seen it."""
     squares = np.zeros(len(pieces.grams))
     for fold in np.unique(pieces.fold):
         held = pieces.fold == fold
         rest = fit_pieces(pieces, ~held, shared_offset=shared_offset)
         best = int(np.argmin(rest.squares))
         squares[held] = held_out_squares(pieces, rest, held, best, whole=whole)
-    return fit, np.maximum(squares, 0.0)
+    return np.maximum(squares, 0.0)

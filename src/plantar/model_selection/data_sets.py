@@ -1,4 +1,4 @@
-"""One recording of one axis, ready for any law: thinned out to what the filter leaves, both sides filtered alike."""
+"""One recording of one axis, ready for any model: thinned out to what the filter leaves, both sides filtered alike."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class StepColumns:
 
 @dataclass(frozen=True)
 class DataSet:
-    """One axis of one foot over one recording: wide-band `motion` and `torque` (N,), and the samples that serve.
+    """One axis of one foot over one recording: wide-band `motion` and `torque` (N,), and the used samples.
 
     Both sides unfiltered, or filtered alike well above the fit's cutoff.
     """
@@ -86,11 +86,11 @@ class DataSet:
 
 @dataclass(frozen=True)
 class FilteredDataSet:
-    """A trial through the fit's filter: `motion` (N,), the samples that serve, and the `response` (n,) at these.
+    """A data set through the fit's filter: `motion` (N,), the used samples, and the `response` (n,) at these.
 
-    A law with memory does not commute with a filter: its state follows the path, and its columns then go through the
+    A model with memory does not commute with a filter: its state follows the path, and its columns then go through the
     filter that the torque went through. The path itself is filtered too: jitter of the measured angle would wear the
-    state down at every turn (a Bouc-Wen element forgets under dither), which the rubber, not shaken, does not do.
+    state down at every turn (dither makes a Bouc-Wen element's memory fade), which the rubber itself does not feel.
     Where the foot steps, turns are too quick for that: the state follows the wide-band `path`.
 
     With `drift`, response and columns come without their line in time: the IMU's attitude drifts slowly, differently in
@@ -109,7 +109,7 @@ class FilteredDataSet:
 
     @classmethod
     def of(cls, data_set: DataSet, cutoff: float, *, drift: bool = True) -> FilteredDataSet:
-        """Filter both sides at `cutoff` [Hz]; samples without a value on either side do not serve."""
+        """Filter both sides at `cutoff` [Hz]; samples without a value on either side are not used."""
         motion = data_set.motion
         whole = np.isfinite(motion.deflection) & np.isfinite(motion.rate) & np.isfinite(data_set.torque)
         values = np.column_stack([motion.deflection, motion.rate, data_set.torque])
@@ -157,30 +157,22 @@ class FilteredDataSet:
 
     @cached_property
     def base(self) -> Array:
-        """The linear columns, deflection and rate, at the samples that serve, (n, 2)."""
+        """The linear columns, deflection and rate, at the used samples, (n, 2)."""
         return self.without_nuisance(np.column_stack([self.motion.deflection, self.motion.rate])[self.used])
 
     @cached_property
     def run_of(self) -> Array:
-        """The run's number at every sample that serves, (n,)."""
+        """The run's number at every used sample, (n,)."""
         number = np.full(len(self.motion), -1)
         for place, run in enumerate(self.motion.runs):
             number[run] = place
         return number[self.used]
 
-    def filtered(self, extra: Array) -> Array:
-        """Columns (N, e, b) of a law through the filter, at the samples that serve: (n, e, b)."""
-        if extra.shape[1] == 0:
-            return extra[self.used]
-        shortest = SHORTEST_RUN if self.steps is None else SHORTEST_STANCE_RUN
-        smooth = low_pass(extra.reshape(len(extra), -1), self.motion.period, self.cutoff, shortest)
-        return self.without_nuisance(smooth[self.used].reshape(-1, *extra.shape[1:]))
-
 
 def prepare_data_sets(
     data_sets: Sequence[DataSet], cutoff: float, *, drift: bool = True
 ) -> list[FilteredDataSet]:
-    """Thinned and filtered trials that have samples to serve."""
+    """Thinned and filtered data sets that have samples to use."""
     prepared = [FilteredDataSet.of(data_set.thinned(cutoff), cutoff, drift=drift) for data_set in data_sets]
     return [each for each in prepared if each.used.any()]
 
@@ -188,6 +180,15 @@ def prepare_data_sets(
 def filtered_columns(
     model: BushModel, prepared: Sequence[FilteredDataSet], shapes: Array, initial_states: Sequence[Array]
 ) -> list[Array]:
-    """A law's columns beside the linear two at the samples that serve, (n, e, b) for each trial."""
-    extras = model.extra([each.path for each in prepared], shapes, initial_states)
-    return [each.filtered(extra) for each, extra in zip(prepared, extras, strict=True)]
+    """A model's columns beside the linear two through the filter, at the used samples: (n, e, b) for each data set."""
+    found = []
+    for each, extra in zip(
+        prepared, model.basis_columns([each.path for each in prepared], shapes, initial_states), strict=True
+    ):
+        if extra.shape[1]:
+            shortest = SHORTEST_RUN if each.steps is None else SHORTEST_STANCE_RUN
+            smooth = low_pass(extra.reshape(len(extra), -1), each.motion.period, each.cutoff, shortest)
+            found.append(each.without_nuisance(smooth[each.used].reshape(-1, *extra.shape[1:])))
+        else:
+            found.append(extra[each.used])
+    return found

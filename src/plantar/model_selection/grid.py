@@ -1,7 +1,7 @@
-"""Where a law's shape roughly lies, and how well it predicts held-out pieces, from sums of products alone.
+"""Grid search over a model's nonlinear parameters, and its error on held-out pieces, from Gram matrices alone.
 
-Every piece of every recording leaves its Gram matrix for each candidate shape and start of the memory. Fits with any
-pieces left out are then sums of small matrices, so cross-validation costs no more than one pass over the samples.
+Every piece of every recording has one Gram matrix for each candidate of the nonlinear parameters (`shapes`) and of the
+initial state. Fits without some pieces are then sums of small matrices: cross-validation costs one pass over the data.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from plantar.models import BushModel
 
 Numbers = NDArray[np.intp]
 
-NEARBY = 0.2  # how much closer starts are tried about one that is known already
-ROUNDS = 6  # of fitting parameters and starts in turn
+NEARBY = 0.2  # how much closer initial states are tried about one that is known already
+ROUNDS = 6  # of fitting parameters and initial states in turn
 STILL = (
     1e-14  # of a column's square about zero: what is left about its mean is rounding, the column is constant
 )
@@ -28,9 +28,10 @@ RIDGE = 1e-12  # of each column's own square: keeps collinear columns solvable
 
 @dataclass(frozen=True)
 class Pieces:
-    """Grams (pieces, g, c, k + 2, k + 2) of [columns, 1, response], for g shapes and c starts (c, runs) of each trial.
+    """Grams (pieces, g, c, k + 2, k + 2) of [columns, 1, response], for g candidates of the nonlinear parameters and c
+    initial states (c, runs) of each data set.
 
-    `data_set`, `run` and `fold` (pieces,) say what each piece is part of; runs are numbered through all trials.
+    `data_set`, `run` and `fold` (pieces,) say what each piece is part of; runs are numbered through all data sets.
     `rows` (pieces,) are the samples in each.
     """
 
@@ -52,9 +53,9 @@ class Pieces:
         shapes: Array,
         around: Sequence[Array] | None = None,
     ) -> Pieces:
-        """Products of every piece: `folds` gives each trial's serving samples (n,) the number of their fold.
+        """Products of every piece: `folds` gives each data set's used samples (n,) the number of their fold.
 
-        Starts are tried over all their range, or `around` known ones (runs,) of each trial.
+        Initial states are tried over all their range, or `around` known ones (runs,) of each data set.
         """
         tried = np.array(model.tried_states) * (1.0 if around is None else NEARBY)
         count = len(tried)
@@ -95,7 +96,7 @@ class Pieces:
         prepared: Sequence[FilteredDataSet],
         folds: Sequence[Numbers],
     ) -> Pieces:
-        """The same pieces with one more candidate shape (s,), whose starts are tried around the given ones (runs,)."""
+        """The pieces with one more candidate `shape` (s,), its initial states tried around the given ones (runs,)."""
         more = Pieces.of(self.model, prepared, folds, shape[None, :], initial_states)
         shapes, grams = (
             np.vstack([self.shapes, more.shapes]),
@@ -106,8 +107,8 @@ class Pieces:
 
 @dataclass(frozen=True)
 class Fits:
-    """For every shape: parameters (g, k), offsets (g, trials), the start chosen for each piece (pieces, g),
-    squares (g,)."""
+    """For every candidate: parameters (g, k), offsets (g, data sets), the initial state chosen for each piece
+    (pieces, g), squares (g,)."""
 
     values: Array
     offsets: Array
@@ -116,7 +117,7 @@ class Fits:
 
 
 def fit_pieces(pieces: Pieces, chosen: Mask, *, shared_offset: bool = False) -> Fits:
-    """Least squares for every shape over the `chosen` pieces (pieces,), with the best start of each run's memory."""
+    """Least squares for every candidate over the `chosen` pieces (pieces,), with the best initial state of each run."""
     shapes, count = pieces.grams.shape[1:3]
     initial_states = np.full((len(pieces.grams), shapes), count // 2, dtype=np.intp)
     runs = np.unique(pieces.run[chosen])
@@ -138,10 +139,10 @@ def fit_pieces(pieces: Pieces, chosen: Mask, *, shared_offset: bool = False) -> 
 
 
 def held_out_squares(pieces: Pieces, fits: Fits, held: Mask, shape: int, *, whole: bool) -> Array:
-    """Squared error (held pieces,) of one shape's fit on pieces that it has not seen.
+    """Squared error (held pieces,) of one candidate's fit on pieces that it has not seen.
 
-    `whole`: the pieces are recordings of which the fit knows nothing, so that offset and start are their own;
-    else the offset comes from the rest of the same recording, and a start that does not fade too.
+    `whole`: the pieces are recordings that the fit has not seen, with an offset and an initial state of their own; else
+    the offset comes from the rest of the same recording, and so does an initial state that does not fade.
     """
     values, squares = fits.values[shape], []
     for piece in np.flatnonzero(held):
@@ -150,7 +151,7 @@ def held_out_squares(pieces: Pieces, fits: Fits, held: Mask, shape: int, *, whol
             squares.append(min(_profiled(gram, values) for gram in grams))
             continue
         vector = np.concatenate([values, [fits.offsets[shape, pieces.data_set[piece]], -1.0]])
-        tried = grams if pieces.model.forgets else grams[[fits.initial_states[piece, shape]]]
+        tried = grams if pieces.model.fading_memory else grams[[fits.initial_states[piece, shape]]]
         squares.append(min(float(vector @ gram @ vector) for gram in tried))
     return np.array(squares)
 
@@ -165,7 +166,7 @@ def _gram(common: Array, extra: Array) -> Array:
 
 
 def _totals(pieces: Pieces, chosen: Mask, initial_states: Numbers) -> Array:
-    """Each trial's Gram (trials, g, k + 2, k + 2) with the starts chosen so far."""
+    """Each data set's Gram (data sets, g, k + 2, k + 2) with the initial states chosen so far."""
     data_sets, shapes = int(pieces.data_set.max()) + 1, np.arange(pieces.grams.shape[1])
     totals = np.zeros((data_sets, len(shapes), *pieces.grams.shape[3:]))
     for piece in np.flatnonzero(chosen):
@@ -201,7 +202,7 @@ def _solve(totals: Array, shared_offset: bool) -> tuple[Array, Array, Array]:
 
 
 def _best_state(pieces: Pieces, mine: Mask, total: Array, initial_states: Numbers, values: Array) -> Numbers:
-    """For every shape the start of one run that fits best, the trial's offset moving with it, (g,)."""
+    """For every candidate the initial state of one run that fits best, with the data set's best offset, (g,)."""
     shapes = np.arange(total.shape[0])
     grams = pieces.grams[mine]
     current = sum(gram[shapes, start] for gram, start in zip(grams, initial_states, strict=True))

@@ -1,4 +1,4 @@
-"""Where an unseen recording begins under a law with memory: the bush's inner state, from the recording's first part."""
+"""Initial state of a model with memory in an unseen recording, from the recording's first part."""
 
 from __future__ import annotations
 
@@ -11,7 +11,9 @@ from plantar.models import BESIDE, BushModel, BushMotion
 from plantar.signals.filters import low_pass
 
 TRIED = np.linspace(-1.0, 1.0, 21)  # states of the memory
-FORGOTTEN = 0.02  # of the span between the extreme starts' torques: below it the start no longer matters
+FORGOTTEN = (
+    0.02  # of the span between the torques of the extreme initial states: below it the state has faded
+)
 
 
 def initial_states_of(
@@ -24,13 +26,13 @@ def initial_states_of(
     first_samples: Mask,
     cutoff: float,
 ) -> Array:
-    """The state (runs,) at the start of each run of an unseen motion under a law with parameters (k,) and shape (s,).
+    """Initial state (runs,) of each run of an unseen motion under a model with `values` (k,) and `shape` (s,).
 
     `motion` and `measured` torque (N,) are filtered at `cutoff` [Hz]; `used` (N,) are fitted; `first_samples` (N,) show
     the sensors' offset.
     """
     tried = np.repeat(TRIED[:, None], len(motion.runs), axis=1)
-    extra = model.extra([motion], np.repeat(shape[None, :], len(TRIED), axis=0), [tried])[0]
+    extra = model.basis_columns([motion], np.repeat(shape[None, :], len(TRIED), axis=0), [tried])[0]
     own = len(BESIDE)
     memory = low_pass(np.einsum("neb,e->nb", extra, values[own:]), motion.period, cutoff)
     every = memory.T + np.column_stack([motion.deflection, motion.rate]) @ values[:own]

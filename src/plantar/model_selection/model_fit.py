@@ -1,7 +1,7 @@
-"""Fit of a law of the bush that is linear in all but its shape: the shape outside, linear least squares inside.
+"""Fit of a bush model by variable projection: nonlinear parameters outside, linear least squares inside.
 
-The search over the shape is in `grid`; here it is refined together with the unknown start of the law's memory in
-every run (Gauss-Newton on the variable projection), and everything that had to be estimated enters the intervals.
+A grid search (`grid`) gives the first guess. Gauss-Newton then refines the nonlinear parameters together with the
+unknown initial state in every run. The uncertainty of all of them enters the intervals.
 """
 
 from __future__ import annotations
@@ -14,24 +14,38 @@ import numpy as np
 from plantar.conventions import Array
 from plantar.errors import DataError
 from plantar.estimation.intervals import interval95
-from plantar.model_selection.data_sets import DataSet, FilteredDataSet, prepare_data_sets
+from plantar.model_selection.data_sets import DataSet, prepare_data_sets
 from plantar.model_selection.grid import Pieces
 from plantar.model_selection.partialled_out import robust_covariance
-from plantar.model_selection.variable_projection import Point, Problem, descended, settle
+from plantar.model_selection.variable_projection import (
+    ITERATIONS,
+    LANDINGS,
+    NARROWEST_SCAN,
+    NARROWING,
+    SETTLED,
+    WIDEST_SCAN,
+    Point,
+    Problem,
+    best_candidate,
+    landed,
+    scan,
+    step,
+)
 from plantar.models import BESIDE, BushModel
 
-AT_LIMIT = 0.02  # of a shape: so near to its range's end it counts as there
+AT_LIMIT = 0.02  # of a nonlinear parameter: this near to the end of its range it counts as at the end
 HARDLY_KNOWN = 0.5  # a standard deviation beyond this share of the value
 
 
 @dataclass(frozen=True)
 class ModelFit:
-    """A law fitted to several recordings.
+    """A model fitted to several recordings.
 
-    `values` (k,) as `model.terms`, `shape` (s,) as `model.shape_terms`, `covariance` (k + s, same) of both with
-    coloured residuals, the uncertainty of shape and initial states inside; `freedom` (k + s,) goes with it, `white_std`
-    (k + s,) is the paper's. `offsets`, `offset_std`, `initial_states` (runs,) and `residuals` (of the thinned samples
-    that were used) by recording. `limits` (2, s) is the range that the motions let the shape be looked for in.
+    `values` (k,) as `model.terms`, `shape` (s,) as `model.shape_terms`. `covariance` (k + s, same): of both, with
+    autocorrelated residuals and the uncertainty of `shape` and of the initial states included; `freedom` (k + s,) are
+    its degrees of freedom; `white_std` (k + s,) is the paper's. `offsets`, `offset_std`, `initial_states` (runs,) and
+    `residuals` (of the thinned samples that were used) by recording. `limits` (2, s): the range in which the motions
+    can show `shape`.
     """
 
     model: BushModel
@@ -74,7 +88,7 @@ class ModelFit:
 
     @property
     def doubts(self) -> tuple[str, ...]:
-        """Why the law's own terms are not to be trusted, one line each; empty where they are."""
+        """Why the model's own terms cannot be trusted, one line each; empty where they can."""
         found = []
         for place, term in enumerate(self.model.shape_terms):
             low, high = self.limits[:, place]
@@ -88,26 +102,27 @@ class ModelFit:
             known = (
                 f"{self.model.terms[place]} {self.values[place]:.3g} ± {self.std[place]:.2g}" for place in own
             )
-            found.append(f"not told from nothing: {', '.join(known)}")
+            found.append(f"cannot be told from zero: {', '.join(known)}")
         return tuple(found)
 
 
 def fit_model(
     model: BushModel, data_sets: Sequence[DataSet], cutoff: float = 5.0, *, shared_offset: bool = False
 ) -> ModelFit:
-    """Least squares of the trials' torques under `model`, both sides filtered at `cutoff` [Hz].
+    """Least squares of the data sets' torques under `model`, both sides filtered at `cutoff` [Hz].
 
-    One offset for each recording, or with `shared_offset` one for all. Raises DataError where no sample serves.
+    One offset for each recording, or with `shared_offset` one for all. Raises DataError where no sample can be used.
     """
     prepared = prepare_data_sets(data_sets, cutoff, drift=not shared_offset)
     if not prepared:
         raise DataError(
-            "no recording has a sample that serves this fit (valid: at least one standing second)"
+            "no recording has a sample that this fit can use (valid: at least one standing second)"
         )
     folds = [np.zeros(int(each.used.sum()), dtype=np.intp) for each in prepared]
     shapes = model.candidates([each.motion for each in prepared])
     limits = np.array([shapes.min(axis=0), shapes.max(axis=0)])
-    return refine(Pieces.of(model, prepared, folds, shapes), prepared, limits, shared_offset=shared_offset)
+    problem = Problem(model, prepared, shared_offset)
+    return refine(problem, best_candidate(problem, Pieces.of(model, prepared, folds, shapes)), limits)
 
 
 def fit_again(before: ModelFit, data_sets: Sequence[DataSet]) -> ModelFit:
@@ -115,24 +130,39 @@ def fit_again(before: ModelFit, data_sets: Sequence[DataSet]) -> ModelFit:
     prepared = prepare_data_sets(data_sets, before.cutoff, drift=not before.shared_offset)
     problem = Problem(before.model, prepared, before.shared_offset)
     states = [before.initial_states[each.label] for each in prepared]
-    point = descended(problem, problem.at(before.shape, states), before.limits)
-    return _finished(problem, point, before.limits)
+    return refine(problem, problem.at(before.shape, states), before.limits, landings=0)
 
 
 def refine(
-    pieces: Pieces,
-    prepared: Sequence[FilteredDataSet],
-    limits: Array,
-    *,
-    shared_offset: bool = False,
-    refined: bool = True,
+    problem: Problem, start: Point, limits: Array, *, refined: bool = True, landings: int = LANDINGS
 ) -> ModelFit:
-    """The fit that starts from the best candidate of `pieces` and keeps the shape between `limits` (2, s).
+    """The fit where steps and scans from `start` come to rest, nonlinear parameters within `limits` (2, s).
 
-    Not `refined`, it stays at that candidate: enough to tell that a law is the wrong one.
+    Where the foot steps, a search begins again from the states that the air leaves for each landing, up to `landings`
+    times and as long as that helps. Not `refined`, it stays at the start: enough to see that a model is wrong.
     """
-    problem = Problem(pieces.model, prepared, shared_offset)
-    return _finished(problem, settle(problem, pieces, limits, refined=refined), limits)
+    remembers = problem.model.remembers
+    iterations = ITERATIONS if refined and (len(start.shape) or remembers) else 0
+    best, point = start, start
+    for search in range(1 + landings):
+        width = WIDEST_SCAN
+        for _ in range(iterations):
+            moved = step(problem, point, limits)
+            if moved is None or moved.squares > (1 - SETTLED) * point.squares:
+                scanned = scan(problem, moved or point, width) if remembers else None
+                width *= NARROWING
+                if scanned is None and (not remembers or width < NARROWEST_SCAN):
+                    point = moved or point
+                    break
+                moved = scanned or moved or point
+            point = moved
+        if search and point.squares > (1 - SETTLED) * best.squares:
+            break
+        best, again = point, landed(problem, point) if iterations else None
+        if again is None:
+            break
+        point = again
+    return _finished(problem, best, limits)
 
 
 def _finished(problem: Problem, point: Point, limits: Array) -> ModelFit:

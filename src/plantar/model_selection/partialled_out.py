@@ -1,7 +1,7 @@
-"""A linear problem with nuisances projected out: one offset each recording, one start of the memory each run.
+"""Partialled-out regression: one offset for each recording and one initial state for each run are eliminated.
 
-Columns that live in one run or one recording only are eliminated there (Frisch, Waugh and Lovell), so that hundreds of
-runs cost nothing; what is left are the columns of the law's own parameters, and each sample's influence on them.
+Columns that belong to one run or one recording only are eliminated there (Frisch, Waugh and Lovell), so that hundreds
+of runs cost nothing. What is left are the columns of the model's own parameters, and each sample's influence on them.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ NEGLIGIBLE = 1e-9  # of a column's square left after projection: nothing of its 
 class Linearised:
     """Least squares of `responses` (n,) on `designs` (n, p) of each recording, nuisances projected out.
 
-    `memories` (n,) is the effect of the start of each run's memory, `runs` (n,) the run of each sample and `counts` how
+    `memories` (n,) is the effect of each run's initial state, `runs` (n,) the run of each sample and `counts` how
     many runs each recording has, those without a used sample among them. A shared offset is one more column at the end.
     """
 
@@ -54,7 +54,7 @@ class Linearised:
         self._width = designs[0].shape[1]
 
     def _project(self, place: int, columns: Array) -> Array:
-        """Columns (n, m) of one recording without what the runs' starts explain."""
+        """Columns (n, m) of one recording without what the runs' initial states explain."""
         if self._memories is None or self._runs is None:
             return columns
         return np.asarray(
@@ -62,7 +62,7 @@ class Linearised:
         )
 
     def _shares(self, place: int, columns: Array) -> Array:
-        """How much of columns (n, m) each run's start explains, (runs, m); none where the run has no used sample."""
+        """Share of columns (n, m) that each run's initial state explains, (runs, m); zero where no sample is used."""
         assert self._memories is not None, "asked only where there is a memory"
         assert self._runs is not None, "a memory has runs"
         memory, run, count = self._memories[place], self._runs[place], self._counts[place]
@@ -87,14 +87,14 @@ class Linearised:
         return self._factor.solve()[: self._width]
 
     def offsets(self, values: Array) -> Array:
-        """Offset (recordings,) that goes with parameters (p,), starts held."""
+        """Offset (recordings,) that goes with parameters (p,), initial states held."""
         left = [y - x @ values for x, y in zip(self._designs, self.responses, strict=True)]
         if self.shared_offset:
             return np.full(len(left), np.concatenate(left).mean())
         return np.array([each.mean() for each in left])
 
     def initial_states(self, values: Array) -> list[Array]:
-        """Change of each run's start (runs,) that goes with parameters (p,), offsets moving along."""
+        """Change of each run's initial state (runs,) that goes with parameters (p,), offsets moving along."""
         if self._memories is None or self._runs is None:
             return [np.zeros(1) for _ in self.responses]
         result = []

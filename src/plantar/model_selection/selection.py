@@ -1,9 +1,10 @@
-"""Which law of the bush: judged on what the fit has not seen, the simpler one kept unless the gain is clear.
+"""Which bush model: by cross-validation, the simpler one kept unless the gain is clear.
 
 A gain is clear when the squared error on held-out pieces falls by more than one standard error of its fall
-(pieces paired), and its root by at least `LEAST_GAIN`; what a law adds to the one that it elaborates must differ from
-zero by `TOLD` deviations, and then only not predict worse. Of all laws that the best one does not clearly beat, the one
-with the fewest parameters is chosen; spring and damper where a law that cannot be identified is clearly better still.
+(pieces paired), and its root by at least `LEAST_GAIN`; what a model adds to the one that it elaborates must differ from
+zero by `TOLD` deviations, and then must only not predict worse. Of all models that the best one does not clearly beat,
+the one with the fewest parameters is chosen. If a rejected model predicts clearly better, plantar falls back to
+Kelvin-Voigt and warns.
 """
 
 from __future__ import annotations
@@ -17,20 +18,21 @@ from plantar.conventions import Array
 from plantar.errors import DataError
 from plantar.model_selection.cross_validation import FOLDS, Candidate, cross_validate, folds_of
 from plantar.model_selection.data_sets import DataSet, prepare_data_sets
-from plantar.model_selection.model_fit import ModelFit
+from plantar.model_selection.model_fit import ModelFit, refine
+from plantar.model_selection.variable_projection import Problem, best_candidate
 from plantar.models import MODELS, BushModel, KelvinVoigt, reach
 
 LEAST_GAIN = 0.10  # of the held-out rms error
 TELLING_GAIN = (
-    0.3  # of the held-out rms error: so much better, a law that cannot be identified is still told of
+    0.3  # of the held-out rms error: a model that cannot be identified but is this much better is mentioned
 )
-TOLD = 4.0  # deviations from zero of a term that a law adds to a simpler one
-HOPELESS = 6.0  # times the best law's squares, at its best candidate shape: such a law's shape is not refined
+TOLD = 4.0  # standard deviations from zero, of a term that a model adds to a simpler one
+HOPELESS = 6.0  # times the best model's squares, at its best candidate: such a model is not refined
 
 
 @dataclass(frozen=True)
 class ModelScore:
-    """One law: error on held-out pieces [N·m rms], fit, and why it could not be chosen (None where it could)."""
+    """One model: error on held-out pieces [N·m rms], fit, and why it could not be chosen (None where it could)."""
 
     model: BushModel
     held_out_rms: float
@@ -40,15 +42,15 @@ class ModelScore:
 
     @property
     def parameters(self) -> int:
-        """How many the bush has under this law."""
+        """How many the bush has under this model."""
         return self.model.size
 
 
 @dataclass(frozen=True)
 class ModelChoice:
-    """The chosen law's fit, the linear equivalent (K, C of Kelvin-Voigt over the same motions), and the ranking.
+    """The chosen model's fit, the linear equivalent (K, C of Kelvin-Voigt over the same motions), and the ranking.
 
-    `untried` are laws that elaborate one which gained nothing, add nothing to it, or need what the motions lack. What
+    `untried` are models that elaborate one which gained nothing, add nothing to it, or need what the motions lack. What
     holds, holds for deflections up to `reach` [rad] from the middle: an element that none of these motions
     made slip counts as part of the spring. `caution` says so where the motions show that there is one.
     """
@@ -71,52 +73,61 @@ def choose_model(
     shared_offset: bool = False,
     least_gain: float = LEAST_GAIN,
 ) -> ModelChoice:
-    """Fit every law, hold pieces out in turn, and choose. Laws must include Kelvin-Voigt.
+    """Fit every model, hold pieces out in turn, and choose. Models must include Kelvin-Voigt.
 
     Whole recordings are held out where there are at least three and none has more than half of the motion;
-    else contiguous fifths of every recording. Raises DataError where no sample serves.
+    else contiguous fifths of every recording. Raises DataError where no sample can be used.
     """
     prepared = prepare_data_sets(data_sets, cutoff, drift=not shared_offset)
     if not prepared:
         raise DataError(
-            "no recording has a sample that serves this fit (valid: at least one standing second)"
+            "no recording has a sample that this fit can use (valid: at least one standing second)"
         )
     folds, whole = folds_of(prepared)
     rows = sum(len(fold) for fold in folds)
+    motions = [each.motion for each in prepared]
+    applicable = [model for model in models if model.applies(motions)]
+    untried = [model.name for model in models if model not in applicable]
+    simple = sorted(
+        (
+            Candidate.of(model, prepared, folds, shared_offset)
+            for model in applicable
+            if model.elaborates is None
+        ),
+        key=lambda each: each.squares,
+    )
+    linear = [candidate.model.name for candidate in simple].index(KelvinVoigt.name)
     scores: list[ModelScore] = []
     errors: list[Array] = []
-    untried: list[str] = []
-    motions = [each.motion for each in prepared]
-
-    def enter(candidate: Candidate) -> None:
-        least = min((score.fit.rms for score in scores), default=np.inf) ** 2 * rows
-        hopeless = candidate.squares > HOPELESS * least
-        fit, squares = cross_validate(candidate, prepared, folds, whole, shared_offset, refined=not hopeless)
-        scores.append(ModelScore(candidate.model, float(np.sqrt(squares.sum() / rows)), fit, _refusal(fit)))
-        errors.append(squares)
-
-    untried += [model.name for model in models if not model.applies(motions)]
-    simple = [
-        Candidate.of(model, prepared, folds, shared_offset)
-        for model in models
-        if model.elaborates is None and model.name not in untried
+    # Simple models first, the best one before the others; then what elaborates them, near their fits.
+    order: list[Candidate | BushModel] = [
+        *simple,
+        *(each for each in applicable if each.elaborates is not None),
     ]
-    for candidate in sorted(simple, key=lambda each: each.squares):
-        enter(candidate)
-    names = [score.model.name for score in scores]
-    linear = names.index(KelvinVoigt.name)
-    for model in (each for each in models if each.elaborates is not None and each.name not in untried):
-        seed = None
-        if model.elaborates in names:
-            place = names.index(model.elaborates)
-            seed = scores[place].fit
-            if not _clear(scores, errors, least_gain, simple=linear, rich=place):
-                untried.append(model.name)
-                continue
-        enter(Candidate.of(model, prepared, folds, shared_offset, seed))
-        if seed is not None and not _adds(scores[-1].fit, seed):
-            untried.append(scores.pop().model.name)
-            errors.pop()
+    for each in order:
+        simpler = None
+        if isinstance(each, Candidate):
+            candidate = each
+        else:
+            place = next((k for k, score in enumerate(scores) if score.model.name == each.elaborates), None)
+            if place is not None:
+                simpler = scores[place].fit
+                if not _clear(scores, errors, least_gain, simple=linear, rich=place):
+                    untried.append(each.name)
+                    continue
+            candidate = Candidate.of(each, prepared, folds, shared_offset, simpler)
+        least = min((score.fit.rms for score in scores), default=np.inf) ** 2 * rows
+        refined = not candidate.squares > HOPELESS * least
+        problem = Problem(candidate.pieces.model, prepared, shared_offset)
+        start = best_candidate(problem, candidate.pieces)
+        fit = refine(problem, start, candidate.limits, refined=refined)
+        if simpler is not None and not _adds(fit, simpler):
+            untried.append(fit.model.name)
+            continue
+        pieces = candidate.pieces_about(fit, prepared, folds) if refined else candidate.pieces
+        squares = cross_validate(pieces, whole=whole, shared_offset=shared_offset)
+        scores.append(ModelScore(fit.model, float(np.sqrt(squares.sum() / rows)), fit, _refusal(fit)))
+        errors.append(squares)
     winner = _winner(scores, errors, linear, least_gain)
     chosen = replace(scores[winner], chosen=True)
     ranking = [chosen if place == winner else score for place, score in enumerate(scores)]
@@ -137,18 +148,21 @@ def _refusal(fit: ModelFit) -> str | None:
     if isinstance(fit.model, KelvinVoigt):
         return None
     if not fit.model.possible(fit.values):
-        return "would make energy of its own"
+        return "is not passive"
     return "; ".join(fit.doubts) or None
 
 
 def _adds(fit: ModelFit, simpler: ModelFit) -> bool:
-    """Whether every term that a law adds to the one it elaborates is told from zero."""
+    """Whether every term that a model adds to the one it elaborates is told from zero."""
     added = range(len(simpler.model.terms), len(fit.model.terms))
     return all(abs(fit.values[k]) > TOLD * np.sqrt(fit.covariance[k, k]) for k in added)
 
 
 def _winner(scores: Sequence[ModelScore], errors: Sequence[Array], linear: int, least_gain: float) -> int:
-    """The simplest law that the best one does not clearly beat; spring and damper where that one is a makeshift."""
+    """The simplest model that the best one does not clearly beat.
+
+    Where a rejected model, one that cannot be identified, clearly beats that one, fall back to Kelvin-Voigt.
+    """
     allowed = [place for place, score in enumerate(scores) if score.refused is None]
     best = min(allowed, key=lambda place: scores[place].held_out_rms)
     simple_first = sorted(allowed, key=lambda place: (scores[place].parameters, scores[place].held_out_rms))
@@ -157,7 +171,7 @@ def _winner(scores: Sequence[ModelScore], errors: Sequence[Array], linear: int, 
         for place in simple_first
         if place == best or not _clear(scores, errors, least_gain, simple=place, rich=best)
     )
-    # Where a law that cannot be identified is clearly better, another one that can be takes its part badly.
+    # A rejected model that predicts clearly better shows that the winner is wrong too: fall back to Kelvin-Voigt.
     refused = (place for place, score in enumerate(scores) if score.refused is not None)
     return (
         linear
@@ -169,9 +183,9 @@ def _winner(scores: Sequence[ModelScore], errors: Sequence[Array], linear: int, 
 def _clear(
     scores: Sequence[ModelScore], errors: Sequence[Array], least_gain: float, *, simple: int, rich: int
 ) -> bool:
-    """Whether the richer law's gain over the simpler one is clear.
+    """Whether the richer model's gain over the simpler one is clear.
 
-    What a law adds to the one that it elaborates has been told from zero before: it only must not predict worse.
+    What a model adds to the one that it elaborates has been told from zero before: it only must not predict worse.
     """
     if scores[rich].model.elaborates == scores[simple].model.name:
         return scores[rich].held_out_rms < scores[simple].held_out_rms
@@ -184,7 +198,7 @@ def _clear(
 def _caution(
     scores: Sequence[ModelScore], errors: Sequence[Array], winner: int, least_gain: float
 ) -> str | None:
-    """Whether a law that was refused predicts clearly better: then the bush is not as the chosen law says."""
+    """Whether a model that was refused predicts clearly better: then the bush is not as the chosen model says."""
     better = [
         place
         for place, score in enumerate(scores)
@@ -204,7 +218,7 @@ def _caution(
 
 def _reason(chosen: ModelScore, linear: ModelScore, held_out: str) -> str:
     if chosen.model.name == linear.model.name:
-        return f"no richer law predicts {held_out} clearly better than spring and damper"
+        return f"no richer model predicts {held_out} clearly better than spring and damper"
     gain = 100 * (1 - chosen.held_out_rms / linear.held_out_rms) if linear.held_out_rms > 0 else 0.0
     return (
         f"held-out {held_out}: {chosen.model.name} misses by {chosen.held_out_rms:.3g} rms, spring and damper by "

@@ -1,6 +1,6 @@
-"""From the best candidate to the best fit: the shape, and the start of the memory in every run, refined together.
+"""Variable projection: nonlinear parameters and the initial state of every run, refined together by Gauss-Newton.
 
-Gauss-Newton on the variable projection: at each point the linear parameters are those that fit best there.
+At each point the linear parameters are those that fit best there.
 """
 
 from __future__ import annotations
@@ -19,16 +19,20 @@ from plantar.models import BushModel
 
 ITERATIONS = 16
 LANDINGS = 3  # times that the states at landings are found anew with better parameters
-WIDEST_SCAN, NARROWEST_SCAN, NARROWING = 1.0, 0.05, 0.2  # of the starts about where the steps came to rest
+WIDEST_SCAN, NARROWEST_SCAN, NARROWING = (
+    1.0,
+    0.05,
+    0.2,
+)  # of the initial states about where the steps came to rest
 HALVINGS = 4
 SETTLED = 1e-4  # relative fall of the squares below which the refinement has arrived
-BOLDEST = 0.4  # largest step of a shape's logarithm
+BOLDEST = 0.4  # largest step of a nonlinear parameter's logarithm
 SHAPE_STEP, STATE_STEP = 0.01, 0.02  # of the differences that stand for derivatives
 
 
 @dataclass(frozen=True)
 class Point:
-    """A shape and starts, with the linear parameters that fit best there."""
+    """Nonlinear parameters (`shape`) and initial states, with the linear parameters that fit best there."""
 
     shape: Array
     initial_states: list[Array]
@@ -40,7 +44,7 @@ class Point:
 
 @dataclass(frozen=True)
 class Problem:
-    """What is fitted: a law to recordings, with an offset each or a shared one."""
+    """What is fitted: a model to recordings, with an offset each or a shared one."""
 
     model: BushModel
     prepared: Sequence[FilteredDataSet]
@@ -59,7 +63,7 @@ class Problem:
         return Point(shape, initial_states, values, offsets, residuals, float(sum(r @ r for r in residuals)))
 
     def linearised(self, point: Point) -> Linearised:
-        """Columns of values and log shape about a point, residuals as response, starts to be projected out."""
+        """Columns of values and log shape about a point, residuals as response; initial states are projected out."""
         model, shape, count = self.model, point.shape, len(point.shape)
         shapes = np.repeat(shape[None, :], 3 + 2 * count, axis=0)
         for place in range(count):
@@ -84,16 +88,12 @@ class Problem:
         return Linearised(designs, point.residuals, self.shared_offset, memories, runs, counts)
 
 
-def settle(problem: Problem, pieces: Pieces, limits: Array, *, refined: bool = True) -> Point:
-    """The best fit reached from the best candidate of `pieces`, its shape between `limits` (2, s).
-
-    Not `refined`: the candidate itself.
-    """
-    model, shapes = pieces.model, pieces.shapes
+def best_candidate(problem: Problem, pieces: Pieces) -> Point:
+    """The best candidate of `pieces`: nonlinear parameters and initial states."""
     rough = fit_pieces(pieces, np.ones(len(pieces.grams), dtype=bool), shared_offset=problem.shared_offset)
     best = int(np.argmin(rough.squares))
     begin = [np.zeros(len(each.motion.runs)) for each in problem.prepared]
-    if model.remembers:
+    if problem.model.remembers:
         runs = np.concatenate([[0], np.cumsum([len(each) for each in begin])])
         for data_set, run, start in zip(
             pieces.data_set, pieces.run, rough.initial_states[:, best], strict=True
@@ -101,19 +101,10 @@ def settle(problem: Problem, pieces: Pieces, limits: Array, *, refined: bool = T
             begin[data_set][run - runs[data_set]] = pieces.initial_states[data_set][
                 start, run - runs[data_set]
             ]
-    if not refined or not (shapes.shape[1] or model.remembers):
-        return problem.at(shapes[best], begin)
-    point = descended(problem, problem.at(shapes[best], begin), limits)
-    for _ in range(LANDINGS):
-        landed = _from_landings(problem, point)
-        other = landed and descended(problem, landed, limits)
-        if other is None or other.squares > (1 - SETTLED) * point.squares:
-            break
-        point = other
-    return point
+    return problem.at(pieces.shapes[best], begin)
 
 
-def _from_landings(problem: Problem, point: Point) -> Point | None:
+def landed(problem: Problem, point: Point) -> Point | None:
     """The point with the states that the air leaves for each landing; None for a foot that does not step.
 
     What the states of all stances have in common hardly shows in any one of them: from a wrong guess no step by step
@@ -128,23 +119,7 @@ def _from_landings(problem: Problem, point: Point) -> Point | None:
     return problem.at(point.shape, states)
 
 
-def descended(problem: Problem, point: Point, limits: Array) -> Point:
-    """Where steps and scans from a point come to rest."""
-    model, width = problem.model, WIDEST_SCAN
-    for _ in range(ITERATIONS):
-        moved = _step(problem, point, limits)
-        if moved is None or moved.squares > (1 - SETTLED) * point.squares:
-            scanned = _scan(problem, moved or point, width) if model.remembers else None
-            width *= NARROWING
-            if scanned is None and (not model.remembers or width < NARROWEST_SCAN):
-                point = moved or point
-                break
-            moved = scanned or moved or point
-        point = moved
-    return point
-
-
-def _step(problem: Problem, point: Point, limits: Array) -> Point | None:
+def step(problem: Problem, point: Point, limits: Array) -> Point | None:
     """The next point of the refinement, or None where none is better."""
     linear = problem.linearised(point)
     change = linear.solve()
@@ -163,10 +138,10 @@ def _step(problem: Problem, point: Point, limits: Array) -> Point | None:
     return None
 
 
-def _scan(problem: Problem, point: Point, width: float) -> Point | None:
-    """The point with each run's start moved to the best of several about it, or None where none is better.
+def scan(problem: Problem, point: Point, width: float) -> Point | None:
+    """The point with each run's initial state moved to the best of several about it, or None where none is better.
 
-    A state that stops at its ends makes corners, at which the derivative by the start misleads.
+    A state that stops at its ends makes corners, at which the derivative by the initial state misleads.
     """
     around = np.linspace(-width, width, 9)
     initial_states = [np.clip(start[None, :] + around[:, None], -1.0, 1.0) for start in point.initial_states]

@@ -1,4 +1,4 @@
-"""Laws of the bush, one file each: torque from the history of deflection and rate."""
+"""Bush models, one file each: torque from the history of deflection and rate."""
 
 from plantar.models.bouc_wen import BoucWen
 from plantar.models.bush_model import BESIDE, BushModel, BushMotion, reach

@@ -59,7 +59,7 @@ class BoucWen(Hysteretic):
 class BranchCurve:
     """The one curve that z follows from -1 to 1, over the place p = 1 - exp(-sharpness·way / slip_angle).
 
-    In p the curve and the turn (z -> -z) have finite slopes at both ends, so a table with linear steps serves.
+    In p the curve and the turn (z -> -z) have finite slopes at both ends, so a table interpolated linearly is enough.
     """
 
     def __init__(self, sharpness: float) -> None:

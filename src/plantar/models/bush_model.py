@@ -1,9 +1,9 @@
-"""What every law of the bush offers: torque from the history of deflection and rate, linear in all but its shape.
+"""What every bush model offers: torque from the history of deflection and rate.
 
     torque = stiffness·deflection + damping·rate + Σ parameter·column(history; shape) + offset
 
-The offset belongs to the recording, not to the bush. `stiffness` and `damping` are the spring and the damper
-that stand beside whatever else a law has.
+The torque is linear in all parameters but the nonlinear ones, `shape`. The offset belongs to the recording, not to the
+bush. Every model has `stiffness` and `damping`, a spring and a damper in parallel with whatever else it has.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ import numpy as np
 from plantar.conventions import DAMPING_UNIT, STIFFNESS_UNIT, Array, Axis
 from plantar.signals.segments import runs
 
-BESIDE: Final = ("stiffness", "damping")  # the spring and damper of every law, first among its terms
+BESIDE: Final = ("stiffness", "damping")  # the spring and damper of every model, first among its terms
 
 
 @dataclass(frozen=True)
 class BushMotion:
     """One axis of one foot over one recording, at an even period [s]; NaN where nothing is known (a gap, the air).
 
-    `deflection` [rad] and `rate` [rad/s] are (N,), wide-band: a law that does not commute with a filter needs the path
-    itself. `across` and `across_rate` are (N, m): the same foot's other axes, for laws that couple them.
+    `deflection` [rad] and `rate` [rad/s] are (N,), wide-band: a model that does not commute with a filter needs the
+    path itself. `across` and `across_rate` are (N, m): the same foot's other axes, for models that couple them.
     """
 
     deflection: Array
@@ -37,7 +37,7 @@ class BushMotion:
 
     @property
     def runs(self) -> tuple[slice, ...]:
-        """Stretches without a gap: the law's memory lasts over each of them and starts anew in the next."""
+        """Segments without a gap: the model's memory lasts over each of them and starts anew in the next."""
         return tuple(runs(np.isfinite(self.deflection) & np.isfinite(self.rate)))
 
     def __len__(self) -> int:
@@ -45,30 +45,33 @@ class BushMotion:
 
 
 class BushModel(ABC):
-    """A law of the bush. Linear `terms` first stiffness and damping; `shape_terms` are its nonlinear parameters.
+    """A bush model. Linear `terms` first stiffness and damping; `shape_terms` are its nonlinear parameters.
 
-    A law that `remembers` has an inner state of unknown value where a run begins: its start, in [-1, 1].
+    A model that `remembers` has an inner state whose value at the beginning of a run is unknown: its initial state, in
+    [-1, 1].
     """
 
     name: ClassVar[str]
     terms: ClassVar[tuple[str, ...]] = BESIDE
     shape_terms: ClassVar[tuple[str, ...]] = ()
     remembers: ClassVar[bool] = False
-    forgets: ClassVar[bool] = True  # whether motion wears the start's effect away
+    fading_memory: ClassVar[bool] = True  # whether the effect of the initial state fades as the bush moves
     tried_states: ClassVar[tuple[float, ...]] = (0.0,)  # by the rough search, before they are refined
-    elaborates: ClassVar[str | None] = None  # a simpler law, without whose gain this one is not worth trying
+    elaborates: ClassVar[str | None] = (
+        None  # a simpler model, without whose gain this one is not worth trying
+    )
     blind_ends: ClassVar[frozenset[tuple[str, str]]] = (
         frozenset()
     )  # (shape term, "low" or "high"): see `candidates`
     zero_matters: ClassVar[bool] = (
-        False  # an error of the deflection's zero is more than an offset, and no start
+        False  # an error of the deflection's zero is more than an offset and an initial state
     )
-    dissipative_terms: ClassVar[tuple[str, ...]] = ()  # below zero they would make energy
+    dissipative_terms: ClassVar[tuple[str, ...]] = ()  # below zero the bush is not passive
     units: ClassVar[dict[str, tuple[str, str]]] = {}  # of extra and shape terms: rotational, vertical
 
     @property
     def size(self) -> int:
-        """How many parameters the bush has under this law."""
+        """How many parameters the bush has under this model."""
         return len(self.terms) + len(self.shape_terms)
 
     def unit(self, term: str, axis: Axis) -> str:
@@ -80,24 +83,24 @@ class BushModel(ABC):
         return self.units[term][axis == "z"]
 
     def applies(self, motions: Sequence[BushMotion]) -> bool:
-        """Whether these motions hold what the law needs."""
+        """Whether these motions hold what the model needs."""
         return True
 
     def candidates(self, motions: Sequence[BushMotion]) -> Array:
-        """Shapes (g, s) worth trying for these motions; one empty shape where the law has none.
+        """Nonlinear parameters (g, s) to try for these motions; one empty row where the model has none.
 
-        They span what the motions can show. At a blind end of that range the law becomes a spring or a damper
+        They span what the motions can show. At a blind end of that range the model becomes a spring or a damper
         more, and cannot be told from the spring and the damper beside it.
         """
         return np.zeros((1, 0))
 
     @abstractmethod
-    def extra(
+    def basis_columns(
         self, motions: Sequence[BushMotion], shapes: Array, initial_states: Sequence[Array]
     ) -> list[Array]:
         """The columns beside deflection and rate, (N, e, b) for every motion; NaN outside its runs.
 
-        `shapes` (b, s) and `initial_states` (b, runs) of each motion are b variants, computed side by side.
+        `shapes` (b, s), nonlinear parameters, and `initial_states` (b, runs) of each motion are b variants.
         """
 
     def columns(
@@ -107,7 +110,7 @@ class BushModel(ABC):
         initial_states = (
             np.zeros(len(motion.runs)) if initial_states is None else np.asarray(initial_states, dtype=float)
         )
-        extra = self.extra(
+        extra = self.basis_columns(
             [motion], np.reshape(np.asarray(shape, dtype=float), (1, -1)), [initial_states[None, :]]
         )[0]
         columns = np.column_stack([motion.deflection, motion.rate, extra[:, :, 0]])
@@ -115,11 +118,11 @@ class BushModel(ABC):
         return columns
 
     def initial_states(self, motion: BushMotion, shape: Array) -> Array:
-        """Inner state (runs,) at the start of each run, if the bush was loaded there from rest without turning back."""
+        """Initial state (runs,) of each run, if the bush was loaded to it from rest without turning back."""
         return np.zeros(len(motion.runs))
 
     def possible(self, values: Array) -> bool:
-        """Whether these linear parameters (k,) describe a bush that makes no energy of its own."""
+        """Whether a bush with these linear parameters (k,) is passive."""
         return all(values[self.terms.index(term)] >= 0 for term in self.dissipative_terms)
 
 

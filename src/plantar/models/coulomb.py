@@ -35,7 +35,7 @@ class Coulomb(BushModel):
         fast = float(np.percentile(rates, 98)) or 1.0
         return np.geomspace(SHARPEST * fast, SMOOTHEST * fast, 9)[:, None]
 
-    def extra(
+    def basis_columns(
         self, motions: Sequence[BushMotion], shapes: Array, initial_states: Sequence[Array]
     ) -> list[Array]:
         """Sign of the rate, smooth: (N, 1, b)."""

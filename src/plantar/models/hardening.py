@@ -16,18 +16,18 @@ ZERO_ERROR = 0.01  # rad (m): largest error of the deflection's zero that is loo
 class Hardening(BushModel):
     """torque = K·q + C·q̇ + hardening·((q - e)³ + e³) + offset; K is the slope at zero deflection.
 
-    e is the error of the deflection's zero in each run (attitude bias), in starts of `ZERO_ERROR`: a cube
+    e is the error of the deflection's zero in each run (attitude bias), in units of `ZERO_ERROR`: a cube
     does not absorb it into the offset as a spring does.
     """
 
     name: ClassVar[str] = "hardening"
     terms: ClassVar[tuple[str, ...]] = (*BESIDE, "hardening")
     remembers: ClassVar[bool] = True
-    forgets: ClassVar[bool] = False
+    fading_memory: ClassVar[bool] = False
     tried_states: ClassVar[tuple[float, ...]] = (-0.5, 0.0, 0.5)
     units: ClassVar[dict[str, tuple[str, str]]] = {"hardening": ("N.m/rad3", "N/m3")}
 
-    def extra(
+    def basis_columns(
         self, motions: Sequence[BushMotion], shapes: Array, initial_states: Sequence[Array]
     ) -> list[Array]:
         """The cube of the deflection about its true zero, (N, 1, b)."""

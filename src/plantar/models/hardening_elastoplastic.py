@@ -16,8 +16,8 @@ from plantar.models.hardening import Hardening
 class HardeningElastoplastic(Elastoplastic):
     """torque = K·q + C·q̇ + slip_torque·z + hardening·q³ + offset; K is the slope of the spring at zero deflection.
 
-    The cube is taken about the recorded zero: a run's start is the state z here, and leaves no room for an error of
-    the zero as `Hardening` has it. A fit has to allow for one.
+    The cube is taken about the recorded zero: here the initial state of a run is z, not an error of the zero as in
+    `Hardening`. A fit has to allow for such an error.
     """
 
     name: ClassVar[str] = "hardening_elastoplastic"
@@ -26,12 +26,12 @@ class HardeningElastoplastic(Elastoplastic):
     elaborates: ClassVar[str | None] = Elastoplastic.name
     units: ClassVar[dict[str, tuple[str, str]]] = {**Elastoplastic.units, **Hardening.units}
 
-    def extra(
+    def basis_columns(
         self, motions: Sequence[BushMotion], shapes: Array, initial_states: Sequence[Array]
     ) -> list[Array]:
         """The state z and the cube, (N, 2, b)."""
         columns = []
-        for motion, slip in zip(motions, super().extra(motions, shapes, initial_states), strict=True):
+        for motion, slip in zip(motions, super().basis_columns(motions, shapes, initial_states), strict=True):
             cube = np.where(np.isfinite(slip), (motion.deflection**3)[:, None, None], np.nan)
             columns.append(np.concatenate([slip, cube], axis=1))
         return columns

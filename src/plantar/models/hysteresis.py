@@ -64,7 +64,7 @@ def _turning_points(path: Array) -> tuple[NDArray[np.intp], float]:
 class Hysteretic(BushModel):
     """torque = K·q + C·q̇ + slip_torque·z + offset: an element beside the spring that yields around `slip_angle`.
 
-    Before it yields it is a spring of slip_torque / slip_angle. The start of a run is its state z there.
+    Before it yields it is a spring of slip_torque / slip_angle. The initial state of a run is z there.
     """
 
     terms: ClassVar[tuple[str, ...]] = (*BESIDE, "slip_torque")
@@ -77,7 +77,7 @@ class Hysteretic(BushModel):
 
     @abstractmethod
     def states(self, branches: Branches, shapes: Array, initial_states: Array) -> Array:
-        """z (n, r, b) along r runs, for b variants of shape (b, s) and start (r, b)."""
+        """z (n, r, b) along r runs, for b variants of shape (b, s) and initial state (r, b)."""
 
     def candidates(self, motions: Sequence[BushMotion]) -> Array:
         """Slip angles in equal ratios, from what looks like dry friction to what hardly slips in these motions."""
@@ -89,7 +89,7 @@ class Hysteretic(BushModel):
         first = np.array([motion.deflection[run.start] for run in motion.runs])
         return np.asarray(np.clip(first / shape[0], -1.0, 1.0))
 
-    def extra(
+    def basis_columns(
         self, motions: Sequence[BushMotion], shapes: Array, initial_states: Sequence[Array]
     ) -> list[Array]:
         """The state z, (N, 1, b)."""

@@ -16,7 +16,7 @@ class KelvinVoigt(BushModel):
 
     name: ClassVar[str] = "kelvin_voigt"
 
-    def extra(
+    def basis_columns(
         self, motions: Sequence[BushMotion], shapes: Array, initial_states: Sequence[Array]
     ) -> list[Array]:
         """No columns beside the two: (N, 0, b)."""

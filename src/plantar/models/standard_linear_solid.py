@@ -17,7 +17,7 @@ LONGEST_SHARE = 0.1  # of the longest run: slower relaxation is drift
 class StandardLinearSolid(BushModel):
     """torque = K·q + C·q̇ + relaxing_stiffness·x + offset, with relaxation_time·ẋ + x = relaxation_time·q̇.
 
-    K is the relaxed stiffness; a fast movement feels K + relaxing_stiffness. The start of a run is the
+    K is the relaxed stiffness; a fast movement feels K + relaxing_stiffness. The initial state of a run is the
     relaxing spring's deflection x there, as a share of the run's largest deflection from its middle.
     """
 
@@ -42,7 +42,7 @@ class StandardLinearSolid(BushModel):
         )
         return np.geomspace(FASTEST, max(LONGEST_SHARE * longest, 4 * FASTEST), 12)[:, None]
 
-    def extra(
+    def basis_columns(
         self, motions: Sequence[BushMotion], shapes: Array, initial_states: Sequence[Array]
     ) -> list[Array]:
         """Deflection of the relaxing spring, (N, 1, b), exact for a deflection linear between samples."""

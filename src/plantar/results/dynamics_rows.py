@@ -21,8 +21,8 @@ class InertialParameter:
 
 @dataclass(frozen=True)
 class BaseParameter:
-    """One minimal parameter; std and interval95 (Student's) count coloured residuals and the pull, relative_std_percent
-    is 100·std/|value|."""
+    """One minimal parameter; std and interval95 (Student's) count coloured residuals and the regularisation;
+    relative_std_percent is 100·std/|value|."""
 
     expression: str
     value: float

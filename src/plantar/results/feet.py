@@ -56,7 +56,7 @@ class FeetResult:
         robot: the robot's name. inputs: every log with its SHA-256. settings: what was chosen.
         model: the bush model of most axes; `models` has that of each axis and why it was chosen.
         parameters: stiffness, damping and further terms [SI], each with interval, verdict, reason and advice.
-        offsets: of each motion [N·m]. phases: stretches of each log, used or with the reason why not.
+        offsets: of each motion [N·m]. phases: segments of each log, used or with the reason why not.
         validation: errors [N·m] on fitted (direct) and unseen (cross) motions. notes: what was assumed.
         robot_model: path of the URDF and geometry of the feet [m, rad], for exports.
         sensor_delay: how late the sensors are [s]. compliance: of each foot along z [m/N], 0 where not known.

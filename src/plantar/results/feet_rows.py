@@ -128,7 +128,7 @@ class AxisModel:
     ranking: tuple[Candidate, ...] | None = None
 
     def to_dict(self) -> dict[str, Any]:
-        """The entry of `laws` in `result.json`, which calls a model a law."""
+        """The entry of `laws` in `result.json`, where a model is called a law."""
         content = {("law" if key == "model" else key): value for key, value in asdict(self).items()}
         if not any(self.moment_arms):
             del content["moment_arms"]
@@ -171,8 +171,9 @@ class DelayEstimate:
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """What limits one number: the half width of its 95 % interval [% of the value], the share of each cause in its
-    variance (0 to 1), the largest cause, and what to record against it."""
+    """What limits one number: `limit` is the largest cause of its variance, `variance_shares` (0 to 1) the share of
+    each, `half_width_percent` half of its 95 % interval [% of the value], `advice` what to record against `limit`,
+    and `text` all of it in one sentence."""
 
     foot: str
     axis: Axis
@@ -181,6 +182,7 @@ class Diagnosis:
     variance_shares: Mapping[str, float]
     half_width_percent: float
     text: str
+    advice: str = ""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""How much of each log served, and why the rest did not."""
+"""How much of each log was used, and why the rest was not."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from plantar.contact.phases import Phase
 
 
 def used_shares(phases: Iterable[Phase]) -> list[dict[str, Any]]:
-    """Seconds, seconds that served and the reasons for the others, by motion and foot, from a result's phases."""
+    """Seconds, seconds that were used and the reasons for the others, by motion and foot, from a result's phases."""
     seconds: dict[tuple[str, str], float] = defaultdict(float)
     used: dict[tuple[str, str], float] = defaultdict(float)
     reasons: dict[tuple[str, str], dict[str, float]] = defaultdict(lambda: defaultdict(float))

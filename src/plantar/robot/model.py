@@ -119,12 +119,12 @@ class RobotModel:
     @cached_property
     def model(self) -> pin.Model:
         """Pinocchio's model with the root link fixed: the joints that a log can hold."""
-        return _parse_urdf(self.urdf, self.urdf_path, floating=False)
+        return parse_urdf(self.urdf, self.urdf_path, floating=False)
 
     @cached_property
     def floating_model(self) -> pin.Model:
         """Pinocchio's model with a free-flyer above the root link."""
-        return _parse_urdf(self.urdf, self.urdf_path, floating=True)
+        return parse_urdf(self.urdf, self.urdf_path, floating=True)
 
     @cached_property
     def joint_names(self) -> tuple[str, ...]:
@@ -227,7 +227,11 @@ def _terms(entry: JointEntry) -> tuple[str, ...]:
     return ("stiffness", "viscous", "offset") if entry.passive else ("viscous", "coulomb", "offset")
 
 
-def _parse_urdf(urdf: str, path: Path, *, floating: bool) -> pin.Model:
+def parse_urdf(urdf: str, path: Path, *, floating: bool) -> pin.Model:
+    """Pinocchio's model of a URDF's text, with a free-flyer above the root link where `floating`.
+
+    Raises RobotError, with `path` for the file, where it declares an entity or Pinocchio cannot read it.
+    """
     if re.search(r"<!(DOCTYPE|ENTITY)", urdf, re.IGNORECASE):
         raise RobotError(located("declares a DOCTYPE or an entity", path=path, valid="plain URDF"))
     try:

@@ -72,7 +72,7 @@ def check_stance(
     weight: float,
     left: float,
 ) -> list[Remark]:
-    """Weight, balance and level soles; `left` is the lever about the centre of mass [m]."""
+    """Weight, balance and level soles; `left` is the moment arm about the centre of mass [m]."""
     total = np.zeros(len(stance.up))
     for side, seat in seats.items():
         axes = stance.rotations[side] @ sensor_pose(seat, poses[side])[1]

@@ -1,8 +1,8 @@
 """Where and how a foot's force sensor sits: the URDF's frames first, then what the logs show of its axes and its sign.
 
 Under a standing robot the force points up, and the feet's wrenches balance gravity: their moment about the centre of
-mass, over the load, is a short lever that hardly changes. A sensor's zero makes it longer, wrong axes make it change
-with every sway. How high a sensor sits hardly shows.
+mass, over the load, is a short moment arm that hardly changes. A sensor's zero makes it longer, wrong axes make it
+change with every sway. How high a sensor sits hardly shows.
 """
 
 from __future__ import annotations
@@ -25,7 +25,10 @@ SENSOR = re.compile(r"(^|[_/])(ft|fts|f_?t|wrench)([_/]|$)|force.?(torque|sensor
 STEEP = np.cos(
     np.radians(25)
 )  # under load the usual force is nearer to up than this, in the sensor's right axes
-CLEARLY, SMALL = 0.5, 0.01  # other axes are believed where they halve a change of the lever of 1 cm or more
+CLEARLY, SMALL = (
+    0.5,
+    0.01,
+)  # other axes are believed where they halve a change of the moment arm of 1 cm or more
 ORIGIN, SOLE_AXES = "the ankle link's axes", "the foot's axes: x to the toes, z up"
 
 
@@ -72,7 +75,7 @@ def urdf_seat(tree: UrdfTree, sole: Sole, name: str | None, frame: str) -> Seat:
 def seats_by_log(
     seats: Mapping[str, Seat], soles: Sequence[Sole], stance: Stance, poses: Mapping[str, Array]
 ) -> tuple[dict[str, Seat], float]:
-    """The seats with the signs and axes that the logs show, alike on all feet; and the lever that is left [m].
+    """The seats with the signs and axes that the logs show, alike on all feet; and the moment arm that is left [m].
 
     poses: of each seat's link in its ankle link, (4, 4). Axes given by messages keep; only their sign is looked at.
     """

@@ -9,7 +9,7 @@ from plantar.conventions import Mask
 
 
 def runs(valid: Mask) -> list[slice]:
-    """The stretches of consecutive true samples, as slices."""
+    """The segments of consecutive true samples, as slices."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], valid, [False]]).astype(np.int8)))
     return [slice(int(start), int(stop)) for start, stop in edges.reshape(-1, 2)]
 

@@ -12,7 +12,7 @@ from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note, Severity
 
 FAR_STEPS = 10.0  # usual steps from sample to sample, beyond which a sample does not belong to its neighbours
-NEIGHBOURS = 2  # on either side: a stretch of more than two samples is no spike
+NEIGHBOURS = 2  # on either side: a segment of more than two samples is no spike
 LOCAL = 1.0  # s over which steps are compared: an impact among impacts is no spike
 GROUP_GAP, FEW = (
     0.15,

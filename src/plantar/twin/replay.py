@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Any, Final
+from dataclasses import dataclass, fields, replace
+from typing import Final
 
 import numpy as np
 from scipy.signal import detrend
 
 from plantar.contact.balance import LOADED, flat_soles, soles_in_root
-from plantar.conventions import GRAVITY, Array, rotation_from_quaternion
+from plantar.conventions import GRAVITY, ROTATIONAL_AXES, Array, rotation_from_quaternion
 from plantar.errors import DataError, MotionError, PlantarError, located
 from plantar.logs.motion_log import MotionLog
 from plantar.motions.plan import RATE, Hand, Plan
+from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
 from plantar.signals.filters import low_pass
 from plantar.twin.bush import Bush, Feet
@@ -27,7 +28,7 @@ from plantar.twin.simulation.physics import Physics
 SMOOTH: Final = 10.0  # Hz: encoder steps are no motion
 REFERENCE: Final = 1.0  # s at the start that zeros of force sensors are taken from, and that are not scored
 MODELS: Final = ("kelvin_voigt", "hardening", "elastoplastic", "hardening_elastoplastic")
-TERMS: Final = ("stiffness", "damping", "hardening", "slip_torque", "slip_angle")
+REQUIRED: Final = ("stiffness", "damping")  # of each axis that turns
 
 
 @dataclass(frozen=True)
@@ -116,27 +117,33 @@ def replay(
     return found
 
 
-def feet_of(result: Mapping[str, Any]) -> Feet:
-    """The bushes that a `result.json` (as read) describes.
+def feet_of(result: FeetResult) -> Feet:
+    """The bushes that a result describes.
 
-    Raises PlantarError when its law is one that the twin has no element for, or a value is missing. z keeps the
-    twin's own where the result has none.
+    Where the twin has no element for an axis' model, the spring and damper that fit its motions best are played; z
+    keeps the twin's own where the result has none.
+
+    Raises PlantarError when a foot has no stiffness or damping of pitch or roll.
     """
-    if result["model"] not in MODELS:
-        message = f"the law '{result['model']}' cannot be played on the twin"
-        raise PlantarError(located(message, valid=", ".join(MODELS)))
+    linear = {
+        (axis.foot, axis.axis): axis.linear_equivalent for axis in result.models if axis.model not in MODELS
+    }
+    played = {field.name for field in fields(Bush)}
     values: dict[str, dict[str, float]] = {}
-    for row in result["parameters"]:
-        if row["name"] in TERMS and row["value"] is not None and (row["axis"] != "z" or row["value"] > 0):
-            values.setdefault(row["foot"], {})[f"{row['axis']}_{row['name']}"] = float(row["value"])
-    feet = {}
-    for foot, found in values.items():
-        known = {name: value for name, value in found.items() if name in Bush.__dataclass_fields__}
-        missing = {f"{axis}_{term}" for axis in ("pitch", "roll") for term in TERMS[:2]} - known.keys()
+    for row in result.parameters:
+        name = f"{row.axis}_{row.name}"
+        if (row.foot, row.axis) in linear or name not in played or row.value is None:
+            continue
+        if row.axis != "z" or row.value > 0:
+            values.setdefault(row.foot, {})[name] = row.value
+    for (foot, axis), found in linear.items():
+        terms = {f"{axis}_stiffness": found.stiffness, f"{axis}_damping": found.damping}
+        values.setdefault(foot, {}).update(terms)
+    for foot, own in values.items():
+        missing = {f"{axis}_{term}" for axis in ROTATIONAL_AXES for term in REQUIRED} - own.keys()
         if missing:
             raise PlantarError(located(f"the result has no {min(missing)} of the {foot} foot"))
-        feet[foot] = Bush(**known)
-    return feet
+    return {foot: Bush(**own) for foot, own in values.items()}
 
 
 def plan_of(robot: RobotModel, log: MotionLog, hand: Hand | None = None) -> Plan:

@@ -1,4 +1,4 @@
-"""How far the parameters of a pulled fit may be trusted: coloured residuals and the pull, both counted."""
+"""Covariance of a regularised fit: from autocorrelated residuals and from the regularisation itself."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from plantar.whole_body.regularised_fit import RegularisedFit
 
 CHUNK = 2048  # samples whose regressor is held at a time
 GIVEN_REGULARISATION = (
-    1e12  # of the pull where the inertial parameters are given: they have no deviation of their own
+    1e12  # weight where the inertial parameters are given: they have no deviation of their own
 )
 
 
@@ -29,9 +29,9 @@ class Uncertainty:
 
 
 def uncertainty(fit: RegularisedFit, recordings: Sequence[Samples]) -> Uncertainty:
-    """Sandwich H⁻¹ (S + s² t² 1) H⁻¹ in the prior's units: S from the coloured scores, s the strength of the pull.
+    """Sandwich H⁻¹ (S + s² t² 1) H⁻¹ in the prior's units: S from the coloured scores, s the regularisation weight.
 
-    The second part is what the pull itself gets wrong: t² is how far the CAD is from the robot, judged by how far the
+    The second part is the bias of the regularisation: t² is how far the CAD is from the robot, judged by how far the
     fit moved in the directions that the data decide.
     """
     n_base, size = len(fit.base), len(fit.prior.cad)

@@ -119,7 +119,7 @@ def prepare_whole(body: Body, log: MotionLog, settings: DynamicsSettings) -> Who
     if valid.sum() < FEWEST_SAMPLES:
         raise DataError(
             located(
-                f"has {valid.sum()} samples that can serve",
+                f"has {valid.sum()} samples that can be used",
                 path=log.source,
                 valid=f"{FEWEST_SAMPLES} or more",
             )

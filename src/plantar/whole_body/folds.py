@@ -1,4 +1,4 @@
-"""Recordings cut into stretches, each an R factor for every row of eq. 1 that is measured."""
+"""Recordings cut into folds, each an R factor for every row of eq. 1 that is measured."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Samples:
 
 
 class Folds:
-    """The stretches' factors. Solutions x are the inertial parameters (10 n_links,), then the extras row by row."""
+    """The folds' factors. Solutions x are the inertial parameters (10 n_links,), then the extras row by row."""
 
     def __init__(self, equation: Equation, base: BaseParameters, recordings: Sequence[Samples]) -> None:
         self.base = base
@@ -69,7 +69,7 @@ class Folds:
         return len(self.factors)
 
     def but(self, out: int) -> list[int]:
-        """Every stretch but one."""
+        """Every fold but one."""
         return [k for k in range(len(self)) if k != out]
 
     def extras_of(self, x: Array) -> dict[int, Array]:
@@ -78,12 +78,12 @@ class Folds:
         return {row: x[size + start : size + stop] for row, (start, stop) in self._places().items()}
 
     def triangle(self, chosen: Sequence[int], weights: Mapping[int, float]) -> Array:
-        """R of the chosen stretches, each row times its weight: base parameters, extras, measured."""
+        """R of the chosen folds, each row times its weight: base parameters, extras, measured."""
         parts = [_pooled([self.factors[k][row] for k in chosen]) for row in self.rows]
         return stacked(parts, len(self.base), [weights[row] for row in self.rows])
 
     def error(self, chosen: Sequence[int], row: int, x: Array) -> float:
-        """Mean squared error of a row over the chosen stretches."""
+        """Mean squared error of a row over the chosen folds."""
         base = self.base.grouping @ x[: self.base.grouping.shape[1]]
         extras = self.extras_of(x)[row]
         total, samples = 0.0, 0
@@ -95,7 +95,7 @@ class Folds:
         return total / max(samples, 1)
 
     def weighted_error(self, chosen: Sequence[int], x: Array, weights: Mapping[int, float]) -> float:
-        """Mean over the rows of the chosen stretches' mean squared errors, over their weights."""
+        """Mean over the rows of the chosen folds' mean squared errors, over their weights."""
         return float(np.mean([self.error(chosen, row, x) * weights[row] ** 2 for row in self.rows]))
 
     def with_known(self, chosen: Sequence[int], inertial: Array) -> Array:
@@ -124,7 +124,7 @@ class Folds:
 
 
 def _pooled(factors: Sequence[RowFactor]) -> RowFactor:
-    """One row's factors over several stretches as one."""
+    """One row's factors over several folds as one."""
     first = factors[0]
     size = len(first.columns) + first.extras + 1
     if len(factors) == 1:

@@ -32,6 +32,10 @@ OFFSET_SHARE = (
     0.05  # of the joint's rms torque: an offset known to within it is usable even where it is near zero
 )
 
+UNCOUNTED = (
+    "the standard deviations of the joints' terms do not include their errors"  # those of given inertias
+)
+
 Inertia = Literal["together", "first", "known"]
 
 
@@ -111,13 +115,11 @@ def _given(made: WholeLogs, inertia: Inertia, progress: Progress) -> tuple[Array
     if inertia == "together":
         return None, []
     if inertia == "known":
-        text = "inertias taken from the URDF as known: the joints' deviations leave their errors out"
+        text = f"inertias taken from the URDF as known: {UNCOUNTED}"
         return body.prior.cad, [Note("inertia_known", "info", text)]
     recordings = [inertial_samples(body, whole, made.calibration) for whole in made.fitted]
     fit = RegularisedProblem(body.equation, body.base, body.prior, recordings).solve(progress)
-    text = (
-        "inertias identified first, from the base rows (eq. 2): the joints' deviations leave their errors out"
-    )
+    text = f"inertias identified first, from the base rows (eq. 2): {UNCOUNTED}"
     return fit.inertial, [Note("inertia_first", "info", text), *fit_notes(fit)]
 
 

@@ -1,8 +1,8 @@
-"""Eq. 2 and 3 as one weighted least-squares problem, pulled towards the CAD as far as held-out data allow.
+"""Eq. 2 and 3 as one weighted least-squares problem, regularised towards the CAD as far as held-out data allow.
 
-For each strength of the pull the fit to all stretches of the recordings but one predicts that one; the strength with
-the smallest held-out error serves, or the strongest one that cannot be told from it (within one standard error of the
-paired differences).
+The weight of the regularisation is chosen by cross-validation: for each weight the fit to all folds but one predicts
+that one. The largest weight is taken whose held-out error is within one standard error of the smallest (of the paired
+differences).
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from plantar.whole_body.folds import Folds, Samples
 
 REGULARISATIONS = tuple(float(regularisation) for regularisation in 10.0 ** np.arange(-1.0, 6.5))
 WEIGHTING_ROUNDS = 2
-HOPELESS = 3.0  # times the smallest held-out error: stronger pulls are not tried any more
+HOPELESS = 3.0  # times the smallest held-out error: larger weights are not tried any more
 FIRST_REGULARISATION = 10.0  # of the fit that gives the first weights
 LEAST_ERROR = 1e-5  # N, N.m: what a row misses by less is rounding, and its weight would drown all others
 
 
 @dataclass(frozen=True)
 class HeldOutError:
-    """Held-out error of one strength: mean of the rows' squared errors over their weights, by stretch."""
+    """Held-out error of one regularisation weight: mean of the rows' squared errors over their weights, by fold."""
 
     regularisation: float
     errors: Array
@@ -34,8 +34,8 @@ class HeldOutError:
 
 @dataclass(frozen=True)
 class RegularisedFit:
-    """inertial: (10 n_links,); extras: those of each row; weights: of each row [1 / unit]; strength: of the pull,
-    infinite where the inertial parameters were given; trials: see `HeldOutError`."""
+    """inertial: (10 n_links,); extras: coefficients of each row's further columns; weights: of each row [1 / unit];
+    regularisation: its weight, infinite where the inertial parameters were given; held_out: see `HeldOutError`."""
 
     equation: Equation
     base: BaseParameters
@@ -57,7 +57,7 @@ class RegularisedFit:
 
 
 class RegularisedProblem:
-    """The stretches of all recordings and the CAD that fits to them are pulled towards."""
+    """The folds of all recordings, and the CAD that fits to them are regularised towards."""
 
     def __init__(
         self, equation: Equation, base: BaseParameters, prior: Prior, recordings: Sequence[Samples]
@@ -67,7 +67,7 @@ class RegularisedProblem:
         self.every = range(len(self.folds))
 
     def solve(self, progress: Callable[[str], None] = lambda _: None) -> RegularisedFit:
-        """Weights from the data, then the strength of the pull, then the fit to everything."""
+        """Weights from the data, then the regularisation weight, then the fit to everything."""
         weights = dict.fromkeys(self.folds.rows, 1.0)
         regularisation = FIRST_REGULARISATION * self._scale()
         for _ in range(WEIGHTING_ROUNDS):
@@ -76,12 +76,12 @@ class RegularisedProblem:
             regularisation = FIRST_REGULARISATION
         held_out = self._errors(weights, progress)
         regularisation = chosen_regularisation(held_out)
-        progress(f"fit, pulled with strength {regularisation:g}")
+        progress(f"fit with regularisation weight {regularisation:g}")
         x = self._fit(self.folds.triangle(self.every, weights), regularisation)
         return self._found(x, weights, regularisation, held_out)
 
     def with_known(self, inertial: Array) -> RegularisedFit:
-        """Only the rows' extras, the inertial parameters (10 n_links,) given: each row by itself. Strength infinite."""
+        """Only the rows' extras, the inertial parameters (10 n_links,) given: each row by itself."""
         x = self.folds.with_known(self.every, inertial)
         weights = self._weights(x)
         held_out = []
@@ -117,7 +117,7 @@ class RegularisedProblem:
         normals = [self._normal(triangle) for triangle in triangles]
         held_out = []
         for regularisation in REGULARISATIONS:
-            progress(f"held-out error of pull {regularisation:g}")
+            progress(f"held-out error of regularisation weight {regularisation:g}")
             fits = [self._regularised(normal, regularisation) for normal in normals]
             held_out.append(HeldOutError(regularisation, self._held_out(fits, weights)))
             if errors_of(held_out)[-1] > HOPELESS * errors_of(held_out).min():
@@ -125,7 +125,7 @@ class RegularisedProblem:
         return held_out
 
     def _held_out(self, fits: Sequence[Array], weights: Mapping[int, float]) -> Array:
-        """Each stretch's error by the fit to the others."""
+        """Each fold's error by the fit to the others."""
         errors = [self.folds.weighted_error([out], x, weights) for out, x in enumerate(fits)]
         return np.array(errors)
 
@@ -141,18 +141,18 @@ class RegularisedProblem:
         return self._regularised(self._normal(triangle), regularisation)
 
     def _scale(self) -> float:
-        """Mean square of what the CAD misses, so that the first pull has its unit."""
+        """Mean square of what the CAD misses, so that the first weight has its unit."""
         x = np.concatenate([self.prior.cad, np.zeros(sum(self.folds.counts.values()))])
         return float(np.mean([self.folds.error(self.every, row, x) for row in self.folds.rows]))
 
 
 def errors_of(held_out: Sequence[HeldOutError]) -> Array:
-    """Mean held-out error of each strength."""
+    """Mean held-out error of each regularisation weight."""
     return np.array([tried.errors.mean() for tried in held_out])
 
 
 def chosen_regularisation(held_out: Sequence[HeldOutError]) -> float:
-    """The strongest pull whose held-out error is within one standard error of the smallest."""
+    """The largest regularisation weight whose held-out error is within one standard error of the smallest."""
     if not held_out:
         return FIRST_REGULARISATION
     best = min(held_out, key=lambda tried: float(tried.errors.mean()))

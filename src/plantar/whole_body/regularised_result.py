@@ -1,7 +1,8 @@
-"""What a pulled fit found, as a result: parameters, what the motions excite, how hard the pull was."""
+"""What a regularised fit found, as a result: parameters, what the motions excite, the regularisation."""
 
 from __future__ import annotations
 
+import xml.etree.ElementTree as ET
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -10,12 +11,14 @@ import numpy as np
 from plantar.conventions import INERTIAL_NAMES, INERTIAL_UNITS
 from plantar.dynamics import parameter_name, solve_triangle
 from plantar.dynamics.consistency import is_consistent
+from plantar.dynamics.equation import PER_LINK
 from plantar.estimation.intervals import interval95, relative_std_percent
 from plantar.notes import Note, unique
 from plantar.results.dynamics import BaseParameter, DynamicsResult, InertialParameter, JointParameter
+from plantar.robot.identified_urdf import write_inertias
+from plantar.robot.model import RobotModel
 from plantar.whole_body.covariance import Uncertainty
 from plantar.whole_body.folds import Samples
-from plantar.whole_body.identified_urdf import identified_urdf
 from plantar.whole_body.regularised_fit import RegularisedFit
 from plantar.whole_body.scores import Place, scored
 from plantar.whole_body.whole_logs import WholeLogs
@@ -36,11 +39,11 @@ def result_of(
     parameters: tuple[JointParameter, ...] = (),
     notes: Sequence[Note] = (),
 ) -> DynamicsResult:
-    """What eq. 2 and eq. 3 give alike, scored in `places`; notes on excitation and pull come after those given."""
+    """The result of eq. 2 or eq. 3, scored in `places`; notes on excitation and regularisation follow those given."""
     robot = logs.body.robot
     rank, condition, excitation = excitation_of(fit)
     validation, residuals = scored(fit, fitted, unseen, places)
-    model = robot.floating_model if fit.equation.floating else robot.model
+    urdf, moved = identified_urdf(robot, fit)
     return DynamicsResult(
         schema=schema,
         robot=robot.name,
@@ -52,10 +55,20 @@ def result_of(
         inertial_parameters=inertial_rows(fit),
         parameters=parameters,
         validation=validation,
-        notes=unique([*logs.notes, *notes, *excitation, *fit_notes(fit)]),
-        urdf=identified_urdf(robot.urdf, model, fit.inertial),
+        notes=unique([*logs.notes, *notes, *excitation, *fit_notes(fit), *moved]),
+        urdf=urdf,
         residuals=residuals,
     )
+
+
+def identified_urdf(robot: RobotModel, fit: RegularisedFit) -> tuple[str, tuple[Note, ...]]:
+    """The URDF's text with the inertias found, and notes on the links that carry them."""
+    root = ET.fromstring(robot.urdf)
+    model = robot.floating_model if fit.equation.floating else robot.model
+    bodies = dict(zip(fit.equation.links, fit.inertial.reshape(-1, PER_LINK), strict=True))
+    notes = write_inertias(root, model, bodies)
+    ET.indent(root)
+    return ET.tostring(root, encoding="unicode", xml_declaration=True) + "\n", notes
 
 
 def excitation_of(fit: RegularisedFit) -> tuple[int, float, list[Note]]:
@@ -72,23 +85,23 @@ def excitation_of(fit: RegularisedFit) -> tuple[int, float, list[Note]]:
         listed = ", ".join(names[:NAMED]) + (f" and {len(names) - NAMED} more" if len(names) > NAMED else "")
         said.append(f"from the URDF, not from the data: {listed}")
     if terms := int(np.sum(~solution.excited[n_base:])):
-        said.append(f"of the joints' terms {terms} are not told apart")
+        said.append(f"{terms} of the joints' terms cannot be told apart")
     text = f"the motions excite {solution.rank} of {len(solution.values)} directions; {'; '.join(said)}"
     return solution.rank, condition, [Note("unexcited", "warning", text)]
 
 
 def fit_notes(fit: RegularisedFit) -> list[Note]:
-    """What the choice of the pull was, and whether it was at the end of its range."""
+    """Which regularisation weight was chosen, and its held-out error beside that of the smallest and largest."""
     if np.isinf(fit.regularisation):
         return []
     if not fit.held_out:
-        text = "too few samples to hold any out: a gentle pull towards the URDF was assumed"
+        text = "too few samples for cross-validation: a weak regularisation towards the URDF was assumed"
         return [Note("pull", "warning", text)]
     held_out = {tried.regularisation: float(np.sqrt(tried.errors.mean())) for tried in fit.held_out}
     text = (
-        f"pulled towards the URDF with strength {fit.regularisation:g}: "
+        f"regularised towards the URDF with weight {fit.regularisation:g}: "
         f"held-out error {held_out[fit.regularisation]:.4g} of the fit's, "
-        f"{held_out[min(held_out)]:.4g} at the gentlest pull, {held_out[max(held_out)]:.4g} at the strongest"
+        f"{held_out[min(held_out)]:.4g} at the smallest weight, {held_out[max(held_out)]:.4g} at the largest"
     )
     notes = [Note("pull", "info", text)]
     links = zip(fit.equation.links, fit.prior.cad.reshape(-1, len(INERTIAL_NAMES)), strict=True)

@@ -11,6 +11,7 @@ import pyarrow as pa
 
 from plantar.conventions import Array
 from plantar.results.dynamics import DynamicsScore
+from plantar.results.scores import error_measures
 from plantar.whole_body.folds import Samples
 from plantar.whole_body.regularised_fit import RegularisedFit
 
@@ -66,24 +67,18 @@ def _score(
     joint: str | None = None,
 ) -> DynamicsScore:
     """Errors of one axis or joint (N,), or of all joints together (k, N)."""
-    error = measured - predicted
-    largest = float(np.max(np.abs(measured)))
     size = float(np.linalg.norm(measured))
-    mean_abs = float(np.mean(np.abs(error)))
+    relative = 100 * float(np.linalg.norm(measured - predicted)) / size if size > 0 else None
     return DynamicsScore(
         kind=kind,
         motion=motion,
         unit=unit,
-        mean_abs_error=mean_abs,
-        rms_error=float(np.sqrt(np.mean(error**2))),
-        max_abs=largest,
-        percent_of_max=100 * mean_abs / largest if largest > 0 else None,
-        zero_mean_abs=float(np.mean(np.abs(measured - trivial))),
         cad_rms_error=float(np.sqrt(np.mean((measured - cad) ** 2))),
         samples=int(measured.shape[-1]),
-        relative_error_percent=100 * float(np.linalg.norm(error)) / size if size > 0 else None,
+        relative_error_percent=relative,
         axis=axis,
         joint=joint,
+        **error_measures(measured, predicted, trivial),
     )
 
 

@@ -44,7 +44,7 @@ def calibrate(
         if fault is None:
             break
         mended = _levelled(body, recordings, fault.sensors)
-        said = "left as recorded" if as_recorded else "read mended here, and scored so"
+        said = "left as recorded" if as_recorded else "corrected here, and scored so"
         notes.append(Note(fault.code, "warning", f"{fault.text}; {said}"))
     calibration = calibration if as_recorded else mended
     angle = pin.log3(calibration.rotation)
@@ -52,7 +52,7 @@ def calibrate(
         about = ", ".join(f"{value:.2f}" for value in np.degrees(angle))
         text = (
             "the ground's mean force is not along the IMU's mean acceleration: taken as a tilt of the IMU's mount by "
-            f"({about}) deg about the root link's x, y, z; mend the robot file's imu.rpy or the force sensors' zeros"
+            f"({about}) deg about the root link's x, y, z; correct the robot file's imu.rpy or the force sensors' zeros"
         )
         notes.append(Note("imu_tilt", "warning", text))
     return calibration, notes

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from plantar.errors import DataError
-from plantar.feet.prepare import check_names
+from plantar.logs.inputs import check_names
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.results.feet import Input
@@ -43,7 +43,7 @@ def prepare_logs(
 ) -> WholeLogs:
     """Every log prepared, the sensors calibrated on those to fit.
 
-    Raises RobotError, LogError or DataError where a log cannot serve, there is none to fit or two share a name.
+    Raises RobotError, LogError or DataError where a log cannot be used, there is none to fit or two share a name.
     """
     if not logs:
         raise DataError("no logs to fit (valid: at least one)")

@@ -16,10 +16,10 @@ from plantar.robot.model import RobotModel
 
 
 def test_a_stiffness_beside_negative_damping_is_weak() -> None:
-    evidence = Evidence(seconds=60.0, excitation=0.02, explained=0.98, makes_energy=True)
+    evidence = Evidence(seconds=60.0, excitation=0.02, explained=0.98, not_passive=True)
     verdict, reason, advice = judge("left", "pitch", "stiffness", 400.0, (390.0, 410.0), evidence)
     assert verdict == "weak"
-    assert "damping comes out negative" in reason
+    assert "damping is negative" in reason
     assert advice is not None
 
 
@@ -54,7 +54,7 @@ def test_negative_damping_beyond_doubt_spoils_the_stiffness_too(robot: RobotMode
             assert found.parameter(foot, axis, "damping").verdict == "unidentifiable"
             stiffness = found.parameter(foot, axis, "stiffness")
             assert stiffness.verdict == "weak"
-            assert "damping comes out negative" in stiffness.reason
+            assert "damping is negative" in stiffness.reason
 
 
 def test_damping_that_may_be_zero_does_not(robot: RobotModel) -> None:

@@ -15,7 +15,8 @@ from plantar.feet.settings import AUTOMATIC, DEFAULT_CUTOFF, MODEL_CHOICES, Feet
 from plantar.report import write_feet_report
 
 MODEL_HELP = (
-    f"Law of the bush: {', '.join(MODEL_CHOICES)}. {AUTOMATIC} takes what predicts held-out motions best."
+    f"Model of the bush: {', '.join(MODEL_CHOICES)}. "
+    f"{AUTOMATIC} takes the one that predicts held-out motions best."
 )
 OFFSET_HELP = "One offset per motion, or shared by all as in the paper."
 DELAY_HELP = "How late the wrenches are, in ms; estimated if left out."
@@ -23,7 +24,7 @@ CUTOFF_HELP = (
     f"Zero-phase low-pass on both sides of the fit [Hz]; {DEFAULT_CUTOFF:g}, or less where walks show that angle and "
     "torque part below it, if left out."
 )
-WINDOW_HELP = "Largest deflection from the resting pose that serves, in degrees."
+WINDOW_HELP = "Use only deflections up to this many degrees from the resting pose."
 
 
 def run(
@@ -32,7 +33,7 @@ def run(
     out: identification.Out,
     validate: identification.Validate = None,
     offset: Annotated[OffsetRule, typer.Option(help=OFFSET_HELP)] = "per-motion",
-    model: Annotated[str, typer.Option(help=MODEL_HELP, metavar="LAW")] = AUTOMATIC,
+    model: Annotated[str, typer.Option(help=MODEL_HELP, metavar="MODEL")] = AUTOMATIC,
     wrench_delay: Annotated[float | None, typer.Option(help=DELAY_HELP)] = None,
     cutoff: Annotated[float | None, typer.Option(help=CUTOFF_HELP, min=0.1)] = None,
     window: Annotated[float | None, typer.Option(help=WINDOW_HELP, min=0.01)] = None,

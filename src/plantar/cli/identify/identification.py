@@ -24,7 +24,7 @@ Cutoff = Annotated[float, typer.Option(help="Zero-phase low-pass on both sides o
 AsRecorded = Annotated[
     bool,
     typer.Option(
-        "--as-recorded", help="Name wrench channels that contradict Newton's law, but do not mend them."
+        "--as-recorded", help="Report wrench channels that contradict Newton's law, but do not correct them."
     ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print result.json instead of tables.")]
@@ -45,7 +45,7 @@ Found = TypeVar("Found", bound=Result)
 def opened(
     robot: Path, logs: Sequence[Path], validate: Sequence[Path] | None, out: Path
 ) -> tuple[RobotModel, list[MotionLog], list[MotionLog]]:
-    """The robot, the logs to fit and those to score; an `out` that cannot serve is refused before any work."""
+    """The robot, the logs to fit and those to score; an `out` that cannot be used is refused before any work."""
     refuse_file(out)
     known = load_robot(robot)
     return known, [open_log(path, known) for path in logs], [open_log(path, known) for path in validate or ()]

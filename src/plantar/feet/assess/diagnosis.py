@@ -2,36 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.systematic import Cause
-from plantar.results.feet import Parameter
+from plantar.results.feet import Diagnosis, Parameter
 
 REMEDY = {
-    "noise": "record the same motion for longer: four times as long halves it",
-    "delay": "add a recording of arm sweeps at 0.3 to 1 Hz without an operator: it shows the wrenches' delay",
+    "noise": "record the same motion for longer: four times as long halves the interval",
+    "delay": "add a recording of arm sweeps at 0.3 to 1 Hz without an operator: it shows the force sensors' delay",
     "lever": "add a slow shift of the weight from foot to foot: it shows the vertical compliance",
     "yaw torque zero": "zero the force sensors with the feet in the air before recording",
     "between walks": "add walks: five or more show by themselves how much they differ",
     "ends of stances": "walk with longer stances, or stand and sway: landing and lifting disturb the fit",
     "zeros of stances": "keep the foot on the floor through a recording: put down again, it lands with another zero",
-    "memory in stances": "add a recording of standing and swaying: short steps hardly tell spring and memory apart",
-    "hardening": "record larger motions, or ask for --model hardening: the spring stiffens, and the law leaves it out",
-    "model": "more of the same will not help: the law misses what the rubber does; try --model auto or other motions",
-    "excitation": "move further: twice the amplitude halves it",
+    "memory in stances": "add a recording of standing and swaying: short steps hardly separate spring and hysteresis",
+    "hardening": "record larger motions, or use --model hardening: the spring stiffens, which this model leaves out",
+    "model": "more of the same will not help: the model does not fit the rubber; try --model auto or other motions",
+    "excitation": "use larger motions: twice the amplitude halves the interval",
 }
-MODEL_SHARE = 10.0  # times the white deviation: residuals this coloured are the law's, not noise
+# Causes that no more of the same motion makes smaller: the advice against them replaces the axis' own.
+OTHER_MOTION_HELPS = ("delay", "lever", "hardening", "yaw torque zero", "zeros of stances")
+MODEL_SHARE = 10.0  # times the white deviation: residuals this coloured are the model's, not noise
 
 
 def diagnose_axis(
     fit: AxisFit, wide: AxisFit, causes: Sequence[Cause], rows: Sequence[Parameter]
-) -> list[dict[str, Any]]:
-    """For each parameter the share of each cause in its variance, the largest one, and what it would be without it."""
+) -> list[Diagnosis]:
+    """For each parameter: the share of each cause in its variance, the largest cause, and the interval without it."""
     found = []
     for place, row in enumerate(rows[: len(fit.values)]):
         total = float(wide.std[place])
@@ -52,20 +53,19 @@ def diagnose_axis(
             f"{row.foot} {row.axis} {term}: ±{percent:.2g} %, {100 * shares[limit]:.0f} % of its variance from "
             f"{limit}; without it ±{percent * without:.2g} %. To tighten: {REMEDY[limit]}"
         )
-        found.append({"foot": row.foot, "axis": row.axis, "name": row.name, "limit": limit, "variance_shares": shares,
-                      "half_width_percent": percent, "text": text})  # fmt: skip
+        found.append(
+            Diagnosis(row.foot, row.axis, row.name, limit, shares, percent, text, advice=REMEDY[limit])
+        )
     return found
 
 
-def advised(rows: Sequence[Parameter], diagnosis: Sequence[Mapping[str, Any]]) -> list[Parameter]:
+def advised(rows: Sequence[Parameter], diagnosis: Sequence[Diagnosis]) -> list[Parameter]:
     """The rows with the advice that fits what limits them: more of the same motion does not help against a delay."""
-    limits = {(each["foot"], each["axis"], each["name"]): each["limit"] for each in diagnosis}
+    limits = {(each.foot, each.axis, each.name): each for each in diagnosis}
     found = []
     for row in rows:
-        limit = limits.get((row.foot, row.axis, row.name))
-        if row.verdict != "usable" and limit in (
-            "delay", "lever", "hardening", "yaw torque zero", "zeros of stances",
-        ):  # fmt: skip
-            row = replace(row, reason=f"{row.reason}; nearly all of it from {limit}", advice=REMEDY[limit])
+        each = limits.get((row.foot, row.axis, row.name))
+        if row.verdict != "usable" and each and each.limit in OTHER_MOTION_HELPS:
+            row = replace(row, reason=f"{row.reason}; nearly all of it from {each.limit}", advice=each.advice)
         found.append(row)
     return found

@@ -1,4 +1,4 @@
-"""The rows of table 1: each number of a fitted law with its interval, verdict, reason and advice."""
+"""The rows of table 1: each number of a fitted model with its interval, verdict, reason and advice."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def axis_rows(
 
 def unseen_rows(foot: str, axis: Axis) -> list[Parameter]:
     """Stiffness and damping of a foot that no log shows."""
-    reason = f"the {foot} foot has no samples that serve in these logs"
+    reason = f"the {foot} foot has no used samples in these logs"
     return missing_rows(foot, axis, reason, f"record motions in which the {foot} foot stands")
 
 
@@ -80,5 +80,5 @@ def _evidence(fit: AxisFit, recordings: Sequence[Recording], predictions: Predic
         float(np.sqrt(moved / max(samples, 1))),
         1 - missed / varied if varied else 0.0,
         damping < 0,
-        leaning=leans / loaded if fit.model.remembers and fit.model.forgets and loaded else 0.0,
+        leaning=leans / loaded if fit.model.remembers and fit.model.fading_memory and loaded else 0.0,
     )

@@ -1,4 +1,4 @@
-"""Every sample of every foot beside what the law says of it: the table behind the report's plots."""
+"""Every sample of every foot beside what the model says of it: the table behind the report's plots."""
 
 from __future__ import annotations
 

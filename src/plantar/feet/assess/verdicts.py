@@ -12,8 +12,8 @@ from plantar.results.feet import ValidationRow, Verdict
 
 USABLE_WIDTH = 0.15  # half width of the 95 % interval over the value, at most
 WEAK_WIDTH = 0.5
-LEAST_SECONDS = 3.0  # of samples that serve
-LEAST_EXPLAINED = 0.3  # share of the torque's variance that the law must explain
+LEAST_SECONDS = 3.0  # of used samples
+LEAST_EXPLAINED = 0.3  # share of the torque's variance that the model must explain
 GOOD_EXPLAINED = 0.8
 HOLDS, MISSED = (
     0.3,
@@ -31,14 +31,14 @@ SWAY = {
 
 @dataclass(frozen=True)
 class Evidence:
-    """What one fit shows: `seconds` that served, rms of deflection [rad], share of variance explained, whether the
+    """What one fit shows: used `seconds`, rms of deflection [rad], share of variance explained, whether the
     damping is negative beyond doubt, the motion that contradicts the others (None where they agree), and the share of
-    the time in which the sole leans, where the law has a memory that has to go through that."""
+    the time in which the sole leans, where the model has a memory that has to go through that."""
 
     seconds: float
     excitation: float
     explained: float
-    makes_energy: bool = False
+    not_passive: bool = False
     contradicted: ValidationRow | None = None
     leaning: float = 0.0
 
@@ -52,28 +52,28 @@ def judge(
     width = half / abs(value) if value else np.inf
     motion = f"{np.degrees(evidence.excitation):.2g} deg rms of {axis}"
     if evidence.seconds < LEAST_SECONDS:
-        return "unidentifiable", f"only {evidence.seconds:.1f} s of samples serve", advice
+        return "unidentifiable", f"only {evidence.seconds:.1f} s of samples can be used", advice
     if value <= 0 and interval[1] <= 0:
         return (
             "unidentifiable",
-            f"{term} comes out negative: something else than the bush makes this torque",
+            f"{term} is negative: something other than the bush produces this torque",
             advice,
         )
     if interval[0] <= 0:
         return "unidentifiable", f"the 95 % interval reaches zero; the motion gave {motion}", advice
     if evidence.explained < LEAST_EXPLAINED:
         share = f"{100 * max(evidence.explained, 0):.0f} %"
-        return "unidentifiable", f"the law explains {share} of the torque's variance", advice
+        return "unidentifiable", f"the model explains {share} of the torque's variance", advice
     if width > WEAK_WIDTH:
         return (
             "unidentifiable",
             f"the 95 % interval is ±{100 * width:.0f} %; the motion gave {motion}",
             advice,
         )
-    if evidence.makes_energy:
+    if evidence.not_passive:
         return (
             "weak",
-            "damping comes out negative: something else than the bush takes part in this torque",
+            "damping is negative: something other than the bush contributes to this torque",
             advice,
         )
     if evidence.contradicted is not None:
@@ -81,13 +81,13 @@ def judge(
         return (
             "weak",
             f"misses {row.motion} by {row.mean_abs_error:.2g} N.m on average, where a constant misses by "
-            f"{row.zero_mean_abs:.2g}, though it holds in other motions",
+            f"{row.zero_mean_abs:.2g}, although the model holds in other motions",
             f"check in {row.motion} the encoders between IMU and foot, and whether anything touched the robot",
         )
     if evidence.leaning > LEANING:
         return (
             "weak",
-            f"the sole leans for {100 * evidence.leaning:.0f} % of the time, and a bush with a memory goes on unseen",
+            f"the sole leans for {100 * evidence.leaning:.0f} % of the time, where hysteresis cannot be followed",
             f"{_advice(foot, axis, term)}: the centre of pressure has to stay inside the sole",
         )
     if width > USABLE_WIDTH:
@@ -95,16 +95,16 @@ def judge(
     if evidence.explained < GOOD_EXPLAINED:
         return (
             "weak",
-            f"the law explains only {100 * evidence.explained:.0f} % of the torque's variance",
+            f"the model explains only {100 * evidence.explained:.0f} % of the torque's variance",
             advice,
         )
-    return "usable", f"95 % interval ±{100 * width:.2g} %, {evidence.seconds:.0f} s served", None
+    return "usable", f"95 % interval ±{100 * width:.2g} %, {evidence.seconds:.0f} s used", None
 
 
 def contradiction(rows: Sequence[ValidationRow]) -> ValidationRow | None:
-    """The motion that an axis' law misses although it holds where most moves: of `rows` of one axis, the worst.
+    """The motion that an axis' model misses although it holds where most moves: of `rows` of one axis, the worst.
 
-    Motions that hardly load the axis do not count, and where the law holds nowhere nothing contradicts it.
+    Motions that hardly load the axis do not count, and where the model holds nowhere nothing contradicts it.
     """
     telling = [row for row in rows if row.zero_mean_abs > 0]
     if not telling:
@@ -122,7 +122,7 @@ def contradiction(rows: Sequence[ValidationRow]) -> ValidationRow | None:
 
 
 def judge_term(value: float, interval: tuple[float, float]) -> tuple[Verdict, str, str | None]:
-    """Verdict and reason for a further term of a richer law."""
+    """Verdict and reason for a further term of a richer model."""
     half = (interval[1] - interval[0]) / 2
     width = half / abs(value) if value else np.inf
     if not interval[0] * interval[1] > 0 or not np.isfinite(width):

@@ -30,7 +30,7 @@ EDGE = 0.3  # s at both ends of a run, where the filter is unsure
 
 @dataclass(frozen=True)
 class NewtonEulerResidual:
-    """Both sides of Newton's law in the root link's frame over the longest calm stretch of a log.
+    """Both sides of Newton's law in the root link's frame over the longest calm segment of a log.
 
     `pair`: all feet together; `measured` and `rates` (feet, n, 6): each foot's wrench, and how it changes with the
     moment at which its sensor is read; `by_encoders` (n, 6): how the prediction changes with the moment at which the
@@ -118,7 +118,7 @@ def _longest(valid: Mask) -> slice:
 
 
 def _longest_closed(measured: Array, rate: Array, predicted: Array, period: float) -> slice:
-    """The longest stretch in which nobody pushes and nothing strikes: there the forces follow from the prediction."""
+    """The longest segment in which nobody pushes and nothing strikes: there the forces follow from the prediction."""
     width = round(WINDOW / period)
     measured, rate, predicted = measured[:, FORCE], rate[:, FORCE], predicted[:, FORCE]
     usual = float(np.mean(np.sum(measured**2, axis=1)))

@@ -67,7 +67,7 @@ def in_time(robot: RobotModel, log: MotionLog, sensor_delay: SensorDelay) -> Mot
 
 def known_delay(delay: float) -> SensorDelay:
     """A delay that the user knows."""
-    text = f"wrenches taken as {1e3 * delay:+.1f} ms late, as the user says"
+    text = f"wrenches taken as {1e3 * delay:+.1f} ms late, as given in the settings"
     return SensorDelay(delay, 0.0, np.inf, False, Note("delay_given", "info", text))
 
 
@@ -93,7 +93,7 @@ def estimate_wrench_delay(
         blind = all(not log.has(*columns) for log in logs)
         text = (
             "delay of the wrenches unknown: no log in which the ground's wrench follows from IMU, encoders and URDF; "
-            f"taken as 0 ± {1e3 * PRIOR_STD:.1f} ms, which widens damping by stiffness times that. "
+            f"taken as 0 ± {1e3 * PRIOR_STD:.1f} ms, which widens the interval of the damping by stiffness times that. "
             f"{'Record the accelerometer' if blind else 'Record arm sweeps of 0.3 to 1 Hz without an operator'}"
         )
         return SensorDelay(0.0, PRIOR_STD, np.inf, False, Note("delay_unknown", "warning", text))
@@ -104,7 +104,7 @@ def estimate_wrench_delay(
     told = f"wrenches are {1e3 * delay:+.1f} ± {1e3 * 1.96 * std:.1f} ms late (95 %) against IMU and encoders"
     if std <= KNOWN_STD:
         return SensorDelay(delay, std, found.freedom, True, Note("delay", "info", f"{told}: corrected"))
-    advice = "known poorly, which widens damping: record arm sweeps of 0.3 to 1 Hz without an operator"
+    advice = "uncertain, which widens the interval of the damping: record arm sweeps of 0.3 to 1 Hz without an operator"
     if abs(delay) > SIGNIFICANT * std:
         note = Note("delay_poorly_known", "warning", f"{told}: corrected; {advice}")
         return SensorDelay(delay, std, found.freedom, True, note)
@@ -137,7 +137,7 @@ def _apart(names: Sequence[str], balances: Sequence[Balance]) -> SensorDelay | N
     std = float(np.hypot(np.sqrt(np.diag(settled.covariance).max()), LEAST_STD))
     each = ", ".join(f"{name} {1e3 * delay:+.1f}" for name, delay in delays.items()) or f"{1e3 * mean:+.1f}"
     text = (
-        f"sensors are late by different delays against the IMU: wrenches {each} ms, encoders {1e3 * encoders:+.1f} ms "
+        f"sensors have different delays relative to the IMU: wrenches {each} ms, encoders {1e3 * encoders:+.1f} ms "
         f"(± {1e3 * 1.96 * std:.1f} ms, 95 %): corrected"
     )
     return SensorDelay(

@@ -28,9 +28,9 @@ from plantar.robot.model import Imu
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.segments import runs
 
-BAND = 2.0  # Hz: a filter's pull shows below it
-LEAST_RATE = 0.01  # 1/s: of less no damping suffers
-EXPLAINED = 0.3  # of what attitude and gyroscope disagree about, by the pull, for it to be believed
+BAND = 2.0  # Hz: the accelerometer-induced tilt error shows below it
+LEAST_RATE = 0.01  # 1/s: below it the damping is not affected
+EXPLAINED = 0.3  # share of the disagreement of attitude and gyroscope that it must explain
 CORRECTED = 1.5  # Hz, up to which the attitude is put right
 DERIVED = 5.0  # Hz: filter of what is differentiated twice
 SHORTEST_STANCE = 5.0  # s on the same feet
@@ -39,7 +39,8 @@ PADDING = 2.0  # s
 
 @dataclass(frozen=True)
 class TiltError:
-    """What attitude and gyroscope disagree about, beside what a pull of 1 1/s would make: integrals that add up.
+    """What attitude and gyroscope disagree about, beside the tilt error that a filter of 1 1/s would
+    make: integrals that add up.
 
     `error` and `predicted`: of both squared [rad²/s]; `product`: of one times the other. A filter belongs to the IMU,
     so that the sum over recordings tells what a quiet one alone cannot.
@@ -63,8 +64,8 @@ class TiltError:
     def believed(self) -> bool:
         """Whether it explains enough of the disagreement, and matters.
 
-        A gyroscope that is late by τ beside the attitude counts as a pull of about g τ/h: as good a reason to put the
-        attitude right.
+        A gyroscope that is late by τ beside the attitude looks like a tilt error of about g τ/h [1/s]: it is
+        corrected in the same way.
         """
         return self.rate > LEAST_RATE and self.rate * self.product > EXPLAINED * self.error
 
@@ -73,7 +74,7 @@ NO_TILT_ERROR = TiltError()
 
 
 def log_tilt_error(log: MotionLog, imu: Imu) -> TiltError:
-    """The pull that one log shows; of zeros where it has not all of attitude, gyroscope and accelerometer."""
+    """The accelerometer-induced tilt error of one log; zeros where attitude, gyroscope or accelerometer is missing."""
     columns = [
         f"imu.{imu.name}.{kind}.{axis}"
         for kind in ("angular_velocity", "linear_acceleration")
@@ -103,8 +104,8 @@ def right_attitude(
     if not found.believed or own.predicted == 0:
         return None
     text = (
-        f"{log.name}: the IMU's attitude follows its accelerometer (as at {found.rate:.2g} 1/s), so that motion tilts "
-        "it; put right by the soles that stand"
+        f"{log.name}: the IMU's attitude follows its accelerometer (as at {found.rate:.2g} 1/s), so motion tilts it; "
+        "corrected from the soles that stand still"
     )
     unit = unit_quaternions(orientation)
     right = put_right(unit, log.linear_acceleration(imu.name), bushes, contacts, log.period)

@@ -58,7 +58,7 @@ class FootControl:
             self.vertical[foot] = 1 / LEG_STIFFNESS + (0.0 if bush is None else 1 / bush.z_stiffness)
         self.deflection = {
             foot: np.zeros(2) for foot in self.feet
-        }  # that the bush's own law gives the asked torque
+        }  # that the bush's own model gives the asked torque
         self.turned = {
             foot: np.zeros(2) for foot in self.feet
         }  # correction by the force sensor, roll and pitch

@@ -120,7 +120,7 @@ def _streams(chosen: dict[str, list[Topic]], path: Path, notes: list[Note]) -> l
 
 
 def _unusable(headers: list[np.ndarray[tuple[int], np.dtype[np.int64]]], names: list[str]) -> str | None:
-    """Why the header stamps cannot serve: not set, or clocks that never meet."""
+    """Why the header stamps cannot be used: not set, or clocks that never meet."""
     for stamps, name in zip(headers, names, strict=True):
         if stamps.size > 1 and np.count_nonzero(stamps == stamps[0]) > stamps.size // 2:
             return f"{name} has no header stamps"

@@ -1,0 +1,92 @@
+"""An IMU's own columns against one another: units, conventions and dead channels, each named alone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from biped import record, sines, sway
+from plantar.checks.imu import check_imu
+from plantar.logs.motion_log import MotionLog
+
+GYROSCOPE, ACCELEROMETER, ORIENTATION = (
+    [f"imu.chest.{kind}.{axis}" for axis in axes]
+    for kind, axes in (("angular_velocity", "xyz"), ("linear_acceleration", "xyz"), ("orientation", "wxyz"))
+)
+
+
+@pytest.fixture(scope="module")
+def log() -> MotionLog:
+    torso = (
+        sines((0.05, 0.4, 0.0), (0.02, 0.9, 1.0)),
+        sines((0.06, 0.3, 2.0), (0.02, 0.8, 0.0)),
+        sines((0.0, 0.0, 0.0)),
+    )
+    return record(sway(duration=40.0, torso=torso))
+
+
+def scaled(names: list[str], factor: float) -> Callable[[MotionLog], MotionLog]:
+    return lambda log: log.with_columns({name: factor * log.column(name) for name in names})
+
+
+def without(names: list[str]) -> Callable[[MotionLog], MotionLog]:
+    def cut(log: MotionLog) -> MotionLog:
+        return MotionLog(log.name, log.time, {k: v for k, v in log.columns.items() if k not in names})
+
+    return cut
+
+
+def reordered(log: MotionLog) -> MotionLog:
+    """Quaternions written x y z w."""
+    moved = dict(zip(ORIENTATION, (log.column(name) for name in np.roll(ORIENTATION, -1)), strict=True))
+    return log.with_columns(moved)
+
+
+def inverted(log: MotionLog) -> MotionLog:
+    return log.with_columns({name: -log.column(name) for name in ORIENTATION[1:]})
+
+
+def dead(log: MotionLog) -> MotionLog:
+    """The yaw rate, which hardly moves here, is the one that stops."""
+    return log.with_columns({GYROSCOPE[2]: np.zeros(len(log))})
+
+
+FAULTS: dict[str, tuple[Callable[[MotionLog], MotionLog], str, bool]] = {
+    "degrees per second": (scaled(GYROSCOPE, 180 / np.pi), "degrees", True),
+    "a gyroscope of another scale": (scaled(GYROSCOPE, 4.0), "gyroscope_scale", False),
+    "a gyroscope axis reversed": (scaled(GYROSCOPE[:1], -1.0), "sign", True),
+    "acceleration in g": (scaled(ACCELEROMETER, 1 / 9.80665), "accelerometer_unit", True),
+    "acceleration of another scale": (scaled(ACCELEROMETER, 3.0), "accelerometer_unit", False),
+    "quaternions x y z w": (reordered, "quaternion_order", True),
+    "quaternions not normed": (scaled(ORIENTATION, 2.0), "quaternion_norm", True),
+    "a dead gyroscope axis": (dead, "dead_channel", True),
+    "a dead accelerometer": (scaled(ACCELEROMETER, 0.0), "dead_channel", False),
+}
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_each_fault_is_named_and_refused_where_nothing_could_be_fitted(log: MotionLog, name: str) -> None:
+    spoil, code, fatal = FAULTS[name]
+    found = list(check_imu("chest", spoil(log)))
+    assert [(finding.code, finding.fatal) for finding in found] == [(code, fatal)], found
+
+
+def test_a_sound_imu_is_left_alone_whatever_it_lacks(log: MotionLog) -> None:
+    lacking = [without(GYROSCOPE), without(ACCELEROMETER), without(ORIENTATION), scaled(ORIENTATION, -1.0)]
+    for each in (log, *(change(log) for change in lacking)):
+        assert list(check_imu("chest", each)) == []
+
+
+def test_an_accelerometer_alone_cannot_be_dead(log: MotionLog) -> None:
+    """Without an orientation it is what tells gravity's direction."""
+    (finding,) = check_imu("chest", scaled(ACCELEROMETER, 0.0)(without(ORIENTATION)(log)))
+    assert (finding.code, finding.fatal) == ("dead_channel", True)
+
+
+def test_an_inverted_attitude_is_told_by_accelerometer_or_gyroscope(log: MotionLog) -> None:
+    leaning = record(sway(torso=(lambda t: 0.4 + 0.0 * t, lambda t: 0.3 * np.sin(t), lambda t: 0.0 * t)))
+    findings = list(check_imu("chest", inverted(leaning)))
+    assert {finding.code for finding in findings} == {"quaternion_order"}
+    assert all("inverted it agrees" in finding.text for finding in findings)

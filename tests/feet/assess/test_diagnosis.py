@@ -1,0 +1,64 @@
+"""What limits a number is the largest share of its variance, and the advice is the one against that."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from plantar.feet.assess.diagnosis import REMEDY, advised, diagnose_axis
+from plantar.feet.fit.axis import AxisFit
+from plantar.feet.fit.systematic import Cause
+from plantar.models import KelvinVoigt
+from plantar.results.feet import Parameter
+
+
+def axis_fit(std: tuple[float, float], white: float = 1.0) -> AxisFit:
+    return AxisFit(
+        foot="left", axis="pitch", model=KelvinVoigt(), values=np.array([400.0, 20.0]), shape=np.zeros(0),
+        covariance=np.diag(np.square(std)), freedom=np.full(2, 30.0), white_std=np.array(std) * white,
+        offset_std={}, equivalent=(400.0, 20.0), choice=None, reason="",
+    )  # fmt: skip
+
+
+def rows(verdict: str = "weak") -> list[Parameter]:
+    return [
+        Parameter("left", "pitch", name, "", value, 1.0, (0.0, 1.0), 1.0, verdict, "wide", "sway")  # type: ignore[arg-type]
+        for name, value in (("stiffness", 400.0), ("damping", 20.0))
+    ]
+
+
+def test_shares_are_of_variances_and_the_largest_limits() -> None:
+    narrow, wide = axis_fit((3.0, 0.1)), axis_fit((5.0, 0.5))
+    delay = Cause("delay", np.array([4.0, np.sqrt(0.24)]), 1.0)
+    stiffness, damping = diagnose_axis(narrow, wide, [delay], rows())
+    assert stiffness.variance_shares == pytest.approx({"delay": 0.64, "noise": 0.36})
+    assert damping.variance_shares == pytest.approx({"delay": 0.96, "noise": 0.04})
+    assert stiffness.limit == "delay"
+    assert stiffness.half_width_percent == pytest.approx(196 * 5.0 / 400.0)
+    assert stiffness.advice == REMEDY["delay"]
+    assert stiffness.advice in stiffness.text
+
+
+def test_coloured_residuals_are_the_models_and_an_interval_over_zero_is_the_motions() -> None:
+    coloured = axis_fit((3.0, 0.1), white=0.01)
+    assert {row.limit for row in diagnose_axis(coloured, coloured, [], rows())} == {"model"}
+    assert {row.limit for row in diagnose_axis(coloured, coloured, [], rows("unidentifiable"))} == {
+        "excitation"
+    }
+
+
+def test_against_a_delay_another_motion_is_advised_but_not_against_noise() -> None:
+    narrow, wide = axis_fit((3.0, 0.1)), axis_fit((5.0, 0.5))
+    limits = diagnose_axis(narrow, wide, [Cause("delay", np.array([4.0, 0.49]), 1.0)], rows())
+    assert {row.advice for row in advised(rows(), limits)} == {REMEDY["delay"]}
+    assert "delay" in advised(rows(), limits)[0].reason
+    noise = [replace(row, limit="noise", advice=REMEDY["noise"]) for row in limits]
+    assert advised(rows(), noise) == rows()
+    assert advised(rows("usable"), limits) == rows("usable")
+
+
+def test_a_number_without_a_width_is_not_diagnosed() -> None:
+    nothing = axis_fit((0.0, 0.0))
+    assert diagnose_axis(nothing, nothing, [], rows()) == []

@@ -1,0 +1,59 @@
+"""What the twin takes from a result: each axis' own model, or the spring and damper nearest to it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from plantar.errors import PlantarError
+from plantar.results.feet import AxisModel, FeetResult, Parameter
+from plantar.results.feet_rows import LinearEquivalent
+from plantar.twin.replay import feet_of
+
+VALUES = {
+    ("pitch", "stiffness"): 480.0,
+    ("pitch", "damping"): 24.0,
+    ("pitch", "slip_torque"): 5.0,
+    ("pitch", "slip_angle"): 0.02,
+    ("roll", "stiffness"): 350.0,
+    ("roll", "damping"): 28.0,
+    ("roll", "gamma"): 0.5,
+    ("z", "stiffness"): -1.0,
+}
+LINEAR = LinearEquivalent(stiffness=300.0, damping=20.0)
+
+
+def found(roll_model: str) -> FeetResult:
+    parameters = tuple(
+        Parameter("left", axis, name, "", value, 1.0, None, None, "usable", "")  # type: ignore[arg-type]
+        for (axis, name), value in VALUES.items()
+    )
+    models = (
+        AxisModel("left", "pitch", "elastoplastic", "", LinearEquivalent(500.0, 30.0)),
+        AxisModel("left", "roll", roll_model, "", LINEAR),
+    )
+    return FeetResult(
+        robot="biped", inputs=(), settings={}, model="elastoplastic", parameters=parameters, offsets=(),
+        phases=(), validation=(), notes=(), models=models,
+    )  # fmt: skip
+
+
+def test_each_axis_is_played_by_its_own_model() -> None:
+    bush = feet_of(found("kelvin_voigt"))["left"]
+    assert (bush.pitch_stiffness, bush.pitch_slip_torque, bush.pitch_slip_angle) == (480.0, 5.0, 0.02)
+    assert (bush.roll_stiffness, bush.roll_damping, bush.roll_slip_torque) == (350.0, 28.0, 0.0)
+    assert bush.z_stiffness > 0, "a stiffness that is none is not played"
+
+
+def test_a_model_without_an_element_is_played_by_its_spring_and_damper() -> None:
+    bush = feet_of(found("bouc_wen"))["left"]
+    assert (bush.roll_stiffness, bush.roll_damping) == (LINEAR.stiffness, LINEAR.damping)
+    assert bush.pitch_slip_torque == 5.0
+
+
+def test_a_missing_number_is_named() -> None:
+    result = found("kelvin_voigt")
+    less = tuple(row for row in result.parameters if (row.axis, row.name) != ("roll", "damping"))
+    with pytest.raises(PlantarError, match="no roll_damping of the left foot"):
+        feet_of(replace(result, parameters=less))

@@ -1,0 +1,58 @@
+"""Logs of one identification made ready: what is refused, what each is for, what is said."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import small_biped
+from plantar.errors import DataError
+from plantar.logs.motion_log import MotionLog
+from plantar.robot.model import RobotModel
+from plantar.whole_body.settings import DynamicsSettings
+from plantar.whole_body.whole_logs import WholeLogs, prepare_logs
+
+
+@pytest.fixture(scope="module")
+def robot(tmp_path_factory: pytest.TempPathFactory) -> RobotModel:
+    return small_biped.robot(tmp_path_factory.mktemp("biped"))
+
+
+@pytest.fixture(scope="module")
+def logs(robot: RobotModel) -> list[MotionLog]:
+    real = small_biped.truth(robot.floating_model, 1)
+    return [small_biped.record(robot, real, name, seed, 6.0) for seed, name in enumerate(("one", "two"))]
+
+
+def prepared(robot: RobotModel, logs: list[MotionLog], validate: list[MotionLog]) -> WholeLogs:
+    return prepare_logs(robot, logs, validate, DynamicsSettings(), lambda _: None)
+
+
+def test_no_log_and_two_of_one_name_are_refused(robot: RobotModel, logs: list[MotionLog]) -> None:
+    with pytest.raises(DataError, match="no logs to fit"):
+        prepared(robot, [], logs)
+    with pytest.raises(DataError, match="two logs are called 'one'"):
+        prepared(robot, logs, logs[:1])
+
+
+def test_each_log_has_its_role_and_its_notes(robot: RobotModel, logs: list[MotionLog]) -> None:
+    sides = ("left", "right")
+    flipped = {f"wrench.{side}.torque.x": -logs[0].column(f"wrench.{side}.torque.x") for side in sides}
+    found = prepared(robot, [logs[0].with_columns(flipped)], logs[1:])
+    assert [(row.path, row.role) for row in found.inputs] == [("one", "fit"), ("two", "validate")]
+    assert (len(found.fitted), len(found.unseen)) == (1, 1)
+    assert found.body.equation.floating
+    assert "wrench_polarity" in {note.code for note in found.notes}
+    assert "wrench_polarity" not in {note.code for note in prepared(robot, logs, []).notes}
+    assert np.allclose(found.calibration.rotation, np.eye(3), atol=0.01)
+
+
+def test_a_robot_that_is_bolted_down_has_nothing_to_calibrate(
+    robot: RobotModel, logs: list[MotionLog]
+) -> None:
+    fixed = replace(robot, base="fixed", imu=None, feet={})
+    found = prepared(fixed, logs[:1], [])
+    assert not found.body.equation.floating
+    np.testing.assert_array_equal(found.calibration.rotation, np.eye(3))
