@@ -15,6 +15,7 @@ from plantar.feet.assess.stance_stiffness import stance_stiffness, walk_stiffnes
 from plantar.feet.exclusion.outliers import outlier_masks
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.axis_fit import fit_axis
+from plantar.feet.fit.bush_place import PlaceSpread
 from plantar.feet.fit.systematic import inflated, systematic_causes
 from plantar.feet.internal_error import gives_up, internal_errors
 from plantar.feet.prepare import PreparedLogs
@@ -93,12 +94,12 @@ def _with_axis(found: FootFit, ready: PreparedLogs, fit: AxisFit) -> FootFit:
 def _fits(
     ready: PreparedLogs, foot: str, models: Mapping[Axis, BushModel], given_up: dict[Axis, str]
 ) -> dict[Axis, AxisFit]:
-    found = {}
+    found, place = {}, PlaceSpread.of(ready.robot, foot)
     for axis in ROTATIONAL_AXES:
         if axis in given_up:
             continue
         with gives_up(axis, given_up):
-            fit = fit_axis(ready.fitted, foot, axis, ready.settings, models.get(axis))
+            fit = fit_axis(ready.fitted, foot, axis, ready.settings, models.get(axis), place)
             if fit is not None:
                 found[axis] = fit
     return found

@@ -33,6 +33,7 @@ class PreparedLogs:
     `settings` hold the cutoff that was used.
     """
 
+    robot: RobotModel
     fitted: tuple[Recording, ...]
     unseen: tuple[Recording, ...]
     settings: FeetSettings
@@ -85,9 +86,8 @@ def prepare_checked(
     moved = [moved_centre(recording, vertical.compliance) for recording in recordings]
     guessed = guess_notes(robot.path.name, robot.guesses)
     notes = [*guessed, *(note for one in recordings for note in one.notes), delay.note, *vertical.notes]
-    return PreparedLogs(
-        tuple(moved[: len(logs)]), tuple(moved[len(logs) :]), settings, delay, vertical, unique(notes)
-    )
+    fitted, unseen = tuple(moved[: len(logs)]), tuple(moved[len(logs) :])
+    return PreparedLogs(robot, fitted, unseen, settings, delay, vertical, unique(notes))
 
 
 def prepare_unseen(

@@ -102,4 +102,5 @@ def _stored_model(result: FeetResult, foot: str, axis: Axis) -> FittedModel | No
         values=values[:count],
         shape=values[count:],
         moment_arms=(0.0, 0.0) if entry is None else entry.moment_arms,
+        turned=0.0 if entry is None else entry.turned,
     )

@@ -114,7 +114,8 @@ class Candidate:
 class AxisModel:
     """The bush model of one axis of one foot, and why it was chosen.
 
-    `moment_arms` [m]: by how much walks show the bush's centre aside and above its place. `held_out` says what was held
+    `moment_arms` [m]: by how much the logs show the bush's centre aside and above its place; `turned` [rad]: by how
+    much the force sensor, or the IMU, is turned about the vertical. `held_out` says what was held
     out, `ranking` holds every model tried; both are None where none was compared.
     """
 
@@ -124,6 +125,7 @@ class AxisModel:
     reason: str
     linear_equivalent: LinearEquivalent
     moment_arms: tuple[float, float] = (0.0, 0.0)
+    turned: float = 0.0
     held_out: str | None = None
     ranking: tuple[Candidate, ...] | None = None
 
@@ -132,6 +134,8 @@ class AxisModel:
         content = {("law" if key == "model" else key): value for key, value in asdict(self).items()}
         if not any(self.moment_arms):
             del content["moment_arms"]
+        if not self.turned:
+            del content["turned"]
         if self.ranking is None:
             return {key: value for key, value in content.items() if key not in ("held_out", "ranking")}
         ranking = [asdict(row) for row in self.ranking]

@@ -11,6 +11,7 @@ from plantar.conventions import Axis
 from plantar.estimation import Block, LinearFit, fit_blocks
 from plantar.estimation.stance_problem import StanceProblem
 from plantar.feet.fit.axis import AxisFit
+from plantar.feet.fit.bush_place import PlaceSpread, about_its_place
 from plantar.feet.fit.corrections import about_true_zero, over_stances, unattenuated
 from plantar.feet.fit.regression_data import blocks_of, data_set_of
 from plantar.feet.recording import Recording
@@ -42,6 +43,7 @@ def fit_axis(
     axis: Axis,
     settings: FeetSettings,
     model: BushModel | None = None,
+    place: PlaceSpread | None = None,
 ) -> AxisFit | None:
     """The law given or asked for, or the one that predicts held-out motions; None where no recording has samples.
 
@@ -51,7 +53,11 @@ def fit_axis(
     if model is None and settings.model != AUTOMATIC:
         model = MODELS[settings.model]
     fit = _fitted(recordings, foot, axis, settings, model)
-    return fit and unattenuated(about_true_zero(fit, recordings, shared), recordings, shared)
+    if fit is None:
+        return None
+    fit = about_true_zero(fit, recordings, shared)
+    fit = fit if place is None else about_its_place(fit, recordings, place, shared)
+    return unattenuated(fit, recordings, shared)
 
 
 def _fitted(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from plantar.conventions import ROTATIONAL_AXES, Array, Mask
 from plantar.feet.fit.axis import FittedModel
-from plantar.feet.fit.regression_data import motion_of
+from plantar.feet.fit.regression_data import load_torque, motion_of
 from plantar.feet.recording import Recording
 from plantar.model_selection.initial_state import initial_states_of
 
@@ -18,7 +18,9 @@ def unseen_initial_states(fitted: FittedModel, recording: Recording, first: Mask
     motion = motion_of(recording, foot, axis)
     if not fitted.model.remembers or not motion.runs or not first.any():
         return None
-    torque, used = recording.bushes[foot].torque[:, ROTATIONAL_AXES.index(axis)], recording.used(foot)
+    measured = recording.bushes[foot].torque[:, ROTATIONAL_AXES.index(axis)]
+    torque = measured - load_torque(recording, fitted)
+    used = recording.used(foot)
     return initial_states_of(
         fitted.model, fitted.values, fitted.shape, motion, torque, used, first, recording.cutoff
     )

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from plantar.conventions import ROTATIONAL_AXES, Array, Mask
 from plantar.feet.fit.axis import FittedModel
 from plantar.feet.fit.initial_state import unseen_initial_states
-from plantar.feet.fit.regression_data import model_columns, moment_columns
+from plantar.feet.fit.regression_data import load_torque, model_columns
 from plantar.feet.recording import Recording
 from plantar.results.scores import first_second
 
@@ -60,13 +60,6 @@ def predict(recording: Recording, fitted: FittedModel) -> Prediction | None:
 def bush_torque(recording: Recording, fitted: FittedModel, states: Array | None = None) -> Array:
     """The torque (N,) of the bush alone; `states` (runs,) as in `model_columns`."""
     return np.asarray(model_columns(recording, fitted.foot, fitted.axis, fitted, states) @ fitted.values)
-
-
-def load_torque(recording: Recording, fitted: FittedModel) -> Array:
-    """The torque (N,) of the load on a bush whose centre is beside its place, as walks show it."""
-    if not any(fitted.moment_arms):
-        return np.zeros(len(recording.time))
-    return np.asarray(moment_columns(recording, fitted.foot, fitted.axis) @ np.array(fitted.moment_arms))
 
 
 def _by_stance(values: Array, used: Mask, number: NDArray[np.intp]) -> Array:

@@ -106,6 +106,20 @@ def moment_columns(recording: Recording, foot: str, axis: Axis) -> Array:
     return np.column_stack([load_of(recording, foot), _filtered_as_torque(recording, foot, across)])
 
 
+def place_columns(recording: Recording, foot: str, axis: Axis) -> Array:
+    """`moment_columns`, and the other axis' torque, which shows in this one where a sensor is turned, (N, 3)."""
+    other = recording.bushes[foot].torque[:, 1 - ROTATIONAL_AXES.index(axis)]
+    return np.column_stack([moment_columns(recording, foot, axis), np.nan_to_num(other)])
+
+
+def load_torque(recording: Recording, fitted: FittedModel) -> Array:
+    """The torque (N,) that is not the bush's: of the load on a centre beside its place, of a sensor that is turned."""
+    place = np.array([*fitted.moment_arms, fitted.turned])
+    if not place.any():
+        return np.zeros(len(recording.time))
+    return np.asarray(place_columns(recording, fitted.foot, fitted.axis) @ place)
+
+
 def _across(recording: Recording, foot: str, column: int) -> Array:
     """The horizontal force that a higher centre turns into torque, (N,) [N], unfiltered."""
     return np.asarray((1.0, -1.0)[column] * recording.bushes[foot].wrench[:, column])

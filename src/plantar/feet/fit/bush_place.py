@@ -1,0 +1,139 @@
+"""Where the bush's centre is, beside the robot file's place: standing motions show it, as steps do.
+
+A centre that is aside makes a torque that grows with the load, one that is higher a torque that grows with the
+horizontal force; where the force sensor or the IMU is turned about the vertical, the other axis' torque shows. All are
+columns beside the model's, with the robot file's uncertainty as a prior. Where the logs
+clearly say that the file is wrong by more, they are believed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from plantar.conventions import Array
+from plantar.estimation import Block, effect_of, fit_blocks
+from plantar.feet.fit.axis import AxisFit
+from plantar.feet.fit.regression_data import blocks_of, place_columns
+from plantar.feet.recording import Recording
+from plantar.notes import Note
+from plantar.robot.model import RobotModel
+
+GUESSED = 0.02  # m: what a guess without a spread of its own may be off by
+REFUTED = 3.0  # deviations of prior and data together, beyond which the robot file's place is not believed
+TURN_WORTH_SAYING = 0.02  # rad: of a mount, likewise
+WORTH_SAYING = 0.005  # m: a centre that is nearer to its place is within what drawings get wrong
+SINGULAR = 1e6  # condition of the fit beyond which the motions do not show the place
+
+
+@dataclass(frozen=True)
+class PlaceSpread:
+    """Deviation of the centre's place, `aside` and `above` [m], and of how far a sensor is `turned` in yaw [rad]."""
+
+    aside: float
+    above: float
+    turned: float
+
+    @classmethod
+    def of(cls, robot: RobotModel, foot: str) -> PlaceSpread:
+        """From the robot file: its uncertainty, and what its guesses of bush and force sensor may be off by."""
+        position = robot.uncertainty.bush_position
+        for guess in robot.guesses:
+            if guess.key.startswith((f"feet.{foot}.bush", f"feet.{foot}.wrench")):
+                position = max(position, GUESSED if guess.spread is None else guess.spread)
+        aside = float(np.hypot(position, robot.uncertainty.wrench_crosstalk)) if position else 0.0
+        return cls(aside, position, robot.uncertainty.imu_mount)
+
+
+def about_its_place(
+    fit: AxisFit, recordings: Sequence[Recording], spread: PlaceSpread, shared: bool
+) -> AxisFit:
+    """The fit of a standing foot about where its centre is, widened by what that leaves unknown.
+
+    A foot that steps has its centre from its stances already.
+    """
+    blocks = blocks_of(recordings, fit.foot, fit.axis, drift=not shared, fit=fit)
+    spreads = np.array([spread.aside, spread.above, spread.turned])
+    if blocks[0].stances is not None or not spreads.any():
+        return fit
+    by_name = {one.name: one for one in recordings}
+    columns = [
+        place_columns(by_name[block.label], fit.foot, fit.axis)[by_name[block.label].used(fit.foot)]
+        for block in blocks
+    ]
+    size = len(fit.values)
+    found = fit_blocks(
+        [_beside(block, own) for block, own in zip(blocks, columns, strict=True)], shared_offset=shared
+    )
+    if found.condition_number > SINGULAR:
+        arms, unsure = np.zeros(3), np.diag(spreads**2)
+    else:
+        arms, unsure = _drawn(
+            found.values[size:], found.covariance[size : size + 3, size : size + 3], spreads
+        )
+    follows = np.column_stack(
+        [effect_of(blocks, [own[:, place] for own in columns], shared_offset=shared) for place in range(3)]
+    )
+    moved = -follows @ arms
+    covariance = fit.covariance.copy()
+    covariance[:size, :size] += follows @ unsure @ follows.T
+    offsets = {
+        block.label: fit.offsets[block.label]
+        - float(np.mean(block.regressor, axis=0) @ moved)
+        - float(np.mean(own, axis=0) @ arms)
+        for block, own in zip(blocks, columns, strict=True)
+    }
+    return replace(
+        fit,
+        values=fit.values + moved,
+        covariance=covariance,
+        offsets=fit.offsets if shared else {**fit.offsets, **offsets},
+        moment_arms=(float(arms[0]), float(arms[1])),
+        turned=float(arms[2]),
+        notes=(*fit.notes, *_said(fit, arms, np.sqrt(np.diag(unsure)), spread)),
+    )
+
+
+def _beside(block: Block, columns: Array) -> Block:
+    noise = None if block.noise is None else np.append(block.noise, np.zeros(columns.shape[1]))
+    return replace(block, regressor=np.column_stack([block.regressor, columns]), noise=noise)
+
+
+def _drawn(found: Array, covariance: Array, spreads: Array) -> tuple[Array, Array]:
+    """Coefficients (3,) drawn to zero by their prior, and their covariance (3, 3)."""
+    prior = np.diag(spreads**2)
+    refuted = np.abs(found) > REFUTED * np.sqrt(spreads**2 + np.diag(covariance))
+    prior = prior + np.diag(np.where(refuted & (spreads > 0), found**2, 0.0))
+    keeps = prior @ np.linalg.pinv(prior + covariance)
+    return keeps @ found, keeps @ covariance
+
+
+def _said(fit: AxisFit, place: Array, std: Array, spread: PlaceSpread) -> list[Note]:
+    """A warning where the centre is clearly elsewhere, or a sensor turned."""
+    limits = np.maximum(
+        REFUTED * np.hypot([spread.aside, spread.above, spread.turned], std),
+        [WORTH_SAYING, WORTH_SAYING, TURN_WORTH_SAYING],
+    )
+    aside, above, turned = np.abs(place) > limits
+    (x, z, yaw), (of_x, of_z, of_yaw) = 1e3 * place, 1.96e3 * std
+    told, key = [], f"feet.{fit.foot}"
+    if aside:
+        where = "forward or backward" if fit.axis == "pitch" else "to the side"
+        told.append(f"about a point {abs(x):.0f} ± {of_x:.0f} mm {where} of {key}.bush and {key}.wrench")
+    if above:
+        told.append(
+            f"{abs(z):.0f} ± {of_z:.0f} mm {'above' if z > 0 else 'below'} {key}.bush and {key}.wrench"
+        )
+    if turned:
+        degrees = np.degrees([1e-3 * abs(yaw), 1e-3 * of_yaw])
+        told.append(
+            f"about an axis {degrees[0]:.1f} ± {degrees[1]:.1f} deg beside {key}.wrench.rpy or imu.rpy"
+        )
+    if not told:
+        return []
+    text = (
+        f"{fit.foot} {fit.axis}: the torques turn {'; '.join(told)} (95 %): corrected; check the robot file"
+    )
+    return [Note("bush_place", "warning", text)]
