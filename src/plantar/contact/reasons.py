@@ -10,7 +10,7 @@ class Reason(Enum):
     """One reason; its value is what a user reads, with `{}` where a detail belongs."""
 
     IN_THE_AIR = "in the air: no load on this foot"
-    NOT_RECORDED = "not recorded: NaN or a gap in a column that this foot needs"
+    NOT_RECORDED = "not recorded: NaN, a gap or a channel that stands still, in a column that this foot needs"
     SETTLING = "landing or lifting: just behind or before a change of contact"
     IMPACT = "impact: the force is shaken faster than the samples resolve, as by a sole that slaps the floor"
     FILTER_EDGE = "filter's edge"
