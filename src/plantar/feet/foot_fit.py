@@ -64,7 +64,7 @@ def _with_axis(found: FootFit, ready: PreparedLogs, fit: AxisFit) -> FootFit:
     causes = systematic_causes(fit, ready.fitted, ready.sensor_delay, ready.vertical, shared)
     wide = inflated(fit, causes)
     scores, predictions = score_axis(ready.recordings, wide)
-    rows = axis_rows(wide, ready.fitted, predictions, scores)
+    rows = axis_rows(wide, ready.fitted, predictions, scores, ready.gain_errors.get(fit.foot, 0.0))
     limits = diagnose_axis(fit, wide, causes, rows)
     return FootFit(
         fits=[*found.fits, wide],

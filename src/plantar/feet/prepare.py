@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from plantar.errors import DataError
 from plantar.feet.exclusion.edge_rolling import without_edge_rolling
@@ -15,6 +15,7 @@ from plantar.feet.fit.vertical_stiffness import VerticalStiffness, fit_vertical_
 from plantar.feet.prepare_log import checked, prepare
 from plantar.feet.recording import Recording, Role, filtered_recording, moved_centre
 from plantar.feet.sensors.coherent_band import coherent_band
+from plantar.feet.sensors.force_gain import force_gain_errors, force_gain_notes
 from plantar.feet.sensors.sensor_delay import SensorDelay, estimate_wrench_delay, in_time, known_delay
 from plantar.feet.sensors.tilt_error import NO_TILT_ERROR, log_tilt_error
 from plantar.feet.settings import FeetSettings
@@ -30,7 +31,7 @@ Progress = Callable[[str], None]
 class PreparedLogs:
     """Recordings to fit and to validate, the wrenches' delay and the bushes' vertical compliance behind them.
 
-    `settings` hold the cutoff that was used.
+    `settings` hold the cutoff that was used. `gain_errors`: see `force_gain_errors`.
     """
 
     fitted: tuple[Recording, ...]
@@ -39,6 +40,7 @@ class PreparedLogs:
     sensor_delay: SensorDelay
     vertical: VerticalStiffness
     notes: tuple[Note, ...]
+    gain_errors: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def recordings(self) -> tuple[Recording, ...]:
@@ -83,10 +85,11 @@ def prepare_checked(
     progress("fit z")
     vertical = fit_vertical_stiffness(recordings[: len(logs)], robot)
     moved = [moved_centre(recording, vertical.compliance) for recording in recordings]
-    guessed = guess_notes(robot.path.name, robot.guesses)
-    notes = [*guessed, *(note for one in recordings for note in one.notes), delay.note, *vertical.notes]
+    gains = force_gain_errors(robot, recordings)
+    odd = [*guess_notes(robot.path.name, robot.guesses), *force_gain_notes(robot, gains)]
+    notes = [*odd, *(note for one in recordings for note in one.notes), delay.note, *vertical.notes]
     return PreparedLogs(
-        tuple(moved[: len(logs)]), tuple(moved[len(logs) :]), settings, delay, vertical, unique(notes)
+        tuple(moved[: len(logs)]), tuple(moved[len(logs) :]), settings, delay, vertical, unique(notes), gains
     )
 
 

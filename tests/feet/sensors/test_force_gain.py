@@ -1,0 +1,87 @@
+"""Gains of force sensors against the URDF's weight, and what they do to verdicts."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from biped import record, sway
+from biped_robot import make_robot, robot_entry
+from feet_trials import PUNCTUAL, codes
+from plantar.feet.identify import identify_feet
+from plantar.feet.prepare_log import checked, prepare
+from plantar.feet.sensors.force_gain import force_gain_errors
+from plantar.logs.motion_log import MotionLog
+from plantar.robot.model import RobotModel
+
+SHIFTING = sway(shift=0.7, duration=30.0)
+
+
+@pytest.fixture(scope="module")
+def weighed(tmp_path_factory: pytest.TempPathFactory) -> RobotModel:
+    """The biped with links that somebody has weighed: its trunk is most of it."""
+    return make_robot(tmp_path_factory.mktemp("weighed"), uncertainty={"link_mass": 0.01})
+
+
+def scaled(log: MotionLog, **gains: float) -> MotionLog:
+    """The log with force and torque of some feet multiplied."""
+    return log.with_columns(
+        {
+            name: gain * values
+            for foot, gain in gains.items()
+            for name, values in log.columns.items()
+            if name.startswith(f"wrench.{foot}.")
+        }
+    )
+
+
+def errors(robot: RobotModel, log: MotionLog) -> dict[str, float]:
+    return force_gain_errors(robot, [prepare(robot, checked(robot, log), "fit")])
+
+
+def test_sensors_that_carry_the_weight_are_right(weighed: RobotModel) -> None:
+    for log in (record(SHIFTING), scaled(record(SHIFTING), left=1.03, right=0.98)):
+        assert errors(weighed, log) == {}
+
+
+@pytest.mark.parametrize("gain", [1.12, 0.88])
+def test_both_gains_are_found_without_a_shift_of_weight(weighed: RobotModel, gain: float) -> None:
+    found = errors(weighed, scaled(record(sway()), left=gain, right=gain))
+    assert found == pytest.approx({"left": gain - 1, "right": gain - 1}, abs=0.01)
+
+
+def test_a_shift_of_weight_shows_whose_gain_it_is(weighed: RobotModel) -> None:
+    assert errors(weighed, scaled(record(SHIFTING), left=1.12)) == pytest.approx({"left": 0.12}, abs=0.02)
+
+
+def test_a_robot_file_that_doubts_its_masses_allows_more(robot: RobotModel, weighed: RobotModel) -> None:
+    log = scaled(record(sway()), left=1.12, right=1.12)
+    assert errors(weighed, log)
+    assert errors(robot, log) == {}
+
+
+def test_forces_zeroed_under_load_and_robots_that_hang_say_nothing(
+    tmp_path: Path, weighed: RobotModel
+) -> None:
+    log = record(sway())
+    zeroed = log.with_columns(
+        {name: log.column(name) - 0.8 * log.column(name).mean() for name in log.columns if "force.z" in name}
+    )
+    assert errors(weighed, zeroed) == {}
+    feet = robot_entry()["feet"]
+    assert isinstance(feet, dict)
+    feet = {name: {**foot, "contact": "always"} for name, foot in feet.items()}
+    always = make_robot(tmp_path, feet=feet, uncertainty={"link_mass": 0.01})
+    assert errors(always, scaled(log, left=1.12, right=1.12)) == {}
+
+
+def test_nothing_is_usable_under_a_gain_that_the_weight_denies(weighed: RobotModel) -> None:
+    log = scaled(record(SHIFTING), left=1.12)
+    found = identify_feet(weighed, [log], settings=PUNCTUAL)
+    assert "force_gain" in codes(found)
+    for row in found.parameters:
+        if row.axis != "z":
+            assert row.verdict == ("weak" if row.foot == "left" else "usable")
+    assert "from the URDF's weight" in found.parameter("left", "pitch", "stiffness").reason
+    assert "force_gain" not in codes(identify_feet(weighed, [record(SHIFTING)], settings=PUNCTUAL))
