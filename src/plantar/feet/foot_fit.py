@@ -15,6 +15,7 @@ from plantar.feet.assess.scores import score_axis
 from plantar.feet.exclusion.outliers import outlier_masks
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.axis_fit import fit_axis
+from plantar.feet.fit.force_gain import force_gain_causes
 from plantar.feet.fit.systematic import inflated, systematic_causes
 from plantar.feet.internal_error import gives_up, internal_errors
 from plantar.feet.prepare import PreparedLogs
@@ -62,9 +63,10 @@ def _with_axis(found: FootFit, ready: PreparedLogs, fit: AxisFit) -> FootFit:
     """What was found, and one axis: its fit widened, scored, judged and diagnosed."""
     shared = ready.settings.offset == "shared"
     causes = systematic_causes(fit, ready.fitted, ready.sensor_delay, ready.vertical, shared)
+    causes += force_gain_causes(fit, ready.gain_errors)
     wide = inflated(fit, causes)
     scores, predictions = score_axis(ready.recordings, wide)
-    rows = axis_rows(wide, ready.fitted, predictions, scores, ready.gain_errors.get(fit.foot, 0.0))
+    rows = axis_rows(wide, ready.fitted, predictions, scores)
     limits = diagnose_axis(fit, wide, causes, rows)
     return FootFit(
         fits=[*found.fits, wide],

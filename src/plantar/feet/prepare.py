@@ -11,11 +11,11 @@ from plantar.errors import DataError
 from plantar.feet.exclusion.edge_rolling import without_edge_rolling
 from plantar.feet.exclusion.slip import without_slip
 from plantar.feet.exclusion.torque_saturation import without_torque_saturation
+from plantar.feet.fit.force_gain import GainError, force_gain_errors, force_gain_notes
 from plantar.feet.fit.vertical_stiffness import VerticalStiffness, fit_vertical_stiffness
 from plantar.feet.prepare_log import checked, prepare
 from plantar.feet.recording import Recording, Role, filtered_recording, moved_centre
 from plantar.feet.sensors.coherent_band import coherent_band
-from plantar.feet.sensors.force_gain import force_gain_errors, force_gain_notes
 from plantar.feet.sensors.sensor_delay import SensorDelay, estimate_wrench_delay, in_time, known_delay
 from plantar.feet.sensors.tilt_error import NO_TILT_ERROR, log_tilt_error
 from plantar.feet.settings import FeetSettings
@@ -40,7 +40,7 @@ class PreparedLogs:
     sensor_delay: SensorDelay
     vertical: VerticalStiffness
     notes: tuple[Note, ...]
-    gain_errors: Mapping[str, float] = field(default_factory=dict)
+    gain_errors: Mapping[str, GainError] = field(default_factory=dict)
 
     @property
     def recordings(self) -> tuple[Recording, ...]:

@@ -16,6 +16,7 @@ REMEDY = {
     "noise": "record the same motion for longer: four times as long halves it",
     "delay": "add a recording of arm sweeps at 0.3 to 1 Hz without an operator: it shows the wrenches' delay",
     "lever": "add a slow shift of the weight from foot to foot: it shows the vertical compliance",
+    "force gain": "weigh the robot: then calibrate the force sensors, or correct the URDF's masses",
     "yaw torque zero": "zero the force sensors with the feet in the air before recording",
     "between walks": "add walks: five or more show by themselves how much they differ",
     "ends of stances": "walk with longer stances, or stand and sway: landing and lifting disturb the fit",
@@ -62,7 +63,13 @@ def advised(rows: Sequence[Parameter], diagnosis: Sequence[Mapping[str, Any]]) -
     found = []
     for row in rows:
         limit = limits.get((row.foot, row.axis, row.name))
-        if row.verdict != "usable" and limit in ("delay", "lever", "hardening", "yaw torque zero"):
+        if row.verdict != "usable" and limit in (
+            "delay",
+            "lever",
+            "hardening",
+            "yaw torque zero",
+            "force gain",
+        ):
             row = replace(row, reason=f"{row.reason}; nearly all of it from {limit}", advice=REMEDY[limit])
         found.append(row)
     return found

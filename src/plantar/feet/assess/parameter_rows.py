@@ -19,18 +19,10 @@ from plantar.results.feet import Parameter, ValidationRow
 
 
 def axis_rows(
-    fit: AxisFit,
-    recordings: Sequence[Recording],
-    predictions: Predictions,
-    scores: Sequence[ValidationRow],
-    gain_error: float = 0.0,
+    fit: AxisFit, recordings: Sequence[Recording], predictions: Predictions, scores: Sequence[ValidationRow]
 ) -> list[Parameter]:
-    """Every parameter of one axis; `predictions` are those of the fit's own recordings, `scores` of all.
-
-    gain_error: of the foot's force sensor, see `force_gain_errors`.
-    """
-    evidence = _evidence(fit, recordings, predictions)
-    evidence = replace(evidence, contradicted=contradiction(scores), gain_error=gain_error)
+    """Every parameter of one axis; `predictions` are those of the fit's own recordings, `scores` of all."""
+    evidence = replace(_evidence(fit, recordings, predictions), contradicted=contradiction(scores))
     rows = []
     for place, term in enumerate(fit.names):
         value, std = float(fit.numbers[place]), float(fit.std[place])

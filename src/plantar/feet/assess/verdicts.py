@@ -32,9 +32,8 @@ SWAY = {
 @dataclass(frozen=True)
 class Evidence:
     """What one fit shows: `seconds` that served, rms of deflection [rad], share of variance explained, whether the
-    damping is negative beyond doubt, the motion that contradicts the others (None where they agree), the share of
-    the time in which the sole leans, where the law has a memory that has to go through that, and the share by which the
-    foot's forces part from the weight beyond what gains and masses may be off by."""
+    damping is negative beyond doubt, the motion that contradicts the others (None where they agree), and the share of
+    the time in which the sole leans, where the law has a memory that has to go through that."""
 
     seconds: float
     excitation: float
@@ -42,7 +41,6 @@ class Evidence:
     makes_energy: bool = False
     contradicted: ValidationRow | None = None
     leaning: float = 0.0
-    gain_error: float = 0.0
 
 
 def judge(
@@ -91,13 +89,6 @@ def judge(
             "weak",
             f"the sole leans for {100 * evidence.leaning:.0f} % of the time, and a bush with a memory goes on unseen",
             f"{_advice(foot, axis, term)}: the centre of pressure has to stay inside the sole",
-        )
-    if evidence.gain_error:
-        share = f"{100 * evidence.gain_error:+.0f} %"
-        return (
-            "weak",
-            f"the {foot} foot's force parts by {share} from the URDF's weight, and {term} follows its gain",
-            "weigh the robot: then calibrate the force sensors, or correct the URDF's masses",
         )
     if width > USABLE_WIDTH:
         return "weak", f"the 95 % interval is ±{100 * width:.0f} %; the motion gave {motion}", advice

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from biped import record, sway
+from biped import TRUTH, record, sway
 from biped_robot import make_robot, robot_entry
 from feet_trials import PUNCTUAL, codes
+from plantar.feet.fit.force_gain import force_gain_errors
 from plantar.feet.identify import identify_feet
 from plantar.feet.prepare_log import checked, prepare
-from plantar.feet.sensors.force_gain import force_gain_errors
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
 
@@ -37,7 +37,8 @@ def scaled(log: MotionLog, **gains: float) -> MotionLog:
 
 
 def errors(robot: RobotModel, log: MotionLog) -> dict[str, float]:
-    return force_gain_errors(robot, [prepare(robot, checked(robot, log), "fit")])
+    found = force_gain_errors(robot, [prepare(robot, checked(robot, log), "fit")])
+    return {foot: error.share for foot, error in found.items()}
 
 
 def test_sensors_that_carry_the_weight_are_right(weighed: RobotModel) -> None:
@@ -76,12 +77,20 @@ def test_forces_zeroed_under_load_and_robots_that_hang_say_nothing(
     assert errors(always, scaled(log, left=1.12, right=1.12)) == {}
 
 
-def test_nothing_is_usable_under_a_gain_that_the_weight_denies(weighed: RobotModel) -> None:
-    log = scaled(record(SHIFTING), left=1.12)
-    found = identify_feet(weighed, [log], settings=PUNCTUAL)
+def test_intervals_hold_both_a_wrong_gain_and_wrong_masses(weighed: RobotModel) -> None:
+    """12 % more force and torque on the left: its numbers are 12 % too large, and those of the right foot are right."""
+    found = identify_feet(weighed, [scaled(record(SHIFTING), left=1.12)], settings=PUNCTUAL)
     assert "force_gain" in codes(found)
-    for row in found.parameters:
-        if row.axis != "z":
-            assert row.verdict == ("weak" if row.foot == "left" else "usable")
-    assert "from the URDF's weight" in found.parameter("left", "pitch", "stiffness").reason
+    for (foot, axis), law in TRUTH.items():
+        for name, truth in (("stiffness", law.stiffness), ("damping", law.damping)):
+            row = found.parameter(foot, axis, name)
+            assert row.interval95 is not None
+            assert row.half_width_percent is not None
+            if foot == "left":
+                assert row.interval95[0] < truth < row.interval95[1]
+                assert row.half_width_percent > 10
+            else:
+                assert row.half_width_percent < 2
+    limits = {(each.foot, each.axis, each.name): each.limit for each in found.diagnosis}
+    assert limits["left", "pitch", "stiffness"] == "force gain"
     assert "force_gain" not in codes(identify_feet(weighed, [record(SHIFTING)], settings=PUNCTUAL))
