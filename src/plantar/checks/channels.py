@@ -11,12 +11,10 @@ from plantar.conventions import GRAVITY, Array
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding
 from plantar.robot.model import Foot, RobotModel
+from plantar.signals.held import FEWEST, SHORTEST, can_be_held, held_in
 from plantar.signals.resampling import GAP_PERIODS
 from plantar.signals.segments import runs
 
-SHORTEST, FEWEST = 0.2, 10  # s and samples at one value: less happens by chance
-LIVELY = 0.9  # share of the other steps that change the value: of a coarse or slow channel nothing is said
-NOTABLE = 0.005  # share of the log
 TURNED = 0.02  # rad by which a joint moves, whose position stands still
 STEPS = 5.0  # of a coarse encoder: likewise
 BEYOND_DOUBT = 5.0  # times what the velocity is off by in such a time: no noise adds up to as much
@@ -139,22 +137,20 @@ def _noise_path(turns: Array) -> float:
 
 def _stuck(sensor: str, log: MotionLog) -> Iterator[Finding]:
     """A finding for each stretch over which columns of this sensor stand still while they change elsewhere."""
-    columns = [column for column in log.columns if column.startswith(sensor)]
+    columns = [column for column in log.columns if column.startswith(sensor) and can_be_held(column)]
     together: defaultdict[tuple[int, int], list[tuple[str, float]]] = defaultdict(list)
     for column in columns:
-        values = log.column(column)
-        held = _held(values, log.period)
-        if held:
-            longest = max(held, key=lambda run: run.stop - run.start)
-            share = sum(run.stop - run.start for run in held) / len(log)
-            together[longest.start, longest.stop].append((column, share))
-    for (start, stop), found in together.items():
+        held = held_in(log, column)
+        if held.any():
+            longest = max(runs(held), key=lambda run: run.stop - run.start)
+            together[longest.start, longest.stop - 1].append((column, float(np.mean(held))))
+    for (start, last), found in together.items():
         stopped = [column for column, _ in found]
         several = len(stopped) > 1
-        when = f"t = {log.time[start]:g} to {log.time[stop]:g} s"
+        when = f"t = {log.time[start]:g} to {log.time[last]:g} s"
         value = "" if several else f", value {log.column(stopped[0])[start]:.6g}"
         still = "stand still while they change" if several else "stands still while it changes"
-        share = f"{100 * max(share for _, share in found):.0f} % of the log"
+        share = f"{100 * max(share for _, share in found):.0f} % of the log, left out"
         asked = (
             "is the sensor dead or at its full scale?"
             if several
@@ -162,19 +158,3 @@ def _stuck(sensor: str, log: MotionLog) -> Iterator[Finding]:
         )
         text = f"{named(stopped, sensor, len(columns))}, {when}{value}: {still} elsewhere, {share}; {asked}"
         yield Finding("stuck_channel", f"{text} (valid: leave such cells empty)")
-
-
-def _held(values: Array, period: float) -> list[slice]:
-    """Stretches at one value, as slices of the steps between samples, where they are no chance and no coarse scale."""
-    steps = np.diff(values)
-    still = (steps == 0) & (values[1:] != 0)  # a foot in the air may read zero
-    least = max(FEWEST, round(SHORTEST / period))
-    held = [run for run in runs(still) if run.stop - run.start >= least]
-    count = sum(run.stop - run.start for run in held)
-    if not NOTABLE * len(values) < count < len(steps):
-        return []
-    inside = np.zeros(len(steps), dtype=bool)
-    for run in held:
-        inside[run] = True
-    others = steps[~inside & np.isfinite(steps)]
-    return [] if others.size < least or np.mean(others != 0) < LIVELY else held

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from plantar.checks.channels import check_channels, named
+from plantar.checks.closed_chain import check_closed_chain
 from plantar.checks.imu import check_imu
 from plantar.checks.joints import check_joint_names
 from plantar.checks.standing import check_balance
@@ -21,7 +22,7 @@ SHORTEST = 0.5  # s of a log from which anything can be said
 
 
 def check_log(robot: RobotModel, log: MotionLog) -> list[Finding]:
-    """Every finding about one log, in the order joint names, time, joints, IMU, wrenches, stuck channels.
+    """Every finding about one log, in the order joint names, time, joints, IMU, wrenches, stuck channels, chain.
 
     Of a log whose time cannot be right only that is said: rates and seconds mean nothing.
     """
@@ -29,8 +30,8 @@ def check_log(robot: RobotModel, log: MotionLog) -> list[Finding]:
     if any(finding.fatal for finding in time):
         return [*names, *time]
     imu = check_imu(robot.imu.name, log) if robot.imu is not None else ()
-    channels = check_channels(robot, log)
-    return [*names, *time, *_joints(robot, log), *imu, *_wrenches(robot, log), *channels]
+    channels, chain = check_channels(robot, log), check_closed_chain(robot, log)
+    return [*names, *time, *_joints(robot, log), *imu, *_wrenches(robot, log), *channels, *chain]
 
 
 def _time(log: MotionLog) -> Iterator[Finding]:

@@ -10,7 +10,7 @@ class Reason(Enum):
     """One reason; its value is what a user reads, with `{}` where a detail belongs."""
 
     IN_THE_AIR = "in the air: no load on this foot"
-    NOT_RECORDED = "not recorded: NaN or a gap in a column that this foot needs"
+    NOT_RECORDED = "not recorded: NaN, a gap or a channel that stands still, in a column that this foot needs"
     SETTLING = "landing or lifting: just after or before a change of contact"
     IMPACT = (
         "impact: the force changes faster than the sampling rate can resolve, as when the sole hits the floor"

@@ -5,11 +5,12 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from plantar.feet.exclusion.edge_rolling import without_edge_rolling
 from plantar.feet.exclusion.slip import without_slip
 from plantar.feet.exclusion.torque_saturation import without_torque_saturation
+from plantar.feet.fit.force_gain import GainError, force_gain_errors, force_gain_notes
 from plantar.feet.fit.vertical_stiffness import VerticalStiffness, fit_vertical_stiffness
 from plantar.feet.prepare_log import checked, prepare
 from plantar.feet.recording import Recording, Role, filtered_recording, moved_centre
@@ -30,7 +31,7 @@ Progress = Callable[[str], None]
 class PreparedLogs:
     """Recordings to fit and to validate, the wrenches' delay and the bushes' vertical compliance behind them.
 
-    `settings` hold the cutoff that was used.
+    `settings` hold the cutoff that was used. `gain_errors`: see `force_gain_errors`.
     """
 
     robot: RobotModel
@@ -40,6 +41,7 @@ class PreparedLogs:
     sensor_delay: SensorDelay
     vertical: VerticalStiffness
     notes: tuple[Note, ...]
+    gain_errors: Mapping[str, GainError] = field(default_factory=dict)
 
     @property
     def recordings(self) -> tuple[Recording, ...]:
@@ -84,10 +86,11 @@ def prepare_checked(
     progress("fit z")
     vertical = fit_vertical_stiffness(recordings[: len(logs)], robot)
     moved = [moved_centre(recording, vertical.compliance) for recording in recordings]
-    guessed = guess_notes(robot.path.name, robot.guesses)
-    notes = [*guessed, *(note for one in recordings for note in one.notes), delay.note, *vertical.notes]
+    gains = force_gain_errors(robot, recordings)
+    odd = [*guess_notes(robot.path.name, robot.guesses), *force_gain_notes(robot, gains)]
+    notes = [*odd, *(note for one in recordings for note in one.notes), delay.note, *vertical.notes]
     fitted, unseen = tuple(moved[: len(logs)]), tuple(moved[len(logs) :])
-    return PreparedLogs(robot, fitted, unseen, settings, delay, vertical, unique(notes))
+    return PreparedLogs(robot, fitted, unseen, settings, delay, vertical, unique(notes), gains)
 
 
 def prepare_unseen(

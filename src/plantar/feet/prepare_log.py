@@ -21,6 +21,7 @@ from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding, Note
 from plantar.robot.model import Imu, RobotModel
 from plantar.signals.filters import differentiate, low_pass
+from plantar.signals.held import without_held
 from plantar.signals.orientation import attitude
 from plantar.signals.resampling import evenly_sampled, without_holes
 from plantar.signals.spikes import without_spikes
@@ -31,7 +32,9 @@ WEIGHT_MISMATCH = 0.15  # share by which the feet may carry more or less than th
 
 
 def checked(robot: RobotModel, log: MotionLog, findings: Sequence[Finding] | None = None) -> MotionLog:
-    """The log on an even grid, with what is odd about it as notes; `findings` where `check_log` has been asked already.
+    """The log on an even grid, without held samples and spikes, with what is odd about it as notes.
+
+    findings: of `check_log`, where that has been asked already.
 
     Raises RobotError without IMU or feet in the robot file, LogError for a missing column, DataError where a sensor
     reads something impossible (degrees for radians, a flipped sign, swapped feet; see `checks`).
@@ -42,7 +45,8 @@ def checked(robot: RobotModel, log: MotionLog, findings: Sequence[Finding] | Non
     if problems:
         raise DataError(located(problems[0].text, path=log.source))
     odd = [Note(found.code, found.severity, f"{log.name}: {found.text}") for found in findings]
-    return without_spikes(without_holes(evenly_sampled(log))).with_columns({}, *log.joint_notes(robot), *odd)
+    even = without_spikes(without_holes(without_held(evenly_sampled(log))))
+    return even.with_columns({}, *log.joint_notes(robot), *odd)
 
 
 def prepare(

@@ -15,6 +15,7 @@ REMEDY = {
     "noise": "record the same motion for longer: four times as long halves the interval",
     "delay": "add a recording of arm sweeps at 0.3 to 1 Hz without an operator: it shows the force sensors' delay",
     "lever": "add a slow shift of the weight from foot to foot: it shows the vertical compliance",
+    "force gain": "weigh the robot: then calibrate the force sensors, or correct the URDF's masses",
     "yaw torque zero": "zero the force sensors with the feet in the air before recording",
     "between walks": "add walks: five or more show by themselves how much they differ",
     "ends of stances": "walk with longer stances, or stand and sway: landing and lifting disturb the fit",
@@ -25,7 +26,7 @@ REMEDY = {
     "excitation": "use larger motions: twice the amplitude halves the interval",
 }
 # Causes that no more of the same motion makes smaller: the advice against them replaces the axis' own.
-OTHER_MOTION_HELPS = ("delay", "lever", "hardening", "yaw torque zero", "zeros of stances")
+OTHER_MOTION_HELPS = ("delay", "lever", "hardening", "yaw torque zero", "zeros of stances", "force gain")
 MODEL_SHARE = 10.0  # times the white deviation: residuals this coloured are the model's, not noise
 
 

@@ -1,0 +1,223 @@
+"""What faults do to a case's logs: changes of values, names, moments and rows, the same for any robot."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from fault_case import Case, Change, Columns, Table, chosen
+from plantar.conventions import Array, rotation_from_quaternion
+
+
+def altered(columns: Columns, values: Callable[[Array], Array]) -> Change:
+    """Other values in some columns."""
+
+    def change(case: Case) -> Case:
+        names = chosen(case, columns)
+        return case.with_tables(
+            lambda table: {name: values(old) if name in names else old for name, old in table.items()}
+        )
+
+    return change
+
+
+def scaled(columns: Columns, factor: float) -> Change:
+    return altered(columns, lambda values: factor * values)
+
+
+def shifted(columns: Columns, amount: float) -> Change:
+    return altered(columns, lambda values: values + amount)
+
+
+def removed(columns: Columns) -> Change:
+    def change(case: Case) -> Case:
+        names = chosen(case, columns)
+        return case.with_tables(
+            lambda table: {name: values for name, values in table.items() if name not in names}
+        )
+
+    return change
+
+
+def renamed(columns: Columns, new: Callable[[str], str]) -> Change:
+    """Other names of some columns."""
+
+    def change(case: Case) -> Case:
+        names = chosen(case, columns)
+        return case.with_tables(
+            lambda table: {new(name) if name in names else name: values for name, values in table.items()}
+        )
+
+    return change
+
+
+def exchanged(first: Columns, second: Columns) -> Change:
+    """Two groups of columns, alike but for their names, carry each other's values."""
+
+    def change(case: Case) -> Case:
+        pairs = list(zip(sorted(chosen(case, first)), sorted(chosen(case, second)), strict=True))
+        other = dict(pairs) | {b: a for a, b in pairs}
+        return case.with_tables(lambda table: {name: table[other.get(name, name)] for name in table})
+
+    return change
+
+
+def late(*delays: tuple[Columns, float]) -> Change:
+    """Groups of columns that report so late [s]; the rows before the last one has begun are cut."""
+
+    def change(case: Case) -> Case:
+        own = {name: delay for columns, delay in delays for name in chosen(case, columns)}
+        longest = max(delay for _, delay in delays)
+
+        def each(table: Table) -> Table:
+            time = table["time"]
+            begun = time >= time[0] + longest
+            return {
+                name: (np.interp(time - own[name], time, values) if name in own else values)[begun]
+                for name, values in table.items()
+            }
+
+        return case.with_tables(each)
+
+    return change
+
+
+def one_after_another(*changes: Change) -> Change:
+    def change(case: Case) -> Case:
+        for each in changes:
+            case = each(case)
+        return case
+
+    return change
+
+
+def clipped(columns: Columns, share: float) -> Change:
+    """Columns cut at a share of their largest reading."""
+
+    def change(case: Case) -> Case:
+        limits = {
+            name: share * max(float(np.abs(table[name]).max()) for table in case.tables.values())
+            for name in chosen(case, columns)
+        }
+        return case.with_tables(
+            lambda table: {
+                name: np.clip(values, -limits[name], limits[name]) if name in limits else values
+                for name, values in table.items()
+            }
+        )
+
+    return change
+
+
+def overwritten(columns: Columns, start: float, stop: float, value: float | None = None) -> Change:
+    """Columns that repeat a value between two shares of each log: the last one before it, or the one given."""
+
+    def put(values: Array) -> Array:
+        changed, (first, last) = values.copy(), (round(share * len(values)) for share in (start, stop))
+        changed[first:last] = values[first] if value is None else value
+        return changed
+
+    return altered(columns, put)
+
+
+def dropouts(columns: Columns, value: float, length: int = 40, every: int = 1000) -> Change:
+    """`length` samples of every `every` replaced by a value."""
+    return altered(columns, lambda values: np.where(np.arange(len(values)) % every < length, value, values))
+
+
+def rows(keep: Callable[[Array], Array]) -> Change:
+    """Only those rows of each log that `keep` (N,) bool of its time (N,) [s] names."""
+
+    def each(table: Table) -> Table:
+        kept = keep(table["time"])
+        return {name: values[kept] for name, values in table.items()}
+
+    return lambda case: case.with_tables(each)
+
+
+def thinned(rate: float) -> Change:
+    """Every n-th row, down to `rate` [Hz]."""
+    return rows(lambda time: np.arange(len(time)) % max(1, round(1 / rate / np.median(np.diff(time)))) == 0)
+
+
+def every_nth_held(columns: Columns, stride: int) -> Change:
+    """Columns of a slower sensor, each value repeated until the next one comes."""
+    return altered(columns, lambda values: np.repeat(values[::stride], stride)[: len(values)])
+
+
+def low_passed(columns: Columns, cutoff: float, rate: float = 200.0) -> Change:
+    """A sensor's own filter of first order [Hz], which makes it late."""
+
+    def smooth(values: Array) -> Array:
+        gain, state, found = 1 - np.exp(-2 * np.pi * cutoff / rate), values[0], np.empty_like(values)
+        for place, value in enumerate(values):
+            state += gain * (value - state)
+            found[place] = state
+        return found
+
+    return altered(columns, smooth)
+
+
+def timed(new: Callable[[Array], Array]) -> Change:
+    """Another time column."""
+    return lambda case: case.with_tables(lambda table: {**table, "time": new(table["time"])})
+
+
+def drifting_clock(columns: Columns, rate: float) -> Change:
+    """A sensor whose clock runs wrong by this share: ever later."""
+
+    def change(case: Case) -> Case:
+        names = chosen(case, columns)
+
+        def each(table: Table) -> Table:
+            time = table["time"]
+            slow = time - rate * (time - time[0])
+            return {n: np.interp(slow, time, values) if n in names else values for n, values in table.items()}
+
+        return case.with_tables(each)
+
+    return change
+
+
+def reoriented(new: Callable[[Array], Array]) -> Change:
+    """Other quaternions w x y z (N, 4)."""
+
+    def change(case: Case) -> Case:
+        names = [f"imu.{case.robot['imu']['name']}.orientation.{axis}" for axis in "wxyz"]
+        return case.with_tables(
+            lambda table: {**table, **dict(zip(names, new(np.column_stack([table[n] for n in names])).T, strict=True))}
+        )  # fmt: skip
+
+    return change
+
+
+def gyroscope_in_world(case: Case) -> Case:
+    """Angular velocity in the world's axes instead of the IMU's."""
+    begin = f"imu.{case.robot['imu']['name']}"
+    names = [f"{begin}.angular_velocity.{axis}" for axis in "xyz"]
+
+    def each(table: Table) -> Table:
+        turns = rotation_from_quaternion(
+            np.column_stack([table[f"{begin}.orientation.{axis}"] for axis in "wxyz"])
+        )
+        rates = np.einsum("nij,nj->ni", turns, np.column_stack([table[n] for n in names]))
+        return {**table, **dict(zip(names, rates.T, strict=True))}
+
+    return case.with_tables(each)
+
+
+def shuffled(columns: Columns) -> Change:
+    """Each column carries the values of the next one: names in another order than the data."""
+
+    def change(case: Case) -> Case:
+        names = sorted(chosen(case, columns))
+        following = dict(zip(names, names[1:] + names[:1], strict=True))
+        return case.with_tables(lambda table: {name: table[following.get(name, name)] for name in table})
+
+    return change
+
+
+def tared(columns: Columns) -> Change:
+    """Sensors zeroed at each log's first sample, under load."""
+    return altered(columns, lambda values: values - values[0])

@@ -1,0 +1,143 @@
+"""Encoders that repeat one value although their joint turns: told by the chain that two standing legs close.
+
+Soles that stand do not move against each other. What moves them in the kinematics is a joint that was read wrong, and
+the angle that holds them still is the joint's own. It also turns the ankle over the sole, so that the torque follows
+the bush's angle again; a sole that slides only looks like a joint that turns.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from plantar.contact.deflection import BushState, bush_states, relative_pose
+from plantar.conventions import GRAVITY, Array, Mask
+from plantar.logs.motion_log import MotionLog
+from plantar.notes import Finding
+from plantar.robot.model import RobotModel
+from plantar.signals.segments import runs
+
+LOADED = 0.1  # of the weight: a foot that carries more holds its sole still
+LEAST_ANGLE = 0.01  # rad: less harms no fit of bushes that turn by degrees
+ENCODER_STEPS = 5.0  # of the joint's own encoder, likewise: between two of them it stands
+LEAST_TIME = 3.0  # s at one value, both feet loaded: shorter stands are usual, and do little harm
+SAMPLES = 500  # spread over that time: enough to tell
+STEP = 1e-3  # rad, by which a joint is turned to see what that moves
+LEVER = 0.1  # m, by which yaw [rad] counts beside the soles' distance [m]
+CLOSED = 0.5  # share of the soles' motion that the joint's own angle may leave
+FOLLOWED = 0.5  # share of the torque's misfit that it may leave
+FOLLOWS = 0.3  # share of the torque's variance that may then not follow the bush's angle
+
+
+@dataclass(frozen=True)
+class _Stand:
+    """Samples in which both feet stand: the IMU's attitude (n, 4), joints (n, n_joints), wrench of each foot (n, 6)."""
+
+    robot: RobotModel
+    orientation: Array
+    positions: Array
+    wrenches: Mapping[str, Array]
+
+    @cached_property
+    def as_read(self) -> dict[str, BushState]:
+        return self.turned(0, 0.0)
+
+    def turned(self, joint: int, angle: Array | float) -> dict[str, BushState]:
+        """The feet's states with one joint turned further by an angle (n,) [rad]; their rates are left at 0."""
+        positions = self.positions.copy()
+        positions[:, joint] += angle
+        still, rates = np.zeros_like(positions), np.zeros((len(positions), 3))
+        return bush_states(self.robot, positions, still, self.orientation, rates, self.wrenches)
+
+
+def check_closed_chain(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
+    """A fatal finding for each encoder of a leg that stands still while the legs' closed chain moves its joint."""
+    imu = robot.imu
+    orientation = None if imu is None else log.orientation(imu.name)
+    if imu is None or orientation is None or len(robot.feet) != 2:
+        return
+    wrenches = {name: log.wrench(foot.wrench.name) for name, foot in robot.feet.items()}
+    positions = log.positions(robot)
+    known = np.isfinite(np.column_stack([orientation, positions, *wrenches.values()])).all(axis=1)
+    known &= np.linalg.norm(np.nan_to_num(orientation), axis=1) > 0.5
+    least = LOADED * robot.mass * GRAVITY
+    for name, each in robot.feet.items():
+        if each.contact != "always":
+            known &= np.linalg.norm(np.nan_to_num(wrenches[name][:, :3]), axis=1) > least
+    stands: dict[tuple[int, int], _Stand] = {}
+    for foot, joint in _leg_joints(robot):
+        values = positions[:, robot.joint_names.index(joint)]
+        stretch = _longest_at_one_value(values, known)
+        length = stretch.stop - stretch.start
+        if length * log.period < LEAST_TIME or not log.has(f"joint.{joint}.position"):
+            continue
+        if (stretch.start, stretch.stop) not in stands:
+            rows = slice(stretch.start, stretch.stop, max(1, length // SAMPLES))
+            chosen = {name: values[rows] for name, values in wrenches.items()}
+            stands[stretch.start, stretch.stop] = _Stand(robot, orientation[rows], positions[rows], chosen)
+        angle = _own_angle(stands[stretch.start, stretch.stop], joint, foot)
+        if angle is None or angle < max(LEAST_ANGLE, ENCODER_STEPS * _encoder_step(values)):
+            continue
+        when = f"t = {log.time[stretch.start]:g} to {log.time[stretch.stop - 1]:g} s"
+        where = f"column 'joint.{joint}.position', {when}, value {values[stretch.start]:.6g}"
+        why = f"stands still while the legs' closed chain moves it by {angle:.2g}; the encoder is dead"
+        yield Finding("dead_channel", f"{where}: {why} (valid: leave such cells empty)", True)
+
+
+def _leg_joints(robot: RobotModel) -> list[tuple[str, str]]:
+    """Foot and joint of each leg, without what both legs hang on: that moves both soles alike."""
+    assert robot.imu is not None
+    own = {name: robot.joints_between(robot.imu.placement, foot.bush) for name, foot in robot.feet.items()}
+    shared = frozenset.intersection(*own.values())
+    return [(foot, joint) for foot, joints in own.items() for joint in sorted(joints - shared)]
+
+
+def _encoder_step(values: Array) -> float:
+    """The usual change of a position from sample to sample where it changes; 0 where it never does."""
+    steps = np.abs(np.diff(values))
+    steps = steps[np.isfinite(steps) & (steps > 0)]
+    return float(np.median(steps)) if steps.size else 0.0
+
+
+def _longest_at_one_value(values: Array, known: Mask) -> slice:
+    """The longest stretch of known samples that repeat one value."""
+    same = np.concatenate([[False], np.diff(values) == 0]) & known
+    return max(runs(same), key=lambda run: run.stop - run.start, default=slice(0, 0))
+
+
+def _own_angle(stand: _Stand, name: str, foot: str) -> float | None:
+    """How far a joint of this foot's leg moved [rad] where that closes the chain and lets the torque follow; else None.
+
+    The soles' heights do not count: bushes give way under load.
+    """
+    joint, as_read = stand.robot.joint_names.index(name), stand.as_read
+    apart = _soles(as_read)
+    moves = (_soles(stand.turned(joint, STEP)) - apart) / STEP
+    apart = apart - np.median(apart, axis=0)
+    power = np.sum(moves**2, axis=1)
+    if not power.min() > 0:
+        return None
+    angle = -np.sum(moves * apart, axis=1) / power
+    left = apart + moves * angle[:, None]
+    if np.sum(left**2) > CLOSED**2 * np.sum(apart**2):
+        return None
+    closed = stand.turned(joint, angle)[foot]
+    axis = int(np.argmax(np.std(closed.deflection - as_read[foot].deflection, axis=0)))
+    before, after = (_unexplained(state, axis) for state in (as_read[foot], closed))
+    return float(np.ptp(angle)) if after < min(FOLLOWS, FOLLOWED * before) else None
+
+
+def _soles(states: Mapping[str, BushState]) -> Array:
+    """How two soles stand to each other on the ground, (n, 3) [m]."""
+    pose = relative_pose(*states.values())
+    return np.column_stack([pose.position[:, :2], LEVER * np.unwrap(pose.yaw)])
+
+
+def _unexplained(state: BushState, axis: int) -> float:
+    """Share of the torque's variance that does not follow the deflection."""
+    angle, torque = (values[:, axis] - values[:, axis].mean() for values in (state.deflection, state.torque))
+    varied, moved = float(torque @ torque), float(angle @ angle)
+    return 1.0 - float(angle @ torque) ** 2 / (varied * moved) if varied > 0 and moved > 0 else 1.0

@@ -1,0 +1,95 @@
+"""Gains of the force sensors beside the URDF's weight: what stands on the feet is what the robot weighs.
+
+Stiffness and damping follow a sensor's gain exactly, and nothing in a foot's own torque and angle shows it. The weight
+does: where it moves from foot to foot, it shows each foot's gain.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from plantar.conventions import GRAVITY, Array
+from plantar.feet.fit.axis import AxisFit
+from plantar.feet.fit.systematic import Cause
+from plantar.feet.recording import Recording
+from plantar.notes import Note
+from plantar.robot.model import RobotModel
+
+WINDOW = 1.0  # s, over which accelerations average out
+CARRIED = 0.5  # of the weight: with less on its feet, the robot hangs or its sensors were zeroed under load
+SCATTER = 0.02  # of the weight, by which a window's sum may be off: accelerations, zeros, a hand on the robot
+SURELY_ALIKE = 1e-4  # share: of sensors without any gain error, and a prior that stays finite
+NORMAL95 = 1.96  # deviations that a 95 % interval reaches
+BEYOND_DOUBT = 3.0  # deviations of what the robot file allows for gains and masses
+
+
+class GainError(NamedTuple):
+    """By which `share` a sensor seems to read too much, and the `deviation` of that which the robot file allows."""
+
+    share: float
+    deviation: float
+
+
+def force_gain_errors(robot: RobotModel, recordings: Sequence[Recording]) -> dict[str, GainError]:
+    """By foot, where its sensor reads more or less than the weight by more than the robot file's uncertainty explains.
+
+    Gains 1/h are those for which the feet's forces add up to the weight, Σ h_i f_i = m g, in windows of all recordings;
+    a prior holds the sensors alike where the weight does not move.
+    """
+    if not robot.feet or any(foot.contact == "always" for foot in robot.feet.values()):
+        return {}
+    weight = robot.mass * GRAVITY
+    shares = np.vstack([_windows(recording, weight) for recording in recordings])
+    if len(shares) == 0:
+        return {}
+    feet, own = len(robot.feet), robot.uncertainty.wrench_gain
+    alike = (np.eye(feet) - 1 / feet) / max(own, SURELY_ALIKE)
+    rows, targets = np.vstack([shares / SCATTER, alike]), np.repeat([1 / SCATTER, 0.0], [len(shares), feet])
+    inverse = np.linalg.lstsq(rows, targets, rcond=None)[0]
+    deviation = float(np.hypot(own, _mass_deviation(robot)))
+    found = {
+        name: GainError(1 / float(gain) - 1, deviation)
+        for name, gain in zip(robot.feet, inverse, strict=True)
+        if gain > 0
+    }
+    return {name: error for name, error in found.items() if abs(error.share) > BEYOND_DOUBT * deviation}
+
+
+def force_gain_notes(robot: RobotModel, errors: Mapping[str, GainError]) -> list[Note]:
+    """One warning on the feet whose forces do not agree with the weight; none where all do."""
+    if not errors:
+        return []
+    feet = " and ".join(f"the {foot} foot's {100 * error.share:+.0f} %" for foot, error in errors.items())
+    text = (
+        f"vertical forces do not add up to the URDF's {robot.mass:.1f} kg: {feet}. Either the URDF's masses are wrong, "
+        "or the force sensors' gains, which stiffness and damping follow: their intervals hold both. Weigh the robot"
+    )
+    return [Note("force_gain", "warning", text)]
+
+
+def force_gain_causes(fit: AxisFit, errors: Mapping[str, GainError]) -> list[Cause]:
+    """What a foot's numbers may be off by where its sensor's gain is in doubt: by all of it, or by nothing.
+
+    Every term of a model that is linear in its torque follows the gain.
+    """
+    if fit.foot not in errors:
+        return []
+    share, deviation = errors[fit.foot]
+    return [Cause("force gain", fit.values, (abs(share / (1 + share)) + deviation) / NORMAL95)]
+
+
+def _windows(recording: Recording, weight: float) -> Array:
+    """Mean vertical force of each foot over `weight`, in windows in which the feet carry the robot, (n, feet)."""
+    forces = np.column_stack([state.force_z for state in recording.raw.values()]) / weight
+    length = max(1, round(WINDOW / recording.period))
+    whole = forces[: len(forces) // length * length].reshape(-1, length, forces.shape[1]).mean(axis=1)
+    return np.asarray(whole[whole.sum(axis=1) > CARRIED])
+
+
+def _mass_deviation(robot: RobotModel) -> float:
+    """Standard deviation of the URDF's total mass over itself, each link's mass being off by itself."""
+    masses = np.array([inertia.mass for inertia in robot.model.inertias])
+    return robot.uncertainty.link_mass * float(np.linalg.norm(masses) / masses.sum())

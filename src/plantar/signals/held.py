@@ -1,0 +1,66 @@
+"""Samples at which a channel repeats its value though it changes nearly always: a frozen driver, a full scale.
+
+What such a channel reads is not what happens: in a fit, a clipped torque is a softer foot.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from plantar.conventions import Array, Mask
+from plantar.logs.motion_log import MotionLog
+from plantar.signals.segments import runs
+
+SHORTEST, FEWEST = 0.2, 10  # s and samples at one value: less happens by chance
+LIVELY = 0.9  # share of the other steps that change the value: of a coarse or slow channel nothing is said
+NOTABLE = 0.005  # share of the log
+
+
+def held_samples(values: Array, period: float, *, full_scale: bool = True) -> Mask:
+    """Samples of `values` (N,) in stretches at one value, where these are no chance and no coarse scale, (N,).
+
+    Where the largest or the smallest value is repeated FEWEST times, it is the channel's full scale: then every sample
+    that repeats it is held, however short the stretch. `full_scale`: whether the channel has one; a unit quaternion's
+    components have not.
+    """
+    still = (np.diff(values) == 0) & (values[1:] != 0)  # a foot in the air may read zero
+    least = max(FEWEST, round(SHORTEST / period))
+    held = np.zeros(len(values), dtype=bool)
+    limits = (np.nanmin(values), np.nanmax(values)) if full_scale and np.isfinite(values).any() else ()
+    for run in runs(still):
+        if run.stop - run.start >= least:
+            held[run.start : run.stop + 1] = True
+    for limit in limits:
+        stretches = runs(still & (values[1:] == limit))
+        if max((run.stop - run.start for run in stretches), default=0) >= FEWEST:
+            for run in stretches:
+                held[run.start : run.stop + 1] = True
+    if not NOTABLE * len(values) < held.sum() < len(values):
+        return np.zeros_like(held)
+    others = np.diff(values)[~(held[1:] & held[:-1])]
+    others = others[np.isfinite(others)]
+    lively = others.size >= least and np.mean(others != 0) >= LIVELY
+    return held if lively else np.zeros_like(held)
+
+
+def can_be_held(column: str) -> bool:
+    """Whether a column is of an IMU or a force sensor and changes with whatever it measures.
+
+    Joints are not: encoders read in steps, and a joint may stand. Nor is the first number of a quaternion, which is 1
+    to rounding as long as the IMU is level.
+    """
+    return column.startswith(("imu.", "wrench.")) and not column.endswith(".orientation.w")
+
+
+def held_in(log: MotionLog, column: str) -> Mask:
+    """`held_samples` of one column of an evenly sampled log, (N,)."""
+    return held_samples(log.column(column), log.period, full_scale=".orientation." not in column)
+
+
+def without_held(log: MotionLog) -> MotionLog:
+    """The log without the held samples of IMU and force sensors, which become NaN; itself where there are none."""
+    emptied = {}
+    for name in filter(can_be_held, log.columns):
+        if (held := held_in(log, name)).any():
+            emptied[name] = np.where(held, np.nan, log.column(name))
+    return log.with_columns(emptied) if emptied else log

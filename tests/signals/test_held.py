@@ -1,0 +1,68 @@
+"""Held samples: stretches at one value, and a full scale, of channels that change nearly always."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from plantar.logs.motion_log import MotionLog
+from plantar.signals.held import SHORTEST, held_samples, without_held
+from plantar.signals.segments import runs
+
+PERIOD = 0.01
+TIME = np.arange(0.0, 20.0, PERIOD)
+WAVE = 30 * np.sin(1.3 * TIME) + np.random.default_rng(0).normal(0, 0.1, TIME.size)
+
+
+def test_a_channel_that_changes_is_not_held() -> None:
+    assert not held_samples(WAVE, PERIOD).any()
+    assert not held_samples(np.full_like(WAVE, 3.0), PERIOD).any()  # that is a dead channel
+
+
+@pytest.mark.parametrize(("start", "stop"), [(0, 40), (700, 900), (1500, 2000)])
+def test_a_stretch_at_one_value_is_held(start: int, stop: int) -> None:
+    values = WAVE.copy()
+    values[start:stop] = values[start]
+    np.testing.assert_array_equal(np.flatnonzero(held_samples(values, PERIOD)), np.arange(start, stop))
+
+
+@pytest.mark.parametrize("share", [0.6, 0.8])
+def test_every_sample_at_the_full_scale_is_held_however_short_the_stretch(share: float) -> None:
+    beat = WAVE * (1 + 0.3 * np.sin(0.17 * TIME)) + 3 * np.sin(25 * TIME)
+    limit = share * beat.max()
+    over = beat >= limit
+    alone = over & ~np.roll(over, 1) & ~np.roll(over, -1)
+    clipped = np.minimum(beat, limit)
+    np.testing.assert_array_equal(held_samples(clipped, PERIOD), over & ~alone)
+    short = [run for run in runs(over & ~alone) if (run.stop - run.start) * PERIOD < SHORTEST]
+    assert short
+    without_scale = held_samples(clipped, PERIOD, full_scale=False)
+    assert not any(without_scale[run].any() for run in short)
+
+
+def test_a_foot_in_the_air_a_coarse_and_a_slow_channel_are_not_held() -> None:
+    air = np.where(np.sin(0.5 * TIME) > 0, WAVE, 0.0)
+    coarse = np.round(WAVE / 5) * 5
+    slow = np.repeat(WAVE[::4], 4)
+    for values in (air, coarse, slow):
+        assert not held_samples(values, PERIOD).any()
+
+
+def test_a_log_loses_held_samples_of_sensors_but_none_of_joints() -> None:
+    values = WAVE.copy()
+    values[700:900] = values[700]
+    names = ("wrench.left.torque.y", "imu.chest.angular_velocity.x", "joint.knee.position")
+    log = without_held(MotionLog("held", TIME, dict.fromkeys(names, values)))
+    for name in names:
+        assert np.isnan(log.column(name)).sum() == (0 if name.startswith("joint.") else 200)
+    whole = MotionLog("whole", TIME, dict.fromkeys(names, WAVE))
+    assert without_held(whole) is whole
+
+
+def test_a_level_quaternions_first_number_is_not_held() -> None:
+    """Rounded to single precision it is 1 for seconds."""
+    tilt = np.where(TIME < 5, 1e-4, 0.1) * np.sin(TIME)
+    level = np.cos(tilt / 2).astype(np.float32).astype(float)
+    assert (level[:400] == 1).all()
+    log = MotionLog("level", TIME, {"imu.chest.orientation.w": level})
+    assert without_held(log) is log
