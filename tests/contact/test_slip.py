@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from plantar.contact.slip import SlipIndicator, slides, sliding, turning, twist_speed, unresisted
+from plantar.contact.slip import SlipIndicator, apart_speed, slides, turning, twist_speed, unresisted
 
 PERIOD = 0.005
 TIME = np.arange(4000) * PERIOD
@@ -24,6 +24,12 @@ def noise(size: float, seed: int = 0) -> np.ndarray:
 
 def indicator(speed: np.ndarray, deviation: float = 0.001) -> SlipIndicator:
     return SlipIndicator(speed, np.full(TIME.size, deviation))
+
+
+def sliding(position: np.ndarray, yaw: np.ndarray, both: np.ndarray, period: float) -> np.ndarray:
+    """Samples in which two soles slide against each other."""
+    indicator = apart_speed(position, yaw, both, period)
+    return slides([indicator], indicator.speed, period) & both
 
 
 @pytest.mark.parametrize("distance", [0.003, -0.01])

@@ -9,7 +9,7 @@ import pytest
 
 from biped import record, sway
 from plantar.errors import LogError
-from plantar.logs.motion_log import COLUMN, MotionLog
+from plantar.logs.motion_log import COLUMN, MotionLog, imu_columns
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
 
@@ -135,3 +135,14 @@ def test_selecting_and_adding_leave_the_original_alone() -> None:
 )
 def test_the_contracts_column_names(name: str, known: bool) -> None:
     assert bool(COLUMN.fullmatch(name)) == known
+
+
+def test_an_imu_is_there_with_all_its_columns_or_not_at_all() -> None:
+    time = np.arange(5) * 0.01
+    names = imu_columns("chest", "angular_velocity", "orientation")
+    assert names[:3] == tuple(f"imu.chest.angular_velocity.{axis}" for axis in "xyz")
+    assert names[3:] == tuple(f"imu.chest.orientation.{axis}" for axis in "wxyz")
+    log = MotionLog("still", time, dict.fromkeys(names[:3], np.zeros(5)))
+    assert log.has_imu("chest", "angular_velocity")
+    assert not log.has_imu("chest", "angular_velocity", "orientation")
+    assert not log.has_imu("head", "angular_velocity")

@@ -23,7 +23,7 @@ def run(
     json: Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")] = False,
 ) -> None:
-    """Rank logs, alone and in sets, by what they tell about each parameter of the feet.
+    """Rank logs, alone and in sets, by how much they say about each parameter of the feet.
 
     Example: plantar select robot.yaml out/*.csv --compare Manual_right_roll,Manual_left_roll,Tilt3
     """

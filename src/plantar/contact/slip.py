@@ -14,7 +14,7 @@ from plantar.signals.segments import runs
 
 SLIP_CUTOFF = 10.0  # Hz: motion of the soles above it is noise
 RINGING = 0.07  # by which this filter overshoots a step, within a period of the cutoff
-LEAST_SPEED = 0.002  # m/s, and for yaw at the moment arm of half a sole, rad/s times YAW_LEVER
+LEAST_SPEED = 0.002  # m/s, and for yaw at the moment arm of half a sole, rad/s times YAW_MOMENT_ARM
 YAW_MOMENT_ARM = 0.1  # m
 USUAL = 80  # percent of the samples are slower than the noise's usual speed, however much slides
 USUAL_SPEED = 1.794  # that percentile of a plane vector's length, in deviations of its components
@@ -77,18 +77,12 @@ def slides(indicators: Sequence[SlipIndicator], way: Array, period: float) -> Ma
     return found
 
 
-def sliding(position: Array, yaw: Array, both: Mask, period: float) -> Mask:
-    """Samples in which two soles slide against each other.
+def apart_speed(position: Array, yaw: Array, both: Mask, period: float) -> SlipIndicator:
+    """Speed of two soles against each other, of x, y and yaw times YAW_MOMENT_ARM. Slides in common do not show.
 
     position: (N, 2), one sole's origin in the other's levelled frame [m]; yaw: (N,) between them [rad]; both: where
-    both feet stand. Slides in common, of both soles alike, do not show.
+    both feet stand.
     """
-    apart = apart_speed(position, yaw, both, period)
-    return slides([apart], apart.speed, period) & both
-
-
-def apart_speed(position: Array, yaw: Array, both: Mask, period: float) -> SlipIndicator:
-    """Speed of two soles against each other, of x, y and yaw times YAW_LEVER; arguments as in `sliding`."""
     apart = np.column_stack([position, YAW_MOMENT_ARM * np.unwrap(np.nan_to_num(yaw))])
     apart[~both] = np.nan
     velocity = differentiate(low_pass(apart, period, SLIP_CUTOFF), period)
@@ -96,7 +90,7 @@ def apart_speed(position: Array, yaw: Array, both: Mask, period: float) -> SlipI
 
 
 def twist_speed(heading: Array, standing: Mask, period: float) -> Array:
-    """How fast one sole turns on the floor, (N,): its heading's rate [rad/s] times YAW_LEVER; NaN in the air.
+    """How fast one sole turns on the floor, (N,): its heading's rate [rad/s] times YAW_MOMENT_ARM; NaN in the air.
 
     heading: (N,) [rad]; the yaw of an IMU drifts, so that what it does over seconds is taken off.
     """

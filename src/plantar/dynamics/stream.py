@@ -38,7 +38,7 @@ class EquationStream:
 
     rows: which rows of the equation take part; extras: how many further columns a row has (joint terms), none
     by default; together: rows that depend on the same columns and are never weighted apart (the forces, the torques):
-    one factor serves all of such a set.
+    one factor is enough for all of such a set.
     """
 
     def __init__(

@@ -69,8 +69,8 @@ class Block:
 class LinearFit:
     """Parameters common to all recordings, then offsets: one per recording, or a single shared one.
 
-    `values` (k,), `offsets` by recording's label; `covariance` of values, offsets and nuisances, in this order, holds
-    with coloured residuals, `white_covariance` assumes white ones (the paper's). `freedom` goes with `covariance`.
+    `values` (k,), `offsets` by recording's label; `covariance` of values, offsets and nuisances, in this order, allows
+    for autocorrelated residuals, `white_covariance` assumes white ones (the paper's). `freedom` goes with `covariance`.
     `common_nuisance` (j,) are the coefficients of the blocks' columns of that name.
     """
 

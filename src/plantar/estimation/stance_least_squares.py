@@ -85,7 +85,7 @@ class _Prior:
         )
         if not known or len(problem.products) == 1:
             return cls((), (), np.zeros((size, 0)), np.zeros((size, size)))
-        variance = np.diag(_jackknife(problem.without_each_stance())[0])
+        variance = np.diag(jackknife(problem.without_each_stance())[0])
         keeps, follows, unsure = [], [], np.zeros((size, size))
         for place in known:
             prior = float(spread[place - first]) ** 2 if spread is not None else 0.0
@@ -109,9 +109,9 @@ def _deviations(problem: StanceProblem, values: Array, towards: _Prior) -> tuple
     size = len(values)
     if len(problem.products) == 1:  # nothing to compare with: anything is possible
         return np.diag(values**2), np.ones(size)
-    covariance, freedom = _jackknife(towards.drawn(problem.without_each_stance()))
+    covariance, freedom = jackknife(towards.drawn(problem.without_each_stance()))
     if problem.recordings >= FEWEST_RECORDINGS:
-        between, of_between = _jackknife(towards.drawn(problem.without_each_recording()))
+        between, of_between = jackknife(towards.drawn(problem.without_each_recording()))
         least = np.maximum(np.diag(covariance), np.finfo(float).tiny)
         growth = np.sqrt(np.maximum(np.diag(between) / least, 1.0))
         covariance = covariance * np.outer(growth, growth)
@@ -125,7 +125,7 @@ def _weighted_mean(block: Block) -> Array:
     return np.asarray(np.average(common_columns(block), axis=0, weights=block.stances.weight))
 
 
-def _jackknife(refits: Array) -> tuple[Array, Array]:
+def jackknife(refits: Array) -> tuple[Array, Array]:
     """Covariance (k, k) from refits (G, k) that lack one group each, and its degrees of freedom (k,)."""
     groups, away = len(refits), refits - refits.mean(axis=0)
     covariance = (groups - 1) / groups * away.T @ away

@@ -47,8 +47,8 @@ def export(
         result: what `identify_feet` or `identify_inertia` found, or the path of its `result.json`.
         target: mjcf, sdf, urdf, drake, usd, mc_rtc, openhrp, choreonoid, kinetics_observer or yaml; for inertias urdf.
         out: the file to write.
-        model: an existing robot model of that format to extend (MJCF, SDFormat, URDF; a URDF also serves MJCF and
-            SDFormat); the result's own URDF where left out.
+        model: an existing robot model of that format to extend (MJCF, SDFormat, URDF; a URDF works for MJCF and
+            SDFormat too); the result's own URDF where left out.
         with_offset: the springs rest at -offset/K; else at 0, since the offset is mostly the sensors' zero.
 
     Returns:

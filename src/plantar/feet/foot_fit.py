@@ -17,6 +17,7 @@ from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.fit.bush_place import PlaceSpread
 from plantar.feet.fit.force_gain import force_gain_causes
+from plantar.feet.fit.robot_causes import robot_causes
 from plantar.feet.fit.systematic import inflated, systematic_causes
 from plantar.feet.internal_error import gives_up, internal_errors
 from plantar.feet.prepare import PreparedLogs
@@ -78,6 +79,7 @@ def _with_axis(found: FootFit, ready: PreparedLogs, fit: AxisFit) -> FootFit:
     shared = ready.settings.offset == "shared"
     causes = systematic_causes(fit, ready.fitted, ready.sensor_delay, ready.vertical, shared)
     causes += force_gain_causes(fit, ready.gain_errors)
+    causes += robot_causes(fit, ready.fitted, ready.robot.uncertainty, shared)
     wide = inflated(fit, causes)
     scores, predictions = score_axis(ready.recordings, wide)
     rows = axis_rows(wide, ready.fitted, predictions, scores)

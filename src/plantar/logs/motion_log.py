@@ -25,7 +25,13 @@ COLUMN = re.compile(
     r"|wrench\..+\.(force|torque)\.[xyz]"
 )
 
+IMU_AXES = {"orientation": "wxyz", "angular_velocity": "xyz", "linear_acceleration": "xyz"}
 LARGEST = 1e12  # in any unit: what no sensor reads
+
+
+def imu_columns(imu: str, *kinds: str) -> tuple[str, ...]:
+    """Names of an IMU's columns; kinds: orientation, angular_velocity, linear_acceleration."""
+    return tuple(f"imu.{imu}.{kind}.{axis}" for kind in kinds for axis in IMU_AXES[kind])
 
 
 @dataclass(frozen=True)
@@ -105,6 +111,10 @@ class MotionLog:
     def has(self, *names: str) -> bool:
         return all(name in self.columns for name in names)
 
+    def has_imu(self, imu: str, *kinds: str) -> bool:
+        """Whether all columns of an IMU of these `kinds` are there; kinds as in `imu_columns`."""
+        return self.has(*imu_columns(imu, *kinds))
+
     def column(self, name: str) -> Array:
         """One column, (N,); LogError names it when it is missing, and the nearest that is there."""
         try:
@@ -125,16 +135,16 @@ class MotionLog:
 
     def orientation(self, imu: str) -> Array | None:
         """Quaternion w x y z, body to world, (N, 4); None where the log has no such columns."""
-        names = [f"imu.{imu}.orientation.{axis}" for axis in "wxyz"]
+        names = imu_columns(imu, "orientation")
         return self.stack(names) if any(self.has(name) for name in names) else None
 
     def angular_velocity(self, imu: str) -> Array:
         """Gyroscope in the IMU's frame, (N, 3) [rad/s]."""
-        return self.stack(f"imu.{imu}.angular_velocity.{axis}" for axis in "xyz")
+        return self.stack(imu_columns(imu, "angular_velocity"))
 
     def linear_acceleration(self, imu: str) -> Array:
         """Proper acceleration in the IMU's frame, (N, 3) [m/s²]: +9.81 along up at rest."""
-        return self.stack(f"imu.{imu}.linear_acceleration.{axis}" for axis in "xyz")
+        return self.stack(imu_columns(imu, "linear_acceleration"))
 
     def joint(self, joint: str, quantity: str) -> Array | None:
         """A joint's position, velocity, acceleration or effort, (N,), or None where not recorded."""

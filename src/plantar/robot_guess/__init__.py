@@ -6,7 +6,6 @@ check and turn what gravity, weight and balance show. Without a log the URDF has
 
 from __future__ import annotations
 
-import re
 import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -24,7 +23,7 @@ from plantar.files import read_bounded, write_text
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers.urdf_names import with_urdf_names
 from plantar.robot.joint_names import JointNames, propose_names
-from plantar.robot.model import RobotModel, load_robot
+from plantar.robot.model import RobotModel, load_robot, parse_urdf
 from plantar.robot_guess.biped import find_biped
 from plantar.robot_guess.bush import bush_shift
 from plantar.robot_guess.evidence import Remark, check_stance, widen_outline
@@ -204,13 +203,7 @@ def _loaded(draft: Draft, urdf: Path) -> RobotModel:
 
 def _model(urdf: Path) -> pin.Model:
     text = read_bounded(urdf, URDF_LIMIT, RobotError).decode("utf-8", "replace")
-    if re.search("<!(doctype|entity)", text, re.IGNORECASE):
-        raise RobotError(located("declares a DOCTYPE or an entity", path=urdf, valid="plain URDF"))
-    try:
-        return pin.buildModelFromXML(text)
-    except (ValueError, RuntimeError, IndexError) as error:
-        reason = str(error).splitlines()[0] if str(error) else "unreadable"
-        raise RobotError(located(f"is not a readable URDF: {reason}", path=urdf)) from error
+    return parse_urdf(text, urdf, floating=False)
 
 
 def _relative(path: Path, out: Path) -> str:

@@ -100,10 +100,9 @@ def felt_up(log: MotionLog, imu: str) -> Array:
         norm = np.linalg.norm(orientation, axis=1)
         known = np.where((norm > 0.5)[:, None], orientation, np.nan)
         return np.asarray(rotation_from_quaternion(known)[:, 2, :])
-    names = [f"imu.{imu}.linear_acceleration.{axis}" for axis in "xyz"]
-    if not log.has(*names):
+    if not log.has_imu(imu, "linear_acceleration"):
         return np.full((len(log), 3), np.nan)
-    calm = low_pass(log.stack(names), log.period, CALM)
+    calm = low_pass(log.linear_acceleration(imu), log.period, CALM)
     return np.asarray(calm / np.maximum(np.linalg.norm(calm, axis=1), 1e-9)[:, None])
 
 

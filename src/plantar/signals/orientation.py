@@ -18,7 +18,7 @@ def attitude(log: MotionLog, imu: Imu, notes: list[Note]) -> tuple[Array, Array]
     name = imu.name
     orientation = log.orientation(name)
     if orientation is not None:
-        if log.has(*(f"imu.{name}.angular_velocity.{axis}" for axis in "xyz")):
+        if log.has_imu(name, "angular_velocity"):
             return orientation, log.angular_velocity(name)
         text = f"{log.name}: no angular velocity; rates come from differentiated orientation, damping is less sure"
         notes.append(Note("gyroscope_missing", "warning", text))

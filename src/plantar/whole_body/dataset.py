@@ -140,8 +140,7 @@ def _root(
             located("names no feet", path=robot.path, valid="feet whose sensors carry the robot")
         )
     imu = robot.imu
-    kinds = ("angular_velocity", "linear_acceleration")
-    if imu is not None and log.has(*(f"imu.{imu.name}.{kind}.{axis}" for kind in kinds for axis in "xyz")):
+    if imu is not None and log.has_imu(imu.name, "angular_velocity", "linear_acceleration"):
         joint, placement = robot.frame(imu.placement)
         rate = smooth(log.angular_velocity(imu.name))
         acceleration = smooth(log.linear_acceleration(imu.name))

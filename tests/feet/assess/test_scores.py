@@ -9,8 +9,12 @@ import pytest
 
 from biped import record, sway
 from feet_trials import PUNCTUAL
+from made_recording import FOOT, made_recording, swayed
+from plantar.feet.assess.scores import score_axis
+from plantar.feet.fit.axis import FittedModel
 from plantar.feet.identify import identify_feet
 from plantar.logs.motion_log import MotionLog
+from plantar.models import KelvinVoigt
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
 
@@ -53,3 +57,20 @@ def test_the_trivial_predictor_knows_the_first_second_alone(found: FeetResult) -
         np.mean(np.abs(torque[~first] - torque[first].mean())), rel=1e-6
     )
     assert row.zero_mean_abs > 1.02 * np.mean(np.abs(torque[~first] - torque[~first].mean()))
+
+
+def test_a_recording_of_few_samples_is_not_scored_and_an_unseen_one_is_cross_validation() -> None:
+    angle = swayed(1000)
+    model = FittedModel(
+        foot=FOOT, axis="pitch", model=KelvinVoigt(), values=np.array([400.0, 0.0]), shape=np.zeros(0),
+        offsets={"seen": 0.5, "short": 0.0},
+    )  # fmt: skip
+    seen = made_recording("seen", angle, 400 * angle)
+    short = made_recording("short", angle[:40], 400 * angle[:40])
+    unseen = made_recording("unseen", angle, 410 * angle + 7.0, role="validate")
+    rows, predictions = score_axis([seen, short, unseen], model)
+    assert [(row.motion, row.kind) for row in rows] == [("seen", "direct"), ("unseen", "cross")]
+    assert rows[0].mean_abs_error == pytest.approx(0.5)
+    first = angle[:100].mean()
+    assert rows[1].mean_abs_error == pytest.approx(np.mean(np.abs(10 * (angle[100:] - first))))
+    assert set(predictions) == {("seen", FOOT, "pitch"), ("unseen", FOOT, "pitch")}

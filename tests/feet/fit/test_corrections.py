@@ -4,14 +4,22 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
 from biped import TRUTH, record, sway
 from biped_robot import FEET
 from feet_trials import AXES, PUNCTUAL, noisy
+from made_recording import FOOT, PERIOD, made_recording, swayed
+from plantar.estimation import fit_blocks
+from plantar.feet.fit.axis import AxisFit
+from plantar.feet.fit.corrections import about_true_zero, unattenuated
+from plantar.feet.fit.regression_data import blocks_of
 from plantar.feet.identify import identify_feet
+from plantar.feet.recording import Recording
 from plantar.logs.motion_log import MotionLog
+from plantar.models import KelvinVoigt
 from plantar.robot.model import RobotModel
 
 HARDENING = 30000.0  # N·m/rad³
@@ -43,3 +51,49 @@ def test_a_cube_is_found_about_its_own_zero(robot: RobotModel) -> None:
             assert found.parameter(foot, axis, "hardening").value == pytest.approx(HARDENING, rel=0.1)
             stiffness = found.parameter(foot, axis, "stiffness").value
             assert stiffness == pytest.approx(TRUTH[foot, axis].stiffness, rel=0.02)
+
+
+def noisy_angles(size: float) -> tuple[list[Recording], AxisFit]:
+    """A sway whose angle and rate are read with white noise of `size` [rad] and ten times that [rad/s]; its fit."""
+    random, angle = np.random.default_rng(0), swayed(6000)
+    rate = np.gradient(angle, PERIOD)
+    torque = 400.0 * angle + 20.0 * rate
+    read = made_recording(
+        "sway",
+        angle + size * random.standard_normal(6000),
+        torque,
+        rate=rate + 10 * size * random.standard_normal(6000),
+    )
+    noise = np.array([[1.0], [100.0]]) * size**2 * np.ones((2, 2))
+    read = replace(read, noise={FOOT: noise})
+    blocks = blocks_of([read], FOOT, "pitch")
+    found = fit_blocks(blocks)
+    fit = AxisFit(
+        foot=FOOT, axis="pitch", model=KelvinVoigt(), values=found.values, shape=np.zeros(0), offsets=found.offsets,
+        covariance=found.covariance[:2, :2], freedom=found.freedom[:2], white_std=found.white_std,
+        offset_std={"sway": 0.1}, equivalent=(float(found.values[0]), float(found.values[1])), choice=None, reason="",
+    )  # fmt: skip
+    return [read], fit
+
+
+def test_what_noise_in_the_angles_takes_off_is_given_back_and_widens() -> None:
+    recordings, fit = noisy_angles(0.004)
+    assert fit.values[0] < 390.0
+    right = unattenuated(fit, recordings, shared=False)
+    assert right.values == pytest.approx([400.0, 20.0], rel=0.03)
+    assert right.equivalent == pytest.approx(right.values)
+    assert np.all(right.std > fit.std)
+    assert [(note.code, note.severity) for note in right.notes] == [("noisy_regressors", "info")]
+
+
+def test_a_clean_angle_is_left_alone_and_one_of_mostly_noise_is_told() -> None:
+    recordings, fit = noisy_angles(1e-5)
+    assert unattenuated(fit, recordings, shared=False) is fit
+    recordings, fit = noisy_angles(0.1)
+    (note,) = unattenuated(fit, recordings, shared=False).notes
+    assert (note.code, note.severity) == ("noisy_regressors", "warning")
+
+
+def test_a_zero_matters_to_a_cube_alone() -> None:
+    recordings, fit = noisy_angles(1e-5)
+    assert about_true_zero(fit, recordings, shared=False) is fit

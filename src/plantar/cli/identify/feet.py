@@ -19,10 +19,10 @@ MODEL_HELP = (
     f"{AUTOMATIC} takes the one that predicts held-out motions best."
 )
 OFFSET_HELP = "One offset per motion, or shared by all as in the paper."
-DELAY_HELP = "How late the wrenches are, in ms; estimated if left out."
+DELAY_HELP = "Delay of the force sensors in ms; estimated if left out."
 CUTOFF_HELP = (
-    f"Zero-phase low-pass on both sides of the fit [Hz]; {DEFAULT_CUTOFF:g}, or less where walks show that angle and "
-    "torque part below it, if left out."
+    f"Zero-phase low-pass on both sides of the fit [Hz]. If left out: {DEFAULT_CUTOFF:g}, or less where angle and "
+    "torque of a walk are not coherent up to there."
 )
 WINDOW_HELP = "Use only deflections up to this many degrees from the resting pose."
 
@@ -40,7 +40,7 @@ def run(
     json: identification.Json = False,
     quiet: identification.Quiet = False,
 ) -> None:
-    """Stiffness, damping and offset of each foot, in pitch and roll, from logs of a standing robot.
+    """Stiffness, damping and offset of each foot, in pitch and roll, from logs of a standing or walking robot.
 
     Example: plantar identify feet talos.yaml sway_*.csv --validate squat.csv --out out/feet
     """

@@ -41,7 +41,7 @@ def axis_rows(
 
 def unseen_rows(foot: str, axis: Axis) -> list[Parameter]:
     """Stiffness and damping of a foot that no log shows."""
-    reason = f"the {foot} foot has no used samples in these logs"
+    reason = f"the {foot} foot has no samples in these logs that can be used"
     return missing_rows(foot, axis, reason, f"record motions in which the {foot} foot stands")
 
 

@@ -13,7 +13,7 @@ from plantar.dynamics import Contact, Equation, model_parameters
 from plantar.dynamics.inertial_motion import inertial_motion
 from plantar.estimation.delay import LEAST_CLOSED, Pair, closes, unexplained
 from plantar.estimation.sensor_delays import Balance
-from plantar.logs.motion_log import MotionLog
+from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.robot.model import RobotModel
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.orientation import attitude
@@ -54,9 +54,9 @@ def newton_euler_residual(robot: RobotModel, log: MotionLog) -> NewtonEulerResid
     imu = robot.imu
     if imu is None or any(foot.contact == "always" for foot in robot.feet.values()):
         return None
-    gyroscope = [f"imu.{imu.name}.angular_velocity.{axis}" for axis in "xyz"]
-    accelerometer = [f"imu.{imu.name}.linear_acceleration.{axis}" for axis in "xyz"]
-    if not log.has(*accelerometer) or not (log.has(*gyroscope) or log.orientation(imu.name) is not None):
+    gyroscope = imu_columns(imu.name, "angular_velocity")
+    turns = log.has(*gyroscope) or log.orientation(imu.name) is not None
+    if not turns or not log.has_imu(imu.name, "linear_acceleration"):
         return None
     if not log.has(*gyroscope):
         log = log.with_columns(dict(zip(gyroscope, attitude(log, imu, [])[1].T, strict=True)))

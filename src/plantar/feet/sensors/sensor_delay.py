@@ -89,8 +89,7 @@ def estimate_wrench_delay(
     found = estimate_delay([residual.pair for residual in residuals]) if residuals else None
     if found is None:
         imu = robot.imu
-        columns = [f"imu.{imu.name}.linear_acceleration.{axis}" for axis in "xyz"] if imu is not None else []
-        blind = all(not log.has(*columns) for log in logs)
+        blind = imu is not None and not any(log.has_imu(imu.name, "linear_acceleration") for log in logs)
         text = (
             "delay of the wrenches unknown: no log in which the ground's wrench follows from IMU, encoders and URDF; "
             f"taken as 0 ± {1e3 * PRIOR_STD:.1f} ms, which widens the interval of the damping by stiffness times that. "

@@ -75,13 +75,8 @@ NO_TILT_ERROR = TiltError()
 
 def log_tilt_error(log: MotionLog, imu: Imu) -> TiltError:
     """The accelerometer-induced tilt error of one log; zeros where attitude, gyroscope or accelerometer is missing."""
-    columns = [
-        f"imu.{imu.name}.{kind}.{axis}"
-        for kind in ("angular_velocity", "linear_acceleration")
-        for axis in "xyz"
-    ]
     orientation = log.orientation(imu.name)
-    if orientation is None or not log.has(*columns):
+    if orientation is None or not log.has_imu(imu.name, "angular_velocity", "linear_acceleration"):
         return NO_TILT_ERROR
     rates, acceleration = log.angular_velocity(imu.name), log.linear_acceleration(imu.name)
     return tilt_error_of(unit_quaternions(orientation), rates, acceleration, log.period)

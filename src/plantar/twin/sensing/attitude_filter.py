@@ -1,4 +1,4 @@
-"""The attitude as a robot's IMU computes it: gyroscope integrated, pulled to the accelerometer's vertical."""
+"""The attitude as a robot's IMU computes it: gyroscope integrated, corrected towards the accelerometer's vertical."""
 
 from __future__ import annotations
 

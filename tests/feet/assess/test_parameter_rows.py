@@ -1,0 +1,96 @@
+"""Rows of table 1: Student's intervals, the evidence of all motions behind the verdict, rows without a number."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from made_recording import FOOT, PERIOD, made_recording, swayed
+from plantar.contact.reasons import Reason
+from plantar.feet.assess.parameter_rows import axis_rows, missing_rows, unseen_rows
+from plantar.feet.fit.axis import AxisFit
+from plantar.feet.recording import Recording
+from plantar.models import BushModel, Elastoplastic, KelvinVoigt
+from plantar.results.feet import Parameter, ValidationRow
+
+STD = np.array([4.0, 1.0])
+
+
+def fit_of(model: BushModel | None = None, values: tuple[float, ...] = (400.0, 20.0)) -> AxisFit:
+    model = model or KelvinVoigt()
+    std = np.resize(STD, model.size)
+    return AxisFit(
+        foot=FOOT, axis="pitch", model=model, values=np.array(values), shape=np.full(len(model.shape_terms), 0.01),
+        covariance=np.diag(std**2), freedom=np.full(model.size, 6.0), white_std=std / 10, offset_std={},
+        equivalent=(values[0], values[1]), choice=None, reason="",
+    )  # fmt: skip
+
+
+def recording(name: str = "sway", count: int = 3000) -> Recording:
+    angle = swayed(count)
+    return made_recording(name, angle, 400.0 * angle + 20.0 * np.gradient(angle, PERIOD))
+
+
+def rows_of(
+    one: Recording, fit: AxisFit, missed: float = 0.0, scores: tuple[ValidationRow, ...] = ()
+) -> list[Parameter]:
+    """The rows where the prediction misses `missed` of the torque."""
+    torque = one.bushes[FOOT].torque[:, 0]
+    return axis_rows(fit, [one], {(one.name, FOOT, "pitch"): (1 - missed) * torque}, scores)
+
+
+def test_numbers_and_intervals_are_the_fits() -> None:
+    stiffness, damping = rows_of(recording(), fit_of())
+    half = float(stats.t.ppf(0.975, 6.0)) * STD
+    assert (stiffness.name, stiffness.value, stiffness.std, stiffness.unit) == (
+        "stiffness",
+        400.0,
+        4.0,
+        "N.m/rad",
+    )
+    assert stiffness.interval95 == pytest.approx((400 - half[0], 400 + half[0]))
+    assert damping.interval95 == pytest.approx((20 - half[1], 20 + half[1]))
+    assert stiffness.relative_std_percent == pytest.approx(0.1)
+    assert {row.verdict for row in (stiffness, damping)} == {"usable"}
+    assert "30 s used" in stiffness.reason
+
+
+def test_what_the_model_misses_and_what_is_left_out_count() -> None:
+    assert rows_of(recording(), fit_of(), missed=0.5)[0].verdict == "weak"  # 75 % of the variance
+    assert rows_of(recording(), fit_of(), missed=0.9)[0].verdict == "unidentifiable"
+    one = recording()
+    less = one.without(FOOT, np.arange(3000) > 200, Reason.IMPACT)
+    assert "only 2.0 s of samples" in rows_of(less, fit_of())[0].reason
+
+
+def test_a_motion_that_contradicts_the_others_is_named() -> None:
+    good, bad = (
+        ValidationRow("direct", name, FOOT, "pitch", error, error, 9.0, 1.0, 4.0, 100)
+        for name, error in (("sway", 0.4), ("squat", 3.5))
+    )
+    assert "misses squat" in rows_of(recording(), fit_of(), scores=(good, bad))[0].reason
+    assert (
+        "misses"
+        not in rows_of(recording(), fit_of(), scores=(good, replace(bad, mean_abs_error=1.0)))[0].reason
+    )
+
+
+def test_a_lean_matters_to_a_model_with_memory_alone() -> None:
+    leaning = recording().without(FOOT, np.arange(3000) < 600, Reason.OUTSIDE_THE_SOLE)
+    assert "leans" not in rows_of(leaning, fit_of())[0].reason
+    rows = rows_of(leaning, fit_of(Elastoplastic(), (400.0, 20.0, 5.0)))
+    assert "leans for 20 % of the time" in rows[0].reason
+    assert [row.name for row in rows] == ["stiffness", "damping", "slip_torque", "slip_angle"]
+
+
+def test_a_foot_without_samples_has_rows_that_say_why() -> None:
+    for rows, words in (
+        (unseen_rows("left", "roll"), "no samples"),
+        (missing_rows("left", "roll", "why"), "why"),
+    ):
+        assert [row.name for row in rows] == ["stiffness", "damping"]
+        assert {(row.value, row.verdict, row.axis) for row in rows} == {(None, "unidentifiable", "roll")}
+        assert words in rows[0].reason

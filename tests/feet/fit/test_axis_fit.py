@@ -1,0 +1,77 @@
+"""One axis: the model asked for or chosen, and what is tried at all."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from bush_data_sets import Rubber
+from made_recording import FOOT, PERIOD, made_recording, swayed
+from plantar.contact.reasons import Reason
+from plantar.feet.fit.axis import AxisFit
+from plantar.feet.fit.axis_fit import fit_axis
+from plantar.feet.recording import Recording
+from plantar.feet.settings import FeetSettings
+from plantar.models import KelvinVoigt
+
+OFFSETS = (1.5, -0.7)
+LINEAR = Rubber(stiffness=420.0, damping=18.0)
+SLIPPING = Rubber(stiffness=420.0, damping=18.0, slip_torque=4.0, slip_angle=0.006)
+
+
+def recordings(rubber: Rubber, noise: float = 0.15, disturbed: float = 0.0) -> list[Recording]:
+    """Two sways; `disturbed` [N·m] is a torque that is none of the bush's."""
+    made = []
+    for seed, offset in enumerate(OFFSETS):
+        angle, random = swayed(6000, seed=seed), np.random.default_rng(seed)
+        torque = (
+            rubber.torque(angle, np.gradient(angle, PERIOD)) + offset + noise * random.standard_normal(6000)
+        )
+        torque += disturbed * np.sin(2 * np.pi * 0.53 * PERIOD * np.arange(6000))
+        made.append(made_recording(f"sway_{seed}", angle, torque))
+    return made
+
+
+def fitted(made: list[Recording], **settings: object) -> AxisFit:
+    fit = fit_axis(made, FOOT, "pitch", FeetSettings(**settings))  # type: ignore[arg-type]
+    assert fit is not None
+    return fit
+
+
+def test_spring_damper_and_each_recordings_offset_come_back() -> None:
+    fit = fitted(recordings(LINEAR), model="kelvin_voigt")
+    assert fit.reason == "asked for"
+    assert fit.choice is None
+    assert fit.values == pytest.approx([420.0, 18.0], rel=0.01)
+    assert list(fit.offsets.values()) == pytest.approx(OFFSETS, abs=0.05)
+    assert np.all(np.abs(fit.values - [420.0, 18.0]) < 4 * fit.std)
+
+
+def test_a_shared_offset_is_one() -> None:
+    offsets = list(fitted(recordings(LINEAR), model="kelvin_voigt", offset="shared").offsets.values())
+    assert offsets[0] == offsets[1]
+    assert offsets[0] == pytest.approx(np.mean(OFFSETS), abs=0.2)
+
+
+def test_hysteresis_is_chosen_by_held_out_motions_and_the_linear_fit_is_kept_beside() -> None:
+    fit = fitted(recordings(SLIPPING))
+    assert fit.model.name == "elastoplastic"
+    assert fit.values == pytest.approx([420.0, 18.0, 4.0], rel=0.05)
+    assert fit.equivalent[0] > 430.0
+    assert fit.choice is not None
+    assert "held-out" in fit.reason
+
+
+def test_without_noise_nothing_richer_is_tried_and_under_a_strange_torque_neither() -> None:
+    exact = fitted(recordings(LINEAR, noise=0.0))
+    assert exact.choice is None
+    assert "no richer" in exact.reason
+    strange = fitted(recordings(LINEAR, disturbed=30.0))
+    assert isinstance(strange.model, KelvinVoigt)
+    assert strange.choice is None
+    assert "than the bush" in strange.reason
+
+
+def test_a_foot_without_samples_has_no_fit() -> None:
+    nothing = [one.without(FOOT, np.ones(6000, dtype=bool), Reason.IMPACT) for one in recordings(LINEAR)]
+    assert fit_axis(nothing, FOOT, "pitch", FeetSettings()) is None

@@ -1,0 +1,72 @@
+"""All logs of one identification together: roles, names, the delay given or found, what is common to them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from biped import VERTICAL, record, sway
+from feet_trials import PUNCTUAL
+from plantar.errors import DataError
+from plantar.feet.prepare import PreparedLogs, prepare_all, prepare_unseen
+from plantar.feet.settings import FeetSettings
+from plantar.logs.motion_log import MotionLog
+from plantar.robot.model import RobotModel
+
+
+@pytest.fixture(scope="module")
+def logs() -> list[MotionLog]:
+    return [record(sway(name, seed)) for seed, name in enumerate(("first", "second", "unseen"))]
+
+
+def prepared(robot: RobotModel, logs: list[MotionLog], settings: FeetSettings = PUNCTUAL) -> PreparedLogs:
+    said: list[str] = []
+    found = prepare_all(robot, logs[:2], logs[2:], settings, said.append)
+    assert {"check the logs", "estimate the sensors' delays", "fit z"} <= set(said)
+    return found
+
+
+def test_each_log_has_its_role_and_the_cutoff_that_was_used(robot: RobotModel, logs: list[MotionLog]) -> None:
+    found = prepared(robot, logs, replace(PUNCTUAL, cutoff=4.0))
+    assert [(one.name, one.role) for one in found.recordings] == [
+        ("first", "fit"), ("second", "fit"), ("unseen", "validate"),
+    ]  # fmt: skip
+    assert {one.cutoff for one in found.recordings} == {found.settings.cutoff} == {4.0}
+    assert 0 < (prepared(robot, logs).settings.cutoff or 0) <= PUNCTUAL.highest_cutoff
+
+
+def test_a_given_delay_is_taken_and_undone(robot: RobotModel, logs: list[MotionLog]) -> None:
+    """The wrenches of a log that is 20 ms late, moved back, are those of the log that is not."""
+    late = 0.02
+    rows = round(late / logs[0].period)
+    shifted = [
+        log.with_columns({name: np.roll(v, rows) for name, v in log.columns.items() if "wrench" in name})
+        for log in logs
+    ]
+    right, wrong, told = (
+        prepared(robot, some, replace(PUNCTUAL, wrench_delay=delay)).fitted[0].bushes["left"].torque[200:-200]
+        for some, delay in ((logs, 0.0), (shifted, 0.0), (shifted, late))
+    )
+    assert np.abs(told - right).max() < 0.02 * np.abs(wrong - right).max()
+
+
+def test_torques_stand_about_the_centre_where_the_load_has_moved_it(
+    robot: RobotModel, logs: list[MotionLog]
+) -> None:
+    found = prepared(robot, logs)
+    assert found.vertical.compliance["left"] == pytest.approx(1 / VERTICAL, rel=0.05)
+    (again,) = prepare_unseen(
+        robot, logs[2:], found.settings, found.sensor_delay, found.vertical.compliance, lambda _: None
+    )
+    np.testing.assert_allclose(again.bushes["left"].torque, found.unseen[0].bushes["left"].torque, atol=1e-9)
+    (rigid,) = prepare_unseen(
+        robot, logs[2:], found.settings, found.sensor_delay, {"left": 0.0, "right": 0.0}, lambda _: None
+    )
+    assert np.abs(rigid.bushes["left"].torque - again.bushes["left"].torque).max() > 0.01
+
+
+def test_two_logs_of_one_name_are_refused_fitted_or_not(robot: RobotModel, logs: list[MotionLog]) -> None:
+    with pytest.raises(DataError, match="two logs are called 'first'"):
+        prepared(robot, [logs[0], logs[1], logs[0]])
