@@ -16,7 +16,7 @@ REMEDY = {
     "delay": "add a recording of arm sweeps at 0.3 to 1 Hz without an operator: it shows the force sensors' delay",
     "lever": "add a slow shift of the weight from foot to foot: it shows the vertical compliance",
     "sensor gain": "calibrate the force sensors, and say so in the robot file: uncertainty: wrench_gain",
-    "between recordings": "recordings differ by more than each shows of itself: warm the rubber up, record more of them",
+    "between recordings": "recordings differ by more than each alone shows: warm the rubber up, record more of them",
     "force gain": "weigh the robot: then calibrate the force sensors, or correct the URDF's masses",
     "yaw torque zero": "zero the force sensors with the feet in the air before recording",
     "between walks": "add walks: five or more show by themselves how much they differ",
