@@ -23,6 +23,7 @@ CARRIED = 0.5  # of the weight: with less on its feet, the robot hangs or its se
 SCATTER = 0.02  # of the weight, by which a window's sum may be off: accelerations, zeros, a hand on the robot
 SURELY_ALIKE = 1e-4  # share: of sensors without any gain error, and a prior that stays finite
 NORMAL95 = 1.96  # deviations that a 95 % interval reaches
+LEAST_DEVIATION = 0.005  # of the weight: zeros of a few newtons
 BEYOND_DOUBT = 3.0  # deviations of what the robot file allows for gains and masses
 
 
@@ -49,7 +50,7 @@ def force_gain_errors(robot: RobotModel, recordings: Sequence[Recording]) -> dic
     alike = (np.eye(feet) - 1 / feet) / max(own, SURELY_ALIKE)
     rows, targets = np.vstack([shares / SCATTER, alike]), np.repeat([1 / SCATTER, 0.0], [len(shares), feet])
     inverse = np.linalg.lstsq(rows, targets, rcond=None)[0]
-    deviation = float(np.hypot(own, _mass_deviation(robot)))
+    deviation = float(np.linalg.norm([own, _mass_deviation(robot), LEAST_DEVIATION]))
     found = {
         name: GainError(1 / float(gain) - 1, deviation)
         for name, gain in zip(robot.feet, inverse, strict=True)

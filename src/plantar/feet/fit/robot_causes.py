@@ -19,8 +19,8 @@ def robot_causes(
     fit: AxisFit, recordings: Sequence[Recording], uncertainty: Uncertainty, shared: bool
 ) -> list[Cause]:
     """The force sensors' gain, a turned sensor, and recordings that differ."""
-    # A torque that reads too large by a share makes every number of the bush too large by it. A force sensor turned by ψ
-    # reads cos ψ of the torque, with an IMU turned by ψ it reads all of it: no log says which of them it is.
+    # A torque that reads too large by a share makes every number of the bush too large by it. A sensor turned by ψ
+    # reads cos ψ of the torque; where it is the IMU that is turned, all of it: no log says which.
     turned = 1 - float(np.cos(fit.turned))
     gain = float(np.hypot(uncertainty.wrench_gain, turned))
     causes = [Cause("sensor gain", fit.values, gain)] if gain else []

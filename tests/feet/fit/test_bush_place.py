@@ -1,0 +1,93 @@
+"""A bush's centre or a sensor that is elsewhere than the robot file says is found, told and taken into account."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from biped import TRUTH, record, sway
+from biped_robot import FEET
+from feet_trials import AXES, PUNCTUAL, codes, noisy
+from plantar.feet.fit.bush_place import PlaceSpread
+from plantar.feet.identify import identify_feet
+from plantar.logs.motion_log import MotionLog
+from plantar.results.feet import FeetResult
+from plantar.robot.guesses import Guess
+from plantar.robot.model import RobotModel
+
+LINEAR = replace(PUNCTUAL, model="kelvin_voigt")
+
+
+def recorded() -> list[MotionLog]:
+    return [noisy(record(sway(f"sway_{seed}", seed, duration=40.0)), seed) for seed in (3, 4)]
+
+
+def shifted(log: MotionLog, arm: np.ndarray) -> MotionLog:
+    """The log of force sensors that sit `arm` (3,) [m] away from where the robot file has them."""
+    moved = {}
+    for foot in FEET:
+        names = [f"wrench.{foot}.{part}.{axis}" for part in ("force", "torque") for axis in "xyz"]
+        force, torque = np.hsplit(log.stack(names), 2)
+        moved |= dict(zip(names[3:], (torque - np.cross(arm, force)).T, strict=True))
+    return log.with_columns(moved)
+
+
+def turned(log: MotionLog, angle: float) -> MotionLog:
+    """The log of force sensors that are turned by `angle` [rad] about z."""
+    c, s = np.cos(angle), np.sin(angle)
+    moved = {}
+    for foot in FEET:
+        for part in ("force", "torque"):
+            x, y = (log.columns[f"wrench.{foot}.{part}.{axis}"] for axis in "xy")
+            moved[f"wrench.{foot}.{part}.x"], moved[f"wrench.{foot}.{part}.y"] = c * x + s * y, c * y - s * x
+    return log.with_columns(moved)
+
+
+def worst(result: FeetResult) -> float:
+    """The largest error of a stiffness, as a share."""
+    rows = {(foot, axis): result.parameter(foot, axis, "stiffness") for foot in FEET for axis in AXES}
+    return max(abs(row.value / TRUTH[key].stiffness - 1) for key, row in rows.items())
+
+
+def told_exactly(robot: RobotModel) -> RobotModel:
+    """The robot with a file that leaves nothing uncertain."""
+    nothing = dict.fromkeys(type(robot.uncertainty).model_fields, 0.0)
+    return replace(robot, uncertainty=robot.uncertainty.model_copy(update=nothing))
+
+
+@pytest.mark.parametrize("height", [0.03, -0.03])
+def test_a_centre_at_another_height_is_found(robot: RobotModel, height: float) -> None:
+    logs = [shifted(log, np.array([0.0, 0.0, height])) for log in recorded()]
+    found = identify_feet(robot, logs, settings=LINEAR)
+    assert "bush_place" in codes(found)
+    for model in found.models:
+        assert abs(model.moment_arms[1]) == pytest.approx(0.03, abs=0.004)
+    assert worst(found) < 0.02
+    assert worst(identify_feet(told_exactly(robot), logs, settings=LINEAR)) > 2 * worst(found)
+
+
+def test_a_turned_force_sensor_is_found(robot: RobotModel) -> None:
+    logs = [turned(log, np.radians(8)) for log in recorded()]
+    found = identify_feet(robot, logs, settings=LINEAR)
+    assert "bush_place" in codes(found)
+    for model in found.models:
+        assert abs(model.turned) == pytest.approx(np.radians(8), abs=0.02)
+    assert worst(found) < 0.02
+
+
+def test_a_centre_in_its_place_is_left_there(robot: RobotModel) -> None:
+    found = identify_feet(robot, recorded(), settings=LINEAR)
+    assert "bush_place" not in codes(found)
+    assert worst(found) < 0.01
+
+
+def test_guesses_are_less_sure_than_what_was_measured(robot: RobotModel) -> None:
+    assert PlaceSpread.of(robot, "left").above == robot.uncertainty.bush_position
+    guessed = replace(
+        robot, guesses=(Guess("feet.left.bush", "drawn", 0.03), Guess("feet.right.wrench", "drawn"))
+    )
+    assert PlaceSpread.of(guessed, "left").above == 0.03
+    assert PlaceSpread.of(guessed, "right").above == 0.02
+    assert not any(vars(PlaceSpread.of(told_exactly(robot), "left")).values())

@@ -1,0 +1,58 @@
+"""What is uncertain about the robot, and what recordings differ by, is in the intervals."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from biped import TRUTH, record, sway
+from feet_trials import PUNCTUAL, noisy
+from plantar.feet.identify import identify_feet
+from plantar.results.feet import FeetResult
+from plantar.robot.model import RobotModel
+from plantar.robot.uncertainty import Uncertainty
+
+LINEAR = replace(PUNCTUAL, model="kelvin_voigt")
+NOTHING = Uncertainty(**dict.fromkeys(Uncertainty.model_fields, 0.0))
+
+
+def identified(
+    robot: RobotModel, uncertainty: Uncertainty, spread: float = 0.0, count: int = 6
+) -> FeetResult:
+    """Of recordings whose stiffness differs by `spread` (a share, rms)."""
+    shares = 1 + spread * np.linspace(-1.5, 1.5, count)
+    logs = []
+    for seed, share in enumerate(shares, 3):
+        truth = {key: replace(model, stiffness=share * model.stiffness) for key, model in TRUTH.items()}
+        logs.append(noisy(record(sway(f"sway_{seed}", seed, truth=truth)), seed))
+    return identify_feet(replace(robot, uncertainty=uncertainty), logs, settings=LINEAR)
+
+
+@pytest.mark.parametrize("gain", [0.01, 0.04])
+def test_a_gain_widens_stiffness_and_damping_by_itself(robot: RobotModel, gain: float) -> None:
+    sure = identified(robot, NOTHING, count=2)
+    unsure = identified(robot, NOTHING.model_copy(update={"wrench_gain": gain}), count=2)
+    for name in ("stiffness", "damping"):
+        known, row = (one.parameter("left", "pitch", name) for one in (sure, unsure))
+        assert row.std == pytest.approx(np.hypot(known.std, gain * row.value), rel=0.05)
+
+
+def test_recordings_that_differ_widen_the_stiffness(robot: RobotModel) -> None:
+    alike, apart = identified(robot, NOTHING), identified(robot, NOTHING, 0.02)
+    for foot, axis in TRUTH:
+        usual, row = (one.parameter(foot, axis, "stiffness") for one in (alike, apart))
+        low, high = row.interval95
+        assert low < TRUTH[foot, axis].stiffness < high
+        assert row.std > 1.5 * usual.std
+    shares = [
+        each.variance_shares["between recordings"] for each in apart.diagnosis if each.name == "stiffness"
+    ]
+    assert min(shares) > 0.5
+
+
+def test_few_recordings_take_what_the_robot_file_says(robot: RobotModel) -> None:
+    told = identified(robot, NOTHING.model_copy(update={"between_recordings": 0.03}), count=2)
+    row = told.parameter("left", "roll", "stiffness")
+    assert row.std == pytest.approx(0.03 / np.sqrt(2) * row.value, rel=0.1)
