@@ -96,7 +96,7 @@ FRAMES = (
 
 NAMES = (
     Fault("joint names with a prefix", "names",
-          renamed(encoders(".*"), lambda name: name.replace("joint.", "joint.robot/")), ("joint_names",)),
+          renamed(encoders(".*"), lambda name: name.replace("joint.", "joint.robot/", 1)), ("joint_names",)),
     Fault("joint names with a suffix", "names",
           renamed(encoders(".*"), lambda name: name.replace(".position", "_act.position")), ("joint_names",)),
     Fault("joint names in other case", "names",
