@@ -78,8 +78,8 @@ def force_gain_causes(fit: AxisFit, errors: Mapping[str, GainError]) -> list[Cau
     """
     if fit.foot not in errors:
         return []
-    share, deviation = errors[fit.foot]
-    return [Cause("force gain", fit.values, (abs(share / (1 + share)) + deviation) / NORMAL95)]
+    share = errors[fit.foot].share
+    return [Cause("force gain", fit.values, abs(share / (1 + share)) / NORMAL95)]
 
 
 def _windows(recording: Recording, weight: float) -> Array:
