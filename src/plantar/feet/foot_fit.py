@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from plantar.contact.reasons import Reason
 from plantar.conventions import ROTATIONAL_AXES, Axis, Mask
+from plantar.feet.assess.data_faults import data_faults, doubted
 from plantar.feet.assess.diagnosis import advised, diagnose_axis
 from plantar.feet.assess.parameter_rows import axis_rows, missing_rows, unseen_rows
 from plantar.feet.assess.residual_table import Predictions
@@ -84,9 +85,10 @@ def _with_axis(found: FootFit, ready: PreparedLogs, fit: AxisFit) -> FootFit:
     scores, predictions = score_axis(ready.recordings, wide)
     rows = axis_rows(wide, ready.fitted, predictions, scores)
     limits = diagnose_axis(fit, wide, causes, rows)
+    faults = data_faults(ready.fitted, fit.foot)
     return FootFit(
         fits=[*found.fits, wide],
-        parameters=[*found.parameters, *advised(rows, limits)],
+        parameters=[*found.parameters, *doubted(advised(rows, limits), faults)],
         validation=[*found.validation, *scores],
         diagnosis=[*found.diagnosis, *limits],
         predictions={**found.predictions, **predictions},

@@ -104,7 +104,7 @@ def _ends_of_stances(blocks: Sequence[Block]) -> Cause:
         inner.append(block.part(np.sort(kept)))
     less, whole = fit_blocks(inner), fit_blocks(blocks)
     moved = less.values - whole.values
-    # Fewer samples move a fit by chance too: by what their own deviations differ (J. A. Hausman, Econometrica 46, 1978).
+    # Fewer samples move a fit by chance too, by what deviations differ (J. A. Hausman, Econometrica 46, 1978).
     chance = np.maximum(less.std**2 - whole.std**2, 0.0)
     effect = np.sign(moved) * np.sqrt(np.maximum(moved**2 - chance, 0.0))
     return Cause("ends of stances", effect, 1 / np.sqrt(3))

@@ -1,0 +1,37 @@
+"""Faults of the data that were seen and could not be put right: no number that rests on them is called usable."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from plantar.feet.recording import Recording
+from plantar.notes import Note
+from plantar.results.feet import Parameter
+
+# Codes of warnings on a log's signs, frames and times. What plantar corrects or leaves out is not among them.
+UNMENDED = frozenset({"sign", "force_leans", "imu_turned", "imu_late", "path_joint_missing"})
+ADVICE = "mend what the warning names, or leave this log out"
+
+
+def data_faults(recordings: Sequence[Recording], foot: str) -> list[Note]:
+    """The warnings on logs in which this foot has used samples."""
+    return [
+        note
+        for recording in recordings
+        if recording.used(foot).any()
+        for note in recording.notes
+        if note.severity == "warning" and note.code in UNMENDED
+    ]
+
+
+def doubted(rows: Sequence[Parameter], faults: Sequence[Note]) -> list[Parameter]:
+    """The rows, no longer usable where the data have a fault."""
+    if not faults:
+        return list(rows)
+    return [
+        replace(row, verdict="weak", reason=f"a fault of the data: {faults[0].text}", advice=ADVICE)
+        if row.verdict == "usable"
+        else row
+        for row in rows
+    ]

@@ -1,0 +1,45 @@
+"""A fault of the data that nobody put right keeps numbers from being called usable, of the feet it concerns."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from biped import record, sway
+from feet_trials import PUNCTUAL, noisy
+from plantar.feet.assess.data_faults import UNMENDED, data_faults, doubted
+from plantar.feet.identify import fit_prepared
+from plantar.feet.prepare import PreparedLogs, prepare_all
+from plantar.notes import Note
+from plantar.robot.model import RobotModel
+
+
+@pytest.fixture(scope="module")
+def ready(robot: RobotModel) -> PreparedLogs:
+    log = noisy(record(sway("sway", 3, duration=30.0)), 3)
+    return prepare_all(robot, [log], [], PUNCTUAL, lambda _: None)
+
+
+def with_note(ready: PreparedLogs, note: Note) -> PreparedLogs:
+    return replace(ready, fitted=tuple(replace(one, notes=(*one.notes, note)) for one in ready.fitted))
+
+
+@pytest.mark.parametrize("code", sorted(UNMENDED))
+def test_a_fault_takes_usable_away_and_is_the_reason(
+    robot: RobotModel, ready: PreparedLogs, code: str
+) -> None:
+    healthy = fit_prepared(robot, ready)
+    spoiled = fit_prepared(robot, with_note(ready, Note(code, "warning", "sway: something is turned")))
+    assert any(row.verdict == "usable" for row in healthy.parameters if row.axis != "z")
+    for row, before in zip(spoiled.parameters, healthy.parameters, strict=True):
+        assert row.value == before.value
+        if row.axis != "z":
+            assert row.verdict != "usable"
+            assert before.verdict != "usable" or "something is turned" in row.reason
+
+
+def test_what_was_put_right_or_is_only_said_takes_nothing_away(ready: PreparedLogs) -> None:
+    for note in (Note("spikes", "warning", "bridged"), Note("sign", "info", "looks odd")):
+        assert data_faults(with_note(ready, note).fitted, "left") == []
+    assert doubted([], [Note("sign", "warning", "reversed")]) == []
