@@ -29,6 +29,7 @@ from plantar.motions import CAMPAIGN, FIT
 from plantar.notes import Note
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel, load_robot
+from plantar.robot.uncertainty import EXACT
 from plantar.twin import PAPER, TwinRecording, play, play_all, write_campaign
 from plantar.twin.bush import Feet
 from plantar.twin.presets import DEFAULT, preset_named
@@ -106,7 +107,7 @@ def run_campaign(
     course = course.only(recording.name for recording in recordings)
     del recordings  # what follows knows only what the files say
     progress("read the logs")
-    robot = load_robot(robot_file)
+    robot = replace(load_robot(robot_file), uncertainty=EXACT)
     loaded = {name: open_log(logs / f"{name}.parquet", robot) for name in course.motions}
     fitted, unseen = ([loaded[name] for name in names] for names in (course.fit, course.validate))
     result = identify_feet(robot, fitted, unseen, progress=progress)

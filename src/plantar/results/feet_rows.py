@@ -125,9 +125,9 @@ class AxisModel:
     reason: str
     linear_equivalent: LinearEquivalent
     moment_arms: tuple[float, float] = (0.0, 0.0)
-    turned: float = 0.0
     held_out: str | None = None
     ranking: tuple[Candidate, ...] | None = None
+    turned: float = 0.0
 
     def to_dict(self) -> dict[str, Any]:
         """The entry of `laws` in `result.json`, where a model is called a law."""

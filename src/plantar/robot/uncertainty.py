@@ -31,3 +31,15 @@ class Uncertainty(BaseModel):
         Deviation,
         Field(description="share by which stiffness and damping may differ from recording to recording"),
     ] = 0.0
+
+
+# Of a robot that is exactly what its file says, as a simulated one is. Its sensors may be late all the same.
+EXACT = Uncertainty(
+    wrench_gain=0.0,
+    wrench_crosstalk=0.0,
+    bush_position=0.0,
+    encoder_zero=0.0,
+    imu_mount=0.0,
+    link_mass=0.0,
+    link_com=0.0,
+)

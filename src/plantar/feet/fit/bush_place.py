@@ -2,8 +2,8 @@
 
 A centre that is aside makes a torque that grows with the load, one that is higher a torque that grows with the
 horizontal force; where the force sensor or the IMU is turned about the vertical, the other axis' torque shows. All are
-columns beside the model's, with the robot file's uncertainty as a prior. Where the logs
-clearly say that the file is wrong by more, they are believed.
+columns beside the model's, with the robot file's uncertainty as a prior: logs that show the place sharply outweigh it,
+logs that do not leave it.
 """
 
 from __future__ import annotations
@@ -22,7 +22,8 @@ from plantar.notes import Note
 from plantar.robot.model import RobotModel
 
 GUESSED = 0.02  # m: what a guess without a spread of its own may be off by
-REFUTED = 3.0  # deviations of prior and data together, beyond which the robot file's place is not believed
+CLEAR = 3.0  # deviations of prior and data together, beyond which the robot file's place is called wrong
+FARTHEST = np.array([0.1, 0.1, 0.5])  # m, m, rad: half a sole, and more than anybody mounts a sensor askew
 TURN_WORTH_SAYING = 0.02  # rad: of a mount, likewise
 WORTH_SAYING = 0.005  # m: a centre that is nearer to its place is within what drawings get wrong
 SINGULAR = 1e6  # condition of the fit beyond which the motions do not show the place
@@ -39,6 +40,8 @@ class PlaceSpread:
     @classmethod
     def of(cls, robot: RobotModel, foot: str) -> PlaceSpread:
         """From the robot file: its uncertainty, and what its guesses of bush and force sensor may be off by."""
+        if robot.feet[foot].contact == "always":  # its sensor was zeroed under load: the load is not known
+            return cls(0.0, 0.0, 0.0)
         position = robot.uncertainty.bush_position
         for guess in robot.guesses:
             if guess.key.startswith((f"feet.{foot}.bush", f"feet.{foot}.wrench")):
@@ -104,16 +107,17 @@ def _beside(block: Block, columns: Array) -> Block:
 def _drawn(found: Array, covariance: Array, spreads: Array) -> tuple[Array, Array]:
     """Coefficients (3,) drawn to zero by their prior, and their covariance (3, 3)."""
     prior = np.diag(spreads**2)
-    refuted = np.abs(found) > REFUTED * np.sqrt(spreads**2 + np.diag(covariance))
-    prior = prior + np.diag(np.where(refuted & (spreads > 0), found**2, 0.0))
     keeps = prior @ np.linalg.pinv(prior + covariance)
-    return keeps @ found, keeps @ covariance
+    drawn = keeps @ found
+    if (np.abs(drawn) > FARTHEST).any():  # no place of a bush: something else follows the load
+        return np.zeros(3), prior
+    return drawn, keeps @ covariance
 
 
 def _said(fit: AxisFit, place: Array, std: Array, spread: PlaceSpread) -> list[Note]:
     """A warning where the centre is clearly elsewhere, or a sensor turned."""
     limits = np.maximum(
-        REFUTED * np.hypot([spread.aside, spread.above, spread.turned], std),
+        CLEAR * np.hypot([spread.aside, spread.above, spread.turned], std),
         [WORTH_SAYING, WORTH_SAYING, TURN_WORTH_SAYING],
     )
     aside, above, turned = np.abs(place) > limits
