@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from biped import record, sway
+from feet_trials import noisy
+from plantar.checks.channels import check_channels
 from plantar.checks.log_checks import check_log
 from plantar.errors import DataError
 from plantar.feet.identify import identify_feet
@@ -82,3 +84,12 @@ def test_a_gap_of_the_log_turns_nothing(robot: RobotModel) -> None:
 def dead(log: MotionLog, robot: RobotModel) -> list[str]:
     """What is said about encoders whose velocity goes on."""
     return [finding.text for finding in check_log(robot, log) if "its velocity" in finding.text]
+
+
+def test_a_force_that_stands_still_is_told_with_its_column(robot: RobotModel) -> None:
+    log = noisy(record(sway()), 1)
+    assert not [found for found in check_channels(robot, log) if found.code == "stuck_channel"]
+    force = log.columns["wrench.left.force.x"].copy()
+    force[400:900] = force[400]
+    found = check_channels(robot, log.with_columns({"wrench.left.force.x": force}))
+    assert any("wrench.left.force.x" in finding.text for finding in found)

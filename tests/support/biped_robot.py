@@ -10,6 +10,7 @@ import yaml
 from scipy.spatial.transform import Rotation
 
 from plantar.robot.model import RobotModel, load_robot
+from plantar.robot.uncertainty import EXACT
 
 FEET = ("left", "right")
 HIPS = {"left": np.array([0.0, 0.1, -0.1]), "right": np.array([0.0, -0.1, -0.1])}
@@ -72,6 +73,7 @@ def robot_entry(mounting: Mounting = AS_USUAL) -> dict[str, object]:
         "urdf": "biped.urdf",
         "imu": mounting.imu.entry(name="chest", link="torso"),
         "feet": feet,
+        "uncertainty": EXACT.model_dump(),  # tests that ask for more say so
     }
 
 

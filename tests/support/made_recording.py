@@ -7,12 +7,18 @@ import numpy as np
 from plantar.contact.deflection import BushState
 from plantar.contact.phases import FootContact
 from plantar.contact.stances import Stances
+from plantar.feet.fit.prediction import Prediction
 from plantar.feet.recording import Recording, Role
 from plantar.logs.motion_log import MotionLog
 
 PERIOD = 0.01
 FOOT = "left"
 LOAD = 300.0  # N
+
+
+def predicted_torque(torque: np.ndarray) -> Prediction:
+    """A prediction (N,) of the bush alone, every sample scored."""
+    return Prediction(torque, torque, np.zeros(len(torque)), np.ones(len(torque), dtype=bool))
 
 
 def made_recording(

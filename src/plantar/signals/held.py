@@ -54,7 +54,26 @@ def can_be_held(column: str) -> bool:
 
 def held_in(log: MotionLog, column: str) -> Mask:
     """`held_samples` of one column of an evenly sampled log, (N,)."""
-    return held_samples(log.column(column), log.period, full_scale=".orientation." not in column)
+    held = held_samples(log.column(column), log.period, full_scale=".orientation." not in column)
+    if held.any() and column.startswith("wrench."):
+        held &= ~_untouched(log, column.split(".")[1])
+    return held
+
+
+def _untouched(log: MotionLog, sensor: str) -> Mask:
+    """Samples (N,) in which all of a force sensor's channels stand still at values to which they come back.
+
+    That is a simulated foot in the air: it reads its zeros, the same ones in each swing. A frozen sensor holds what it
+    happened to read.
+    """
+    channels = log.stack([name for name in log.columns if name.startswith(f"wrench.{sensor}.")])
+    still = np.concatenate([[False], (np.diff(channels, axis=0) == 0).all(axis=1)])
+    stretches = [slice(run.start - 1, run.stop) for run in runs(still)]
+    read = [tuple(channels[run.start]) for run in stretches]
+    found = np.zeros(len(channels), dtype=bool)
+    for run, values in zip(stretches, read, strict=True):
+        found[run] = read.count(values) > 1
+    return found
 
 
 def without_held(log: MotionLog) -> MotionLog:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from made_recording import FOOT, PERIOD, made_recording, swayed
+from made_recording import FOOT, PERIOD, made_recording, predicted_torque, swayed
 from plantar.contact.reasons import Reason
 from plantar.feet.assess.parameter_rows import axis_rows, missing_rows, unseen_rows
 from plantar.feet.fit.axis import AxisFit
@@ -39,7 +39,8 @@ def rows_of(
 ) -> list[Parameter]:
     """The rows where the prediction misses `missed` of the torque."""
     torque = one.bushes[FOOT].torque[:, 0]
-    return axis_rows(fit, [one], {(one.name, FOOT, "pitch"): (1 - missed) * torque}, scores)
+    predicted = predicted_torque((1 - missed) * torque)
+    return axis_rows(fit, [one], {(one.name, FOOT, "pitch"): predicted}, scores)
 
 
 def test_numbers_and_intervals_are_the_fits() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from made_recording import FOOT, made_recording, swayed
+from made_recording import FOOT, made_recording, predicted_torque, swayed
 from plantar.contact.reasons import Reason
 from plantar.feet.assess.residual_table import residual_table
 
@@ -13,7 +13,9 @@ def test_every_sample_has_a_row_with_its_prediction() -> None:
     angle = swayed(100)
     seen = made_recording("seen", angle, 400 * angle).without(FOOT, np.arange(100) < 7, Reason.IMPACT)
     unseen = made_recording("unseen", -angle, -300 * angle, role="validate")
-    table = residual_table([seen, unseen], {("seen", FOOT, "roll"): 390 * angle}).to_pydict()
+    table = residual_table(
+        [seen, unseen], {("seen", FOOT, "roll"): predicted_torque(390 * angle)}
+    ).to_pydict()
     assert table["motion"] == ["seen"] * 100 + ["unseen"] * 100
     assert table["role"] == ["fit"] * 100 + ["validate"] * 100
     assert set(table["foot"]) == {FOOT}

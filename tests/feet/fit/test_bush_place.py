@@ -16,6 +16,7 @@ from plantar.logs.motion_log import MotionLog
 from plantar.results.feet import FeetResult
 from plantar.robot.guesses import Guess
 from plantar.robot.model import RobotModel
+from plantar.robot.uncertainty import Uncertainty
 
 LINEAR = replace(PUNCTUAL, model="kelvin_voigt")
 
@@ -51,43 +52,53 @@ def worst(result: FeetResult) -> float:
     return max(abs(row.value / TRUTH[key].stiffness - 1) for key, row in rows.items())
 
 
-def told_exactly(robot: RobotModel) -> RobotModel:
-    """The robot with a file that leaves nothing uncertain."""
-    nothing = dict.fromkeys(type(robot.uncertainty).model_fields, 0.0)
-    return replace(robot, uncertainty=robot.uncertainty.model_copy(update=nothing))
+@pytest.fixture
+def measured(robot: RobotModel) -> RobotModel:
+    """The robot as a careful lab knows it; `robot` itself is exactly what its file says."""
+    return replace(robot, uncertainty=Uncertainty())
 
 
 @pytest.mark.parametrize("height", [0.03, -0.03])
-def test_a_centre_at_another_height_is_found(robot: RobotModel, height: float) -> None:
+def test_a_centre_at_another_height_is_found(robot: RobotModel, measured: RobotModel, height: float) -> None:
     logs = [shifted(log, np.array([0.0, 0.0, height])) for log in recorded()]
-    found = identify_feet(robot, logs, settings=LINEAR)
+    found = identify_feet(measured, logs, settings=LINEAR)
     assert "bush_place" in codes(found)
     for model in found.models:
         assert abs(model.moment_arms[1]) == pytest.approx(0.03, abs=0.004)
     assert worst(found) < 0.02
-    assert worst(identify_feet(told_exactly(robot), logs, settings=LINEAR)) > 2 * worst(found)
+    assert worst(identify_feet(robot, logs, settings=LINEAR)) > 2 * worst(found)
 
 
-def test_a_turned_force_sensor_is_found(robot: RobotModel) -> None:
+def test_a_turned_force_sensor_is_found(measured: RobotModel) -> None:
     logs = [turned(log, np.radians(8)) for log in recorded()]
-    found = identify_feet(robot, logs, settings=LINEAR)
+    found = identify_feet(measured, logs, settings=LINEAR)
     assert "bush_place" in codes(found)
     for model in found.models:
         assert abs(model.turned) == pytest.approx(np.radians(8), abs=0.02)
     assert worst(found) < 0.02
 
 
-def test_a_centre_in_its_place_is_left_there(robot: RobotModel) -> None:
-    found = identify_feet(robot, recorded(), settings=LINEAR)
+def test_a_centre_in_its_place_is_left_there(measured: RobotModel) -> None:
+    found = identify_feet(measured, recorded(), settings=LINEAR)
     assert "bush_place" not in codes(found)
     assert worst(found) < 0.01
 
 
-def test_guesses_are_less_sure_than_what_was_measured(robot: RobotModel) -> None:
-    assert PlaceSpread.of(robot, "left").above == robot.uncertainty.bush_position
-    guessed = replace(
-        robot, guesses=(Guess("feet.left.bush", "drawn", 0.03), Guess("feet.right.wrench", "drawn"))
-    )
+def test_what_no_bush_can_be_leaves_the_place_alone(measured: RobotModel) -> None:
+    logs = [shifted(log, np.array([0.0, 0.0, 0.4])) for log in recorded()]
+    found = identify_feet(measured, logs, settings=LINEAR)
+    assert not any(any(model.moment_arms) for model in found.models)
+
+
+def test_guesses_are_less_sure_than_what_was_measured(robot: RobotModel, measured: RobotModel) -> None:
+    assert PlaceSpread.of(measured, "left").above == Uncertainty().bush_position
+    guesses = (Guess("feet.left.bush", "drawn", 0.03), Guess("feet.right.wrench", "drawn"))
+    guessed = replace(measured, guesses=guesses)
     assert PlaceSpread.of(guessed, "left").above == 0.03
     assert PlaceSpread.of(guessed, "right").above == 0.02
-    assert not any(vars(PlaceSpread.of(told_exactly(robot), "left")).values())
+    assert not any(vars(PlaceSpread.of(robot, "left")).values())
+
+
+def test_a_sensor_zeroed_under_load_says_nothing_of_the_place(measured: RobotModel) -> None:
+    feet = {name: replace(foot, contact="always") for name, foot in measured.feet.items()}
+    assert not any(vars(PlaceSpread.of(replace(measured, feet=feet), "left")).values())

@@ -56,10 +56,10 @@ def test_a_shift_of_weight_shows_whose_gain_it_is(weighed: RobotModel) -> None:
     assert errors(weighed, scaled(record(SHIFTING), left=1.12)) == pytest.approx({"left": 0.12}, abs=0.02)
 
 
-def test_a_robot_file_that_doubts_its_masses_allows_more(robot: RobotModel, weighed: RobotModel) -> None:
+def test_a_robot_file_that_doubts_its_masses_allows_more(tmp_path: Path, weighed: RobotModel) -> None:
     log = scaled(record(sway()), left=1.12, right=1.12)
     assert errors(weighed, log)
-    assert errors(robot, log) == {}
+    assert errors(make_robot(tmp_path, uncertainty={"link_mass": 0.05}), log) == {}
 
 
 def test_forces_zeroed_under_load_and_robots_that_hang_say_nothing(
@@ -90,7 +90,7 @@ def test_intervals_hold_both_a_wrong_gain_and_wrong_masses(weighed: RobotModel) 
                 assert row.interval95[0] < truth < row.interval95[1]
                 assert row.half_width_percent > 10
             else:
-                assert row.half_width_percent < 2
+                assert row.half_width_percent < 3  # the usual gain of a force sensor
     limits = {(each.foot, each.axis, each.name): each.limit for each in found.diagnosis}
     assert limits["left", "pitch", "stiffness"] == "force gain"
     assert "force_gain" not in codes(identify_feet(weighed, [record(SHIFTING)], settings=PUNCTUAL))

@@ -9,7 +9,10 @@ import pytest
 
 from biped import TRUTH, record, sway
 from feet_trials import PUNCTUAL, noisy
+from plantar.feet.fit.axis_fit import fit_axis
+from plantar.feet.fit.robot_causes import robot_causes
 from plantar.feet.identify import identify_feet
+from plantar.feet.prepare import prepare_all
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
 from plantar.robot.uncertainty import Uncertainty
@@ -56,3 +59,14 @@ def test_few_recordings_take_what_the_robot_file_says(robot: RobotModel) -> None
     told = identified(robot, NOTHING.model_copy(update={"between_recordings": 0.03}), count=2)
     row = told.parameter("left", "roll", "stiffness")
     assert row.std == pytest.approx(0.03 / np.sqrt(2) * row.value, rel=0.1)
+
+
+def test_a_turned_sensor_reads_less_by_its_cosine(robot: RobotModel) -> None:
+    logs = [noisy(record(sway(f"sway_{seed}", seed)), seed) for seed in (3, 4)]
+    ready = prepare_all(robot, logs, [], LINEAR, lambda _: None)
+    fit = fit_axis(ready.fitted, "left", "pitch", LINEAR)
+    assert fit is not None
+    assert robot_causes(fit, ready.fitted, NOTHING, False) == []
+    (cause,) = robot_causes(replace(fit, turned=0.2), ready.fitted, NOTHING, False)
+    assert cause.std == pytest.approx(1 - np.cos(0.2))
+    np.testing.assert_array_equal(cause.effect, fit.values)

@@ -21,6 +21,7 @@ from plantar.robot.model import RobotModel
 WINDOW = 1.0  # s, over which accelerations average out
 CARRIED = 0.5  # of the weight: with less on its feet, the robot hangs or its sensors were zeroed under load
 SCATTER = 0.02  # of the weight, by which a window's sum may be off: accelerations, zeros, a hand on the robot
+ALIKE = 3.0  # deviations of a gain, by which a robot's force sensors differ where one of them has a fault
 SURELY_ALIKE = 1e-4  # share: of sensors without any gain error, and a prior that stays finite
 NORMAL95 = 1.96  # deviations that a 95 % interval reaches
 LEAST_DEVIATION = 0.005  # of the weight: zeros of a few newtons
@@ -47,7 +48,7 @@ def force_gain_errors(robot: RobotModel, recordings: Sequence[Recording]) -> dic
     if len(shares) == 0:
         return {}
     feet, own = len(robot.feet), robot.uncertainty.wrench_gain
-    alike = (np.eye(feet) - 1 / feet) / max(own, SURELY_ALIKE)
+    alike = (np.eye(feet) - 1 / feet) / max(ALIKE * own, SURELY_ALIKE)
     rows, targets = np.vstack([shares / SCATTER, alike]), np.repeat([1 / SCATTER, 0.0], [len(shares), feet])
     inverse = np.linalg.lstsq(rows, targets, rcond=None)[0]
     deviation = float(np.linalg.norm([own, _mass_deviation(robot), LEAST_DEVIATION]))
