@@ -40,9 +40,9 @@ class Lags:
     """`values` (feet + 1,) [s], the feet's and then the encoders', at which the sum of all misses is least.
 
     `std` (feet + 1,): of the lags that do nearly as well; `at_edge`: the best lag stands at the end of the grid.
-    For each recording at the best lag: `missed` (recordings,), from 0 to 1, what Newton's law leaves of what windows
-    hold; `power` (recordings,), squares of the predicted forces over those of the measured ones, which no delay moves
-    far from 1.
+    `missed` (recordings,), from 0 to 1: what Newton's law leaves at the best lag of what windows hold; `power`
+    (recordings,): squares of the predicted torques over those of the measured ones, where the lag of the encoders
+    brings them closest to 1. Delays move it far less than a hand that carries a part of the robot.
     """
 
     values: Array
@@ -68,7 +68,7 @@ def search_lags(grids: Sequence[LagGrid]) -> Lags:
     std = np.sqrt(np.mean((lags - values) ** 2, axis=0) + steps**2 / 12)
     edge = bool((np.abs(values) > last - 0.5 * steps).any())
     windows = np.array([_windows(grid)[0] for grid in grids])
-    power = np.array([_power(grid, int(encoder), combined[best]) for grid in grids])
+    power = np.array([_power(grid) for grid in grids])
     return Lags(values, std, edge, each[:, encoder, best] / windows, power)
 
 
@@ -117,8 +117,12 @@ def _missed(predicted: Array, measured: Array, combined: NDArray[np.intp], split
     return np.asarray(np.minimum(left / holds, 1.0).sum(axis=0))
 
 
-def _power(grid: LagGrid, encoder: int, lags: NDArray[np.intp]) -> float:
-    """Squares of the predicted forces over those of the measured ones at these lags."""
-    measured = np.sum([grid.measured[encoder, foot, lag] for foot, lag in enumerate(lags)], axis=0)
-    squares = float(np.sum(measured[:, FORCE] ** 2))
-    return float(np.sum(grid.predicted[encoder][:, FORCE] ** 2)) / max(squares, 1e-300)
+def _power(grid: LagGrid) -> float:
+    """Squares of the predicted torques over those of the measured ones, closest to 1 of all lags of the encoders."""
+    now = int(np.argmin(np.abs(grid.wrenches)))
+    measured = grid.measured[:, :, now].sum(axis=1)
+    ratios = [
+        float(np.sum(p[:, TORQUE] ** 2)) / max(float(np.sum(m[:, TORQUE] ** 2)), 1e-300)
+        for p, m in zip(grid.predicted, measured, strict=True)
+    ]
+    return min(ratios, key=lambda ratio: abs(np.log(max(ratio, 1e-300))))

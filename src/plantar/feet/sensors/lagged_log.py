@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from plantar.conventions import Array
+from plantar.conventions import FORCE, GRAVITY, Array
 from plantar.dynamics import Contact, Equation, model_parameters
 from plantar.dynamics.inertial_motion import inertial_motion
 from plantar.estimation.lag_search import WINDOW, LagGrid
@@ -17,11 +17,14 @@ from plantar.signals.segments import runs
 SEARCHED = 0.25  # s: later sensors are no sensors of the same motion
 STEP = 0.05  # s: half of it is a small phase of what is fastest below, and within reach of a refinement
 CUTOFF = 2.0  # Hz
+LEAST_MOVED = (
+    0.003  # of the robot's weight: a force that changes by less shows its sensor's noise, and no lag
+)
 KEPT_RATE = 1 / STEP  # Hz: a sample for each step
 
 
 def lagged_log(robot: RobotModel, log: MotionLog) -> LagGrid | None:
-    """The log at every lag up to SEARCHED to both sides; None where it lacks what that takes, or is too short."""
+    """The log at every lag up to SEARCHED to both sides; None where it lacks what that takes, is short or still."""
     complete = with_gyroscope(robot, log)
     if complete is None:
         return None
@@ -46,6 +49,9 @@ def lagged_log(robot: RobotModel, log: MotionLog) -> LagGrid | None:
         )
         measured.append(_moving(carried, thin.period))
         predicted.append(_moving(equation.inverse_dynamics(motion, parameters)[BASE_ROWS].T, thin.period))
+    together = measured[len(lags) // 2][:, len(lags) // 2, :, FORCE].sum(axis=0)
+    if np.sum(np.var(together, axis=0)) < (LEAST_MOVED * GRAVITY * robot.mass) ** 2:
+        return None
     return LagGrid(np.array(predicted), np.array(measured), lags, lags, thin.period)
 
 
