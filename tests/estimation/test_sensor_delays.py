@@ -13,9 +13,12 @@ from biped_robot import make_robot
 from plantar.conventions import Array
 from plantar.estimation.delay import Pair
 from plantar.estimation.sensor_delays import estimate_delays
+from plantar.feet.sensors import refined_delays
 from plantar.feet.sensors.newton_euler import NewtonEulerResidual
 from plantar.feet.sensors.sensor_delay import SensorDelay, estimate_wrench_delay, in_time
+from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
+from plantar.robot.model import RobotModel
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.resampling import interpolate
 
@@ -75,25 +78,40 @@ def test_what_is_held_is_not_estimated() -> None:
     assert found.values[0] == pytest.approx(0.006, abs=5e-4)
 
 
-def sensor_delay(tmp_path: Path, *delays: float) -> SensorDelay:
-    robot, log = make_robot(tmp_path), record(sway())
-    return estimate_wrench_delay(robot, [log, log], lambda *_: [residual(delays, seed) for seed in (1, 2)])
+def sensor_delay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *delays: float) -> SensorDelay:
+    """Of two recordings whose residuals are those of `residual`, less what has been corrected when they are asked."""
+    robot, time = make_robot(tmp_path), PERIOD * np.arange(SAMPLES)
+    ramps = dict.fromkeys(
+        ("wrench.left.force.x", "wrench.right.force.x", "joint.left_hip_roll.position"), time
+    )
+    logs = [MotionLog(str(seed), time, dict(ramps)) for seed in (1, 2)]
+
+    def left(_: RobotModel, log: MotionLog) -> NewtonEulerResidual:
+        corrected = [log.column(name)[SAMPLES // 2] - time[SAMPLES // 2] for name in ramps]
+        return residual([late - done for late, done in zip(delays, corrected, strict=True)], int(log.name))
+
+    monkeypatch.setattr(refined_delays, "newton_euler_residual", left)
+    return estimate_wrench_delay(robot, logs)
 
 
-def test_one_delay_is_kept_where_sensors_do_not_differ(tmp_path: Path) -> None:
-    found = sensor_delay(tmp_path, 0.005, 0.005, 0.0)
+def test_one_delay_is_kept_where_sensors_do_not_differ(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found = sensor_delay(tmp_path, monkeypatch, 0.005, 0.005, 0.0)
     assert found.note.code == "delay"
     assert found.feet == {}
     assert found.encoders == 0.0
     assert found.delay == pytest.approx(0.005, abs=5e-4)
 
 
-def test_feet_that_differ_and_encoders_that_lag_are_told(tmp_path: Path) -> None:
-    found = sensor_delay(tmp_path, 0.012, 0.002, 0.0)
+def test_feet_that_differ_and_encoders_that_lag_are_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found = sensor_delay(tmp_path, monkeypatch, 0.012, 0.002, 0.0)
     assert found.note.code == "delays_apart"
     assert found.feet == pytest.approx({"left": 0.012, "right": 0.002}, abs=7e-4)
     assert found.encoders == 0.0
-    lagging = sensor_delay(tmp_path, 0.0, 0.0, 0.006)
+    lagging = sensor_delay(tmp_path, monkeypatch, 0.0, 0.0, 0.006)
     assert lagging.feet == {}
     assert lagging.encoders == pytest.approx(0.006, abs=7e-4)
     assert "encoders +6" in lagging.note.text or "encoders +5.9" in lagging.note.text

@@ -41,7 +41,7 @@ ESTIMATION = (
     ),
     Mutant(
         "estimation/sensor_delays.py", "cells weighed by their noise, not by their length too",
-        "[len(rest) / float(rest @ rest + floor)", "[1 / float(rest @ rest + floor)",
+        "[len(rest) / float(rest @ rest + cell.floor)", "[1 / float(rest @ rest + cell.floor)",
     ),
 )  # fmt: skip
 

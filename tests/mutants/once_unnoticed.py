@@ -23,7 +23,7 @@ INTERVALS = (
     ),
     Mutant(
         "estimation/sensor_delays.py", "covariance without the sandwich",
-        "share * inverse @ (scores.T @ scores) @ inverse", "inverse",
+        "Delays(values, inverse @ middle @ inverse,", "Delays(values, inverse,",
     ),
     Mutant(
         "estimation/delay.py", "cells that disagree do not widen the delay", "max(1.0, disagreement)", "1.0",

@@ -6,8 +6,8 @@ disagree, and their disagreement goes into the deviation: a fit over everything 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -24,6 +24,13 @@ LEAST_CLOSED = (
 )
 GAIN_BAND = (0.8, 1.25)  # measured over predicted, of an axis that takes part
 SAMPLES_PER_CYCLE = 8  # of a band's upper edge, that thinning keeps
+END_CYCLES = (
+    2.0  # of a band's lower edge, at both ends: a filter there sees the end itself, which no delay moves
+)
+MOST_ENDS = 0.5  # of a recording that ends may take
+LEAST_SHARE = (
+    1e-4  # of an axis' variance that a band must hold: less is what filters leak, an amplitude of 1 %
+)
 MODEL_ERROR = (
     0.003  # of the amplitude, in quadrature: what any URDF and any filter get wrong; a delay of this over ω
 )
@@ -34,7 +41,9 @@ class Pair:
     """Measured and predicted wrench of one recording, (n, 6) each, evenly sampled, without NaN, equally filtered.
 
     `rate` (n, 6) is how `measured` changes with the moment at which the sensors are read. It is not its derivative in
-    time where sensors turn: what is late is their reading, not the frame that it is expressed in.
+    time where sensors turn: what is late is their reading, not the frame that it is expressed in. `model_errors`
+    (draws, n, 6): how `predicted` would change were the robot's model wrong by as much as it may be, at random; the
+    same draws in every recording.
     """
 
     label: str
@@ -42,6 +51,7 @@ class Pair:
     rate: Array
     predicted: Array
     period: float
+    model_errors: Array = field(default_factory=lambda: np.zeros((0, 0, 6)))
 
 
 @dataclass(frozen=True)
@@ -71,13 +81,18 @@ def estimate_delay(pairs: Sequence[Pair]) -> Delay | None:
 
 @dataclass(frozen=True)
 class _Band:
-    """A pair in one band of frequencies of `width` [Hz], thinned, with rates; `bend` is the second one of measured."""
+    """A pair in one band of frequencies of `width` [Hz], thinned, with rates; `bend` is the second one of measured.
+
+    `enough` (6,): the squares below which an axis holds nothing in this band.
+    """
 
     measured: Array
     rate: Array
     bend: Array
     predicted: Array
     predicted_rate: Array
+    model_errors: Array
+    enough: Array
     width: float
     duration: float
 
@@ -86,32 +101,67 @@ class _Band:
         return self.measured + delay * self.rate + 0.5 * delay**2 * self.bend, self.rate + delay * self.bend
 
 
+def banded(signals: Array, period: float) -> Iterator[tuple[float, Array, slice]]:
+    """Signals (n, k) in each band: its width [Hz], the filtered signals (n, k), and the samples to keep of them.
+
+    The ends are left out: a filter answers to the end of a recording, and that is never late. Of slow signals the fast
+    bands hold nothing else.
+    """
+    edges = [edge for edge in BAND_EDGES if edge < 0.4 / period]
+    layers = [low_pass(signals, period, edge) for edge in edges]
+    for place, edge in enumerate(edges[1:]):
+        end = round(min(END_CYCLES / edges[place] / period, MOST_ENDS / 2 * len(signals)))
+        stride = max(1, int(1 / (SAMPLES_PER_CYCLE * edge * period)))
+        yield edge - edges[place], layers[place + 1] - layers[place], slice(end, len(signals) - end, stride)
+
+
 def _bands(pair: Pair) -> list[_Band]:
     """The pair in each band of frequencies."""
-    together = np.hstack([pair.measured, pair.rate, pair.predicted])
-    period = pair.period
-    edges = [edge for edge in BAND_EDGES if edge < 0.4 / period]
-    layers = [low_pass(together, period, edge) for edge in edges]
+    draws, period = len(pair.model_errors), pair.period
+    together = np.hstack([pair.measured, pair.rate, pair.predicted, *pair.model_errors])
+    whole = np.var(pair.measured, axis=0)
     found = []
-    for place, edge in enumerate(edges[1:]):
-        band = layers[place + 1] - layers[place]
-        measured, rate, predicted = np.hsplit(band, 3)
-        thin = slice(None, None, max(1, int(1 / (SAMPLES_PER_CYCLE * edge * period))))
-        bend, predicted_rate = differentiate(rate, period)[thin], differentiate(predicted, period)[thin]
-        parts = (measured[thin], rate[thin], bend, predicted[thin], predicted_rate)
-        found.append(_Band(*parts, edge - edges[place], len(band) * period))
+    for width, band, kept in banded(together, period):
+        measured, rate, predicted = band[:, :6], band[:, 6:12], band[:, 12:18]
+        bend, predicted_rate = differentiate(rate, period)[kept], differentiate(predicted, period)[kept]
+        drawn = band[kept, 18:].reshape(len(bend), draws, 6).transpose(1, 0, 2)
+        enough = LEAST_SHARE * whole * len(bend)
+        parts = (measured[kept], rate[kept], bend, predicted[kept], predicted_rate, drawn, enough)
+        found.append(_Band(*parts, width, len(bend) * (kept.step or 1) * period))
     return found
 
 
-def _pooled(cells: Sequence[Delay]) -> Delay:
-    """Mean by inverse variance; its deviation grows where the cells disagree by more than they claim."""
-    weights = np.array([1 / cell.std**2 for cell in cells])
-    values = np.array([cell.value for cell in cells])
-    value = float(weights @ values / weights.sum())
-    disagreement = float(weights @ (values - value) ** 2) / max(len(cells) - 1, 1)
+@dataclass(frozen=True)
+class _Cell:
+    """The delay that one axis in one band shows; `moved` (draws,): by how much it would, were the model as drawn."""
+
+    value: float
+    std: float
+    freedom: float
+    moved: Array
+
+
+def _pooled(cells: Sequence[_Cell]) -> Delay:
+    """Mean by inverse variance; its deviation grows where the cells disagree by more than they claim.
+
+    A wrong model moves all cells at once: its share is the spread of what they would make of each draw together.
+    """
+    wrong = np.array([cell.moved for cell in cells])
+    own = np.array([cell.std**2 for cell in cells])
+    variances = own + _mean_square(wrong)
+    values, weights = np.array([cell.value for cell in cells]), 1 / variances
+    weights /= weights.sum()
+    value = float(weights @ values)
+    disagreement = float(np.sum((values - value) ** 2 / variances)) / max(len(cells) - 1, 1)
+    variance = float(weights**2 @ own + _mean_square(weights @ wrong))
     freedoms = np.array([cell.freedom for cell in cells])
-    freedom = float(weights.sum() ** 2 / np.sum(weights**2 / freedoms))
-    return Delay(value, float(np.sqrt(max(1.0, disagreement) / weights.sum())), freedom, len(cells))
+    freedom = float(np.sum(weights**2 * variances) ** 2 / np.sum(weights**4 * variances**2 / freedoms))
+    return Delay(value, float(np.sqrt(max(1.0, disagreement) * variance)), freedom, len(cells))
+
+
+def _mean_square(values: Array) -> Array:
+    """Over the last axis, 0 where it is empty."""
+    return np.asarray(np.sum(values**2, axis=-1) / max(values.shape[-1], 1))
 
 
 def closes(pair: Pair) -> bool:
@@ -130,20 +180,25 @@ def unexplained(measured: Array, rate: Array, predicted: Array) -> float:
     return float(np.sum((missing + np.clip(delay, -LONGEST, LONGEST) * rate) ** 2))
 
 
-def _cells(band: _Band, delay: float) -> list[Delay]:
+def _cells(band: _Band, delay: float) -> list[_Cell]:
     """What is left of the delay, by axis: Σ (m - g·p) ṗ = -δ Σ ṁ ṗ for m(t) = g·p(t - δ) + noise.
 
     Noise is nowhere multiplied with itself, only with its own rate, so that it does not bias δ.
     """
     measured, rates_m = band.at(delay)
-    predicted, rates_p = band.predicted, band.predicted_rate
     found = []
-    for m, p, rate_m, rate_p in zip(measured.T, predicted.T, rates_m.T, rates_p.T, strict=True):
+    for axis in range(measured.shape[1]):
+        m, rate_m = measured[:, axis], rates_m[:, axis]
+        p, rate_p, errors = (
+            band.predicted[:, axis],
+            band.predicted_rate[:, axis],
+            band.model_errors[..., axis],
+        )
         power, slope = float(p @ p), float(rate_m @ rate_p)
         gain = float(m @ p) / power if power > 0 else 0.0
         rest = m - gain * p
         explains = float(rest @ rest) < (1 - LEAST_EXPLAINED) * float(m @ m)
-        if not (explains and GAIN_BAND[0] < gain < GAIN_BAND[1] and slope > 0):
+        if not (explains and GAIN_BAND[0] < gain < GAIN_BAND[1] and slope > 0 and m @ m > band.enough[axis]):
             continue
         step = -float(rest @ rate_p) / slope
         scores = (rest + step * rate_m) * rate_p
@@ -153,5 +208,7 @@ def _cells(band: _Band, delay: float) -> list[Delay]:
         usual = len(scores) * float(scores @ scores) / (2 * band.width * band.duration)
         noise = np.sqrt(max(float(coloured[0, 0]), usual)) / slope
         floor = MODEL_ERROR * np.sqrt(power / float(rate_p @ rate_p))
-        found.append(Delay(step, float(np.hypot(noise, floor)), freedom, 1))
+        across = errors - np.outer(errors @ p / power, p)  # the gain takes what is along the prediction
+        moved = gain * across @ rate_p / slope
+        found.append(_Cell(step, float(np.hypot(noise, floor)), freedom, moved))
     return found

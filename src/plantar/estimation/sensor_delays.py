@@ -8,13 +8,12 @@ first order, each sensor's delay times how the balance changes with it. The comm
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.estimation.delay import BAND_EDGES, GAIN_BAND, LEAST_EXPLAINED, MODEL_ERROR, SAMPLES_PER_CYCLE
-from plantar.signals.filters import low_pass
+from plantar.estimation.delay import GAIN_BAND, LEAST_EXPLAINED, LEAST_SHARE, MODEL_ERROR, banded
 
 ROUNDS = 3  # of weighing cells by what the solution leaves of them
 FEWEST_CELLS = 6  # axes in bands that must close
@@ -25,13 +24,28 @@ class Balance:
     """Newton's law of one recording over six axes: `predicted` (n, 6) less the sum of `measured` (sensors, n, 6).
 
     `by_delay` (delays, n, 6) is how that difference grows with each sensor's delay [per s]. Evenly sampled, without
-    NaN, equally filtered.
+    NaN, equally filtered. `model_errors` (draws, n, 6): as in `Pair`.
     """
 
     predicted: Array
     measured: Array
     by_delay: Array
     period: float
+    model_errors: Array = field(default_factory=lambda: np.zeros((0, 0, 6)))
+
+
+@dataclass(frozen=True)
+class _Cell:
+    """One axis in one band, gains of prediction and sensors taken off.
+
+    What is `missing` (n,), how it grows with the delays, `columns` (n, delays), what drawn models would make of it,
+    `wrong` (n, draws), and squares of the model's own error.
+    """
+
+    missing: Array
+    columns: Array
+    wrong: Array
+    floor: float
 
 
 @dataclass(frozen=True)
@@ -54,28 +68,27 @@ def estimate_delays(balances: Sequence[Balance], held: Array | None = None) -> D
     count = len(balances[0].by_delay)
     free = np.eye(count) if held is None or not len(held) else _null_space(held)
     values = np.zeros(count)
-    weights = np.array([len(missing) / float(missing @ missing) for missing, _, _ in cells])
+    weights = np.array([len(cell.missing) / float(cell.missing @ cell.missing) for cell in cells])
     for _ in range(ROUNDS):
-        information = sum(w * columns.T @ columns for w, (_, columns, _) in zip(weights, cells, strict=True))
+        information = sum(w * cell.columns.T @ cell.columns for w, cell in zip(weights, cells, strict=True))
         reduced = free.T @ information @ free
         scale = np.sqrt(np.diag(reduced))
         if not (scale > 0).all() or np.linalg.cond(reduced / np.outer(scale, scale)) > 1e6:
             return None
-        product = sum(
-            w * columns.T @ missing for w, (missing, columns, _) in zip(weights, cells, strict=True)
-        )
+        product = sum(w * cell.columns.T @ cell.missing for w, cell in zip(weights, cells, strict=True))
         values = free @ np.linalg.solve(reduced, free.T @ product)
-        left = [missing - columns @ values for missing, columns, _ in cells]
+        left = [cell.missing - cell.columns @ values for cell in cells]
         weights = np.array(
-            [len(rest) / float(rest @ rest + floor) for rest, (_, _, floor) in zip(left, cells, strict=True)]
+            [len(rest) / float(rest @ rest + cell.floor) for rest, cell in zip(left, cells, strict=True)]
         )
     inverse = free @ np.linalg.inv(reduced) @ free.T
-    # Cells disagree by more than noise where the robot's model is wrong: each is one draw of that.
-    scores = np.array(
-        [w * columns.T @ rest for w, rest, (_, columns, _) in zip(weights, left, cells, strict=True)]
-    )
+    # Cells disagree by more than noise where the robot's model is wrong: each is one draw of that. What a wrong model
+    # does to all of them at once does not show in it, and stands beside it.
+    scores = np.array([w * cell.columns.T @ rest for w, rest, cell in zip(weights, left, cells, strict=True)])
     share = len(cells) / max(len(cells) - free.shape[1], 1)
-    return Delays(values, share * inverse @ (scores.T @ scores) @ inverse, len(cells))
+    wrong = sum(w * cell.columns.T @ cell.wrong for w, cell in zip(weights, cells, strict=True))
+    middle = share * scores.T @ scores + wrong @ wrong.T / max(wrong.shape[1], 1)
+    return Delays(values, inverse @ middle @ inverse, len(cells))
 
 
 def _null_space(held: Array) -> Array:
@@ -84,31 +97,27 @@ def _null_space(held: Array) -> Array:
     return np.asarray(rows[int((sizes > 1e-9).sum()) :].T)
 
 
-def _cells(balance: Balance) -> list[tuple[Array, Array, float]]:
-    """Every axis in every band that closes, with gains of prediction and sensors taken off.
-
-    Each is what is missing (n,), how it grows with the delays (n, delays), and squares of the model's own error.
-    """
-    stacked = np.concatenate([balance.predicted[None], balance.measured, balance.by_delay])
-    sensors, period, found = len(balance.measured), balance.period, []
+def _cells(balance: Balance) -> list[_Cell]:
+    """Every axis in every band that closes."""
+    errors = balance.model_errors if len(balance.model_errors) else np.zeros((0, *balance.predicted.shape))
+    stacked = np.concatenate([balance.predicted[None], balance.measured, balance.by_delay, errors])
+    sensors, delays, found = len(balance.measured), len(balance.by_delay), []
     flat = np.ascontiguousarray(stacked.transpose(1, 0, 2).reshape(stacked.shape[1], -1))
-    edges = [edge for edge in BAND_EDGES if edge < 0.4 / period]
-    layers = [low_pass(flat, period, edge) for edge in edges]
-    for place, edge in enumerate(edges[1:]):
-        thin = slice(None, None, max(1, int(1 / (SAMPLES_PER_CYCLE * edge * period))))
-        band = (layers[place + 1] - layers[place])[thin].reshape(-1, *stacked.shape[::2])
-        for axis in band.transpose(2, 0, 1):
-            predicted, measured, columns = axis[:, 0], axis[:, 1 : 1 + sensors], axis[:, 1 + sensors :]
+    enough = LEAST_SHARE * np.var(balance.measured.sum(axis=0), axis=0)
+    for _, filtered, kept in banded(flat, balance.period):
+        band = filtered[kept].reshape(-1, *stacked.shape[::2])
+        for axis, least in zip(band.transpose(2, 0, 1), enough, strict=True):
+            predicted, measured, others = axis[:, 0], axis[:, 1 : 1 + sensors], axis[:, 1 + sensors :]
             total = measured.sum(axis=1)
             gains = np.column_stack([predicted, measured[:, 1:] - measured[:, :1]])
-            both = np.column_stack([predicted - total, columns])
+            both = np.column_stack([predicted - total, others])
             clear = both - gains @ np.linalg.lstsq(gains, both, rcond=None)[0]
-            missing, columns = clear[:, 0], clear[:, 1:]
+            missing, columns, wrong = clear[:, 0], clear[:, 1 : 1 + delays], clear[:, 1 + delays :]
             rest = missing - columns @ np.linalg.lstsq(columns, missing, rcond=None)[0]
             gain = float(total @ predicted) / max(float(predicted @ predicted), 1e-300)
-            if (
-                float(rest @ rest) < (1 - LEAST_EXPLAINED) * float(total @ total)
-                and GAIN_BAND[0] < gain < GAIN_BAND[1]
-            ):
-                found.append((missing, columns, MODEL_ERROR**2 * float(predicted @ predicted)))
+            explains = float(rest @ rest) < (1 - LEAST_EXPLAINED) * float(total @ total)
+            if explains and GAIN_BAND[0] < gain < GAIN_BAND[1] and total @ total > least * len(total):
+                floor = MODEL_ERROR**2 * float(predicted @ predicted)
+                floor += float(np.sum(wrong**2)) / max(wrong.shape[1], 1)
+                found.append(_Cell(missing, columns, wrong, floor))
     return found

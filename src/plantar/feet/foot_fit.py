@@ -105,7 +105,8 @@ def _fits(
         if axis in given_up:
             continue
         with gives_up(axis, given_up):
-            fit = fit_axis(ready.fitted, foot, axis, ready.settings, models.get(axis), place)
+            timed = not ready.sensor_delay.doubtful
+            fit = fit_axis(ready.fitted, foot, axis, ready.settings, models.get(axis), place, timed)
             if fit is not None:
                 found[axis] = fit
     return found

@@ -45,6 +45,6 @@ def test_the_slowest_clock_bounds_what_is_known(slow_first: bool, tmp_path: Path
     """Whichever log comes first; one that says nothing of the delay does not count."""
     periods = [0.02, PERIOD] if slow_first else [PERIOD, 0.02]
     logs = [MotionLog(str(period), period * np.arange(100), {}) for period in (*periods, 0.1)]
-    residuals = [closed(late_pair(0.01, 1)), closed(late_pair(0.01, 2)), None]
+    residuals = [closed(late_pair(0.0, 1)), closed(late_pair(0.0, 2)), None]
     found = estimate_wrench_delay(make_robot(tmp_path), logs, lambda *_: residuals)
     assert CLOCK * 0.02 <= found.std < CLOCK * 0.1

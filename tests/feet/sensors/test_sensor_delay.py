@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
+import pinocchio as pin
 import pytest
 
+from plantar.estimation.lag_search import search_lags
 from plantar.feet.prepare_log import checked
+from plantar.feet.sensors.lagged_log import STEP, lagged_log
+from plantar.feet.sensors.refined_delays import refined_delays
 from plantar.feet.sensors.sensor_delay import estimate_wrench_delay
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
+from plantar.robot.uncertainty import Uncertainty
 from plantar.signals.resampling import shifted
 from plantar.twin import PAPER, play_all
 from plantar.twin.robots import hrp2
@@ -63,3 +70,101 @@ def test_what_an_impact_leaves_behind_is_passed_by(twin: RobotModel, sweep: Moti
     found = estimate_wrench_delay(twin, [sweep.with_columns(columns)])
     assert found.measured
     assert found.delay == pytest.approx(0.0, abs=1e-3)
+
+
+FAR = [
+    ({"wrench.": 0.2}, (0.2, 0.2, 0.0)),
+    ({"wrench.left": 0.2}, (0.2, 0.0, 0.0)),
+    ({"imu.": 0.2}, (-0.2, -0.2, -0.2)),
+    ({"joint.": 0.06}, (0.0, 0.0, 0.06)),
+    ({"wrench.right": -0.1, "joint.": 0.15}, (0.0, -0.1, 0.15)),
+]
+
+
+@pytest.mark.parametrize(("put_in", "expected"), FAR)
+def test_delays_up_to_a_fifth_of_a_second_are_found(
+    twin: RobotModel, sweep: MotionLog, put_in: dict[str, float], expected: tuple[float, float, float]
+) -> None:
+    log = sweep
+    for columns, delay in put_in.items():
+        log = late(log, columns, delay)
+    found = estimate_wrench_delay(twin, [log])
+    assert found.measured
+    assert not found.doubtful
+    feet = [found.feet.get(name, found.delay) for name in ("left", "right")]
+    np.testing.assert_allclose([*feet, found.encoders], expected, atol=1.2e-3)
+    assert found.std < 1e-3
+
+
+def test_the_grid_holds_the_lag_and_the_steps_from_it_settle(twin: RobotModel, sweep: MotionLog) -> None:
+    log = late(sweep, "wrench.", 0.13)
+    grid = lagged_log(twin, log)
+    assert grid is not None
+    lags = search_lags([grid])
+    np.testing.assert_allclose(lags.values, [0.13, 0.13, 0.0], atol=0.6 * STEP)
+    assert refined_delays(twin, [log], map, np.zeros(3)) is None, "too far for steps along the rates"
+    found = refined_delays(twin, [log], map, lags.values)
+    assert found is not None
+    np.testing.assert_allclose(found.values, [0.13, 0.13, 0.0], atol=1e-3)
+
+
+@pytest.mark.parametrize("delay", [0.4, 1.0])
+def test_what_no_delay_closes_is_called_so(twin: RobotModel, sweep: MotionLog, delay: float) -> None:
+    found = estimate_wrench_delay(twin, [late(sweep, "imu.", delay)])
+    assert found.note.code == "delay_beyond_search"
+    assert found.doubtful
+    assert found.std > 0.1
+    assert found.delay == 0.0
+
+
+def test_a_hand_that_carries_the_robot_is_no_late_sensor(twin: RobotModel, sweep: MotionLog) -> None:
+    """Torques about the root that the motion does not ask for: timing does not show, the robot file's word stands."""
+    time = sweep.time[:, None]
+    push = 25.0 * np.sin(2 * np.pi * np.array([0.31, 0.43]) * time)
+    columns = {}
+    for foot in ("left", "right"):
+        for axis, own in zip("xy", push.T, strict=True):
+            name = f"wrench.{foot}_foot.torque.{axis}"
+            columns[name] = sweep.column(name) + own
+            name = f"wrench.{foot}_foot.force.{axis}"
+            columns[name] = sweep.column(name) + own
+    found = estimate_wrench_delay(twin, [sweep.with_columns(columns)])
+    assert found.note.code == "delay_unknown"
+    assert not found.doubtful
+    assert found.std == twin.uncertainty.wrench_delay
+
+
+def test_a_robot_that_stands_still_leaves_the_robot_files_word(twin: RobotModel, sweep: MotionLog) -> None:
+    """Noise closes nothing; that is no reason for doubt."""
+    random = np.random.default_rng(3)
+    quiet = {}
+    for name, values in sweep.columns.items():
+        noise = 0.1 if name.startswith("wrench.") else 1e-6
+        quiet[name] = np.full(len(sweep), values[0]) + noise * random.standard_normal(len(sweep))
+    told = replace(twin, uncertainty=Uncertainty(wrench_delay=0.004))
+    found = estimate_wrench_delay(told, [sweep.with_columns(quiet)])
+    assert found.note.code == "delay_unknown"
+    assert (found.delay, found.std, found.doubtful) == (0.0, 0.004, False)
+
+
+def wrong_urdf(robot: RobotModel, seed: int) -> RobotModel:
+    """The robot with masses 5 % and centres of mass 5 mm off in the model that predicts the wrench."""
+    random, other = np.random.default_rng(1000 + seed), replace(robot)
+    model = robot.floating_model.copy()
+    for joint in range(1, model.njoints):
+        own, share = model.inertias[joint], 1 + 0.05 * random.standard_normal()
+        lever = own.lever + 0.005 * random.standard_normal(3)
+        model.inertias[joint] = pin.Inertia(own.mass * share, lever, own.inertia * share)
+    other.__dict__["floating_model"] = model
+    return other
+
+
+def test_intervals_of_the_delay_hold_for_wrong_urdfs(twin: RobotModel, sweep: MotionLog) -> None:
+    exact = replace(twin, uncertainty=Uncertainty(link_mass=0.0, link_com=0.0))
+    sure = estimate_wrench_delay(exact, [sweep])
+    assert sure.std < 0.0005
+    found = [estimate_wrench_delay(wrong_urdf(twin, seed), [sweep]) for seed in range(10)]
+    far = np.array([one.delay / one.std for one in found])
+    assert np.sum(np.abs(far) < 1.96) >= 9
+    assert 0.4 < np.sqrt(np.mean(far**2)) < 1.5, "nor wider than they need to be"
+    assert min(one.std for one in found) > 1.2 * sure.std

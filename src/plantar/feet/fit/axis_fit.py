@@ -13,7 +13,7 @@ from plantar.estimation.stance_problem import StanceProblem
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.bush_place import PlaceSpread, about_its_place
 from plantar.feet.fit.corrections import about_true_zero, over_stances, unattenuated
-from plantar.feet.fit.regression_data import blocks_of, data_set_of
+from plantar.feet.fit.regression_data import blocks_of, data_set_of, load_torque
 from plantar.feet.recording import Recording
 from plantar.feet.settings import AUTOMATIC, FeetSettings
 from plantar.model_selection.data_sets import DataSet
@@ -44,15 +44,17 @@ def fit_axis(
     settings: FeetSettings,
     model: BushModel | None = None,
     place: PlaceSpread | None = None,
+    timed: bool = True,
 ) -> AxisFit | None:
-    """The law given or asked for, or the one that predicts held-out motions; None where no recording has samples.
+    """The model given or asked for, or the one that predicts held-out motions; None where no recording has samples.
 
-    What errors of the angles do to its values is taken off, where that matters.
+    What errors of the angles do to its values is taken off, where that matters. `place`: what the robot file's place of
+    the bush may be off by; not `timed`: sensors may be late by any time, which looks like a memory, so none is tried.
     """
     shared = settings.offset == "shared"
     if model is None and settings.model != AUTOMATIC:
         model = MODELS[settings.model]
-    fit = _fitted(recordings, foot, axis, settings, model)
+    fit = _fitted(recordings, foot, axis, settings, model, place, timed)
     if fit is None:
         return None
     fit = about_true_zero(fit, recordings, shared)
@@ -61,7 +63,13 @@ def fit_axis(
 
 
 def _fitted(
-    recordings: Sequence[Recording], foot: str, axis: Axis, settings: FeetSettings, asked: BushModel | None
+    recordings: Sequence[Recording],
+    foot: str,
+    axis: Axis,
+    settings: FeetSettings,
+    asked: BushModel | None,
+    place: PlaceSpread | None,
+    timed: bool,
 ) -> AxisFit | None:
     shared = settings.offset == "shared"
     blocks = blocks_of(recordings, foot, axis, drift=not shared)
@@ -73,7 +81,17 @@ def _fitted(
     steps = blocks[0].stances is not None and not shared
     share = StanceProblem.drawn_together(blocks).own_share if steps else 0.0
     fitted = [recording for recording in recordings if recording.name in linear.offsets]
-    data_sets = [data_set_of(recording, foot, axis, share) for recording in fitted]
+    beside = _of_linear(foot, axis, linear, None, "")
+    if (
+        place is not None and not steps
+    ):  # what a wrong place adds to the torque must not look like another model
+        beside = about_its_place(beside, fitted, place, shared)
+    data_sets = [data_set_of(each, foot, axis, share) for each in fitted]
+    if not steps:
+        data_sets = [
+            replace(data_set, torque=data_set.torque - load_torque(each, beside))
+            for data_set, each in zip(data_sets, fitted, strict=True)
+        ]
     cutoff = fitted[0].cutoff
 
     def found(fit: ModelFit, choice: ModelChoice | None, reason: str) -> AxisFit:
@@ -86,7 +104,8 @@ def _fitted(
     if not LEAST_EXPLAINED < explained < FULLY_EXPLAINED:
         return _of_linear(foot, axis, linear, None, _untried(explained))
     names = CANDIDATES_IN_STANCES if steps else CANDIDATES
-    models = [MODELS[name] for name in names if steps or not MODELS[name].remembers or _remembers(data_sets)]
+    memory = timed and (steps or _remembers(data_sets))
+    models = [MODELS[name] for name in names if memory or not MODELS[name].remembers]
     gain = LEAST_GAIN_IN_STANCES if steps else LEAST_GAIN
     choice = choose_model(data_sets, models, cutoff, shared_offset=shared, least_gain=gain)
     if choice.fit.model.name == KelvinVoigt.name:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from plantar.dynamics import Contact, Equation, model_parameters
 from plantar.dynamics.inertial_motion import inertial_motion
 from plantar.estimation.delay import LEAST_CLOSED, Pair, closes, unexplained
 from plantar.estimation.sensor_delays import Balance
+from plantar.feet.sensors.model_errors import drawn_parameter_errors
 from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.robot.model import RobotModel
 from plantar.signals.filters import differentiate, low_pass
@@ -46,11 +47,12 @@ class NewtonEulerResidual:
     def balance(self) -> Balance:
         """Feet and encoders apart: delays of each foot, then of the encoders, all against the IMU."""
         by_delay = np.concatenate([self.rates, -self.by_encoders[None]])
-        return Balance(self.pair.predicted, self.measured, by_delay, self.pair.period)
+        pair = self.pair
+        return Balance(pair.predicted, self.measured, by_delay, pair.period, pair.model_errors)
 
 
-def newton_euler_residual(robot: RobotModel, log: MotionLog) -> NewtonEulerResidual | None:
-    """Both sides along an evenly sampled log; None where it lacks what that takes, or does not close."""
+def with_gyroscope(robot: RobotModel, log: MotionLog) -> MotionLog | None:
+    """The log with an angular velocity, from its orientation where it has none; None where Newton has no terms."""
     imu = robot.imu
     if imu is None or any(foot.contact == "always" for foot in robot.feet.values()):
         return None
@@ -58,8 +60,17 @@ def newton_euler_residual(robot: RobotModel, log: MotionLog) -> NewtonEulerResid
     turns = log.has(*gyroscope) or log.orientation(imu.name) is not None
     if not turns or not log.has_imu(imu.name, "linear_acceleration"):
         return None
-    if not log.has(*gyroscope):
-        log = log.with_columns(dict(zip(gyroscope, attitude(log, imu, [])[1].T, strict=True)))
+    if log.has(*gyroscope):
+        return log
+    return log.with_columns(dict(zip(gyroscope, attitude(log, imu, [])[1].T, strict=True)))
+
+
+def newton_euler_residual(robot: RobotModel, log: MotionLog) -> NewtonEulerResidual | None:
+    """Both sides along an evenly sampled log; None where it lacks what that takes, or does not close."""
+    complete = with_gyroscope(robot, log)
+    if complete is None:
+        return None
+    log = complete
     motion = inertial_motion(robot, log, CUTOFF)
     wrenches = np.hstack([foot.wrench.sign * log.wrench(foot.wrench.name) for foot in robot.feet.values()])
     whole = motion.finite & np.isfinite(wrenches).all(axis=1)
@@ -102,6 +113,10 @@ def newton_euler_residual(robot: RobotModel, log: MotionLog) -> NewtonEulerResid
     if len(predicted) * period < SHORTEST or not closes(pair):
         return None
     step = log.period
+    errors = [
+        equation.inverse_dynamics(part, drawn)[BASE_ROWS].T[calm] for drawn in drawn_parameter_errors(robot)
+    ]
+    pair = replace(pair, model_errors=np.array(errors)) if errors else pair
     by_encoders = moving([(predicted_at(step) - predicted_at(-step)) / (2 * step)])[0]
     return NewtonEulerResidual(pair, measured, rates, by_encoders[calm])
 

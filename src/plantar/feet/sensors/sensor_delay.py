@@ -8,29 +8,27 @@ their own, each gets its own.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
-from plantar.conventions import Array
-from plantar.estimation.delay import LONGEST, estimate_delay
-from plantar.estimation.sensor_delays import Balance, estimate_delays
-from plantar.feet.sensors.newton_euler import NewtonEulerResidual, newton_euler_residual
+from plantar.conventions import Mask
+from plantar.estimation.delay import LEAST_CLOSED
+from plantar.estimation.lag_search import Lags, search_lags
+from plantar.feet.sensors.lagged_log import SEARCHED, STEP, lagged_log
+from plantar.feet.sensors.refined_delays import LEAST_STD, Each, RefinedDelays, read_in_time, refined_delays
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
-from plantar.signals.resampling import shifted
 
-PRIOR_STD = (
-    0.0075  # s: what is known of a wrench's delay before any data; drivers and filters are rarely later
-)
 KNOWN_STD = 0.001  # s: better known than this, the delay is corrected without a warning
 CLOCK = 0.06  # of a period: within it, nobody knows when a sample was taken
 SIGNIFICANT = 2.5  # deviations from zero: a poorly known delay is corrected beyond, else only allowed for
-DISTINCT = 4.0  # deviations by which sensors must differ to have delays of their own
-LEAST_DISTINCT = 0.0015  # s, and by so much
-LEAST_STD = 0.0003  # s: no robot's model shows a delay better, however fast its samples
+PUSHED = (
+    3.0  # predicted over measured squares of the torques, or the reverse; a delay of a second halves them
+)
 
 
 @dataclass(frozen=True)
@@ -38,7 +36,8 @@ class SensorDelay:
     """Delay of the wrenches against the IMU [s], > 0: late; `std` [s]; `measured` whether any log showed it.
 
     `feet` has each foot's own delay where they differ, `encoders` that of the joints' positions; both are usually
-    empty and zero.
+    empty and zero. `doubtful`: a search over SEARCHED found no delays at which Newton's law closes where it should, so
+    that the sensors may be late by anything that `std` says.
     """
 
     delay: float
@@ -48,21 +47,13 @@ class SensorDelay:
     note: Note
     feet: Mapping[str, float] = field(default_factory=dict)
     encoders: float = 0.0
+    doubtful: bool = False
 
 
 def in_time(robot: RobotModel, log: MotionLog, sensor_delay: SensorDelay) -> MotionLog:
     """The log with wrenches and joint positions as they were at the moments of the IMU's samples."""
-    moved: dict[str, Array] = {}
-    for name, foot in robot.feet.items():
-        columns = [column for column in log.columns if column.startswith(f"wrench.{foot.wrench.name}.")]
-        late = sensor_delay.feet.get(name, sensor_delay.delay)
-        moved |= dict(zip(columns, shifted(log.stack(columns), log.period, late).T, strict=True))
-    if sensor_delay.encoders:
-        columns = [column for column in log.columns if column.startswith("joint.")]
-        moved |= dict(
-            zip(columns, shifted(log.stack(columns), log.period, sensor_delay.encoders).T, strict=True)
-        )
-    return log.with_columns(moved)
+    feet = [sensor_delay.feet.get(name, sensor_delay.delay) for name in robot.feet]
+    return read_in_time(robot, log, np.array([*feet, sensor_delay.encoders]))
 
 
 def known_delay(delay: float) -> SensorDelay:
@@ -71,35 +62,89 @@ def known_delay(delay: float) -> SensorDelay:
     return SensorDelay(delay, 0.0, np.inf, False, Note("delay_given", "info", text))
 
 
-def estimate_wrench_delay(
-    robot: RobotModel,
-    logs: Sequence[MotionLog],
-    each: Callable[..., Iterable[NewtonEulerResidual | None]] = map,
-) -> SensorDelay:
+def estimate_wrench_delay(robot: RobotModel, logs: Sequence[MotionLog], each: Each = map) -> SensorDelay:
     """The delay common to all logs, evenly sampled, drawn towards zero by what is usual where the logs say little;
     where sensors clearly differ, the delay of each.
 
     `each` maps a function over logs: a pool's map uses all cores.
     """
-    tried = list(each(lambda log: newton_euler_residual(robot, log), logs))
-    residuals = [residual for residual in tried if residual is not None]
-    apart = _apart(list(robot.feet), [residual.balance for residual in residuals])
-    if apart is not None:
-        return apart
-    found = estimate_delay([residual.pair for residual in residuals]) if residuals else None
-    if found is None:
-        imu = robot.imu
-        blind = imu is not None and not any(log.has_imu(imu.name, "linear_acceleration") for log in logs)
-        text = (
-            "delay of the wrenches unknown: no log in which the ground's wrench follows from IMU, encoders and URDF; "
-            f"taken as 0 ± {1e3 * PRIOR_STD:.1f} ms, which widens the interval of the damping by stiffness times that. "
-            f"{'Record the accelerometer' if blind else 'Record arm sweeps of 0.3 to 1 Hz without an operator'}"
-        )
-        return SensorDelay(0.0, PRIOR_STD, np.inf, False, Note("delay_unknown", "warning", text))
-    gain = PRIOR_STD**2 / (PRIOR_STD**2 + found.std**2)
-    slowest = max(log.period for log, residual in zip(logs, tried, strict=True) if residual is not None)
-    clock = max(CLOCK * slowest, LEAST_STD)
-    delay, std = gain * found.value, float(np.hypot(np.sqrt(gain) * found.std, clock))
+    still = np.zeros(len(robot.feet) + 1)
+    found = refined_delays(robot, logs, each, still)
+    if found is not None and found.std <= KNOWN_STD:
+        return _told(robot, found)
+    grids = list(each(partial(lagged_log, robot), logs))
+    shown = [grid for grid in grids if grid is not None]
+    if not shown:
+        return _unseen(robot, logs) if found is None else _told(robot, found)
+    lags = search_lags(shown)
+    if np.abs(lags.values).max() > 0.5 * STEP:
+        again = refined_delays(robot, logs, each, lags.values)
+        if again is not None and (found is None or _surer(again, found)):
+            found = again
+    searched = np.array([grid is not None for grid in grids])
+    if _in_doubt(lags, found, searched):
+        return _doubtful(robot, lags)
+    return _unseen(robot, logs) if found is None else _told(robot, found)
+
+
+def _surer(one: RefinedDelays, other: RefinedDelays) -> bool:
+    """Whether Newton's law closes in more logs with the one, or as many and it is better known."""
+    return (int(one.closed.sum()), -one.std) > (int(other.closed.sum()), -other.std)
+
+
+def _in_doubt(lags: Lags, found: RefinedDelays | None, searched: Mask) -> bool:
+    """Whether Newton's law, in logs that move, closes at no lag, or at lags that are not those found.
+
+    Where somebody pushes it cannot close, and torques are far larger or smaller than predicted: that says nothing of
+    the sensors' moments.
+    """
+    missed = lags.missed > 1 - LEAST_CLOSED
+    pushed = np.maximum(lags.power, 1 / np.maximum(lags.power, 1e-9)) > PUSHED
+    if (missed & ~pushed).any():
+        return found is None or not found.closed[searched][missed & ~pushed].all()
+    if missed.all():
+        return False
+    reached = np.zeros_like(lags.values) if found is None else found.values
+    return bool(np.abs(lags.values - reached).max() > np.maximum(2 * STEP, 2 * lags.std).max())
+
+
+def _doubtful(robot: RobotModel, lags: Lags) -> SensorDelay:
+    """Nothing corrected, and everything allowed for that the search leaves."""
+    whole = 2 * SEARCHED / np.sqrt(12)
+    left = whole if lags.at_edge else min(whole, float(np.hypot(lags.std, lags.values).max()))
+    std = float(np.hypot(robot.uncertainty.wrench_delay, left))
+    text = (
+        f"sensors may be late by {1e3 * 1.96 * std:.0f} ms: no delays up to {1e3 * SEARCHED:.0f} ms were found with "
+        "which the ground's wrench follows from IMU, encoders and URDF, though the robot moves; not corrected. Check "
+        "the clocks of IMU, encoders and force sensors, the IMU's mount and the URDF, or record arm sweeps of 0.3 to "
+        "1 Hz that nobody disturbs; --wrench-delay gives a delay that is known"
+    )
+    note = Note("delay_beyond_search", "warning", text)
+    return SensorDelay(0.0, std, np.inf, False, note, doubtful=True)
+
+
+def _unseen(robot: RobotModel, logs: Sequence[MotionLog]) -> SensorDelay:
+    """What the robot file says of a delay that no log shows."""
+    imu, prior = robot.imu, robot.uncertainty.wrench_delay
+    blind = imu is not None and not any(log.has_imu(imu.name, "linear_acceleration") for log in logs)
+    text = (
+        "delay of the wrenches unknown: no log in which the ground's wrench follows from IMU, encoders and URDF; "
+        f"taken as 0 ± {1e3 * prior:.1f} ms, which widens the interval of the damping by stiffness times that. "
+        f"{'Record the accelerometer' if blind else 'Record arm sweeps of 0.3 to 1 Hz without an operator'}"
+    )
+    return SensorDelay(0.0, prior, np.inf, False, Note("delay_unknown", "warning", text))
+
+
+def _told(robot: RobotModel, found: RefinedDelays) -> SensorDelay:
+    """Delays that the logs show, with what is said of them."""
+    if found.feet_differ or found.encoders_differ:
+        return _apart(list(robot.feet), found)
+    value, prior = float(found.values[0]), robot.uncertainty.wrench_delay
+    # A delay far beyond what is usual shows that this robot is not usual: nothing draws it to zero.
+    usual = abs(value) < SIGNIFICANT * float(np.hypot(prior, found.std))
+    gain = prior**2 / (prior**2 + found.std**2) if usual else 1.0
+    clock = max(CLOCK * found.slowest, LEAST_STD)
+    delay, std = gain * value, float(np.hypot(np.sqrt(gain) * found.std, clock))
     told = f"wrenches are {1e3 * delay:+.1f} ± {1e3 * 1.96 * std:.1f} ms late (95 %) against IMU and encoders"
     if std <= KNOWN_STD:
         return SensorDelay(delay, std, found.freedom, True, Note("delay", "info", f"{told}: corrected"))
@@ -111,34 +156,15 @@ def estimate_wrench_delay(
     return SensorDelay(0.0, float(np.hypot(delay, std)), found.freedom, True, note)
 
 
-def _apart(names: Sequence[str], balances: Sequence[Balance]) -> SensorDelay | None:
-    """Delays of each foot and of the encoders, those that clearly differ; None where one common delay will do."""
-    found = estimate_delays(balances) if balances else None
-    if found is None:
-        return None
-    feet = len(names)
-    # How far each foot is from the mean of all, and the encoders from the IMU.
-    contrasts = np.zeros((feet + 1, feet + 1))
-    contrasts[:feet, :feet] = np.eye(feet) - 1 / feet
-    contrasts[feet, feet] = 1.0
-    apart = contrasts @ found.values
-    spread = np.sqrt(np.diag(contrasts @ found.covariance @ contrasts.T) + LEAST_STD**2)
-    differ = (np.abs(apart) > np.maximum(DISTINCT * spread, LEAST_DISTINCT)) & (spread < KNOWN_STD)
-    if not differ.any():
-        return None
-    differ[:feet] = differ[:feet].any()
-    settled = estimate_delays(balances, contrasts[~differ])
-    if settled is None or np.abs(settled.values).max() > LONGEST:
-        return None
-    delays = dict(zip(names, settled.values[:feet].tolist(), strict=True)) if differ[:feet].any() else {}
-    mean = float(np.mean(settled.values[:feet]))
-    encoders = float(settled.values[feet])
-    std = float(np.hypot(np.sqrt(np.diag(settled.covariance).max()), LEAST_STD))
+def _apart(names: Sequence[str], found: RefinedDelays) -> SensorDelay:
+    """Each foot's delay and the encoders', those that differ."""
+    feet, encoders = found.values[:-1], float(found.values[-1])
+    mean = float(np.mean(feet))
+    delays = dict(zip(names, feet.tolist(), strict=True)) if found.feet_differ else {}
     each = ", ".join(f"{name} {1e3 * delay:+.1f}" for name, delay in delays.items()) or f"{1e3 * mean:+.1f}"
     text = (
         f"sensors have different delays relative to the IMU: wrenches {each} ms, encoders {1e3 * encoders:+.1f} ms "
-        f"(± {1e3 * 1.96 * std:.1f} ms, 95 %): corrected"
+        f"(± {1e3 * 1.96 * found.std:.1f} ms, 95 %): corrected"
     )
-    return SensorDelay(
-        mean, std, float(settled.cells), True, Note("delays_apart", "warning", text), delays, encoders
-    )
+    note = Note("delays_apart", "warning", text)
+    return SensorDelay(mean, found.std, found.freedom, True, note, delays, encoders)

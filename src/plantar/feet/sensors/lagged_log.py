@@ -1,0 +1,70 @@
+"""A log read at every lag of a grid: what the coarse search for delays compares."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from plantar.conventions import FORCE, GRAVITY, Array
+from plantar.dynamics import Contact, Equation, model_parameters
+from plantar.dynamics.inertial_motion import inertial_motion
+from plantar.estimation.lag_search import WINDOW, LagGrid
+from plantar.feet.sensors.newton_euler import BASE_ROWS, SLOW, with_gyroscope
+from plantar.logs.motion_log import MotionLog
+from plantar.robot.model import RobotModel
+from plantar.signals.filters import low_pass
+from plantar.signals.segments import runs
+
+SEARCHED = 0.25  # s: later sensors are no sensors of the same motion
+STEP = 0.05  # s: half of it is a small phase of what is fastest below, and within reach of a refinement
+CUTOFF = 2.0  # Hz
+LEAST_MOVED = (
+    0.003  # of the robot's weight: a force that changes by less shows its sensor's noise, and no lag
+)
+KEPT_RATE = 1 / STEP  # Hz: a sample for each step
+
+
+def lagged_log(robot: RobotModel, log: MotionLog) -> LagGrid | None:
+    """The log at every lag up to SEARCHED to both sides; None where it lacks what that takes, is short or still."""
+    complete = with_gyroscope(robot, log)
+    if complete is None:
+        return None
+    thin = _thinned(robot, complete)
+    readings = np.stack([foot.wrench.sign * thin.wrench(foot.wrench.name) for foot in robot.feet.values()])
+    steps = np.arange(-round(SEARCHED / thin.period), round(SEARCHED / thin.period) + 1)
+    lags: Array = thin.period * steps.astype(np.float64)
+    motions = [inertial_motion(robot, thin, CUTOFF, late) for late in lags]
+    known = np.isfinite(readings).all(axis=(0, 2)) & np.all([motion.finite for motion in motions], axis=0)
+    longest = max(runs(known), key=lambda run: run.stop - run.start, default=slice(0, 0))
+    inner = slice(longest.start + steps[-1], longest.stop - steps[-1])
+    if (inner.stop - inner.start) * thin.period < 2 * WINDOW:
+        return None
+    equation, parameters = Equation(robot.floating_model), model_parameters(robot.floating_model)
+    contacts = [Contact(*robot.frame(foot.wrench.placement)) for foot in robot.feet.values()]
+    late = np.stack([readings[:, inner.start + step : inner.stop + step] for step in steps], axis=1)
+    predicted, measured = [], []
+    for motion in (whole.select(inner) for whole in motions):
+        transfer = [equation.contact_transfer(motion.positions, one)[:, BASE_ROWS] for one in contacts]
+        carried = np.stack(
+            [np.einsum("nij,bnj->bni", one, own) for one, own in zip(transfer, late, strict=True)]
+        )
+        measured.append(_moving(carried, thin.period))
+        predicted.append(_moving(equation.inverse_dynamics(motion, parameters)[BASE_ROWS].T, thin.period))
+    together = measured[len(lags) // 2][:, len(lags) // 2, :, FORCE].sum(axis=0)
+    if np.sum(np.var(together, axis=0)) < (LEAST_MOVED * GRAVITY * robot.mass) ** 2:
+        return None
+    return LagGrid(np.array(predicted), np.array(measured), lags, lags, thin.period)
+
+
+def _thinned(robot: RobotModel, log: MotionLog) -> MotionLog:
+    """The columns of IMU, joints' positions and wrenches, slow parts only and few samples of them."""
+    wanted = ("imu.", "wrench.", "joint.")
+    names = [name for name in log.columns if name.startswith(wanted) and ".orientation." not in name]
+    stride = max(1, round(1 / (KEPT_RATE * log.period)))
+    slow = [low_pass(log.column(name), log.period, CUTOFF)[::stride] for name in names]
+    return MotionLog(log.name, log.time[::stride], dict(zip(names, slow, strict=True)), log.path)
+
+
+def _moving(sides: Array, period: float) -> Array:
+    """Sides (..., n, 6) without what postures and drifting zeros do to them."""
+    rows = np.moveaxis(sides, -2, 0)
+    return np.moveaxis(rows - low_pass(rows.reshape(len(rows), -1), period, SLOW).reshape(rows.shape), 0, -2)

@@ -1,0 +1,36 @@
+"""What a URDF that is a little wrong does to the predicted wrench: inertial parameters drawn about its own."""
+
+from __future__ import annotations
+
+import numpy as np
+import pinocchio as pin
+
+from plantar.conventions import Array
+from plantar.robot.model import RobotModel
+
+DRAWS = 16  # a spread is then known to a sixth of itself
+SEED = 0  # the same draws for every recording: the robot is the same
+
+
+def drawn_parameter_errors(robot: RobotModel) -> Array:
+    """By how much inertial parameters may be off at random, (draws, 10 n_links), in Pinocchio's order.
+
+    Each link's mass is off by a share `uncertainty.link_mass`, its rotational inertia about the centre of mass with
+    it, and its centre of mass by `uncertainty.link_com` [m] along each axis. No draws where both are zero.
+    """
+    mass, centre = robot.uncertainty.link_mass, robot.uncertainty.link_com
+    if mass == 0 and centre == 0:
+        return np.zeros((0, 10 * (robot.floating_model.njoints - 1)))
+    random = np.random.default_rng(SEED)
+    return np.array([_drawn(robot.floating_model, random, mass, centre) for _ in range(DRAWS)])
+
+
+def _drawn(model: pin.Model, random: np.random.Generator, mass: float, centre: float) -> Array:
+    changes = []
+    for inertia in list(model.inertias)[1:]:
+        share, moved = 1 + mass * random.standard_normal(), centre * random.standard_normal(3)
+        other = pin.Inertia(
+            max(share, 0.0) * inertia.mass, inertia.lever + moved, max(share, 0.0) * inertia.inertia
+        )
+        changes.append(other.toDynamicParameters() - inertia.toDynamicParameters())
+    return np.concatenate(changes)

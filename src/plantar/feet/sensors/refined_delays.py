@@ -1,0 +1,118 @@
+"""Delays step by step: read the sensors at their moments, ask Newton's law what is left, until nothing is.
+
+One step follows the rates, which holds for some 50 ms. One delay common to all force sensors is the rule, with encoders
+and IMU read together; where feet or encoders clearly have delays of their own, each gets its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from plantar.conventions import Array, Mask
+from plantar.estimation.delay import LONGEST, estimate_delay
+from plantar.estimation.sensor_delays import estimate_delays
+from plantar.feet.sensors.newton_euler import newton_euler_residual
+from plantar.logs.motion_log import MotionLog
+from plantar.robot.model import RobotModel
+from plantar.signals.resampling import shifted
+
+Each = Callable[..., Iterable[Any]]  # a map over logs, that of a pool or the usual one
+
+ROUNDS = (
+    6  # steps: each leaves a tenth of the one before; changing between common and own delays takes some more
+)
+SETTLED = 0.001  # s: after a smaller step the next one would be below what any log shows
+DISTINCT = 4.0  # deviations by which sensors must differ to have delays of their own
+LEAST_DISTINCT = 0.0015  # s, and by so much
+WELL_KNOWN = 0.003  # s: differences less well known than this are no ground for delays of their own
+LEAST_STD = 0.0003  # s: no robot's model shows a delay better, however fast its samples
+
+
+@dataclass(frozen=True)
+class RefinedDelays:
+    """`values` (feet + 1,) [s]: the feet's and then the encoders' against the IMU, > 0: late; their common `std` [s].
+
+    `feet_differ`, `encoders_differ`: whether they have delays of their own.
+    `closed` (logs,): in which logs Newton's law closes; `slowest`: the longest period among these [s].
+    """
+
+    values: Array
+    std: float
+    freedom: float
+    feet_differ: bool
+    encoders_differ: bool
+    closed: Mask
+    slowest: float
+
+
+def read_in_time(robot: RobotModel, log: MotionLog, delays: Array) -> MotionLog:
+    """The log with each foot's wrench and the joints' columns as `delays` (feet + 1,) [s] later: undoes them."""
+    moved: dict[str, Array] = {}
+    prefixes = [f"wrench.{foot.wrench.name}." for foot in robot.feet.values()] + ["joint."]
+    for prefix, delay in zip(prefixes, delays, strict=True):
+        columns = [column for column in log.columns if column.startswith(prefix)]
+        if delay and columns:
+            own = shifted(log.stack(columns), log.period, float(delay))
+            moved |= dict(zip(columns, own.T, strict=True))
+    return log.with_columns(moved) if moved else log
+
+
+def refined_delays(
+    robot: RobotModel, logs: Sequence[MotionLog], each: Each, start: Array
+) -> RefinedDelays | None:
+    """Delays near `start` (feet + 1,) [s]; None where Newton's law closes in no log, or the steps do not settle."""
+    at = start
+    for _ in range(ROUNDS):
+        step = _step(robot, logs, each, at)
+        if step is None:
+            return None
+        moved, at = float(np.abs(step.values - at).max()), step.values
+        if moved < SETTLED and step.std < np.inf:
+            return step
+    return None
+
+
+def _step(robot: RobotModel, logs: Sequence[MotionLog], each: Each, at: Array) -> RefinedDelays | None:
+    """One step from the delays `at`, or, with an infinite deviation, to where no delays differ that need not."""
+    tried = list(each(lambda log: newton_euler_residual(robot, read_in_time(robot, log, at)), logs))
+    residuals = [residual for residual in tried if residual is not None]
+    if not residuals:
+        return None
+    closed = np.array([residual is not None for residual in tried])
+    slowest = max(log.period for log, one in zip(logs, tried, strict=True) if one is not None)
+    balances = [residual.balance for residual in residuals]
+    contrasts, differ = _contrasts(len(at) - 1), np.zeros(len(at), dtype=bool)
+    free = estimate_delays(balances)
+    if free is not None:
+        apart = contrasts @ (at + free.values)
+        spread = np.sqrt(np.diag(contrasts @ free.covariance @ contrasts.T) + LEAST_STD**2)
+        differ = (np.abs(apart) > np.maximum(DISTINCT * spread, LEAST_DISTINCT)) & (spread < WELL_KNOWN)
+        differ[:-1] = differ[:-1].any()
+    flags = (bool(differ[0]), bool(differ[-1]))
+    held = contrasts[~differ]
+    nearest = at - np.linalg.pinv(held) @ (held @ at) if len(held) else at
+    if np.abs(nearest - at).max() > 1e-9:
+        return RefinedDelays(nearest, np.inf, 1.0, *flags, closed, slowest)
+    if differ.any():
+        own = estimate_delays(balances, held)
+        if own is None or np.abs(own.values).max() > LONGEST:
+            return None
+        std = float(np.hypot(np.sqrt(np.diag(own.covariance).max()), LEAST_STD))
+        return RefinedDelays(at + own.values, std, float(own.cells), *flags, closed, slowest)
+    common = estimate_delay([residual.pair for residual in residuals])
+    if common is None:
+        return None
+    values = at + np.append(np.full(len(at) - 1, common.value), 0.0)
+    return RefinedDelays(values, common.std, common.freedom, *flags, closed, slowest)
+
+
+def _contrasts(feet: int) -> Array:
+    """How far each foot is from the mean of all, and the encoders from the IMU, (feet + 1, feet + 1)."""
+    contrasts = np.zeros((feet + 1, feet + 1))
+    contrasts[:feet, :feet] = np.eye(feet) - 1 / feet
+    contrasts[feet, feet] = 1.0
+    return contrasts

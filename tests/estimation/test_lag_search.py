@@ -1,0 +1,61 @@
+"""Every lag tried: the right one is found among all, a push says nothing, and what does not fit says so."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from plantar.conventions import Array
+from plantar.estimation.lag_search import LagGrid, search_lags
+from plantar.signals.filters import low_pass
+
+PERIOD, SAMPLES, STEPS = 0.05, 800, 5
+LAGS: Array = PERIOD * np.arange(-STEPS, STEPS + 1, dtype=np.float64)
+
+
+def grid(late: tuple[int, int, int], *, seed: int = 1, push: float = 0.0) -> LagGrid:
+    """Two feet and encoders late by steps of the grid; half of the motion shows in the encoders alone."""
+    random = np.random.default_rng(seed)
+    length = SAMPLES + 8 * STEPS
+    trunk, arms, between, hand = (
+        low_pass(random.standard_normal((length, 6)), PERIOD, 1.5) for _ in range(4)
+    )
+    ground = trunk + arms + push * hand
+    feet = [ground / 2 + 3 * between, ground / 2 - 3 * between]
+
+    def read(values: Array, shift: int) -> Array:
+        return values[4 * STEPS + shift : 4 * STEPS + shift + SAMPLES]
+
+    *each, encoders = late
+    steps = range(-STEPS, STEPS + 1)
+    predicted = np.array([read(trunk, 0) + read(arms, step - encoders) for step in steps])
+    own = np.array([[read(foot, step - by) for step in steps] for foot, by in zip(feet, each, strict=True)])
+    return LagGrid(predicted, np.tile(own, (len(LAGS), 1, 1, 1, 1)), LAGS, LAGS, PERIOD)
+
+
+@pytest.mark.parametrize("late", [(0, 0, 0), (4, 4, 0), (4, 0, 0), (-4, -4, -4), (2, -1, 3)])
+def test_each_lag_is_found_among_all(late: tuple[int, int, int]) -> None:
+    found = search_lags([grid(late)])
+    np.testing.assert_allclose(found.values, PERIOD * np.array(late), atol=1e-9)
+    assert found.missed[0] < 0.01
+    assert found.std.max() < 0.05
+    assert not found.at_edge
+
+
+def test_a_push_neither_hides_the_lag_nor_passes_for_one() -> None:
+    found = search_lags([grid((3, 3, 0), push=5.0), grid((3, 3, 0), seed=2)])
+    np.testing.assert_allclose(found.values, PERIOD * np.array([3, 3, 0]), atol=1e-9)
+    assert found.missed[0] > 0.5
+    assert found.missed[1] < 0.01
+    assert found.power[0] < 0.2, "the hand's torques are not predicted"
+    assert 0.8 < found.power[1] < 1.25
+
+
+def test_lags_beyond_the_grid_are_missed_and_no_lag_is_better_than_others() -> None:
+    found = search_lags([grid((10, 10, 0))])
+    assert found.missed[0] > 0.3
+    assert found.at_edge or found.std.max() > 0.1
+
+
+def test_at_the_end_of_the_grid_it_says_so() -> None:
+    assert search_lags([grid((STEPS, STEPS, 0))]).at_edge

@@ -1,0 +1,36 @@
+"""Inertial parameters drawn about a URDF's own, by as much as the robot file says that they may be off."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from plantar.feet.sensors.model_errors import drawn_parameter_errors
+from plantar.robot.model import RobotModel
+from plantar.robot.uncertainty import Uncertainty
+from plantar.twin.robots import hrp2
+
+
+def robot(mass: float, centre: float) -> RobotModel:
+    return replace(hrp2.robot(), uncertainty=Uncertainty(link_mass=mass, link_com=centre))
+
+
+def test_draws_spread_as_the_robot_file_says() -> None:
+    own = hrp2.robot().floating_model
+    masses = np.array([inertia.mass for inertia in list(own.inertias)[1:]])
+    heavier = drawn_parameter_errors(robot(0.05, 0.0)).reshape(-1, len(masses), 10)
+    assert np.std(heavier[:, :, 0] / masses) == pytest.approx(0.05, rel=0.15)
+    moved = drawn_parameter_errors(robot(0.0, 0.005)).reshape(-1, len(masses), 10)
+    assert np.abs(moved[:, :, 0]).max() < 1e-12
+    assert np.std(moved[:, :, 1:4] / masses[:, None]) == pytest.approx(0.005, rel=0.15)
+
+
+def test_an_exact_urdf_has_no_draws() -> None:
+    assert len(drawn_parameter_errors(robot(0.0, 0.0))) == 0
+
+
+def test_every_recording_meets_the_same_wrong_robots() -> None:
+    first, second = (drawn_parameter_errors(robot(0.05, 0.005)) for _ in range(2))
+    np.testing.assert_array_equal(first, second)
