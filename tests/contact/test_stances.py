@@ -7,7 +7,7 @@ import pytest
 
 from plantar.contact.phases import SUPPORTS, detect_contact
 from plantar.contact.reasons import TIPPING, LeftOut, Reason
-from plantar.contact.stances import stances_of
+from plantar.contact.stances import stances_of, without_rolling
 
 PERIOD, WEIGHT = 0.01, 600.0
 
@@ -69,3 +69,32 @@ def test_leaving_out_gives_a_new_contact_and_keeps_the_first_reason() -> None:
         LeftOut(Reason.OUTLIER, "roll").text
         == "outlier: the roll torque is far from its model for a short time"
     )
+
+
+def test_a_long_stance_before_the_first_step_counts_as_several() -> None:
+    force = np.concatenate([np.full(round(6.0 / PERIOD), WEIGHT), np.full(100, -20.0), steps(1.0, 6)])
+    stances = stances_of(contact_of(force), force, WEIGHT, PERIOD)
+    assert stances is not None
+    first = stances.number[: round(6.0 / PERIOD)]
+    assert list(np.unique(first)) == [0, 1, 2]
+    assert stances.count == 3 + 6
+
+
+def test_what_rolls_on_the_outline_at_either_end_belongs_to_no_stance() -> None:
+    force = steps(1.0, 6)
+    stances = stances_of(contact_of(force), force, WEIGHT, PERIOD)
+    assert stances is not None
+    sole = np.array([[0.1, 0.05], [-0.1, 0.05], [-0.1, -0.05], [0.1, -0.05]])
+    rows = np.flatnonzero(stances.number == 2)
+    cop = np.zeros((len(force), 2))
+    cop[rows[:5], 0] = -0.099  # the heel strikes
+    cop[rows[-3:]] = np.nan  # too light for a centre of pressure
+    cop[rows[40:45], 0] = 0.099  # in the middle of a stance the toe is loaded, and nothing is cut
+    flat = without_rolling(stances, cop, sole)
+    assert list(np.flatnonzero(flat.number == 2)) == list(rows[5:-3])
+    others = stances.number != 2
+    assert np.array_equal(flat.number[others], stances.number[others])
+    assert np.array_equal(flat.weight, stances.weight)
+    cop[rows] = [-0.099, 0.0]  # a foot that stays on its heel keeps all but a tenth at either end
+    kept = np.flatnonzero(without_rolling(stances, cop, sole).number == 2)
+    assert len(kept) == len(rows) - 2 * int(0.1 * len(rows))

@@ -11,6 +11,7 @@ from biped import TRUTH, Motion, record, sway
 from biped_robot import FEET
 from feet_trials import AXES, PUNCTUAL, noisy
 from plantar.feet.identify import identify_feet
+from plantar.logs.motion_log import MotionLog
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
 
@@ -52,3 +53,27 @@ def test_a_spring_that_does_not_stiffen_is_not_widened(robot: RobotModel) -> Non
     ]
     assert len(shares) == 4
     assert np.median(shares) == 0.0
+
+
+def lifted(log: MotionLog) -> MotionLog:
+    """The left foot leaves the floor for a second in the middle, and lands with another torque zero."""
+    middle = 0.5 * (log.time[0] + log.time[-1])
+    away, later = np.abs(log.time - middle) < 0.5, log.time > middle
+    changed = {}
+    for part in ("force", "torque"):
+        for axis in "xyz":
+            name = f"wrench.left.{part}.{axis}"
+            moved = 6.0 * later if (part, axis) == ("torque", "y") else 0.0
+            changed[name] = np.where(away, 0.0, log.columns[name] + moved)
+    return log.with_columns(changed)
+
+
+def test_a_foot_put_down_anew_is_widened_by_what_its_zeros_do(robot: RobotModel) -> None:
+    log = noisy(record(sway("sway_3", 3, duration=40.0)), 3)
+    usual, found = (identify_feet(robot, [one], settings=SPRING_AND_DAMPER) for one in (log, lifted(log)))
+    shares = {(each.foot, each.axis, each.name): each.variance_shares for each in found.diagnosis}
+    assert shares["left", "pitch", "stiffness"]["zeros of stances"] > 0
+    assert "zeros of stances" not in shares["right", "pitch", "stiffness"]
+    assert not any("zeros of stances" in each.variance_shares for each in usual.diagnosis)
+    low, high = found.parameter("left", "pitch", "stiffness").interval95
+    assert low < TRUTH["left", "pitch"].stiffness < high
