@@ -1,6 +1,7 @@
 """How often the 95 % intervals of K and C cover the truth, over noise seeds, presets of the twin, and two robots.
 
     python benchmarks/coverage.py --robots hrp2 talos --presets ideal sensors realistic --seeds 8
+    python benchmarks/coverage.py --presets sensors realistic plain_log --motions Walk8_1 Walk12_1 Walk16_1 --others
 
 One rollout a motion, preset and robot; the sensors are drawn anew for every seed. Of z the sum of both compliances is
 scored, which is what any log with moving weight shows, and each foot's where the result separates them. The truth is
@@ -28,6 +29,7 @@ from plantar.feet.settings import FeetSettings
 from plantar.motions.campaign import FIT
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
+from plantar.robot.uncertainty import EXACT
 from plantar.twin import PAPER, play_all
 from plantar.twin.bush import Feet
 from plantar.twin.play import planned, rolled
@@ -66,6 +68,7 @@ def main() -> None:
     )
     parser.add_argument("--offset", default="per-motion")
     parser.add_argument("--model", default="auto")
+    parser.add_argument("--exact", action="store_true", help="tell plantar that the robot file is exact")
     chosen = parser.parse_args()
     settings = FeetSettings(offset=chosen.offset, model=chosen.model)
     every: Table = defaultdict(list)
@@ -78,6 +81,7 @@ def main() -> None:
         for name in chosen.robots:
             make, bushes = ROBOTS[name]
             robot = make(Path(folder))
+            robot = replace(robot, uncertainty=EXACT) if chosen.exact else robot
             for preset in chosen.presets:
                 started = time.perf_counter()
                 campaigns = play_all(
