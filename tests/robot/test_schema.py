@@ -115,7 +115,7 @@ def test_what_is_wrong_is_named(tmp_path: Path, change: Change, expected: list[s
 
 
 def test_uncertainty_has_defaults_and_takes_what_is_given(tmp_path: Path) -> None:
-    usual = make_robot(tmp_path).uncertainty
+    usual = make_robot(tmp_path, uncertainty={}).uncertainty
     assert (usual.wrench_gain, usual.bush_position, usual.between_recordings) == (0.01, 0.003, 0.0)
     given = make_robot(tmp_path, uncertainty={"bush_position": 0.02, "imu_mount": 0}).uncertainty
     assert (given.bush_position, given.imu_mount, given.wrench_gain) == (0.02, 0.0, 0.01)
