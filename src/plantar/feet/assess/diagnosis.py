@@ -11,6 +11,7 @@ from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.systematic import Cause
 from plantar.results.feet import Diagnosis, Parameter
 
+ZEROS_OF_STANCES = "zeros of stances"
 REMEDY = {
     "noise": "record the same motion for longer: four times as long halves the interval",
     "delay": "add a recording of arm sweeps at 0.3 to 1 Hz without an operator: it shows the force sensors' delay",
@@ -21,14 +22,14 @@ REMEDY = {
     "yaw torque zero": "zero the force sensors with the feet in the air before recording",
     "between walks": "add walks: five or more show by themselves how much they differ",
     "ends of stances": "walk with longer stances, or stand and sway: landing and lifting disturb the fit",
-    "zeros of stances": "keep the foot on the floor through a recording: put down again, it lands with another zero",
+    ZEROS_OF_STANCES: "keep the foot on the floor through a recording: put down again, it lands with another zero",
     "memory in stances": "add a recording of standing and swaying: short steps hardly separate spring and hysteresis",
     "hardening": "record larger motions, or use --model hardening: the spring stiffens, which this model leaves out",
     "model": "more of the same will not help: the model does not fit the rubber; try --model auto or other motions",
     "excitation": "use larger motions: twice the amplitude halves the interval",
 }
 # Causes that no more of the same motion makes smaller: the advice against them replaces the axis' own.
-OTHER_MOTION_HELPS = ("delay", "lever", "hardening", "yaw torque zero", "zeros of stances", "force gain")
+OTHER_MOTION_HELPS = ("delay", "lever", "hardening", "yaw torque zero", ZEROS_OF_STANCES, "force gain")
 MODEL_SHARE = 10.0  # times the white deviation: residuals this coloured are the model's, not noise
 
 
@@ -70,5 +71,8 @@ def advised(rows: Sequence[Parameter], diagnosis: Sequence[Diagnosis]) -> list[P
         each = limits.get((row.foot, row.axis, row.name))
         if row.verdict != "usable" and each and each.limit in OTHER_MOTION_HELPS:
             row = replace(row, reason=f"{row.reason}; nearly all of it from {each.limit}", advice=each.advice)
+        elif row.verdict == "unidentifiable" and each and ZEROS_OF_STANCES in each.variance_shares:
+            anew = "the foot was lifted and put down again, each time with another zero"
+            row = replace(row, reason=f"{row.reason}; {anew}", advice=REMEDY[ZEROS_OF_STANCES])
         found.append(row)
     return found
