@@ -85,7 +85,7 @@ def _with_axis(found: FootFit, ready: PreparedLogs, fit: AxisFit) -> FootFit:
     scores, predictions = score_axis(ready.recordings, wide)
     rows = axis_rows(wide, ready.fitted, predictions, scores)
     limits = diagnose_axis(fit, wide, causes, rows)
-    faults = data_faults(ready.fitted, fit.foot)
+    faults = data_faults(ready.fitted, fit)
     return FootFit(
         fits=[*found.fits, wide],
         parameters=[*found.parameters, *doubted(advised(rows, limits), faults)],

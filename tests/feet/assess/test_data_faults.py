@@ -9,6 +9,7 @@ import pytest
 from biped import record, sway
 from feet_trials import PUNCTUAL, noisy
 from plantar.feet.assess.data_faults import UNMENDED, data_faults, doubted
+from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.identify import fit_prepared
 from plantar.feet.prepare import PreparedLogs, prepare_all
 from plantar.notes import Note
@@ -40,6 +41,8 @@ def test_a_fault_takes_usable_away_and_is_the_reason(
 
 
 def test_what_was_put_right_or_is_only_said_takes_nothing_away(ready: PreparedLogs) -> None:
+    fit = fit_axis(ready.fitted, "left", "pitch", PUNCTUAL)
+    assert fit is not None
     for note in (Note("spikes", "warning", "bridged"), Note("sign", "info", "looks odd")):
-        assert data_faults(with_note(ready, note).fitted, "left") == []
+        assert data_faults(with_note(ready, note).fitted, fit) == []
     assert doubted([], [Note("sign", "warning", "reversed")]) == []

@@ -5,24 +5,23 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from plantar.feet.fit.axis import AxisFit
+from plantar.feet.fit.bush_place import FAR
 from plantar.feet.recording import Recording
 from plantar.notes import Note
 from plantar.results.feet import Parameter
 
-# Codes of warnings on a log's signs, frames and times. What plantar corrects or leaves out is not among them.
-UNMENDED = frozenset({"sign", "force_leans", "imu_turned", "imu_late", "path_joint_missing"})
+# Codes of warnings on a log's signs, frames, times and full scales, and on a bush far from its place.
+UNMENDED = frozenset(
+    {"sign", "force_leans", "imu_turned", "imu_late", "path_joint_missing", "stuck_channel", FAR}
+)
 ADVICE = "mend what the warning names, or leave this log out"
 
 
-def data_faults(recordings: Sequence[Recording], foot: str) -> list[Note]:
-    """The warnings on logs in which this foot has used samples."""
-    return [
-        note
-        for recording in recordings
-        if recording.used(foot).any()
-        for note in recording.notes
-        if note.severity == "warning" and note.code in UNMENDED
-    ]
+def data_faults(recordings: Sequence[Recording], fit: AxisFit) -> list[Note]:
+    """The warnings on logs in which this foot has used samples, and on its fit."""
+    seen = [note for recording in recordings if recording.used(fit.foot).any() for note in recording.notes]
+    return [note for note in (*seen, *fit.notes) if note.severity == "warning" and note.code in UNMENDED]
 
 
 def doubted(rows: Sequence[Parameter], faults: Sequence[Note]) -> list[Parameter]:

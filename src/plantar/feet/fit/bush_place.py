@@ -23,7 +23,8 @@ from plantar.robot.model import RobotModel
 
 GUESSED = 0.02  # m: what a guess without a spread of its own may be off by
 CLEAR = 3.0  # deviations of prior and data together, beyond which the robot file's place is called wrong
-FARTHEST = np.array([0.1, 0.1, 0.5])  # m, m, rad: half a sole, and more than anybody mounts a sensor askew
+FARTHEST = np.array([0.05, 0.05, 0.12])  # m, m, rad: what is still corrected without doubting all the rest
+FAR = "bush_place_far"
 TURN_WORTH_SAYING = 0.02  # rad: of a mount, likewise
 WORTH_SAYING = 0.005  # m: a centre that is nearer to its place is within what drawings get wrong
 SINGULAR = 1e6  # condition of the fit beyond which the motions do not show the place
@@ -109,8 +110,6 @@ def _drawn(found: Array, covariance: Array, spreads: Array) -> tuple[Array, Arra
     prior = np.diag(spreads**2)
     keeps = prior @ np.linalg.pinv(prior + covariance)
     drawn = keeps @ found
-    if (np.abs(drawn) > FARTHEST).any():  # no place of a bush: something else follows the load
-        return np.zeros(3), prior
     return drawn, keeps @ covariance
 
 
@@ -137,7 +136,7 @@ def _said(fit: AxisFit, place: Array, std: Array, spread: PlaceSpread) -> list[N
         )
     if not told:
         return []
-    text = (
-        f"{fit.foot} {fit.axis}: the torques turn {'; '.join(told)} (95 %): corrected; check the robot file"
-    )
-    return [Note("bush_place", "warning", text)]
+    text = f"{fit.foot} {fit.axis}: the torques turn {'; '.join(told)} (95 %): corrected"
+    if (np.abs(place) > FARTHEST).any():
+        return [Note(FAR, "warning", f"{text}, but that is far for an oversight; check the robot file")]
+    return [Note("bush_place", "warning", f"{text}; check the robot file")]

@@ -23,6 +23,7 @@ CARRIED = 0.5  # of the weight: with less on its feet, the robot hangs or its se
 SCATTER = 0.02  # of the weight, by which a window's sum may be off: accelerations, zeros, a hand on the robot
 ALIKE = 3.0  # deviations of a gain, by which a robot's force sensors differ where one of them has a fault
 SURELY_ALIKE = 1e-4  # share: of sensors without any gain error, and a prior that stays finite
+MARGIN = 1.03  # of the share, since the weight shows it to some hundredths only
 NORMAL95 = 1.96  # deviations that a 95 % interval reaches
 LEAST_DEVIATION = 0.005  # of the weight: zeros of a few newtons
 BEYOND_DOUBT = 3.0  # deviations of what the robot file allows for gains and masses
@@ -57,14 +58,15 @@ def force_gain_errors(robot: RobotModel, recordings: Sequence[Recording]) -> dic
         for name, gain in zip(robot.feet, inverse, strict=True)
         if gain > 0
     }
-    return {name: error for name, error in found.items() if abs(error.share) > BEYOND_DOUBT * deviation}
+    return {name: error for name, error in found.items() if abs(error.share) > deviation}
 
 
 def force_gain_notes(robot: RobotModel, errors: Mapping[str, GainError]) -> list[Note]:
-    """One warning on the feet whose forces do not agree with the weight; none where all do."""
-    if not errors:
+    """One warning on the feet whose forces do not agree with the weight beyond doubt; none where all do."""
+    sure = {foot: each for foot, each in errors.items() if abs(each.share) > BEYOND_DOUBT * each.deviation}
+    if not sure:
         return []
-    feet = " and ".join(f"the {foot} foot's {100 * error.share:+.0f} %" for foot, error in errors.items())
+    feet = " and ".join(f"the {foot} foot's {100 * error.share:+.0f} %" for foot, error in sure.items())
     text = (
         f"vertical forces do not add up to the URDF's {robot.mass:.1f} kg: {feet}. Either the URDF's masses are wrong, "
         "or the force sensors' gains, which stiffness and damping follow: their intervals hold both. Weigh the robot"
@@ -80,7 +82,7 @@ def force_gain_causes(fit: AxisFit, errors: Mapping[str, GainError]) -> list[Cau
     if fit.foot not in errors:
         return []
     share = errors[fit.foot].share
-    return [Cause("force gain", fit.values, abs(share / (1 + share)) / NORMAL95)]
+    return [Cause("force gain", fit.values, MARGIN * abs(share / (1 + share)) / NORMAL95)]
 
 
 def _windows(recording: Recording, weight: float) -> Array:
