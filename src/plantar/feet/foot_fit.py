@@ -17,7 +17,7 @@ from plantar.feet.exclusion.outliers import outlier_masks
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.fit.bush_place import PlaceSpread
-from plantar.feet.fit.force_gain import force_gain_causes
+from plantar.feet.fit.force_gain import force_gain_causes, force_gain_notes
 from plantar.feet.fit.robot_causes import robot_causes
 from plantar.feet.fit.systematic import inflated, systematic_causes
 from plantar.feet.internal_error import gives_up, internal_errors
@@ -85,7 +85,8 @@ def _with_axis(found: FootFit, ready: PreparedLogs, fit: AxisFit) -> FootFit:
     scores, predictions = score_axis(ready.recordings, wide)
     rows = axis_rows(wide, ready.fitted, predictions, scores)
     limits = diagnose_axis(fit, wide, causes, rows)
-    faults = data_faults(ready.fitted, fit)
+    gain = {foot: error for foot, error in ready.gain_errors.items() if foot == fit.foot}
+    faults = [*data_faults(ready.fitted, fit), *force_gain_notes(ready.robot, gain)]
     return FootFit(
         fits=[*found.fits, wide],
         parameters=[*found.parameters, *doubted(advised(rows, limits), faults)],

@@ -23,7 +23,6 @@ CARRIED = 0.5  # of the weight: with less on its feet, the robot hangs or its se
 SCATTER = 0.02  # of the weight, by which a window's sum may be off: accelerations, zeros, a hand on the robot
 ALIKE = 3.0  # deviations of a gain, by which a robot's force sensors differ where one of them has a fault
 SURELY_ALIKE = 1e-4  # share: of sensors without any gain error, and a prior that stays finite
-MARGIN = 1.03  # of the share, since the weight shows it to some hundredths only
 NORMAL95 = 1.96  # deviations that a 95 % interval reaches
 LEAST_DEVIATION = 0.005  # of the weight: zeros of a few newtons
 BEYOND_DOUBT = 3.0  # deviations of what the robot file allows for gains and masses
@@ -34,6 +33,11 @@ class GainError(NamedTuple):
 
     share: float
     deviation: float
+
+    @property
+    def sure(self) -> bool:
+        """Whether the robot file's uncertainty cannot explain it."""
+        return abs(self.share) > BEYOND_DOUBT * self.deviation
 
 
 def force_gain_errors(robot: RobotModel, recordings: Sequence[Recording]) -> dict[str, GainError]:
@@ -63,7 +67,7 @@ def force_gain_errors(robot: RobotModel, recordings: Sequence[Recording]) -> dic
 
 def force_gain_notes(robot: RobotModel, errors: Mapping[str, GainError]) -> list[Note]:
     """One warning on the feet whose forces do not agree with the weight beyond doubt; none where all do."""
-    sure = {foot: each for foot, each in errors.items() if abs(each.share) > BEYOND_DOUBT * each.deviation}
+    sure = {foot: each for foot, each in errors.items() if each.sure}
     if not sure:
         return []
     feet = " and ".join(f"the {foot} foot's {100 * error.share:+.0f} %" for foot, error in sure.items())
@@ -81,8 +85,9 @@ def force_gain_causes(fit: AxisFit, errors: Mapping[str, GainError]) -> list[Cau
     """
     if fit.foot not in errors:
         return []
-    share = errors[fit.foot].share
-    return [Cause("force gain", fit.values, MARGIN * abs(share / (1 + share)) / NORMAL95)]
+    error = errors[fit.foot]
+    reach = abs(error.share / (1 + error.share)) + (0.0 if error.sure else error.deviation)
+    return [Cause("force gain", fit.values, reach / NORMAL95)]
 
 
 def _windows(recording: Recording, weight: float) -> Array:
