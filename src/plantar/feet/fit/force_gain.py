@@ -24,7 +24,7 @@ SCATTER = 0.02  # of the weight, by which a window's sum may be off: acceleratio
 ALIKE = 3.0  # deviations of a gain, by which a robot's force sensors differ where one of them has a fault
 SURELY_ALIKE = 1e-4  # share: of sensors without any gain error, and a prior that stays finite
 NORMAL95 = 1.96  # deviations that a 95 % interval reaches
-LEAST_DEVIATION = 0.005  # of the weight: zeros of a few newtons
+LEAST_DEVIATION = 0.02  # of the weight: what a hand on the robot may carry of it through whole logs
 BEYOND_DOUBT = 3.0  # deviations of what the robot file allows for gains and masses
 
 
