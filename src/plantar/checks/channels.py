@@ -13,7 +13,7 @@ from plantar.notes import Finding
 from plantar.robot.model import Foot, RobotModel
 from plantar.signals.held import FEWEST, SHORTEST, can_be_held, held_in
 from plantar.signals.resampling import GAP_PERIODS
-from plantar.signals.segments import runs
+from plantar.signals.segments import longest_run, runs
 
 TURNED = 0.02  # rad by which a joint moves, whose position stands still
 STEPS = 5.0  # of a coarse encoder: likewise
@@ -142,7 +142,7 @@ def _stuck(sensor: str, log: MotionLog) -> Iterator[Finding]:
     for column in columns:
         held = held_in(log, column)
         if held.any():
-            longest = max(runs(held), key=lambda run: run.stop - run.start)
+            longest = longest_run(held)
             together[longest.start, longest.stop - 1].append((column, float(np.mean(held))))
     for (start, last), found in together.items():
         stopped = [column for column, _ in found]

@@ -18,7 +18,7 @@ from plantar.conventions import GRAVITY, Array, Mask
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding
 from plantar.robot.model import RobotModel
-from plantar.signals.segments import runs
+from plantar.signals.segments import longest_run
 
 LOADED = 0.1  # of the weight: a foot that carries more holds its sole still
 LEAST_ANGLE = 0.01  # rad: less harms no fit of bushes that turn by degrees
@@ -105,7 +105,7 @@ def _encoder_step(values: Array) -> float:
 def _longest_at_one_value(values: Array, known: Mask) -> slice:
     """The longest stretch of known samples that repeat one value."""
     same = np.concatenate([[False], np.diff(values) == 0]) & known
-    return max(runs(same), key=lambda run: run.stop - run.start, default=slice(0, 0))
+    return longest_run(same)
 
 
 def _own_angle(stand: _Stand, name: str, foot: str) -> float | None:

@@ -11,7 +11,7 @@ from plantar.conventions import GRAVITY, Array, Mask
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding
 from plantar.signals.filters import differentiate, low_pass
-from plantar.signals.segments import runs
+from plantar.signals.segments import longest_run
 
 WRONG_ANGLE = np.radians(25)  # between the accelerometer's up and the quaternion's: more is not noise
 RIGHT_ANGLE = np.radians(8)
@@ -145,7 +145,7 @@ def _late(name: str, log: MotionLog, orientation: Array) -> Iterator[Finding]:
     rates = log.angular_velocity(name)
     whole: Mask = np.asarray(np.isfinite(np.column_stack([orientation, rates])).all(axis=1))
     whole[1:] &= np.diff(log.time) < 1.5 * period
-    run = max(runs(whole), key=lambda part: part.stop - part.start, default=slice(0, 0))
+    run = longest_run(whole)
     if run.stop - run.start < 10 * edge:
         return
     attitude = Rotation.from_quat(orientation[run], scalar_first=True)

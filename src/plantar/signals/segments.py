@@ -14,6 +14,11 @@ def runs(valid: Mask) -> list[slice]:
     return [slice(int(start), int(stop)) for start, stop in edges.reshape(-1, 2)]
 
 
+def longest_run(valid: Mask) -> slice:
+    """The longest of `runs`, empty where there is none."""
+    return max(runs(valid), key=lambda run: run.stop - run.start, default=slice(0, 0))
+
+
 def run_numbers(valid: Mask) -> NDArray[np.intp]:
     """The place among `runs` of each sample, (N,), -1 outside."""
     number = np.full(len(valid), -1, dtype=np.intp)

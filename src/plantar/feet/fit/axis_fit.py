@@ -81,22 +81,19 @@ def _fitted(
     steps = blocks[0].stances is not None and not shared
     share = StanceProblem.drawn_together(blocks).own_share if steps else 0.0
     fitted = [recording for recording in recordings if recording.name in linear.offsets]
-    beside = _of_linear(foot, axis, linear, None, "")
-    if (
-        place is not None and not steps
-    ):  # what a wrong place adds to the torque must not look like another model
-        beside = about_its_place(beside, fitted, place, shared)
     data_sets = [data_set_of(each, foot, axis, share) for each in fitted]
-    if not steps:
+    if place is not None and not steps:
+        # What a wrong place adds to the torque must not look like another model.
+        spring = about_its_place(_of_linear(foot, axis, linear, None, ""), fitted, place, shared)
         data_sets = [
-            replace(data_set, torque=data_set.torque - load_torque(each, beside))
+            replace(data_set, torque=data_set.torque - load_torque(each, spring))
             for data_set, each in zip(data_sets, fitted, strict=True)
         ]
     cutoff = fitted[0].cutoff
 
     def found(fit: ModelFit, choice: ModelChoice | None, reason: str) -> AxisFit:
-        beside = _of_linear(foot, axis, linear, choice, reason)
-        return _about_its_centre(beside, fit, fitted, share) if steps else _with_model(beside, fit)
+        spring = _of_linear(foot, axis, linear, choice, reason)
+        return _about_its_centre(spring, fit, fitted, share) if steps else _with_model(spring, fit)
 
     if asked is not None:
         return found(fit_model(asked, data_sets, cutoff, shared_offset=shared), None, "asked for")

@@ -25,8 +25,8 @@ GUESSED = 0.02  # m: what a guess without a spread of its own may be off by
 CLEAR = 3.0  # deviations of prior and data together, beyond which the robot file's place is called wrong
 FARTHEST = np.array([0.05, 0.05, 0.12])  # m, m, rad: what is still corrected without doubting all the rest
 FAR = "bush_place_far"
-TURN_WORTH_SAYING = 0.02  # rad: of a mount, likewise
 WORTH_SAYING = 0.005  # m: a centre that is nearer to its place is within what drawings get wrong
+TURN_WORTH_SAYING = 0.02  # rad: of a mount, likewise
 SINGULAR = 1e6  # condition of the fit beyond which the motions do not show the place
 
 
@@ -109,8 +109,7 @@ def _drawn(found: Array, covariance: Array, spreads: Array) -> tuple[Array, Arra
     """Coefficients (3,) drawn to zero by their prior, and their covariance (3, 3)."""
     prior = np.diag(spreads**2)
     keeps = prior @ np.linalg.pinv(prior + covariance)
-    drawn = keeps @ found
-    return drawn, keeps @ covariance
+    return keeps @ found, keeps @ covariance
 
 
 def _said(fit: AxisFit, place: Array, std: Array, spread: PlaceSpread) -> list[Note]:
@@ -127,7 +126,7 @@ def _said(fit: AxisFit, place: Array, std: Array, spread: PlaceSpread) -> list[N
         told.append(f"about a point {abs(x):.0f} ± {of_x:.0f} mm {where} of {key}.bush and {key}.wrench")
     if above:
         told.append(
-            f"{abs(z):.0f} ± {of_z:.0f} mm {'above' if z > 0 else 'below'} {key}.bush and {key}.wrench"
+            f"about a point {abs(z):.0f} ± {of_z:.0f} mm {'above' if z > 0 else 'below'} {key}.bush and {key}.wrench"
         )
     if turned:
         degrees = np.degrees([1e-3 * abs(yaw), 1e-3 * of_yaw])

@@ -41,7 +41,7 @@ class GainError(NamedTuple):
 
 
 def force_gain_errors(robot: RobotModel, recordings: Sequence[Recording]) -> dict[str, GainError]:
-    """By foot, where its sensor reads more or less than the weight by more than the robot file's uncertainty explains.
+    """By foot, where its sensor reads more or less than the weight by more than one deviation of what may be.
 
     Gains 1/h are those for which the feet's forces add up to the weight, Σ h_i f_i = m g, in windows of all recordings;
     a prior holds the sensors alike where the weight does not move.

@@ -10,7 +10,7 @@ from plantar.estimation import fit_blocks
 from plantar.estimation.stance_least_squares import FEWEST_RECORDINGS, jackknife
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.regression_data import blocks_of
-from plantar.feet.fit.systematic import Cause
+from plantar.feet.fit.systematic import Cause, share_of_both
 from plantar.feet.recording import Recording
 from plantar.robot.uncertainty import Uncertainty
 
@@ -39,9 +39,7 @@ def _between_recordings(
     if blocks[0].stances is not None or shared:
         return []
     if len(blocks) < FEWEST_RECORDINGS:
-        usual = np.zeros(len(fit.values))
-        usual[:2] = np.abs(fit.values[:2])
-        return [Cause("between recordings", usual, prior / np.sqrt(len(blocks)))] if prior else []
+        return [share_of_both("between recordings", fit, prior / np.sqrt(len(blocks)))] if prior else []
     refits = np.array(
         [fit_blocks([*blocks[:place], *blocks[place + 1 :]]).values for place in range(len(blocks))]
     )

@@ -20,13 +20,16 @@ from plantar.feet.sensors.sensor_delay import SensorDelay
 from plantar.signals.filters import differentiate
 from plantar.signals.segments import run_numbers
 
-SUSPECTED = 2.0  # deviations of a term that the law leaves out
+SUSPECTED = 2.0  # deviations of a term that the model leaves out
 WALKS_DIFFER = 0.035  # share of K by which walks of one robot differ, beyond what their own stances show
 STANCE_END = 0.1  # of a stance at either end, without which a fit over stances is made again
 SLOPE_UNSURE = (
     0.02  # of the slope of an element found in short stances: what its share of the spring is unsure by
 )
 FEWEST_STANDS = 2  # stances of a foot in one recording, for their zeros to differ
+BOUND = 1 / np.sqrt(
+    3
+)  # deviation of what lies somewhere within its bounds (GUM, type B), as a share of these
 SINGULAR = 1e6  # condition of the fit beyond which nothing moves enough to tell
 KNOWN = 0.2  # of the stiffness: less sure beside such a term, the motions cannot tell one from the other
 
@@ -46,6 +49,13 @@ class Cause:
         return np.abs(self.effect) * self.std
 
 
+def share_of_both(name: str, fit: AxisFit, share: float) -> Cause:
+    """A cause that makes stiffness and damping uncertain by a share of themselves."""
+    effect = np.zeros(len(fit.values))
+    effect[:2] = np.abs(fit.values[:2])
+    return Cause(name, effect, share)
+
+
 def systematic_causes(
     fit: AxisFit,
     recordings: Sequence[Recording],
@@ -53,8 +63,9 @@ def systematic_causes(
     vertical: VerticalStiffness,
     shared: bool,
 ) -> list[Cause]:
-    """The wrenches' delay, the lever of the compressed slide, a hardening that the law leaves out, and for roll the
-    zero of the yaw torque."""
+    """The wrenches' delay and the moment arm of the compressed slide; of feet that step the ends of stances, what walks
+    differ by and what a memory may share with the spring; of others a hardening that the model leaves out, zeros that
+    differ between stances, and for roll the zero of the yaw torque."""
     foot, column = fit.foot, ROTATIONAL_AXES.index(fit.axis)
     blocks = blocks_of(recordings, foot, fit.axis, drift=not shared, fit=fit)
     by_name = {recording.name: recording for recording in recordings}
@@ -91,10 +102,7 @@ def systematic_causes(
 
 
 def _ends_of_stances(blocks: Sequence[Block]) -> Cause:
-    """What a sole that is not flat at the ends of stances may do: at most what the fit moves by without these samples.
-
-    A bound either way is a deviation of the bound over √3 (GUM, type B).
-    """
+    """What a sole that is not flat at the ends of stances may do: at most what the fit moves by without them."""
     inner = []
     for block in blocks:
         assert block.stances is not None, "blocks of a foot that steps"
@@ -107,16 +115,14 @@ def _ends_of_stances(blocks: Sequence[Block]) -> Cause:
     # Fewer samples move a fit by chance too, by what deviations differ (J. A. Hausman, Econometrica 46, 1978).
     chance = np.maximum(less.std**2 - whole.std**2, 0.0)
     effect = np.sign(moved) * np.sqrt(np.maximum(moved**2 - chance, 0.0))
-    return Cause("ends of stances", effect, 1 / np.sqrt(3))
+    return Cause("ends of stances", effect, BOUND)
 
 
 def _between_walks(fit: AxisFit, recordings: int) -> list[Cause]:
     """By how much another walk may differ, where there are too few for their scatter to say it."""
     if recordings >= FEWEST_RECORDINGS:
         return []
-    effect = np.zeros(len(fit.values))
-    effect[:2] = np.abs(fit.values[:2])
-    return [Cause("between walks", effect, WALKS_DIFFER / np.sqrt(recordings))]
+    return [share_of_both("between walks", fit, WALKS_DIFFER / np.sqrt(recordings))]
 
 
 def _shared_slope(fit: AxisFit) -> list[Cause]:
@@ -151,7 +157,7 @@ def _zeros_of_stances(
         kept = [] if block.nuisance is None else [block.nuisance]
         freed.append(replace(block, nuisance=np.column_stack([*kept, own - own.mean(axis=0)])))
     effect = fit_blocks(freed).values - fit_blocks(blocks).values
-    return [Cause("zeros of stances", effect, 1 / np.sqrt(3))]
+    return [Cause("zeros of stances", effect, BOUND)]
 
 
 def _suspected_hardening(fit: AxisFit, blocks: Sequence[Block], shared: bool) -> list[Cause]:

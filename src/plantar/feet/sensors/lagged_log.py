@@ -12,7 +12,7 @@ from plantar.feet.sensors.newton_euler import BASE_ROWS, SLOW, with_gyroscope
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
 from plantar.signals.filters import low_pass
-from plantar.signals.segments import runs
+from plantar.signals.segments import longest_run
 
 SEARCHED = 0.25  # s: later sensors are no sensors of the same motion
 STEP = 0.05  # s: half of it is a small phase of what is fastest below, and within reach of a refinement
@@ -34,7 +34,7 @@ def lagged_log(robot: RobotModel, log: MotionLog) -> LagGrid | None:
     lags: Array = thin.period * steps.astype(np.float64)
     motions = [inertial_motion(robot, thin, CUTOFF, late) for late in lags]
     known = np.isfinite(readings).all(axis=(0, 2)) & np.all([motion.finite for motion in motions], axis=0)
-    longest = max(runs(known), key=lambda run: run.stop - run.start, default=slice(0, 0))
+    longest = longest_run(known)
     inner = slice(longest.start + steps[-1], longest.stop - steps[-1])
     if (inner.stop - inner.start) * thin.period < 2 * WINDOW:
         return None

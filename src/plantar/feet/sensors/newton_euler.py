@@ -18,7 +18,7 @@ from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.robot.model import RobotModel
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.orientation import attitude
-from plantar.signals.segments import runs
+from plantar.signals.segments import longest_run
 
 CUTOFF = 8.0  # Hz: above it differentiated encoders are noise
 KEPT_RATE = 67.0  # Hz of the samples that are kept: the cutoff is far below
@@ -75,9 +75,9 @@ def newton_euler_residual(robot: RobotModel, log: MotionLog) -> NewtonEulerResid
     wrenches = np.hstack([foot.wrench.sign * log.wrench(foot.wrench.name) for foot in robot.feet.values()])
     whole = motion.finite & np.isfinite(wrenches).all(axis=1)
     edge = round(EDGE / log.period)
-    longest = _longest(whole & ~_struck(robot, wrenches, log.period))
+    longest = longest_run(whole & ~_struck(robot, wrenches, log.period))
     if (longest.stop - longest.start) * log.period < SHORTEST + 2 * EDGE:
-        longest = _longest(whole)
+        longest = longest_run(whole)
     if longest.stop - longest.start < 4 * edge + 400:
         return None
     equation, parameters = Equation(robot.floating_model), model_parameters(robot.floating_model)
@@ -128,10 +128,6 @@ def _struck(robot: RobotModel, wrenches: Array, period: float) -> Mask:
     return np.asarray(np.any(shocks, axis=0))
 
 
-def _longest(valid: Mask) -> slice:
-    return max(runs(valid), key=lambda run: run.stop - run.start, default=slice(0, 0))
-
-
 def _longest_closed(measured: Array, rate: Array, predicted: Array, period: float) -> slice:
     """The longest segment in which nobody pushes and nothing strikes: there the forces follow from the prediction."""
     width = round(WINDOW / period)
@@ -142,4 +138,4 @@ def _longest_closed(measured: Array, rate: Array, predicted: Array, period: floa
         power = float(np.mean(np.sum(measured[window] ** 2, axis=1)))
         missing = unexplained(measured[window], rate[window], predicted[window]) / width
         closed[window] = missing < (1 - LEAST_CLOSED) * max(power, usual)
-    return _longest(closed)
+    return longest_run(closed)
