@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from biped import record, sines, sway
 from plantar.checks.imu import check_imu
@@ -53,9 +54,24 @@ def dead(log: MotionLog) -> MotionLog:
     return log.with_columns({GYROSCOPE[2]: np.zeros(len(log))})
 
 
+def turned(log: MotionLog) -> MotionLog:
+    """A gyroscope that is mounted 8 degrees about the vertical beside the orientation's axes."""
+    rates = Rotation.from_rotvec([0.0, 0.0, np.radians(8.0)]).apply(log.stack(GYROSCOPE))
+    return log.with_columns(dict(zip(GYROSCOPE, rates.T, strict=True)))
+
+
+def in_world(log: MotionLog) -> MotionLog:
+    rates = Rotation.from_quat(log.stack(ORIENTATION), scalar_first=True).apply(log.stack(GYROSCOPE))
+    return log.with_columns(dict(zip(GYROSCOPE, rates.T, strict=True)))
+
+
 FAULTS: dict[str, tuple[Callable[[MotionLog], MotionLog], str, bool]] = {
     "degrees per second": (scaled(GYROSCOPE, 180 / np.pi), "degrees", True),
     "a gyroscope of another scale": (scaled(GYROSCOPE, 4.0), "gyroscope_scale", False),
+    "a gyroscope that reads a tenth too much": (scaled(GYROSCOPE, 1.1), "gyroscope_scale", False),
+    "a gyroscope about other axes": (turned, "gyroscope_frame", False),
+    "a gyroscope in the world's axes": (in_world, "gyroscope_frame", False),
+    "an accelerometer that points down": (scaled(ACCELEROMETER, -1.0), "sign", True),
     "a gyroscope axis reversed": (scaled(GYROSCOPE[:1], -1.0), "sign", True),
     "acceleration in g": (scaled(ACCELEROMETER, 1 / 9.80665), "accelerometer_unit", True),
     "acceleration of another scale": (scaled(ACCELEROMETER, 3.0), "accelerometer_unit", False),

@@ -1,0 +1,212 @@
+"""A gyroscope beside the orientation of its IMU: both must tell of the same turns, at the same time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from plantar.checks.quaternions import misread, readings
+from plantar.conventions import GRAVITY, Array, Mask
+from plantar.logs.motion_log import MotionLog
+from plantar.notes import Finding
+from plantar.signals.filters import differentiate, low_pass
+from plantar.signals.segments import longest_run
+
+WINDOW = 0.5  # s over which the orientation's turn is compared with the gyroscope's integral
+OVERLAP = 5  # windows begin in each window's time
+LEAST_TURN = np.radians(0.5)  # in one window: smaller ones hold noise
+FEWEST_WINDOWS = 20
+WRONG_TURN, RIGHT_TURN = 0.8, 0.3  # difference of the two turns over the turn itself
+SCALE_OFF, TURNED = 0.05, 0.1  # share, rad: of a gyroscope, damping is off by as much
+SURE = 6.0  # deviations
+FOLLOWED = 0.25  # share of the difference's square that turning one side may leave
+PLANAR = 0.05  # second over first singular value: turns about one axis do not show how the other two lie
+LATE, EXPLAINED = 0.005, 0.1  # s, share: of a delay between gyroscope and orientation
+BAND = 8.0  # Hz, in which it is looked for
+REVERSED = -0.9  # correlation, and slope within a factor of two, of an axis that reads the opposite
+
+
+@dataclass(frozen=True)
+class Turns:
+    """Turns in windows of WINDOW, (n, 3) [rad]: the gyroscope's `integral`, and the orientation's `by_reading`.
+
+    `world`: the orientation's about the world's axes.
+    """
+
+    integral: Array
+    by_reading: Mapping[str, Array]
+    world: Array
+
+    @classmethod
+    def of(cls, log: MotionLog, name: str, orientation: Array) -> Turns | None:
+        """None where the log is too short, or moves too little to tell."""
+        rates = log.angular_velocity(name)
+        stride = max(1, round(WINDOW / log.period))
+        if len(log) < 2 * stride:
+            return None
+        steps = (rates[1:] + rates[:-1]) / 2 * np.diff(log.time)[:, None]
+        total = np.vstack([np.zeros(3), np.cumsum(steps, axis=0)])
+        starts = np.arange(0, len(log) - stride, max(1, stride // OVERLAP))
+        ends = starts + stride
+        whole = np.isfinite(
+            np.column_stack([total[ends] - total[starts], orientation[starts], orientation[ends]])
+        )
+        starts, ends = starts[whole.all(axis=1)], ends[whole.all(axis=1)]
+        if starts.size == 0:
+            return None
+        before, after = readings(orientation[starts]), readings(orientation[ends])
+        by_reading = {reading: (before[reading].inv() * after[reading]).as_rotvec() for reading in before}
+        world = before["as it is"].apply(by_reading["as it is"])
+        found = cls(total[ends] - total[starts], by_reading, world)
+        return found if found.moving.sum() >= FEWEST_WINDOWS else None
+
+    @property
+    def turn(self) -> Array:
+        return self.by_reading["as it is"]
+
+    @cached_property
+    def size(self) -> Array:
+        return np.asarray(np.linalg.norm(self.turn, axis=1))
+
+    @cached_property
+    def moving(self) -> Mask:
+        return np.asarray(self.size > LEAST_TURN)
+
+    @cached_property
+    def apart(self) -> dict[str, float]:
+        """Usual difference of both turns over the turn itself, in each reading of the quaternion."""
+        moving = self.moving
+        return {
+            reading: float(
+                np.median(np.linalg.norm((turn - self.integral)[moving], axis=1) / self.size[moving])
+            )
+            for reading, turn in self.by_reading.items()
+        }
+
+    @property
+    def agree(self) -> bool:
+        """Whether the gyroscope turns as the orientation does, read as the columns say."""
+        return self.apart["as it is"] < RIGHT_TURN
+
+
+def check_gyroscope(name: str, log: MotionLog, orientation: Array, turns: Turns) -> Iterator[Finding]:
+    """Findings about the turns' size first, then their sense, their moments, and the axes that they are about."""
+    moving = turns.moving
+    ratio = float(np.median(np.linalg.norm(turns.integral[moving], axis=1) / turns.size[moving]))
+    where = f"columns 'imu.{name}.angular_velocity.*'"
+    if 30 < ratio < 110:
+        text = f"{where}: {ratio:.0f} times the orientation's rate, which looks like degrees per second (valid: rad/s)"
+        yield Finding("degrees", text, True)
+        return
+    if not 0.5 < ratio < 2:
+        yield Finding(
+            "gyroscope_scale", f"{where}: {ratio:.2g} times the orientation's rate (valid: about 1)"
+        )
+        return
+    if not _upside_down(name, log, orientation):
+        opposite = _reversed_axes(turns.integral, turns.turn)
+        if opposite:
+            names = " and ".join(f"'imu.{name}.angular_velocity.{axis}'" for axis in opposite)
+            text = f"column {names}: turns against the orientation, which the accelerometer's up does not contradict"
+            yield Finding("sign", f"{text} (valid: right-handed about the IMU's axes)", True)
+            return
+    yield from _late(name, log, orientation)
+    if turns.apart["as it is"] < WRONG_TURN:
+        yield from _axes_and_scale(where, turns)
+        return
+    best = min(turns.apart, key=turns.apart.__getitem__)
+    if turns.apart[best] < RIGHT_TURN:
+        yield misread(name, "turns another way than the gyroscope", best)
+    else:
+        text = f"{where}: turns about other axes than the orientation (valid: both in the IMU's own frame)"
+        yield Finding("gyroscope_frame", text)
+
+
+def _axes_and_scale(where: str, turns: Turns) -> Iterator[Finding]:
+    """A gyroscope that reads nearly what the orientation does, but about other axes, or too much or too little."""
+    # A constant bias is no fault: the fit takes it off.
+    integral, turn, world = (side - side.mean(axis=0) for side in (turns.integral, turns.turn, turns.world))
+    apart, power = float(np.sum((integral - turn) ** 2)), float(np.sum(turn**2))
+    if power == 0 or apart == 0:
+        return
+    if float(np.sum((integral - world) ** 2)) < FOLLOWED * apart:
+        yield Finding("gyroscope_frame", f"{where}: turns about the world's axes (valid: the IMU's own)")
+        return
+    mount, left = Rotation.align_vectors(integral, turn)
+    angle, shown = float(mount.magnitude()), np.linalg.svd(turn, compute_uv=False)
+    if angle > TURNED and left**2 < FOLLOWED * apart and shown[1] > PLANAR * shown[0]:
+        text = f"{where}: turns about axes {np.degrees(angle):.0f} deg beside the orientation's"
+        yield Finding("gyroscope_frame", f"{text} (valid: both in the IMU's own frame)")
+        return
+    scale = float(np.sum(integral * turn)) / power
+    missed = float(np.sum((integral - scale * turn) ** 2))
+    deviation = np.sqrt(missed / power * OVERLAP / turn.size)
+    if abs(scale - 1) > max(SCALE_OFF, SURE * deviation):
+        text = f"{where}: {scale:.2f} times the orientation's rate, and damping follows it (valid: 1)"
+        yield Finding("gyroscope_scale", text)
+
+
+def _late(name: str, log: MotionLog, orientation: Array) -> Iterator[Finding]:
+    """Whether orientation and gyroscope tell of the same turn at different times: rates and angles then disagree."""
+    period, edge = log.period, round(0.5 / log.period)
+    rates = log.angular_velocity(name)
+    whole: Mask = np.asarray(np.isfinite(np.column_stack([orientation, rates])).all(axis=1))
+    whole[1:] &= np.diff(log.time) < 1.5 * period
+    run = longest_run(whole)
+    if run.stop - run.start < 10 * edge:
+        return
+    attitude = Rotation.from_quat(orientation[run], scalar_first=True)
+    turned = (attitude[:-1].inv() * attitude[1:]).as_rotvec() / period
+    measured = (rates[run][1:] + rates[run][:-1]) / 2
+    apart = low_pass(measured - turned, period, BAND)[edge:-edge]
+    change = differentiate(low_pass(measured, period, BAND), period)[edge:-edge]
+    apart = apart - apart.mean(axis=0)
+    power, total = float(np.sum(change**2)), float(np.sum(apart**2))
+    if power == 0 or total == 0:
+        return
+    late = -float(np.sum(apart * change)) / power
+    left = float(np.sum((apart + late * change) ** 2))
+    deviation = np.sqrt(left / power / (6 * BAND * period * len(apart)))
+    if abs(late) > max(LATE, SURE * deviation) and left < (1 - EXPLAINED) * total:
+        later, other = ("gyroscope", "orientation") if late > 0 else ("orientation", "gyroscope")
+        text = f"columns 'imu.{name}.*': the {later} is {1e3 * abs(late):.0f} ms behind the {other} in this motion"
+        cause = "late, or filtered towards the accelerometer; damping is less sure"
+        yield Finding("imu_late", f"{text}: {cause} (valid: both of one moment)")
+
+
+def _reversed_axes(integral: Array, turn: Array) -> str:
+    """The gyroscope's axes that read the opposite; none where one axis agrees with nothing, as in another frame."""
+    opposite = ""
+    for axis, integrated, turned in zip("xyz", integral.T, turn.T, strict=True):
+        if (np.abs(turned) > LEAST_TURN).sum() < FEWEST_WINDOWS:
+            continue
+        apart = float(np.std(integrated) * np.std(turned))
+        alike = float(np.mean((integrated - integrated.mean()) * (turned - turned.mean()))) / max(
+            apart, 1e-12
+        )
+        slope = float(integrated @ turned / (turned @ turned))
+        if alike < REVERSED and -2 < slope < -0.5:
+            opposite += axis
+        elif not alike > -REVERSED:
+            return ""
+    return opposite
+
+
+def _upside_down(name: str, log: MotionLog, orientation: Array) -> bool:
+    """Whether the accelerometer leans against the orientation, or there is no telling: then it may be the wrong one."""
+    columns = [f"imu.{name}.linear_acceleration.{axis}" for axis in "xyz"]
+    if not log.has(*columns):
+        return True
+    acceleration = log.linear_acceleration(name)
+    whole = np.flatnonzero(np.isfinite(np.column_stack([orientation, acceleration])).all(axis=1))
+    if whole.size < 10:
+        return True
+    rows = whole[:: max(1, whole.size // 2000)]
+    up = Rotation.from_quat(orientation[rows], scalar_first=True).inv().apply(np.array([0.0, 0.0, 1.0]))
+    felt = acceleration[rows] / GRAVITY
+    up, felt = up - up.mean(axis=0), felt - felt.mean(axis=0)
+    return bool(np.sum(up * felt) < 0.5 * np.sum(up**2))
