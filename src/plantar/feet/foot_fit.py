@@ -17,12 +17,13 @@ from plantar.feet.exclusion.outliers import outlier_masks
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.fit.bush_place import PlaceSpread
-from plantar.feet.fit.force_gain import force_gain_causes, force_gain_notes
+from plantar.feet.fit.force_gain import force_gain_causes, force_gain_notes, torque_gain_causes
 from plantar.feet.fit.robot_causes import robot_causes
 from plantar.feet.fit.systematic import inflated, systematic_causes
 from plantar.feet.internal_error import gives_up, internal_errors
 from plantar.feet.prepare import PreparedLogs
 from plantar.feet.recording import Recording
+from plantar.feet.sensors.moment_balance import torque_gain_notes
 from plantar.models import BushModel
 from plantar.notes import Note
 from plantar.results.feet import Diagnosis, Parameter, ValidationRow
@@ -80,13 +81,16 @@ def _with_axis(found: FootFit, ready: PreparedLogs, fit: AxisFit) -> FootFit:
     shared = ready.settings.offset == "shared"
     causes = systematic_causes(fit, ready.fitted, ready.sensor_delay, ready.vertical, shared)
     causes += force_gain_causes(fit, ready.gain_errors)
+    causes += torque_gain_causes(fit, ready.torque_gains)
     causes += robot_causes(fit, ready.fitted, ready.robot.uncertainty, shared)
     wide = inflated(fit, causes)
     scores, predictions = score_axis(ready.recordings, wide)
     rows = axis_rows(wide, ready.fitted, predictions, scores)
     limits = diagnose_axis(fit, wide, causes, rows)
     gain = {foot: error for foot, error in ready.gain_errors.items() if foot == fit.foot}
+    torque = {axis: error for axis, error in ready.torque_gains.items() if axis == fit.axis}
     faults = [*data_faults(ready.fitted, fit), *force_gain_notes(ready.robot, gain)]
+    faults += torque_gain_notes(torque).values()
     return FootFit(
         fits=[*found.fits, wide],
         parameters=[*found.parameters, *doubted(advised(rows, limits), faults)],

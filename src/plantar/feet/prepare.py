@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 
+from plantar.conventions import Axis
 from plantar.feet.exclusion.edge_rolling import without_edge_rolling
 from plantar.feet.exclusion.slip import without_slip
 from plantar.feet.exclusion.torque_saturation import without_torque_saturation
@@ -15,6 +16,7 @@ from plantar.feet.fit.vertical_stiffness import VerticalStiffness, fit_vertical_
 from plantar.feet.prepare_log import checked, prepare
 from plantar.feet.recording import Recording, Role, filtered_recording, moved_centre
 from plantar.feet.sensors.coherent_band import coherent_band
+from plantar.feet.sensors.moment_balance import TorqueGain, torque_gain_notes, torque_gains
 from plantar.feet.sensors.sensor_delay import SensorDelay, estimate_wrench_delay, in_time, known_delay
 from plantar.feet.sensors.tilt_error import NO_TILT_ERROR, log_tilt_error
 from plantar.feet.settings import FeetSettings
@@ -31,7 +33,7 @@ Progress = Callable[[str], None]
 class PreparedLogs:
     """Recordings to fit and to validate, the wrenches' delay and the bushes' vertical compliance behind them.
 
-    `settings` hold the cutoff that was used. `gain_errors`: see `force_gain_errors`.
+    `settings` hold the cutoff that was used. `gain_errors`: see `force_gain_errors`; `torque_gains`: see there.
     """
 
     robot: RobotModel
@@ -42,6 +44,7 @@ class PreparedLogs:
     vertical: VerticalStiffness
     notes: tuple[Note, ...]
     gain_errors: Mapping[str, GainError] = field(default_factory=dict)
+    torque_gains: Mapping[Axis, TorqueGain] = field(default_factory=dict)
 
     @property
     def recordings(self) -> tuple[Recording, ...]:
@@ -86,11 +89,12 @@ def prepare_checked(
     progress("fit z")
     vertical = fit_vertical_stiffness(recordings[: len(logs)], robot)
     moved = [moved_centre(recording, vertical.compliance) for recording in recordings]
-    gains = force_gain_errors(robot, recordings)
-    odd = [*guess_notes(robot.path.name, robot.guesses), *force_gain_notes(robot, gains)]
+    forces, torques = force_gain_errors(robot, recordings), torque_gains(robot, delay.residuals)
+    odd = [*guess_notes(robot.path.name, robot.guesses), *force_gain_notes(robot, forces)]
+    odd += torque_gain_notes(torques).values()
     notes = [*odd, *(note for one in recordings for note in one.notes), delay.note, *vertical.notes]
     fitted, unseen = tuple(moved[: len(logs)]), tuple(moved[len(logs) :])
-    return PreparedLogs(robot, fitted, unseen, settings, delay, vertical, unique(notes), gains)
+    return PreparedLogs(robot, fitted, unseen, settings, delay, vertical, unique(notes), forces, torques)
 
 
 def prepare_unseen(

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from biped_robot import make_robot
+from plantar.dynamics.motion import Motion
 from plantar.estimation.delay import Pair
 from plantar.feet.sensors.newton_euler import NewtonEulerResidual
 from plantar.feet.sensors.sensor_delay import CLOCK, estimate_wrench_delay
@@ -37,7 +38,10 @@ def late_pair(delay: float, seed: int, push: float = 0.0) -> Pair:
 
 def closed(pair: Pair) -> NewtonEulerResidual:
     """The pair as one foot's closure, under still joints."""
-    return NewtonEulerResidual(pair, pair.measured[None], pair.rate[None], 0 * pair.predicted)
+    still = Motion(*(np.zeros((0, size)) for size in (9, 0, 0, 0)))
+    return NewtonEulerResidual(
+        pair, pair.measured[None], pair.rate[None], 0 * pair.predicted, still, pair.measured
+    )
 
 
 @pytest.mark.parametrize("slow_first", [True, False])

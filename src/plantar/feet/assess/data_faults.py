@@ -13,8 +13,11 @@ from plantar.results.feet import Parameter
 
 # Codes of warnings on a log's signs, frames, times and full scales, and on a bush far from its place.
 UNMENDED = frozenset(
-    {"sign", "force_leans", "imu_turned", "imu_late", "path_joint_missing", "stuck_channel", FAR}
-)
+    {
+        "sign", "force_leans", "imu_turned", "imu_late", "gyroscope_frame", "gyroscope_scale",
+        "path_joint_missing", "stuck_channel", FAR,
+    }
+)  # fmt: skip
 ADVICE = "mend what the warning names, or leave this log out"
 
 

@@ -19,6 +19,7 @@ REMEDY = {
     "sensor gain": "calibrate the force sensors, and say so in the robot file: uncertainty: wrench_gain",
     "between recordings": "recordings differ by more than each alone shows: warm the rubber up, record more of them",
     "force gain": "weigh the robot: then calibrate the force sensors, or correct the URDF's masses",
+    "torque gain": "check unit and calibration of the torque channels, and correct the logs",
     "yaw torque zero": "zero the force sensors with the feet in the air before recording",
     "between walks": "add walks: five or more show by themselves how much they differ",
     "ends of stances": "walk with longer stances, or stand and sway: landing and lifting disturb the fit",
@@ -29,7 +30,9 @@ REMEDY = {
     "excitation": "use larger motions: twice the amplitude halves the interval",
 }
 # Causes that no more of the same motion makes smaller: the advice against them replaces the axis' own.
-OTHER_MOTION_HELPS = ("delay", "lever", "hardening", "yaw torque zero", ZEROS_OF_STANCES, "force gain")
+OTHER_MOTION_HELPS = (
+    "delay", "lever", "hardening", "yaw torque zero", ZEROS_OF_STANCES, "force gain", "torque gain",
+)  # fmt: skip
 MODEL_SHARE = 10.0  # times the white deviation: residuals this coloured are the model's, not noise
 
 

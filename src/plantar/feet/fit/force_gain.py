@@ -11,10 +11,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from plantar.conventions import GRAVITY, Array
+from plantar.conventions import GRAVITY, Array, Axis
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.systematic import Cause
 from plantar.feet.recording import Recording
+from plantar.feet.sensors.moment_balance import TorqueGain
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
 
@@ -88,6 +89,11 @@ def force_gain_causes(fit: AxisFit, errors: Mapping[str, GainError]) -> list[Cau
     error = errors[fit.foot]
     reach = abs(error.share / (1 + error.share)) + (0.0 if error.sure else error.deviation)
     return [Cause("force gain", fit.values, reach / NORMAL95)]
+
+
+def torque_gain_causes(fit: AxisFit, gains: Mapping[Axis, TorqueGain]) -> list[Cause]:
+    """The same where the torques' own gain about this axis is wrong."""
+    return [Cause("torque gain", fit.values, gains[fit.axis].reach / NORMAL95)] if fit.axis in gains else []
 
 
 def _windows(recording: Recording, weight: float) -> Array:

@@ -11,6 +11,7 @@ from plantar.contact.phases import shaken
 from plantar.conventions import FORCE, GRAVITY, Array, Mask
 from plantar.dynamics import Contact, Equation, model_parameters
 from plantar.dynamics.inertial_motion import inertial_motion
+from plantar.dynamics.motion import Motion
 from plantar.estimation.delay import LEAST_CLOSED, Pair, closes, unexplained
 from plantar.estimation.sensor_delays import Balance
 from plantar.feet.sensors.model_errors import drawn_parameter_errors
@@ -35,13 +36,15 @@ class NewtonEulerResidual:
 
     `pair`: all feet together; `measured` and `rates` (feet, n, 6): each foot's wrench, and how it changes with the
     moment at which its sensor is read; `by_encoders` (n, 6): how the prediction changes with the moment at which the
-    encoders are.
+    encoders are. `motion` and `readings` (n, 6 feet), the sensors' own, are what both sides come from.
     """
 
     pair: Pair
     measured: Array
     rates: Array
     by_encoders: Array
+    motion: Motion
+    readings: Array
 
     @property
     def balance(self) -> Balance:
@@ -118,7 +121,9 @@ def newton_euler_residual(robot: RobotModel, log: MotionLog) -> NewtonEulerResid
     ]
     pair = replace(pair, model_errors=np.array(errors)) if errors else pair
     by_encoders = moving([(predicted_at(step) - predicted_at(-step)) / (2 * step)])[0]
-    return NewtonEulerResidual(pair, measured, rates, by_encoders[calm])
+    return NewtonEulerResidual(
+        pair, measured, rates, by_encoders[calm], part.select(calm), readings[inner][calm]
+    )
 
 
 def _struck(robot: RobotModel, wrenches: Array, period: float) -> Mask:

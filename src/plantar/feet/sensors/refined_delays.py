@@ -7,7 +7,7 @@ and IMU read together; where feet or encoders clearly have delays of their own, 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -15,7 +15,8 @@ import numpy as np
 from plantar.conventions import Array, Mask
 from plantar.estimation.delay import LONGEST, estimate_delay
 from plantar.estimation.sensor_delays import estimate_delays
-from plantar.feet.sensors.newton_euler import newton_euler_residual
+from plantar.feet.sensors.clock_drift import ClockDrift, clock_drift
+from plantar.feet.sensors.newton_euler import NewtonEulerResidual, newton_euler_residual
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
 from plantar.signals.resampling import shifted
@@ -38,6 +39,7 @@ class RefinedDelays:
 
     `feet_differ`, `encoders_differ`: whether they have delays of their own.
     `closed` (logs,): in which logs Newton's law closes; `slowest`: the longest period among these [s].
+    `drift`: of the clocks, where these logs show one; `residuals`: of these logs, read at these delays.
     """
 
     values: Array
@@ -47,6 +49,8 @@ class RefinedDelays:
     encoders_differ: bool
     closed: Mask
     slowest: float
+    drift: ClockDrift | None = None
+    residuals: tuple[NewtonEulerResidual, ...] = ()
 
 
 def read_in_time(robot: RobotModel, log: MotionLog, delays: Array) -> MotionLog:
@@ -67,18 +71,26 @@ def refined_delays(
     """Delays near `start` (feet + 1,) [s]; None where Newton's law closes in no log, or the steps do not settle."""
     at = start
     for _ in range(ROUNDS):
-        step = _step(robot, logs, each, at)
+        tried = list(
+            each(lambda log, at=at: newton_euler_residual(robot, read_in_time(robot, log, at)), logs)
+        )
+        step = _step(logs, tried, at)
         if step is None:
             return None
         moved, at = float(np.abs(step.values - at).max()), step.values
         if moved < SETTLED and step.std < np.inf:
-            return step
+            residuals = tuple(residual for residual in tried if residual is not None)
+            return replace(step, drift=clock_drift([one.pair for one in residuals]), residuals=residuals)
     return None
 
 
-def _step(robot: RobotModel, logs: Sequence[MotionLog], each: Each, at: Array) -> RefinedDelays | None:
-    """One step from the delays `at`, or, with an infinite deviation, to where no delays differ that need not."""
-    tried = list(each(lambda log: newton_euler_residual(robot, read_in_time(robot, log, at)), logs))
+def _step(
+    logs: Sequence[MotionLog], tried: Sequence[NewtonEulerResidual | None], at: Array
+) -> RefinedDelays | None:
+    """One step from the delays `at`, or, with an infinite deviation, to where no delays differ that need not.
+
+    tried: the residual of each log read at these delays.
+    """
     residuals = [residual for residual in tried if residual is not None]
     if not residuals:
         return None

@@ -9,7 +9,7 @@ their own, each gets its own.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
@@ -18,6 +18,7 @@ from plantar.conventions import Mask
 from plantar.estimation.delay import LEAST_CLOSED
 from plantar.estimation.lag_search import Lags, search_lags
 from plantar.feet.sensors.lagged_log import SEARCHED, STEP, lagged_log
+from plantar.feet.sensors.newton_euler import NewtonEulerResidual
 from plantar.feet.sensors.refined_delays import LEAST_STD, Each, RefinedDelays, read_in_time, refined_delays
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
@@ -37,7 +38,7 @@ class SensorDelay:
 
     `feet` has each foot's own delay where they differ, `encoders` that of the joints' positions; both are usually
     empty and zero. `doubtful`: a search over SEARCHED found no delays at which Newton's law closes where it should, so
-    that the sensors may be late by anything that `std` says.
+    that the sensors may be late by anything that `std` says. `residuals`: of the logs in which it does close.
     """
 
     delay: float
@@ -48,6 +49,7 @@ class SensorDelay:
     feet: Mapping[str, float] = field(default_factory=dict)
     encoders: float = 0.0
     doubtful: bool = False
+    residuals: tuple[NewtonEulerResidual, ...] = ()
 
 
 def in_time(robot: RobotModel, log: MotionLog, sensor_delay: SensorDelay) -> MotionLog:
@@ -71,7 +73,7 @@ def estimate_wrench_delay(robot: RobotModel, logs: Sequence[MotionLog], each: Ea
     still = np.zeros(len(robot.feet) + 1)
     found = refined_delays(robot, logs, each, still)
     if found is not None and found.std <= KNOWN_STD:
-        return _told(robot, found)
+        return replace(_told(robot, found), residuals=found.residuals)
     grids = list(each(partial(lagged_log, robot), logs))
     shown = [grid for grid in grids if grid is not None]
     if not shown:
@@ -84,7 +86,7 @@ def estimate_wrench_delay(robot: RobotModel, logs: Sequence[MotionLog], each: Ea
     searched = np.array([grid is not None for grid in grids])
     if _in_doubt(lags, found, searched):
         return _doubtful(robot, lags)
-    return _unseen(robot, logs) if found is None else _told(robot, found)
+    return _unseen(robot, logs) if found is None else replace(_told(robot, found), residuals=found.residuals)
 
 
 def _surer(one: RefinedDelays, other: RefinedDelays) -> bool:
@@ -137,6 +139,9 @@ def _unseen(robot: RobotModel, logs: Sequence[MotionLog]) -> SensorDelay:
 
 def _told(robot: RobotModel, found: RefinedDelays) -> SensorDelay:
     """Delays that the logs show, with what is said of them."""
+    if found.drift is not None:
+        mean, std = float(np.mean(found.values[:-1])), float(np.hypot(found.std, found.drift.std))
+        return SensorDelay(mean, std, found.freedom, True, found.drift.note, doubtful=True)
     if found.feet_differ or found.encoders_differ:
         return _apart(list(robot.feet), found)
     value, prior = float(found.values[0]), robot.uncertainty.wrench_delay

@@ -1,0 +1,71 @@
+"""Clocks that run apart: the force sensors are later at the end of a log than at its beginning."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from plantar.estimation.delay import Pair, estimate_delay
+from plantar.notes import Note
+
+SURE = 4.0  # deviations by which two halves must differ
+LEAST = 0.002  # s, and by so much: less is within what any search leaves
+
+
+class ClockDrift(NamedTuple):
+    """By which `share` of the time the clocks of force sensors and IMU run apart, over logs of up to `duration` [s]."""
+
+    share: float
+    duration: float
+
+    @property
+    def std(self) -> float:
+        """Deviation of a delay [s] that grows through the log, about its mean."""
+        return abs(self.share) * self.duration / float(np.sqrt(12))
+
+    @property
+    def note(self) -> Note:
+        late, told = 1e3 * self.share * self.duration, f"{100 * abs(self.share):.2g} %"
+        text = (
+            f"the force sensors' clock and the IMU's run apart by {told}: by {abs(late):.0f} ms at the end of a log of "
+            f"{self.duration:.0f} s; not corrected, and damping is unsure (valid: one clock for all columns)"
+        )
+        return Note("clock_drift", "warning", text)
+
+
+def clock_drift(pairs: Sequence[Pair]) -> ClockDrift | None:
+    """What the delays of each log's halves say; None where they do not clearly differ."""
+    found = [(pair, halves) for pair in pairs if (halves := _halves(pair)) is not None]
+    if not found:
+        return None
+    apart, variance = (np.array(values) for values in zip(*(halves for _, halves in found), strict=True))
+    half = np.array([len(pair.predicted) * pair.period / 2 for pair, _ in found])
+    weights = half / variance
+    share, std = float(weights @ apart / (weights @ half)), float(1 / np.sqrt(weights @ half))
+    longest = 2 * float(half.max())
+    if abs(share) < SURE * std or abs(share) * longest / 2 < LEAST:
+        return None
+    return ClockDrift(share, longest)
+
+
+def _halves(pair: Pair) -> tuple[float, float] | None:
+    """By how much the sensors are later in the second half than in the first [s], and its variance [s²]."""
+    middle = len(pair.predicted) // 2
+    delays = [estimate_delay([_part(pair, rows)]) for rows in (slice(0, middle), slice(middle, None))]
+    first, second = delays
+    if first is None or second is None:
+        return None
+    return second.value - first.value, first.std**2 + second.std**2
+
+
+def _part(pair: Pair, rows: slice) -> Pair:
+    return replace(
+        pair,
+        measured=pair.measured[rows],
+        rate=pair.rate[rows],
+        predicted=pair.predicted[rows],
+        model_errors=pair.model_errors[:, rows],
+    )

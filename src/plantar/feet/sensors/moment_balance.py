@@ -1,0 +1,167 @@
+"""Gains of the torque channels: what the feet's torques must be for the robot to move as it does.
+
+A torque that reads a tenth too large makes stiffness and damping a tenth too large, and nothing in a foot's own torque
+and angle shows it. The whole body does: forces, torques and their places must give the moments of eq. 1's base rows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from scipy import stats
+
+from plantar.conventions import FORCE, ROTATIONAL_AXES, Array, Axis
+from plantar.dynamics import Contact, Equation
+from plantar.estimation.intervals import cosine_covariance
+from plantar.feet.sensors.newton_euler import BASE_ROWS, CUTOFF, SLOW, NewtonEulerResidual
+from plantar.notes import Note
+from plantar.robot.model import Foot, RobotModel
+from plantar.signals.filters import low_pass
+
+LOOSE = 0.3  # share: deviation of a torque's gain before the moments are asked
+LEAST_GAIN = 0.01  # share, of the forces' gains and of what their places add: nuisances need a finite prior
+LEAST_ARM = 0.003  # m, likewise
+CHANCE = 0.005  # that torques without a fault are called wrong about an axis
+WORTH_SAYING = 0.03  # share: what the force sensors' makers promise is seldom better
+
+
+class TorqueGain(NamedTuple):
+    """By which `shares` each foot's torque about an axis reads too much, and the `std` of their mean.
+
+    What belongs to which foot is known far worse than the mean: both feet turn alike.
+    """
+
+    shares: Mapping[str, float]
+    std: float
+
+    @property
+    def mean(self) -> float:
+        return float(np.mean(list(self.shares.values())))
+
+    @property
+    def reach(self) -> float:
+        """By which share any foot's torque may be off."""
+        return max(map(abs, self.shares.values()))
+
+
+@dataclass(frozen=True)
+class _Sides:
+    """One log's columns (k, n, 6) and what they must add up to (n, 6); `drawn` (draws, n, 6): of a wrong URDF."""
+
+    columns: Array
+    missing: Array
+    drawn: Array
+    period: float
+
+
+def torque_gains(robot: RobotModel, residuals: Sequence[NewtonEulerResidual]) -> dict[Axis, TorqueGain]:
+    """The torques' gains about each axis about which the moments do not balance with gains as they should be.
+
+    A generalised least-squares fit of what Newton's law misses to each foot's torques, beside the forces' gains and
+    places, which may be off by what the robot file says; the deviation holds coloured noise and a wrong URDF.
+    """
+    if not residuals:
+        return {}
+    sides, feet = [_sides(robot, residual) for residual in residuals], len(robot.feet)
+    gains, covariance = _solved(sides, _prior(robot))
+    draws, found = len(sides[0].drawn), {}
+    limit = stats.f.ppf(1 - CHANCE, feet, max(draws - feet, 2) if draws else np.inf)
+    for place, axis in enumerate(ROTATIONAL_AXES):
+        mine = slice(place * feet, (place + 1) * feet)
+        value, spread = gains[mine], covariance[mine, mine]
+        usual = spread + robot.uncertainty.wrench_gain**2 * np.eye(feet)
+        distance = float(value @ np.linalg.solve(usual, value)) / feet
+        shares = dict(zip(robot.feet, (-value / (1 + value)).tolist(), strict=True))
+        gain = TorqueGain(shares, float(np.sqrt(spread.sum())) / feet)
+        if distance > limit and gain.reach > WORTH_SAYING:
+            found[axis] = gain
+    return found
+
+
+def torque_gain_notes(gains: Mapping[Axis, TorqueGain]) -> dict[Axis, Note]:
+    """A warning for each axis about which the feet's torques cannot be right."""
+    notes = {}
+    for axis, gain in gains.items():
+        each = ", ".join(f"{foot} {100 * share:+.0f} %" for foot, share in gain.shares.items())
+        text = (
+            f"{axis}: the feet's torques do not give the moments that the robot's motion needs: they read "
+            f"{100 * gain.mean:+.0f} ± {196 * gain.std:.0f} % too much on average (95 %; most likely {each}), and "
+            "stiffness and damping follow them. Check unit and calibration of the torque channels"
+        )
+        notes[axis] = Note("torque_gain", "warning", text)
+    return notes
+
+
+def _prior(robot: RobotModel) -> Array:
+    """Deviations of the columns of `_sides`: torques of both axes, then of each foot its gain and moment arms."""
+    uncertainty, feet = robot.uncertainty, len(robot.feet)
+    gain = max(uncertainty.wrench_gain, LEAST_GAIN)
+    arm = max(float(np.hypot(uncertainty.bush_position, uncertainty.wrench_crosstalk)), LEAST_ARM)
+    return np.concatenate([np.full(2 * feet, LOOSE), np.tile([gain, arm, arm], feet)])
+
+
+def _sides(robot: RobotModel, residual: NewtonEulerResidual) -> _Sides:
+    equation, period = Equation(robot.floating_model), residual.pair.period
+    torques: list[Array] = []
+    others: list[Array] = []
+    for axis in range(2):
+        for place, foot in enumerate(robot.feet.values()):
+            own, along = residual.readings[:, 6 * place : 6 * place + 6], _directions(foot)[axis]
+            torques.append(np.outer(own[:, 3:] @ along, along))
+    for place in range(len(robot.feet)):
+        own = residual.readings[:, 6 * place : 6 * place + 6]
+        others += [
+            own,
+            *(np.hstack([np.zeros_like(own[:, :3]), np.cross(arm, own[:, FORCE])]) for arm in np.eye(3)[:2]),
+        ]
+    wrenches = [np.hstack([np.zeros_like(torque), torque]) for torque in torques] + others
+    feet = list(robot.feet.values())
+    whose = [*feet, *feet, *(foot for foot in feet for _ in range(3))]
+
+    def carried(foot: Foot, wrench: Array) -> Array:
+        contact = Contact(*robot.frame(foot.wrench.placement))
+        own = np.ascontiguousarray(wrench)
+        return -equation.inverse_dynamics(residual.motion, None, [contact], [own])[BASE_ROWS].T
+
+    columns = np.stack([carried(foot, wrench) for foot, wrench in zip(whose, wrenches, strict=True)])
+    pair = residual.pair
+    return _Sides(_moving(columns, period), pair.predicted - pair.measured, pair.model_errors, period)
+
+
+def _directions(foot: Foot) -> Array:
+    """The bush's pitch and roll axes in the force sensor's frame, (2, 3)."""
+    same = foot.bush.link == foot.wrench.placement.link
+    turn = foot.wrench.placement.rotation.T @ foot.bush.rotation if same else np.eye(3)
+    return np.asarray(turn.T[[1, 0]])
+
+
+def _moving(columns: Array, period: float) -> Array:
+    """Columns (k, n, 6) without what postures and drifting zeros do to them."""
+    rows = columns.transpose(1, 0, 2).reshape(columns.shape[1], -1)
+    return np.asarray((rows - low_pass(rows, period, SLOW)).reshape(len(rows), -1, 6).transpose(1, 0, 2))
+
+
+def _solved(sides: Sequence[_Sides], prior: Array) -> tuple[Array, Array]:
+    """Coefficients of the columns, those of torques first, and their covariance."""
+    values, known = np.zeros(len(prior)), np.diag(prior**-2.0)
+    for _ in range(2):  # weights from what is left, then the coefficients once more
+        left = [side.missing - np.tensordot(values, side.columns, 1) for side in sides]
+        # A filtered signal has two independent samples in a period of its cutoff.
+        weights = 2 * CUTOFF * sides[0].period / np.mean(np.vstack(left) ** 2, axis=0)
+        normal, target = known.copy(), np.zeros(len(prior))
+        for side in sides:
+            normal += np.einsum("inc,jnc,c->ij", side.columns, side.columns, weights)
+            target += np.einsum("inc,nc,c->i", side.columns, side.missing, weights)
+        values[:] = np.linalg.solve(normal, target)
+    inverse, scatter = np.linalg.inv(normal), known.copy()
+    moved: Array = np.zeros((len(prior), len(sides[0].drawn)))
+    for side in sides:
+        missed = side.missing - np.tensordot(values, side.columns, 1)
+        scores = np.einsum("inc,nc,c->ni", side.columns, missed, weights)
+        scatter += cosine_covariance(scores, len(scores) * side.period)[0]
+        if moved.size:
+            moved += inverse @ np.einsum("inc,dnc,c->id", side.columns, side.drawn, weights)
+    return values, inverse @ scatter @ inverse + moved @ moved.T / max(moved.shape[1], 1)

@@ -1,0 +1,69 @@
+"""Gains of torques from the moments of a moving robot: an arm sweep of the twin, its torques scaled."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import pytest
+
+from plantar.feet.prepare_log import checked
+from plantar.feet.sensors.moment_balance import TorqueGain, torque_gain_notes, torque_gains
+from plantar.feet.sensors.newton_euler import newton_euler_residual
+from plantar.logs.motion_log import MotionLog
+from plantar.robot.model import RobotModel
+from plantar.twin import PAPER, play_all
+from plantar.twin.robots import hrp2
+
+
+@pytest.fixture(scope="module")
+def twin() -> RobotModel:
+    return hrp2.robot()
+
+
+@pytest.fixture(scope="module")
+def sweep(twin: RobotModel, tmp_path_factory: pytest.TempPathFactory) -> MotionLog:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("PLANTAR_CACHE", str(tmp_path_factory.getbasetemp() / "simulate-cache"))
+        return checked(twin, play_all(["Myrand5"], twin, PAPER, "sensors", [0])[0][0].log)
+
+
+def found(twin: RobotModel, log: MotionLog, gains: Mapping[str, float]) -> Mapping[str, TorqueGain]:
+    columns = {name: log.column(name) for name in log.columns}
+    scaled = {
+        name: values * next((gain for part, gain in gains.items() if part in name), 1.0)
+        for name, values in columns.items()
+        if name.startswith("wrench.")
+    }
+    residual = newton_euler_residual(twin, log.with_columns(scaled))
+    assert residual is not None
+    return torque_gains(twin, [residual])
+
+
+def test_torques_that_balance_the_motion_are_right(twin: RobotModel, sweep: MotionLog) -> None:
+    assert found(twin, sweep, {}) == {}
+    assert found(twin, sweep, {"wrench.": 1.1}) == {}  # forces too: the weight shows that, not the balance
+
+
+@pytest.mark.parametrize("gain", [0.85, 1.15])
+def test_the_gain_of_all_torques_is_found(twin: RobotModel, sweep: MotionLog, gain: float) -> None:
+    gains = found(twin, sweep, {".torque.": gain})
+    assert "pitch" in gains  # one sweep shows it best: the robot leans forward more than aside
+    for each in gains.values():
+        assert each.mean == pytest.approx(gain - 1, abs=2.5 * each.std)
+        assert each.std < 0.03
+
+
+def test_one_axis_of_one_foot_is_told_from_the_others(twin: RobotModel, sweep: MotionLog) -> None:
+    gains = found(twin, sweep, {"left_foot.torque.y": 1.25})
+    assert set(gains) == {"pitch"}
+    shares = gains["pitch"].shares
+    assert shares["left"] > 0.15 > abs(shares["right"])
+    assert gains["pitch"].reach == shares["left"]
+
+
+def test_the_warning_names_axis_and_size() -> None:
+    (note,) = torque_gain_notes({"roll": TorqueGain({"left": 0.12, "right": 0.08}, 0.02)}).values()
+    assert note.severity == "warning"
+    assert "roll" in note.text
+    assert "+10 ± 4 %" in note.text
+    assert "left +12 %, right +8 %" in note.text
