@@ -59,6 +59,21 @@ def test_a_reversed_joint_is_named_and_refused_instead_of_swapped_feet(sway: Mot
     assert any(f"joint.{largest}.position" in one.text for one in findings if one.fatal)
 
 
+def test_exchanged_joints_of_a_leg_are_named(sway: MotionLog) -> None:
+    joints = ["joint.RLEG_JOINT4.position", "joint.RLEG_JOINT5.position"]
+    exchanged = dict(zip(joints, (sway.column(name) for name in reversed(joints)), strict=True))
+    (finding,) = [one for one in found(sway.with_columns(exchanged)) if one.fatal]
+    assert finding.code == "joint_names"
+    assert "'joint.RLEG_JOINT4.position' and 'joint.RLEG_JOINT5.position': exchanged" in finding.text
+
+
+def test_a_joint_that_is_not_recorded_is_named_before_what_it_spoils(sway: MotionLog) -> None:
+    kept = {name: sway.column(name) for name in sway.columns if "RLEG_JOINT3" not in name}
+    first = next(one for one in found(MotionLog("lame", sway.time, kept)) if one.fatal)
+    assert first.code == "joint_names"
+    assert "RLEG_JOINT3 not recorded" in first.text
+
+
 def test_a_few_absurd_samples_reverse_nothing(tilt: MotionLog) -> None:
     torque = tilt.column("wrench.left_foot.torque.y").copy()
     torque[:3] = 1e5

@@ -21,6 +21,7 @@ OVERLAP = 5  # windows begin in each window's time
 LEAST_TURN = np.radians(0.5)  # in one window: smaller ones hold noise
 FEWEST_WINDOWS = 20
 WRONG_TURN, RIGHT_TURN = 0.8, 0.3  # difference of the two turns over the turn itself
+BETTER = 0.5  # share of that difference which another reading of the quaternion must leave at most
 SCALE_OFF, TURNED = 0.05, 0.1  # share, rad: of a gyroscope, damping is off by as much
 SURE = 6.0  # deviations
 FOLLOWED = 0.25  # share of the difference's square that turning one side may leave
@@ -115,12 +116,11 @@ def check_gyroscope(name: str, log: MotionLog, orientation: Array, turns: Turns)
             yield Finding("sign", f"{text} (valid: right-handed about the IMU's axes)", True)
             return
     yield from _late(name, log, orientation)
-    if turns.apart["as it is"] < WRONG_TURN:
-        yield from _axes_and_scale(where, turns)
-        return
     best = min(turns.apart, key=turns.apart.__getitem__)
-    if turns.apart[best] < RIGHT_TURN:
+    if turns.apart[best] < min(RIGHT_TURN, BETTER * turns.apart["as it is"]):
         yield misread(name, "turns another way than the gyroscope", best)
+    elif turns.apart["as it is"] < WRONG_TURN:
+        yield from _axes_and_scale(where, turns)
     else:
         text = f"{where}: turns about other axes than the orientation (valid: both in the IMU's own frame)"
         yield Finding("gyroscope_frame", text)

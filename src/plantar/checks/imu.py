@@ -90,7 +90,7 @@ def _accelerometer_agrees(name: str, log: MotionLog, orientation: Array, turns: 
     text = f"up differs from the accelerometer's by {np.degrees(apart['as it is']):.0f} deg"
     if turns and np.pi - apart["as it is"] < RIGHT_ANGLE:
         where = f"columns 'imu.{name}.linear_acceleration.*'"
-        told = f"{where}: points down at rest, while the gyroscope turns as the orientation does"
+        told = f"{where}: points down at rest, reversed, while the gyroscope turns as the orientation does"
         yield Finding(
             "sign", f"{told} (valid: proper acceleration, +{GRAVITY:.2f} m/s² upwards at rest)", True
         )

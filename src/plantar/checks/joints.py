@@ -42,6 +42,15 @@ def check_joint_names(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     yield Finding("joint_names", f"{text} ({valid})", True)
 
 
+def check_path_joints(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
+    """A fatal finding where some joints between IMU and feet are not recorded: asked where nothing else adds up."""
+    missing = set().union(*_legs(robot).values()) - recorded_joints(log)
+    if missing:
+        where = f"columns 'joint.*.position': {_listing(missing)} not recorded, and with them at 0"
+        text = f"{where} the feet's wrenches do not balance gravity"
+        yield Finding("joint_names", f"{text} (valid: a position of every joint between IMU and feet)", True)
+
+
 def recorded_joints(log: MotionLog) -> set[str]:
     """The joints of which a log holds positions."""
     parts = [name.partition(".")[2].rpartition(".") for name in log.columns if name.startswith("joint.")]

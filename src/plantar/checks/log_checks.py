@@ -8,8 +8,9 @@ import numpy as np
 
 from plantar.checks.channels import check_channels, named
 from plantar.checks.closed_chain import check_closed_chain
+from plantar.checks.gaps import check_gaps
 from plantar.checks.imu import check_imu
-from plantar.checks.joints import check_joint_names
+from plantar.checks.joints import check_joint_names, check_path_joints
 from plantar.checks.standing import check_balance
 from plantar.conventions import GRAVITY
 from plantar.logs.motion_log import MotionLog
@@ -22,7 +23,7 @@ SHORTEST = 0.5  # s of a log from which anything can be said
 
 
 def check_log(robot: RobotModel, log: MotionLog) -> list[Finding]:
-    """Every finding about one log, in the order joint names, time, joints, IMU, wrenches, stuck channels, chain.
+    """Every finding about one log, in the order joint names, time, joints, IMU, wrenches, gaps, stuck channels, chain.
 
     Of a log whose time cannot be right only that is said: rates and seconds mean nothing.
     """
@@ -30,8 +31,10 @@ def check_log(robot: RobotModel, log: MotionLog) -> list[Finding]:
     if any(finding.fatal for finding in time):
         return [*names, *time]
     imu = check_imu(robot.imu.name, log) if robot.imu is not None else ()
-    channels, chain = check_channels(robot, log), check_closed_chain(robot, log)
-    return [*names, *time, *_joints(robot, log), *imu, *_wrenches(robot, log), *channels, *chain]
+    channels, chain = [*check_gaps(robot, log), *check_channels(robot, log)], check_closed_chain(robot, log)
+    wrenches = list(_wrenches(robot, log))
+    missing = check_path_joints(robot, log) if any(finding.fatal for finding in wrenches) else ()
+    return [*names, *time, *_joints(robot, log), *imu, *missing, *wrenches, *channels, *chain]
 
 
 def _time(log: MotionLog) -> Iterator[Finding]:

@@ -79,7 +79,8 @@ def fit_prepared(
     logs = [recording.log for recording in ready.fitted]
     if not any(recording.contacts[foot].standing.any() for recording in ready.fitted for foot in robot.feet):
         names = ", ".join(log.name for log in logs)
-        raise DataError(f"{names}: no foot carries load in any log (valid: a standing robot)")
+        valid = "a standing robot; were the sensors zeroed under load, 'contact: always' for these feet"
+        raise DataError(f"{names}: no foot carries load in any log (valid: {valid})")
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         both = list(pool.map(lambda foot: fit_foot(ready, foot, progress), robot.feet))
     found = [fit for fit, _ in both]

@@ -74,7 +74,8 @@ def force_gain_notes(robot: RobotModel, errors: Mapping[str, GainError]) -> list
     feet = " and ".join(f"the {foot} foot's {100 * error.share:+.0f} %" for foot, error in sure.items())
     text = (
         f"vertical forces do not add up to the URDF's {robot.mass:.1f} kg: {feet}. Either the URDF's masses are wrong, "
-        "or the force sensors' gains, which stiffness and damping follow: their intervals hold both. Weigh the robot"
+        "or the force sensors' gains, which stiffness and damping follow (their intervals hold both), or their zeros. "
+        "Weigh the robot, and read the sensors with the feet in the air"
     )
     return [Note("force_gain", "warning", text)]
 

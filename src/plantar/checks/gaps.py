@@ -1,0 +1,57 @@
+"""Gaps: stretches of a log that hold nothing, in its rows or in single sensors."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from plantar.conventions import Mask
+from plantar.logs.motion_log import MotionLog, imu_columns
+from plantar.notes import Finding
+from plantar.robot.model import RobotModel
+from plantar.signals.resampling import BRIDGED, sampling
+from plantar.signals.segments import runs
+
+LEAST_LOST = 0.03  # share of a log's time: less costs an interval nothing that anyone would notice
+
+
+def check_gaps(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
+    """A finding on the time that is lost to gaps, where it is worth knowing: filters and delays need whole pieces."""
+    gaps = [(start, end, "rows") for start, end in sampling(log).gaps]
+    for what, names in _sensors(robot).items():
+        present = [name for name in names if name in log.columns]
+        known = [np.isfinite(log.column(name)) for name in present]
+        if known and all(column.any() for column in known):
+            gaps += [(start, end, what) for start, end in _holes(log, ~np.all(known, axis=0))]
+    lost = sum(end - start for start, end, _ in gaps)
+    if lost > LEAST_LOST * log.duration:
+        start, end, _ = max(gaps, key=lambda gap: gap[1] - gap[0])
+        what = " and ".join(sorted({what for _, _, what in gaps}))
+        text = f"{what}: {len(gaps)} gap{'s' * (len(gaps) > 1)}, the longest from t = {start:g} to {end:g} s"
+        told = f"{text}, {100 * lost / log.duration:.0f} % of the log: left out, and the delay is less well known"
+        yield Finding("gaps", f"{told} (valid: every sensor at every time)")
+
+
+def _holes(log: MotionLog, empty: Mask) -> list[tuple[float, float]]:
+    """Start and end [s] of runs of empty cells that are not bridged; a sensor may start late and end early."""
+    inner = [run for run in runs(empty) if run.start > 0 and run.stop < len(empty)]
+    spans = [(float(log.time[run.start]), float(log.time[run.stop - 1])) for run in inner]
+    return [(start, end) for start, end in spans if end - start > BRIDGED]
+
+
+def _sensors(robot: RobotModel) -> dict[str, list[str]]:
+    """The columns that a foot's fit needs, by what they are called together."""
+    found = {
+        f"columns 'wrench.{foot.wrench.name}.*'": [
+            f"wrench.{foot.wrench.name}.{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz"
+        ]
+        for foot in robot.feet.values()
+    }
+    if robot.imu is not None:
+        found[f"columns 'imu.{robot.imu.name}.*'"] = list(imu_columns(robot.imu.name, "angular_velocity"))
+        path = frozenset().union(
+            *(robot.joints_between(robot.imu.placement, foot.bush) for foot in robot.feet.values())
+        )
+        found["columns 'joint.*.position'"] = [f"joint.{name}.position" for name in sorted(path)]
+    return found

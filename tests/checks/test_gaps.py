@@ -1,0 +1,44 @@
+"""Gaps in rows and in single sensors are told of where they cost time."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from biped import record, sway
+from plantar.checks.gaps import check_gaps
+from plantar.conventions import Mask
+from plantar.logs.motion_log import MotionLog
+from plantar.robot.model import RobotModel
+
+
+@pytest.fixture(scope="module")
+def log() -> MotionLog:
+    return record(sway(duration=20.0))
+
+
+def emptied(log: MotionLog, part: str, rows: Mask) -> MotionLog:
+    names = [name for name in log.columns if part in name]
+    return log.with_columns({name: np.where(rows, np.nan, log.column(name)) for name in names})
+
+
+def test_an_empty_sensor_is_named_with_its_time(robot: RobotModel, log: MotionLog) -> None:
+    (found,) = check_gaps(robot, emptied(log, "wrench.left", (log.time > 4) & (log.time < 6)))
+    assert (found.code, found.fatal) == ("gaps", False)
+    assert "'wrench.left.*': 1 gap" in found.text
+    assert "from t = 4.0" in found.text
+    assert "10 % of the log" in found.text
+
+
+def test_rows_that_are_missing_count_too(robot: RobotModel, log: MotionLog) -> None:
+    kept = log.time % 5 > 0.5
+    thin = MotionLog(log.name, log.time[kept], {name: log.column(name)[kept] for name in log.columns})
+    (found,) = check_gaps(robot, thin)
+    assert found.text.startswith("rows: 3 gaps")
+
+
+def test_short_holes_and_late_starts_are_not_worth_a_word(robot: RobotModel, log: MotionLog) -> None:
+    assert list(check_gaps(robot, log)) == []
+    assert list(check_gaps(robot, emptied(log, "imu.", log.time < 5))) == []
+    assert list(check_gaps(robot, emptied(log, "imu.", np.arange(len(log)) % 4 > 0))) == []
+    assert list(check_gaps(robot, emptied(log, "wrench.left", (log.time > 4) & (log.time < 4.4)))) == []
