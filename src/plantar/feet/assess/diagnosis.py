@@ -15,7 +15,7 @@ ZEROS_OF_STANCES = "zeros of stances"
 REMEDY = {
     "noise": "record the same motion for longer: four times as long halves the interval",
     "delay": "add a recording of arm sweeps at 0.3 to 1 Hz without an operator: it shows the force sensors' delay",
-    "moment arm": "add a slow shift of the weight from foot to foot: it shows the vertical compliance",
+    "lever": "add a slow shift of the weight from foot to foot: it shows the vertical compliance",
     "sensor gain": "calibrate the force sensors, and say so in the robot file: uncertainty: wrench_gain",
     "between recordings": "recordings differ by more than each alone shows: warm the rubber up, record more of them",
     "force gain": "weigh the robot: then calibrate the force sensors, or correct the URDF's masses",
@@ -29,7 +29,7 @@ REMEDY = {
     "excitation": "use larger motions: twice the amplitude halves the interval",
 }
 # Causes that no more of the same motion makes smaller: the advice against them replaces the axis' own.
-OTHER_MOTION_HELPS = ("delay", "moment arm", "hardening", "yaw torque zero", ZEROS_OF_STANCES, "force gain")
+OTHER_MOTION_HELPS = ("delay", "lever", "hardening", "yaw torque zero", ZEROS_OF_STANCES, "force gain")
 MODEL_SHARE = 10.0  # times the white deviation: residuals this coloured are the model's, not noise
 
 

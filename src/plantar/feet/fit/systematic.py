@@ -80,7 +80,7 @@ def systematic_causes(
         Cause(
             "delay", moved_by([np.nan_to_num(rate) for rate in rates]), sensor_delay.std, sensor_delay.freedom
         ),
-        Cause("moment arm", moved_by(moment_arms), vertical.compliance_std[foot], vertical.freedom),
+        Cause("lever", moved_by(moment_arms), vertical.compliance_std[foot], vertical.freedom),
     ]
     if blocks[0].stances is not None:
         # The zeros were read in the air, and within a stance no cube is told from how a sole lands and lifts.
