@@ -18,7 +18,9 @@ from plantar.robot.model import RobotModel
 from plantar.robot.uncertainty import Uncertainty
 from plantar.signals.resampling import shifted
 from plantar.twin import PAPER, play_all
+from plantar.twin.play import planned
 from plantar.twin.robots import hrp2
+from twin_samples import short
 
 
 @pytest.fixture(scope="module")
@@ -30,7 +32,8 @@ def twin() -> RobotModel:
 def sweep(twin: RobotModel, tmp_path_factory: pytest.TempPathFactory) -> MotionLog:
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("PLANTAR_CACHE", str(tmp_path_factory.getbasetemp() / "simulate-cache"))
-        return checked(twin, play_all(["Myrand5"], twin, PAPER, "sensors", [0])[0][0].log)
+        played = short(planned("Myrand5", twin), 0.0, 45.0)
+        return checked(twin, play_all([played], twin, PAPER, "sensors", [0])[0][0].log)
 
 
 def late(log: MotionLog, columns: str, delay: float) -> MotionLog:
