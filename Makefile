@@ -18,8 +18,9 @@ export OPENBLAS_NUM_THREADS ?= 1
 demo: $(RUNNING)
 	$(BIN)/plantar demo
 
+# A file stays in one process, so that its fixtures are made once; the order of the folders puts long files first.
 test: $(INSTALLED)
-	$(BIN)/python -m pytest -n $(JOBS)
+	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile --no-loadscope-reorder
 
 # Do the tests notice? Careless changes one by one, in a copy of the source; ROOM=feet/fit takes those of one room.
 mutants: $(INSTALLED)

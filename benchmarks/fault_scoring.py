@@ -20,7 +20,7 @@ SILENT, TRACEBACK, UNNAMED, CAUGHT, WARNED, HARMLESS, ALARM, QUIET = (
 )  # fmt: skip
 HARMFUL = (SILENT, TRACEBACK, UNNAMED, CAUGHT)
 OFF = {"stiffness": 0.02, "damping": 0.10}  # beyond it a number is wrong, unless its interval holds the truth
-RECORDING_ADVICE = frozenset({"delay_unknown", "delay_poorly_known", "noisy_regressors", "law_caution"})
+RECORDING_ADVICE = frozenset({"delay_unknown", "delay_poorly_known", "noisy_regressors", "model_caution"})
 """Warnings that ask for other motions: right also of healthy logs."""
 
 FOLDERS = r"/\S*/"  # of files that are gone when the table is read

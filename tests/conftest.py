@@ -8,6 +8,7 @@ import os
 for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(variable, "1")
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -24,6 +25,17 @@ def shared_data() -> Path:
     if not folder.is_dir():
         pytest.skip(f"real recordings not found at {folder} (set PLANTAR_SHARED_DATA)")
     return folder
+
+
+@pytest.fixture(scope="session", autouse=True)
+def one_cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """What the twin plans and plays is kept for this session, for all its processes; nobody's own cache is touched."""
+    folder = tmp_path_factory.getbasetemp()
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        folder = folder.parent
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("PLANTAR_CACHE", str(folder / "twin-cache"))
+        yield
 
 
 @pytest.fixture(scope="session")

@@ -12,11 +12,6 @@ from plantar.logs.readers import open_log
 from plantar.robot.model import load_robot
 
 
-@pytest.fixture(autouse=True)
-def own_cache(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("PLANTAR_CACHE", str(tmp_path_factory.getbasetemp() / "simulate-cache"))
-
-
 def run(*arguments: str) -> int:
     with pytest.raises(SystemExit) as left:
         main(["simulate", *arguments])

@@ -30,9 +30,9 @@ def late_pair(delay: float, seed: int, push: float = 0.0) -> Pair:
     return Pair("sweep", measured[100:-100], rate[100:-100], predicted[100:-100], PERIOD)
 
 
-@pytest.mark.parametrize("delay", [-0.02, -0.01, 0.0, 0.004, 0.01, 0.02])
+@pytest.mark.parametrize("delay", [-0.02, 0.0, 0.004, 0.02])
 def test_a_delay_is_found_whatever_its_sign(delay: float) -> None:
-    found = [estimate_delay([late_pair(delay, seed)]) for seed in range(8)]
+    found = [estimate_delay([late_pair(delay, seed)]) for seed in range(6)]
     assert all(each is not None for each in found)
     values = np.array([each.value for each in found if each is not None])
     claimed = np.array([each.std for each in found if each is not None])

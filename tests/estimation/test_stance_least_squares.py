@@ -103,7 +103,7 @@ def test_offsets_that_do_not_scatter_are_drawn_together() -> None:
     assert StanceProblem.drawn_together(apart).prior < 0.02 * weight
 
 
-@pytest.mark.parametrize("recordings", [1, 8])
+@pytest.mark.parametrize("recordings", [1, 4])
 def test_intervals_cover_the_truth(recordings: int) -> None:
     hits = np.zeros(2)
     trials = 150

@@ -18,10 +18,6 @@ from plantar.feet.identify import identify_feet
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
-from plantar.twin import PAPER, PRESETS
-from plantar.twin import recording as twin
-from plantar.twin.robots import hrp2
-from twin_samples import tilted
 
 DEEPEST = 10
 DEEPEST_OF_STEPS = 12  # of a foot that steps: its reduced sums are kept, which takes two functions more
@@ -84,12 +80,10 @@ def assert_shallow(
     assert deep == [], "\n".join(deep)
 
 
-def test_twin_logs_that_ask_for_a_choice_of_models() -> None:
-    sensors = PRESETS["sensors"]
-    logs = [twin.record(tilted(), hrp2.robot(), sensors.physics(PAPER), sensors, 0).log]
+def test_logs_that_ask_for_delays_and_a_choice_of_models(tmp_path: Path) -> None:
     assert_shallow(
-        hrp2.robot(),
-        logs,
+        make_robot(tmp_path),
+        [noisy(record(sway("sway", 4, duration=12.0)), 2)],
         FeetSettings(),
         DEEPEST,
         "contact/deflection.py",

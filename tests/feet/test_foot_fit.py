@@ -14,8 +14,9 @@ from feet_trials import PUNCTUAL
 from plantar.errors import DataError
 from plantar.estimation.intervals import relative_std_percent
 from plantar.feet import foot_fit
-from plantar.feet.identify import identify_feet
+from plantar.feet.identify import fit_prepared
 from plantar.feet.internal_error import described
+from plantar.feet.prepare import PreparedLogs, prepare_all
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
 
@@ -36,17 +37,22 @@ def breaking(step: Callable[..., Any], error: Exception) -> Callable[..., Any]:
 
 
 @pytest.fixture(scope="module")
-def whole(robot: RobotModel) -> FeetResult:
-    return identify_feet(robot, [record(sway())], settings=PUNCTUAL)
+def ready(robot: RobotModel) -> PreparedLogs:
+    return prepare_all(robot, [record(sway())], (), PUNCTUAL, lambda _: None)
+
+
+@pytest.fixture(scope="module")
+def whole(robot: RobotModel, ready: PreparedLogs) -> FeetResult:
+    return fit_prepared(robot, ready)
 
 
 @pytest.mark.parametrize("step", STEPS)
 def test_an_unexpected_error_gives_up_its_axis_alone(
-    robot: RobotModel, whole: FeetResult, monkeypatch: pytest.MonkeyPatch, step: str
+    robot: RobotModel, ready: PreparedLogs, whole: FeetResult, monkeypatch: pytest.MonkeyPatch, step: str
 ) -> None:
     fault = np.linalg.LinAlgError("Eigenvalues did\nnot converge")
     monkeypatch.setattr(foot_fit, step, breaking(getattr(foot_fit, step), fault))
-    found = identify_feet(robot, [record(sway())], settings=PUNCTUAL)
+    found = fit_prepared(robot, ready)
     lost = [row for row in found.parameters if (row.foot, row.axis) == BROKEN]
     assert {row.name for row in lost} == {"stiffness", "damping"}
     assert {(row.verdict, row.value) for row in lost} == {("unidentifiable", None)}
@@ -64,11 +70,11 @@ def test_an_unexpected_error_gives_up_its_axis_alone(
 
 @pytest.mark.parametrize("error", [DataError("a line"), MemoryError(), RuntimeWarning("overflow")])
 def test_what_is_no_fault_of_plantar_is_raised_on(
-    robot: RobotModel, monkeypatch: pytest.MonkeyPatch, error: Exception
+    robot: RobotModel, ready: PreparedLogs, monkeypatch: pytest.MonkeyPatch, error: Exception
 ) -> None:
     monkeypatch.setattr(foot_fit, "score_axis", breaking(foot_fit.score_axis, error))
     with pytest.raises(type(error)):
-        identify_feet(robot, [record(sway())], settings=PUNCTUAL)
+        fit_prepared(robot, ready)
 
 
 def rest_of(rows: Any) -> list[Any]:

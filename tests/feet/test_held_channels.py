@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from biped import record, sway
-from feet_trials import PUNCTUAL, assert_truth, codes, noisy
+from feet_trials import LINEAR, assert_truth, codes, noisy
 from plantar.feet.identify import identify_feet
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
@@ -26,7 +26,7 @@ def test_a_clipped_torque_is_left_out(robot: RobotModel, log: MotionLog) -> None
         return np.clip(values, middle - reach, middle + reach)
 
     found = identify_feet(
-        robot, [log.with_columns({name: clipped(name) for name in TORQUES})], settings=PUNCTUAL
+        robot, [log.with_columns({name: clipped(name) for name in TORQUES})], settings=LINEAR
     )
     assert_truth(found, 0.01)
     assert "stuck_channel" in codes(found)
@@ -42,9 +42,7 @@ def test_a_frozen_sensor_is_left_out(robot: RobotModel, log: MotionLog, sensor: 
         return values
 
     names = [name for name in log.columns if name.startswith(sensor)]
-    found = identify_feet(
-        robot, [log.with_columns({name: frozen(name) for name in names})], settings=PUNCTUAL
-    )
+    found = identify_feet(robot, [log.with_columns({name: frozen(name) for name in names})], settings=LINEAR)
     assert_truth(found, 0.01)
     (said,) = [note for note in found.notes if note.code == "stuck_channel"]
     assert f"columns '{sensor}*', t = 15 to 22.99 s" in said.text

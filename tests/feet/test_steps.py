@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from biped import TRUTH, record, sway
+from feet_trials import LINEAR
 from plantar.feet.identify import identify_feet
-from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
@@ -34,7 +34,7 @@ def stepping(log: MotionLog) -> MotionLog:
 @pytest.fixture(scope="module")
 def found(robot: RobotModel) -> FeetResult:
     logs = [stepping(record(sway(f"walk_{seed}", seed, duration=15.0))) for seed in (1, 2, 3)]
-    return identify_feet(robot, logs[:2], logs[2:], FeetSettings(model="kelvin_voigt", wrench_delay=0.0))
+    return identify_feet(robot, logs[:2], logs[2:], LINEAR)
 
 
 def test_stances_and_walks_of_both_axes_and_all_recordings_are_in_the_result(found: FeetResult) -> None:

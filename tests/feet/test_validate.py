@@ -9,10 +9,10 @@ import pytest
 
 from biped import record, sway
 from biped_robot import make_robot, robot_entry
+from feet_trials import LINEAR
 from plantar.errors import DataError
 from plantar.feet.identify import delay_estimate, identify_feet
 from plantar.feet.sensors.sensor_delay import SensorDelay
-from plantar.feet.settings import FeetSettings
 from plantar.feet.validate import validate_feet
 from plantar.notes import Note
 from plantar.results.feet import DelayEstimate
@@ -34,7 +34,7 @@ def test_a_saved_result_scores_unseen_logs_as_the_fit_did(robot: RobotModel, tmp
 
 def test_another_robots_result_is_refused(robot: RobotModel, tmp_path: Path) -> None:
     log = record(sway("a", 1, duration=8.0))
-    found = identify_feet(robot, [log])
+    found = identify_feet(robot, [log], settings=LINEAR)
     feet = robot_entry()["feet"]
     assert isinstance(feet, dict)
     other = make_robot(tmp_path, feet={"right": feet["right"]})
@@ -43,7 +43,7 @@ def test_another_robots_result_is_refused(robot: RobotModel, tmp_path: Path) -> 
 
 
 def test_a_log_too_short_to_score_is_refused(robot: RobotModel) -> None:
-    found = identify_feet(robot, [record(sway("a", 1, duration=8.0))])
+    found = identify_feet(robot, [record(sway("a", 1, duration=8.0))], settings=LINEAR)
     with pytest.raises(DataError, match="no log has samples"):
         validate_feet(found, robot, [record(sway("b", 2, duration=1.2))])
 
@@ -51,8 +51,7 @@ def test_a_log_too_short_to_score_is_refused(robot: RobotModel) -> None:
 def test_the_results_delays_are_taken_off_unseen_logs(robot: RobotModel) -> None:
     """Exact logs: whatever is taken off them makes them worse, each delay by itself."""
     log = record(sway("a", 1, duration=10.0))
-    known = FeetSettings(model="kelvin_voigt", wrench_delay=0.0)
-    found = identify_feet(robot, [log], settings=known)
+    found = identify_feet(robot, [log], settings=LINEAR)
     assert found.sensor_delay == DelayEstimate(0.0, 0.0, False)
     right = {(row.foot, row.axis): row.mean_abs_error for row in validate_feet(found, robot, log)}
     for delay, hit in (
@@ -69,8 +68,7 @@ def test_the_results_delays_are_taken_off_unseen_logs(robot: RobotModel) -> None
 def test_the_results_moment_arm_of_the_load_is_predicted_with(robot: RobotModel) -> None:
     """A spring and damper alone predict exact logs; torque of the load beside them spoils its own axis only."""
     log = record(sway("a", 1, duration=10.0))
-    known = FeetSettings(model="kelvin_voigt", wrench_delay=0.0)
-    found = identify_feet(robot, [log], settings=known)
+    found = identify_feet(robot, [log], settings=LINEAR)
     right = {(row.foot, row.axis): row.mean_abs_error for row in validate_feet(found, robot, log)}
     first = replace(found.models[0], moment_arms=(0.02, 0.0))
     rows = validate_feet(replace(found, models=(first, *found.models[1:])), robot, log)

@@ -140,7 +140,7 @@ def test_nuisances_projected_out_are_the_same_as_fitted(shared: bool) -> None:
     ids=lambda each: getattr(each, "name", ""),
 )
 def test_intervals_hold_the_truth(model: MODELS, rubber: Rubber) -> None:  # type: ignore[valid-type]
-    inside, seeds = np.zeros(2), 8 if model.name == "bouc_wen" else 12
+    inside, seeds = np.zeros(2), 4 if model.name == "bouc_wen" else 12
     for seed in range(seeds):
         fit = fit_model(model, campaign(seed, rubber))
         for place, truth in enumerate((rubber.stiffness, rubber.damping)):

@@ -89,7 +89,7 @@ def test_every_table_has_its_caption(page: Page) -> None:
         "Table 3.",
         "Offsets",
         "Compared: offset shared",
-        "What served",
+        "What is used",
         "Inputs",
     ):
         assert any(wanted in caption for caption in captions), wanted

@@ -35,7 +35,7 @@ def made(schema: str) -> DynamicsResult:
     joints = (JOINT,) if schema == JOINTS_SCHEMA else ()
     return DynamicsResult(
         schema, "robot", (Input("a.csv", None, "fit"),), {"cutoff": 3.0}, 4, math.inf, (BASE,), tuple(LINK), joints,
-        tuple(SCORES), (Note("pull", "warning", "pulled hard"),), "<robot/>", pa.table({"time": [0.0, 0.1]}),
+        tuple(SCORES), (Note("regularisation", "warning", "pulled hard"),), "<robot/>", pa.table({"time": [0.0, 0.1]}),
     )  # fmt: skip
 
 

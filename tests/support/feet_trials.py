@@ -15,6 +15,8 @@ from plantar.results.feet import FeetResult
 
 # The biped's forces are drawn, not moved by Newton: its logs cannot show a delay, and are known to have none.
 PUNCTUAL = FeetSettings(wrench_delay=0.0)
+# Where a test does not ask which model is chosen: none is, which halves what a fit costs.
+LINEAR = FeetSettings(wrench_delay=0.0, model="kelvin_voigt")
 
 EXACT = 1e-4  # what differences of the joints' positions cost
 Truth = Mapping[tuple[str, str], BushModel]

@@ -1,4 +1,4 @@
-"""Short plans and rollouts of the twin, so that its tests take seconds."""
+"""Short plans and rollouts of the twin, kept in the session's cache, so that its tests take seconds."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from functools import cache
 
 import numpy as np
 
-from plantar.motions import Plan, Walk, plan_motion
+from plantar.motions import Plan, Walk
+from plantar.twin.play import planned, rolled
 from plantar.twin.robots import hrp2
 from plantar.twin.simulation.physics import Physics
 from plantar.twin.simulation.rollout import Rollout, roll_out, scene_xml
@@ -35,7 +36,7 @@ def short(plan: Plan, start: float, end: float) -> Plan:
 
 @cache
 def plan(motion: str) -> Plan:
-    return plan_motion(motion, hrp2.robot(), hrp2.postures())
+    return planned(motion, hrp2.robot())
 
 
 def roll(played: Plan, physics: Physics | None = None) -> Rollout:
@@ -46,10 +47,10 @@ def roll(played: Plan, physics: Physics | None = None) -> Rollout:
 @cache
 def swayed() -> Rollout:
     """Six seconds of the right foot's manual roll on the paper's bushes."""
-    return roll(short(plan("Manual_right_roll"), 10.0, 16.0))
+    return rolled(short(plan("Manual_right_roll"), 10.0, 16.0), hrp2.robot(), Physics())
 
 
 @cache
 def tilted() -> Rollout:
     """Four seconds of Tilt3 on the paper's bushes."""
-    return roll(short(plan("Tilt3"), 2.0, 6.0))
+    return rolled(short(plan("Tilt3"), 2.0, 6.0), hrp2.robot(), Physics())

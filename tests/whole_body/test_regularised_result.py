@@ -67,11 +67,11 @@ def test_what_no_motion_excites_is_named(robot: RobotModel) -> None:
 
 def test_how_strongly_the_fit_leans_on_the_urdf_is_said(robot: RobotModel) -> None:
     (note,) = fit_notes(fit_of(robot))
-    assert (note.code, note.severity) == ("pull", "info")
+    assert (note.code, note.severity) == ("regularisation", "info")
     for number in ("10", "held-out error 2 ", "1 at", "3 at"):
         assert number in note.text
     (unsure,) = fit_notes(fit_of(robot, held_out=()))
-    assert (unsure.code, unsure.severity) == ("pull", "warning")
+    assert (unsure.code, unsure.severity) == ("regularisation", "warning")
     assert fit_notes(fit_of(robot, regularisation=np.inf)) == []
 
 

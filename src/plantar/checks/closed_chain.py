@@ -26,7 +26,7 @@ ENCODER_STEPS = 5.0  # of the joint's own encoder, likewise: between two of them
 LEAST_TIME = 3.0  # s at one value, both feet loaded: shorter stands are usual, and do little harm
 SAMPLES = 500  # spread over that time: enough to tell
 STEP = 1e-3  # rad, by which a joint is turned to see what that moves
-LEVER = 0.1  # m, by which yaw [rad] counts beside the soles' distance [m]
+YAW_MOMENT_ARM = 0.1  # m, by which yaw [rad] counts beside the soles' distance [m]
 CLOSED = 0.5  # share of the soles' motion that the joint's own angle may leave
 FOLLOWED = 0.5  # share of the torque's misfit that it may leave
 FOLLOWS = 0.3  # share of the torque's variance that may then not follow the bush's angle
@@ -133,7 +133,7 @@ def _own_angle(stand: _Stand, name: str, foot: str) -> float | None:
 def _soles(states: Mapping[str, BushState]) -> Array:
     """How two soles stand to each other on the ground, (n, 3) [m]."""
     pose = relative_pose(*states.values())
-    return np.column_stack([pose.position[:, :2], LEVER * np.unwrap(pose.yaw)])
+    return np.column_stack([pose.position[:, :2], YAW_MOMENT_ARM * np.unwrap(pose.yaw)])
 
 
 def _unexplained(state: BushState, axis: int) -> float:

@@ -13,7 +13,7 @@ from plantar.notes import Finding
 from plantar.robot.model import RobotModel
 
 BETTER = 0.5  # share of the misfit that must be left after the change
-NOTABLE = 0.02  # m: a lever below it is within the model's own error
+NOTABLE = 0.02  # m: a moment arm below it is within the model's own error
 ALIKE = 0.1  # of the misfit: changes that do as well as the best are named with it
 CERTAIN_MOMENT_ARM, CERTAIN = (
     0.05,
@@ -33,8 +33,8 @@ COMPONENTS = ("force.x", "force.y", None, "torque.x", "torque.y", None)  # force
 def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     """Exchanged wrenches, reversed signs of a wrench's component or a joint, or a misfit that none of them explains.
 
-    The moment of the feet's wrenches about the centre of mass, over the load, is a lever [m] that stays small while the
-    robot stands or sways; an operator's push adds centimetres.
+    The moment of the feet's wrenches about the centre of mass, over the load, is a moment arm [m] that stays small
+    while the robot stands or sways; an operator's push adds centimetres.
     """
     stance = stance_of(robot, log)
     if stance is None:

@@ -170,9 +170,9 @@ def _model_notes(fits: Sequence[AxisFit]) -> list[Note]:
             stiffness, damping = fit.equivalent
             linear = f"as spring and damper K = {stiffness:.4g}, C = {damping:.4g}"
             text = f"{where}: {fit.model.name} ({fit.reason}); {linear}"
-            notes.append(Note("law", "info", text))
+            notes.append(Note("model", "info", text))
         if fit.choice is not None and fit.choice.caution is not None:
-            notes.append(Note("law_caution", "warning", f"{where}: {fit.choice.caution}"))
+            notes.append(Note("model_caution", "warning", f"{where}: {fit.choice.caution}"))
         notes += fit.notes
     return notes
 

@@ -6,6 +6,7 @@ import difflib
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -103,7 +104,7 @@ class MotionLog:
         """Time from the first sample to the last [s]."""
         return float(self.time[-1] - self.time[0])
 
-    @property
+    @cached_property
     def period(self) -> float:
         """The usual time between samples [s]: the median, which gaps do not move."""
         return float(np.median(np.diff(self.time)))

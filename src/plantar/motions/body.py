@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 import pink
 import pinocchio as pin
+from numpy.typing import NDArray
 from pink.limits import ConfigurationLimit
 from pink.tasks import ComTask, FrameTask, PostureTask, Task
 
@@ -51,6 +52,18 @@ class Body:
     def joints(self) -> tuple[str, ...]:
         return tuple(self.model.names)[2:]
 
+    @cached_property
+    def _places(self) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        """Where each joint's first number stands in a configuration, and which joints have cosine and sine there."""
+        joints = tuple(self.model.joints)[2:]
+        return np.array([joint.idx_q for joint in joints]), np.flatnonzero(
+            [joint.nq == 2 for joint in joints]
+        )
+
+    @cached_property
+    def _limit(self) -> ConfigurationLimit:
+        return ConfigurationLimit(self.model, config_limit_gain=0.9)  # longer to make than to solve a step
+
     def neutral(self, posture: Mapping[str, float] | None = None) -> Array:
         """Configuration with the joints at `posture`, else at 0, and inside their limits with room to move."""
         q: Array = np.array(pin.neutral(self.model))
@@ -85,26 +98,23 @@ class Body:
 
     def positions(self, q: Array) -> Array:
         """Joint positions, one a joint, in the order of `joints`."""
-        return np.array(
-            [
-                q[j.idx_q] if j.nq == 1 else np.arctan2(q[j.idx_q + 1], q[j.idx_q])
-                for j in self.model.joints[2:]
-            ]
-        )
+        places, circles = self._places
+        found = q[places]
+        found[circles] = np.arctan2(q[places[circles] + 1], q[places[circles]])
+        return np.asarray(found)
 
     def solve(self, q: Array, tasks: list[Task], posture: Array, steps: int) -> Array:
         """`steps` Gauss-Newton steps towards the tasks, `posture` where they leave freedom."""
         rest = PostureTask(cost=1e-2, gain=0.3)
         rest.set_target(posture)
-        configuration = pink.Configuration(self.model, self.data, q.copy())
-        limits = [ConfigurationLimit(self.model, config_limit_gain=0.9)]
+        configuration = pink.Configuration(self.model, self.data, q, copy_data=False)
         for _ in range(steps):
             velocity = pink.solve_ik(
                 configuration,
                 [*tasks, rest],
                 1.0,
                 solver="daqp",
-                limits=limits,
+                limits=[self._limit],
                 damping=1e-9,
                 safety_break=False,
             )

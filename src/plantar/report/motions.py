@@ -13,7 +13,7 @@ from plantar.results.feet import FeetResult
 from plantar.results.numbers import number
 from plantar.results.residuals import Track
 
-ROLES: Final = {"fit": "served the fit", "validate": "not seen by the fit"}
+ROLES: Final = {"fit": "used for the fit", "validate": "not seen by the fit"}
 PHASE_LIMIT: Final = 4000
 """Most phases that a timeline draws."""
 

@@ -102,7 +102,7 @@ def validation_table(validation: Sequence[ValidationRow], kind: str) -> Table:
         Column("skill", numeric=False),
     )
     title = {
-        "direct": "Table 2. Direct validation: the motions that served the fit",
+        "direct": "Table 2. Direct validation: the motions used for the fit",
         "cross": "Table 3. Cross-validation: motions that the fit has not seen",
     }[kind]
     remark = "A model that does not beat its own offset has learnt nothing."
@@ -160,7 +160,7 @@ def _comparison(result: FeetResult, other: Comparison) -> list[Table]:
 
 
 def used_table(phases: Sequence[Phase]) -> Table:
-    """How much of each log served, and for what reasons the rest did not."""
+    """How much of each log is used, and for what reasons the rest is not."""
     rows = []
     for motion, foot in dict.fromkeys((phase.motion, phase.foot) for phase in phases):
         mine = [phase for phase in phases if (phase.motion, phase.foot) == (motion, foot)]
@@ -182,7 +182,7 @@ def used_table(phases: Sequence[Phase]) -> Table:
         Column("share"),
         Column("left out because", numeric=False),
     )
-    return Table.of("What served of each log", columns, rows)
+    return Table.of("What is used of each log", columns, rows)
 
 
 def input_table(inputs: Sequence[Input]) -> Table:

@@ -66,7 +66,7 @@ def statement(subject: str, axis: str, rows: Sequence[Parameter]) -> Statement:
 
 
 def symbol(name: str) -> str:
-    """K and C for stiffness and damping; a richer law's term by its name."""
+    """K and C for stiffness and damping; a richer model's term by its name."""
     return SYMBOLS.get(name, name.replace("_", " "))
 
 

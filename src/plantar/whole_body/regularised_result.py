@@ -96,14 +96,14 @@ def fit_notes(fit: RegularisedFit) -> list[Note]:
         return []
     if not fit.held_out:
         text = "too few samples for cross-validation: a weak regularisation towards the URDF was assumed"
-        return [Note("pull", "warning", text)]
+        return [Note("regularisation", "warning", text)]
     held_out = {tried.regularisation: float(np.sqrt(tried.errors.mean())) for tried in fit.held_out}
     text = (
         f"regularised towards the URDF with weight {fit.regularisation:g}: "
         f"held-out error {held_out[fit.regularisation]:.4g} of the fit's, "
         f"{held_out[min(held_out)]:.4g} at the smallest weight, {held_out[max(held_out)]:.4g} at the largest"
     )
-    notes = [Note("pull", "info", text)]
+    notes = [Note("regularisation", "info", text)]
     links = zip(fit.equation.links, fit.prior.cad.reshape(-1, len(INERTIAL_NAMES)), strict=True)
     impossible = [link for link, cad in links if not is_consistent(cad)]
     if impossible:

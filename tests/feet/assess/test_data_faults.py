@@ -7,19 +7,25 @@ from dataclasses import replace
 import pytest
 
 from biped import record, sway
-from feet_trials import PUNCTUAL, noisy
+from feet_trials import LINEAR, noisy
 from plantar.feet.assess.data_faults import UNMENDED, data_faults, doubted
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.identify import fit_prepared
 from plantar.feet.prepare import PreparedLogs, prepare_all
 from plantar.notes import Note
+from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
 
 
 @pytest.fixture(scope="module")
 def ready(robot: RobotModel) -> PreparedLogs:
     log = noisy(record(sway("sway", 3, duration=30.0)), 3)
-    return prepare_all(robot, [log], [], PUNCTUAL, lambda _: None)
+    return prepare_all(robot, [log], [], LINEAR, lambda _: None)
+
+
+@pytest.fixture(scope="module")
+def healthy(robot: RobotModel, ready: PreparedLogs) -> FeetResult:
+    return fit_prepared(robot, ready)
 
 
 def with_note(ready: PreparedLogs, note: Note) -> PreparedLogs:
@@ -28,9 +34,8 @@ def with_note(ready: PreparedLogs, note: Note) -> PreparedLogs:
 
 @pytest.mark.parametrize("code", sorted(UNMENDED))
 def test_a_fault_takes_usable_away_and_is_the_reason(
-    robot: RobotModel, ready: PreparedLogs, code: str
+    robot: RobotModel, ready: PreparedLogs, healthy: FeetResult, code: str
 ) -> None:
-    healthy = fit_prepared(robot, ready)
     spoiled = fit_prepared(robot, with_note(ready, Note(code, "warning", "sway: something is turned")))
     assert any(row.verdict == "usable" for row in healthy.parameters if row.axis != "z")
     for row, before in zip(spoiled.parameters, healthy.parameters, strict=True):
@@ -41,7 +46,7 @@ def test_a_fault_takes_usable_away_and_is_the_reason(
 
 
 def test_what_was_put_right_or_is_only_said_takes_nothing_away(ready: PreparedLogs) -> None:
-    fit = fit_axis(ready.fitted, "left", "pitch", PUNCTUAL)
+    fit = fit_axis(ready.fitted, "left", "pitch", LINEAR)
     assert fit is not None
     for note in (Note("spikes", "warning", "bridged"), Note("sign", "info", "looks odd")):
         assert data_faults(with_note(ready, note).fitted, fit) == []

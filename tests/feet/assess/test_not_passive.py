@@ -8,7 +8,7 @@ import pytest
 
 from biped import TRUTH, record, sway
 from biped_robot import FEET
-from feet_trials import AXES, PUNCTUAL, noisy
+from feet_trials import AXES, LINEAR, noisy
 from plantar.feet.assess.verdicts import Evidence, judge, judge_term
 from plantar.feet.identify import identify_feet
 from plantar.results.feet import FeetResult
@@ -44,7 +44,7 @@ def test_a_further_term_is_judged_by_its_width(half_width: float, verdict: str, 
 def identified(robot: RobotModel, damping: float) -> FeetResult:
     truth = {key: replace(law, damping=damping) for key, law in TRUTH.items()}
     log = noisy(record(sway("sway", 3, truth=truth)), 3)
-    return identify_feet(robot, [log], settings=replace(PUNCTUAL, model="kelvin_voigt"))
+    return identify_feet(robot, [log], settings=LINEAR)
 
 
 def test_negative_damping_beyond_doubt_spoils_the_stiffness_too(robot: RobotModel) -> None:

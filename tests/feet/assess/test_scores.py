@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 from biped import record, sway
-from feet_trials import PUNCTUAL
+from feet_trials import LINEAR
 from made_recording import FOOT, made_recording, swayed
 from plantar.feet.assess.scores import score_axis
 from plantar.feet.fit.axis import FittedModel
@@ -19,7 +17,6 @@ from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
 
 STEP, AT = 3.0, 2.0  # N·m, s
-SPRING_AND_DAMPER = replace(PUNCTUAL, model="kelvin_voigt")
 
 
 def stepped(log: MotionLog) -> MotionLog:
@@ -31,7 +28,7 @@ def stepped(log: MotionLog) -> MotionLog:
 @pytest.fixture(scope="module")
 def found(robot: RobotModel) -> FeetResult:
     unseen = stepped(record(sway("unseen", 2)))
-    return identify_feet(robot, [record(sway("seen", 1))], [unseen], settings=SPRING_AND_DAMPER)
+    return identify_feet(robot, [record(sway("seen", 1))], [unseen], settings=LINEAR)
 
 
 def test_a_step_after_the_first_second_is_an_error_in_full(found: FeetResult) -> None:

@@ -9,9 +9,9 @@ import pytest
 
 from biped import TRUTH, record, sway
 from biped_robot import make_robot
+from feet_trials import LINEAR
 from plantar.feet.exclusion.outliers import outliers
 from plantar.feet.identify import identify_feet
-from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
@@ -19,7 +19,6 @@ from plantar.signals.spikes import lone_spikes, without_spikes
 
 PERIOD = 0.005
 TIME = PERIOD * np.arange(6000)
-SETTINGS = FeetSettings(wrench_delay=0.0)
 
 
 @pytest.fixture(scope="module")
@@ -38,6 +37,11 @@ def noisy(seed: int) -> MotionLog:
         if (kind := name.split(".")[2]) in sizes
     }
     return log.with_columns(noise)
+
+
+@pytest.fixture(scope="module")
+def clean() -> list[MotionLog]:
+    return [noisy(1), noisy(2)]
 
 
 def spoilt(log: MotionLog, where: np.ndarray, shape: str) -> MotionLog:
@@ -67,7 +71,7 @@ def assert_stiffness_covered(result: FeetResult) -> None:
 
 
 def left_out(result: FeetResult) -> float:
-    """Seconds that a foot did not serve because of outliers."""
+    """Seconds that a foot was not used because of outliers."""
     return sum(
         p.end - p.start for p in result.phases if p.reason is not None and p.reason.startswith("outlier")
     )
@@ -119,18 +123,17 @@ def test_a_short_burst_is_an_outlier_and_another_motion_is_not() -> None:
     assert not outliers(small, 5.0, PERIOD, 0.2).any(), "too small to matter"
 
 
-def test_clean_logs_are_fitted_once_and_untouched(robot: RobotModel) -> None:
-    log = noisy(1)
-    assert without_spikes(log) is log
-    result = identify_feet(robot, [log, noisy(2)], settings=SETTINGS)
+def test_clean_logs_are_fitted_once_and_untouched(robot: RobotModel, clean: list[MotionLog]) -> None:
+    assert without_spikes(clean[0]) is clean[0]
+    result = identify_feet(robot, clean, settings=LINEAR)
     assert left_out(result) == 0.0
     assert "spikes" not in {note.code for note in result.notes}
 
 
-def test_spikes_are_bridged_and_told(robot: RobotModel) -> None:
+def test_spikes_are_bridged_and_told(robot: RobotModel, clean: list[MotionLog]) -> None:
     where = np.random.default_rng(3).random(len(TIME)) < 0.005
-    logs = [spoilt(noisy(seed), where[: len(noisy(seed))], "noise") for seed in (1, 2)]
-    result = identify_feet(robot, logs, settings=SETTINGS)
+    logs = [spoilt(log, where[: len(log)], "noise") for log in clean]
+    result = identify_feet(robot, logs, settings=LINEAR)
     assert_stiffness_covered(result)
     told = [note for note in result.notes if note.code == "spikes"]
     assert len(told) == 2
@@ -139,10 +142,12 @@ def test_spikes_are_bridged_and_told(robot: RobotModel) -> None:
 
 
 @pytest.mark.parametrize("shape", ["noise", "held"])
-def test_bad_stretches_are_left_out_with_their_reason(robot: RobotModel, shape: str) -> None:
+def test_bad_stretches_are_left_out_with_their_reason(
+    robot: RobotModel, clean: list[MotionLog], shape: str
+) -> None:
     where = stretches((6.0, 13.0, 21.0))
-    logs = [noisy(1), spoilt(noisy(2), where[: len(noisy(2))], shape)]
-    result = identify_feet(robot, logs, settings=SETTINGS)
+    logs = [clean[0], spoilt(clean[1], where[: len(clean[1])], shape)]
+    result = identify_feet(robot, logs, settings=LINEAR)
     assert_stiffness_covered(result)
     if shape == "held":  # shaken ones may count as impacts
         assert 2 * 3 * 0.2 < left_out(result) < 2 * 3 * 1.2

@@ -11,12 +11,11 @@ import pytest
 
 from biped import TRUTH, BushModel, Motion, record, sines, sway
 from biped_robot import FEET, make_robot, robot_entry
-from feet_trials import PUNCTUAL, noisy
+from feet_trials import LINEAR, noisy
 from plantar.feet.identify import identify_feet
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
 
-SPRING_AND_DAMPER = replace(PUNCTUAL, model="kelvin_voigt")
 LIMIT = 8.5  # N·m: half of the weight on an edge 29 mm from the middle
 PERIOD = 0.01
 SMEARED = 0.05  # s beside a lean that a filter of 5 Hz spoils
@@ -73,7 +72,7 @@ def tips(found: FeetResult, foot: str) -> list[tuple[float, float]]:
 
 def test_what_lies_beside_a_lean_is_left_out_with_it(tmp_path: Path) -> None:
     motion = pitching(sines((np.radians(2.5), 0.25, 0.3)), -LIMIT, LIMIT)
-    found = identify_feet(short_soled(tmp_path, 0.03), [noisy(record(motion), 1)], settings=SPRING_AND_DAMPER)
+    found = identify_feet(short_soled(tmp_path, 0.03), [noisy(record(motion), 1)], settings=LINEAR)
     for foot in FEET:
         leans, table = tips(found, foot), columns(found, foot)
         time, used = table["time"], table["used"]
@@ -90,7 +89,7 @@ def test_a_quick_sway_to_the_edge_is_no_lean(tmp_path: Path) -> None:
     """Damping takes its share of the torque: angle and torque part by 10 mrad, and the sole stays flat."""
     robot = short_soled(tmp_path, half := 0.043)
     angle = sines((np.radians(1.4), 1.0, 0.0))
-    found = identify_feet(robot, [noisy(record(pitching(angle)), 2)], settings=SPRING_AND_DAMPER)
+    found = identify_feet(robot, [noisy(record(pitching(angle)), 2)], settings=LINEAR)
     for foot in FEET:
         table = columns(found, foot)
         assert half - 0.005 < np.abs(table["cop_x"]).max() < half, "the edge is visited"
@@ -116,9 +115,7 @@ def test_a_foot_that_is_quickly_put_to_its_edge_and_held_there_serves(tmp_path: 
     def angle(t: np.ndarray) -> np.ndarray:
         return torque / TRUTH["left", "pitch"].stiffness * held_at_the_edge(t)
 
-    found = identify_feet(
-        short_soled(tmp_path, half), [noisy(record(pitching(angle)), 5)], settings=SPRING_AND_DAMPER
-    )
+    found = identify_feet(short_soled(tmp_path, half), [noisy(record(pitching(angle)), 5)], settings=LINEAR)
     table = columns(found, "left")
     assert half - 0.005 < np.percentile(np.abs(table["cop_x"]), 90) < half, "the edge is visited"
     assert tips(found, "left") == []
@@ -135,7 +132,7 @@ def test_a_torque_that_stops_growing_is_tipping_on_either_side(tmp_path: Path, s
     """Feet whose centre of pressure means nothing: the bend of the torque over the angle tells."""
     limits = {"positive": (-np.inf, LIMIT), "negative": (-LIMIT, np.inf)}[side]
     robot = short_soled(tmp_path, 0.13, contact="always")
-    found = identify_feet(robot, [noisy(record(pitching(resting, *limits)), 3)], settings=SPRING_AND_DAMPER)
+    found = identify_feet(robot, [noisy(record(pitching(resting, *limits)), 3)], settings=LINEAR)
     for foot in FEET:
         reasons = {phase.reason for phase in found.phases if phase.foot == foot and phase.reason}
         stops = [reason for reason in reasons if "the torque stops growing, pitch" in reason]
@@ -151,7 +148,7 @@ def test_a_torque_that_stops_growing_is_tipping_on_either_side(tmp_path: Path, s
 
 def test_a_window_holds_on_both_sides(tmp_path: Path) -> None:
     robot, window = short_soled(tmp_path, 0.13), np.radians(1.0)
-    settings = replace(SPRING_AND_DAMPER, window=float(window))
+    settings = replace(LINEAR, window=float(window))
     found = identify_feet(robot, [noisy(record(pitching(resting)), 4)], settings=settings)
     for foot in FEET:
         table = columns(found, foot)

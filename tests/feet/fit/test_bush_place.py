@@ -9,7 +9,7 @@ import pytest
 
 from biped import TRUTH, record, sway
 from biped_robot import FEET
-from feet_trials import AXES, PUNCTUAL, codes, noisy
+from feet_trials import AXES, LINEAR, codes, noisy
 from plantar.feet.fit.bush_place import PlaceSpread
 from plantar.feet.identify import identify_feet
 from plantar.logs.motion_log import MotionLog
@@ -18,9 +18,8 @@ from plantar.robot.guesses import Guess
 from plantar.robot.model import RobotModel
 from plantar.robot.uncertainty import Uncertainty
 
-LINEAR = replace(PUNCTUAL, model="kelvin_voigt")
 
-
+@pytest.fixture(scope="module")
 def recorded() -> list[MotionLog]:
     return [noisy(record(sway(f"sway_{seed}", seed, duration=40.0)), seed) for seed in (3, 4)]
 
@@ -59,8 +58,10 @@ def measured(robot: RobotModel) -> RobotModel:
 
 
 @pytest.mark.parametrize("height", [0.03, -0.03])
-def test_a_centre_at_another_height_is_found(robot: RobotModel, measured: RobotModel, height: float) -> None:
-    logs = [shifted(log, np.array([0.0, 0.0, height])) for log in recorded()]
+def test_a_centre_at_another_height_is_found(
+    robot: RobotModel, measured: RobotModel, recorded: list[MotionLog], height: float
+) -> None:
+    logs = [shifted(log, np.array([0.0, 0.0, height])) for log in recorded]
     found = identify_feet(measured, logs, settings=LINEAR)
     assert "bush_place" in codes(found)
     for model in found.models:
@@ -69,8 +70,8 @@ def test_a_centre_at_another_height_is_found(robot: RobotModel, measured: RobotM
     assert worst(identify_feet(robot, logs, settings=LINEAR)) > 2 * worst(found)
 
 
-def test_a_turned_force_sensor_is_found(measured: RobotModel) -> None:
-    logs = [turned(log, np.radians(5)) for log in recorded()]
+def test_a_turned_force_sensor_is_found(measured: RobotModel, recorded: list[MotionLog]) -> None:
+    logs = [turned(log, np.radians(5)) for log in recorded]
     found = identify_feet(measured, logs, settings=LINEAR)
     assert "bush_place" in codes(found)
     for model in found.models:
@@ -78,14 +79,16 @@ def test_a_turned_force_sensor_is_found(measured: RobotModel) -> None:
     assert worst(found) < 0.02
 
 
-def test_a_centre_in_its_place_is_left_there(measured: RobotModel) -> None:
-    found = identify_feet(measured, recorded(), settings=LINEAR)
+def test_a_centre_in_its_place_is_left_there(measured: RobotModel, recorded: list[MotionLog]) -> None:
+    found = identify_feet(measured, recorded, settings=LINEAR)
     assert "bush_place" not in codes(found)
     assert worst(found) < 0.01
 
 
-def test_a_centre_far_from_its_place_takes_usable_away(measured: RobotModel) -> None:
-    logs = [shifted(log, np.array([0.0, 0.0, 0.1])) for log in recorded()]
+def test_a_centre_far_from_its_place_takes_usable_away(
+    measured: RobotModel, recorded: list[MotionLog]
+) -> None:
+    logs = [shifted(log, np.array([0.0, 0.0, 0.1])) for log in recorded]
     found = identify_feet(measured, logs, settings=LINEAR)
     assert "bush_place_far" in codes(found)
     rows = [found.parameter(foot, "pitch", "stiffness") for foot in FEET]

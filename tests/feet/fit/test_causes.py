@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,14 +11,13 @@ from scipy import special
 
 from biped import WEIGHT, bush_force, deflection, deflection_rate, record, sway, times
 from biped_robot import AS_USUAL, FEET
-from feet_trials import AXES, PUNCTUAL, codes, noisy
+from feet_trials import AXES, LINEAR, codes, noisy
 from plantar.feet.identify import identify_feet
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
 
 Torque = Callable[[np.ndarray, np.ndarray], np.ndarray]  # of pitch (N,) and of the force at the bush (N, 3)
 
-SPRING_AND_DAMPER = replace(PUNCTUAL, model="kelvin_voigt")
 SOFT_RUBBER = 1e-5  # m/N: deviation of a vertical compliance that no log shows
 FEWEST_COSINES = 4  # of a recording of 20 s: degrees of freedom of its own deviations
 # No weight moves: the vertical compliance stays unknown.
@@ -29,12 +27,12 @@ MOTIONS = [sway(name, seed, shift=0.0) for seed, name in enumerate(("first", "se
 @pytest.fixture(scope="module")
 def found(robot: RobotModel) -> FeetResult:
     logs = [noisy(record(motion), seed) for seed, motion in enumerate(MOTIONS)]
-    return identify_feet(robot, logs, settings=SPRING_AND_DAMPER)
+    return identify_feet(robot, logs, settings=LINEAR)
 
 
 @pytest.fixture(scope="module")
 def alone(robot: RobotModel) -> FeetResult:
-    return identify_feet(robot, [noisy(record(MOTIONS[0]), 0)], settings=SPRING_AND_DAMPER)
+    return identify_feet(robot, [noisy(record(MOTIONS[0]), 0)], settings=LINEAR)
 
 
 def limits(result: FeetResult) -> dict[tuple[str, str, str], dict[str, Any]]:

@@ -8,7 +8,7 @@ import pytest
 
 from biped import TRUTH, record, sway
 from biped_robot import make_robot, robot_entry
-from feet_trials import PUNCTUAL, codes
+from feet_trials import LINEAR, codes
 from plantar.feet.fit.force_gain import force_gain_errors
 from plantar.feet.identify import identify_feet
 from plantar.feet.prepare_log import checked, prepare
@@ -79,7 +79,7 @@ def test_forces_zeroed_under_load_and_robots_that_hang_say_nothing(
 
 def test_intervals_hold_both_a_wrong_gain_and_wrong_masses(weighed: RobotModel) -> None:
     """12 % more force and torque on the left: its numbers are 12 % too large, and those of the right foot are right."""
-    found = identify_feet(weighed, [scaled(record(SHIFTING), left=1.12)], settings=PUNCTUAL)
+    found = identify_feet(weighed, [scaled(record(SHIFTING), left=1.12)], settings=LINEAR)
     assert "force_gain" in codes(found)
     for (foot, axis), law in TRUTH.items():
         for name, truth in (("stiffness", law.stiffness), ("damping", law.damping)):
@@ -94,4 +94,4 @@ def test_intervals_hold_both_a_wrong_gain_and_wrong_masses(weighed: RobotModel) 
                 assert row.half_width_percent < 3  # the usual gain of a force sensor
     limits = {(each.foot, each.axis, each.name): each.limit for each in found.diagnosis}
     assert limits["left", "pitch", "stiffness"] == "force gain"
-    assert "force_gain" not in codes(identify_feet(weighed, [record(SHIFTING)], settings=PUNCTUAL))
+    assert "force_gain" not in codes(identify_feet(weighed, [record(SHIFTING)], settings=LINEAR))

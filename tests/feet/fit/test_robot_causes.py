@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from biped import TRUTH, record, sway
-from feet_trials import PUNCTUAL, noisy
+from feet_trials import LINEAR, noisy
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.fit.robot_causes import robot_causes
 from plantar.feet.identify import identify_feet
@@ -17,7 +17,6 @@ from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
 from plantar.robot.uncertainty import Uncertainty
 
-LINEAR = replace(PUNCTUAL, model="kelvin_voigt")
 NOTHING = Uncertainty(**dict.fromkeys(Uncertainty.model_fields, 0.0))
 
 
@@ -33,9 +32,15 @@ def identified(
     return identify_feet(replace(robot, uncertainty=uncertainty), logs, settings=LINEAR)
 
 
+@pytest.fixture(scope="module")
+def sure(robot: RobotModel) -> FeetResult:
+    return identified(robot, NOTHING, count=2)
+
+
 @pytest.mark.parametrize("gain", [0.01, 0.04])
-def test_a_gain_widens_stiffness_and_damping_by_itself(robot: RobotModel, gain: float) -> None:
-    sure = identified(robot, NOTHING, count=2)
+def test_a_gain_widens_stiffness_and_damping_by_itself(
+    robot: RobotModel, sure: FeetResult, gain: float
+) -> None:
     unsure = identified(robot, NOTHING.model_copy(update={"wrench_gain": gain}), count=2)
     for name in ("stiffness", "damping"):
         known, row = (one.parameter("left", "pitch", name) for one in (sure, unsure))

@@ -9,13 +9,11 @@ import pytest
 
 from biped import TRUTH, Motion, record, sway
 from biped_robot import FEET
-from feet_trials import AXES, PUNCTUAL, noisy
+from feet_trials import AXES, LINEAR, noisy
 from plantar.feet.identify import identify_feet
 from plantar.logs.motion_log import MotionLog
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
-
-SPRING_AND_DAMPER = replace(PUNCTUAL, model="kelvin_voigt")
 
 
 def stiffening(hardening: float) -> list[Motion]:
@@ -26,14 +24,19 @@ def stiffening(hardening: float) -> list[Motion]:
 
 def identified(robot: RobotModel, hardening: float) -> FeetResult:
     logs = [noisy(record(motion), seed) for seed, motion in enumerate(stiffening(hardening))]
-    return identify_feet(robot, logs, settings=SPRING_AND_DAMPER)
+    return identify_feet(robot, logs, settings=LINEAR)
+
+
+@pytest.fixture(scope="module")
+def plain(robot: RobotModel) -> FeetResult:
+    return identified(robot, 0.0)
 
 
 @pytest.mark.parametrize("hardening", [20000.0, -20000.0])
-def test_a_spring_that_stiffens_widens_the_stiffness_of_a_law_that_does_not(
-    robot: RobotModel, hardening: float
+def test_a_spring_that_stiffens_widens_the_stiffness_of_a_model_that_does_not(
+    robot: RobotModel, plain: FeetResult, hardening: float
 ) -> None:
-    found, plain = identified(robot, hardening), identified(robot, 0.0)
+    found = identified(robot, hardening)
     for foot in FEET:
         for axis in AXES:
             row, clean = (one.parameter(foot, axis, "stiffness") for one in (found, plain))
@@ -45,11 +48,9 @@ def test_a_spring_that_stiffens_widens_the_stiffness_of_a_law_that_does_not(
             assert row.std < 1.5 * abs(row.value - truth)
 
 
-def test_a_spring_that_does_not_stiffen_is_not_widened(robot: RobotModel) -> None:
+def test_a_spring_that_does_not_stiffen_is_not_widened(plain: FeetResult) -> None:
     shares = [
-        each.variance_shares.get("hardening", 0.0)
-        for each in identified(robot, 0.0).diagnosis
-        if each.name == "stiffness"
+        each.variance_shares.get("hardening", 0.0) for each in plain.diagnosis if each.name == "stiffness"
     ]
     assert len(shares) == 4
     assert np.median(shares) == 0.0
@@ -70,7 +71,7 @@ def lifted(log: MotionLog) -> MotionLog:
 
 def test_a_foot_put_down_anew_is_widened_by_what_its_zeros_do(robot: RobotModel) -> None:
     log = noisy(record(sway("sway_3", 3, duration=40.0)), 3)
-    usual, found = (identify_feet(robot, [one], settings=SPRING_AND_DAMPER) for one in (log, lifted(log)))
+    usual, found = (identify_feet(robot, [one], settings=LINEAR) for one in (log, lifted(log)))
     shares = {(each.foot, each.axis, each.name): each.variance_shares for each in found.diagnosis}
     assert shares["left", "pitch", "stiffness"]["zeros of stances"] > 0
     assert "zeros of stances" not in shares["right", "pitch", "stiffness"]

@@ -2,27 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from scipy import special
 
 from biped import VERTICAL, record, sway
 from biped_robot import FEET
-from feet_trials import PUNCTUAL, codes, noisy
+from feet_trials import LINEAR, codes, noisy
 from plantar.feet.fit.vertical_stiffness import Compliances
 from plantar.feet.identify import identify_feet
 from plantar.robot.model import RobotModel
 
-SPRING_AND_DAMPER = replace(PUNCTUAL, model="kelvin_voigt")
 FREEDOM = 4  # of one recording of 20 s
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_the_interval_holds_the_truth_and_is_students(robot: RobotModel, seed: int) -> None:
     """Half its width in compliance over Student's t is the stiffness' deviation over the stiffness squared."""
-    found = identify_feet(robot, [noisy(record(sway(seed=seed)), seed)], settings=SPRING_AND_DAMPER)
+    found = identify_feet(robot, [noisy(record(sway(seed=seed)), seed)], settings=LINEAR)
     for foot in FEET:
         row = found.parameter(foot, "z", "stiffness")
         low, high = row.interval95
@@ -42,7 +39,7 @@ def test_a_quiet_sensor_does_not_make_a_constant_load_move(robot: RobotModel) ->
             if ".force." in name
         }
     )
-    assert "z_sum_only" in codes(identify_feet(robot, [quiet], settings=SPRING_AND_DAMPER))
+    assert "z_sum_only" in codes(identify_feet(robot, [quiet], settings=LINEAR))
 
 
 @pytest.mark.parametrize("difference_std", [1e-7, 2e-6, 2e-5])

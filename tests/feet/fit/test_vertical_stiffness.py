@@ -6,7 +6,7 @@ import pytest
 
 from biped import VERTICAL, record, sway
 from biped_robot import FEET
-from feet_trials import PUNCTUAL, codes, noisy
+from feet_trials import LINEAR, codes, noisy
 from plantar.feet.identify import identify_feet
 from plantar.robot.model import RobotModel
 
@@ -15,7 +15,7 @@ def test_noise_on_a_constant_total_load_tells_the_feet_not_apart(robot: RobotMod
     """As regressors, changes that are mere noise would split the sum of the compliances at random."""
     for seed in range(3):
         log = noisy(record(sway(seed=seed)), seed)
-        found = identify_feet(robot, [log], settings=PUNCTUAL)
+        found = identify_feet(robot, [log], settings=LINEAR)
         rows = [found.parameter(foot, "z", "stiffness") for foot in FEET]
         assert "z_sum_only" in codes(found)
         assert rows[0].value == pytest.approx(rows[1].value, rel=1e-3)
@@ -24,5 +24,5 @@ def test_noise_on_a_constant_total_load_tells_the_feet_not_apart(robot: RobotMod
 
 
 def test_no_moving_weight_shows_no_vertical_stiffness(robot: RobotModel) -> None:
-    found = identify_feet(robot, [noisy(record(sway(shift=0.0)), 1)], settings=PUNCTUAL)
+    found = identify_feet(robot, [noisy(record(sway(shift=0.0)), 1)], settings=LINEAR)
     assert "z_unknown" in codes(found)

@@ -19,6 +19,7 @@ from plantar.robot.uncertainty import Uncertainty
 from plantar.signals.resampling import shifted
 from plantar.twin import PAPER, play_all
 from plantar.twin.robots import hrp2
+from twin_samples import plan, short
 
 
 @pytest.fixture(scope="module")
@@ -27,10 +28,9 @@ def twin() -> RobotModel:
 
 
 @pytest.fixture(scope="module")
-def sweep(twin: RobotModel, tmp_path_factory: pytest.TempPathFactory) -> MotionLog:
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("PLANTAR_CACHE", str(tmp_path_factory.getbasetemp() / "simulate-cache"))
-        return checked(twin, play_all(["Myrand5"], twin, PAPER, "sensors", [0])[0][0].log)
+def sweep(twin: RobotModel) -> MotionLog:
+    played = short(plan("Myrand5"), 0.0, 45.0)
+    return checked(twin, play_all([played], twin, PAPER, "sensors", [0])[0][0].log)
 
 
 def late(log: MotionLog, columns: str, delay: float) -> MotionLog:

@@ -54,7 +54,7 @@ def test_damping_survives_a_filtered_attitude(tmp_path: Path) -> None:
     robot = make_robot(tmp_path)
     logs = [filtered(record(sway(f"sway_{seed}", seed=seed, duration=30.0))) for seed in (1, 2)]
     found = identify_feet(robot, logs, settings=KNOWN)
-    assert sum(note.code == "attitude_pulled" for note in found.notes) == 2
+    assert sum(note.code == "attitude_tilted" for note in found.notes) == 2
     left = identify_feet(robot, [without_accelerometer(log) for log in logs], settings=KNOWN)
     missed = []
     for (foot, axis), law in TRUTH.items():
@@ -84,6 +84,6 @@ def test_a_quiet_log_is_put_right_by_what_the_others_of_its_imu_show(tmp_path: P
         {f"imu.chest.angular_velocity.{axis}": shaken[:, place] for place, axis in enumerate("xyz")}
     )
     alone = identify_feet(robot, [quiet], settings=KNOWN)
-    assert not any(note.code == "attitude_pulled" for note in alone.notes)
+    assert not any(note.code == "attitude_tilted" for note in alone.notes)
     together = identify_feet(robot, [*lively, quiet], settings=KNOWN)
-    assert any(note.code == "attitude_pulled" and "quiet" in note.text for note in together.notes)
+    assert any(note.code == "attitude_tilted" and "quiet" in note.text for note in together.notes)

@@ -53,7 +53,7 @@ def test_ideal_sensors_change_nothing(exact, robot) -> None:
     columns = heard(exact, robot, Sensors())
     assert columns.keys() == exact.keys()
     for name, values in columns.items():
-        assert values == pytest.approx(exact[name], abs=1e-15)
+        np.testing.assert_allclose(values, exact[name], rtol=1e-6, atol=1e-15)
 
 
 def test_encoders_are_quantised(exact, robot) -> None:

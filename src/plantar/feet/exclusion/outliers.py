@@ -1,4 +1,4 @@
-"""Short stretches in which the torque leaves its law as it does nowhere around them: left out, with their reason."""
+"""Short stretches in which the torque leaves its model as it does nowhere around them: left out, with their reason."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ BIN = 0.1  # s
 AROUND = 6.0  # s whose usual misfit a bin is compared with
 FAR_MISFITS = 6.0  # usual misfits
 WORTH = 0.03  # of the recording's spread of torque: a smaller misfit does no harm
-LONGEST = 1.0  # s: what lasts longer is not a bad sample but another law
+LONGEST = 1.0  # s: what lasts longer is not a bad sample but another behaviour
 MOST = 0.1  # share of a recording that may be outliers
 MOVING = 0.1  # share of the squares of both angle and torque: a stretch with so much is what the motion consists of
 
@@ -45,7 +45,7 @@ def outlier_masks(recordings: Sequence[Recording], fitted: FittedModel) -> dict[
 
 
 def _motion_until(bush: BushState, used: Mask) -> Array:
-    """Share of the squares of angle and torque, of pitch and roll, before each sample that serves, (N + 1, 2, 2)."""
+    """Share of the squares of angle and torque, of pitch and roll, before each used sample, (N + 1, 2, 2)."""
     both = np.stack([bush.deflection, bush.torque], axis=1)
     squares = np.where(used[:, None, None], both - both[used].mean(axis=0), 0.0) ** 2
     until = np.concatenate([np.zeros((1, 2, 2)), np.cumsum(squares, axis=0)])
@@ -53,7 +53,7 @@ def _motion_until(bush: BushState, used: Mask) -> Array:
 
 
 def outliers(missed: Array, spread: float, period: float, reach: float) -> Mask:
-    """Samples of short stretches in which `missed` (N,), NaN where nothing serves, is far larger than around them.
+    """Samples of short stretches in which `missed` (N,), NaN where nothing is used, is far larger than around them.
 
     `spread` is that of the torque [N·m]; `reach` [s] the filter's, by which stretches are widened.
     """
@@ -65,7 +65,7 @@ def outliers(missed: Array, spread: float, period: float, reach: float) -> Mask:
     if used.sum() < AROUND / BIN:
         return none
     level = np.nanmean(padded[used], axis=1)
-    # Over the bins that serve, the usual level around each, and the usual distance from it.
+    # Over the bins with used samples, the usual level around each, and the usual distance from it.
     usual = _median_around(level)
     size = np.sqrt(np.nanmean((padded[used] - usual[:, None]) ** 2, axis=1))
     scale = _median_around(size)

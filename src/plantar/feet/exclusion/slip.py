@@ -9,7 +9,7 @@ import numpy as np
 from plantar.contact.deflection import relative_pose
 from plantar.contact.phases import DOUBLE, SUPPORTS, FootContact, widened
 from plantar.contact.reasons import EDGES, Reason
-from plantar.contact.slip import (
+from plantar.contact.slip_indicator import (
     SlipIndicator,
     apart_speed,
     as_usual,
@@ -100,7 +100,7 @@ def _turns(twist: Array, period: float) -> SlipIndicator:
 
 
 def _shared(indicators: Mapping[str, SlipIndicator], foot: str, both: Mask) -> SlipIndicator:
-    """One foot's witness, and where both feet stand, that of the faster one."""
+    """One foot's slip indicator, and where both feet stand, that of the faster one."""
     speed, deviation = indicators[foot].speed, indicators[foot].deviation
     for other in indicators.values():
         faster = both & ~(np.nan_to_num(other.speed) <= np.nan_to_num(speed))

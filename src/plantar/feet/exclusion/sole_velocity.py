@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from plantar.contact.deflection import BushState
-from plantar.contact.slip import SLIP_CUTOFF, usual_deviation
+from plantar.contact.slip_indicator import SLIP_CUTOFF, usual_deviation
 from plantar.conventions import Array, Mask, rotation_from_quaternion
 from plantar.estimation.velocity_drift import fit_drift
 from plantar.feet.recording import Recording

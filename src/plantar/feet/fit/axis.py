@@ -1,4 +1,4 @@
-"""The fitted law of one axis of one foot."""
+"""The fitted model of one axis of one foot."""
 
 from __future__ import annotations
 

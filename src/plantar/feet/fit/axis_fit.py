@@ -1,4 +1,4 @@
-"""One axis of one foot: the law that its motions ask for, fitted to all of them (eq. 4 to 7)."""
+"""One axis of one foot: the model that its motions ask for, fitted to all of them (eq. 4 to 7)."""
 
 from __future__ import annotations
 
@@ -21,7 +21,9 @@ from plantar.model_selection.model_fit import ModelFit, fit_again, fit_model
 from plantar.model_selection.selection import LEAST_GAIN, ModelChoice, choose_model
 from plantar.models import MODELS, BushModel, KelvinVoigt
 
-LEAST_EXPLAINED = 0.5  # of the torque's variance by spring and damper: below it no law of the bush will help
+LEAST_EXPLAINED = (
+    0.5  # of the torque's variance by spring and damper: below it no model of the bush will help
+)
 FULLY_EXPLAINED = 0.99995  # above it what is left is the sensors' noise
 SHORT_STANCE = 5.0  # s: the usual stance of walking is shorter, and tells nothing of a memory
 # A short stance begins with an unknown state and offset and ends before it has gone far: of memories
@@ -139,8 +141,8 @@ def _explained(fit: LinearFit, blocks: Sequence[Block]) -> float:
 def _untried(explained: float) -> str:
     share = f"spring and damper explain {100 * explained:.4g} % of the torque's variance"
     if explained >= FULLY_EXPLAINED:
-        return f"{share}: no richer law is needed"
-    return f"{share}: something else than the bush makes this torque, and no richer law was tried"
+        return f"{share}: no richer model is needed"
+    return f"{share}: something else than the bush makes this torque, and no richer model was tried"
 
 
 def _remembers(data_sets: Sequence[DataSet]) -> bool:

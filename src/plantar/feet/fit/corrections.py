@@ -42,7 +42,7 @@ def over_stances(fit: AxisFit, recordings: Sequence[Recording]) -> AxisFit:
 
 
 def about_true_zero(fit: AxisFit, recordings: Sequence[Recording], shared: bool) -> AxisFit:
-    """The fit with an unknown zero of the deflection in each recording, where its law's shape depends on it.
+    """The fit with an unknown zero of the deflection in each recording, where its model's shape depends on it.
 
     The memory stays as it is; linear parameters and offsets are found anew.
     """

@@ -1,4 +1,4 @@
-"""Where an unseen recording begins under a law with memory: the bush's inner state at its first sample."""
+"""Where an unseen recording begins under a model with memory: the bush's inner state at its first sample."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Eq. 6 of one axis of one foot, recording by recording: the columns of its law beside the torque."""
+"""Eq. 6 of one axis of one foot, recording by recording: the columns of its model beside the torque."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ def blocks_of(
     drift: bool = True,
     fit: AxisFit | None = None,
 ) -> list[Block]:
-    """Eq. 6 for each recording in which the foot has enough samples that serve, in the columns of a fit's law.
+    """Eq. 6 for each recording in which the foot has enough used samples, in the columns of a fit's model.
 
-    `drift` adds a line in time to each recording's offset: the IMU's attitude drifts slowly. A law whose shape depends
-    on the deflection's zero gets the square of the deflection too, which is what an error of that zero adds to a cube.
-    Where the foot steps in any of the recordings, rows have stances, and the torque that grows with the load alone, of
-    a bush or a sensor beside its place, is a nuisance of all.
+    `drift` adds a line in time to each recording's offset: the IMU's attitude drifts slowly. A model whose shape
+    depends on the deflection's zero gets the square of the deflection too, which is what an error of that zero adds to
+    a cube. Where the foot steps in any of the recordings, rows have stances, and the torque that grows with the load
+    alone, of a bush or a sensor beside its place, is a nuisance of all.
     """
     column = ROTATIONAL_AXES.index(axis)
     steps = any(recording.stances[foot] is not None for recording in recordings)
@@ -128,7 +128,7 @@ def _across(recording: Recording, foot: str, column: int) -> Array:
 def model_columns(
     recording: Recording, foot: str, axis: Axis, fit: FittedModel | None, initial_states: Array | None = None
 ) -> Array:
-    """Regressor (N, k) of a fit's law along a recording, Kelvin-Voigt's without one; NaN in the air."""
+    """Regressor (N, k) of a fit's model along a recording, Kelvin-Voigt's without one; NaN in the air."""
     motion = motion_of(recording, foot, axis)
     linear = np.column_stack([motion.deflection, motion.rate])
     if fit is None or isinstance(fit.model, KelvinVoigt):

@@ -36,7 +36,7 @@ KNOWN = 0.2  # of the stiffness: less sure beside such a term, the motions canno
 
 @dataclass(frozen=True)
 class Cause:
-    """One cause: how far a unit of it moves the law's values (k,), its deviation and that one's degrees of freedom."""
+    """One cause: how far a unit of it moves the model's values (k,), its deviation and its degrees of freedom."""
 
     name: str
     effect: Array
@@ -161,7 +161,7 @@ def _zeros_of_stances(
 
 
 def _suspected_hardening(fit: AxisFit, blocks: Sequence[Block], shared: bool) -> list[Cause]:
-    """A cube that the law leaves out and the motions show, though no held-out motion asked for it.
+    """A cube that the model leaves out and the motions show, though no held-out motion asked for it.
 
     It hardly matters to the torque, but the spring's slope at zero is not its mean slope. Empty where the motions are
     too small to tell the two apart.

@@ -78,7 +78,7 @@ class Compliances:
 
 @dataclass(frozen=True)
 class VerticalStiffness:
-    """Rows of axis z, and each foot's compliance [m/N] with its standard deviation, for eq. 6's lever."""
+    """Rows of axis z, and each foot's compliance [m/N] with its standard deviation, for eq. 6's moment arm."""
 
     parameters: tuple[Parameter, ...]
     notes: tuple[Note, ...]
@@ -142,7 +142,7 @@ def _block(recording: Recording, feet: tuple[str, ...]) -> Block | None:
     both = recording.used(feet[0]) & recording.used(feet[1])
     both &= recording.contacts[feet[0]].support == SUPPORTS.index(DOUBLE)
     height = relative_pose(left, right).position[:, 2]
-    # Along the slide for the law, and once more along the vertical for what the compression does to the height.
+    # Along the slide for the stiffness, and once more along the vertical for what the compression does to the height.
     loads = np.column_stack(
         [bush.wrench[:, 2] * np.cos(bush.deflection).prod(axis=1) for bush in (left, right)]
     )

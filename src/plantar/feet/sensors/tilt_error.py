@@ -104,7 +104,7 @@ def right_attitude(
     )
     unit = unit_quaternions(orientation)
     right = put_right(unit, log.linear_acceleration(imu.name), bushes, contacts, log.period)
-    return right, Note("attitude_pulled", "info", text)
+    return right, Note("attitude_tilted", "info", text)
 
 
 def unit_quaternions(orientation: Array) -> Array:

@@ -115,7 +115,7 @@ def zmp(points: Array, feet: Mapping[str, Array], support: Array | None = None) 
 
 
 def left_out(track: Track) -> list[tuple[float, float]]:
-    """First and last time [s] of each stretch of at least BAND of which no sample served, for grey bands."""
+    """First and last time [s] of each stretch of at least BAND of which no sample is used, for grey bands."""
     spans = [(float(track.time[run][0]), float(track.time[run][-1])) for run in runs(~track.used)]
     return [(first, last) for first, last in spans if last - first >= BAND]
 

@@ -18,7 +18,7 @@
     return [low - margin, high + margin];
   };
 
-  // The samples that served give the view; where none did, all of them.
+  // The used samples give the view; where there are none, all of them.
   const view = (track, columns) =>
     extent(columns, (i) => track.used[i] === 1) ?? extent(columns, () => true) ?? [-1, 1];
 

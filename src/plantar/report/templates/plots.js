@@ -63,7 +63,7 @@
     return plot;
   };
 
-  // Grey bands behind the samples that served neither fit nor score.
+  // Grey bands behind the samples used neither for fit nor for score.
   const shade = (track) => (plot) => {
     const { ctx, bbox } = plot;
     ctx.save();

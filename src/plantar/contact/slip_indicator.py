@@ -1,4 +1,4 @@
-"""Does a sole slide? A sole that stands has no velocity, and two that stand cannot move against each other."""
+"""Speeds that a standing sole would not have: slip indicators, and the samples in which one is sure."""
 
 from __future__ import annotations
 

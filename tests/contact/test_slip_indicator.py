@@ -5,7 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from plantar.contact.slip import SlipIndicator, apart_speed, slides, turning, twist_speed, unresisted
+from plantar.contact.slip_indicator import (
+    SlipIndicator,
+    apart_speed,
+    slides,
+    turning,
+    twist_speed,
+    unresisted,
+)
 
 PERIOD = 0.005
 TIME = np.arange(4000) * PERIOD

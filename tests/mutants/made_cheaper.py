@@ -1,0 +1,66 @@
+"""Changes that must be noticed though the test's logs are fewer, shorter or fitted once for several claims."""
+
+from __future__ import annotations
+
+from mutant import Mutant
+
+MADE_CHEAPER = (
+    Mutant(
+        "feet/fit/force_gain.py", "a gain in doubt widens by a quarter of what it may be",
+        "fit.values, reach / NORMAL95", "fit.values, reach / NORMAL95 / 4", ("feet/fit/test_force_gain.py",),
+    ),
+    Mutant(
+        "feet/fit/robot_causes.py", "what recordings differ by counts a tenth",
+        "np.sqrt(np.maximum(beyond, 0.0))", "0.1 * np.sqrt(np.maximum(beyond, 0.0))",
+        ("feet/fit/test_robot_causes.py",),
+    ),
+    Mutant(
+        "feet/fit/bush_place.py", "a bush elsewhere is corrected the wrong way",
+        "moved = -follows @ arms", "moved = follows @ arms", ("feet/fit/test_bush_place.py",),
+    ),
+    Mutant(
+        "feet/fit/systematic.py", "a suspected cube widens nothing",
+        "def _suspected_hardening(fit: AxisFit, blocks: Sequence[Block], shared: bool) -> list[Cause]:\n",
+        "def _suspected_hardening(fit: AxisFit, blocks: Sequence[Block], shared: bool) -> list[Cause]:\n"
+        "    return []\n",
+        ("feet/fit/test_systematic.py",),
+    ),
+    Mutant(
+        "feet/assess/data_faults.py", "a fault of the data takes nothing away",
+        "    if not faults:\n", "    if faults:\n", ("feet/assess/test_data_faults.py",),
+    ),
+    Mutant(
+        "feet/foot_fit.py", "a fault of one axis loses the other too",
+        "        if axis in given_up:\n            continue\n", "        if given_up:\n            continue\n",
+        ("feet/test_foot_fit.py",),
+    ),
+    Mutant(
+        "feet/validate.py", "the encoders' delay is forgotten",
+        "dict(stored.feet), stored.encoder_delay)", "dict(stored.feet), 0.0)", ("feet/test_validate.py",),
+    ),
+    Mutant(
+        "feet/exclusion/outliers.py", "short stretches are taken for motion",
+        "LONGEST = 1.0", "LONGEST = 0.0", ("feet/exclusion/test_outliers.py",),
+    ),
+    Mutant(
+        "estimation/stance_least_squares.py", "deviations of stances a third too small",
+        "return covariance + towards.unsure, freedom", "return covariance / 2 + towards.unsure, freedom",
+        ("estimation/test_stance_least_squares.py",),
+    ),
+    Mutant(
+        "estimation/delay.py", "a late signal is moved the other way",
+        "np.clip(delay, -LONGEST, LONGEST) * rate", "np.clip(-delay, -LONGEST, LONGEST) * rate",
+        ("estimation/test_delay.py",),
+    ),
+    Mutant(
+        "model_selection/model_fit.py", "deviations of all values a third of what they are",
+        "linear.inverse_diagonal() * scale**2", "linear.inverse_diagonal() * scale**2 / 9",
+        ("model_selection/test_model_fit.py",),
+    ),
+    Mutant(
+        "twin/sensing/sensors.py", "sensors without delay are late by a sample",
+        "    if delay == 0.0:\n        return values\n",
+        "    if delay == 0.0:\n        return np.roll(values, 1, axis=0)\n",
+        ("twin/sensing/test_sensors.py",),
+    ),
+)  # fmt: skip
