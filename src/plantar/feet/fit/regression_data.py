@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -19,6 +20,7 @@ PATH_BAND = 4.0  # times the fit's cutoff, of the path that a memory follows thr
 # m, before any data, of the centre's place: aside anything (the torque of the load is its own), in height some
 # millimetres of the robot file's and of the slide under load.
 MOMENT_SPREAD = np.array([np.inf, 0.006])
+SHAPE_STEP = 0.01  # share of a nonlinear parameter, of the differences that stand for derivatives
 FEWEST_SAMPLES = 50  # of one recording, for it to take part in a fit
 
 
@@ -35,7 +37,8 @@ def blocks_of(
     `drift` adds a line in time to each recording's offset: the IMU's attitude drifts slowly. A law whose shape depends
     on the deflection's zero gets the square of the deflection too, which is what an error of that zero adds to a cube.
     Where the foot steps in any of the recordings, rows have stances, and the torque that grows with the load alone, of
-    a bush or a sensor beside its place, is a nuisance of all.
+    a bush or a sensor beside its place, is a nuisance of all; of a foot that stands, the torque is without what a fit
+    that is given has found of it.
     """
     column = ROTATIONAL_AXES.index(axis)
     steps = any(recording.stances[foot] is not None for recording in recordings)
@@ -51,7 +54,7 @@ def blocks_of(
             Block(
                 label=recording.name,
                 regressor=regressor,
-                response=bush.torque[used, column],
+                response=(bush.torque[:, column] - _taken_off(recording, fit))[used],
                 period=recording.period,
                 nuisance=_nuisance(recording, foot, column, fit) if drift else None,
                 noise=noise,
@@ -61,6 +64,44 @@ def blocks_of(
             )
         )
     return blocks
+
+
+def tangent_blocks(recordings: Sequence[Recording], fit: AxisFit, *, drift: bool = True) -> list[Block]:
+    """Eq. 6 linearised about a fit: its columns, then the torque's change with each nonlinear parameter, (n, k + s).
+
+    So what disturbs the torque moves these parameters too, and moves the others as much as they then allow. Of a foot
+    that steps, the columns alone: the states of its many stances leave little of such a change.
+    """
+    blocks = blocks_of(recordings, fit.foot, fit.axis, drift=drift, fit=fit)
+    if len(fit.shape) == 0 or blocks[0].stances is not None:
+        return blocks
+    by_name = {recording.name: recording for recording in recordings}
+    return [beside(block, _shape_slopes(by_name[block.label], fit)) for block in blocks]
+
+
+def beside(block: Block, columns: Array) -> Block:
+    """The block with more columns (n, m) in its regressor, without noise."""
+    noise = None if block.noise is None else np.append(block.noise, np.zeros(columns.shape[1]))
+    return replace(block, regressor=np.column_stack([block.regressor, columns]), noise=noise)
+
+
+def _shape_slopes(recording: Recording, fit: AxisFit) -> Array:
+    """Change of the torque with each nonlinear parameter at the used samples, (n, s), the states at the start held."""
+    slopes, used = [], recording.used(fit.foot)
+    for place, value in enumerate(fit.shape):
+        ends = []
+        for share in (1 + SHAPE_STEP, 1 - SHAPE_STEP):
+            shape = fit.shape.copy()
+            shape[place] = share * value
+            columns = model_columns(recording, fit.foot, fit.axis, replace(fit, shape=shape))
+            ends.append(columns[used] @ fit.values)
+        slopes.append((ends[0] - ends[1]) / (2 * SHAPE_STEP * value))
+    return np.column_stack(slopes)
+
+
+def _taken_off(recording: Recording, fit: AxisFit | None) -> Array | float:
+    """The torque (N,) that a fit of a standing foot found not to be the bush's."""
+    return 0.0 if fit is None or recording.stances[fit.foot] is not None else load_torque(recording, fit)
 
 
 def _nuisance(recording: Recording, foot: str, column: int, fit: AxisFit | None) -> Array | None:
