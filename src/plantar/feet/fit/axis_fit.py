@@ -147,12 +147,17 @@ def _with_place(
     linear: AxisFit, fit: ModelFit, recordings: Sequence[Recording], place: PlaceSpread, shared: bool
 ) -> AxisFit:
     """A richer model of a standing foot and the bush's place, found in turn: each changes with the other."""
-    whole = [data_set_of(each, linear.foot, linear.axis) for each in recordings]
     found = _with_model(linear, fit)
     for _ in range(CENTRE_ROUNDS):
-        found = about_its_place(found, recordings, place, shared)
-        fit = fit_again(fit, _without_place(whole, recordings, found))
-        found = _with_model(replace(linear, moment_arms=found.moment_arms, turned=found.turned), fit)
+        moved = about_its_place(found, recordings, place, shared)
+        seen = [
+            data_set_of(each, linear.foot, linear.axis, imu_turned=moved.imu_turned) for each in recordings
+        ]
+        fit = fit_again(fit, _without_place(seen, recordings, moved))
+        linear = replace(
+            linear, moment_arms=moved.moment_arms, turned=moved.turned, imu_turned=moved.imu_turned
+        )
+        found = _with_model(linear, fit)
     return found
 
 

@@ -21,6 +21,7 @@ PATH_BAND = 4.0  # times the fit's cutoff, of the path that a memory follows thr
 # millimetres of the robot file's and of the slide under load.
 MOMENT_SPREAD = np.array([np.inf, 0.006])
 SHAPE_STEP = 0.01  # share of a nonlinear parameter, of the differences that stand for derivatives
+TURN_STEP = 0.005  # rad, likewise of a turned IMU
 FEWEST_SAMPLES = 50  # of one recording, for it to take part in a fit
 
 
@@ -153,6 +154,16 @@ def place_columns(recording: Recording, foot: str, axis: Axis) -> Array:
     return np.column_stack([moment_columns(recording, foot, axis), np.nan_to_num(other)])
 
 
+def turn_column(recording: Recording, fit: AxisFit) -> Array:
+    """Torque (N, 1) for each radian by which the IMU is turned further about the vertical than the fit has it."""
+    ends = [
+        model_columns(recording, fit.foot, fit.axis, replace(fit, imu_turned=fit.imu_turned + turn))
+        @ fit.values
+        for turn in (TURN_STEP, -TURN_STEP)
+    ]
+    return np.asarray((ends[0] - ends[1])[:, None] / (2 * TURN_STEP))
+
+
 def load_torque(recording: Recording, fitted: FittedModel) -> Array:
     """The torque (N,) that is not the bush's: of the load on a centre beside its place, of a sensor that is turned."""
     place = np.array([*fitted.moment_arms, fitted.turned])
@@ -170,11 +181,12 @@ def model_columns(
     recording: Recording, foot: str, axis: Axis, fit: FittedModel | None, initial_states: Array | None = None
 ) -> Array:
     """Regressor (N, k) of a fit's law along a recording, Kelvin-Voigt's without one; NaN in the air."""
-    motion = motion_of(recording, foot, axis)
+    imu_turned = 0.0 if fit is None else fit.imu_turned
+    motion = motion_of(recording, foot, axis, imu_turned)
     linear = np.column_stack([motion.deflection, motion.rate])
     if fit is None or isinstance(fit.model, KelvinVoigt):
         return linear
-    path = path_of(recording, foot, axis)
+    path = path_of(recording, foot, axis, imu_turned)
     initial_states = fit.initial_states.get(recording.name) if initial_states is None else initial_states
     if initial_states is None or len(initial_states) != len(path.runs):
         initial_states = fit.model.initial_states(path, fit.shape)
@@ -190,19 +202,25 @@ def _shortest_run(recording: Recording, foot: str) -> int:
     return SHORTEST_RUN if recording.stances[foot] is None else SHORTEST_STANCE_RUN
 
 
-def motion_of(recording: Recording, foot: str, axis: Axis) -> BushMotion:
-    """Deflection and rate of one axis, NaN where the foot does not stand: a bush in the air forgets."""
+def motion_of(recording: Recording, foot: str, axis: Axis, imu_turned: float = 0.0) -> BushMotion:
+    """Deflection and rate of one axis, NaN where the foot does not stand: a bush in the air forgets.
+
+    An IMU that is turned about the vertical by `imu_turned` [rad] shows a share of the other axis, which is taken off.
+    """
     column, bush = ROTATIONAL_AXES.index(axis), recording.bushes[foot]
     stances = recording.stances[foot]
     away = ~recording.contacts[foot].loaded if stances is None else stances.number < 0
-    deflection, rate = bush.deflection[:, column].copy(), bush.rate[:, column].copy()
+    share = (-1.0, 1.0)[column] * imu_turned
+    deflection, rate = (
+        angles[:, column] + share * angles[:, 1 - column] for angles in (bush.deflection, bush.rate)
+    )
     deflection[away] = rate[away] = np.nan
     return BushMotion(deflection, rate, recording.period)
 
 
-def path_of(recording: Recording, foot: str, axis: Axis) -> BushMotion:
+def path_of(recording: Recording, foot: str, axis: Axis, imu_turned: float = 0.0) -> BushMotion:
     """The motion that a model's memory follows: of a foot that steps with a wider band, since it turns quickly."""
-    slow, stances = motion_of(recording, foot, axis), recording.stances[foot]
+    slow, stances = motion_of(recording, foot, axis, imu_turned), recording.stances[foot]
     if stances is None:
         return slow
     column, raw = ROTATIONAL_AXES.index(axis), recording.raw[foot]
@@ -214,17 +232,22 @@ def path_of(recording: Recording, foot: str, axis: Axis) -> BushMotion:
 
 
 def data_set_of(
-    recording: Recording, foot: str, axis: Axis, own_share: float = 0.0, above: float = 0.0
+    recording: Recording,
+    foot: str,
+    axis: Axis,
+    own_share: float = 0.0,
+    above: float = 0.0,
+    imu_turned: float = 0.0,
 ) -> DataSet:
     """One recording of one axis, as the models take it.
 
-    Of a foot that steps: `own_share` of the offsets of stances is their own; the bush's centre is `above` its place in
-    the robot file [m].
+    `imu_turned`: as in `motion_of`. Of a foot that steps: `own_share` of the offsets of stances is their own; the
+    bush's centre is `above` its place in the robot file [m].
     """
     column, stances = ROTATIONAL_AXES.index(axis), recording.stances[foot]
     torque, used = recording.bushes[foot].torque[:, column], recording.used(foot)
     if stances is None:
-        return DataSet(recording.name, motion_of(recording, foot, axis), torque, used)
+        return DataSet(recording.name, motion_of(recording, foot, axis, imu_turned), torque, used)
     steps = StepColumns(stances.number, load_of(recording, foot)[:, None], own_share)
     measured = recording.raw[foot].torque[:, column] - above * _across(recording, foot, column)
     return DataSet(recording.name, path_of(recording, foot, axis), measured, used, steps)
