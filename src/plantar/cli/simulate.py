@@ -20,8 +20,9 @@ if TYPE_CHECKING:
 LONGEST = 10.0  # m: no motion is larger
 BUSH_HELP = "Bush of every foot as K_pitch,C_pitch,K_roll,C_roll[,K_z,C_z]; the paper's table 1 if left out."
 PRESET_HELP = (
-    "Imperfections: ideal, sensors, realistic or harsh; or plain_log, what public logs of walking robots hold: 50 Hz, "
-    "the root link's attitude, no gyroscope, devices on clocks of their own, force sensors not zeroed."
+    "Imperfections: ideal, sensors, realistic or harsh; plain_log, what public logs of walking robots hold: 50 Hz, "
+    "the root link's attitude, no gyroscope, devices on clocks of their own, force sensors not zeroed; or imperfect: "
+    "for each seed a robot that differs from its robot file in masses, mounts, bushes, gains and delays."
 )
 
 

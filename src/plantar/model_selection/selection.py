@@ -185,9 +185,11 @@ def _clear(
 ) -> bool:
     """Whether the richer model's gain over the simpler one is clear.
 
-    What a model adds to the one that it elaborates has been told from zero before: it only must not predict worse.
+    Terms that a model adds to the one that it elaborates have been told from zero before: it only must not predict
+    worse. Of one that adds nothing but another shape, nothing has been told.
     """
-    if scores[rich].model.elaborates == scores[simple].model.name:
+    adds_terms = len(scores[rich].model.terms) > len(scores[simple].model.terms)
+    if scores[rich].model.elaborates == scores[simple].model.name and adds_terms:
         return scores[rich].held_out_rms < scores[simple].held_out_rms
     fall = errors[simple] - errors[rich]
     standard_error = float(np.std(fall) * np.sqrt(len(fall)))

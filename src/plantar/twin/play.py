@@ -16,9 +16,10 @@ from plantar.robot.model import RobotModel, load_robot
 from plantar.twin import cache
 from plantar.twin.bush import PAPER, Feet
 from plantar.twin.keep import plan_arrays, plan_from, plan_key, rollout_arrays, rollout_from, rollout_key
-from plantar.twin.presets import DEFAULT, preset_named
+from plantar.twin.presets import DEFAULT, Preset, preset_named
 from plantar.twin.recording import TwinRecording, record
 from plantar.twin.robots import hrp2
+from plantar.twin.robots.true_robot import RobotSpread, true_robot
 from plantar.twin.sensing.logger import write_robot
 from plantar.twin.simulation.physics import Physics
 from plantar.twin.simulation.rollout import Rollout, roll_out, scene_xml
@@ -59,6 +60,8 @@ def play_all(
 ) -> list[list[TwinRecording]]:
     """Play motions on both cores; one list of recordings for each seed, from one rollout a motion.
 
+    A preset that draws robots (`imperfect`) plays each seed on a robot of its own, whose file stays as it is.
+
     `sway`, `vertical`, `apart`, `period`: sizes of the motions given by name, see `plan_motion`. Raises MotionError,
     before anything is played, where one of them cannot be.
     """
@@ -72,8 +75,31 @@ def play_all(
         return planned(motion, robot, sway=sway, vertical=vertical, apart=apart, period=period)
 
     plans = on_cores(plan, names)
+    if chosen.robot is not None:
+        return [_of_true_robot(plans, robot, physics, chosen, seed, progress) for seed in seeds]
     rollouts = roll_all([(plan, physics) for plan in plans], robot, progress)
     return [[record(rollout, robot, physics, chosen, seed) for rollout in rollouts] for seed in seeds]
+
+
+def _of_true_robot(
+    plans: Sequence[Plan],
+    robot: RobotModel,
+    physics: Physics,
+    preset: Preset,
+    seed: int,
+    progress: Progress | None,
+) -> list[TwinRecording]:
+    """Plans made for a robot file, played by the robot that stands behind it in this seed.
+
+    Every recording has rubber of its own temperature, so that each is simulated for itself.
+    """
+    own, drawn = true_robot(robot, preset.robot or RobotSpread(), seed)
+    worlds = [physics.stiffened(preset.stiffening(seed, plan.name)) for plan in plans]
+    rollouts = roll_all(list(zip(plans, worlds, strict=True)), own, progress)
+    return [
+        record(rollout, own, world, preset, seed, drawn)
+        for rollout, world in zip(rollouts, worlds, strict=True)
+    ]
 
 
 def roll_all(

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Final
 
+import numpy as np
+
 from plantar.errors import PlantarError, located
 from plantar.twin.bush import Feet
+from plantar.twin.robots.true_robot import RobotSpread
 from plantar.twin.sensing.logger import Logger
+from plantar.twin.sensing.sensor_errors import SensorSpread
 from plantar.twin.sensing.sensors import DEGREE, Sensors
 from plantar.twin.simulation.mjcf import FLOOR
 from plantar.twin.simulation.physics import Physics, Slip
@@ -26,7 +31,9 @@ class Preset:
     """Imperfections of the physics and of the sensors.
 
     `slip_torque`: of the elastoplastic element beside each spring, (pitch, roll) [N·m]; `hardening` [N·m/rad³] of
-    both axes; `floor` and `slips` as in `Physics`.
+    both axes; `floor` and `slips` as in `Physics`. `robot` and `sensor_errors`: by how much the robot and its sensors
+    differ from the robot file, the same in all recordings of a seed; `between`: the share by which stiffness and
+    damping differ from recording to recording is drawn between these, for each seed.
     """
 
     name: str
@@ -36,6 +43,9 @@ class Preset:
     floor: tuple[float, float, float] = FLOOR
     slips: tuple[Slip, ...] = ()
     logger: Logger | None = None
+    robot: RobotSpread | None = None
+    sensor_errors: SensorSpread | None = None
+    between: tuple[float, float] = (0.0, 0.0)
 
     def physics(self, bushes: Feet | None) -> Physics:
         """The world in which these bushes stand; rigid feet (None) have no rubber, the floor stays."""
@@ -47,6 +57,11 @@ class Preset:
         rubber |= {"pitch_slip_torque": pitch, "roll_slip_torque": roll, "pitch_slip_angle": SLIP_ANGLE}
         rubber["roll_slip_angle"] = SLIP_ANGLE
         return replace(world, bushes={foot: replace(bush, **rubber) for foot, bush in bushes.items()})
+
+    def stiffening(self, seed: int, motion: str) -> float:
+        """The share by which stiffness and damping are larger in one recording; a temperature's doing."""
+        spread = np.random.default_rng([seed, zlib.crc32(b"between")]).uniform(*self.between)
+        return float(spread * np.random.default_rng([seed, zlib.crc32(motion.encode()), 2]).standard_normal())
 
 
 SENSORS: Final = Sensors(
@@ -96,6 +111,16 @@ PLAIN: Final = replace(
     torque_zero=1.0,
 )
 
+# The attitude wanders instead of drifting in a line, and the devices filter as real ones do.
+WANDERING: Final = replace(
+    SENSORS,
+    attitude_drift=0.0,
+    attitude_walk=0.03 * DEGREE,
+    wrench_cutoff=60.0,
+    gyroscope_cutoff=80.0,
+    wrench_hold=0.003,
+)
+
 PRESETS: Final[Mapping[str, Preset]] = MappingProxyType(
     {
         preset.name: preset
@@ -105,6 +130,14 @@ PRESETS: Final[Mapping[str, Preset]] = MappingProxyType(
             Preset("realistic", replace(SENSORS, wrench_delay=0.005), SLIP_TORQUE),
             Preset("harsh", HARSH, (2 * SLIP_TORQUE[0], 2 * SLIP_TORQUE[1]), HARDENING, SOFT_FLOOR, SLIPPERY),
             Preset("plain_log", PLAIN, logger=Logger()),
+            Preset(
+                "imperfect",
+                WANDERING,
+                SLIP_TORQUE,
+                robot=RobotSpread(),
+                sensor_errors=SensorSpread(),
+                between=(0.003, 0.01),
+            ),
         )
     }
 )

@@ -23,6 +23,7 @@ from plantar.twin.robots.foot import cut_feet
 from plantar.twin.robots.from_robot import describe
 from plantar.twin.sensing.exact import exact_columns, truth_columns
 from plantar.twin.sensing.logger import with_base_attitude
+from plantar.twin.sensing.sensor_errors import with_sensor_errors
 from plantar.twin.sensing.sensors import sense
 from plantar.twin.simulation.physics import Physics
 from plantar.twin.simulation.rollout import Rollout
@@ -61,8 +62,18 @@ class TwinRecording:
         return path
 
 
-def record(rollout: Rollout, robot: RobotModel, physics: Physics, preset: Preset, seed: int) -> TwinRecording:
-    """Sensors of `preset` on a rollout; cheap, so many seeds need one rollout."""
+def record(
+    rollout: Rollout,
+    robot: RobotModel,
+    physics: Physics,
+    preset: Preset,
+    seed: int,
+    of_robot: Mapping[str, Any] | None = None,
+) -> TwinRecording:
+    """Sensors of `preset` on a rollout; cheap, so many seeds need one rollout.
+
+    `of_robot`: by what the robot differs from its file, for the truth.
+    """
     feet = cut_feet(describe(robot), robot)
     exact = exact_columns(rollout, robot, feet)
     time, logged = rollout.time, dict[str, float]()
@@ -70,6 +81,9 @@ def record(rollout: Rollout, robot: RobotModel, physics: Physics, preset: Preset
         random = np.random.default_rng([seed, zlib.crc32(rollout.name.encode()), 1])
         time, exact, logged = preset.logger.logged(exact, rollout, robot, random)
         robot = with_base_attitude(robot)
+    errors: Mapping[str, Any] = {}
+    if preset.sensor_errors is not None:
+        exact, errors = with_sensor_errors(exact, time, robot, preset.sensor_errors, seed)
     columns, drawn = sense(exact, time, robot, preset.sensors, seed, rollout.name)
     facts = {
         "motion": rollout.name,
@@ -82,6 +96,8 @@ def record(rollout: Rollout, robot: RobotModel, physics: Physics, preset: Preset
         "sensors": vars(preset.sensors),
         "logger": None if preset.logger is None else vars(preset.logger),
         "drawn": drawn | logged,
+        "sensor_errors": errors,
+        "robot": of_robot or {},
     }
     truth = Truth(rollout.time, truth_columns(rollout, feet), facts)
     return TwinRecording(MotionLog(rollout.name, time, columns), truth)

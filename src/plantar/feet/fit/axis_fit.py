@@ -33,6 +33,7 @@ LEAST_GAIN_IN_STANCES = (
     0.5  # of the held-out rms error: states that are free in every stance take up much by themselves
 )
 CENTRE_ROUNDS = 2  # of finding memory and centre in turn
+PLACE_EXPLAINS = 0.5  # of the squares that spring and damper miss: what is left of them about another place
 CANDIDATES = (
     "kelvin_voigt", "hardening", "coulomb", "elastoplastic", "hardening_elastoplastic", "bouc_wen",
     "standard_linear_solid",
@@ -84,18 +85,18 @@ def _fitted(
     share = StanceProblem.drawn_together(blocks).own_share if steps else 0.0
     fitted = [recording for recording in recordings if recording.name in linear.offsets]
     data_sets = [data_set_of(each, foot, axis, share) for each in fitted]
+    placed = _of_linear(foot, axis, linear, None, "")
     if place is not None and not steps:
-        # What a wrong place adds to the torque must not look like another model.
-        spring = about_its_place(_of_linear(foot, axis, linear, None, ""), fitted, place, shared)
-        data_sets = [
-            replace(data_set, torque=data_set.torque - load_torque(each, spring))
-            for data_set, each in zip(data_sets, fitted, strict=True)
-        ]
+        placed = _where_a_spring_turns(placed, fitted, place, shared)
+        data_sets = _without_place(data_sets, fitted, placed)
     cutoff = fitted[0].cutoff
 
     def found(fit: ModelFit, choice: ModelChoice | None, reason: str) -> AxisFit:
         spring = _of_linear(foot, axis, linear, choice, reason)
-        return _about_its_centre(spring, fit, fitted, share) if steps else _with_model(spring, fit)
+        if steps:
+            return _about_its_centre(spring, fit, fitted, share)
+        begun = replace(spring, moment_arms=placed.moment_arms, turned=placed.turned)
+        return _with_model(begun, fit) if place is None else _with_place(begun, fit, fitted, place, shared)
 
     if asked is not None:
         return found(fit_model(asked, data_sets, cutoff, shared_offset=shared), None, "asked for")
@@ -110,6 +111,56 @@ def _fitted(
     if choice.fit.model.name == KelvinVoigt.name:
         return _of_linear(foot, axis, linear, choice, choice.reason)
     return found(choice.fit, choice, choice.reason)
+
+
+def _where_a_spring_turns(
+    spring: AxisFit, recordings: Sequence[Recording], place: PlaceSpread, shared: bool
+) -> AxisFit:
+    """A spring and damper about another place of the bush, where that explains most of what they miss; else as it was.
+
+    What a wrong place adds to the torque must not look like another model. Nor the reverse: beside the memory of
+    rubber, a spring finds its place centimetres off.
+    """
+    moved = about_its_place(spring, recordings, place, shared)
+    missed = [
+        sum(
+            float(residual @ residual)
+            for residual in fit_blocks(blocks, shared_offset=shared).residuals.values()
+        )
+        for blocks in (
+            blocks_of(recordings, spring.foot, spring.axis, drift=not shared, fit=fit)
+            for fit in (spring, moved)
+        )
+    ]
+    return moved if missed[1] < PLACE_EXPLAINS * missed[0] else spring
+
+
+def _without_place(
+    data_sets: Sequence[DataSet], recordings: Sequence[Recording], fit: AxisFit
+) -> list[DataSet]:
+    """The data sets without the torque that a fit found not to be the bush's."""
+    return [
+        replace(data_set, torque=data_set.torque - load_torque(each, fit))
+        for data_set, each in zip(data_sets, recordings, strict=True)
+    ]
+
+
+def _with_place(
+    linear: AxisFit, fit: ModelFit, recordings: Sequence[Recording], place: PlaceSpread, shared: bool
+) -> AxisFit:
+    """A richer model of a standing foot and the bush's place, found in turn: each changes with the other."""
+    found = _with_model(linear, fit)
+    for _ in range(CENTRE_ROUNDS):
+        moved = about_its_place(found, recordings, place, shared)
+        seen = [
+            data_set_of(each, linear.foot, linear.axis, imu_turned=moved.imu_turned) for each in recordings
+        ]
+        fit = fit_again(fit, _without_place(seen, recordings, moved))
+        linear = replace(
+            linear, moment_arms=moved.moment_arms, turned=moved.turned, imu_turned=moved.imu_turned
+        )
+        found = _with_model(linear, fit)
+    return found
 
 
 def _about_its_centre(

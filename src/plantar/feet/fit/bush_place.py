@@ -14,9 +14,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.estimation import Block, effect_of, fit_blocks
+from plantar.estimation import effect_of, fit_blocks
 from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.regression_data import blocks_of, place_columns
+from plantar.feet.fit.regression_data import beside, place_columns, tangent_blocks, turn_column
 from plantar.feet.recording import Recording
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
@@ -56,57 +56,65 @@ def about_its_place(
 ) -> AxisFit:
     """The fit of a standing foot about where its centre is, widened by what that leaves unknown.
 
-    A foot that steps has its centre from its stances already.
+    What the fit has found of the place before is drawn to the robot file anew. A foot that steps has its centre from
+    its stances already.
     """
-    blocks = blocks_of(recordings, fit.foot, fit.axis, drift=not shared, fit=fit)
-    spreads = np.array([spread.aside, spread.above, spread.turned])
+    blocks = tangent_blocks(recordings, fit, drift=not shared)
+    spreads = np.array([spread.aside, spread.above, spread.turned, spread.turned])
     if blocks[0].stances is not None or not spreads.any():
         return fit
     by_name = {one.name: one for one in recordings}
-    columns = [
-        place_columns(by_name[block.label], fit.foot, fit.axis)[by_name[block.label].used(fit.foot)]
-        for block in blocks
-    ]
-    size = len(fit.values)
+    columns = [_columns(by_name[block.label], fit) for block in blocks]
+    count = columns[0].shape[1]
+    size, spreads = blocks[0].regressor.shape[1], spreads[:count]
+    before = np.array([*fit.moment_arms, fit.turned, fit.imu_turned])[:count]
     found = fit_blocks(
-        [_beside(block, own) for block, own in zip(blocks, columns, strict=True)], shared_offset=shared
+        [beside(block, own) for block, own in zip(blocks, columns, strict=True)], shared_offset=shared
     )
     if found.condition_number > SINGULAR:
-        arms, unsure = np.zeros(3), np.diag(spreads**2)
+        arms, unsure = np.zeros(count), np.diag(spreads**2)
     else:
         arms, unsure = _drawn(
-            found.values[size:], found.covariance[size : size + 3, size : size + 3], spreads
+            before + found.values[size:], found.covariance[size : size + count, size : size + count], spreads
         )
     follows = np.column_stack(
-        [effect_of(blocks, [own[:, place] for own in columns], shared_offset=shared) for place in range(3)]
+        [
+            effect_of(blocks, [own[:, place] for own in columns], shared_offset=shared)
+            for place in range(count)
+        ]
     )
-    moved = -follows @ arms
+    moved = -follows @ (arms - before)
     covariance = fit.covariance.copy()
     covariance[:size, :size] += follows @ unsure @ follows.T
     offsets = {
         block.label: fit.offsets[block.label]
         - float(np.mean(block.regressor, axis=0) @ moved)
-        - float(np.mean(own, axis=0) @ arms)
+        - float(np.mean(own, axis=0) @ (arms - before))
         for block, own in zip(blocks, columns, strict=True)
     }
     return replace(
         fit,
-        values=fit.values + moved,
+        values=fit.values + moved[: len(fit.values)],
+        shape=fit.shape + moved[len(fit.values) :] if size == len(fit.numbers) else fit.shape,
         covariance=covariance,
         offsets=fit.offsets if shared else {**fit.offsets, **offsets},
         moment_arms=(float(arms[0]), float(arms[1])),
         turned=float(arms[2]),
-        notes=(*fit.notes, *_said(fit, arms, np.sqrt(np.diag(unsure)), spread)),
+        imu_turned=float(arms[3]) if count > 3 else 0.0,
+        notes=(*fit.notes, *_said(fit, arms[:3], np.sqrt(np.diag(unsure))[:3], spread)),
     )
 
 
-def _beside(block: Block, columns: Array) -> Block:
-    noise = None if block.noise is None else np.append(block.noise, np.zeros(columns.shape[1]))
-    return replace(block, regressor=np.column_stack([block.regressor, columns]), noise=noise)
+def _columns(recording: Recording, fit: AxisFit) -> Array:
+    """Columns at the used samples, (n, 3); beside a memory (n, 4): there a turned IMU is unlike a turned sensor."""
+    columns = place_columns(recording, fit.foot, fit.axis)
+    if fit.model.remembers:
+        columns = np.column_stack([columns, turn_column(recording, fit)])
+    return np.asarray(columns[recording.used(fit.foot)])
 
 
 def _drawn(found: Array, covariance: Array, spreads: Array) -> tuple[Array, Array]:
-    """Coefficients (3,) drawn to zero by their prior, and their covariance (3, 3)."""
+    """Coefficients (m,) drawn to zero by their prior, and their covariance (m, m)."""
     prior = np.diag(spreads**2)
     keeps = prior @ np.linalg.pinv(prior + covariance)
     return keeps @ found, keeps @ covariance

@@ -15,7 +15,7 @@ def unseen_initial_states(fitted: FittedModel, recording: Recording, first: Mask
     first: (N,), the samples that show the recording's offset.
     """
     foot, axis = fitted.foot, fitted.axis
-    motion = motion_of(recording, foot, axis)
+    motion = motion_of(recording, foot, axis, fitted.imu_turned)
     if not fitted.model.remembers or not motion.runs or not first.any():
         return None
     measured = recording.bushes[foot].torque[:, ROTATIONAL_AXES.index(axis)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -19,6 +20,8 @@ PATH_BAND = 4.0  # times the fit's cutoff, of the path that a memory follows thr
 # m, before any data, of the centre's place: aside anything (the torque of the load is its own), in height some
 # millimetres of the robot file's and of the slide under load.
 MOMENT_SPREAD = np.array([np.inf, 0.006])
+SHAPE_STEP = 0.01  # share of a nonlinear parameter, of the differences that stand for derivatives
+TURN_STEP = 0.005  # rad, likewise of a turned IMU
 FEWEST_SAMPLES = 50  # of one recording, for it to take part in a fit
 
 
@@ -35,7 +38,8 @@ def blocks_of(
     `drift` adds a line in time to each recording's offset: the IMU's attitude drifts slowly. A model whose shape
     depends on the deflection's zero gets the square of the deflection too, which is what an error of that zero adds to
     a cube. Where the foot steps in any of the recordings, rows have stances, and the torque that grows with the load
-    alone, of a bush or a sensor beside its place, is a nuisance of all.
+    alone, of a bush or a sensor beside its place, is a nuisance of all; of a foot that stands, the torque is without
+    what a fit that is given has found of it.
     """
     column = ROTATIONAL_AXES.index(axis)
     steps = any(recording.stances[foot] is not None for recording in recordings)
@@ -51,7 +55,7 @@ def blocks_of(
             Block(
                 label=recording.name,
                 regressor=regressor,
-                response=bush.torque[used, column],
+                response=(bush.torque[:, column] - _taken_off(recording, fit))[used],
                 period=recording.period,
                 nuisance=_nuisance(recording, foot, column, fit) if drift else None,
                 noise=noise,
@@ -61,6 +65,44 @@ def blocks_of(
             )
         )
     return blocks
+
+
+def tangent_blocks(recordings: Sequence[Recording], fit: AxisFit, *, drift: bool = True) -> list[Block]:
+    """Eq. 6 linearised about a fit: its columns, then the torque's change with each nonlinear parameter, (n, k + s).
+
+    So what disturbs the torque moves these parameters too, and moves the others as much as they then allow. Of a foot
+    that steps, the columns alone: the states of its many stances leave little of such a change.
+    """
+    blocks = blocks_of(recordings, fit.foot, fit.axis, drift=drift, fit=fit)
+    if len(fit.shape) == 0 or blocks[0].stances is not None:
+        return blocks
+    by_name = {recording.name: recording for recording in recordings}
+    return [beside(block, _shape_slopes(by_name[block.label], fit)) for block in blocks]
+
+
+def beside(block: Block, columns: Array) -> Block:
+    """The block with more columns (n, m) in its regressor, without noise."""
+    noise = None if block.noise is None else np.append(block.noise, np.zeros(columns.shape[1]))
+    return replace(block, regressor=np.column_stack([block.regressor, columns]), noise=noise)
+
+
+def _shape_slopes(recording: Recording, fit: AxisFit) -> Array:
+    """Change of the torque with each nonlinear parameter at the used samples, (n, s), the states at the start held."""
+    slopes, used = [], recording.used(fit.foot)
+    for place, value in enumerate(fit.shape):
+        ends = []
+        for share in (1 + SHAPE_STEP, 1 - SHAPE_STEP):
+            shape = fit.shape.copy()
+            shape[place] = share * value
+            columns = model_columns(recording, fit.foot, fit.axis, replace(fit, shape=shape))
+            ends.append(columns[used] @ fit.values)
+        slopes.append((ends[0] - ends[1]) / (2 * SHAPE_STEP * value))
+    return np.column_stack(slopes)
+
+
+def _taken_off(recording: Recording, fit: AxisFit | None) -> Array | float:
+    """The torque (N,) that a fit of a standing foot found not to be the bush's."""
+    return 0.0 if fit is None or recording.stances[fit.foot] is not None else load_torque(recording, fit)
 
 
 def _nuisance(recording: Recording, foot: str, column: int, fit: AxisFit | None) -> Array | None:
@@ -112,6 +154,16 @@ def place_columns(recording: Recording, foot: str, axis: Axis) -> Array:
     return np.column_stack([moment_columns(recording, foot, axis), np.nan_to_num(other)])
 
 
+def turn_column(recording: Recording, fit: AxisFit) -> Array:
+    """Torque (N, 1) for each radian by which the IMU is turned further about the vertical than the fit has it."""
+    ends = [
+        model_columns(recording, fit.foot, fit.axis, replace(fit, imu_turned=fit.imu_turned + turn))
+        @ fit.values
+        for turn in (TURN_STEP, -TURN_STEP)
+    ]
+    return np.asarray((ends[0] - ends[1])[:, None] / (2 * TURN_STEP))
+
+
 def load_torque(recording: Recording, fitted: FittedModel) -> Array:
     """The torque (N,) that is not the bush's: of the load on a centre beside its place, of a sensor that is turned."""
     place = np.array([*fitted.moment_arms, fitted.turned])
@@ -129,11 +181,12 @@ def model_columns(
     recording: Recording, foot: str, axis: Axis, fit: FittedModel | None, initial_states: Array | None = None
 ) -> Array:
     """Regressor (N, k) of a fit's model along a recording, Kelvin-Voigt's without one; NaN in the air."""
-    motion = motion_of(recording, foot, axis)
+    imu_turned = 0.0 if fit is None else fit.imu_turned
+    motion = motion_of(recording, foot, axis, imu_turned)
     linear = np.column_stack([motion.deflection, motion.rate])
     if fit is None or isinstance(fit.model, KelvinVoigt):
         return linear
-    path = path_of(recording, foot, axis)
+    path = path_of(recording, foot, axis, imu_turned)
     initial_states = fit.initial_states.get(recording.name) if initial_states is None else initial_states
     if initial_states is None or len(initial_states) != len(path.runs):
         initial_states = fit.model.initial_states(path, fit.shape)
@@ -149,19 +202,25 @@ def _shortest_run(recording: Recording, foot: str) -> int:
     return SHORTEST_RUN if recording.stances[foot] is None else SHORTEST_STANCE_RUN
 
 
-def motion_of(recording: Recording, foot: str, axis: Axis) -> BushMotion:
-    """Deflection and rate of one axis, NaN where the foot does not stand: a bush in the air forgets."""
+def motion_of(recording: Recording, foot: str, axis: Axis, imu_turned: float = 0.0) -> BushMotion:
+    """Deflection and rate of one axis, NaN where the foot does not stand: a bush in the air forgets.
+
+    An IMU that is turned about the vertical by `imu_turned` [rad] shows a share of the other axis, which is taken off.
+    """
     column, bush = ROTATIONAL_AXES.index(axis), recording.bushes[foot]
     stances = recording.stances[foot]
     away = ~recording.contacts[foot].loaded if stances is None else stances.number < 0
-    deflection, rate = bush.deflection[:, column].copy(), bush.rate[:, column].copy()
+    share = (-1.0, 1.0)[column] * imu_turned
+    deflection, rate = (
+        angles[:, column] + share * angles[:, 1 - column] for angles in (bush.deflection, bush.rate)
+    )
     deflection[away] = rate[away] = np.nan
     return BushMotion(deflection, rate, recording.period)
 
 
-def path_of(recording: Recording, foot: str, axis: Axis) -> BushMotion:
+def path_of(recording: Recording, foot: str, axis: Axis, imu_turned: float = 0.0) -> BushMotion:
     """The motion that a model's memory follows: of a foot that steps with a wider band, since it turns quickly."""
-    slow, stances = motion_of(recording, foot, axis), recording.stances[foot]
+    slow, stances = motion_of(recording, foot, axis, imu_turned), recording.stances[foot]
     if stances is None:
         return slow
     column, raw = ROTATIONAL_AXES.index(axis), recording.raw[foot]
@@ -173,17 +232,22 @@ def path_of(recording: Recording, foot: str, axis: Axis) -> BushMotion:
 
 
 def data_set_of(
-    recording: Recording, foot: str, axis: Axis, own_share: float = 0.0, above: float = 0.0
+    recording: Recording,
+    foot: str,
+    axis: Axis,
+    own_share: float = 0.0,
+    above: float = 0.0,
+    imu_turned: float = 0.0,
 ) -> DataSet:
     """One recording of one axis, as the models take it.
 
-    Of a foot that steps: `own_share` of the offsets of stances is their own; the bush's centre is `above` its place in
-    the robot file [m].
+    `imu_turned`: as in `motion_of`. Of a foot that steps: `own_share` of the offsets of stances is their own; the
+    bush's centre is `above` its place in the robot file [m].
     """
     column, stances = ROTATIONAL_AXES.index(axis), recording.stances[foot]
     torque, used = recording.bushes[foot].torque[:, column], recording.used(foot)
     if stances is None:
-        return DataSet(recording.name, motion_of(recording, foot, axis), torque, used)
+        return DataSet(recording.name, motion_of(recording, foot, axis, imu_turned), torque, used)
     steps = StepColumns(stances.number, load_of(recording, foot)[:, None], own_share)
     measured = recording.raw[foot].torque[:, column] - above * _across(recording, foot, column)
     return DataSet(recording.name, path_of(recording, foot, axis), measured, used, steps)

@@ -13,7 +13,7 @@ from plantar.estimation import Block, effect_of, fit_blocks
 from plantar.estimation.intervals import pooled_freedom
 from plantar.estimation.stance_least_squares import FEWEST_RECORDINGS
 from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.regression_data import blocks_of
+from plantar.feet.fit.regression_data import beside, tangent_blocks
 from plantar.feet.fit.vertical_stiffness import VerticalStiffness
 from plantar.feet.recording import Recording, moment_arm_effect
 from plantar.feet.sensors.sensor_delay import SensorDelay
@@ -36,7 +36,8 @@ KNOWN = 0.2  # of the stiffness: less sure beside such a term, the motions canno
 
 @dataclass(frozen=True)
 class Cause:
-    """One cause: how far a unit of it moves the model's values (k,), its deviation and its degrees of freedom."""
+    """One cause: how far a unit of it moves the model's values (k,), or values and shape (k + s,), its deviation and
+    that one's degrees of freedom."""
 
     name: str
     effect: Array
@@ -45,7 +46,7 @@ class Cause:
 
     @property
     def share(self) -> Array:
-        """Deviation that it adds to each value, (k,)."""
+        """Deviation that it adds to each number."""
         return np.abs(self.effect) * self.std
 
 
@@ -67,7 +68,7 @@ def systematic_causes(
     differ by and what a memory may share with the spring; of others a hardening that the model leaves out, zeros that
     differ between stances, and for roll the zero of the yaw torque."""
     foot, column = fit.foot, ROTATIONAL_AXES.index(fit.axis)
-    blocks = blocks_of(recordings, foot, fit.axis, drift=not shared, fit=fit)
+    blocks = tangent_blocks(recordings, fit, drift=not shared)
     by_name = {recording.name: recording for recording in recordings}
     parts = [(by_name[block.label], by_name[block.label].used(foot)) for block in blocks]
 
@@ -168,19 +169,13 @@ def _suspected_hardening(fit: AxisFit, blocks: Sequence[Block], shared: bool) ->
     """
     if any("hardening" in term for term in fit.model.terms):
         return []
-    size, extended = len(fit.values), []
+    size, extended = blocks[0].regressor.shape[1], []
     reach = max(float(np.abs(block.regressor[:, 0]).max()) for block in blocks) or 1.0
     for block in blocks:
         cube, square = (reach * (block.regressor[:, 0] / reach) ** power for power in (3, 2))
         kept = [] if block.nuisance is None else [block.nuisance]
-        extended.append(
-            replace(
-                block,
-                regressor=np.column_stack([block.regressor, cube]),
-                nuisance=np.column_stack([*kept, square - square.mean()]),
-                noise=None,
-            )
-        )
+        wider = beside(replace(block, noise=None), cube[:, None])
+        extended.append(replace(wider, nuisance=np.column_stack([*kept, square - square.mean()])))
     found = fit_blocks(extended, shared_offset=shared)
     if found.condition_number > SINGULAR:
         return []
@@ -188,7 +183,9 @@ def _suspected_hardening(fit: AxisFit, blocks: Sequence[Block], shared: bool) ->
     known = bool(found.std[0] < KNOWN * abs(fit.values[0]))
     if not (known and abs(hardening) > SUSPECTED * std):
         return []
-    return [Cause("hardening", (found.values[:size] - fit.values) / hardening, abs(hardening))]
+    before = np.zeros(size)
+    before[: len(fit.values)] = fit.values
+    return [Cause("hardening", (found.values[:size] - before) / hardening, abs(hardening))]
 
 
 def inflated(fit: AxisFit, causes: Sequence[Cause]) -> AxisFit:

@@ -12,6 +12,7 @@ from scipy.interpolate import CubicSpline
 from plantar.conventions import Array
 from plantar.robot.model import RobotModel
 from plantar.twin.sensing.attitude_filter import filtered_attitude
+from plantar.twin.sensing.device import device_reading
 from plantar.twin.sensing.exact import Columns
 
 DEGREE: Final = np.pi / 180
@@ -23,8 +24,10 @@ class Sensors:
 
     Encoders: quanta [rad, rad/s]; joint torque noise [N·m]. IMU: white noise of gyroscope [rad/s] and accelerometer
     [m/s²] per axis; gyroscope bias; attitude noise, bias of roll and pitch and their drift over the recording [rad],
-    and bias and drift of yaw. Wrench: white noise and zero [N, N·m]. `*_delay` [s]: how late a sensor is.
-    `filtered_attitude`: the attitude comes from a filter on the gyroscope and accelerometer.
+    and bias and drift of yaw; `attitude_walk` [rad]: how far roll and pitch wander, a random walk's deviation at the
+    recording's end. Wrench: white noise and zero [N, N·m]. `*_delay` [s]: how late a sensor is.
+    `filtered_attitude`: the attitude comes from a filter on the gyroscope and accelerometer. `wrench_cutoff`,
+    `gyroscope_cutoff` [Hz] and `wrench_hold` [s]: of the devices, as in `device_reading`; 0 turns them off.
     """
 
     encoder: float = 0.0
@@ -46,6 +49,10 @@ class Sensors:
     imu_delay: float = 0.0
     wrench_delay: float = 0.0
     filtered_attitude: bool = False
+    attitude_walk: float = 0.0
+    wrench_cutoff: float = 0.0
+    gyroscope_cutoff: float = 0.0
+    wrench_hold: float = 0.0
 
 
 def sense(
@@ -63,16 +70,18 @@ def sense(
             columns[column] = _joint(column, columns[column], sensors, random)
     if robot.imu is not None:
         prefix = f"imu.{robot.imu.name}"
-        for quantity, white, bias in (
-            ("angular_velocity", sensors.gyroscope, sensors.gyroscope_bias),
-            ("linear_acceleration", sensors.accelerometer, 0.0),
+        for quantity, white, bias, cutoff in (
+            ("angular_velocity", sensors.gyroscope, sensors.gyroscope_bias, sensors.gyroscope_cutoff),
+            ("linear_acceleration", sensors.accelerometer, 0.0, 0.0),
         ):
             for place, axis in enumerate("xyz"):
                 column = f"{prefix}.{quantity}.{axis}"
                 if column not in columns:
                     continue
                 zero = drawn[f"{column}.bias"] = random.normal(0, bias) if bias else 0.0
-                columns[column] = columns[column] + zero + _white(white[place], time, random)
+                columns[column] = zero + device_reading(
+                    columns[column], time, white[place], cutoff, 0.0, random
+                )
         names = [f"{prefix}.orientation.{axis}" for axis in "wxyz"]
         believed = np.column_stack([columns[n] for n in names])
         if sensors.filtered_attitude:
@@ -92,7 +101,9 @@ def sense(
             for axis in "xyz":
                 column = f"wrench.{foot.wrench.name}.{kind}.{axis}"
                 zero = drawn[f"{column}.zero"] = random.normal(0, zero_size) if zero_size else 0.0
-                columns[column] = columns[column] + zero + _white(white_size, time, random)
+                columns[column] = zero + device_reading(
+                    columns[column], time, white_size, sensors.wrench_cutoff, sensors.wrench_hold, random
+                )
     return columns, drawn
 
 
@@ -132,6 +143,9 @@ def _attitude(
         drawn[f"drift.{axis}"] = random.normal(0, slope) if slope else 0.0
         angles[:, place] = drawn[f"bias.{axis}"] + drawn[f"drift.{axis}"] * share
         angles[:, place] += _white(sensors.attitude, time, random)
+        if sensors.attitude_walk and axis != "z":
+            steps = random.normal(0, sensors.attitude_walk / np.sqrt(time.size), time.size)
+            angles[:, place] += np.cumsum(steps)
     half = np.column_stack([np.ones(time.size), angles / 2])
     return _multiply(half / np.linalg.norm(half, axis=1, keepdims=True), exact), drawn
 

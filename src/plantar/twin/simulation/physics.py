@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from plantar.twin.bush import PAPER, Feet
 from plantar.twin.simulation.mjcf import FLOOR, FRICTION, TIMESTEP
@@ -36,3 +36,12 @@ class Physics:
     def linear(self) -> bool:
         """Whether every bush is a plain spring and damper."""
         return self.bushes is None or all(bush.is_linear for bush in self.bushes.values())
+
+    def stiffened(self, share: float) -> Physics:
+        """The same world with stiffness and damping of pitch and roll larger by a share."""
+        names = ("pitch_stiffness", "pitch_damping", "roll_stiffness", "roll_damping")
+        bushes = {
+            foot: replace(bush, **{name: (1 + share) * getattr(bush, name) for name in names})
+            for foot, bush in (self.bushes or {}).items()
+        }
+        return replace(self, bushes=bushes) if self.bushes is not None else self

@@ -1,0 +1,76 @@
+"""Recordings that differ by more than each shows of itself: the rubber warms up, the feet stand a little otherwise."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from plantar.conventions import Array
+from plantar.estimation import effect_of, fit_blocks
+from plantar.estimation.stance_least_squares import FEWEST_RECORDINGS, jackknife
+from plantar.feet.fit.axis import AxisFit
+from plantar.feet.fit.regression_data import beside, tangent_blocks
+from plantar.feet.fit.systematic import Cause
+from plantar.feet.recording import Recording
+
+NAME = "between recordings"
+TRIED = np.geomspace(1e-5, 0.2, 200)  # shares of K and C by which recordings may differ
+HEAVY = 3.0  # degrees of freedom of the prior's tail: recordings that differ by far more than it are believed
+
+
+def between_recordings(
+    fit: AxisFit, recordings: Sequence[Recording], prior: float, shared: bool
+) -> list[Cause]:
+    """By how much recordings move the fit beyond their own deviations; of feet that step `systematic` knows it.
+
+    From FEWEST_RECORDINGS on refits without one of them each (jackknife) say it, whatever it is that differs. Fewer are
+    taken to differ by a share of spring and damper. `prior`: of that share, from the robot file.
+    """
+    blocks = tangent_blocks(recordings, fit, drift=not shared)
+    if blocks[0].stances is not None or shared or len(blocks) < 2:
+        return []
+    whole = fit_blocks(blocks)
+    if len(blocks) >= FEWEST_RECORDINGS:
+        refits = np.array(
+            [fit_blocks([*blocks[:place], *blocks[place + 1 :]]).values for place in range(len(blocks))]
+        )
+        covariance, freedom = jackknife(refits)
+        beyond = np.diag(covariance) - whole.std**2
+        return [Cause(NAME, np.sqrt(np.maximum(beyond, 0.0)), 1.0, float(freedom[0]))]
+    torques = [block.regressor[:, :2] @ fit.values[:2] for block in blocks]
+
+    def alone(own: int) -> list[Array]:
+        return [torque * float(place == own) for place, torque in enumerate(torques)]
+
+    # Against the first: a share that all have in common is the spring's own.
+    columns = [
+        np.column_stack(each) for each in zip(*(alone(own) for own in range(1, len(blocks))), strict=True)
+    ]
+    found = fit_blocks([beside(block, own) for block, own in zip(blocks, columns, strict=True)])
+    size = blocks[0].regressor.shape[1]
+    ends = slice(size, size + len(blocks) - 1)
+    least = max(prior, float(whole.std[0]) / max(abs(float(fit.values[0])), 1e-300))
+    spread = share_between(found.values[ends], found.covariance[ends, ends], least)
+    effects = np.array([effect_of(blocks, alone(own)) for own in range(len(blocks))])
+    return [Cause(NAME, np.sqrt(np.sum(effects**2, axis=0)), spread)]
+
+
+def share_between(differences: Array, covariance: Array, usual: float) -> float:
+    """Deviation of shares of which `differences` (n,) from the first one are known with a covariance (n, n).
+
+    Random effects: the root of the mean square over what their likelihood and a half-Student prior of size `usual`
+    leave (A. Gelman, Bayesian Analysis 1, 2006). So few differences may be small by chance, which a moment estimate
+    takes for none at all.
+    """
+    together = np.eye(len(differences)) + 1.0
+    weights = []
+    for share in TRIED:
+        spread = covariance + share**2 * together
+        likelihood = -0.5 * (
+            np.linalg.slogdet(spread)[1] + differences @ np.linalg.solve(spread, differences)
+        )
+        prior = -0.5 * (HEAVY + 1) * np.log1p((share / usual) ** 2 / HEAVY)
+        weights.append(likelihood + prior + np.log(share))  # tried in even steps of the logarithm
+    weight = np.exp(np.array(weights) - max(weights))
+    return float(np.sqrt(np.sum(weight * TRIED**2) / np.sum(weight)))
