@@ -16,7 +16,7 @@ from plantar.feet.assess.stance_stiffness import stance_stiffness, walk_stiffnes
 from plantar.feet.exclusion.outliers import outlier_masks
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.axis_fit import fit_axis
-from plantar.feet.fit.bush_place import PlaceSpread
+from plantar.feet.fit.bush_place import PlaceSpread, turned_bush
 from plantar.feet.fit.force_gain import force_gain_causes, force_gain_notes, torque_gain_causes
 from plantar.feet.fit.robot_causes import robot_causes
 from plantar.feet.fit.systematic import inflated, systematic_causes
@@ -64,6 +64,8 @@ def fit_foot(ready: PreparedLogs, foot: str, progress: Callable[[str], None]) ->
         fits = _fits(ready, foot, {axis: fit.model for axis, fit in fits.items()}, given_up)
     fits = _fits(ready, foot, {}, given_up) if several else fits
     fits = {axis: fit for axis, fit in fits.items() if axis not in given_up}
+    if (turned := turned_bush(fits)) is not None:
+        fits = {axis: replace(fit, notes=(*fit.notes, turned)) for axis, fit in fits.items()}
     found = FootFit()
     for axis in ROTATIONAL_AXES:
         if axis in fits:
@@ -88,9 +90,9 @@ def _with_axis(found: FootFit, ready: PreparedLogs, fit: AxisFit) -> FootFit:
     rows = axis_rows(wide, ready.fitted, predictions, scores)
     limits = diagnose_axis(fit, wide, causes, rows)
     gain = {foot: error for foot, error in ready.gain_errors.items() if foot == fit.foot}
-    torque = {axis: error for axis, error in ready.torque_gains.items() if axis == fit.axis}
+    # Torque channels that are wrong about one axis are trusted about neither.
     faults = [*data_faults(ready.fitted, fit), *force_gain_notes(ready.robot, gain)]
-    faults += torque_gain_notes(torque).values()
+    faults += torque_gain_notes(ready.torque_gains).values()
     return FootFit(
         fits=[*found.fits, wide],
         parameters=[*found.parameters, *doubted(advised(rows, limits), faults)],

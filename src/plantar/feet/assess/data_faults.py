@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.bush_place import FAR
+from plantar.feet.fit.bush_place import BUSH_TURNED, FAR
 from plantar.feet.recording import Recording
 from plantar.notes import Note
 from plantar.results.feet import Parameter
@@ -15,7 +15,7 @@ from plantar.results.feet import Parameter
 UNMENDED = frozenset(
     {
         "sign", "force_leans", "imu_turned", "imu_late", "gyroscope_frame", "gyroscope_scale",
-        "path_joint_missing", "stuck_channel", FAR,
+        "path_joint_missing", "stuck_channel", FAR, BUSH_TURNED,
     }
 )  # fmt: skip
 ADVICE = "mend what the warning names, or leave this log out"

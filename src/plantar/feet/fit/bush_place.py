@@ -8,12 +8,12 @@ logs that do not leave it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from plantar.conventions import Array
+from plantar.conventions import ROTATIONAL_AXES, Array, Axis
 from plantar.estimation import effect_of, fit_blocks
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.regression_data import beside, place_columns, tangent_blocks, turn_column
@@ -25,6 +25,7 @@ GUESSED = 0.02  # m: what a guess without a spread of its own may be off by
 CLEAR = 3.0  # deviations of prior and data together, beyond which the robot file's place is called wrong
 FARTHEST = np.array([0.05, 0.05, 0.12])  # m, m, rad: what is still corrected without doubting all the rest
 FAR = "bush_place_far"
+BUSH_TURNED = "bush_turned"
 WORTH_SAYING = 0.005  # m: a centre that is nearer to its place is within what drawings get wrong
 TURN_WORTH_SAYING = 0.02  # rad: of a mount, likewise
 SINGULAR = 1e6  # condition of the fit beyond which the motions do not show the place
@@ -103,6 +104,25 @@ def about_its_place(
         imu_turned=float(arms[3]) if count > 3 else 0.0,
         notes=(*fit.notes, *_said(fit, arms[:3], np.sqrt(np.diag(unsure))[:3], spread)),
     )
+
+
+def turned_bush(fits: Mapping[Axis, AxisFit]) -> Note | None:
+    """A warning where the other axis' torque shows in both axes with one sign: the bush's own axes are elsewhere.
+
+    A turned sensor gives each axis a share of the other's torque with opposite signs, a turned bush, of two
+    stiffnesses, with the same one.
+    """
+    if not set(ROTATIONAL_AXES) <= set(fits):
+        return None
+    pitch, roll = fits["pitch"], fits["roll"]
+    of_sensor, of_bush = (pitch.turned - roll.turned) / 2, (pitch.turned + roll.turned) / 2
+    if abs(of_bush) < max(TURN_WORTH_SAYING, abs(of_sensor)):
+        return None
+    text = (
+        f"{pitch.foot}: pitch's torque shows in roll and roll's in pitch as if the bush were turned about the "
+        f"vertical: check feet.{pitch.foot}.bush.rpy"
+    )
+    return Note(BUSH_TURNED, "warning", text)
 
 
 def _columns(recording: Recording, fit: AxisFit) -> Array:

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy import stats
 
-from plantar.conventions import FORCE, ROTATIONAL_AXES, Array, Axis
+from plantar.conventions import ROTATIONAL_AXES, Array, Axis
 from plantar.dynamics import Contact, Equation
 from plantar.estimation.intervals import cosine_covariance
 from plantar.feet.sensors.newton_euler import BASE_ROWS, CUTOFF, SLOW, NewtonEulerResidual
@@ -24,6 +24,8 @@ from plantar.signals.filters import low_pass
 LOOSE = 0.3  # share: deviation of a torque's gain before the moments are asked
 LEAST_GAIN = 0.01  # share, of the forces' gains and of what their places add: nuisances need a finite prior
 LEAST_ARM = 0.003  # m, likewise
+UP = np.array([0.0, 0.0, 1.0])  # of a force sensor, about which it is mounted turned
+MOUNT = 0.1  # rad, by which sensors and IMU may be turned: wide, so that no turned mount passes for a gain
 CHANCE = 0.005  # that torques without a fault are called wrong about an axis
 WORTH_SAYING = 0.03  # share: what the force sensors' makers promise is seldom better
 
@@ -96,39 +98,60 @@ def torque_gain_notes(gains: Mapping[Axis, TorqueGain]) -> dict[Axis, Note]:
 
 
 def _prior(robot: RobotModel) -> Array:
-    """Deviations of the columns of `_sides`: torques of both axes, then of each foot its gain and moment arms."""
+    """Deviations of the columns of `_sides`: torques of both axes; of each foot its gain, moment arms and turn; the
+    IMU's mount.
+    """
     uncertainty, feet = robot.uncertainty, len(robot.feet)
     gain = max(uncertainty.wrench_gain, LEAST_GAIN)
     arm = max(float(np.hypot(uncertainty.bush_position, uncertainty.wrench_crosstalk)), LEAST_ARM)
-    return np.concatenate([np.full(2 * feet, LOOSE), np.tile([gain, arm, arm], feet)])
+    return np.concatenate(
+        [
+            np.full(2 * feet, LOOSE),
+            np.tile([gain, arm, arm, arm, MOUNT], feet),
+            np.full(3, MOUNT),
+        ]
+    )
 
 
 def _sides(robot: RobotModel, residual: NewtonEulerResidual) -> _Sides:
-    equation, period = Equation(robot.floating_model), residual.pair.period
-    torques: list[Array] = []
-    others: list[Array] = []
-    for axis in range(2):
-        for place, foot in enumerate(robot.feet.values()):
-            own, along = residual.readings[:, 6 * place : 6 * place + 6], _directions(foot)[axis]
-            torques.append(np.outer(own[:, 3:] @ along, along))
-    for place in range(len(robot.feet)):
-        own = residual.readings[:, 6 * place : 6 * place + 6]
-        others += [
-            own,
-            *(np.hstack([np.zeros_like(own[:, :3]), np.cross(arm, own[:, FORCE])]) for arm in np.eye(3)[:2]),
-        ]
-    wrenches = [np.hstack([np.zeros_like(torque), torque]) for torque in torques] + others
-    feet = list(robot.feet.values())
-    whose = [*feet, *feet, *(foot for foot in feet for _ in range(3))]
+    pair, feet = residual.pair, list(robot.feet.values())
+    each = [
+        (
+            foot,
+            residual.readings[:, 6 * place : 6 * place + 3],
+            residual.readings[:, 6 * place + 3 : 6 * place + 6],
+        )
+        for place, foot in enumerate(feet)
+    ]
+    carried = _Carried(robot, residual)
+    columns = [
+        carried(foot, 0 * force, np.outer(torque @ along, along))
+        for axis in range(2)
+        for foot, force, torque in each
+        for along in (_directions(foot)[axis],)
+    ]
+    for foot, force, torque in each:
+        columns.append(carried(foot, force, torque))
+        columns += [carried(foot, 0 * force, np.cross(arm, force)) for arm in np.eye(3)]
+        columns.append(carried(foot, np.cross(UP, force), np.cross(UP, torque)))
+    force, moment = pair.predicted[:, :3], pair.predicted[:, 3:]
+    columns += [np.hstack([np.cross(turn, force), np.cross(turn, moment)]) for turn in np.eye(3)]
+    moving = _moving(np.stack(columns), pair.period)
+    return _Sides(moving, pair.predicted - pair.measured, pair.model_errors, pair.period)
 
-    def carried(foot: Foot, wrench: Array) -> Array:
-        contact = Contact(*robot.frame(foot.wrench.placement))
-        own = np.ascontiguousarray(wrench)
-        return -equation.inverse_dynamics(residual.motion, None, [contact], [own])[BASE_ROWS].T
 
-    columns = np.stack([carried(foot, wrench) for foot, wrench in zip(whose, wrenches, strict=True)])
-    pair = residual.pair
-    return _Sides(_moving(columns, period), pair.predicted - pair.measured, pair.model_errors, period)
+@dataclass(frozen=True)
+class _Carried:
+    """Wrenches in a foot's sensor as they appear in eq. 1's base rows, (n, 6)."""
+
+    robot: RobotModel
+    residual: NewtonEulerResidual
+
+    def __call__(self, foot: Foot, force: Array, torque: Array) -> Array:
+        contact = Contact(*self.robot.frame(foot.wrench.placement))
+        wrench = np.ascontiguousarray(np.hstack([force, torque]))
+        equation = Equation(self.robot.floating_model)
+        return -equation.inverse_dynamics(self.residual.motion, None, [contact], [wrench])[BASE_ROWS].T
 
 
 def _directions(foot: Foot) -> Array:
