@@ -17,13 +17,13 @@ ROOMS = (
     "conventions", "errors", "choices", "notes", "files",
     "robot", "logs", "signals", "contact", "checks",
     "dynamics", "models", "estimation", "model_selection",
-    "results", "feet", "whole_body",
+    "results", "sensors", "feet", "whole_body",
     "motions", "twin",
     "inspection", "exporters", "robot_guess", "report", "campaign", "cli",
 )  # fmt: skip
 # So does a folder or a file inside `feet`: from those before it.
 FEET = (
-    "settings", "recording", "sensors", "fit", "exclusion", "assess", "internal_error", "prepare_log", "prepare",
+    "settings", "recording", "coherent_band", "fit", "exclusion", "assess", "internal_error", "prepare_log", "prepare",
     "foot_fit", "identify", "validate", "select_motions",
 )  # fmt: skip
 # Two identifications that know nothing of one another: what both need stands in an earlier room.
@@ -33,7 +33,7 @@ FULLEST_FOLDER = 16  # Python files
 
 # Rooms that decide numbers: each of their modules is imported by a test of its own room.
 TESTED = (
-    "signals", "contact", "checks", "estimation", "model_selection", "feet", "whole_body", "results",
+    "signals", "contact", "checks", "estimation", "model_selection", "sensors", "feet", "whole_body", "results",
 )  # fmt: skip
 # The one place that catches what nobody thought of: an axis is given up, the result says so.
 CATCHES_ALL = "src/plantar/feet/internal_error.py"

@@ -13,12 +13,12 @@ from biped_robot import make_robot
 from plantar.conventions import Array
 from plantar.estimation.delay import Pair
 from plantar.estimation.sensor_delays import estimate_delays
-from plantar.feet.sensors import refined_delays
-from plantar.feet.sensors.newton_euler import NewtonEulerResidual
-from plantar.feet.sensors.sensor_delay import SensorDelay, estimate_wrench_delay, in_time
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
+from plantar.sensors import refined_delays
+from plantar.sensors.newton_euler import NewtonEulerResidual
+from plantar.sensors.sensor_delay import SensorDelay, estimate_wrench_delay, in_time
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.resampling import interpolate
 

@@ -12,11 +12,11 @@ from biped_robot import make_robot, robot_entry
 from feet_trials import LINEAR
 from plantar.errors import DataError
 from plantar.feet.identify import delay_estimate, identify_feet
-from plantar.feet.sensors.sensor_delay import SensorDelay
 from plantar.feet.validate import validate_feet
 from plantar.notes import Note
 from plantar.results.feet import DelayEstimate
 from plantar.robot.model import RobotModel
+from plantar.sensors.sensor_delay import SensorDelay
 
 
 def test_a_saved_result_scores_unseen_logs_as_the_fit_did(robot: RobotModel, tmp_path: Path) -> None:

@@ -23,11 +23,11 @@ from plantar.feet.fit.systematic import inflated, systematic_causes
 from plantar.feet.internal_error import gives_up, internal_errors
 from plantar.feet.prepare import PreparedLogs
 from plantar.feet.recording import Recording
-from plantar.feet.sensors.moment_balance import torque_gain_notes
 from plantar.models import BushModel
 from plantar.notes import Note
 from plantar.results.feet import Diagnosis, Parameter, ValidationRow
 from plantar.results.walk_rows import StanceStiffness, WalkStiffness
+from plantar.sensors.moment_balance import torque_gain_notes
 
 ROUNDS = 3  # of leaving outliers out: a large one hides smaller ones
 

@@ -18,7 +18,6 @@ from plantar.feet.fit.axis import AxisFit
 from plantar.feet.foot_fit import fit_foot
 from plantar.feet.prepare import PreparedLogs, prepare_all
 from plantar.feet.recording import Recording
-from plantar.feet.sensors.sensor_delay import SensorDelay
 from plantar.feet.settings import FeetSettings
 from plantar.logs.inputs import LogInputs, RobotInput, logs_of, robot_of
 from plantar.models import KelvinVoigt
@@ -26,6 +25,7 @@ from plantar.notes import Note, joined
 from plantar.results.feet import AxisModel, DelayEstimate, FeetResult, Input, Offset
 from plantar.results.feet_rows import Candidate, LinearEquivalent
 from plantar.robot.model import Foot, Placement, RobotModel
+from plantar.sensors.sensor_delay import SensorDelay
 
 
 def identify_feet(

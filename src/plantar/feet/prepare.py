@@ -8,6 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 
 from plantar.conventions import Axis
+from plantar.feet.coherent_band import coherent_band
 from plantar.feet.exclusion.edge_rolling import without_edge_rolling
 from plantar.feet.exclusion.slip import without_slip
 from plantar.feet.exclusion.torque_saturation import without_torque_saturation
@@ -15,16 +16,15 @@ from plantar.feet.fit.force_gain import GainError, force_gain_errors, force_gain
 from plantar.feet.fit.vertical_stiffness import VerticalStiffness, fit_vertical_stiffness
 from plantar.feet.prepare_log import checked, prepare
 from plantar.feet.recording import Recording, Role, filtered_recording, moved_centre
-from plantar.feet.sensors.coherent_band import coherent_band
-from plantar.feet.sensors.moment_balance import TorqueGain, torque_gain_notes, torque_gains
-from plantar.feet.sensors.sensor_delay import SensorDelay, estimate_wrench_delay, in_time, known_delay
-from plantar.feet.sensors.tilt_error import NO_TILT_ERROR, log_tilt_error
 from plantar.feet.settings import FeetSettings
 from plantar.logs.inputs import check_names
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note, unique
 from plantar.robot.guesses import guess_notes
 from plantar.robot.model import RobotModel
+from plantar.sensors.moment_balance import TorqueGain, torque_gain_notes, torque_gains
+from plantar.sensors.sensor_delay import SensorDelay, estimate_wrench_delay, in_time, known_delay
+from plantar.sensors.tilt_error import NO_TILT_ERROR, log_tilt_error
 
 Progress = Callable[[str], None]
 

@@ -14,12 +14,12 @@ from plantar.contact.stances import Stances, stances_of, without_rolling
 from plantar.conventions import FORCE, GRAVITY, Array
 from plantar.errors import DataError, RobotError, located
 from plantar.feet.recording import Recording, Role
-from plantar.feet.sensors.air_zero import AirZero, air_zero
-from plantar.feet.sensors.tilt_error import NO_TILT_ERROR, TiltError, right_attitude
 from plantar.feet.settings import DEFAULT_CUTOFF
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding, Note
 from plantar.robot.model import Imu, RobotModel
+from plantar.sensors.air_zero import AirZero, air_zero
+from plantar.sensors.tilt_error import NO_TILT_ERROR, TiltError, right_attitude
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.held import without_held
 from plantar.signals.orientation import attitude

@@ -12,12 +12,12 @@ from plantar.errors import DataError
 from plantar.feet.assess.scores import score_axis
 from plantar.feet.fit.axis import FittedModel
 from plantar.feet.prepare import prepare_unseen
-from plantar.feet.sensors.sensor_delay import SensorDelay
 from plantar.feet.settings import FeetSettings
 from plantar.logs.inputs import LogInputs, RobotInput, logs_of, robot_of
 from plantar.models import MODELS, KelvinVoigt
 from plantar.notes import Note
 from plantar.results.feet import DelayEstimate, FeetResult, ValidationRow
+from plantar.sensors.sensor_delay import SensorDelay
 
 
 def validate_feet(

@@ -13,9 +13,9 @@ import numpy as np
 
 from plantar.conventions import FORCE, ROTATIONAL_AXES, Array
 from plantar.errors import PlantarError
+from plantar.feet.coherent_band import coherent_band
 from plantar.feet.prepare_log import checked, prepare
 from plantar.feet.recording import Recording, filtered_recording
-from plantar.feet.sensors.coherent_band import coherent_band
 from plantar.feet.settings import DEFAULT_CUTOFF
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel

@@ -10,9 +10,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from plantar.conventions import FORCE, Array
-from plantar.feet.sensors.air_zero import air_zero
 from plantar.logs.motion_log import MotionLog
 from plantar.robot_guess.evidence import Remark
+from plantar.sensors.air_zero import air_zero
 
 
 def without_zeros(

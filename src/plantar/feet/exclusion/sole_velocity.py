@@ -15,8 +15,8 @@ from plantar.contact.slip_indicator import SLIP_CUTOFF, usual_deviation
 from plantar.conventions import Array, Mask, rotation_from_quaternion
 from plantar.estimation.velocity_drift import fit_drift
 from plantar.feet.recording import Recording
-from plantar.feet.sensors.tilt_error import unit_quaternions
 from plantar.robot.model import RobotModel
+from plantar.sensors.tilt_error import unit_quaternions
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.orientation import attitude
 from plantar.signals.segments import steps_in

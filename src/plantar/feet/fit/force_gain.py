@@ -15,9 +15,9 @@ from plantar.conventions import GRAVITY, Array, Axis
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.systematic import Cause
 from plantar.feet.recording import Recording
-from plantar.feet.sensors.moment_balance import TorqueGain
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
+from plantar.sensors.moment_balance import TorqueGain
 
 WINDOW = 1.0  # s, over which accelerations average out
 CARRIED = 0.5  # of the weight: with less on its feet, the robot hangs or its sensors were zeroed under load

@@ -10,9 +10,9 @@ import pytest
 from biped_robot import make_robot
 from plantar.dynamics.motion import Motion
 from plantar.estimation.delay import Pair
-from plantar.feet.sensors.newton_euler import NewtonEulerResidual
-from plantar.feet.sensors.sensor_delay import CLOCK, estimate_wrench_delay
 from plantar.logs.motion_log import MotionLog
+from plantar.sensors.newton_euler import NewtonEulerResidual
+from plantar.sensors.sensor_delay import CLOCK, estimate_wrench_delay
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.resampling import interpolate
 

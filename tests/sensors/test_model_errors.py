@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from plantar.feet.sensors.model_errors import drawn_parameter_errors
 from plantar.robot.model import RobotModel
 from plantar.robot.uncertainty import Uncertainty
+from plantar.sensors.model_errors import drawn_parameter_errors
 from plantar.twin.robots import hrp2
 
 

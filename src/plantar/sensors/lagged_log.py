@@ -8,9 +8,9 @@ from plantar.conventions import FORCE, GRAVITY, Array
 from plantar.dynamics import Contact, Equation, model_parameters
 from plantar.dynamics.inertial_motion import inertial_motion
 from plantar.estimation.lag_search import WINDOW, LagGrid
-from plantar.feet.sensors.newton_euler import BASE_ROWS, SLOW, with_gyroscope
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
+from plantar.sensors.newton_euler import BASE_ROWS, SLOW, with_gyroscope
 from plantar.signals.filters import low_pass
 from plantar.signals.segments import longest_run
 

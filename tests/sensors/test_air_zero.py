@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from plantar.feet.sensors.air_zero import air_zero
+from plantar.sensors.air_zero import air_zero
 
 WEIGHT, PERIOD = 700.0, 0.02
 ZERO = np.array([12.0, -17.0, -60.0, 0.4, -0.2, 0.8])

@@ -7,10 +7,10 @@ from collections.abc import Mapping
 import pytest
 
 from plantar.feet.prepare_log import checked
-from plantar.feet.sensors.moment_balance import TorqueGain, torque_gain_notes, torque_gains
-from plantar.feet.sensors.newton_euler import newton_euler_residual
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
+from plantar.sensors.moment_balance import TorqueGain, torque_gain_notes, torque_gains
+from plantar.sensors.newton_euler import newton_euler_residual
 from plantar.twin import PAPER, play_all
 from plantar.twin.robots import hrp2
 

@@ -15,10 +15,10 @@ import numpy as np
 from plantar.conventions import Array, Mask
 from plantar.estimation.delay import LONGEST, estimate_delay
 from plantar.estimation.sensor_delays import estimate_delays
-from plantar.feet.sensors.clock_drift import ClockDrift, clock_drift
-from plantar.feet.sensors.newton_euler import NewtonEulerResidual, newton_euler_residual
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
+from plantar.sensors.clock_drift import ClockDrift, clock_drift
+from plantar.sensors.newton_euler import NewtonEulerResidual, newton_euler_residual
 from plantar.signals.resampling import shifted
 
 Each = Callable[..., Iterable[Any]]  # a map over logs, that of a pool or the usual one

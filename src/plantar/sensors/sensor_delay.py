@@ -17,12 +17,12 @@ import numpy as np
 from plantar.conventions import Mask
 from plantar.estimation.delay import LEAST_CLOSED
 from plantar.estimation.lag_search import Lags, search_lags
-from plantar.feet.sensors.lagged_log import SEARCHED, STEP, lagged_log
-from plantar.feet.sensors.newton_euler import NewtonEulerResidual
-from plantar.feet.sensors.refined_delays import LEAST_STD, Each, RefinedDelays, read_in_time, refined_delays
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
+from plantar.sensors.lagged_log import SEARCHED, STEP, lagged_log
+from plantar.sensors.newton_euler import NewtonEulerResidual
+from plantar.sensors.refined_delays import LEAST_STD, Each, RefinedDelays, read_in_time, refined_delays
 
 KNOWN_STD = 0.001  # s: better known than this, the delay is corrected without a warning
 CLOCK = 0.06  # of a period: within it, nobody knows when a sample was taken

@@ -14,9 +14,9 @@ from plantar.dynamics.inertial_motion import inertial_motion
 from plantar.dynamics.motion import Motion
 from plantar.estimation.delay import LEAST_CLOSED, Pair, closes, unexplained
 from plantar.estimation.sensor_delays import Balance
-from plantar.feet.sensors.model_errors import drawn_parameter_errors
 from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.robot.model import RobotModel
+from plantar.sensors.model_errors import drawn_parameter_errors
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.orientation import attitude
 from plantar.signals.segments import longest_run

@@ -10,12 +10,12 @@ import pytest
 
 from plantar.estimation.lag_search import search_lags
 from plantar.feet.prepare_log import checked
-from plantar.feet.sensors.lagged_log import STEP, lagged_log
-from plantar.feet.sensors.refined_delays import refined_delays
-from plantar.feet.sensors.sensor_delay import estimate_wrench_delay
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
 from plantar.robot.uncertainty import Uncertainty
+from plantar.sensors.lagged_log import STEP, lagged_log
+from plantar.sensors.refined_delays import refined_delays
+from plantar.sensors.sensor_delay import estimate_wrench_delay
 from plantar.signals.resampling import shifted
 from plantar.twin import PAPER, play_all
 from plantar.twin.robots import hrp2

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from plantar.contact.stances import Stances
-from plantar.feet.sensors.coherent_band import coherent_band
+from plantar.feet.coherent_band import coherent_band
 from plantar.signals.filters import low_pass
 
 PERIOD, STANCES, ROWS = 0.01, 60, 160

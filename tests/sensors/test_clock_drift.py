@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from plantar.estimation.delay import Pair
-from plantar.feet.sensors.clock_drift import clock_drift
+from plantar.sensors.clock_drift import clock_drift
 from plantar.signals.filters import differentiate, low_pass
 
 PERIOD, SAMPLES = 0.01, 4000

@@ -16,9 +16,9 @@ from scipy import stats
 from plantar.conventions import ROTATIONAL_AXES, Array, Axis
 from plantar.dynamics import Contact, Equation
 from plantar.estimation.intervals import cosine_covariance
-from plantar.feet.sensors.newton_euler import BASE_ROWS, CUTOFF, SLOW, NewtonEulerResidual
 from plantar.notes import Note
 from plantar.robot.model import Foot, RobotModel
+from plantar.sensors.newton_euler import BASE_ROWS, CUTOFF, SLOW, NewtonEulerResidual
 from plantar.signals.filters import low_pass
 
 LOOSE = 0.3  # share: deviation of a torque's gain before the moments are asked

@@ -11,9 +11,9 @@ import pytest
 from biped import TRUTH, record, sway
 from biped_robot import make_robot
 from plantar.feet.identify import identify_feet
-from plantar.feet.sensors.tilt_error import tilt_error_of
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
+from plantar.sensors.tilt_error import tilt_error_of
 from plantar.twin.sensing.attitude_filter import filtered_attitude
 
 CORRECTION_RATE = 0.2  # 1/s, of the filter below

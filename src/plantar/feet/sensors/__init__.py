@@ -1,1 +1,0 @@
-"""Faults of the sensors that shift an estimate: tilt error, delay."""

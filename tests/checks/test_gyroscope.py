@@ -1,0 +1,56 @@
+"""Turns of a gyroscope beside its orientation's: how they compare, and which differences are no fault."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from biped import record, sines, sway
+from plantar.checks.gyroscope import SCALE_OFF, TURNED, Turns, check_gyroscope
+from plantar.checks.quaternions import readings
+from plantar.logs.motion_log import MotionLog
+
+GYROSCOPE = [f"imu.chest.angular_velocity.{axis}" for axis in "xyz"]
+
+
+@pytest.fixture(scope="module")
+def log() -> MotionLog:
+    torso = (sines((0.05, 0.4, 0.0)), sines((0.06, 0.3, 2.0)), sines((0.03, 0.5, 1.0)))
+    return record(sway(duration=40.0, torso=torso))
+
+
+def codes(log: MotionLog) -> list[str]:
+    orientation = log.orientation("chest")
+    assert orientation is not None
+    turns = Turns.of(log, "chest", orientation)
+    assert turns is not None
+    return [finding.code for finding in check_gyroscope("chest", log, orientation, turns)]
+
+
+def changed(log: MotionLog, rates: np.ndarray) -> MotionLog:
+    return log.with_columns(dict(zip(GYROSCOPE, rates.T, strict=True)))
+
+
+def test_a_bias_is_no_fault(log: MotionLog) -> None:
+    assert codes(changed(log, log.stack(GYROSCOPE) + [0.02, -0.01, 0.03])) == []
+
+
+@pytest.mark.parametrize(("share", "found"), [(0.5, []), (1.5, ["gyroscope_scale"])])
+def test_a_scale_is_told_beyond_its_limit(log: MotionLog, share: float, found: list[str]) -> None:
+    assert codes(changed(log, (1 + share * SCALE_OFF) * log.stack(GYROSCOPE))) == found
+
+
+@pytest.mark.parametrize(("share", "found"), [(0.5, []), (1.5, ["gyroscope_frame"])])
+def test_axes_are_told_beyond_theirs(log: MotionLog, share: float, found: list[str]) -> None:
+    turn = Rotation.from_rotvec([0.0, share * TURNED, 0.0])
+    assert codes(changed(log, turn.apply(log.stack(GYROSCOPE)))) == found
+
+
+def test_readings_of_a_quaternion() -> None:
+    """A turn by 0.2 rad about z: as it is, misread as about x by nearly half a turn, and backwards."""
+    w, z = np.cos(0.1), np.sin(0.1)
+    turns = {name: turn.as_rotvec()[0] for name, turn in readings(np.array([[w, 0.0, 0.0, z]])).items()}
+    assert turns["as it is"] == pytest.approx([0, 0, 0.2])
+    assert turns["inverted"] == pytest.approx([0, 0, -0.2])
+    assert turns["read as x y z w"] == pytest.approx([np.pi - 0.2, 0, 0])
