@@ -18,9 +18,9 @@ import numpy as np
 
 from plantar.contact.deflection import relative_pose
 from plantar.contact.phases import DOUBLE, SUPPORTS
+from plantar.contact.sole_height import height_changes
 from plantar.conventions import STIFFNESS_UNIT, Array, Mask
 from plantar.estimation import Block, effect_of, fit_linear, interval95, relative_std_percent
-from plantar.feet.fit.sole_height import height_changes
 from plantar.feet.recording import Recording
 from plantar.notes import Note
 from plantar.results.feet import Parameter, Verdict
@@ -123,7 +123,7 @@ def _height_errors(recordings: Sequence[Recording], robot: RobotModel) -> list[l
     causes: dict[str, list[Array]] = {}
     for recording in recordings:
         both = _both_stand(recording, feet)[0]
-        for cause, change in height_changes(recording, robot):
+        for cause, change in height_changes(recording.log, robot):
             causes.setdefault(cause, []).append(change[both])
     return [changes for changes in causes.values() if len(changes) == len(recordings)]
 

@@ -9,14 +9,14 @@ import numpy as np
 
 from plantar.contact.deflection import bush_states, relative_pose
 from plantar.conventions import Array
-from plantar.feet.recording import Recording
+from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
 
 RATE = 20.0  # Hz, at which heights are computed: a standing robot moves below 2 Hz
 STEP = 1e-3  # rad or m, of the differences that stand for derivatives
 
 
-def height_changes(recording: Recording, robot: RobotModel) -> Iterator[tuple[str, Array]]:
+def height_changes(log: MotionLog, robot: RobotModel) -> Iterator[tuple[str, Array]]:
     """Each cause and its change (N,) [m] of the right sole's height over the left one's, at one deviation of the cause.
 
     Deviations are the robot file's: of each joint's zero between IMU and feet, of the IMU's mount about its three axes,
@@ -24,11 +24,11 @@ def height_changes(recording: Recording, robot: RobotModel) -> Iterator[tuple[st
     the log has no attitude.
     """
     imu, known = robot.imu, robot.uncertainty
-    orientation = recording.log.orientation(imu.name) if imu is not None else None
+    orientation = log.orientation(imu.name) if imu is not None else None
     if imu is None or orientation is None:
         return
-    stride = max(1, round(1 / (RATE * recording.period)))
-    positions, attitude = recording.log.positions(robot)[::stride], orientation[::stride]
+    stride = max(1, round(1 / (RATE * log.period)))
+    positions, attitude = log.positions(robot)[::stride], orientation[::stride]
     still = np.zeros((len(attitude), 3))
     unloaded = {foot: np.zeros((len(attitude), 6)) for foot in robot.feet}
 
@@ -40,9 +40,7 @@ def height_changes(recording: Recording, robot: RobotModel) -> Iterator[tuple[st
     before = height(robot, positions, attitude)
 
     def change(after: Array, deviation: float) -> Array:
-        return np.asarray(
-            np.interp(recording.time, recording.time[::stride], (after - before) * deviation / STEP)
-        )
+        return np.asarray(np.interp(log.time, log.time[::stride], (after - before) * deviation / STEP))
 
     path = frozenset().union(
         *(robot.joints_between(imu.placement, foot.bush) for foot in robot.feet.values())
