@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from biped import SLIPPING, TRUTH, record, sway
+from biped import SLIPPING, TRUTH, record, sines, sway
 from biped_robot import FEET
 from feet_trials import AXES, PUNCTUAL, codes, noisy
 from plantar.feet.fit.bush_place import PlaceSpread
@@ -139,9 +139,17 @@ def test_beside_a_memory_the_place_is_taken_off_once(measured: RobotModel) -> No
 
 
 def test_a_turned_imu_shows_in_a_memory(measured: RobotModel) -> None:
-    found = identify_feet(measured, [imu_turned(log, 0.04) for log in slipping()], settings=RUBBER)
+    """The ankles hold still and the torso sways, so that the IMU alone shows the bushes' angles."""
+    logs = []
+    for seed in (3, 4):
+        motion = sway(f"sway_{seed}", seed, duration=40.0, truth=SLIPPING)
+        pitch, roll = motion.ankles["left"]
+        still = dict.fromkeys(FEET, (sines((0.0, 0.0, 0.0)),) * 2)
+        swaying = replace(motion, torso=(pitch, roll, motion.torso[2]), ankles=still)
+        logs.append(imu_turned(noisy(record(swaying), seed), 0.03))
+    found = identify_feet(measured, logs, settings=RUBBER)
     for model in found.models:
-        assert abs(model.imu_turned) == pytest.approx(0.04, abs=0.015)
+        assert abs(model.imu_turned) == pytest.approx(0.03, abs=0.01)
     for foot in FEET:
         for axis in AXES:
             assert found.parameter(foot, axis, "slip_angle").value == pytest.approx(0.006, rel=0.05)
