@@ -37,12 +37,28 @@ class BushModel:
         return spring + self.damping * rate + self.offset
 
 
+@dataclass(frozen=True)
+class Slipping(BushModel):
+    """A bush with an elastoplastic element beside its spring: `slip` [N·m] from `angle` [rad] on."""
+
+    slip: float = 4.0
+    angle: float = 0.006
+
+    def torque(self, deflection: np.ndarray, rate: np.ndarray) -> np.ndarray:
+        state, states = 0.0, [0.0]
+        for step in np.diff(deflection) / self.angle:
+            state = min(max(state + step, -1.0), 1.0)
+            states.append(state)
+        return super().torque(deflection, rate) + self.slip * np.array(states)
+
+
 TRUTH = {
     ("left", "pitch"): BushModel(420.0, 22.0, -1.5),
     ("left", "roll"): BushModel(350.0, 17.0, 0.6),
     ("right", "pitch"): BushModel(455.0, 26.0, 0.9),
     ("right", "roll"): BushModel(330.0, 19.0, -0.4),
 }
+SLIPPING = {key: Slipping(law.stiffness, law.damping, law.offset) for key, law in TRUTH.items()}
 VERTICAL = 45e3  # N/m, of both bushes
 HEIGHT = 0.7  # m of the torso's origin above the ground
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from biped import TRUTH, record, sway
+from biped import SLIPPING, TRUTH, record, sines, sway
 from biped_robot import FEET
 from feet_trials import AXES, LINEAR, codes, noisy
 from plantar.feet.fit.bush_place import PlaceSpread
@@ -108,3 +108,51 @@ def test_guesses_are_less_sure_than_what_was_measured(robot: RobotModel, measure
 def test_a_sensor_zeroed_under_load_says_nothing_of_the_place(measured: RobotModel) -> None:
     feet = {name: replace(foot, contact="always") for name, foot in measured.feet.items()}
     assert not any(vars(PlaceSpread.of(replace(measured, feet=feet), "left")).values())
+
+
+def imu_turned(log: MotionLog, angle: float) -> MotionLog:
+    """The log of an IMU that is turned by `angle` [rad] about its z axis."""
+    w, x, y, z = (log.columns[f"imu.chest.orientation.{axis}"] for axis in "wxyz")
+    c, s = np.cos(angle / 2), np.sin(angle / 2)
+    moved = dict(zip("wxyz", (c * w - s * z, c * x + s * y, c * y - s * x, c * z + s * w), strict=True))
+    columns = {f"imu.chest.orientation.{axis}": values for axis, values in moved.items()}
+    c, s = np.cos(angle), np.sin(angle)
+    for quantity in ("angular_velocity", "linear_acceleration"):
+        x, y = (log.columns[f"imu.chest.{quantity}.{axis}"] for axis in "xy")
+        columns |= {f"imu.chest.{quantity}.x": c * x + s * y, f"imu.chest.{quantity}.y": c * y - s * x}
+    return log.with_columns(columns)
+
+
+def slipping() -> list[MotionLog]:
+    motions = [sway(f"sway_{seed}", seed, duration=40.0, truth=SLIPPING) for seed in (3, 4)]
+    return [noisy(record(motion), seed) for seed, motion in enumerate(motions)]
+
+
+RUBBER = replace(PUNCTUAL, model="elastoplastic")
+
+
+def test_beside_a_memory_the_place_is_taken_off_once(measured: RobotModel) -> None:
+    logs = [shifted(log, np.array([0.02, 0.0, 0.03])) for log in slipping()]
+    found = identify_feet(measured, logs, settings=RUBBER)
+    assert worst(found) < 0.02
+    assert max(row.rms_error for row in found.validation) < 0.3
+    for foot in FEET:
+        for axis in AXES:
+            assert found.parameter(foot, axis, "slip_angle").value == pytest.approx(0.006, rel=0.05)
+
+
+def test_a_turned_imu_shows_in_a_memory(measured: RobotModel) -> None:
+    """The ankles hold still and the torso sways, so that the IMU alone shows the bushes' angles."""
+    logs = []
+    for seed in (3, 4):
+        motion = sway(f"sway_{seed}", seed, duration=40.0, truth=SLIPPING)
+        pitch, roll = motion.ankles["left"]
+        still = dict.fromkeys(FEET, (sines((0.0, 0.0, 0.0)),) * 2)
+        swaying = replace(motion, torso=(pitch, roll, motion.torso[2]), ankles=still)
+        logs.append(imu_turned(noisy(record(swaying), seed), 0.03))
+    found = identify_feet(measured, logs, settings=RUBBER)
+    for model in found.models:
+        assert abs(model.imu_turned) == pytest.approx(0.03, abs=0.01)
+    for foot in FEET:
+        for axis in AXES:
+            assert found.parameter(foot, axis, "slip_angle").value == pytest.approx(0.006, rel=0.05)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from biped import TRUTH, BushModel, record, sway
+from biped import SLIPPING, record, sway
 from biped_robot import FEET
 from feet_trials import PUNCTUAL, noisy
 from plantar.feet.identify import identify_feet
@@ -16,24 +16,6 @@ from plantar.robot.model import RobotModel
 from plantar.signals.filters import low_pass
 
 PERIOD, CUTOFF = 0.01, 5.0
-
-
-@dataclass(frozen=True)
-class Slipping(BushModel):
-    """A bush with an elastoplastic element beside its spring: `slip` [N·m] from `angle` [rad] on."""
-
-    slip: float = 4.0
-    angle: float = 0.006
-
-    def torque(self, deflection: np.ndarray, rate: np.ndarray) -> np.ndarray:
-        state, states = 0.0, [0.0]
-        for step in np.diff(deflection) / self.angle:
-            state = min(max(state + step, -1.0), 1.0)
-            states.append(state)
-        return super().torque(deflection, rate) + self.slip * np.array(states)
-
-
-SLIPPING = {key: Slipping(law.stiffness, law.damping, law.offset) for key, law in TRUTH.items()}
 
 
 def test_predictions_of_a_model_with_memory_are_filtered_as_the_torque_is(robot: RobotModel) -> None:

@@ -8,6 +8,7 @@ import numpy as np
 
 from plantar.conventions import Array
 from plantar.estimation import effect_of, fit_blocks
+from plantar.estimation.random_effects import share_between
 from plantar.estimation.stance_least_squares import FEWEST_RECORDINGS, jackknife
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.regression_data import beside, tangent_blocks
@@ -15,8 +16,6 @@ from plantar.feet.fit.systematic import Cause
 from plantar.feet.recording import Recording
 
 NAME = "between recordings"
-TRIED = np.geomspace(1e-5, 0.2, 200)  # shares of K and C by which recordings may differ
-HEAVY = 3.0  # degrees of freedom of the prior's tail: recordings that differ by far more than it are believed
 
 
 def between_recordings(
@@ -25,7 +24,7 @@ def between_recordings(
     """By how much recordings move the fit beyond their own deviations; of feet that step `systematic` knows it.
 
     From FEWEST_RECORDINGS on refits without one of them each (jackknife) say it, whatever it is that differs. Fewer are
-    taken to differ by a share of spring and damper. `prior`: of that share, from the robot file.
+    taken to differ by a share of spring and damper, at least the robot file's `prior`.
     """
     blocks = tangent_blocks(recordings, fit, drift=not shared)
     if blocks[0].stances is not None or shared or len(blocks) < 2:
@@ -50,27 +49,7 @@ def between_recordings(
     found = fit_blocks([beside(block, own) for block, own in zip(blocks, columns, strict=True)])
     size = blocks[0].regressor.shape[1]
     ends = slice(size, size + len(blocks) - 1)
-    least = max(prior, float(whole.std[0]) / max(abs(float(fit.values[0])), 1e-300))
-    spread = share_between(found.values[ends], found.covariance[ends, ends], least)
+    own = float(whole.std[0]) / max(abs(float(fit.values[0])), 1e-300)
+    spread = max(prior, share_between(found.values[ends], found.covariance[ends, ends], own))
     effects = np.array([effect_of(blocks, alone(own)) for own in range(len(blocks))])
-    return [Cause(NAME, np.sqrt(np.sum(effects**2, axis=0)), spread)]
-
-
-def share_between(differences: Array, covariance: Array, usual: float) -> float:
-    """Deviation of shares of which `differences` (n,) from the first one are known with a covariance (n, n).
-
-    Random effects: the root of the mean square over what their likelihood and a half-Student prior of size `usual`
-    leave (A. Gelman, Bayesian Analysis 1, 2006). So few differences may be small by chance, which a moment estimate
-    takes for none at all.
-    """
-    together = np.eye(len(differences)) + 1.0
-    weights = []
-    for share in TRIED:
-        spread = covariance + share**2 * together
-        likelihood = -0.5 * (
-            np.linalg.slogdet(spread)[1] + differences @ np.linalg.solve(spread, differences)
-        )
-        prior = -0.5 * (HEAVY + 1) * np.log1p((share / usual) ** 2 / HEAVY)
-        weights.append(likelihood + prior + np.log(share))  # tried in even steps of the logarithm
-    weight = np.exp(np.array(weights) - max(weights))
-    return float(np.sqrt(np.sum(weight * TRIED**2) / np.sum(weight)))
+    return [Cause(NAME, np.sqrt(np.sum(effects**2, axis=0)), spread, len(blocks) - 1.0)]

@@ -5,7 +5,8 @@ With the bushes taken as stiff in z, the kinematics put the right sole higher th
     h = z_L - z_R = F_L/K_L - F_R/K_R + const = s·(1/K_L + 1/K_R) + m·(1/K_L - 1/K_R) + const,
 
 s = (F_L - F_R)/2 and m = (F_L + F_R)/2. Moving weight from foot to foot moves s and shows the sum of the compliances;
-their difference shows only where the total m changes as well, and by more than the force sensors' noise.
+their difference shows only where the total m changes as well, and by more than the force sensors' noise. What the
+robot file may be off by moves h with the robot's own motion, and widens both (`sole_height`).
 """
 
 from __future__ import annotations
@@ -17,8 +18,9 @@ import numpy as np
 
 from plantar.contact.deflection import relative_pose
 from plantar.contact.phases import DOUBLE, SUPPORTS
-from plantar.conventions import STIFFNESS_UNIT, Array
-from plantar.estimation import Block, fit_linear, interval95, relative_std_percent
+from plantar.contact.sole_height import height_changes
+from plantar.conventions import STIFFNESS_UNIT, Array, Mask
+from plantar.estimation import Block, effect_of, fit_linear, interval95, relative_std_percent
 from plantar.feet.recording import Recording
 from plantar.notes import Note
 from plantar.results.feet import Parameter, Verdict
@@ -90,10 +92,12 @@ class VerticalStiffness:
 def fit_vertical_stiffness(recordings: Sequence[Recording], robot: RobotModel) -> VerticalStiffness:
     """Vertical stiffness of two feet; where no log shows it, compliance 0 with the deviation of soft rubber."""
     feet = tuple(robot.feet)
-    blocks = []
-    if len(feet) == 2:
-        blocks = [block for recording in recordings if (block := _block(recording, feet)) is not None]
-    found = _compliances(blocks) if blocks else None
+    blocks, shown = list[Block](), list[Recording]()
+    for recording in recordings if len(feet) == 2 else ():
+        if (block := _block(recording, feet)) is not None:
+            blocks.append(block)
+            shown.append(recording)
+    found = _compliances(blocks, _height_errors(shown, robot)) if blocks else None
     if found is None or not found.clear:
         text = "z: no log shows the vertical compliance; K of pitch and roll may come out too large by load²·compliance"
         unknown = tuple(_unknown_row(foot) for foot in feet) if len(feet) == 2 else ()
@@ -113,21 +117,40 @@ def fit_vertical_stiffness(recordings: Sequence[Recording], robot: RobotModel) -
     )
 
 
-def _compliances(blocks: Sequence[Block]) -> Compliances:
-    """Sum and difference; the sum alone where the total load changes in no recording."""
+def _height_errors(recordings: Sequence[Recording], robot: RobotModel) -> list[list[Array]]:
+    """Of each cause, the change of h in each recording's block, (n,)."""
+    feet = tuple(robot.feet)
+    causes: dict[str, list[Array]] = {}
+    for recording in recordings:
+        both = _both_stand(recording, feet)[0]
+        for cause, change in height_changes(recording.log, robot):
+            causes.setdefault(cause, []).append(change[both])
+    return [changes for changes in causes.values() if len(changes) == len(recordings)]
+
+
+def _compliances(blocks: Sequence[Block], errors: Sequence[Sequence[Array]]) -> Compliances:
+    """Sum and difference; the sum alone where the total load changes in no recording. `errors`: as `_height_errors`."""
     if any(block.regressor[:, 1].any() for block in blocks):
         fit = fit_linear(blocks)
         return Compliances(
             float(fit.values[0]),
             float(fit.values[1]),
-            fit.covariance[:2, :2],
+            fit.covariance[:2, :2] + _moved(blocks, errors),
             float(fit.freedom[0]),
             fit.white_std[:2],
         )
-    fit = fit_linear([replace(block, regressor=block.regressor[:, :1]) for block in blocks])
+    blocks = [replace(block, regressor=block.regressor[:, :1]) for block in blocks]
+    fit = fit_linear(blocks)
     total = float(fit.values[0])
-    unseen = np.diag([float(fit.covariance[0, 0]), total**2])
+    unseen = np.diag([float(fit.covariance[0, 0] + _moved(blocks, errors)[0, 0]), total**2])
     return Compliances(total, 0.0, unseen, float(fit.freedom[0]), np.append(fit.white_std[:1], abs(total)))
+
+
+def _moved(blocks: Sequence[Block], errors: Sequence[Sequence[Array]]) -> Array:
+    """Covariance (k, k) of the values that errors of the heights make."""
+    effects = [effect_of(blocks, changes) for changes in errors]
+    size = blocks[0].regressor.shape[1]
+    return np.asarray(sum((np.outer(effect, effect) for effect in effects), np.zeros((size, size))))
 
 
 def _block(recording: Recording, feet: tuple[str, ...]) -> Block | None:
@@ -138,16 +161,7 @@ def _block(recording: Recording, feet: tuple[str, ...]) -> Block | None:
     if any(recording.stances[foot] is not None for foot in feet):
         return None  # a sole that lands or lifts is not flat, and its height then says nothing of the load
     cutoff = recording.cutoff
-    left, right = (recording.bushes[foot] for foot in feet)
-    both = recording.used(feet[0]) & recording.used(feet[1])
-    both &= recording.contacts[feet[0]].support == SUPPORTS.index(DOUBLE)
-    height = relative_pose(left, right).position[:, 2]
-    # Along the slide for the stiffness, and once more along the vertical for what the compression does to the height.
-    loads = np.column_stack(
-        [bush.wrench[:, 2] * np.cos(bush.deflection).prod(axis=1) for bush in (left, right)]
-    )
-    values = low_pass(np.column_stack([height, loads]), recording.period, cutoff)
-    both &= np.isfinite(values).all(axis=1) & np.isfinite(loads).all(axis=1)
+    both, loads, values = _both_stand(recording, feet)
     if both.sum() < FEWEST_SAMPLES:
         return None
     height, left_load, right_load = values[both].T
@@ -164,6 +178,21 @@ def _block(recording: Recording, feet: tuple[str, ...]) -> Block | None:
         return None
     clear[:, 1] *= moves[1]
     return Block(recording.name, clear[:, :2], clear[:, 2], recording.period)
+
+
+def _both_stand(recording: Recording, feet: tuple[str, ...]) -> tuple[Mask, Array, Array]:
+    """Samples (N,) of a block; the loads of both feet (N, 2); height and loads through the fit's filter, (N, 3)."""
+    left, right = (recording.bushes[foot] for foot in feet)
+    both = recording.used(feet[0]) & recording.used(feet[1])
+    both &= recording.contacts[feet[0]].support == SUPPORTS.index(DOUBLE)
+    height = relative_pose(left, right).position[:, 2]
+    # Along the slide for the stiffness, and once more along the vertical for what the compression does to the height.
+    loads = np.column_stack(
+        [bush.wrench[:, 2] * np.cos(bush.deflection).prod(axis=1) for bush in (left, right)]
+    )
+    values = low_pass(np.column_stack([height, loads]), recording.period, recording.cutoff)
+    both &= np.isfinite(values).all(axis=1) & np.isfinite(loads).all(axis=1)
+    return both, loads, values
 
 
 def _row(foot: str, compliance: float, std: float, found: Compliances) -> Parameter:

@@ -1,0 +1,66 @@
+"""By how much zeros of encoders, the IMU's mount and the bushes' places change the height between two soles."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from plantar.contact.deflection import bush_states, relative_pose
+from plantar.conventions import Array
+from plantar.logs.motion_log import MotionLog
+from plantar.robot.model import RobotModel
+
+RATE = 20.0  # Hz, at which heights are computed: a standing robot moves below 2 Hz
+STEP = 1e-3  # rad or m, of the differences that stand for derivatives
+
+
+def height_changes(log: MotionLog, robot: RobotModel) -> Iterator[tuple[str, Array]]:
+    """Each cause and its change (N,) [m] of the right sole's height over the left one's, at one deviation of the cause.
+
+    Deviations are the robot file's: of each joint's zero between IMU and feet, of the IMU's mount about its three axes,
+    and of each bush's place in its two horizontal directions, about which a sole that leans rises and falls. None where
+    the log has no attitude.
+    """
+    imu, known = robot.imu, robot.uncertainty
+    orientation = log.orientation(imu.name) if imu is not None else None
+    if imu is None or orientation is None:
+        return
+    stride = max(1, round(1 / (RATE * log.period)))
+    positions, attitude = log.positions(robot)[::stride], orientation[::stride]
+    still = np.zeros((len(attitude), 3))
+    unloaded = {foot: np.zeros((len(attitude), 6)) for foot in robot.feet}
+
+    def height(of: RobotModel, angles: Array, turned: Array) -> Array:
+        states = bush_states(of, angles, np.zeros_like(angles), turned, still, unloaded)
+        left, right = (states[foot] for foot in robot.feet)
+        return np.asarray(relative_pose(left, right).position[:, 2])
+
+    before = height(robot, positions, attitude)
+
+    def change(after: Array, deviation: float) -> Array:
+        return np.asarray(np.interp(log.time, log.time[::stride], (after - before) * deviation / STEP))
+
+    path = frozenset().union(
+        *(robot.joints_between(imu.placement, foot.bush) for foot in robot.feet.values())
+    )
+    for column, joint in enumerate(robot.joint_names):
+        if joint in path and known.encoder_zero:
+            moved = positions.copy()
+            moved[:, column] += STEP
+            yield joint, change(height(robot, moved, attitude), known.encoder_zero)
+    for axis in range(3 if known.imu_mount else 0):
+        yield f"imu {'xyz'[axis]}", change(height(robot, positions, _turned(attitude, axis)), known.imu_mount)
+    for name, foot in robot.feet.items():
+        for axis in range(2 if known.bush_position else 0):
+            bush = replace(foot.bush, xyz=foot.bush.xyz + STEP * foot.bush.rotation[:, axis])
+            other = replace(robot, feet={**robot.feet, name: replace(foot, bush=bush)})
+            yield f"{name} {'xyz'[axis]}", change(height(other, positions, attitude), known.bush_position)
+
+
+def _turned(attitude: Array, axis: int) -> Array:
+    """Quaternions w x y z (N, 4), turned by STEP about one of their body's axes."""
+    w, vector = attitude[:, 0], attitude[:, 1:]
+    turn = np.eye(3)[axis] * STEP / 2
+    return np.column_stack([w - vector @ turn, vector + w[:, None] * turn + np.cross(vector, turn)])

@@ -1,0 +1,52 @@
+"""What a robot file may be off by changes the height between two soles as geometry says."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from biped import record, sway
+from plantar.contact.deflection import bush_states, relative_pose
+from plantar.contact.sole_height import height_changes
+from plantar.logs.motion_log import MotionLog
+from plantar.robot.model import RobotModel
+from plantar.robot.uncertainty import EXACT, Uncertainty
+
+
+def height(robot: RobotModel, log: MotionLog) -> np.ndarray:
+    still = np.zeros((len(log.time), 3))
+    positions, unloaded = log.positions(robot), {foot: np.zeros((len(log.time), 6)) for foot in robot.feet}
+    attitude = log.orientation(robot.imu.name)
+    states = bush_states(robot, positions, np.zeros_like(positions), attitude, still, unloaded)
+    return relative_pose(*(states[foot] for foot in robot.feet)).position[:, 2]
+
+
+def test_a_zero_of_a_joint_and_a_bush_beside_its_place(robot: RobotModel) -> None:
+    log = record(sway("sway", 3))
+    robot = replace(robot, uncertainty=Uncertainty())
+    changes = dict(height_changes(log, robot))
+    joint = next(name for name in changes if name.endswith("ankle_roll"))
+    column = f"joint.{joint}.position"
+    moved = log.with_columns({column: log.columns[column] + 0.001})
+    np.testing.assert_allclose(changes[joint], height(robot, moved) - height(robot, log), atol=2e-6)
+    foot = robot.feet["left"]
+    aside = foot.bush.xyz + 0.003 * foot.bush.rotation[:, 0]
+    other = replace(robot, feet={**robot.feet, "left": replace(foot, bush=replace(foot.bush, xyz=aside))})
+    np.testing.assert_allclose(changes["left x"], height(other, log) - height(robot, log), atol=2e-6)
+    assert np.ptp(changes["left x"]) > 1e-5  # a sole that leans rises and falls about it
+
+
+def test_an_exact_robot_has_no_causes(robot: RobotModel) -> None:
+    assert list(height_changes(record(sway("sway", 3)), replace(robot, uncertainty=EXACT))) == []
+
+
+def test_changes_follow_the_deviations(robot: RobotModel) -> None:
+    log = record(sway("sway", 3))
+    once, twice = (
+        dict(height_changes(log, replace(robot, uncertainty=Uncertainty(imu_mount=mount))))
+        for mount in (0.01, 0.02)
+    )
+    np.testing.assert_allclose(twice["imu x"], 2 * once["imu x"])
+    assert np.abs(once["imu x"]).max() == pytest.approx(np.abs(np.median(once["imu x"])), rel=0.1)

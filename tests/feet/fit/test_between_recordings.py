@@ -1,0 +1,40 @@
+"""Recordings that differ widen the intervals of few and of many, and only then."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from biped import TRUTH, record, sway
+from feet_trials import PUNCTUAL, noisy
+from plantar.feet.fit.axis_fit import fit_axis
+from plantar.feet.fit.between_recordings import between_recordings
+from plantar.feet.prepare import prepare_all
+from plantar.robot.model import RobotModel
+
+LINEAR = replace(PUNCTUAL, model="kelvin_voigt")
+
+
+def share(robot: RobotModel, shares: list[float], prior: float = 0.0) -> float:
+    """The share of the stiffness of one axis that recordings' differences make uncertain."""
+    logs = []
+    for seed, own in enumerate(shares, 3):
+        truth = {key: replace(law, stiffness=(1 + own) * law.stiffness) for key, law in TRUTH.items()}
+        logs.append(noisy(record(sway(f"sway_{seed}", seed, truth=truth)), seed))
+    ready = prepare_all(robot, logs, [], LINEAR, lambda _: None)
+    fit = fit_axis(ready.fitted, "left", "pitch", LINEAR)
+    assert fit is not None
+    (cause,) = between_recordings(fit, ready.fitted, prior, False)
+    return float(cause.share[0] / fit.values[0])
+
+
+@pytest.mark.parametrize("shares", [[-0.02, 0.02], [-0.02, 0.0, 0.02]])
+def test_few_that_differ(robot: RobotModel, shares: list[float]) -> None:
+    assert share(robot, shares) > 0.6 * np.std(shares, ddof=1) / np.sqrt(len(shares))
+
+
+def test_few_that_are_alike(robot: RobotModel) -> None:
+    assert share(robot, [0.0, 0.0, 0.0]) < 0.002
+    assert share(robot, [0.0, 0.0, 0.0], prior=0.03) == pytest.approx(0.03 / np.sqrt(3), rel=0.1)
