@@ -127,7 +127,14 @@ def _axis_model(fit: AxisFit) -> AxisModel:
     """The model of one axis, why it was chosen, and what the others missed by on held-out motions."""
     linear = LinearEquivalent(*fit.equivalent)
     axis_model = AxisModel(
-        fit.foot, fit.axis, fit.model.name, fit.reason, linear, fit.moment_arms, turned=fit.turned
+        fit.foot,
+        fit.axis,
+        fit.model.name,
+        fit.reason,
+        linear,
+        fit.moment_arms,
+        turned=fit.turned,
+        imu_turned=fit.imu_turned,
     )
     if fit.choice is None:
         return axis_model

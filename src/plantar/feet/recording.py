@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -33,6 +33,7 @@ class Recording:
     `cutoff` [Hz] is that of `bushes`, infinite before they are filtered. `stances`: of feet that step, else None.
     `noise` (2, 2) of each foot: variance of white noise that is left in deflection and rate, of pitch and roll.
     `places` (N, 2) of each foot: of the sole from the IMU [m] in the attitude as recorded, which slides are judged by.
+    `imu_turns` (N, 2, 3) of each foot: see `imu_turn_effects`; unfiltered.
     `zeros`: of force sensors, as read while their foot swings; they are taken off already.
     """
 
@@ -47,6 +48,7 @@ class Recording:
     places: Mapping[str, Array]
     notes: tuple[Note, ...]
     zeros: tuple[SwingZero, ...] = ()
+    imu_turns: Mapping[str, Array] = field(default_factory=dict)
 
     @property
     def name(self) -> str:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from biped import TRUTH, record, sway
-from biped_robot import FEET
+from biped_robot import FEET, Frame, Mounting
 from feet_trials import AXES, PUNCTUAL, codes, noisy
 from plantar.feet.fit.bush_place import PlaceSpread
 from plantar.feet.identify import identify_feet
@@ -76,6 +76,17 @@ def test_a_turned_force_sensor_is_found(measured: RobotModel) -> None:
     for model in found.models:
         assert abs(model.turned) == pytest.approx(np.radians(5), abs=0.02)
     assert worst(found) < 0.02
+
+
+def test_an_imu_turned_in_its_mount_shows_where_hips_move(measured: RobotModel) -> None:
+    turn = Mounting(imu=Frame((0.0, 0.0, 0.0), (0.0, 0.0, 0.02)))
+    logs = [noisy(record(sway(f"sway_{seed}", seed, duration=40.0), turn), seed) for seed in (3, 4)]
+    found = identify_feet(measured, logs, settings=LINEAR)
+    for model in found.models:
+        assert abs(model.imu_turned[2]) == pytest.approx(0.02, abs=0.003)
+    assert worst(found) < 0.01
+    sure = replace(measured, uncertainty=Uncertainty(imu_mount=0.0))
+    assert not any(any(model.imu_turned) for model in identify_feet(sure, logs, settings=LINEAR).models)
 
 
 def test_a_centre_in_its_place_is_left_there(measured: RobotModel) -> None:

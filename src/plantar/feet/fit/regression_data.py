@@ -106,18 +106,28 @@ def moment_columns(recording: Recording, foot: str, axis: Axis) -> Array:
     return np.column_stack([load_of(recording, foot), _filtered_as_torque(recording, foot, across)])
 
 
-def place_columns(recording: Recording, foot: str, axis: Axis) -> Array:
-    """`moment_columns`, and the other axis' torque, which shows in this one where a sensor is turned, (N, 3)."""
-    other = recording.bushes[foot].torque[:, 1 - ROTATIONAL_AXES.index(axis)]
-    return np.column_stack([moment_columns(recording, foot, axis), np.nan_to_num(other)])
+def place_columns(recording: Recording, foot: str, axis: Axis, stiffness: float) -> Array:
+    """Torque (N, 6) for each metre or radian by which bush, force sensor and IMU are not where the robot file says.
+
+    `moment_columns`; the other axis' torque, which shows in this one where a force sensor is turned about the vertical;
+    and what a turn of the IMU about each of its axes adds to the angle, taken by a spring of this stiffness [N·m/rad].
+    """
+    column = ROTATIONAL_AXES.index(axis)
+    other = np.nan_to_num(recording.bushes[foot].torque[:, 1 - column])
+    turns = recording.imu_turns.get(foot, np.zeros((len(recording.time), 2, 3)))[:, column]
+    angles = [_filtered_as_torque(recording, foot, turn) for turn in turns.T]
+    return np.column_stack(
+        [moment_columns(recording, foot, axis), other, *(stiffness * angle for angle in angles)]
+    )
 
 
 def load_torque(recording: Recording, fitted: FittedModel) -> Array:
-    """The torque (N,) that is not the bush's: of the load on a centre beside its place, of a sensor that is turned."""
-    place = np.array([*fitted.moment_arms, fitted.turned])
+    """The torque (N,) that is not the bush's: of the load on a centre beside its place, of sensors that are turned."""
+    place = np.array([*fitted.moment_arms, fitted.turned, *fitted.imu_turned])
     if not place.any():
         return np.zeros(len(recording.time))
-    return np.asarray(place_columns(recording, fitted.foot, fitted.axis) @ place)
+    stiffness = float(fitted.values[0])
+    return np.asarray(place_columns(recording, fitted.foot, fitted.axis, stiffness) @ place)
 
 
 def _across(recording: Recording, foot: str, column: int) -> Array:
