@@ -27,6 +27,7 @@ from plantar.models import BushModel
 from plantar.notes import Note
 from plantar.results.feet import Diagnosis, Parameter, ValidationRow
 from plantar.results.walk_rows import StanceStiffness, WalkStiffness
+from plantar.robot.guesses import naming_notes
 
 ROUNDS = 3  # of leaving outliers out: a large one hides smaller ones
 
@@ -86,7 +87,11 @@ def _with_axis(found: FootFit, ready: PreparedLogs, fit: AxisFit) -> FootFit:
     rows = axis_rows(wide, ready.fitted, predictions, scores)
     limits = diagnose_axis(fit, wide, causes, rows)
     gain = {foot: error for foot, error in ready.gain_errors.items() if foot == fit.foot}
-    faults = [*data_faults(ready.fitted, fit), *force_gain_notes(ready.robot, gain)]
+    faults = [
+        *data_faults(ready.fitted, fit),
+        *force_gain_notes(ready.robot, gain),
+        *naming_notes(ready.robot.path.name, ready.robot.guesses),
+    ]
     return FootFit(
         fits=[*found.fits, wide],
         parameters=[*found.parameters, *doubted(advised(rows, limits), faults)],

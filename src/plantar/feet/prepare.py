@@ -21,7 +21,7 @@ from plantar.feet.settings import FeetSettings
 from plantar.logs.inputs import check_names
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note, unique
-from plantar.robot.guesses import guess_notes
+from plantar.robot.guesses import guess_notes, naming_notes
 from plantar.robot.model import RobotModel
 
 Progress = Callable[[str], None]
@@ -87,7 +87,12 @@ def prepare_checked(
     vertical = fit_vertical_stiffness(recordings[: len(logs)], robot)
     moved = [moved_centre(recording, vertical.compliance) for recording in recordings]
     gains = force_gain_errors(robot, recordings)
-    odd = [*guess_notes(robot.path.name, robot.guesses), *force_gain_notes(robot, gains)]
+    file = robot.path.name
+    odd = [
+        *naming_notes(file, robot.guesses),
+        *guess_notes(file, robot.guesses),
+        *force_gain_notes(robot, gains),
+    ]
     notes = [*odd, *(note for one in recordings for note in one.notes), delay.note, *vertical.notes]
     fitted, unseen = tuple(moved[: len(logs)]), tuple(moved[len(logs) :])
     return PreparedLogs(robot, fitted, unseen, settings, delay, vertical, unique(notes), gains)
