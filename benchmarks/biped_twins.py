@@ -37,6 +37,7 @@ URDFS: Mapping[str, str] = {
     "icub": "icub_description/robots/icub.urdf",
     "icub_reduced": "icub_description/robots/icub_reduced.urdf",
     "romeo": "romeo_description/urdf/romeo_small.urdf",
+    "romeo_fingers": "romeo_description/urdf/romeo.urdf",
     "alexander": "alexander_description/urdf/alexander_v1.lowerBodyOnly.urdf",
     "human": "human_description/robots/human.urdf",
     "simple_humanoid": "simple_humanoid_description/urdf/simple_humanoid.urdf",

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from plantar.contact.reasons import Reason
 from plantar.conventions import ROTATIONAL_AXES, Axis, Mask
 from plantar.feet.assess.data_faults import data_faults, doubted
-from plantar.feet.assess.diagnosis import advised, diagnose_axis
+from plantar.feet.assess.diagnosis import advised, diagnose_axis, mend_first
 from plantar.feet.assess.parameter_rows import axis_rows, missing_rows, unseen_rows
 from plantar.feet.assess.residual_table import Predictions
 from plantar.feet.assess.scores import score_axis
@@ -94,7 +94,7 @@ def _with_axis(found: FootFit, ready: PreparedLogs, fit: AxisFit) -> FootFit:
     ]
     return FootFit(
         fits=[*found.fits, wide],
-        parameters=[*found.parameters, *doubted(advised(rows, limits), faults)],
+        parameters=[*found.parameters, *mend_first(doubted(advised(rows, limits), faults), faults)],
         validation=[*found.validation, *scores],
         diagnosis=[*found.diagnosis, *limits],
         predictions={**found.predictions, **predictions},
