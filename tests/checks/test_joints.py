@@ -48,6 +48,16 @@ def test_a_log_without_one_leg_is_an_error(tmp_path: Path, log: MotionLog) -> No
     assert not list(check_joint_names(robot, fine))
 
 
+def test_a_log_that_only_numbers_the_joints_is_an_error_that_names_the_order(
+    tmp_path: Path, log: MotionLog
+) -> None:
+    robot = make_robot(tmp_path)
+    numbers = {joint: str(place) for place, joint in enumerate(robot.joint_names)}
+    (found,) = check_joint_names(robot, renamed(log, numbers))
+    assert found.fatal
+    assert "if the log has the URDF's order" in found.text
+
+
 def test_inspect_prints_one_line_and_fails(
     tmp_path: Path, log: MotionLog, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -290,6 +290,17 @@ def test_an_axis_without_a_value_is_rigid_and_a_negative_damper_is_not_written(
     assert next(e for e in entries if e["jointName"] == "LLEG_BUSH_PITCH")["C"] == 0
 
 
+def test_a_vertical_stiffness_that_no_log_shows_is_rigid(feet: dict[str, Any], tmp_path: Path) -> None:
+    for verdict, rigid in (("usable", False), ("unidentifiable", True)):
+        made = copy.deepcopy(feet)
+        for row in made["parameters"]:
+            if row["axis"] == "z":
+                row["verdict"] = verdict
+        notes = export(made, "mc_rtc", tmp_path / f"{verdict}.json")
+        assert ("BUSH_Z" not in (tmp_path / f"{verdict}.json").read_text()) is rigid
+        assert any(note.text.startswith("left z: not identified") for note in notes) is rigid
+
+
 def test_the_command_line(feet: dict[str, Any], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "result.json").write_text(json.dumps(feet))
     with pytest.raises(SystemExit) as done:

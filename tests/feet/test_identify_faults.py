@@ -109,6 +109,17 @@ def test_single_absurd_values_do_no_harm(robot: RobotModel, logs: list[MotionLog
     assert_truth(identify_feet(robot, [logs[0].with_columns({n: spiked(n, 0.0) for n in quaternion})]), EXACT)
 
 
+@pytest.mark.parametrize("every", [10, 20])
+def test_a_log_slower_than_twice_the_filter_serves(robot: RobotModel, every: int) -> None:
+    """10 Hz and 5 Hz: the filter that the fit would like does not exist there."""
+    log = record(sway("slow", duration=60.0))
+    columns = {name: values[::every] for name, values in log.columns.items()}
+    slow = MotionLog("slow", log.time[::every], columns)
+    found = identify_feet(robot, [slow])
+    assert_truth(found, 0.02)
+    assert "internal_error" not in codes(found)
+
+
 def test_jitter_is_resampled(robot: RobotModel) -> None:
     motion = sway("jitter")
     found = identify_feet(robot, [record(motion, at=times(motion, rate=200.0, jitter=0.25, seed=3))])

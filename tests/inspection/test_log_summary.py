@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -87,6 +88,27 @@ def test_everything_goes_into_json(robot: RobotModel) -> None:
     content = json.loads(dump_json(inspect_log(robot, log).to_dict()))
     assert content["findings"][0]["code"] == "not_usable"
     assert "no foot carries load" in content["findings"][0]["text"]
+
+
+def keys(content: object) -> object:
+    """The keys of JSON at every depth; of a list, those of its first entry."""
+    if isinstance(content, dict):
+        return {key: keys(value) for key, value in content.items()}
+    return [keys(content[0])] if isinstance(content, list) and content else None
+
+
+def test_the_documents_say_what_the_json_holds(robot: RobotModel) -> None:
+    text = (Path(__file__).resolve().parents[2] / "docs" / "log_columns.md").read_text()
+    (documented,) = re.findall(r"```json\n(.*?)```", text, re.DOTALL)
+    shown = json.loads(documented)["logs"][0]
+    log = record(sway(duration=8.0))
+    reversed_ = {name: -log.column(name) for name in log.columns if name.startswith("wrench.")}
+    refused = json.loads(dump_json(inspect_log(robot, log.with_columns(reversed_)).to_dict()))
+    healthy = json.loads(dump_json(inspect_log(robot, log).to_dict()))
+    actual = {key: refused[key] or healthy[key] for key in healthy}
+    assert list(shown) == list(actual)
+    for key in ("sampling", "columns", "feet", "findings", "notes"):
+        assert keys(shown[key]) == keys(actual[key]), key
 
 
 def test_a_robot_without_feet(tmp_path: Path) -> None:

@@ -32,6 +32,7 @@ from example_robots import (
 from plantar.checks.log_checks import check_log
 from plantar.errors import LogError, RobotError
 from plantar.exporters.urdf.tree import UrdfTree
+from plantar.feet.identify import identify_feet
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import open_log
 from plantar.logs.save import save_log
@@ -40,6 +41,7 @@ from plantar.robot_guess import guess_robot_file
 from plantar.robot_guess.biped import find_biped
 from plantar.robot_guess.feet import find_sole
 from plantar.robot_guess.imu import find_frame
+from renamed_joints import renamed
 from standing_robot import talos_sways
 
 LARGE = sway(duration=12.0)
@@ -230,6 +232,22 @@ def test_a_prefix_of_the_joints_is_written_down(tmp_path: Path) -> None:
     columns = {name.replace("joint.", "joint.b/"): values for name, values in log.columns.items()}
     robot, _ = guessed(tmp_path, MotionLog("sway", log.time, columns))
     assert robot.joint_names_in_logs.prefix == "b/"
+
+
+def test_numbered_joints_are_written_down_as_a_guess_that_takes_usable_away(tmp_path: Path) -> None:
+    logs = [record(sway(f"sway_{seed}", seed=seed, duration=40.0)) for seed in (3, 4)]
+    joints = list(pin.buildModelFromXML(URDF).names)[1:]
+    numbers = {joint: f"motor_{place}" for place, joint in enumerate(joints)}
+    robot, text = guessed(tmp_path, *(renamed(log, numbers) for log in logs))
+    assert robot.joint_names_in_logs.in_log(joints[-1]) == f"motor_{len(joints) - 1}"
+    assert "joint_names" in {guess.key for guess in robot.guesses}
+    result = identify_feet(robot, [open_log(tmp_path / f"{log.name}.csv", robot) for log in logs])
+    assert "guessed_joint_names" in {note.code for note in result.notes}
+    assert not [row for row in result.parameters if row.verdict == "usable" and row.axis != "z"]
+    (tmp_path / "robot.yaml").write_text(text.replace("# GUESS: the logs only number", "# they only number"))
+    sure = load_robot(tmp_path / "robot.yaml")
+    result = identify_feet(sure, [open_log(tmp_path / f"{log.name}.csv", sure) for log in logs])
+    assert [row for row in result.parameters if row.verdict == "usable" and row.axis != "z"]
 
 
 def test_what_the_twin_knows_is_no_log(tmp_path: Path) -> None:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from plantar.robot.model import RobotModel
+from example_robots import ICUB
+from plantar.robot.model import RobotModel, load_robot
 from plantar.robot.uncertainty import Uncertainty
+from plantar.robot_guess import guess_robot_file
 from plantar.sensors.model_errors import drawn_parameter_errors
 from plantar.twin.robots import hrp2
 
@@ -34,3 +37,12 @@ def test_an_exact_urdf_has_no_draws() -> None:
 def test_every_recording_meets_the_same_wrong_robots() -> None:
     first, second = (drawn_parameter_errors(robot(0.05, 0.005)) for _ in range(2))
     np.testing.assert_array_equal(first, second)
+
+
+def test_links_with_next_to_no_inertia_are_drawn_too(tmp_path: Path) -> None:
+    """iCub's URDF gives some links an inertia of 1e-20 or so: drawn anew, it may be a hair negative."""
+    file = tmp_path / "robot.yaml"
+    file.write_text(guess_robot_file(ICUB, [], file))
+    drawn = drawn_parameter_errors(load_robot(file))
+    assert np.isfinite(drawn).all()
+    assert np.abs(drawn).max() > 0.01

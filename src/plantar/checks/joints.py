@@ -8,7 +8,7 @@ import numpy as np
 
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding
-from plantar.robot.joint_names import propose_names
+from plantar.robot.joint_names import propose_names, propose_order
 from plantar.robot.model import RobotModel
 
 MOST_NAMED = 3
@@ -32,6 +32,9 @@ def check_joint_names(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     if names is not None:
         valid = f"valid: '{names}' in the robot file"
         text += f"; the log's {_listing(strangers)} look like them"
+    elif (order := propose_order(robot.joint_names, sorted(recorded))) is not None:
+        valid = f"valid: '{order}' in the robot file, if the log has the URDF's order; plantar init writes it whole"
+        text += f"; the log only numbers them: {_listing(strangers)}"
     elif strangers:
         valid = "valid: a log of this robot, or 'joint_names: {renamed: {URDF joint: log joint}}' in the robot file"
         text += f"; it holds {_listing(strangers)}"

@@ -11,6 +11,7 @@ from plantar.checks.closed_chain import check_closed_chain
 from plantar.checks.gaps import check_gaps
 from plantar.checks.imu import check_imu
 from plantar.checks.joints import check_joint_names, check_path_joints
+from plantar.checks.load_signs import check_load_signs
 from plantar.checks.standing import check_balance
 from plantar.conventions import GRAVITY
 from plantar.logs.motion_log import MotionLog
@@ -79,7 +80,7 @@ def _joints(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
 def _wrenches(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     loads = {}
     for foot in robot.feet.values():
-        sensor, vertical = foot.wrench, f"wrench.{foot.wrench.name}.force.z"
+        sensor = foot.wrench
         wrench = log.wrench(sensor.name)
         if not np.isfinite(wrench).any():
             yield Finding(
@@ -98,14 +99,6 @@ def _wrenches(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
             yield Finding("dead_channel", text)
             continue
         loads[foot.name] = load
-        usual = float(np.nanmedian(load))
-        if foot.contact == "auto" and usual < -0.2 * robot.mass * GRAVITY:
-            text = f"column '{vertical}', value {usual:.4g}: pulls the standing foot down"
-            yield Finding(
-                "sign",
-                f"{text} (valid: > 0; set 'sign: {-int(sensor.sign)}' in feet.{foot.name}.wrench)",
-                True,
-            )
         spans = np.array(
             [np.ptp(values[np.isfinite(values)]) if np.isfinite(values).any() else 0.0 for values in wrench.T]
         )
@@ -119,6 +112,7 @@ def _wrenches(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
                 f"{named(dead, f'wrench.{sensor.name}.', len(parts))}: never change{'s' * (len(dead) == 1)}"
             )
             yield Finding("dead_channel", f"{text}; is the {'channel' if len(dead) == 1 else 'sensor'} dead?")
+    yield from check_load_signs(robot, loads)
     weight = robot.mass * GRAVITY
     automatic = bool(loads) and all(foot.contact == "auto" for foot in robot.feet.values())
     if automatic and len(loads) == len(robot.feet):

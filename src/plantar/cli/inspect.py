@@ -28,7 +28,7 @@ def run(
 ) -> None:
     """What is in the logs, what is wrong with them, and what each can identify by itself.
 
-    Example: plantar inspect talos.yaml sway_1.csv
+    Example: plantar inspect talos.yaml sway_1.csv, or for scripts: plantar inspect talos.yaml sway_1.csv --json
     """
     step = progress(quiet)
     loaded = load_robot(robot)

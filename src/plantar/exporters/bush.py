@@ -150,7 +150,9 @@ def _spring(
     mine = {str(row["name"]): row for row in rows if row.get("foot") == foot and row.get("axis") == axis}
     where = f"{foot} {axis}"
     found = {name: row["value"] for name, row in mine.items() if row.get("value") is not None}
-    if "stiffness" not in found:
+    # What hardly gives looks like any large number; in pitch and roll a foot that gives must not be made rigid.
+    nothing_known = axis == "z" and mine.get("stiffness", {}).get("verdict") == "unidentifiable"
+    if "stiffness" not in found or nothing_known:
         return None
     values = {name: _number(value, f"{where} {name}") for name, value in found.items()}
     stiffness = values["stiffness"]

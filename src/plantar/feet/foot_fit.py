@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from plantar.contact.reasons import Reason
 from plantar.conventions import ROTATIONAL_AXES, Axis, Mask
 from plantar.feet.assess.data_faults import data_faults, doubted
-from plantar.feet.assess.diagnosis import advised, diagnose_axis
+from plantar.feet.assess.diagnosis import advised, diagnose_axis, mend_first
 from plantar.feet.assess.parameter_rows import axis_rows, missing_rows, unseen_rows
 from plantar.feet.assess.residual_table import Predictions
 from plantar.feet.assess.scores import score_axis
@@ -16,8 +16,9 @@ from plantar.feet.assess.stance_stiffness import stance_stiffness, walk_stiffnes
 from plantar.feet.exclusion.outliers import outlier_masks
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.axis_fit import fit_axis
-from plantar.feet.fit.bush_place import PlaceSpread, turned_bush
+from plantar.feet.fit.bush_place import PlaceSpread
 from plantar.feet.fit.force_gain import force_gain_causes, force_gain_notes, torque_gain_causes
+from plantar.feet.fit.place_notes import turned_bush
 from plantar.feet.fit.robot_causes import robot_causes
 from plantar.feet.fit.systematic import inflated, systematic_causes
 from plantar.feet.internal_error import gives_up, internal_errors
@@ -27,6 +28,7 @@ from plantar.models import BushModel
 from plantar.notes import Note
 from plantar.results.feet import Diagnosis, Parameter, ValidationRow
 from plantar.results.walk_rows import StanceStiffness, WalkStiffness
+from plantar.robot.guesses import naming_notes
 from plantar.sensors.moment_balance import torque_gain_notes
 
 ROUNDS = 3  # of leaving outliers out: a large one hides smaller ones
@@ -90,12 +92,16 @@ def _with_axis(found: FootFit, ready: PreparedLogs, fit: AxisFit) -> FootFit:
     rows = axis_rows(wide, ready.fitted, predictions, scores)
     limits = diagnose_axis(fit, wide, causes, rows)
     gain = {foot: error for foot, error in ready.gain_errors.items() if foot == fit.foot}
-    # Torque channels that are wrong about one axis are trusted about neither.
-    faults = [*data_faults(ready.fitted, fit), *force_gain_notes(ready.robot, gain)]
-    faults += torque_gain_notes(ready.torque_gains).values()
+    faults = [
+        *data_faults(ready.fitted, fit),
+        *force_gain_notes(ready.robot, gain),
+        # Torque channels that are wrong about one axis are trusted about neither.
+        *torque_gain_notes(ready.torque_gains).values(),
+        *naming_notes(ready.robot.path.name, ready.robot.guesses),
+    ]
     return FootFit(
         fits=[*found.fits, wide],
-        parameters=[*found.parameters, *doubted(advised(rows, limits), faults)],
+        parameters=[*found.parameters, *mend_first(doubted(advised(rows, limits), faults), faults)],
         validation=[*found.validation, *scores],
         diagnosis=[*found.diagnosis, *limits],
         predictions={**found.predictions, **predictions},

@@ -20,7 +20,7 @@ from plantar.feet.settings import FeetSettings
 from plantar.logs.inputs import check_names
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note, unique
-from plantar.robot.guesses import guess_notes
+from plantar.robot.guesses import guess_notes, naming_notes
 from plantar.robot.model import RobotModel
 from plantar.sensors.moment_balance import TorqueGain, torque_gain_notes, torque_gains
 from plantar.sensors.sensor_delay import SensorDelay, estimate_wrench_delay, in_time, known_delay
@@ -90,8 +90,13 @@ def prepare_checked(
     vertical = fit_vertical_stiffness(recordings[: len(logs)], robot)
     moved = [moved_centre(recording, vertical.compliance) for recording in recordings]
     forces, torques = force_gain_errors(robot, recordings), torque_gains(robot, delay.residuals)
-    odd = [*guess_notes(robot.path.name, robot.guesses), *force_gain_notes(robot, forces)]
-    odd += torque_gain_notes(torques).values()
+    file = robot.path.name
+    odd = [
+        *naming_notes(file, robot.guesses),
+        *guess_notes(file, robot.guesses),
+        *force_gain_notes(robot, forces),
+        *torque_gain_notes(torques).values(),
+    ]
     notes = [*odd, *(note for one in recordings for note in one.notes), delay.note, *vertical.notes]
     fitted, unseen = tuple(moved[: len(logs)]), tuple(moved[len(logs) :])
     return PreparedLogs(robot, fitted, unseen, settings, delay, vertical, unique(notes), forces, torques)

@@ -8,6 +8,7 @@ import numpy as np
 
 from plantar.checks.log_checks import check_log
 from plantar.contact.deflection import BushState, bush_states
+from plantar.contact.imu_turn import imu_turn_effects
 from plantar.contact.phases import FootContact, carried_weight, detect_contact, shaken
 from plantar.contact.reasons import Reason
 from plantar.contact.stances import Stances, stances_of, without_rolling
@@ -78,7 +79,8 @@ def prepare(
     contacts, stances = _contacts(robot, log, raw, CONTACT_BAND * highest_cutoff, notes)
     places = {name: state.sole_position[:, :2] for name, state in raw.items()}
     if (right := right_attitude(log, imu, orientation, tilt_error, raw, contacts)) is not None:
-        raw = bush_states(robot, positions, velocities, right[0], rates, wrenches)
+        orientation = right[0]
+        raw = bush_states(robot, positions, velocities, orientation, rates, wrenches)
         notes.append(right[1])
     return Recording(
         log=log,
@@ -91,6 +93,7 @@ def prepare(
         noise={name: np.zeros((2, 2)) for name in raw},
         places=places,
         notes=tuple(notes),
+        imu_turns=imu_turn_effects(robot, positions, orientation),
         zeros=tuple(row for name, zero in zeros.items() for row in zero.rows(log.name, name)),
     )
 

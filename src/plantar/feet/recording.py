@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -33,6 +33,7 @@ class Recording:
     `cutoff` [Hz] is that of `bushes`, infinite before they are filtered. `stances`: of feet that step, else None.
     `noise` (2, 2) of each foot: variance of white noise that is left in deflection and rate, of pitch and roll.
     `places` (N, 2) of each foot: of the sole from the IMU [m] in the attitude as recorded, which slides are judged by.
+    `imu_turns` (N, 2, 3) of each foot: see `imu_turn_effects`; filtered as `bushes`.
     `zeros`: of force sensors, as read while their foot swings; they are taken off already.
     """
 
@@ -47,6 +48,7 @@ class Recording:
     places: Mapping[str, Array]
     notes: tuple[Note, ...]
     zeros: tuple[SwingZero, ...] = ()
+    imu_turns: Mapping[str, Array] = field(default_factory=dict)
 
     @property
     def name(self) -> str:
@@ -85,7 +87,13 @@ def filtered_recording(recording: Recording, cutoff: float) -> Recording:
             edges = run_ends(valid, round(FILTER_EDGE / cutoff / period))
             recording = recording.without(name, edges, Reason.FILTER_EDGE)
         noise[name] = _noise(state, period, cutoff)
-    return replace(recording, cutoff=cutoff, bushes=smooth, noise=noise)
+    # Only a foot that stands has its place asked.
+    turns = {
+        name: low_pass(turns.reshape(-1, 6), period, cutoff).reshape(-1, 2, 3)
+        for name, turns in recording.imu_turns.items()
+        if recording.stances[name] is None
+    }
+    return replace(recording, cutoff=cutoff, bushes=smooth, noise=noise, imu_turns=turns)
 
 
 def filtered(state: BushState, period: float, cutoff: float) -> BushState:

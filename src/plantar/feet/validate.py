@@ -103,5 +103,5 @@ def _stored_model(result: FeetResult, foot: str, axis: Axis) -> FittedModel | No
         shape=values[count:],
         moment_arms=(0.0, 0.0) if entry is None else entry.moment_arms,
         turned=0.0 if entry is None else entry.turned,
-        imu_turned=0.0 if entry is None else entry.imu_turned,
+        imu_turned=(0.0, 0.0, 0.0) if entry is None else entry.imu_turned,
     )

@@ -115,8 +115,9 @@ class AxisModel:
     """The bush model of one axis of one foot, and why it was chosen.
 
     `moment_arms` [m]: by how much the logs show the bush's centre aside and above its place; `turned` [rad]: by how
-    much the force sensor, or the IMU, is turned about the vertical, `imu_turned` [rad]: surely the IMU. `held_out` says
-    what was held out, `ranking` holds every model tried; both are None where none was compared.
+    much the force sensor, or the IMU, is turned about the vertical; `imu_turned` [rad]: by how much the IMU is turned
+    about each of its axes, as far as that shows. `held_out` says what was held out, `ranking` holds every model tried;
+    both are None where none was compared.
     """
 
     foot: str
@@ -128,7 +129,7 @@ class AxisModel:
     held_out: str | None = None
     ranking: tuple[Candidate, ...] | None = None
     turned: float = 0.0
-    imu_turned: float = 0.0
+    imu_turned: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     def to_dict(self) -> dict[str, Any]:
         """The entry of `laws` in `result.json`, where a model is called a law."""
@@ -137,7 +138,7 @@ class AxisModel:
             del content["moment_arms"]
         if not self.turned:
             del content["turned"]
-        if not self.imu_turned:
+        if not any(self.imu_turned):
             del content["imu_turned"]
         if self.ranking is None:
             return {key: value for key, value in content.items() if key not in ("held_out", "ranking")}

@@ -81,6 +81,14 @@ def guess_notes(file: str, guesses: Sequence[Guess]) -> list[Note]:
     return [Note("guessed_geometry", "warning", text)]
 
 
+def naming_notes(file: str, guesses: Sequence[Guess]) -> list[Note]:
+    """A warning where it is a guess which joint of the logs is which; no number may rest on that."""
+    if not any(guess.key.partition(".")[0] == "joint_names" for guess in guesses):
+        return []
+    text = f"{file}: joint_names is marked GUESS: which joint of the logs is which must be looked up, not guessed"
+    return [Note("guessed_joint_names", "warning", text)]
+
+
 def _listing(names: Sequence[str]) -> str:
     return " and ".join([", ".join(names[:-1]), names[-1]] if len(names) > 1 else names)
 

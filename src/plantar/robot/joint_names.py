@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Hashable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 WORD = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+|[0-9]+")
@@ -21,6 +21,10 @@ SILENT = {
     "state",
     "q",
 }  # say nothing of which
+SIDES = re.compile(r"left|right")
+_NOTHING = "|".join(sorted(word for word in SILENT if len(word) > 1))
+AT_ENDS = re.compile(rf"^({_NOTHING})|({_NOTHING})$")
+NUMBERED = re.compile(r"(\D*?)0*([0-9]+)(\D*)")
 MOST_SHOWN = 3  # pairs of names in a message
 
 
@@ -43,7 +47,8 @@ class JointNames:
 
     def __str__(self) -> str:
         """The robot file's line, long lists cut."""
-        pairs = [f"{name}: {other}" for name, other in self.renamed.items()]
+        quoted = {name: f"'{other}'" if other.isdigit() else other for name, other in self.renamed.items()}
+        pairs = [f"{name}: {other}" for name, other in quoted.items()]
         more = ["..."] if len(pairs) > MOST_SHOWN else []
         listed = f"{{{', '.join(pairs[:MOST_SHOWN] + more)}}}"
         parts = {"prefix": self.prefix, "suffix": self.suffix, "renamed": listed if pairs else ""}
@@ -53,11 +58,17 @@ class JointNames:
 def propose_names(joints: Collection[str], recorded: Collection[str]) -> JointNames | None:
     """The naming that gives most of the `joints` that a log lacks under their own name one of its `recorded` names.
 
-    None where no naming gives half of the fewer of both.
+    Tried are a prefix and suffix, other letters, another order of words, and words or marks that say nothing. None
+    where no naming gives half of the fewer of both.
     """
-    missing = [name for name in joints if name not in set(recorded)]
-    free = [name for name in recorded if name not in set(joints)]
-    proposals = (_affixes(missing, free), _shorter(missing, free), _bywords_of(missing, free))
+    missing, free = _apart(joints, recorded)
+    proposals = (
+        _affixes(missing, free),
+        _shorter(missing, free),
+        _alike(missing, free, words_of),
+        _alike(missing, free, _distinct_words(missing, free)),
+        _alike(missing, free, _letters_of(free)),
+    )
     reached = [sum(one.in_log(name) in set(free) for name in missing) for one in proposals]
     best = max(range(len(proposals)), key=reached.__getitem__)
     enough = bool(free and missing) and 2 * reached[best] >= min(len(free), len(missing))
@@ -82,16 +93,61 @@ def _shorter(missing: Sequence[str], free: Sequence[str]) -> JointNames:
     return JointNames(renamed={name: whole[name] for name in missing if name in whole})
 
 
-def _bywords_of(missing: Sequence[str], free: Sequence[str]) -> JointNames:
-    """Names of the same words in any letters and any order, where only one on each side has them."""
-    ours, theirs = (Counter(words_of(name) for name in names) for names in (missing, free))
-    by_words = {words_of(other): other for other in free}
-    renamed = {
-        name: by_words[words]
-        for name in missing
-        if (words := words_of(name)) and ours[words] == theirs[words] == 1
-    }
+def propose_order(joints: Sequence[str], recorded: Collection[str]) -> JointNames | None:
+    """The naming by the URDF's order of joints, where a log only numbers as many as it has; None for other logs.
+
+    Nothing says that the log has the URDF's order: whoever takes this must say so.
+    """
+    missing, free = _apart(joints, recorded)
+    parts = [NUMBERED.fullmatch(name) for name in free]
+    if not free or len(free) != len(joints) or len(missing) != len(joints):
+        return None
+    if len({part and (part[1], part[3]) for part in parts}) != 1 or parts[0] is None:
+        return None
+    by_number = {int(part[2]): name for part, name in zip(parts, free, strict=True) if part}
+    first = min(by_number)
+    if first > 1 or sorted(by_number) != list(range(first, first + len(joints))):
+        return None
+    return JointNames(renamed={joint: by_number[first + place] for place, joint in enumerate(joints)})
+
+
+def _apart(joints: Collection[str], recorded: Collection[str]) -> tuple[list[str], list[str]]:
+    """The URDF's names that a log lacks, and the log's that the URDF lacks."""
+    missing = [name for name in joints if name not in set(recorded)]
+    return missing, [name for name in recorded if name not in set(joints)]
+
+
+def _alike(missing: Sequence[str], free: Sequence[str], key: Callable[[str], Hashable]) -> JointNames:
+    """Names with the same key, where only one on each side has it."""
+    ours, theirs = (Counter(map(key, names)) for names in (missing, free))
+    by_key = {key(other): other for other in free}
+    renamed = {name: by_key[own] for name in missing if (own := key(name)) and ours[own] == theirs[own] == 1}
     return JointNames(renamed=renamed)
+
+
+def _distinct_words(ours: Sequence[str], theirs: Sequence[str]) -> Callable[[str], Hashable]:
+    """A key of the words of a name without those that every name of its side has, such as the robot's."""
+    shared = {
+        name: set.intersection(*(set(words_of(other)) for other in names)) if len(names) > 1 else set[str]()
+        for names in (ours, theirs)
+        for name in names
+    }
+    return lambda name: tuple(word for word in words_of(name) if word not in shared[name])
+
+
+def _letters_of(names: Sequence[str]) -> Callable[[str], str]:
+    """A key of the letters and digits of a name, left and right by their initials, without what says nothing; names of
+    the log also without the text that all of them begin with, if a mark such as a slash ends it."""
+    ends = min(names, default=""), max(names, default="")  # what these two begin with, all do
+    same = next((k for k, (a, b) in enumerate(zip(*ends, strict=False)) if a != b), 0)
+    prefix = re.sub(r"[A-Za-z0-9]*$", "", ends[0][:same])
+
+    def letters(name: str) -> str:
+        own = name.removeprefix(prefix) if name in set(names) else name
+        plain = re.sub(r"[^a-z0-9]", "", own.lower())
+        return SIDES.sub(lambda side: side[0][0], AT_ENDS.sub("", plain))
+
+    return letters
 
 
 def words_of(name: str) -> tuple[str, ...]:

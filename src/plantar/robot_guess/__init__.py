@@ -22,7 +22,7 @@ from plantar.exporters.urdf.tree import UrdfTree
 from plantar.files import read_bounded, write_text
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers.urdf_names import with_urdf_names
-from plantar.robot.joint_names import JointNames, propose_names
+from plantar.robot.joint_names import JointNames, propose_names, propose_order
 from plantar.robot.model import RobotModel, load_robot, parse_urdf
 from plantar.robot_guess.biped import find_biped
 from plantar.robot_guess.bush import bush_shift
@@ -97,10 +97,14 @@ def _with_names(
 ) -> tuple[Draft, list[MotionLog]]:
     """The draft with the logs' names of joints where they are not the URDF's, and the logs under the URDF's names."""
     recorded = set().union(*(recorded_joints(log) for log in logs)) if logs else set()
-    names = propose_names(joints, sorted(recorded)) if recorded else None
+    names = propose_names(joints, sorted(recorded))
+    numbered = names is None
+    names = names or propose_order(joints, sorted(recorded))
     if names is None:
         return draft, list(logs)
-    return replace(draft, names=names), [with_urdf_names(log, names, joints) for log in logs]
+    return replace(draft, names=names, numbered=numbered), [
+        with_urdf_names(log, names, joints) for log in logs
+    ]
 
 
 def _refuse_other_robot(draft: Draft, urdf: Path, logs: Sequence[MotionLog]) -> None:

@@ -27,7 +27,8 @@ class BushHeight:
 
 @dataclass(frozen=True)
 class Draft:
-    """All that goes into a first robot file. `imu`: its name and mount; by side: sensors' names, seats, bushes."""
+    """All that goes into a first robot file. `imu`: its name and mount; by side: sensors' names, seats, bushes;
+    `numbered`: the logs only number the joints, and `names` takes them in the URDF's order."""
 
     name: str
     source: str
@@ -39,6 +40,7 @@ class Draft:
     names: JointNames
     topics: Mapping[str, str]
     remarks: Sequence[Remark] = ()
+    numbered: bool = False
 
     def text(self, urdf: str) -> str:
         """The file, with `urdf` as its path."""
@@ -54,6 +56,10 @@ class Draft:
         for sole in self.soles:
             lines += self._foot(sole)
         if entry := self.names.entry():
+            if self.numbered:
+                lines.append(
+                    "# GUESS: the logs only number the joints; taken in the URDF's order, look it up"
+                )
             lines += yaml.safe_dump({"joint_names": entry}, sort_keys=False, width=10_000).splitlines()
         if self.topics:
             lines.append("topics:")

@@ -29,8 +29,17 @@ def _drawn(model: pin.Model, random: np.random.Generator, mass: float, centre: f
     changes = []
     for inertia in list(model.inertias)[1:]:
         share, moved = 1 + mass * random.standard_normal(), centre * random.standard_normal(3)
-        other = pin.Inertia(
-            max(share, 0.0) * inertia.mass, inertia.lever + moved, max(share, 0.0) * inertia.inertia
-        )
-        changes.append(other.toDynamicParameters() - inertia.toDynamicParameters())
+        share = max(share, 0.0)
+        heavier = _parameters(share * inertia.mass, inertia.lever + moved, share * inertia.inertia)
+        changes.append(heavier - inertia.toDynamicParameters())
     return np.concatenate(changes)
+
+
+def _parameters(mass: float, centre: Array, inertia: Array) -> Array:
+    """The ten parameters of a body with its rotational inertia (3, 3) about the centre of mass, in Pinocchio's order.
+
+    Pinocchio itself refuses inertias that rounding made a hair negative, as of links with next to no mass.
+    """
+    about_origin = inertia + mass * (centre @ centre * np.eye(3) - np.outer(centre, centre))
+    rows, columns = [0, 0, 1, 0, 1, 2], [0, 1, 1, 2, 2, 2]
+    return np.concatenate([[mass], mass * centre, about_origin[rows, columns]])

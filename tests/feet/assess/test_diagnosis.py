@@ -7,10 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from plantar.feet.assess.diagnosis import REMEDY, advised, diagnose_axis
+from plantar.feet.assess.data_faults import ADVICE
+from plantar.feet.assess.diagnosis import REMEDY, advised, diagnose_axis, mend_first
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.systematic import Cause
 from plantar.models import KelvinVoigt
+from plantar.notes import Note
 from plantar.results.feet import Parameter
 
 
@@ -57,6 +59,16 @@ def test_against_a_delay_another_motion_is_advised_but_not_against_noise() -> No
     noise = [replace(row, limit="noise", advice=REMEDY["noise"]) for row in limits]
     assert advised(rows(), noise) == rows()
     assert advised(rows("usable"), limits) == rows("usable")
+
+
+def test_beside_a_fault_of_the_data_nothing_else_is_advised() -> None:
+    fault = Note("sign", "warning", "sway: torque.y is reversed")
+    usable, weak = replace(rows("usable")[0], advice=None), rows("weak")[1]
+    first, second = mend_first([usable, weak], [fault])
+    assert first == usable
+    assert second.reason == weak.reason
+    assert second.advice == f"{ADVICE}: {fault.text}"
+    assert mend_first([weak], []) == [weak]
 
 
 def test_a_number_without_a_width_is_not_diagnosed() -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from biped import record, sines, sway
 from biped_robot import FEET, make_robot, robot_entry
-from plantar.feet.assess.verdicts import Evidence, contradiction, judge
+from plantar.feet.assess.verdicts import SIGNS, Evidence, contradiction, judge
 from plantar.feet.identify import identify_feet
 from plantar.feet.settings import FeetSettings
 from plantar.logs.readers import open_log
@@ -41,7 +41,10 @@ def test_verdicts(
     assert found == verdict
     assert part in reason
     assert (advice is None) == (verdict == "usable")
-    assert advice is None or ("left foot" in advice and "forward and backward" in advice)
+    if part == "negative":
+        assert advice == SIGNS
+    else:
+        assert advice is None or ("left foot" in advice and "forward and backward" in advice)
 
 
 def test_damping_asks_for_faster_motion() -> None:

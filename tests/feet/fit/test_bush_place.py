@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from biped import SLIPPING, TRUTH, record, sines, sway
-from biped_robot import FEET
-from feet_trials import AXES, LINEAR, codes, noisy
+from biped_robot import FEET, Frame, Mounting
+from feet_trials import AXES, LINEAR, PUNCTUAL, codes, noisy
 from plantar.feet.fit.bush_place import PlaceSpread
 from plantar.feet.identify import identify_feet
 from plantar.logs.motion_log import MotionLog
@@ -77,6 +77,17 @@ def test_a_turned_force_sensor_is_found(measured: RobotModel, recorded: list[Mot
     for model in found.models:
         assert abs(model.turned) == pytest.approx(np.radians(5), abs=0.02)
     assert worst(found) < 0.02
+
+
+def test_an_imu_turned_in_its_mount_shows_where_hips_move(measured: RobotModel) -> None:
+    turn = Mounting(imu=Frame((0.0, 0.0, 0.0), (0.0, 0.0, 0.02)))
+    logs = [noisy(record(sway(f"sway_{seed}", seed, duration=40.0), turn), seed) for seed in (3, 4)]
+    found = identify_feet(measured, logs, settings=LINEAR)
+    for model in found.models:
+        assert abs(model.imu_turned[2]) == pytest.approx(0.02, abs=0.003)
+    assert worst(found) < 0.01
+    sure = replace(measured, uncertainty=Uncertainty(imu_mount=0.0))
+    assert not any(any(model.imu_turned) for model in identify_feet(sure, logs, settings=LINEAR).models)
 
 
 def test_a_centre_in_its_place_is_left_there(measured: RobotModel, recorded: list[MotionLog]) -> None:
@@ -152,7 +163,7 @@ def test_a_turned_imu_shows_in_a_memory(measured: RobotModel) -> None:
         logs.append(imu_turned(noisy(record(swaying), seed), 0.03))
     found = identify_feet(measured, logs, settings=RUBBER)
     for model in found.models:
-        assert abs(model.imu_turned) == pytest.approx(0.03, abs=0.01)
+        assert abs(model.imu_turned[2]) == pytest.approx(0.03, abs=0.01)
     for foot in FEET:
         for axis in AXES:
             assert found.parameter(foot, axis, "slip_angle").value == pytest.approx(0.006, rel=0.05)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.bush_place import BUSH_TURNED, FAR
+from plantar.feet.fit.place_notes import BUSH_TURNED, FAR
 from plantar.feet.recording import Recording
 from plantar.notes import Note
 from plantar.results.feet import Parameter

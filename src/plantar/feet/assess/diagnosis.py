@@ -7,8 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from plantar.feet.assess.data_faults import ADVICE
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.systematic import Cause
+from plantar.notes import Note
 from plantar.results.feet import Diagnosis, Parameter
 
 ZEROS_OF_STANCES = "zeros of stances"
@@ -64,6 +66,21 @@ def diagnose_axis(
             Diagnosis(row.foot, row.axis, row.name, limit, shares, percent, text, advice=REMEDY[limit])
         )
     return found
+
+
+def mend_first(rows: Sequence[Parameter], faults: Sequence[Note]) -> list[Parameter]:
+    """The rows, those that are not usable with no other advice than to mend the data's first fault.
+
+    What else they lack, more motion or another model, may be nothing but that fault.
+    """
+    if not faults:
+        return list(rows)
+    return [
+        row
+        if row.verdict == "usable" or row.advice == ADVICE
+        else replace(row, advice=f"{ADVICE}: {faults[0].text}")
+        for row in rows
+    ]
 
 
 def advised(rows: Sequence[Parameter], diagnosis: Sequence[Diagnosis]) -> list[Parameter]:

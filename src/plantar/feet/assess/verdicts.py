@@ -19,6 +19,7 @@ HOLDS, MISSED = (
     0.3,
     0.5,
 )  # mean error over that of a constant: of the liveliest motion, of one that contradicts it
+SIGNS = "check sign and rpy of this foot's wrench, rpy of the IMU, and the signs of the joints: no motion helps here"
 LEANING = 0.05  # of the time: shorter leans hardly move what comes behind them
 LOADED = 0.1  # of the liveliest motion's torque: others hardly load the axis
 
@@ -57,7 +58,7 @@ def judge(
         return (
             "unidentifiable",
             f"{term} is negative: something other than the bush produces this torque",
-            advice,
+            SIGNS,
         )
     if interval[0] <= 0:
         return "unidentifiable", f"the 95 % interval reaches zero; the motion gave {motion}", advice

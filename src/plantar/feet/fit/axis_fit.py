@@ -13,7 +13,8 @@ from plantar.estimation.stance_problem import StanceProblem
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.bush_place import PlaceSpread, about_its_place
 from plantar.feet.fit.corrections import about_true_zero, over_stances, unattenuated
-from plantar.feet.fit.regression_data import blocks_of, data_set_of, load_torque
+from plantar.feet.fit.load_torque import load_torque
+from plantar.feet.fit.regression_data import blocks_of, data_set_of
 from plantar.feet.recording import Recording
 from plantar.feet.settings import AUTOMATIC, FeetSettings
 from plantar.model_selection.data_sets import DataSet
@@ -88,14 +89,14 @@ def _fitted(
     placed = _of_linear(foot, axis, linear, None, "")
     if place is not None and not steps:
         placed = _where_a_spring_turns(placed, fitted, place, shared)
-        data_sets = _without_place(data_sets, fitted, placed)
+        data_sets = _about(fitted, placed)
     cutoff = fitted[0].cutoff
 
     def found(fit: ModelFit, choice: ModelChoice | None, reason: str) -> AxisFit:
         spring = _of_linear(foot, axis, linear, choice, reason)
         if steps:
             return _about_its_centre(spring, fit, fitted, share)
-        begun = replace(spring, moment_arms=placed.moment_arms, turned=placed.turned)
+        begun = _placed_as(spring, placed)
         return _with_model(begun, fit) if place is None else _with_place(begun, fit, fitted, place, shared)
 
     if asked is not None:
@@ -135,14 +136,18 @@ def _where_a_spring_turns(
     return moved if missed[1] < PLACE_EXPLAINS * missed[0] else spring
 
 
-def _without_place(
-    data_sets: Sequence[DataSet], recordings: Sequence[Recording], fit: AxisFit
-) -> list[DataSet]:
-    """The data sets without the torque that a fit found not to be the bush's."""
-    return [
-        replace(data_set, torque=data_set.torque - load_torque(each, fit))
-        for data_set, each in zip(data_sets, recordings, strict=True)
-    ]
+def _about(recordings: Sequence[Recording], fit: AxisFit) -> list[DataSet]:
+    """The data sets with the IMU's turn put right, and without the torque that a fit found not to be the bush's."""
+    found = []
+    for recording in recordings:
+        data_set = data_set_of(recording, fit.foot, fit.axis, imu_turned=fit.imu_turned)
+        found.append(replace(data_set, torque=data_set.torque - load_torque(recording, fit)))
+    return found
+
+
+def _placed_as(fit: AxisFit, other: AxisFit) -> AxisFit:
+    """A fit about the place that another one found."""
+    return replace(fit, moment_arms=other.moment_arms, turned=other.turned, imu_turned=other.imu_turned)
 
 
 def _with_place(
@@ -152,13 +157,8 @@ def _with_place(
     found = _with_model(linear, fit)
     for _ in range(CENTRE_ROUNDS):
         moved = about_its_place(found, recordings, place, shared)
-        seen = [
-            data_set_of(each, linear.foot, linear.axis, imu_turned=moved.imu_turned) for each in recordings
-        ]
-        fit = fit_again(fit, _without_place(seen, recordings, moved))
-        linear = replace(
-            linear, moment_arms=moved.moment_arms, turned=moved.turned, imu_turned=moved.imu_turned
-        )
+        fit = fit_again(fit, _about(recordings, moved))
+        linear = _placed_as(linear, moved)
         found = _with_model(linear, fit)
     return found
 

@@ -1,43 +1,47 @@
 """Where the bush's centre is, beside the robot file's place: standing motions show it, as steps do.
 
 A centre that is aside makes a torque that grows with the load, one that is higher a torque that grows with the
-horizontal force; where the force sensor or the IMU is turned about the vertical, the other axis' torque shows. All are
-columns beside the model's, with the robot file's uncertainty as a prior: logs that show the place sharply outweigh it,
-logs that do not leave it.
+horizontal force. Where the force sensor is turned about the vertical, the other axis' torque shows. Where the IMU is
+turned in its mount, the angles are off by what the joints between it and the foot make of that. All are columns beside
+the model's, with the robot file's uncertainty as a prior: logs that show the place sharply outweigh it, logs that do
+not leave it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from plantar.conventions import ROTATIONAL_AXES, Array, Axis
-from plantar.estimation import effect_of, fit_blocks
+from plantar.conventions import Array, Mask
+from plantar.estimation import Block, effect_of, fit_blocks
 from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.regression_data import beside, place_columns, tangent_blocks, turn_column
+from plantar.feet.fit.load_torque import place_columns
+from plantar.feet.fit.place_notes import place_notes
+from plantar.feet.fit.regression_data import beside, model_columns, tangent_blocks
 from plantar.feet.recording import Recording
-from plantar.notes import Note
 from plantar.robot.model import RobotModel
 
 GUESSED = 0.02  # m: what a guess without a spread of its own may be off by
-CLEAR = 3.0  # deviations of prior and data together, beyond which the robot file's place is called wrong
-FARTHEST = np.array([0.05, 0.05, 0.12])  # m, m, rad: what is still corrected without doubting all the rest
-FAR = "bush_place_far"
-BUSH_TURNED = "bush_turned"
-WORTH_SAYING = 0.005  # m: a centre that is nearer to its place is within what drawings get wrong
-TURN_WORTH_SAYING = 0.02  # rad: of a mount, likewise
+TURN_STEP = 1e-3  # rad, of the differences that stand for derivatives
+UNSEEN = 1e-4  # of the torque's rms: what one deviation of a place adds beside it is as good as nothing
 SINGULAR = 1e6  # condition of the fit beyond which the motions do not show the place
 
 
 @dataclass(frozen=True)
 class PlaceSpread:
-    """Deviation of the centre's place, `aside` and `above` [m], and of how far a sensor is `turned` in yaw [rad]."""
+    """Deviation of the centre's place, `aside` and `above` [m], and of how far force sensor or IMU are `turned` [rad]
+    about any axis."""
 
     aside: float
     above: float
     turned: float
+
+    @property
+    def deviations(self) -> Array:
+        """Of the centre's place, the force sensor's yaw, and the IMU's turn about three axes, (6,)."""
+        return np.array([self.aside, self.above, *[self.turned] * 4])
 
     @classmethod
     def of(cls, robot: RobotModel, foot: str) -> PlaceSpread:
@@ -61,36 +65,35 @@ def about_its_place(
     its stances already.
     """
     blocks = tangent_blocks(recordings, fit, drift=not shared)
-    spreads = np.array([spread.aside, spread.above, spread.turned, spread.turned])
-    if blocks[0].stances is not None or not spreads.any():
+    if blocks[0].stances is not None or not spread.deviations.any():
         return fit
-    by_name = {one.name: one for one in recordings}
-    columns = [_columns(by_name[block.label], fit) for block in blocks]
-    count = columns[0].shape[1]
-    size, spreads = blocks[0].regressor.shape[1], spreads[:count]
-    before = np.array([*fit.moment_arms, fit.turned, fit.imu_turned])[:count]
+    chosen = [one for one in recordings if one.name in {block.label for block in blocks}]
+    columns = [_columns(one, fit)[one.used(fit.foot)] for one in chosen]
+    spreads = np.where(_seen(blocks, columns, spread.deviations), spread.deviations, 0.0)
+    size, tried = blocks[0].regressor.shape[1], np.flatnonzero(spreads)
+    before = np.array([*fit.moment_arms, fit.turned, *fit.imu_turned])
     found = fit_blocks(
-        [beside(block, own) for block, own in zip(blocks, columns, strict=True)], shared_offset=shared
+        [beside(block, own[:, tried]) for block, own in zip(blocks, columns, strict=True)],
+        shared_offset=shared,
     )
-    if found.condition_number > SINGULAR:
-        arms, unsure = np.zeros(count), np.diag(spreads**2)
-    else:
-        arms, unsure = _drawn(
-            before + found.values[size:], found.covariance[size : size + count, size : size + count], spreads
-        )
+    place, unsure = np.zeros(len(spreads)), np.diag(spreads**2)
+    if found.condition_number <= SINGULAR:
+        own = slice(size, size + len(tried))
+        drawn = _drawn(before[tried] + found.values[own], found.covariance[own, own], spreads[tried])
+        place[tried], unsure[np.ix_(tried, tried)] = drawn
     follows = np.column_stack(
         [
-            effect_of(blocks, [own[:, place] for own in columns], shared_offset=shared)
-            for place in range(count)
+            effect_of(blocks, [own[:, row] for own in columns], shared_offset=shared)
+            for row in range(len(spreads))
         ]
     )
-    moved = -follows @ (arms - before)
+    moved = -follows @ (place - before)
     covariance = fit.covariance.copy()
     covariance[:size, :size] += follows @ unsure @ follows.T
     offsets = {
         block.label: fit.offsets[block.label]
         - float(np.mean(block.regressor, axis=0) @ moved)
-        - float(np.mean(own, axis=0) @ (arms - before))
+        - float(np.mean(own, axis=0) @ (place - before))
         for block, own in zip(blocks, columns, strict=True)
     }
     return replace(
@@ -99,71 +102,34 @@ def about_its_place(
         shape=fit.shape + moved[len(fit.values) :] if size == len(fit.numbers) else fit.shape,
         covariance=covariance,
         offsets=fit.offsets if shared else {**fit.offsets, **offsets},
-        moment_arms=(float(arms[0]), float(arms[1])),
-        turned=float(arms[2]),
-        imu_turned=float(arms[3]) if count > 3 else 0.0,
-        notes=(*fit.notes, *_said(fit, arms[:3], np.sqrt(np.diag(unsure))[:3], spread)),
+        moment_arms=(float(place[0]), float(place[1])),
+        turned=float(place[2]),
+        imu_turned=(float(place[3]), float(place[4]), float(place[5])),
+        notes=(*fit.notes, *place_notes(fit, place, np.sqrt(np.diag(unsure)), spread.deviations)),
     )
-
-
-def turned_bush(fits: Mapping[Axis, AxisFit]) -> Note | None:
-    """A warning where the other axis' torque shows in both axes with one sign: the bush's own axes are elsewhere.
-
-    A turned sensor gives each axis a share of the other's torque with opposite signs, a turned bush, of two
-    stiffnesses, with the same one.
-    """
-    if not set(ROTATIONAL_AXES) <= set(fits):
-        return None
-    pitch, roll = fits["pitch"], fits["roll"]
-    of_sensor, of_bush = (pitch.turned - roll.turned) / 2, (pitch.turned + roll.turned) / 2
-    if abs(of_bush) < max(TURN_WORTH_SAYING, abs(of_sensor)):
-        return None
-    text = (
-        f"{pitch.foot}: pitch's torque shows in roll and roll's in pitch as if the bush were turned about the "
-        f"vertical: check feet.{pitch.foot}.bush.rpy"
-    )
-    return Note(BUSH_TURNED, "warning", text)
 
 
 def _columns(recording: Recording, fit: AxisFit) -> Array:
-    """Columns at the used samples, (n, 3); beside a memory (n, 4): there a turned IMU is unlike a turned sensor."""
-    columns = place_columns(recording, fit.foot, fit.axis)
-    if fit.model.remembers:
-        columns = np.column_stack([columns, turn_column(recording, fit)])
-    return np.asarray(columns[recording.used(fit.foot)])
+    """Torque (N, 6) for each metre or radian by which the centre, the force sensor and the IMU are elsewhere."""
+
+    def turned(angle: float, axis: Array) -> Array:
+        x, y, z = np.array(fit.imu_turned) + angle * axis
+        return model_columns(recording, fit.foot, fit.axis, replace(fit, imu_turned=(x, y, z))) @ fit.values
+
+    turns = [(turned(TURN_STEP, axis) - turned(-TURN_STEP, axis)) / (2 * TURN_STEP) for axis in np.eye(3)]
+    return np.column_stack([place_columns(recording, fit.foot, fit.axis), *turns])
+
+
+def _seen(blocks: Sequence[Block], columns: Sequence[Array], spreads: Array) -> Mask:
+    """Which columns, by one deviation each, add anything to the torque that no offset takes up, (k,)."""
+    moved = [own - own.mean(axis=0) for own in columns]
+    torque = np.concatenate([block.response - block.response.mean() for block in blocks])
+    added = spreads * np.sqrt(np.mean(np.concatenate(moved) ** 2, axis=0))
+    return np.asarray(added > UNSEEN * np.sqrt(np.mean(torque**2)))
 
 
 def _drawn(found: Array, covariance: Array, spreads: Array) -> tuple[Array, Array]:
-    """Coefficients (m,) drawn to zero by their prior, and their covariance (m, m)."""
+    """Coefficients (k,) drawn to zero by their prior, and their covariance (k, k)."""
     prior = np.diag(spreads**2)
     keeps = prior @ np.linalg.pinv(prior + covariance)
     return keeps @ found, keeps @ covariance
-
-
-def _said(fit: AxisFit, place: Array, std: Array, spread: PlaceSpread) -> list[Note]:
-    """A warning where the centre is clearly elsewhere, or a sensor turned."""
-    limits = np.maximum(
-        CLEAR * np.hypot([spread.aside, spread.above, spread.turned], std),
-        [WORTH_SAYING, WORTH_SAYING, TURN_WORTH_SAYING],
-    )
-    aside, above, turned = np.abs(place) > limits
-    (x, z, yaw), (of_x, of_z, of_yaw) = 1e3 * place, 1.96e3 * std
-    told, key = [], f"feet.{fit.foot}"
-    if aside:
-        where = "forward or backward" if fit.axis == "pitch" else "to the side"
-        told.append(f"about a point {abs(x):.0f} ± {of_x:.0f} mm {where} of {key}.bush and {key}.wrench")
-    if above:
-        told.append(
-            f"about a point {abs(z):.0f} ± {of_z:.0f} mm {'above' if z > 0 else 'below'} {key}.bush and {key}.wrench"
-        )
-    if turned:
-        degrees = np.degrees([1e-3 * abs(yaw), 1e-3 * of_yaw])
-        told.append(
-            f"about an axis {degrees[0]:.1f} ± {degrees[1]:.1f} deg beside {key}.wrench.rpy or imu.rpy"
-        )
-    if not told:
-        return []
-    text = f"{fit.foot} {fit.axis}: the torques turn {'; '.join(told)} (95 %): corrected"
-    if (np.abs(place) > FARTHEST).any():
-        return [Note(FAR, "warning", f"{text}, but that is far for an oversight; check the robot file")]
-    return [Note("bush_place", "warning", f"{text}; check the robot file")]

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from plantar.conventions import ROTATIONAL_AXES, Array, Mask
 from plantar.feet.fit.axis import FittedModel
-from plantar.feet.fit.regression_data import load_torque, motion_of
+from plantar.feet.fit.load_torque import load_torque
+from plantar.feet.fit.regression_data import motion_of
 from plantar.feet.recording import Recording
 from plantar.model_selection.initial_state import initial_states_of
 

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from plantar.conventions import ROTATIONAL_AXES, Array, Mask
 from plantar.feet.fit.axis import FittedModel
 from plantar.feet.fit.initial_state import unseen_initial_states
-from plantar.feet.fit.regression_data import load_torque, model_columns
+from plantar.feet.fit.load_torque import load_torque
+from plantar.feet.fit.regression_data import model_columns
 from plantar.feet.recording import Recording
 from plantar.results.scores import first_second
 

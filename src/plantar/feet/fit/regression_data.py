@@ -11,17 +11,19 @@ from plantar.conventions import ROTATIONAL_AXES, Array, Axis
 from plantar.estimation import Block
 from plantar.estimation.blocks import StanceRows
 from plantar.feet.fit.axis import AxisFit, FittedModel
-from plantar.feet.recording import SHORTEST_STANCE_RUN, Recording, within_stances
+from plantar.feet.fit.load_torque import across_force, load_of, load_torque, moment_columns
+from plantar.feet.recording import SHORTEST_STANCE_RUN, Recording
 from plantar.model_selection.data_sets import DataSet, StepColumns
 from plantar.models import BushMotion, KelvinVoigt
-from plantar.signals.filters import SHORTEST_RUN, low_pass
+from plantar.signals.filters import SHORTEST_RUN, differentiate, low_pass
 
 PATH_BAND = 4.0  # times the fit's cutoff, of the path that a memory follows through short stances
 # m, before any data, of the centre's place: aside anything (the torque of the load is its own), in height some
 # millimetres of the robot file's and of the slide under load.
 MOMENT_SPREAD = np.array([np.inf, 0.006])
+Turn = tuple[float, float, float]
+UNTURNED: Turn = (0.0, 0.0, 0.0)
 SHAPE_STEP = 0.01  # share of a nonlinear parameter, of the differences that stand for derivatives
-TURN_STEP = 0.005  # rad, likewise of a turned IMU
 FEWEST_SAMPLES = 50  # of one recording, for it to take part in a fit
 
 
@@ -126,62 +128,11 @@ def _stance_rows(recording: Recording, foot: str) -> StanceRows:
     return StanceRows(stances.number[used], stances.weight[used])
 
 
-def load_of(recording: Recording, foot: str) -> Array:
-    """The vertical force through the fit's filter, (N,) [N], 0 where it is not known: where nothing is used."""
-    return _filtered_as_torque(recording, foot, recording.bushes[foot].force_z)
-
-
-def _filtered_as_torque(recording: Recording, foot: str, values: Array) -> Array:
-    """Values (N,) through the filter that the torque went through, 0 where they are not known."""
-    smooth = within_stances(values[:, None], recording.period, recording.cutoff, recording.stances[foot])
-    return np.nan_to_num(smooth[:, 0])
-
-
-def moment_columns(recording: Recording, foot: str, axis: Axis) -> Array:
-    """Torque (N, 2) for each metre by which the bush's centre is beside and above its place in the robot file.
-
-    A centre that is dz higher takes dz·F_x off the pitch torque and adds dz·F_y to the roll torque; the compressed z
-    slide is such a height. One that is aside adds a torque as large as the load.
-    """
-    column = ROTATIONAL_AXES.index(axis)
-    across = _across(recording, foot, column)
-    return np.column_stack([load_of(recording, foot), _filtered_as_torque(recording, foot, across)])
-
-
-def place_columns(recording: Recording, foot: str, axis: Axis) -> Array:
-    """`moment_columns`, and the other axis' torque, which shows in this one where a sensor is turned, (N, 3)."""
-    other = recording.bushes[foot].torque[:, 1 - ROTATIONAL_AXES.index(axis)]
-    return np.column_stack([moment_columns(recording, foot, axis), np.nan_to_num(other)])
-
-
-def turn_column(recording: Recording, fit: AxisFit) -> Array:
-    """Torque (N, 1) for each radian by which the IMU is turned further about the vertical than the fit has it."""
-    ends = [
-        model_columns(recording, fit.foot, fit.axis, replace(fit, imu_turned=fit.imu_turned + turn))
-        @ fit.values
-        for turn in (TURN_STEP, -TURN_STEP)
-    ]
-    return np.asarray((ends[0] - ends[1])[:, None] / (2 * TURN_STEP))
-
-
-def load_torque(recording: Recording, fitted: FittedModel) -> Array:
-    """The torque (N,) that is not the bush's: of the load on a centre beside its place, of a sensor that is turned."""
-    place = np.array([*fitted.moment_arms, fitted.turned])
-    if not place.any():
-        return np.zeros(len(recording.time))
-    return np.asarray(place_columns(recording, fitted.foot, fitted.axis) @ place)
-
-
-def _across(recording: Recording, foot: str, column: int) -> Array:
-    """The horizontal force that a higher centre turns into torque, (N,) [N], unfiltered."""
-    return np.asarray((1.0, -1.0)[column] * recording.bushes[foot].wrench[:, column])
-
-
 def model_columns(
     recording: Recording, foot: str, axis: Axis, fit: FittedModel | None, initial_states: Array | None = None
 ) -> Array:
     """Regressor (N, k) of a fit's model along a recording, Kelvin-Voigt's without one; NaN in the air."""
-    imu_turned = 0.0 if fit is None else fit.imu_turned
+    imu_turned = UNTURNED if fit is None else fit.imu_turned
     motion = motion_of(recording, foot, axis, imu_turned)
     linear = np.column_stack([motion.deflection, motion.rate])
     if fit is None or isinstance(fit.model, KelvinVoigt):
@@ -202,23 +153,25 @@ def _shortest_run(recording: Recording, foot: str) -> int:
     return SHORTEST_RUN if recording.stances[foot] is None else SHORTEST_STANCE_RUN
 
 
-def motion_of(recording: Recording, foot: str, axis: Axis, imu_turned: float = 0.0) -> BushMotion:
+def motion_of(recording: Recording, foot: str, axis: Axis, imu_turned: Turn = UNTURNED) -> BushMotion:
     """Deflection and rate of one axis, NaN where the foot does not stand: a bush in the air forgets.
 
-    An IMU that is turned about the vertical by `imu_turned` [rad] shows a share of the other axis, which is taken off.
+    imu_turned: about each of the IMU's axes, by how much it is turned beside the robot file's mount [rad]: angles
+    and rates are put right.
     """
     column, bush = ROTATIONAL_AXES.index(axis), recording.bushes[foot]
     stances = recording.stances[foot]
     away = ~recording.contacts[foot].loaded if stances is None else stances.number < 0
-    share = (-1.0, 1.0)[column] * imu_turned
-    deflection, rate = (
-        angles[:, column] + share * angles[:, 1 - column] for angles in (bush.deflection, bush.rate)
-    )
+    deflection, rate = bush.deflection[:, column].copy(), bush.rate[:, column].copy()
+    if any(imu_turned):
+        moved = recording.imu_turns[foot][:, column] @ np.array(imu_turned)
+        deflection += moved
+        rate += np.nan_to_num(differentiate(moved, recording.period))
     deflection[away] = rate[away] = np.nan
     return BushMotion(deflection, rate, recording.period)
 
 
-def path_of(recording: Recording, foot: str, axis: Axis, imu_turned: float = 0.0) -> BushMotion:
+def path_of(recording: Recording, foot: str, axis: Axis, imu_turned: Turn = UNTURNED) -> BushMotion:
     """The motion that a model's memory follows: of a foot that steps with a wider band, since it turns quickly."""
     slow, stances = motion_of(recording, foot, axis, imu_turned), recording.stances[foot]
     if stances is None:
@@ -237,7 +190,7 @@ def data_set_of(
     axis: Axis,
     own_share: float = 0.0,
     above: float = 0.0,
-    imu_turned: float = 0.0,
+    imu_turned: Turn = UNTURNED,
 ) -> DataSet:
     """One recording of one axis, as the models take it.
 
@@ -249,5 +202,5 @@ def data_set_of(
     if stances is None:
         return DataSet(recording.name, motion_of(recording, foot, axis, imu_turned), torque, used)
     steps = StepColumns(stances.number, load_of(recording, foot)[:, None], own_share)
-    measured = recording.raw[foot].torque[:, column] - above * _across(recording, foot, column)
+    measured = recording.raw[foot].torque[:, column] - above * across_force(recording, foot, column)
     return DataSet(recording.name, path_of(recording, foot, axis), measured, used, steps)

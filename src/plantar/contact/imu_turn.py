@@ -1,0 +1,45 @@
+"""What an IMU that is turned in its mount does to the bushes' angles.
+
+While nothing between IMU and ankle moves, a turned mount is a constant angle, which the offset takes up. Where hips and
+waist move, it is not: of an IMU turned by ε the angles are off by ε as the ankle sees it then.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from plantar.contact.deflection import foot_motion, foot_path
+from plantar.conventions import Array
+from plantar.robot.kinematics import KinematicTree
+from plantar.robot.model import RobotModel
+
+STEP = 1e-3  # rad: angles of a mount act as their first order up to some degrees
+
+
+def imu_turn_effects(robot: RobotModel, positions: Array, orientation: Array) -> dict[str, Array]:
+    """Change of each foot's pitch and roll with a turn of the IMU about its own x, y and z, (N, 2, 3) [rad/rad].
+
+    positions: (N, n_joints) [rad or m]; orientation: w x y z, IMU to world, (N, 4). None of a robot without IMU.
+    """
+    if robot.imu is None:
+        return {}
+    tree, imu = KinematicTree.from_model(robot.model), robot.frame(robot.imu.placement)
+    still = np.zeros_like(positions), np.zeros((len(orientation), 3))
+    found = {}
+    for name, foot in robot.feet.items():
+        bush = robot.frame(foot.bush)
+        path = foot_path(tree, imu, bush, bush[1].inverse() * robot.frame(foot.sole.placement)[1])
+        as_read = foot_motion(path, positions, still[0], orientation, still[1]).deflection
+        turned = [
+            foot_motion(path, positions, still[0], _turned(orientation, axis), still[1]).deflection
+            for axis in np.eye(3)
+        ]
+        found[name] = np.stack([(one - as_read) / STEP for one in turned], axis=2)
+    return found
+
+
+def _turned(orientation: Array, axis: Array) -> Array:
+    """Orientations (N, 4) of an IMU turned by STEP about its own `axis` (3,)."""
+    w, vector = orientation[:, :1], orientation[:, 1:]
+    half = STEP / 2 * axis
+    return np.hstack([w - vector @ half[:, None], vector + w * half + np.cross(vector, half)])

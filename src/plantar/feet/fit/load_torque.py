@@ -1,0 +1,50 @@
+"""Torque about a bush that is not the bush's: of the load on a centre beside its place, of a turned force sensor."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from plantar.conventions import ROTATIONAL_AXES, Array, Axis
+from plantar.feet.fit.axis import FittedModel
+from plantar.feet.recording import Recording, within_stances
+
+
+def load_of(recording: Recording, foot: str) -> Array:
+    """The vertical force through the fit's filter, (N,) [N], 0 where it is not known: where nothing is used."""
+    return _filtered_as_torque(recording, foot, recording.bushes[foot].force_z)
+
+
+def _filtered_as_torque(recording: Recording, foot: str, values: Array) -> Array:
+    """Values (N,) through the filter that the torque went through, 0 where they are not known."""
+    smooth = within_stances(values[:, None], recording.period, recording.cutoff, recording.stances[foot])
+    return np.nan_to_num(smooth[:, 0])
+
+
+def moment_columns(recording: Recording, foot: str, axis: Axis) -> Array:
+    """Torque (N, 2) for each metre by which the bush's centre is beside and above its place in the robot file.
+
+    A centre that is dz higher takes dz·F_x off the pitch torque and adds dz·F_y to the roll torque; the compressed z
+    slide is such a height. One that is aside adds a torque as large as the load.
+    """
+    column = ROTATIONAL_AXES.index(axis)
+    across = across_force(recording, foot, column)
+    return np.column_stack([load_of(recording, foot), _filtered_as_torque(recording, foot, across)])
+
+
+def place_columns(recording: Recording, foot: str, axis: Axis) -> Array:
+    """`moment_columns`, and the other axis' torque, which shows in this one where a sensor is turned, (N, 3)."""
+    other = recording.bushes[foot].torque[:, 1 - ROTATIONAL_AXES.index(axis)]
+    return np.column_stack([moment_columns(recording, foot, axis), np.nan_to_num(other)])
+
+
+def load_torque(recording: Recording, fitted: FittedModel) -> Array:
+    """The torque (N,) that is not the bush's: of the load on a centre beside its place, of a sensor that is turned."""
+    place = np.array([*fitted.moment_arms, fitted.turned])
+    if not place.any():
+        return np.zeros(len(recording.time))
+    return np.asarray(place_columns(recording, fitted.foot, fitted.axis) @ place)
+
+
+def across_force(recording: Recording, foot: str, column: int) -> Array:
+    """The horizontal force that a higher centre turns into torque, (N,) [N], unfiltered."""
+    return np.asarray((1.0, -1.0)[column] * recording.bushes[foot].wrench[:, column])

@@ -1,0 +1,73 @@
+"""What is said of a bush, a force sensor or an IMU that is not where, or not as, the robot file says."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from plantar.conventions import ROTATIONAL_AXES, Array, Axis
+from plantar.feet.fit.axis import AxisFit
+from plantar.notes import Note
+
+CLEAR = 3.0  # deviations of prior and data together, beyond which the robot file's place is called wrong
+WORTH_SAYING = 0.005  # m: a centre that is nearer to its place is within what drawings get wrong
+TURN_WORTH_SAYING = 0.02  # rad: of a mount, likewise
+FARTHEST = np.array(
+    [0.05, 0.05, 0.12, 0.12, 0.12, 0.12]
+)  # m, m, rad: corrected without doubting all the rest
+FAR = "bush_place_far"
+BUSH_TURNED = "bush_turned"
+
+
+def place_notes(fit: AxisFit, place: Array, std: Array, prior: Array) -> list[Note]:
+    """A warning where the centre is clearly elsewhere, or a sensor turned; none else.
+
+    place, std, prior: (6,), of the centre aside and above [m], of the force sensor about the vertical and of the IMU
+    about its x, y and z [rad].
+    """
+    least = np.array([WORTH_SAYING] * 2 + [TURN_WORTH_SAYING] * 4)
+    aside, above, turned, *imu = np.abs(place) > np.maximum(CLEAR * np.hypot(prior, std), least)
+    (x, z), (of_x, of_z) = 1e3 * place[:2], 1.96e3 * std[:2]
+    degrees, of = np.degrees(np.abs(place)), np.degrees(1.96 * std)
+    told, key = [], f"feet.{fit.foot}"
+    if aside:
+        where = "forward or backward" if fit.axis == "pitch" else "to the side"
+        told.append(f"about a point {abs(x):.0f} ± {of_x:.0f} mm {where} of {key}.bush and {key}.wrench")
+    if above:
+        where = "above" if z > 0 else "below"
+        told.append(f"about a point {abs(z):.0f} ± {of_z:.0f} mm {where} {key}.bush and {key}.wrench")
+    if turned:
+        beside = f"{degrees[2]:.1f} ± {of[2]:.1f} deg beside {key}.wrench.rpy or imu.rpy"
+        told.append(f"about an axis {beside}")
+    for row, clear in enumerate(imu, start=3):
+        if clear:
+            told.append(
+                f"as if the IMU were turned by {degrees[row]:.1f} ± {of[row]:.1f} deg about its {'xyz'[row - 3]} axis, "
+                "beside imu.rpy"
+            )
+    if not told:
+        return []
+    text = f"{fit.foot} {fit.axis}: the torques turn {'; '.join(told)} (95 %): corrected"
+    if (np.abs(place) > FARTHEST).any():
+        return [Note(FAR, "warning", f"{text}, but that is far for an oversight; check the robot file")]
+    return [Note("bush_place", "warning", f"{text}; check the robot file")]
+
+
+def turned_bush(fits: Mapping[Axis, AxisFit]) -> Note | None:
+    """A warning where the other axis' torque shows in both axes with one sign: the bush's own axes are elsewhere.
+
+    A turned sensor gives each axis a share of the other's torque with opposite signs, a turned bush, of two
+    stiffnesses, with the same one.
+    """
+    if not set(ROTATIONAL_AXES) <= set(fits):
+        return None
+    pitch, roll = fits["pitch"], fits["roll"]
+    of_sensor, of_bush = (pitch.turned - roll.turned) / 2, (pitch.turned + roll.turned) / 2
+    if abs(of_bush) < max(TURN_WORTH_SAYING, abs(of_sensor)):
+        return None
+    text = (
+        f"{pitch.foot}: pitch's torque shows in roll and roll's in pitch as if the bush were turned about the "
+        f"vertical: check feet.{pitch.foot}.bush.rpy"
+    )
+    return Note(BUSH_TURNED, "warning", text)
