@@ -108,11 +108,12 @@ def test_a_centre_far_from_its_place_takes_usable_away(
 
 
 def test_guesses_are_less_sure_than_what_was_measured(robot: RobotModel, measured: RobotModel) -> None:
-    assert PlaceSpread.of(measured, "left").above == Uncertainty().bush_position
+    spread, known = PlaceSpread.of(measured, "left"), Uncertainty()
+    assert spread.above == spread.aside == np.hypot(known.bush_position, known.wrench_crosstalk)
     guesses = (Guess("feet.left.bush", "drawn", 0.03), Guess("feet.right.wrench", "drawn"))
     guessed = replace(measured, guesses=guesses)
-    assert PlaceSpread.of(guessed, "left").above == 0.03
-    assert PlaceSpread.of(guessed, "right").above == 0.02
+    assert PlaceSpread.of(guessed, "left").above == pytest.approx(np.hypot(0.03, known.wrench_crosstalk))
+    assert PlaceSpread.of(guessed, "right").above == pytest.approx(np.hypot(0.02, known.wrench_crosstalk))
     assert not any(vars(PlaceSpread.of(robot, "left")).values())
 
 

@@ -52,8 +52,9 @@ class PlaceSpread:
         for guess in robot.guesses:
             if guess.key.startswith((f"feet.{foot}.bush", f"feet.{foot}.wrench")):
                 position = max(position, GUESSED if guess.spread is None else guess.spread)
-        aside = float(np.hypot(position, robot.uncertainty.wrench_crosstalk)) if position else 0.0
-        return cls(aside, position, robot.uncertainty.imu_mount)
+        # Of a force sensor, a force that shows in a torque is like an arm: of the load aside, of the others above.
+        arm = float(np.hypot(position, robot.uncertainty.wrench_crosstalk)) if position else 0.0
+        return cls(arm, arm, robot.uncertainty.imu_mount)
 
 
 def about_its_place(
