@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from biped import record, sway
+from biped import record, sines, sway
 from feet_trials import noisy
 from plantar.checks.closed_chain import check_closed_chain
 from plantar.errors import DataError
@@ -59,12 +59,30 @@ def test_joints_that_stand_are_not_dead(robot: RobotModel) -> None:
     )
 
 
-def test_a_sole_that_slides_is_no_dead_encoder(robot: RobotModel) -> None:
-    """Its path may look like the angle of a joint that stands; but then the torque would not follow."""
+def test_exchanged_legs_are_refused(robot: RobotModel) -> None:
+    """The torso turns to and fro, so that one leg reaches forward as the other reaches back."""
+    log = record(sway(duration=20.0, torso=(sines(), sines(), sines((0.1, 0.3, 0.0)))))
+    assert not list(check_closed_chain(robot, log))
+    sides = {"left": "right", "right": "left"}
+    exchanged = {
+        name: log.column(name.replace(side, sides[side]))
+        for name in log.columns
+        for side in sides
+        if name.startswith(f"joint.{side}_")
+    }
+    (found,) = check_closed_chain(robot, log.with_columns(exchanged))
+    assert (found.code, found.fatal) == ("joint_names", True)
+    assert "legs look exchanged" in found.text
+
+
+def test_a_sole_that_slides_may_be_a_stuck_encoder(robot: RobotModel) -> None:
+    """Its path may look like the angle of a joint that stands; the torque does not follow, so nothing is refused."""
 
     def still(t: np.ndarray) -> np.ndarray:
         return 0.0 * t
 
     log = record(sway(ankles={**sway().ankles, "right": (still, still)}))
     slide = log.column("joint.right_leg_x.position") + 0.01 * np.sin(1.1 * log.time)
-    assert not list(check_closed_chain(robot, log.with_columns({"joint.right_leg_x.position": slide})))
+    findings = list(check_closed_chain(robot, log.with_columns({"joint.right_leg_x.position": slide})))
+    assert {(one.code, one.fatal) for one in findings} == {("stuck_channel", False)}
+    assert all("did a sole slide" in one.text for one in findings)

@@ -8,7 +8,7 @@ the bush's angle again; a sole that slides only looks like a joint that turns.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -27,7 +27,11 @@ LEAST_TIME = 3.0  # s at one value, both feet loaded: shorter stands are usual, 
 SAMPLES = 500  # spread over that time: enough to tell
 STEP = 1e-3  # rad, by which a joint is turned to see what that moves
 YAW_MOMENT_ARM = 0.1  # m, by which yaw [rad] counts beside the soles' distance [m]
+EXCHANGED = (
+    0.4  # share of the soles' motion that is left with the legs exchanged: what sways is seldom symmetric
+)
 CLOSED = 0.5  # share of the soles' motion that the joint's own angle may leave
+SURELY_CLOSED = 0.3  # likewise, where the torque does not tell
 FOLLOWED = 0.5  # share of the torque's misfit that it may leave
 FOLLOWS = 0.3  # share of the torque's variance that may then not follow the bush's angle
 
@@ -54,7 +58,10 @@ class _Stand:
 
 
 def check_closed_chain(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
-    """A fatal finding for each encoder of a leg that stands still while the legs' closed chain moves its joint."""
+    """A finding for legs that are exchanged, and for each encoder that stands while the closed chain moves its joint.
+
+    The latter is fatal where the torque then follows the bush's angle again; else a sole may have slid.
+    """
     imu = robot.imu
     orientation = None if imu is None else log.orientation(imu.name)
     if imu is None or orientation is None or len(robot.feet) != 2:
@@ -67,6 +74,11 @@ def check_closed_chain(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     for name, each in robot.feet.items():
         if each.contact != "always":
             known &= np.linalg.norm(np.nan_to_num(wrenches[name][:, :3]), axis=1) > least
+    standing = np.flatnonzero(known)
+    if standing.size * log.period > LEAST_TIME:
+        some = standing[:: max(1, standing.size // SAMPLES)]
+        own = {name: values[some] for name, values in wrenches.items()}
+        yield from _exchanged_legs(_Stand(robot, orientation[some], positions[some], own))
     stands: dict[tuple[int, int], _Stand] = {}
     for foot, joint in _leg_joints(robot):
         values = positions[:, robot.joint_names.index(joint)]
@@ -78,13 +90,38 @@ def check_closed_chain(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
             rows = slice(stretch.start, stretch.stop, max(1, length // SAMPLES))
             chosen = {name: values[rows] for name, values in wrenches.items()}
             stands[stretch.start, stretch.stop] = _Stand(robot, orientation[rows], positions[rows], chosen)
-        angle = _own_angle(stands[stretch.start, stretch.stop], joint, foot)
-        if angle is None or angle < max(LEAST_ANGLE, ENCODER_STEPS * _encoder_step(values)):
+        angle, sure = _own_angle(stands[stretch.start, stretch.stop], joint, foot)
+        if angle < max(LEAST_ANGLE, ENCODER_STEPS * _encoder_step(values)):
             continue
         when = f"t = {log.time[stretch.start]:g} to {log.time[stretch.stop - 1]:g} s"
         where = f"column 'joint.{joint}.position', {when}, value {values[stretch.start]:.6g}"
-        why = f"stands still while the legs' closed chain moves it by {angle:.2g}; the encoder is dead"
-        yield Finding("dead_channel", f"{where}: {why} (valid: leave such cells empty)", True)
+        why = f"stands still while the legs' closed chain moves it by {angle:.2g}"
+        if sure:
+            text = f"{where}: {why}; the encoder is dead (valid: leave such cells empty)"
+            yield Finding("dead_channel", text, True)
+        else:
+            text = (
+                f"{where}: {why}; is the encoder stuck, or did a sole slide? (valid: leave such cells empty)"
+            )
+            yield Finding("stuck_channel", text)
+
+
+def _exchanged_legs(stand: _Stand) -> Iterator[Finding]:
+    """Whether soles that stand move far less with the joints of one leg read as the other's."""
+    robot, legs = stand.robot, {name: list[int]() for name in stand.robot.feet}
+    for foot, joint in _leg_joints(robot):
+        legs[foot].append(robot.joint_names.index(joint))
+    left, right = (sorted(places) for places in legs.values())
+    if len(left) != len(right) or not left:
+        return
+    positions = stand.positions.copy()
+    positions[:, left], positions[:, right] = stand.positions[:, right], stand.positions[:, left]
+    soles = [_soles(one.as_read) for one in (stand, replace(stand, positions=positions))]
+    as_read, exchanged = (float(np.sum((one - np.median(one, axis=0)) ** 2)) for one in soles)
+    if exchanged < EXCHANGED**2 * as_read:
+        names = ", ".join(repr(f"joint.{robot.joint_names[place]}.position") for place in (left[0], right[0]))
+        text = f"columns {names}, ...: the legs look exchanged: so the soles on the floor move far less"
+        yield Finding("joint_names", f"{text} (valid: each leg's joints under their own names)", True)
 
 
 def _leg_joints(robot: RobotModel) -> list[tuple[str, str]]:
@@ -108,8 +145,8 @@ def _longest_at_one_value(values: Array, known: Mask) -> slice:
     return longest_run(same)
 
 
-def _own_angle(stand: _Stand, name: str, foot: str) -> float | None:
-    """How far a joint of this foot's leg moved [rad] where that closes the chain and lets the torque follow; else None.
+def _own_angle(stand: _Stand, name: str, foot: str) -> tuple[float, bool]:
+    """How far a joint of this foot's leg moved [rad] where that closes the chain, else 0; whether the torque follows.
 
     The soles' heights do not count: bushes give way under load.
     """
@@ -119,15 +156,17 @@ def _own_angle(stand: _Stand, name: str, foot: str) -> float | None:
     apart = apart - np.median(apart, axis=0)
     power = np.sum(moves**2, axis=1)
     if not power.min() > 0:
-        return None
+        return 0.0, False
     angle = -np.sum(moves * apart, axis=1) / power
     left = apart + moves * angle[:, None]
-    if np.sum(left**2) > CLOSED**2 * np.sum(apart**2):
-        return None
+    missed = float(np.sqrt(np.sum(left**2) / np.sum(apart**2)))
+    if missed > CLOSED:
+        return 0.0, False
     closed = stand.turned(joint, angle)[foot]
     axis = int(np.argmax(np.std(closed.deflection - as_read[foot].deflection, axis=0)))
     before, after = (_unexplained(state, axis) for state in (as_read[foot], closed))
-    return float(np.ptp(angle)) if after < min(FOLLOWS, FOLLOWED * before) else None
+    follows = after < min(FOLLOWS, FOLLOWED * before)
+    return (float(np.ptp(angle)) if follows or missed < SURELY_CLOSED else 0.0), follows
 
 
 def _soles(states: Mapping[str, BushState]) -> Array:

@@ -90,10 +90,9 @@ def _accelerometer_agrees(name: str, log: MotionLog, orientation: Array, turns: 
     text = f"up differs from the accelerometer's by {np.degrees(apart['as it is']):.0f} deg"
     if turns and np.pi - apart["as it is"] < RIGHT_ANGLE:
         where = f"columns 'imu.{name}.linear_acceleration.*'"
-        told = f"{where}: points down at rest, reversed, while the gyroscope turns as the orientation does"
-        yield Finding(
-            "sign", f"{told} (valid: proper acceleration, +{GRAVITY:.2f} m/s² upwards at rest)", True
-        )
+        told = f"{where}: points down at rest, reversed, or the orientation's world has z down; the gyroscope agrees"
+        valid = f"valid: proper acceleration, +{GRAVITY:.2f} m/s² upwards at rest; orientation body to world, z up"
+        yield Finding("sign", f"{told} ({valid})", True)
     elif apart[best] < RIGHT_ANGLE:
         yield misread(name, text, best)
     else:

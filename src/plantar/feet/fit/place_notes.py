@@ -14,7 +14,7 @@ CLEAR = 3.0  # deviations of prior and data together, beyond which the robot fil
 WORTH_SAYING = 0.005  # m: a centre that is nearer to its place is within what drawings get wrong
 TURN_WORTH_SAYING = 0.02  # rad: of a mount, likewise
 FARTHEST = np.array(
-    [0.05, 0.05, 0.12, 0.12, 0.12, 0.12]
+    [0.04, 0.04, 0.12, 0.12, 0.12, 0.12]
 )  # m, m, rad: corrected without doubting all the rest
 FAR = "bush_place_far"
 BUSH_TURNED = "bush_turned"
