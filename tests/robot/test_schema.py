@@ -121,6 +121,12 @@ def test_uncertainty_has_defaults_and_takes_what_is_given(tmp_path: Path) -> Non
     assert (given.bush_position, given.imu_mount, given.wrench_gain) == (0.02, 0.0, 0.01)
 
 
+def test_a_sole_in_millimetres_is_refused(tmp_path: Path) -> None:
+    wide = [[110.0, 60.0], [-110.0, 60.0], [-110.0, -60.0], [110.0, -60.0]]
+    told = refusal(tmp_path, lambda e: e["feet"]["left"]["sole"].update(polygon=wide))
+    assert "110 m away; are these millimetres?" in told
+
+
 def test_a_sole_without_area_is_refused(tmp_path: Path) -> None:
     line = [[0.1, 0.0], [0.0, 0.0], [-0.1, 0.0]]
     assert "area" in refusal(tmp_path, lambda e: e["feet"]["left"]["sole"].update(polygon=line))

@@ -16,6 +16,7 @@ from plantar.robot.uncertainty import Uncertainty
 
 FILE_LIMIT = 2**20  # bytes
 DEPTH_LIMIT = 20  # levels of nesting: a robot file needs five
+LONGEST_SOLE = 1.0  # m from its frame to a corner: no robot walks on longer ones
 
 Number = Annotated[float, Field(allow_inf_nan=False)]
 Vector = tuple[Number, Number, Number]
@@ -49,6 +50,9 @@ class SoleEntry(FrameEntry):
     @field_validator("polygon")
     @classmethod
     def _has_area(cls, polygon: list[tuple[float, float]]) -> list[tuple[float, float]]:
+        farthest = max(abs(value) for corner in polygon for value in corner)
+        if farthest > LONGEST_SOLE:
+            raise ValueError(f"a corner lies {farthest:.3g} m away; are these millimetres?")
         following = polygon[1:] + polygon[:1]
         area = sum(x * v - u * y for (x, y), (u, v) in zip(polygon, following, strict=True)) / 2
         if abs(area) < 1e-6:

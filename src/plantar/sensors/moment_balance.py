@@ -26,7 +26,7 @@ LEAST_GAIN = 0.01  # share, of the forces' gains and of what their places add: n
 LEAST_ARM = 0.003  # m, likewise
 UP = np.array([0.0, 0.0, 1.0])  # of a force sensor, about which it is mounted turned
 MOUNT = 0.1  # rad, by which sensors and IMU may be turned: wide, so that no turned mount passes for a gain
-CHANCE = 0.005  # that torques without a fault are called wrong about an axis
+CHANCE = 0.02  # that torques without a fault are called wrong about an axis, by deviations that are on the safe side
 WORTH_SAYING = 0.03  # share: what the force sensors' makers promise is seldom better
 
 
