@@ -65,7 +65,7 @@ def test_spikes_are_bridged_and_told_with_their_time() -> None:
     (note,) = [note for note in mended.notes if note.code == "spikes"]
     assert note.severity == "info"
     assert f"{names[0]} (1, first at t = 5 s: -300)" in note.text
-    spoilt[1100:1600:100] = 300.0
+    spoilt[1100:1600:20] = 300.0
     again = without_spikes(MotionLog("walk", TIME, {names[0]: spoilt}))
     assert next(note.severity for note in again.notes if note.code == "spikes") == "warning"
     fine = MotionLog("walk", TIME, {names[0]: clean})

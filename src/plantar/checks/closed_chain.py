@@ -75,7 +75,8 @@ def check_closed_chain(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         if each.contact != "always":
             known &= np.linalg.norm(np.nan_to_num(wrenches[name][:, :3]), axis=1) > least
     standing = np.flatnonzero(known)
-    if standing.size * log.period > LEAST_TIME:
+    recorded = all(log.has(f"joint.{joint}.position") for _, joint in _leg_joints(robot))
+    if recorded and standing.size * log.period > LEAST_TIME:
         some = standing[:: max(1, standing.size // SAMPLES)]
         own = {name: values[some] for name, values in wrenches.items()}
         yield from _exchanged_legs(_Stand(robot, orientation[some], positions[some], own))

@@ -32,9 +32,12 @@ def check_log(robot: RobotModel, log: MotionLog) -> list[Finding]:
     if any(finding.fatal for finding in time):
         return [*names, *time]
     imu = check_imu(robot.imu.name, log) if robot.imu is not None else ()
-    channels, chain = [*check_gaps(robot, log), *check_channels(robot, log)], check_closed_chain(robot, log)
+    channels, chain = (
+        [*check_gaps(robot, log), *check_channels(robot, log)],
+        list(check_closed_chain(robot, log)),
+    )
     wrenches = list(_wrenches(robot, log))
-    missing = check_path_joints(robot, log) if any(finding.fatal for finding in wrenches) else ()
+    missing = check_path_joints(robot, log) if any(one.fatal for one in (*wrenches, *chain)) else ()
     return [*names, *time, *_joints(robot, log), *imu, *missing, *wrenches, *channels, *chain]
 
 

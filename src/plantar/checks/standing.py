@@ -91,7 +91,7 @@ def _turned(stance: Stance, sides: StanceSides) -> Iterator[Finding]:
 
 
 def _reversed_joints(stance: Stance, sides: StanceSides) -> dict[str, float]:
-    """What is left of the misfit [m] with one joint between IMU and feet reversed, by the joint's column.
+    """What is left of the misfit [m] with a joint between IMU and feet reversed, or with its mirror image, by column.
 
     Where the force then leans from up still, the joint does not explain what is wrong.
     """
@@ -104,8 +104,20 @@ def _reversed_joints(stance: Stance, sides: StanceSides) -> dict[str, float]:
         for k, name in enumerate(robot.joint_names)
         if name in path and np.any(stance.positions[:, k])
     }
+    for first, second in _mirrored(stance):
+        names = (f"'joint.{robot.joint_names[place]}.position'" for place in (first, second))
+        tried[f"columns {' and '.join(names)}"] = stance.reversed_joint(first).reversed_joint(second).sides()
     allowed = max(LEANING, BETTER * sides.lean)
     return {name: trial.misfit for name, trial in tried.items() if trial.lean < allowed}
+
+
+def _mirrored(stance: Stance) -> list[tuple[int, int]]:
+    """Joints of both legs that have the same place in their leg; none where the legs are not alike."""
+    robot = stance.robot
+    paths = [robot.joints_between(stance.imu.placement, foot.bush) for foot in robot.feet.values()]
+    shared = frozenset.intersection(*paths)
+    legs = [[k for k, name in enumerate(robot.joint_names) if name in path - shared] for path in paths]
+    return list(zip(*legs, strict=True)) if len(legs[0]) == len(legs[1]) else []
 
 
 def _exchanged_joints(stance: Stance, sides: StanceSides, best: float) -> str | None:

@@ -18,7 +18,7 @@ GROUP_GAP, FEW = (
     0.15,
     8,
 )  # s around a spike, and quick steps in them: more make an impact and what it leaves ringing
-SERIOUS = 0.001  # share of a column that is worth a look at the sensor
+SERIOUS = 0.005  # share of a column that is worth a look at the sensor; coarse sampling makes half as many
 MOST = 0.02  # share of a column that may be spikes: more of them are what this sensor reads
 
 
