@@ -160,7 +160,8 @@ def _own_angle(stand: _Stand, name: str, foot: str) -> tuple[float, bool]:
         return 0.0, False
     angle = -np.sum(moves * apart, axis=1) / power
     left = apart + moves * angle[:, None]
-    missed = float(np.sqrt(np.sum(left**2) / np.sum(apart**2)))
+    total = float(np.sum(apart**2))
+    missed = float(np.sqrt(np.sum(left**2) / total)) if total > 0 else np.inf
     if missed > CLOSED:
         return 0.0, False
     closed = stand.turned(joint, angle)[foot]
