@@ -29,6 +29,7 @@ GOOD = Evidence(seconds=60.0, excitation=0.02, explained=0.98)
         (400.0, (-10.0, 810.0), GOOD, "unidentifiable", "reaches zero"),
         (-40.0, (-50.0, -30.0), GOOD, "unidentifiable", "negative"),
         (400.0, (390.0, 410.0), Evidence(2.0, 0.02, 0.98), "unidentifiable", "2.0 s"),
+        (400.0, (390.0, 410.0), Evidence(8.0, 0.02, 0.98), "weak", "8.0 s"),
         (400.0, (390.0, 410.0), Evidence(60.0, 0.02, 0.1), "unidentifiable", "10 %"),
         (400.0, (390.0, 410.0), Evidence(60.0, 0.02, 0.6), "weak", "60 %"),
         (0.0, (-1.0, 1.0), GOOD, "unidentifiable", "reaches zero"),

@@ -13,6 +13,7 @@ from plantar.results.feet import ValidationRow, Verdict
 USABLE_WIDTH = 0.15  # half width of the 95 % interval over the value, at most
 WEAK_WIDTH = 0.5
 LEAST_SECONDS = 3.0  # of used samples
+SHORT_SECONDS = 10.0  # likewise: in less, what is slower than 0.1 Hz, as drift is, has not shown itself
 LEAST_EXPLAINED = 0.3  # share of the torque's variance that the model must explain
 GOOD_EXPLAINED = 0.8
 HOLDS, MISSED = (
@@ -91,6 +92,9 @@ def judge(
             f"the sole leans for {100 * evidence.leaning:.0f} % of the time, where hysteresis cannot be followed",
             f"{_advice(foot, axis, term)}: the centre of pressure has to stay inside the sole",
         )
+    if evidence.seconds < SHORT_SECONDS:
+        told = f"only {evidence.seconds:.1f} s of samples are used, too few to show what drifts"
+        return "weak", f"{told} (valid: {SHORT_SECONDS:.0f} s or more)", advice
     if width > USABLE_WIDTH:
         return "weak", f"the 95 % interval is ±{100 * width:.0f} %; the motion gave {motion}", advice
     if evidence.explained < GOOD_EXPLAINED:
