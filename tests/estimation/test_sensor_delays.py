@@ -11,6 +11,7 @@ import pytest
 from biped import record, sway
 from biped_robot import make_robot
 from plantar.conventions import Array
+from plantar.dynamics.motion import Motion
 from plantar.estimation.delay import Pair
 from plantar.estimation.sensor_delays import estimate_delays
 from plantar.logs.motion_log import MotionLog
@@ -54,7 +55,8 @@ def residual(delays: Sequence[float], seed: int) -> NewtonEulerResidual:
     rates = [differentiate(reading, PERIOD) for reading in readings]
     measured, rates = np.array(readings)[:, INNER], np.array(rates)[:, INNER]
     pair = Pair("sweep", measured.sum(axis=0), rates.sum(axis=0), predicted(0.0)[INNER], PERIOD)
-    return NewtonEulerResidual(pair, measured, rates, by_encoders[INNER])
+    still = Motion(*(np.zeros((0, size)) for size in (9, 0, 0, 0)))
+    return NewtonEulerResidual(pair, measured, rates, by_encoders[INNER], still, measured[0])
 
 
 @pytest.mark.parametrize(
