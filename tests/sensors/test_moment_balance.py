@@ -61,6 +61,12 @@ def test_one_axis_of_one_foot_is_told_from_the_others(twin: RobotModel, sweep: M
     assert gains["pitch"].reach == shares["left"]
 
 
+def test_feet_that_are_off_in_opposite_ways_are_no_gains() -> None:
+    assert TorqueGain({"left": 0.5, "right": -0.4}, 0.02).opposed
+    assert not TorqueGain({"left": 0.22, "right": -0.05}, 0.02).opposed
+    assert not TorqueGain({"left": 0.5, "right": 0.4}, 0.02).opposed
+
+
 def test_the_warning_names_axis_and_size() -> None:
     (note,) = torque_gain_notes({"roll": TorqueGain({"left": 0.12, "right": 0.08}, 0.02)}).values()
     assert note.severity == "warning"

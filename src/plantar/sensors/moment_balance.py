@@ -27,6 +27,7 @@ LEAST_ARM = 0.003  # m, likewise
 UP = np.array([0.0, 0.0, 1.0])  # of a force sensor, about which it is mounted turned
 MOUNT = 0.1  # rad, by which sensors and IMU may be turned: wide, so that no turned mount passes for a gain
 CHANCE = 0.02  # that torques without a fault are called wrong about an axis, by deviations that are on the safe side
+OPPOSED = 0.1  # share: feet that are off by more, each the other way, are no gains but another fault's trace
 WORTH_SAYING = 0.03  # share: what the force sensors' makers promise is seldom better
 
 
@@ -42,6 +43,11 @@ class TorqueGain(NamedTuple):
     @property
     def mean(self) -> float:
         return float(np.mean(list(self.shares.values())))
+
+    @property
+    def opposed(self) -> bool:
+        """Whether one foot's torque reads far too much and another's far too little."""
+        return min(self.shares.values()) < -OPPOSED and max(self.shares.values()) > OPPOSED
 
     @property
     def reach(self) -> float:
@@ -78,7 +84,7 @@ def torque_gains(robot: RobotModel, residuals: Sequence[NewtonEulerResidual]) ->
         distance = float(value @ np.linalg.solve(usual, value)) / feet
         shares = dict(zip(robot.feet, (-value / (1 + value)).tolist(), strict=True))
         gain = TorqueGain(shares, float(np.sqrt(spread.sum())) / feet)
-        if distance > limit and gain.reach > WORTH_SAYING:
+        if distance > limit and gain.reach > WORTH_SAYING and not gain.opposed:
             found[axis] = gain
     return found
 
