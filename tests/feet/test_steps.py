@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from biped import TRUTH, record, sway
-from feet_trials import LINEAR
+from feet_trials import LINEAR, noisy
 from plantar.feet.identify import identify_feet
+from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
+from plantar.robot.uncertainty import Uncertainty
 
 ZERO = 20.0  # N, of the left force sensor along z
 PERIOD, STANDS = 1.5, 1.0  # s, of a step and of its stance
@@ -62,6 +66,17 @@ def test_each_swing_shows_the_sensors_zero(found: FeetResult) -> None:
         assert [row.force[2] for row in rows] == pytest.approx([ZERO] * len(rows), abs=0.5)
         assert [row.force_zero[2] for row in rows] == pytest.approx([ZERO] * len(rows), abs=0.5)
         assert all(STANDS < np.mod(row.time, PERIOD) < PERIOD for row in rows)
+
+
+def test_a_walk_is_scored_by_a_fit_of_standing_logs_that_found_the_imu_turned(robot: RobotModel) -> None:
+    unsure = replace(robot, uncertainty=Uncertainty())
+    logs = [noisy(record(sway(f"sway_{seed}", seed, duration=30.0)), seed) for seed in (3, 4)]
+    known = FeetSettings(model="kelvin_voigt", wrench_delay=0.0)
+    result = identify_feet(unsure, logs, [stepping(record(sway("walk", 1, duration=15.0)))], known)
+    assert any(any(model.imu_turned) for model in result.models if model.foot == "left")
+    assert "internal_error" not in {note.code for note in result.notes}
+    scored = {(row.foot, row.axis) for row in result.validation if row.motion == "walk"}
+    assert {("left", "pitch"), ("left", "roll")} <= scored
 
 
 def test_the_residuals_say_what_is_not_the_bushs(found: FeetResult) -> None:

@@ -87,11 +87,9 @@ def filtered_recording(recording: Recording, cutoff: float) -> Recording:
             edges = run_ends(valid, round(FILTER_EDGE / cutoff / period))
             recording = recording.without(name, edges, Reason.FILTER_EDGE)
         noise[name] = _noise(state, period, cutoff)
-    # Only a foot that stands has its place asked.
     turns = {
-        name: low_pass(turns.reshape(-1, 6), period, cutoff).reshape(-1, 2, 3)
+        name: within_stances(turns.reshape(-1, 6), period, cutoff, recording.stances[name]).reshape(-1, 2, 3)
         for name, turns in recording.imu_turns.items()
-        if recording.stances[name] is None
     }
     return replace(recording, cutoff=cutoff, bushes=smooth, noise=noise, imu_turns=turns)
 

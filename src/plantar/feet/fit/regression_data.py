@@ -162,13 +162,18 @@ def motion_of(recording: Recording, foot: str, axis: Axis, imu_turned: Turn = UN
     column, bush = ROTATIONAL_AXES.index(axis), recording.bushes[foot]
     stances = recording.stances[foot]
     away = ~recording.contacts[foot].loaded if stances is None else stances.number < 0
-    deflection, rate = bush.deflection[:, column].copy(), bush.rate[:, column].copy()
-    if any(imu_turned):
-        moved = recording.imu_turns[foot][:, column] @ np.array(imu_turned)
-        deflection += moved
-        rate += np.nan_to_num(differentiate(moved, recording.period))
-    deflection[away] = rate[away] = np.nan
-    return BushMotion(deflection, rate, recording.period)
+    read = np.column_stack([bush.deflection[:, column], bush.rate[:, column]])
+    right = read + _turn_effect(recording, foot, column, imu_turned)
+    right[away] = np.nan
+    return BushMotion(right[:, 0], right[:, 1], recording.period)
+
+
+def _turn_effect(recording: Recording, foot: str, column: int, imu_turned: Turn) -> Array:
+    """What a turn of the IMU adds to a foot's angle and rate, (N, 2)."""
+    if not any(imu_turned):
+        return np.zeros((len(recording.time), 2))
+    angle = recording.imu_turns[foot][:, column] @ np.array(imu_turned)
+    return np.column_stack([angle, np.nan_to_num(differentiate(angle, recording.period))])
 
 
 def path_of(recording: Recording, foot: str, axis: Axis, imu_turned: Turn = UNTURNED) -> BushMotion:
@@ -180,6 +185,7 @@ def path_of(recording: Recording, foot: str, axis: Axis, imu_turned: Turn = UNTU
     both = np.column_stack([raw.deflection[:, column], raw.rate[:, column]])
     both[stances.number < 0] = np.nan
     quick = low_pass(both, recording.period, PATH_BAND * recording.cutoff, SHORTEST_STANCE_RUN)
+    quick += _turn_effect(recording, foot, column, imu_turned)
     quick[~np.isfinite(slow.deflection)] = np.nan
     return BushMotion(quick[:, 0], quick[:, 1], recording.period)
 
