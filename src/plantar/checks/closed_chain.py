@@ -10,9 +10,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import compress
 
 import numpy as np
+from numpy.typing import NDArray
 
+from plantar.checks.joints import legs
 from plantar.contact.deflection import BushState, bush_states, relative_pose
 from plantar.conventions import GRAVITY, Array, Mask
 from plantar.logs.motion_log import MotionLog
@@ -74,23 +77,27 @@ def check_closed_chain(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     for name, each in robot.feet.items():
         if each.contact != "always":
             known &= np.linalg.norm(np.nan_to_num(wrenches[name][:, :3]), axis=1) > least
+
+    def stand(rows: slice | NDArray[np.intp]) -> _Stand:
+        chosen = {name: values[rows] for name, values in wrenches.items()}
+        return _Stand(robot, orientation[rows], positions[rows], chosen)
+
+    # What both legs hang on moves both soles alike: only the legs' own joints are asked.
+    joints = [(foot, joint) for foot, leg in legs(robot).items() for joint in leg]
+    recorded = [log.has(f"joint.{joint}.position") for _, joint in joints]
     standing = np.flatnonzero(known)
-    recorded = all(log.has(f"joint.{joint}.position") for _, joint in _leg_joints(robot))
-    if recorded and standing.size * log.period > LEAST_TIME:
-        some = standing[:: max(1, standing.size // SAMPLES)]
-        own = {name: values[some] for name, values in wrenches.items()}
-        yield from _exchanged_legs(_Stand(robot, orientation[some], positions[some], own))
+    if all(recorded) and standing.size * log.period > LEAST_TIME:
+        yield from _exchanged_legs(stand(standing[:: max(1, standing.size // SAMPLES)]))
     stands: dict[tuple[int, int], _Stand] = {}
-    for foot, joint in _leg_joints(robot):
+    for foot, joint in compress(joints, recorded):
         values = positions[:, robot.joint_names.index(joint)]
         stretch = _longest_at_one_value(values, known)
         length = stretch.stop - stretch.start
-        if length * log.period < LEAST_TIME or not log.has(f"joint.{joint}.position"):
+        if length * log.period < LEAST_TIME:
             continue
         if (stretch.start, stretch.stop) not in stands:
             rows = slice(stretch.start, stretch.stop, max(1, length // SAMPLES))
-            chosen = {name: values[rows] for name, values in wrenches.items()}
-            stands[stretch.start, stretch.stop] = _Stand(robot, orientation[rows], positions[rows], chosen)
+            stands[stretch.start, stretch.stop] = stand(rows)
         angle, sure = _own_angle(stands[stretch.start, stretch.stop], joint, foot)
         if angle < max(LEAST_ANGLE, ENCODER_STEPS * _encoder_step(values)):
             continue
@@ -109,10 +116,8 @@ def check_closed_chain(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
 
 def _exchanged_legs(stand: _Stand) -> Iterator[Finding]:
     """Whether soles that stand move far less with the joints of one leg read as the other's."""
-    robot, legs = stand.robot, {name: list[int]() for name in stand.robot.feet}
-    for foot, joint in _leg_joints(robot):
-        legs[foot].append(robot.joint_names.index(joint))
-    left, right = (sorted(places) for places in legs.values())
+    names = stand.robot.joint_names
+    left, right = ([names.index(joint) for joint in leg] for leg in legs(stand.robot).values())
     if len(left) != len(right) or not left:
         return
     positions = stand.positions.copy()
@@ -120,17 +125,9 @@ def _exchanged_legs(stand: _Stand) -> Iterator[Finding]:
     soles = [_soles(one.as_read) for one in (stand, replace(stand, positions=positions))]
     as_read, exchanged = (float(np.sum((one - np.median(one, axis=0)) ** 2)) for one in soles)
     if exchanged < EXCHANGED**2 * as_read:
-        names = ", ".join(repr(f"joint.{robot.joint_names[place]}.position") for place in (left[0], right[0]))
-        text = f"columns {names}, ...: the legs look exchanged: so the soles on the floor move far less"
+        first = ", ".join(repr(f"joint.{names[place]}.position") for place in (left[0], right[0]))
+        text = f"columns {first}, ...: the legs look exchanged: so the soles on the floor move far less"
         yield Finding("joint_names", f"{text} (valid: each leg's joints under their own names)", True)
-
-
-def _leg_joints(robot: RobotModel) -> list[tuple[str, str]]:
-    """Foot and joint of each leg, without what both legs hang on: that moves both soles alike."""
-    assert robot.imu is not None
-    own = {name: robot.joints_between(robot.imu.placement, foot.bush) for name, foot in robot.feet.items()}
-    shared = frozenset.intersection(*own.values())
-    return [(foot, joint) for foot, joints in own.items() for joint in sorted(joints - shared)]
 
 
 def _encoder_step(values: Array) -> float:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from plantar.conventions import Mask
-from plantar.logs.motion_log import MotionLog, imu_columns
+from plantar.logs.motion_log import MotionLog, imu_columns, wrench_columns
 from plantar.notes import Finding
 from plantar.robot.model import RobotModel
 from plantar.signals.resampling import BRIDGED, sampling
@@ -40,16 +40,14 @@ def _holes(log: MotionLog, empty: Mask) -> list[tuple[float, float]]:
     return [(start, end) for start, end in spans if end - start > BRIDGED]
 
 
-def _sensors(robot: RobotModel) -> dict[str, list[str]]:
+def _sensors(robot: RobotModel) -> dict[str, Sequence[str]]:
     """The columns that a foot's fit needs, by what they are called together."""
-    found = {
-        f"columns 'wrench.{foot.wrench.name}.*'": [
-            f"wrench.{foot.wrench.name}.{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz"
-        ]
+    found: dict[str, Sequence[str]] = {
+        f"columns 'wrench.{foot.wrench.name}.*'": wrench_columns(foot.wrench.name)
         for foot in robot.feet.values()
     }
     if robot.imu is not None:
-        found[f"columns 'imu.{robot.imu.name}.*'"] = list(imu_columns(robot.imu.name, "angular_velocity"))
+        found[f"columns 'imu.{robot.imu.name}.*'"] = imu_columns(robot.imu.name, "angular_velocity")
         path = frozenset().union(
             *(robot.joints_between(robot.imu.placement, foot.bush) for foot in robot.feet.values())
         )

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Collection, Iterator
 
 import numpy as np
 
@@ -19,8 +20,8 @@ def check_joint_names(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     recorded = recorded_joints(log)
     needed = {
         f"any joint between IMU and {foot} foot": own
-        for foot, own in _legs(robot).items()
-        if own and not own & recorded
+        for foot, own in legs(robot).items()
+        if own and not recorded.intersection(own)
     }
     every = set(robot.joint_names)
     if not every or (not needed and (every & recorded or robot.imu is not None)):
@@ -47,7 +48,7 @@ def check_joint_names(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
 
 def check_path_joints(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     """A fatal finding where some joints between IMU and feet are not recorded: asked where nothing else adds up."""
-    missing = set().union(*_legs(robot).values()) - recorded_joints(log)
+    missing = set().union(*legs(robot).values()) - recorded_joints(log)
     if missing:
         where = f"columns 'joint.*.position': {_listing(missing)} not recorded, and with them at 0"
         text = f"{where} the feet's wrenches do not balance gravity"
@@ -64,19 +65,19 @@ def recorded_joints(log: MotionLog) -> set[str]:
     }
 
 
-def _legs(robot: RobotModel) -> dict[str, set[str]]:
-    """The joints between the IMU and each foot that no other foot has there; none without IMU."""
+def legs(robot: RobotModel) -> dict[str, list[str]]:
+    """Of each foot, the joints between it and the IMU that no other foot has there, in the URDF's order; none without
+    IMU."""
     if robot.imu is None:
         return {}
-    paths = {
-        name: set(robot.joints_between(robot.imu.placement, foot.bush)) for name, foot in robot.feet.items()
-    }
+    paths = {name: robot.joints_between(robot.imu.placement, foot.bush) for name, foot in robot.feet.items()}
+    uses = Counter(joint for path in paths.values() for joint in path)
     return {
-        name: path.difference(*(other for key, other in paths.items() if key != name))
+        name: [joint for joint in robot.joint_names if joint in path and uses[joint] == 1]
         for name, path in paths.items()
     }
 
 
-def _listing(names: set[str]) -> str:
+def _listing(names: Collection[str]) -> str:
     shown = sorted(names)[:MOST_NAMED]
     return ", ".join(shown) + (f" and {len(names) - len(shown)} more" if len(names) > len(shown) else "")

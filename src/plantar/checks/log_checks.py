@@ -14,7 +14,7 @@ from plantar.checks.joints import check_joint_names, check_path_joints
 from plantar.checks.load_signs import check_load_signs
 from plantar.checks.standing import check_balance
 from plantar.conventions import GRAVITY
-from plantar.logs.motion_log import MotionLog
+from plantar.logs.motion_log import MotionLog, wrench_columns
 from plantar.notes import Finding
 from plantar.robot.model import RobotModel
 
@@ -108,7 +108,7 @@ def _wrenches(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         alive = (
             spans.any() or np.nanmax(np.abs(wrench)) > 0.1 * robot.mass * GRAVITY or foot.contact == "always"
         )
-        parts = [f"wrench.{sensor.name}.{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz"]
+        parts = wrench_columns(sensor.name)
         dead = [part for span, part in zip(spans, parts, strict=True) if alive and span == 0]
         if dead:
             text = (

@@ -7,6 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from plantar.checks.joints import legs
 from plantar.checks.stance import Stance, StanceSides, stance_of, usual
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding
@@ -113,11 +114,10 @@ def _reversed_joints(stance: Stance, sides: StanceSides) -> dict[str, float]:
 
 def _mirrored(stance: Stance) -> list[tuple[int, int]]:
     """Joints of both legs that have the same place in their leg; none where the legs are not alike."""
-    robot = stance.robot
-    paths = [robot.joints_between(stance.imu.placement, foot.bush) for foot in robot.feet.values()]
-    shared = frozenset.intersection(*paths)
-    legs = [[k for k, name in enumerate(robot.joint_names) if name in path - shared] for path in paths]
-    return list(zip(*legs, strict=True)) if len(legs[0]) == len(legs[1]) else []
+    left, right = (
+        [stance.robot.joint_names.index(name) for name in leg] for leg in legs(stance.robot).values()
+    )
+    return list(zip(left, right, strict=True)) if len(left) == len(right) else []
 
 
 def _exchanged_joints(stance: Stance, sides: StanceSides, best: float) -> str | None:

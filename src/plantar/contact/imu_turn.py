@@ -30,16 +30,15 @@ def imu_turn_effects(robot: RobotModel, positions: Array, orientation: Array) ->
         bush = robot.frame(foot.bush)
         path = foot_path(tree, imu, bush, bush[1].inverse() * robot.frame(foot.sole.placement)[1])
         as_read = foot_motion(path, positions, still[0], orientation, still[1]).deflection
-        turned = [
-            foot_motion(path, positions, still[0], _turned(orientation, axis), still[1]).deflection
+        moved = [
+            foot_motion(path, positions, still[0], turned(orientation, STEP * axis), still[1]).deflection
             for axis in np.eye(3)
         ]
-        found[name] = np.stack([(one - as_read) / STEP for one in turned], axis=2)
+        found[name] = np.stack([(one - as_read) / STEP for one in moved], axis=2)
     return found
 
 
-def _turned(orientation: Array, axis: Array) -> Array:
-    """Orientations (N, 4) of an IMU turned by STEP about its own `axis` (3,)."""
-    w, vector = orientation[:, :1], orientation[:, 1:]
-    half = STEP / 2 * axis
+def turned(orientation: Array, turn: Array) -> Array:
+    """Orientations w x y z (N, 4) of an IMU that is turned by a small `turn` (3,) [rad] about its own axes."""
+    w, vector, half = orientation[:, :1], orientation[:, 1:], turn / 2
     return np.hstack([w - vector @ half[:, None], vector + w * half + np.cross(vector, half)])

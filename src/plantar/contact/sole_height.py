@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from plantar.contact.deflection import bush_states, relative_pose
+from plantar.contact.imu_turn import turned
 from plantar.conventions import Array
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
@@ -32,8 +33,8 @@ def height_changes(log: MotionLog, robot: RobotModel) -> Iterator[tuple[str, Arr
     still = np.zeros((len(attitude), 3))
     unloaded = {foot: np.zeros((len(attitude), 6)) for foot in robot.feet}
 
-    def height(of: RobotModel, angles: Array, turned: Array) -> Array:
-        states = bush_states(of, angles, np.zeros_like(angles), turned, still, unloaded)
+    def height(of: RobotModel, angles: Array, quaternions: Array) -> Array:
+        states = bush_states(of, angles, np.zeros_like(angles), quaternions, still, unloaded)
         left, right = (states[foot] for foot in robot.feet)
         return np.asarray(relative_pose(left, right).position[:, 2])
 
@@ -51,16 +52,10 @@ def height_changes(log: MotionLog, robot: RobotModel) -> Iterator[tuple[str, Arr
             moved[:, column] += STEP
             yield joint, change(height(robot, moved, attitude), known.encoder_zero)
     for axis in range(3 if known.imu_mount else 0):
-        yield f"imu {'xyz'[axis]}", change(height(robot, positions, _turned(attitude, axis)), known.imu_mount)
+        moved = turned(attitude, STEP * np.eye(3)[axis])
+        yield f"imu {'xyz'[axis]}", change(height(robot, positions, moved), known.imu_mount)
     for name, foot in robot.feet.items():
         for axis in range(2 if known.bush_position else 0):
             bush = replace(foot.bush, xyz=foot.bush.xyz + STEP * foot.bush.rotation[:, axis])
             other = replace(robot, feet={**robot.feet, name: replace(foot, bush=bush)})
             yield f"{name} {'xyz'[axis]}", change(height(other, positions, attitude), known.bush_position)
-
-
-def _turned(attitude: Array, axis: int) -> Array:
-    """Quaternions w x y z (N, 4), turned by STEP about one of their body's axes."""
-    w, vector = attitude[:, 0], attitude[:, 1:]
-    turn = np.eye(3)[axis] * STEP / 2
-    return np.column_stack([w - vector @ turn, vector + w[:, None] * turn + np.cross(vector, turn)])

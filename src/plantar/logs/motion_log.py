@@ -35,6 +35,11 @@ def imu_columns(imu: str, *kinds: str) -> tuple[str, ...]:
     return tuple(f"imu.{imu}.{kind}.{axis}" for kind in kinds for axis in IMU_AXES[kind])
 
 
+def wrench_columns(sensor: str) -> tuple[str, ...]:
+    """Names of a force sensor's columns, forces then torques."""
+    return tuple(f"wrench.{sensor}.{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz")
+
+
 @dataclass(frozen=True)
 class MotionLog:
     """One recording: a time base and labelled columns. Made by `open_log`, or from arrays.
@@ -131,8 +136,7 @@ class MotionLog:
 
     def wrench(self, sensor: str) -> Array:
         """Force then torque as recorded, in the sensor's frame, (N, 6) [N, N·m]."""
-        parts = [f"wrench.{sensor}.{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz"]
-        return self.stack(parts)
+        return self.stack(wrench_columns(sensor))
 
     def orientation(self, imu: str) -> Array | None:
         """Quaternion w x y z, body to world, (N, 4); None where the log has no such columns."""

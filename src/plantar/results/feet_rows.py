@@ -115,7 +115,7 @@ class AxisModel:
     """The bush model of one axis of one foot, and why it was chosen.
 
     `moment_arms` [m]: by how much the logs show the bush's centre aside and above its place; `turned` [rad]: by how
-    much the force sensor, or the IMU, is turned about the vertical; `imu_turned` [rad]: by how much the IMU is turned
+    much the force sensor is turned about the vertical; `imu_turned` [rad]: by how much the IMU is turned
     about each of its axes, as far as that shows. `held_out` says what was held out, `ranking` holds every model tried;
     both are None where none was compared.
     """

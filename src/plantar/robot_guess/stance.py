@@ -9,7 +9,7 @@ import numpy as np
 import pinocchio as pin
 
 from plantar.conventions import FORCE, GRAVITY, Array, Mask, rotation_from_quaternion
-from plantar.logs.motion_log import MotionLog
+from plantar.logs.motion_log import MotionLog, wrench_columns
 from plantar.robot_guess.feet import Sole
 from plantar.signals.filters import low_pass
 
@@ -109,12 +109,7 @@ def felt_up(log: MotionLog, imu: str) -> Array:
 def _rows(
     log: MotionLog, sensors: Mapping[str, str], imu: str | None, weight: float, model: pin.Model
 ) -> np.ndarray[tuple[int], np.dtype[np.int64]]:
-    columns = [
-        f"wrench.{s}.{kind}.{axis}"
-        for s in sensors.values()
-        for kind in ("force", "torque")
-        for axis in "xyz"
-    ]
+    columns = [column for name in sensors.values() for column in wrench_columns(name)]
     if not sensors or not log.has(*columns):
         return np.zeros(0, dtype=np.int64)
     wrenches = [log.wrench(name) for name in sensors.values()]

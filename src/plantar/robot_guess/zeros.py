@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from plantar.conventions import FORCE, Array
-from plantar.logs.motion_log import MotionLog
+from plantar.logs.motion_log import MotionLog, wrench_columns
 from plantar.robot_guess.evidence import Remark
 from plantar.sensors.air_zero import air_zero
 
@@ -25,7 +25,7 @@ def without_zeros(
     tared, largest = list[MotionLog](), dict[str, float]()
     for log in logs:
         for side, name in sensors.items():
-            columns = [f"wrench.{name}.{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz"]
+            columns = wrench_columns(name)
             if not log.has(*columns):
                 continue
             wrench = log.wrench(name)

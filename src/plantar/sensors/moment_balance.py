@@ -120,44 +120,28 @@ def _prior(robot: RobotModel) -> Array:
 
 
 def _sides(robot: RobotModel, residual: NewtonEulerResidual) -> _Sides:
-    pair, feet = residual.pair, list(robot.feet.values())
-    each = [
-        (
-            foot,
-            residual.readings[:, 6 * place : 6 * place + 3],
-            residual.readings[:, 6 * place + 3 : 6 * place + 6],
-        )
-        for place, foot in enumerate(feet)
-    ]
-    carried = _Carried(robot, residual)
-    columns = [
-        carried(foot, 0 * force, np.outer(torque @ along, along))
-        for axis in range(2)
-        for foot, force, torque in each
-        for along in (_directions(foot)[axis],)
-    ]
-    for foot, force, torque in each:
-        columns.append(carried(foot, force, torque))
-        columns += [carried(foot, 0 * force, np.cross(arm, force)) for arm in np.eye(3)]
-        columns.append(carried(foot, np.cross(UP, force), np.cross(UP, torque)))
-    force, moment = pair.predicted[:, :3], pair.predicted[:, 3:]
-    columns += [np.hstack([np.cross(turn, force), np.cross(turn, moment)]) for turn in np.eye(3)]
-    moving = _moving(np.stack(columns), pair.period)
+    pair, equation = residual.pair, Equation(robot.floating_model)
+    torques: list[list[Array]] = [[], []]
+    others = []
+    for place, foot in enumerate(robot.feet.values()):
+        force, torque = np.split(residual.readings[:, 6 * place : 6 * place + 6], 2, axis=1)
+        contact = Contact(*robot.frame(foot.wrench.placement))
+        transfer = equation.contact_transfer(residual.motion.positions, contact)[:, BASE_ROWS]
+        # Each axis' torque alone; the whole wrench; the force on an arm along x, y and z; the wrench turned.
+        alone = [np.hstack([0 * force, np.outer(torque @ along, along)]) for along in _directions(foot)]
+        moved = [np.hstack([0 * force, np.cross(arm, force)]) for arm in np.eye(3)]
+        turned = np.hstack([np.cross(UP, force), np.cross(UP, torque)])
+        carried = [
+            np.einsum("nij,nj->ni", transfer, wrench)
+            for wrench in (*alone, np.hstack([force, torque]), *moved, turned)
+        ]
+        for own, column in zip(torques, carried[:2], strict=True):
+            own.append(column)
+        others += carried[2:]
+    force, moment = np.split(pair.predicted, 2, axis=1)
+    others += [np.hstack([np.cross(turn, force), np.cross(turn, moment)]) for turn in np.eye(3)]
+    moving = _moving(np.stack([*torques[0], *torques[1], *others]), pair.period)
     return _Sides(moving, pair.predicted - pair.measured, pair.model_errors, pair.period)
-
-
-@dataclass(frozen=True)
-class _Carried:
-    """Wrenches in a foot's sensor as they appear in eq. 1's base rows, (n, 6)."""
-
-    robot: RobotModel
-    residual: NewtonEulerResidual
-
-    def __call__(self, foot: Foot, force: Array, torque: Array) -> Array:
-        contact = Contact(*self.robot.frame(foot.wrench.placement))
-        wrench = np.ascontiguousarray(np.hstack([force, torque]))
-        equation = Equation(self.robot.floating_model)
-        return -equation.inverse_dynamics(self.residual.motion, None, [contact], [wrench])[BASE_ROWS].T
 
 
 def _directions(foot: Foot) -> Array:

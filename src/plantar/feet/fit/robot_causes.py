@@ -18,7 +18,7 @@ def robot_causes(
 ) -> list[Cause]:
     """The force sensors' gain, a turned sensor, and recordings that differ."""
     # A torque that reads too large by a share makes every number of the bush too large by it. A sensor turned by ψ
-    # reads cos ψ of the torque; where it is the IMU that is turned, all of it: no log says which.
+    # reads cos ψ of the torque; where it is the IMU that is turned, all of it, and only moving joints tell them apart.
     turned = 1 - float(np.cos(fit.turned))
     gain = float(np.hypot(uncertainty.wrench_gain, turned))
     causes = [Cause("sensor gain", fit.values, gain)] if gain else []

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from plantar.conventions import Array
+from plantar.logs.motion_log import wrench_columns
 from plantar.robot.model import RobotModel
 from plantar.twin.sensing.exact import Columns
 from plantar.twin.sensing.sensors import delayed
@@ -47,7 +48,7 @@ def with_sensor_errors(
         cross = spread.crosstalk * random.standard_normal((6, 6))
         cross[:3, 3:] = 0.0  # torques hardly reach the forces
         gains += cross - np.diag(np.diag(cross))
-        kinds = [f"wrench.{foot.wrench.name}.{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz"]
+        kinds = wrench_columns(foot.wrench.name)
         read = np.column_stack([delayed(columns[name], time, own) for name in kinds]) @ gains.T
         columns |= dict(zip(kinds, read.T, strict=True))
         drawn |= {f"wrench.{foot.wrench.name}.gains": gains.tolist(), f"wrench.{foot.wrench.name}.delay": own}
