@@ -59,6 +59,18 @@ def test_a_reversed_joint_is_named_and_refused_instead_of_swapped_feet(sway: Mot
     assert any(f"joint.{largest}.position" in one.text for one in findings if one.fatal)
 
 
+def test_a_hand_that_leans_on_the_robot_reverses_and_exchanges_no_joint(sway: MotionLog) -> None:
+    """A steady moment of the robot's weight on 3 cm, in eight directions, as the loaded foot's torques read it."""
+    moment = 0.03 * hrp2.robot().mass * 9.81
+    for angle in np.arange(0, 2 * np.pi, np.pi / 4):
+        leant = {
+            f"wrench.right_foot.torque.{axis}": sway.column(f"wrench.right_foot.torque.{axis}")
+            + moment * part
+            for axis, part in (("x", np.cos(angle)), ("y", np.sin(angle)))
+        }
+        assert [one.text for one in found(sway.with_columns(leant)) if "joint." in one.text] == []
+
+
 def test_exchanged_joints_of_a_leg_are_named(sway: MotionLog) -> None:
     joints = ["joint.RLEG_JOINT4.position", "joint.RLEG_JOINT5.position"]
     exchanged = dict(zip(joints, (sway.column(name) for name in reversed(joints)), strict=True))

@@ -16,10 +16,10 @@ from plantar.robot.model import RobotModel
 BETTER = 0.5  # share of the misfit that must be left after the change
 NOTABLE = 0.02  # m: a moment arm below it is within the model's own error
 ALIKE = 0.1  # of the misfit: changes that do as well as the best are named with it
-CERTAIN_MOMENT_ARM, CERTAIN = (
-    0.05,
-    0.1,
-)  # m, and share left: no error of masses or mounting is undone so well by chance
+CERTAIN_MOMENT_ARM = (
+    0.05  # m: an operator's hand adds less, of which one of many joints undoes most by chance
+)
+CERTAIN = 0.1  # share left: no larger error of masses or mounting is undone so well by chance
 UNEXPLAINED = 0.12  # m: beyond any sole; masses, encoder zeros or the sensors' places are off
 FARTHEST = 1.5  # m: no posture and no mass is that far off
 LEANING = np.radians(
@@ -54,9 +54,11 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         yield Finding("torque_unit" if millimetres else "balance", f"{text} ({valid})", True)
         return
     exchanged = stance.exchanged_wrenches().sides().misfit
-    left = {**_reversed_joints(stance, sides), **_reversed_components(stance, sides)}
+    certain = as_is > CERTAIN_MOMENT_ARM
+    joints = _reversed_joints(stance, sides) if certain or sides.lean > LEANING else {}
+    left = {**joints, **_reversed_components(stance, sides)}
     best = min(left.values(), default=np.inf)
-    if as_is > NOTABLE and (pair := _exchanged_joints(stance, sides, min(best, exchanged))) is not None:
+    if certain and (pair := _exchanged_joints(stance, sides, min(best, exchanged))) is not None:
         text = f"columns {pair}: exchanged, the wrenches balance gravity far better"
         yield Finding("joint_names", f"{text} (check the joints' names and order)", True)
     elif as_is > NOTABLE and exchanged < BETTER * as_is and exchanged < best + ALIKE * as_is:
@@ -66,7 +68,7 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         alike = sorted((name for name in left if left[name] < best + ALIKE * as_is), key=left.__getitem__)
         text = f"{' or '.join(alike[:MOST_NAMED])}: reversed, the wrenches balance gravity to {100 * best:.1f} cm"
         joint = "'joint." in alike[0]
-        certain = (as_is > CERTAIN_MOMENT_ARM and best < CERTAIN * as_is) or sides.lean > IMPOSSIBLE
+        certain = (certain and best < CERTAIN * as_is) or sides.lean > IMPOSSIBLE
         valid = "valid: the signs of URDF and robot file"
         yield Finding("sign", f"{text} instead of {100 * as_is:.1f} cm ({valid})", joint and certain)
     elif sides.lean > LEANING:
