@@ -79,10 +79,15 @@ def _said(answer: FeetResult, healthy: FeetResult, every: bool) -> Iterator[str]
     for note in answer.notes:
         if note.severity == "warning" and note.code not in usual:
             yield f"{note.code}: {note.text}"
-    old = {row.reason for row in healthy.parameters}
+    old = {_without_numbers(row.reason) for row in healthy.parameters}
     for row in _rotational(answer):
-        if row.verdict != "usable" and row.reason not in old:
+        if row.verdict != "usable" and _without_numbers(row.reason) not in old:
             yield f"{_short(row)}: {row.reason}"
+
+
+def _without_numbers(reason: str) -> str:
+    """A reason that is the same but for an interval of 51 % instead of 49 % tells of no fault."""
+    return re.sub(r"\d[\d.]*", "", reason)
 
 
 def _rotational(answer: FeetResult) -> Iterator[Parameter]:

@@ -106,3 +106,25 @@ def test_an_inverted_attitude_is_told_by_accelerometer_or_gyroscope(log: MotionL
     findings = list(check_imu("chest", inverted(leaning)))
     assert {finding.code for finding in findings} == {"quaternion_order"}
     assert all("inverted it agrees" in finding.text for finding in findings)
+
+
+def test_an_accelerometer_that_points_down_is_told_of_without_a_gyroscope(log: MotionLog) -> None:
+    (finding,) = check_imu("chest", scaled(ACCELEROMETER, -1.0)(without(GYROSCOPE)(log)))
+    assert (finding.code, finding.fatal) == ("sign", True)
+    assert "gyroscope" not in finding.text
+    assert "read as x y z w it agrees" in finding.text  # of an upright IMU nothing tells the two apart
+
+
+def test_a_gyroscope_in_the_world_is_told_of_where_a_reversed_axis_looks_the_same() -> None:
+    """Of an IMU that is mounted half a turn about the vertical, and pitches and yaws little."""
+    still = sines((0.002, 0.3, 0.0))
+    log = record(sway(duration=40.0, torso=(sines((0.05, 0.4, 0.0), (0.02, 0.9, 1.0)), still, still)))
+    back = Rotation.from_euler("z", np.pi)
+    rates = Rotation.from_quat(log.stack(ORIENTATION), scalar_first=True).apply(log.stack(GYROSCOPE))
+    about = (Rotation.from_quat(log.stack(ORIENTATION), scalar_first=True) * back).as_quat(scalar_first=True)
+    turned = dict(zip(GYROSCOPE, rates.T, strict=True)) | dict(zip(ORIENTATION, about.T, strict=True))
+    accelerations = back.inv().apply(log.stack(ACCELEROMETER))
+    turned |= dict(zip(ACCELEROMETER, accelerations.T, strict=True))
+    (finding,) = check_imu("chest", log.with_columns(turned))
+    assert finding.code == "sign"
+    assert "about the world's axes" in finding.text

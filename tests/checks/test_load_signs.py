@@ -55,6 +55,17 @@ def test_no_sign_is_advised_where_sensors_were_zeroed_under_load(robot: RobotMod
     assert "set 'sign" not in found.text
 
 
+@pytest.mark.parametrize("right", [0.7, 1.0])
+def test_a_foot_in_the_air_that_pulls_has_a_zero_and_no_reversed_sign(
+    robot: RobotModel, right: float
+) -> None:
+    """A third of the weight downward: a reversed sign where the other foot carries two thirds, else a zero."""
+    left = np.full_like(TIME, -0.3 * WEIGHT)
+    (found,) = check_load_signs(robot, {"left": left, "right": np.full_like(TIME, right * WEIGHT)})
+    assert found.code == ("zeroed_under_load" if right == 1.0 else "sign")
+    assert ("its zero is off" in found.text) == (right == 1.0)
+
+
 def test_feet_that_stand_throughout_are_not_asked(robot: RobotModel) -> None:
     feet = {name: replace(foot, contact="always") for name, foot in robot.feet.items()}
     assert not list(check_load_signs(replace(robot, feet=feet), {"left": -LEFT, "right": LEFT - WEIGHT}))

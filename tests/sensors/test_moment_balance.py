@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+import numpy as np
 import pytest
 
 from plantar.feet.prepare_log import checked
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
+from plantar.sensors import moment_balance
 from plantar.sensors.moment_balance import TorqueGain, torque_gain_notes, torque_gains
 from plantar.sensors.newton_euler import newton_euler_residual
 from plantar.twin import PAPER, play_all
@@ -73,3 +75,17 @@ def test_the_warning_names_axis_and_size() -> None:
     assert "roll" in note.text
     assert "+10 ± 4 %" in note.text
     assert "left +12 %, right +8 %" in note.text
+
+
+@pytest.mark.parametrize(("off", "axes"), [(2.9, set()), (3.1, {"pitch", "roll"}), (3.4, {"pitch", "roll"})])
+def test_one_foot_that_is_off_about_both_axes_shows_in_both_together(
+    twin: RobotModel, sweep: MotionLog, monkeypatch: pytest.MonkeyPatch, off: float, axes: set[str]
+) -> None:
+    """The left foot's gain is `off` deviations away about each axis: 3.2 would show about one, 3.0 about both."""
+    residual = newton_euler_residual(twin, sweep)
+    assert residual is not None
+    deviation = 0.05
+    values = -off * deviation * np.array([1.0, 0.0, 1.0, 0.0])
+    covariance = (deviation**2 - twin.uncertainty.wrench_gain**2) * np.eye(4)
+    monkeypatch.setattr(moment_balance, "_solved", lambda *_: (values, covariance))
+    assert set(torque_gains(twin, [residual])) == axes

@@ -93,6 +93,13 @@ class Turns:
         """Whether the gyroscope turns as the orientation does, read as the columns say."""
         return self.apart["as it is"] < RIGHT_TURN
 
+    @property
+    def about_world(self) -> bool:
+        """Whether the gyroscope turns as the orientation does about the world's axes, and not about the IMU's own."""
+        # A constant bias is no fault: the fit takes it off.
+        integral, turn, world = (side - side.mean(axis=0) for side in (self.integral, self.turn, self.world))
+        return float(np.sum((integral - world) ** 2)) < FOLLOWED * float(np.sum((integral - turn) ** 2))
+
 
 def check_gyroscope(name: str, log: MotionLog, orientation: Array, turns: Turns) -> Iterator[Finding]:
     """Findings about the turns' size first, then their sense, their moments, and the axes that they are about."""
@@ -113,6 +120,7 @@ def check_gyroscope(name: str, log: MotionLog, orientation: Array, turns: Turns)
         if opposite:
             names = " and ".join(f"'imu.{name}.angular_velocity.{axis}'" for axis in opposite)
             text = f"column {names}: turns against the orientation, which the accelerometer's up does not contradict"
+            text += ", or all of the gyroscope turns about the world's axes" if turns.about_world else ""
             yield Finding("sign", f"{text} (valid: right-handed about the IMU's axes)", True)
             return
     yield from _late(name, log, orientation)
@@ -128,12 +136,11 @@ def check_gyroscope(name: str, log: MotionLog, orientation: Array, turns: Turns)
 
 def _axes_and_scale(where: str, turns: Turns) -> Iterator[Finding]:
     """A gyroscope that reads nearly what the orientation does, but about other axes, or too much or too little."""
-    # A constant bias is no fault: the fit takes it off.
-    integral, turn, world = (side - side.mean(axis=0) for side in (turns.integral, turns.turn, turns.world))
+    integral, turn = (side - side.mean(axis=0) for side in (turns.integral, turns.turn))
     apart, power = float(np.sum((integral - turn) ** 2)), float(np.sum(turn**2))
     if power == 0 or apart == 0:
         return
-    if float(np.sum((integral - world) ** 2)) < FOLLOWED * apart:
+    if turns.about_world:
         yield Finding("gyroscope_frame", f"{where}: turns about the world's axes (valid: the IMU's own)")
         return
     mount, left = Rotation.align_vectors(integral, turn)

@@ -88,9 +88,13 @@ def _accelerometer_agrees(name: str, log: MotionLog, orientation: Array, turns: 
     if apart["as it is"] < WRONG_ANGLE:
         return
     text = f"up differs from the accelerometer's by {np.degrees(apart['as it is']):.0f} deg"
-    if turns and np.pi - apart["as it is"] < RIGHT_ANGLE:
+    if np.pi - apart["as it is"] < RIGHT_ANGLE:
         where = f"columns 'imu.{name}.linear_acceleration.*'"
-        told = f"{where}: points down at rest, reversed, or the orientation's world has z down; the gyroscope agrees"
+        told = f"{where}: points down at rest, reversed, or the orientation's world has z down"
+        if turns:
+            told += "; the gyroscope turns as the orientation does"
+        elif apart[best] < RIGHT_ANGLE:
+            told += f"; or its quaternion is no w x y z: {best} it agrees"
         valid = f"valid: proper acceleration, +{GRAVITY:.2f} m/s² upwards at rest; orientation body to world, z up"
         yield Finding("sign", f"{told} ({valid})", True)
     elif apart[best] < RIGHT_ANGLE:

@@ -31,9 +31,19 @@ def check_load_signs(robot: RobotModel, loads: Mapping[str, Array]) -> Iterator[
             text += "; the feet exchange load as they should, so the sensors were zeroed under load"
             valid = "valid: zeroed in the air, or 'contact: always' for feet that stand throughout"
             yield Finding("zeroed_under_load", f"{text} ({valid})", True)
+        elif _others_carry_all(loads, name, weight):
+            text = f"column 'wrench.{foot.wrench.name}.force.z', value {usual:.4g}: reads this while the other foot"
+            text += " carries the whole weight, so its zero is off"
+            yield Finding("zeroed_under_load", f"{text} (valid: 0; zero the sensor in the air)", True)
         else:
             valid = f"valid: > 0; set 'sign: {-int(foot.wrench.sign)}' in feet.{name}.wrench"
             yield Finding("sign", f"{text} ({valid})", True)
+
+
+def _others_carry_all(loads: Mapping[str, Array], name: str, weight: float) -> bool:
+    """Whether the weight is whole without this foot rather than with its load reversed."""
+    others = sum(float(np.nanmedian(load)) for other, load in loads.items() if other != name)
+    return abs(others - weight) < abs(others - float(np.nanmedian(loads[name])) - weight)
 
 
 def _exchange(loads: list[Array], weight: float) -> bool:

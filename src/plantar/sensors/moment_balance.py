@@ -74,19 +74,29 @@ def torque_gains(robot: RobotModel, residuals: Sequence[NewtonEulerResidual]) ->
     if not residuals:
         return {}
     sides, feet = [_sides(robot, residual) for residual in residuals], len(robot.feet)
-    gains, covariance = _solved(sides, _prior(robot))
-    draws, found = len(sides[0].drawn), {}
-    limit = stats.f.ppf(1 - CHANCE, feet, max(draws - feet, 2) if draws else np.inf)
+    values, covariance = (part[..., : 2 * feet] for part in _solved(sides, _prior(robot)))
+    usual = covariance[: 2 * feet] + robot.uncertainty.wrench_gain**2 * np.eye(2 * feet)
+    gains, beyond = {}, {}
     for place, axis in enumerate(ROTATIONAL_AXES):
         mine = slice(place * feet, (place + 1) * feet)
-        value, spread = gains[mine], covariance[mine, mine]
-        usual = spread + robot.uncertainty.wrench_gain**2 * np.eye(feet)
-        distance = float(value @ np.linalg.solve(usual, value)) / feet
-        shares = dict(zip(robot.feet, (-value / (1 + value)).tolist(), strict=True))
-        gain = TorqueGain(shares, float(np.sqrt(spread.sum())) / feet)
-        if distance > limit and gain.reach > WORTH_SAYING and not gain.opposed:
-            found[axis] = gain
-    return found
+        shares = dict(zip(robot.feet, (-values[mine] / (1 + values[mine])).tolist(), strict=True))
+        gains[axis] = TorqueGain(shares, float(np.sqrt(covariance[mine, mine].sum())) / feet)
+        beyond[axis] = _beyond_chance(values[mine], usual[mine, mine], len(sides[0].drawn))
+    # One foot's torques that are off about both axes show less about each than about both together.
+    if not any(beyond.values()) and not any(gain.opposed for gain in gains.values()):
+        beyond = dict.fromkeys(gains, _beyond_chance(values, usual, len(sides[0].drawn)))
+    return {
+        axis: gain
+        for axis, gain in gains.items()
+        if beyond[axis] and gain.reach > WORTH_SAYING and not gain.opposed
+    }
+
+
+def _beyond_chance(values: Array, usual: Array, draws: int) -> bool:
+    """Whether gains (k,) are larger than a covariance (k, k) from so many `draws` lets them be by chance."""
+    distance = float(values @ np.linalg.solve(usual, values)) / len(values)
+    freedom = max(draws - len(values), 2) if draws else np.inf
+    return distance > float(stats.f.ppf(1 - CHANCE, len(values), freedom))
 
 
 def torque_gain_notes(gains: Mapping[Axis, TorqueGain]) -> dict[Axis, Note]:

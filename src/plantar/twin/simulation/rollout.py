@@ -83,7 +83,7 @@ def roll_out(
     recorder = _Recorder(model, joints, robot, plan.time.size)
     for sample in range(plan.time.size):
         stepper.at(plan.time[sample])
-        recorder.state(sample, data)
+        recorder.place(sample, data)
         rows = control[sample * parts : (sample + 1) * parts]
         stepper.sensed(rows[0] if walking is None else rows[0] + walking.correction)
         recorder.outputs(sample, data)
@@ -106,10 +106,11 @@ class _Recorder:
         self.effort = np.empty((size, model.nu))
         self.applied = np.empty((size, model.nv))
 
-    def state(self, sample: int, data: mujoco.MjData) -> None:
-        self.qpos[sample], self.qvel[sample] = data.qpos, data.qvel
+    def place(self, sample: int, data: mujoco.MjData) -> None:
+        self.qpos[sample] = data.qpos
 
     def outputs(self, sample: int, data: mujoco.MjData) -> None:
+        self.qvel[sample] = data.qvel
         self.sensors[sample], self.effort[sample] = data.sensordata, data.actuator_force
         self.applied[sample] = data.qfrc_applied
 

@@ -31,7 +31,7 @@ class Stepper:
     def __init__(
         self, model: mujoco.MjModel, data: mujoco.MjData, physics: Physics, robot: RobotModel
     ) -> None:
-        self.model, self.physics = model, physics
+        self.model, self.data, self.physics = model, data, physics
         rubber = _rubber(model, physics, robot)
         step = engine_step()
         self.steps: Steps = (
@@ -47,10 +47,25 @@ class Stepper:
         self.model.geom_friction[0, 0] = friction
 
     def sensed(self, row: Array) -> None:
-        """One step with inputs (nu,), after which the sensors hold what belongs to the state it started from."""
-        self.model.opt.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_SENSOR)
+        """One step with inputs (nu,), after which the sensors hold what belongs to the positions it started from.
+
+        Rates are those in which the step ends: the implicit damping acts on them.
+        """
+        model, data = self.model, self.data
+        before = data.qvel.copy()
+        model.opt.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_SENSOR)
         self.steps.run(row[None])
-        self.model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_SENSOR)
+        after = data.qvel.copy()
+        # MuJoCo has read its sensors at accelerations without the implicit damping of servos and bushes, which light
+        # links miss by some percent: forces would not follow from the motion, nor torques from a bush's rate.
+        data.qvel[:], data.qacc[:] = before, (after - before) / model.opt.timestep
+        mujoco.mj_rnePostConstraint(model, data)
+        mujoco.mj_sensorAcc(model, data)
+        data.qvel[:] = after
+        mujoco.mj_fwdVelocity(model, data)
+        mujoco.mj_sensorVel(model, data)
+        mujoco.mj_fwdActuation(model, data)
+        model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_SENSOR)
 
     def blind(self, rows: Array) -> None:
         """Steps with inputs (count, nu) whose sensors nobody reads: they are not computed."""
