@@ -54,3 +54,9 @@ def swayed() -> Rollout:
 def tilted() -> Rollout:
     """Four seconds of Tilt3 on the paper's bushes."""
     return rolled(short(plan("Tilt3"), 2.0, 6.0), hrp2.robot(), Physics())
+
+
+@cache
+def flung() -> Rollout:
+    """Three seconds of Myrand5 on the paper's bushes."""
+    return rolled(short(plan("Myrand5"), 10.0, 13.0), hrp2.robot(), Physics())

@@ -21,7 +21,7 @@ from plantar.twin.simulation import stepping
 from plantar.twin.simulation.physics import Physics, Slip
 from plantar.twin.simulation.rollout import Rollout, roll_out, scene_xml
 from plantar.twin.simulation.rubber import Element
-from twin_samples import plan, roll, short, swayed, tilted
+from twin_samples import flung, plan, roll, short, swayed, tilted
 
 GRAVITY = 9.80665
 
@@ -100,11 +100,22 @@ def test_a_foot_in_the_air_reads_nothing() -> None:
 
 
 def test_newton_and_euler_close_over_the_whole_robot() -> None:
-    """The base rows of inverse dynamics on the URDF equal the logged wrenches, sole's weight and all."""
-    robot, rollout = hrp2.robot(), tilted()
+    """The base rows of inverse dynamics on the URDF equal the logged wrenches, sole's weight and all: of a robot that
+    sways slowly, and of one whose light arms move fast."""
+    for rollout, least in ((tilted(), 1e-3), (flung(), 3e-3)):
+        sides = [_both_sides(rollout, row) for row in range(100, len(rollout.time) - 100, 20)]
+        needed, measured = (np.array(side) for side in zip(*sides, strict=True))
+        for rows in (slice(0, 3), slice(3, 6)):
+            off, moves = needed[:, rows] - measured[:, rows], needed[:, rows] - needed[:, rows].mean(axis=0)
+            assert np.linalg.norm(off) < least * np.linalg.norm(moves), np.linalg.norm(off) / np.linalg.norm(
+                moves
+            )
+
+
+def _both_sides(rollout: Rollout, row: int) -> tuple[np.ndarray, np.ndarray]:
+    robot = hrp2.robot()
     columns = recorded(rollout, robot)
     model, data = robot.floating_model, robot.floating_model.createData()
-    row = len(rollout.time) // 2
     before, q, after = (_configuration(model, rollout, columns, at) for at in (row - 1, row, row + 1))
     forth, back = pin.difference(model, q, after), pin.difference(model, before, q)
     tau = pin.rnea(model, data, q, (forth + back) / 2 / 0.005, (forth - back) / 0.005**2)
@@ -116,8 +127,7 @@ def test_newton_and_euler_close_over_the_whole_robot() -> None:
         local = [columns[f"wrench.{side}_foot.{k}.{a}"][row] for k in ("force", "torque") for a in "xyz"]
         placement = data.oMi[model.getJointId(robot.model.names[joint])] * pose
         total += data.oMi[1].actInv(placement.act(pin.Force(np.array(local)))).vector
-    assert total[:3] == pytest.approx(tau[:3], abs=0.2)
-    assert total[3:] == pytest.approx(tau[3:6], abs=0.1)
+    return tau[:6], total
 
 
 def _configuration(
