@@ -102,14 +102,12 @@ def test_a_foot_in_the_air_reads_nothing() -> None:
 def test_newton_and_euler_close_over_the_whole_robot() -> None:
     """The base rows of inverse dynamics on the URDF equal the logged wrenches, sole's weight and all: of a robot that
     sways slowly, and of one whose light arms move fast."""
-    for rollout, least in ((tilted(), 1e-3), (flung(), 3e-3)):
+    for rollout, least in ((tilted(), (3e-5, 5e-4)), (flung(), (5e-5, 1e-4))):
         sides = [_both_sides(rollout, row) for row in range(100, len(rollout.time) - 100, 20)]
         needed, measured = (np.array(side) for side in zip(*sides, strict=True))
-        for rows in (slice(0, 3), slice(3, 6)):
+        for rows, most in zip((slice(0, 3), slice(3, 6)), least, strict=True):
             off, moves = needed[:, rows] - measured[:, rows], needed[:, rows] - needed[:, rows].mean(axis=0)
-            assert np.linalg.norm(off) < least * np.linalg.norm(moves), np.linalg.norm(off) / np.linalg.norm(
-                moves
-            )
+            assert np.linalg.norm(off) < most * np.linalg.norm(moves)
 
 
 def _both_sides(rollout: Rollout, row: int) -> tuple[np.ndarray, np.ndarray]:
