@@ -48,7 +48,9 @@ class FootFit:
     notes: tuple[Note, ...] = ()
 
 
-def fit_foot(ready: PreparedLogs, foot: str, progress: Callable[[str], None]) -> tuple[FootFit, PreparedLogs]:
+def fit_foot(
+    ready: PreparedLogs, foot: str, place: PlaceSpread, progress: Callable[[str], None]
+) -> tuple[FootFit, PreparedLogs]:
     """Pitch and roll of one foot, and the logs without the samples that leave either model by far.
 
     What is left out is decided for both axes before either is scored. Clean recordings are fitted once; others again
@@ -56,15 +58,15 @@ def fit_foot(ready: PreparedLogs, foot: str, progress: Callable[[str], None]) ->
     """
     progress(f"fit {foot}")
     given_up: dict[Axis, str] = {}
-    fits, several = _fits(ready, foot, {}, given_up), False
+    fits, several = _fits(ready, foot, place, {}, given_up), False
     for _ in range(ROUNDS):
         masks = _outliers(ready, fits, given_up)
         if not any(masks.values()):
             break
         several = True
         ready = replace(ready, fitted=tuple(_without(one, foot, masks) for one in ready.fitted))
-        fits = _fits(ready, foot, {axis: fit.model for axis, fit in fits.items()}, given_up)
-    fits = _fits(ready, foot, {}, given_up) if several else fits
+        fits = _fits(ready, foot, place, {axis: fit.model for axis, fit in fits.items()}, given_up)
+    fits = _fits(ready, foot, place, {}, given_up) if several else fits
     fits = {axis: fit for axis, fit in fits.items() if axis not in given_up}
     if (turned := turned_bush(fits)) is not None:
         fits = {axis: replace(fit, notes=(*fit.notes, turned)) for axis, fit in fits.items()}
@@ -111,17 +113,28 @@ def _with_axis(found: FootFit, ready: PreparedLogs, fit: AxisFit) -> FootFit:
 
 
 def _fits(
-    ready: PreparedLogs, foot: str, models: Mapping[Axis, BushModel], given_up: dict[Axis, str]
+    ready: PreparedLogs,
+    foot: str,
+    place: PlaceSpread,
+    models: Mapping[Axis, BushModel],
+    given_up: dict[Axis, str],
 ) -> dict[Axis, AxisFit]:
-    found, place = {}, PlaceSpread.of(ready.robot, foot)
-    for axis in ROTATIONAL_AXES:
-        if axis in given_up:
-            continue
+    found: dict[Axis, AxisFit] = {}
+    timed = not ready.sensor_delay.doubtful
+
+    def fit(axis: Axis, place: PlaceSpread) -> None:
         with gives_up(axis, given_up):
-            timed = not ready.sensor_delay.doubtful
-            fit = fit_axis(ready.fitted, foot, axis, ready.settings, models.get(axis), place, timed)
-            if fit is not None:
-                found[axis] = fit
+            own = fit_axis(ready.fitted, foot, axis, ready.settings, models.get(axis), place, timed)
+            found.update({axis: own} if own is not None else {})
+
+    for axis in ROTATIONAL_AXES:
+        if axis not in given_up:
+            fit(axis, place)
+    if set(ROTATIONAL_AXES) <= set(found):
+        for axis, other in (ROTATIONAL_AXES, ROTATIONAL_AXES[::-1]):
+            if (known := place.known_from(found[other], found[axis])) is not None:
+                fit(axis, known)
+                break
     return found
 
 

@@ -15,7 +15,8 @@ from plantar.conventions import OFFSET_UNIT
 from plantar.errors import DataError
 from plantar.feet.assess.residual_table import residual_table
 from plantar.feet.fit.axis import AxisFit
-from plantar.feet.foot_fit import fit_foot
+from plantar.feet.fit.bush_place import PlaceSpread
+from plantar.feet.foot_fit import FootFit, fit_foot
 from plantar.feet.prepare import PreparedLogs, prepare_all
 from plantar.feet.recording import Recording
 from plantar.feet.settings import FeetSettings
@@ -81,10 +82,9 @@ def fit_prepared(
         names = ", ".join(log.name for log in logs)
         valid = "a standing robot; were the sensors zeroed under load, 'contact: always' for these feet"
         raise DataError(f"{names}: no foot carries load in any log (valid: {valid})")
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        both = list(pool.map(lambda foot: fit_foot(ready, foot, progress), robot.feet))
-    found = [fit for fit, _ in both]
-    ready = _merged(ready, {foot: own for foot, (_, own) in zip(robot.feet, both, strict=True)})
+    both = _fitted_feet(ready, progress)
+    found = [fit for fit, _ in both.values()]
+    ready = _merged(ready, {foot: own for foot, (_, own) in both.items()})
     fits = [fit for each in found for fit in each.fits]
     parameters = [row for each in found for row in each.parameters]
     rows = [row for each in found for row in each.validation]
@@ -122,6 +122,26 @@ def fit_prepared(
         swing_zeros=tuple(row for recording in ready.recordings for row in recording.zeros),
         residuals=residual_table(ready.recordings, predictions),
     )
+
+
+def _fitted_feet(
+    ready: PreparedLogs, progress: Callable[[str], None]
+) -> dict[str, tuple[FootFit, PreparedLogs]]:
+    """Every foot, those once more whose robot file another foot's motions put in doubt."""
+    places = {foot: PlaceSpread.of(ready.robot, foot) for foot in ready.robot.feet}
+
+    def fit_all(places: Mapping[str, PlaceSpread]) -> dict[str, tuple[FootFit, PreparedLogs]]:
+        with ThreadPoolExecutor(os.cpu_count()) as pool:
+            found = pool.map(lambda foot: fit_foot(ready, foot, places[foot], progress), places)
+            return dict(zip(places, found, strict=True))
+
+    found = fit_all(places)
+    fits = {foot: fit.fits for foot, (fit, _) in found.items()}
+    wider = {
+        foot: place.doubted_by([fit for other in fits if other != foot for fit in fits[other]], fits[foot])
+        for foot, place in places.items()
+    }
+    return found | fit_all({foot: place for foot, place in wider.items() if place != places[foot]})
 
 
 def _axis_model(fit: AxisFit) -> AxisModel:

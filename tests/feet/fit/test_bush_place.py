@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -10,9 +11,12 @@ import pytest
 from biped import SLIPPING, TRUTH, record, sines, sway
 from biped_robot import FEET, Frame, Mounting
 from feet_trials import AXES, LINEAR, PUNCTUAL, codes, noisy
+from plantar.conventions import Axis
+from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.bush_place import PlaceSpread
 from plantar.feet.identify import identify_feet
 from plantar.logs.motion_log import MotionLog
+from plantar.notes import Note
 from plantar.results.feet import FeetResult
 from plantar.robot.guesses import Guess
 from plantar.robot.model import RobotModel
@@ -68,6 +72,50 @@ def test_a_centre_at_another_height_is_found(
         assert abs(model.moment_arms[1]) == pytest.approx(0.03, abs=0.004)
     assert worst(found) < 0.02
     assert worst(identify_feet(robot, logs, settings=LINEAR)) > 2 * worst(found)
+
+
+def placed(axis: Axis, height: float, *codes: str) -> AxisFit:
+    """A fit of which only the height of the bush's centre and the notes matter."""
+    fit = Mock(spec=AxisFit)
+    fit.axis, fit.moment_arms = axis, (0.0, height)
+    fit.notes = tuple(Note(code, "warning", "") for code in codes)
+    return fit
+
+
+@pytest.mark.parametrize(("pitch", "roll", "expected"), [
+    (-0.029, -0.012, -0.029), (0.029, 0.028, 0.029), (-0.012, -0.029, None), (0.004, 0.001, None),
+])  # fmt: skip
+def test_an_axis_whose_motions_show_less_takes_the_height_from_the_other(
+    pitch: float, roll: float, expected: float | None
+) -> None:
+    known = PlaceSpread(0.005, 0.005, 0.02).known_from(placed("pitch", pitch), placed("roll", roll))
+    assert (known and known.height) == expected
+    assert known is None or known.above == 0.005
+
+
+@pytest.mark.parametrize(("told", "own", "above"), [
+    ("bush_place", (0.002, 0.03), 0.03), ("bush_place_far", (0.0, -0.001), 0.03), ("bush_turned", (0.0, 0.0), 0.005),
+    ("bush_place", (0.02, -0.03), 0.005),
+])  # fmt: skip
+def test_a_height_told_of_one_foot_puts_the_other_foot_s_in_doubt(
+    told: str, own: tuple[float, float], above: float
+) -> None:
+    spread = PlaceSpread(0.005, 0.005, 0.02)
+    wide = spread.doubted_by([placed("pitch", -0.03, told)], [placed("roll", height) for height in own])
+    assert wide == replace(spread, above=above)
+
+
+def test_a_height_far_off_is_found_where_one_axis_alone_shows_it(measured: RobotModel) -> None:
+    """Motions that lean forward and hardly aside: both feet's sensors are 4 cm lower than the robot file has them."""
+    little, none = sines((0.0008, 0.5, 0.0)), sines((0.0, 0.0, 0.0))
+    ankles = {foot: (sines((0.02, 0.3, 2.0), (0.01, 0.8, 0.0)), little) for foot in FEET}
+    forward = sway("forward", 5, duration=40.0, torso=(none, none, none), ankles=ankles)
+    log = shifted(noisy(record(forward), 5), np.array([0.0, 0.0, 0.04]))
+    sure = replace(measured, uncertainty=Uncertainty(bush_position=0.001, wrench_crosstalk=0.0))
+    found = identify_feet(sure, [log], settings=PUNCTUAL)
+    for foot in FEET:  # each axis alone is drawn half way to the robot file
+        pitch, roll = (one.moment_arms[1] for one in found.models if one.foot == foot)
+        assert roll < pitch < -0.02
 
 
 def test_a_turned_force_sensor_is_found(measured: RobotModel, recorded: list[MotionLog]) -> None:

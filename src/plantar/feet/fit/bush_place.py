@@ -18,13 +18,14 @@ from plantar.conventions import Array, Mask
 from plantar.estimation import Block, effect_of, fit_blocks
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.load_torque import place_columns
-from plantar.feet.fit.place_notes import place_notes
+from plantar.feet.fit.place_notes import CLEAR, FAR, PLACE, place_notes
 from plantar.feet.fit.regression_data import beside, model_columns, tangent_blocks
 from plantar.feet.recording import Recording
 from plantar.robot.model import RobotModel
 
 GUESSED = 0.02  # m: what a guess without a spread of its own may be off by
 TURN_STEP = 1e-3  # rad, of the differences that stand for derivatives
+ALIKE = 0.5  # of another foot's height above the robot file's place
 UNSEEN = 1e-4  # of the torque's rms: what one deviation of a place adds beside it is as good as nothing
 SINGULAR = 1e6  # condition of the fit beyond which the motions do not show the place
 
@@ -32,16 +33,38 @@ SINGULAR = 1e6  # condition of the fit beyond which the motions do not show the 
 @dataclass(frozen=True)
 class PlaceSpread:
     """Deviation of the centre's place, `aside` and `above` [m], and of how far force sensor or IMU are `turned` [rad]
-    about any axis."""
+    about any axis. `height` [m]: how far above the robot file's place the centre is expected."""
 
     aside: float
     above: float
     turned: float
+    height: float = 0.0
 
     @property
     def deviations(self) -> Array:
         """Of the centre's place, the force sensor's yaw, and the IMU's turn about three axes, (6,)."""
         return np.array([self.aside, self.above, *[self.turned] * 4])
+
+    def known_from(self, other: AxisFit, own: AxisFit) -> PlaceSpread | None:
+        """The centre about the other axis of the same foot, where that shows it far off, and farther than this one.
+
+        Bush and force sensor have one height: a robot file that is wrong about it is so for both axes, and draws the
+        one more to itself whose motions show less.
+        """
+        height = other.moment_arms[1]
+        far = abs(height) > max(CLEAR * self.above, abs(own.moment_arms[1]))
+        return replace(self, height=height) if far else None
+
+    def doubted_by(self, others: Sequence[AxisFit], own: Sequence[AxisFit]) -> PlaceSpread:
+        """Wide enough for the height that motions show at another foot: who is wrong about one foot is about both.
+
+        As it is where no other foot shows it far off, or this one's own motions show as much.
+        """
+        told = [fit for fit in others if any(note.code in (PLACE, FAR) for note in fit.notes)]
+        height = max((abs(fit.moment_arms[1]) for fit in told), default=0.0)
+        least = min((abs(fit.moment_arms[1]) for fit in own), default=height)
+        doubted = height > CLEAR * self.above and least < ALIKE * height
+        return replace(self, above=height) if doubted else self
 
     @classmethod
     def of(cls, robot: RobotModel, foot: str) -> PlaceSpread:
@@ -78,10 +101,13 @@ def about_its_place(
         shared_offset=shared,
     )
     place, unsure = np.zeros(len(spreads)), np.diag(spreads**2)
+    place[1] = spread.height
     if found.condition_number <= SINGULAR:
         own = slice(size, size + len(tried))
-        drawn = _drawn(before[tried] + found.values[own], found.covariance[own, own], spreads[tried])
-        place[tried], unsure[np.ix_(tried, tried)] = drawn
+        seen = before[tried] + found.values[own] - place[tried]
+        drawn, left = _drawn(seen, found.covariance[own, own], spreads[tried])
+        place[tried] += drawn
+        unsure[np.ix_(tried, tried)] = left
     follows = np.column_stack(
         [
             effect_of(blocks, [own[:, row] for own in columns], shared_offset=shared)

@@ -16,6 +16,7 @@ TURN_WORTH_SAYING = 0.02  # rad: of a mount, likewise
 FARTHEST = np.array(
     [0.04, 0.04, 0.12, 0.12, 0.12, 0.12]
 )  # m, m, rad: corrected without doubting all the rest
+PLACE = "bush_place"
 FAR = "bush_place_far"
 BUSH_TURNED = "bush_turned"
 
@@ -51,7 +52,7 @@ def place_notes(fit: AxisFit, place: Array, std: Array, prior: Array) -> list[No
     text = f"{fit.foot} {fit.axis}: the torques turn {'; '.join(told)} (95 %): corrected"
     if (np.abs(place) > FARTHEST).any():
         return [Note(FAR, "warning", f"{text}, but that is far for an oversight; check the robot file")]
-    return [Note("bush_place", "warning", f"{text}; check the robot file")]
+    return [Note(PLACE, "warning", f"{text}; check the robot file")]
 
 
 def turned_bush(fits: Mapping[Axis, AxisFit]) -> Note | None:
