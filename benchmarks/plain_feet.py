@@ -38,7 +38,9 @@ def main(robot_file: Path, logs: list[Path]) -> None:
     model = pin.buildModelFromUrdf(str(robot_file.parent / robot["urdf"]))
     imu = model.frames[model.getFrameId(robot["imu"]["link"])]
     feet = [model.frames[model.getFrameId(foot["ankle"])] for foot in robot["feet"].values()]
-    rows: dict[tuple[int, int], list[np.ndarray]] = {(k, axis): [] for k in range(len(feet)) for axis in (0, 1)}
+    rows: dict[tuple[int, int], list[np.ndarray]] = {
+        (k, axis): [] for k in range(len(feet)) for axis in (0, 1)
+    }
     for log in logs:
         columns = read(log)
         period = float(np.median(np.diff(columns["time"])))
@@ -55,7 +57,10 @@ def main(robot_file: Path, logs: list[Path]) -> None:
                       for part in ("force.x", "force.y", "force.z", "torque.x", "torque.y")}  # fmt: skip
             above = foot["bush"]["xyz"][2] - foot["wrench"]["xyz"][2]
             # From the sensor to the bush's centre, which is `above` it.
-            torques = (wrench["torque.y"] - above * wrench["force.x"], wrench["torque.x"] + above * wrench["force.y"])
+            torques = (
+                wrench["torque.y"] - above * wrench["force.x"],
+                wrench["torque.x"] + above * wrench["force.y"],
+            )
             standing = wrench["force.z"] > 50.0
             for axis, torque in enumerate(torques if standing.any() else ()):
                 smooth = filtfilt(numerator, denominator, torque)

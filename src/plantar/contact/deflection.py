@@ -246,9 +246,10 @@ def _expect(what: str, values: Array, shape: Sequence[int]) -> None:
 
 def _rotation_from_z(axis: Array) -> Array:
     """A rotation whose third column is the unit `axis`, (3, 3)."""
-    x = np.cross(np.eye(3)[np.argmin(np.abs(axis))], axis)
-    x /= np.linalg.norm(x)
-    return np.column_stack([x, np.cross(axis, x), axis])
+    turned = skew(axis)
+    x = -turned[:, np.argmin(np.abs(axis))]
+    x /= np.sqrt(x @ x)
+    return np.array([x, turned @ x, axis]).T
 
 
 def _packed(placement: pin.SE3) -> Array:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy import stats
+from scipy import special
 
 from plantar.conventions import ROTATIONAL_AXES, Array, Axis
 from plantar.dynamics import Contact, Equation
@@ -76,7 +76,7 @@ def torque_gains(robot: RobotModel, residuals: Sequence[NewtonEulerResidual]) ->
     sides, feet = [_sides(robot, residual) for residual in residuals], len(robot.feet)
     gains, covariance = _solved(sides, _prior(robot))
     draws, found = len(sides[0].drawn), {}
-    limit = stats.f.ppf(1 - CHANCE, feet, max(draws - feet, 2) if draws else np.inf)
+    limit = special.fdtri(feet, max(draws - feet, 2) if draws else 1e9, 1 - CHANCE)
     for place, axis in enumerate(ROTATIONAL_AXES):
         mine = slice(place * feet, (place + 1) * feet)
         value, spread = gains[mine], covariance[mine, mine]
