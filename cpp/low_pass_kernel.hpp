@@ -3,6 +3,7 @@
 
 #include "lanes.hpp"
 #include "low_pass.hpp"
+#include "pack.hpp"
 
 namespace plantar::PLANTAR_ISA {
 
@@ -58,8 +59,7 @@ inline void low_pass(const LowPass& filter, const double* values, std::size_t n,
   first = settled(one, x), second = settled(two, x);
   for (std::ptrdiff_t i = last + padding; i >= 0; --i) {
     x = advance(two, second, advance(one, first, load(work + (i + padding) * LANES)));
-    if (i > last) continue;
-    for (std::size_t l = 0; l < count; ++l) out[i * k + column + l] = x[l];
+    if (i <= last) scatter(out + i * k + column, x, count);
   }
 }
 

@@ -17,9 +17,9 @@ def inertial_motion(
 ) -> Motion:
     """Motion of root and joints from proper acceleration, angular velocity and joint positions.
 
-    Of all samples or of those `kept`. Everything is filtered at `cutoff` [Hz] without lag; velocities and accelerations are differences of the filtered
-    positions, which the encoders report `late` by so much [s]. Raises RobotError without an IMU, LogError where its
-    columns are missing.
+    Of all samples or of those `kept`. Everything is filtered at `cutoff` [Hz] without lag; velocities and
+    accelerations are differences of the filtered positions, which the encoders report `late` by so much [s]. Raises
+    RobotError without an IMU, LogError where its columns are missing.
     """
     if robot.imu is None:
         raise RobotError(located("names no imu", path=robot.path, valid="imu: {name: ..., link: ...}"))

@@ -46,10 +46,18 @@ def differentiate(values: Array, period: float) -> Array:
 
     Second order next to the ends and to NaN.
     """
-    if len(values) < 2:
-        return np.zeros_like(values)
-    slope = np.gradient(values, period, axis=0)
-    if len(values) > 4:
-        inner = (8 * (values[3:-1] - values[1:-3]) - (values[4:] - values[:-4])) / (12 * period)
-        slope[2:-2] = np.where(np.isfinite(inner), inner, slope[2:-2])
-    return np.asarray(slope)
+    if len(values) < 5:
+        return np.asarray(np.gradient(values, period, axis=0)) if len(values) > 1 else np.zeros_like(values)
+    values = np.asarray(values, dtype=np.float64)
+    slope = np.empty_like(values)
+    np.subtract(values[3:-1], values[1:-3], out=slope[2:-2])
+    slope[2:-2] *= 8
+    slope[2:-2] -= values[4:]
+    slope[2:-2] += values[:-4]
+    slope[2:-2] /= 12 * period
+    slope[[0, -1]] = (values[[1, -1]] - values[[0, -2]]) / period
+    slope[[1, -2]] = (values[[2, -1]] - values[[0, -3]]) / (2 * period)
+    if not np.isfinite(slope).all():
+        near = np.gradient(values, period, axis=0)
+        slope = np.where(np.isfinite(slope), slope, near)
+    return slope

@@ -10,6 +10,8 @@ from plantar.conventions import Mask
 
 def runs(valid: Mask) -> list[slice]:
     """The segments of consecutive true samples, as slices."""
+    if valid.size and valid.all():
+        return [slice(0, len(valid))]
     edges = np.flatnonzero(np.diff(np.concatenate([[False], valid, [False]]).astype(np.int8)))
     return [slice(int(start), int(stop)) for start, stop in edges.reshape(-1, 2)]
 
