@@ -7,7 +7,6 @@
 #include <memory>
 #include <numbers>
 #include <stdexcept>
-#include <vector>
 
 #include "kernels.hpp"
 
@@ -35,9 +34,9 @@ nb::ndarray<nb::numpy, double> low_pass(
   std::unique_ptr<double[]> data(new double[std::max<std::size_t>(n * k, 1)]);
   {
     nb::gil_scoped_release release;
-    std::vector<double> work((n + 2 * padding) * table.lanes);
+    const std::unique_ptr<double[]> work(new double[(n + 2 * padding) * table.lanes]);
     for (std::size_t column = 0; column < k; column += table.lanes)
-      table.low_pass(filter, values.data(), n, k, column, work.data(), data.get());
+      table.low_pass(filter, values.data(), n, k, column, work.get(), data.get());
   }
   double* found = data.release();
   nb::capsule owner(found, [](void* p) noexcept { delete[] static_cast<double*>(p); });
