@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import sys
 import time
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -23,11 +24,17 @@ TALOS = Path(pin.__file__).parents[4] / "share/example-robot-data/robots/talos_d
 IMU, FEET = "torso_2_link", ("leg_left_6_link", "leg_right_6_link")
 
 
-def per_sample(model: pin.Model, q: Array, v: Array, orientation: Array, gyroscope: Array) -> Array:
+def per_sample(
+    model: pin.Model,
+    imu: pin.Frame,
+    feet: Sequence[pin.Frame],
+    q: Array,
+    v: Array,
+    orientation: Array,
+    gyroscope: Array,
+) -> Array:
     """(N, feet, 4): pitch, roll and rates by Pinocchio's kinematics and a few NumPy operations a foot."""
     data = model.createData()
-    imu = model.frames[model.getFrameId(IMU)]
-    feet = [model.frames[model.getFrameId(name)] for name in FEET]
     out = np.empty((len(q), len(feet), 4))
     for i in range(len(q)):
         pin.forwardKinematics(model, data, q[i], v[i])
@@ -60,7 +67,8 @@ def main(samples: int = 20_000) -> None:
     gyroscope = rng.normal(size=(samples, 3))
 
     started = time.perf_counter()
-    slow = per_sample(model, q, v, orientation, gyroscope)
+    imu, *feet = (model.frames[model.getFrameId(name)] for name in (IMU, *FEET))
+    slow = per_sample(model, imu, feet, q, v, orientation, gyroscope)
     loop = time.perf_counter() - started
 
     def batch() -> Array:

@@ -12,11 +12,10 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "aligned.hpp"
-#include "bindings_stepping.hpp"
+#include "bindings.hpp"
 #include "kernels.hpp"
 #include "parallel.hpp"
 #include "stream.hpp"
@@ -346,5 +345,6 @@ NB_MODULE(_core, m) {
       .def("parameters", &StreamObject::parameters, nb::arg("group"));
   m.def("stacked", &stacked, nb::arg("factors"), nb::arg("onto"), nb::arg("weights"), nb::arg("n"));
   m.def("inverse_upper", &inverse_upper, nb::arg("upper"));
+  bind_low_pass(m);
   bind_stepping(m);
 }

@@ -1,4 +1,4 @@
-#include "bindings_stepping.hpp"
+#include "bindings.hpp"
 
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/array.h>

@@ -4,6 +4,7 @@
 #include "chain_kernel.hpp"
 #include "gram_kernel.hpp"
 #include "inverse_dynamics_kernel.hpp"
+#include "low_pass_kernel.hpp"
 #include "qr_kernel.hpp"
 
 #define PLANTAR_STRING_(x) #x
@@ -14,6 +15,6 @@ namespace plantar::PLANTAR_ISA {
 extern const Kernels kernels;
 const Kernels kernels = {
     PLANTAR_STRING(PLANTAR_ISA), sizeof(LinkState) + sizeof(Wrench), qr_work, chain, regressor, inverse_dynamics,
-    qr_update, gram_update, cholesky};
+    qr_update, gram_update, cholesky, LANES, low_pass};
 
 }  // namespace plantar::PLANTAR_ISA

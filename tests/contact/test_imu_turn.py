@@ -38,7 +38,7 @@ def test_effects_are_those_of_another_mount(axis: int) -> None:
     rpy = rpy_of(pose(np.zeros(3), rotation=mount.rotation @ turn))
     other = replace(robot, imu=Imu(robot.imu.name, replace(mount, rpy=rpy)))
     before, after = (angles(one, positions, orientation) for one in (robot, other))
-    effects = imu_turn_effects(robot, positions, orientation)
+    effects = imu_turn_effects(robot, positions, orientation, 0.02)
     for foot in robot.feet:
         change = (after[foot] - before[foot]) / SMALL
         assert np.abs(change).max() > 0.1
@@ -47,4 +47,4 @@ def test_effects_are_those_of_another_mount(axis: int) -> None:
 
 def test_a_robot_without_imu_has_none() -> None:
     robot = replace(hrp2.robot(), imu=None)
-    assert imu_turn_effects(robot, np.zeros((3, len(robot.joint_names))), np.ones((3, 4))) == {}
+    assert imu_turn_effects(robot, np.zeros((3, len(robot.joint_names))), np.ones((3, 4)), 0.02) == {}

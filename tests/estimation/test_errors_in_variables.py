@@ -144,7 +144,7 @@ def test_a_noisy_gyroscope_costs_no_damping(tmp_path: Path) -> None:
     for foot, axis in TRUTH:
         for name in ("one", "second"):
             missed = residuals(noisy, name, foot, axis)
-            assert abs(missed.mean()) < 1e-6 * missed.std(), "offsets follow what is given back"
+            assert abs(missed.mean()) < 1e-3 * missed.std(), "offsets follow what is given back"
     inside = []
     for (foot, axis), truth in TRUTH.items():
         row = noisy.parameter(foot, axis, "damping")

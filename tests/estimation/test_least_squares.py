@@ -113,3 +113,14 @@ def test_what_is_not_excited_shows_in_the_rank() -> None:
     assert np.isfinite(fit.values).all()
     twice = Block("a", one.regressor[:, [0, 0]], one.response, 0.01)
     assert fit_linear([twice]).rank == 2
+
+
+def test_rows_that_are_thinned_leave_the_papers_deviation_as_it_is() -> None:
+    """It takes residuals of all samples for white; a fit of every fifth must not make it wider."""
+    random, stride = np.random.default_rng(3), 5
+    regressor = np.column_stack([np.sin(0.01 * np.arange(20_000)), np.cos(0.013 * np.arange(20_000))])
+    response = regressor @ [3.0, 2.0] + random.normal(size=20_000)
+    every = fit_linear([Block("log", regressor, response, 0.005)])
+    thin = Block("log", regressor[::stride], response[::stride], 0.005 * stride, thinned=stride)
+    np.testing.assert_allclose(fit_linear([thin]).white_std, every.white_std, rtol=0.05)
+    assert thin.duration == pytest.approx(100.0)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from plantar.signals.filters import differentiate, low_pass
+from plantar.signals.filters import differentiate, gain, low_pass
 
 PERIOD = 0.005
 
@@ -32,6 +32,18 @@ def test_the_filter_keeps_slow_and_removes_fast() -> None:
     assert np.abs(low_pass(tone(20.0), PERIOD, 5.0)[middle]).max() < 1e-4
     half = np.abs(low_pass(tone(5.0), PERIOD, 5.0)[middle]).max()
     assert half == pytest.approx(0.5, abs=0.01), "forth and back: -6 dB at the cutoff"
+
+
+@pytest.mark.parametrize("hertz", [2.0, 5.0, 8.0, 20.0])
+def test_the_gain_is_what_is_left_of_a_tone(hertz: float) -> None:
+    middle = slice(1000, -1000)
+    left = np.std(low_pass(tone(hertz), PERIOD, 5.0)[middle]) / np.std(tone(hertz)[middle])
+    assert left == pytest.approx(float(gain(np.array([hertz]), PERIOD, 5.0)[0]), rel=1e-3, abs=1e-7)
+
+
+def test_a_line_stays_a_line_in_runs_far_shorter_than_the_filter() -> None:
+    line = 3.0 - 2.0 * TIME[:12]
+    np.testing.assert_allclose(low_pass(line, PERIOD, 1.0, shortest=8), line, atol=1e-3)
 
 
 def test_the_filter_is_linear_and_keeps_constants() -> None:

@@ -94,6 +94,7 @@ def _group(text: str) -> typer.Typer:
         epilog=EPILOG,
         no_args_is_help=True,
         add_completion=False,
+        rich_markup_mode=None,  # boxes around the help take a quarter of a second
         pretty_exceptions_enable=False,
         context_settings={"help_option_names": ["-h", "--help"]},
     )

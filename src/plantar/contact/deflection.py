@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import pinocchio as pin
@@ -130,7 +131,7 @@ def foot_path(
     frames = []
     for joint, sign in path:
         placement = pin.SE3(tree.rotations[joint], tree.translations[joint])
-        to_axis = pin.SE3(_rotation_from_z(tree.axes[joint]), np.zeros(3))
+        to_axis = pin.SE3(_rotation_from_z(*tree.axes[joint].tolist()), np.zeros(3))
         if sign > 0:
             frames.append(_packed(onward * placement * to_axis))
             onward = to_axis.inverse()
@@ -244,11 +245,14 @@ def _expect(what: str, values: Array, shape: Sequence[int]) -> None:
         raise DataError(f"{what}: an array of shape {values.shape} (valid: {tuple(shape)})")
 
 
-def _rotation_from_z(axis: Array) -> Array:
-    """A rotation whose third column is the unit `axis`, (3, 3)."""
-    x = np.cross(np.eye(3)[np.argmin(np.abs(axis))], axis)
-    x /= np.linalg.norm(x)
-    return np.column_stack([x, np.cross(axis, x), axis])
+@lru_cache(maxsize=256)
+def _rotation_from_z(x: float, y: float, z: float) -> Array:
+    """A rotation whose third column is the unit axis `x, y, z`, (3, 3)."""
+    axis = np.array([x, y, z])
+    turned = skew(axis)
+    first = -turned[:, np.argmin(np.abs(axis))]
+    first /= np.sqrt(first @ first)
+    return np.array([first, turned @ first, axis]).T
 
 
 def _packed(placement: pin.SE3) -> Array:

@@ -13,28 +13,38 @@ from plantar.conventions import Array
 from plantar.robot.kinematics import KinematicTree
 from plantar.robot.model import RobotModel
 
+RATE = 50.0  # Hz, at which effects are computed: they follow hips and waist, not the feet
 STEP = 1e-3  # rad: angles of a mount act as their first order up to some degrees
 
 
-def imu_turn_effects(robot: RobotModel, positions: Array, orientation: Array) -> dict[str, Array]:
+def imu_turn_effects(
+    robot: RobotModel, positions: Array, orientation: Array, period: float
+) -> dict[str, Array]:
     """Change of each foot's pitch and roll with a turn of the IMU about its own x, y and z, (N, 2, 3) [rad/rad].
 
-    positions: (N, n_joints) [rad or m]; orientation: w x y z, IMU to world, (N, 4). None of a robot without IMU.
+    positions: (N, n_joints) [rad or m]; orientation: w x y z, IMU to world, (N, 4), a sample each `period` [s]. None of
+    a robot without IMU.
     """
     if robot.imu is None:
         return {}
     tree, imu = KinematicTree.from_model(robot.model), robot.frame(robot.imu.placement)
-    still = np.zeros_like(positions), np.zeros((len(orientation), 3))
+    every = np.arange(len(positions))
+    places = every[:: max(1, round(1 / (RATE * period)))]
+    ways = [np.zeros(3), *STEP * np.eye(3)]
+    attitudes = np.vstack([turned(orientation[places], way) for way in ways])
+    angles = np.tile(positions[places], (len(ways), 1))
+    still = np.zeros_like(angles), np.zeros((len(angles), 3))
     found = {}
     for name, foot in robot.feet.items():
         bush = robot.frame(foot.bush)
         path = foot_path(tree, imu, bush, bush[1].inverse() * robot.frame(foot.sole.placement)[1])
-        as_read = foot_motion(path, positions, still[0], orientation, still[1]).deflection
-        moved = [
-            foot_motion(path, positions, still[0], turned(orientation, STEP * axis), still[1]).deflection
-            for axis in np.eye(3)
-        ]
-        found[name] = np.stack([(one - as_read) / STEP for one in moved], axis=2)
+        read, *moved = np.split(
+            foot_motion(path, angles, still[0], attitudes, still[1]).deflection, len(ways)
+        )
+        changes = np.stack([(one - read) / STEP for one in moved], axis=2).reshape(len(places), -1)
+        found[name] = np.column_stack([np.interp(every, places, change) for change in changes.T]).reshape(
+            -1, *moved[0].shape[1:], len(moved)
+        )
     return found
 
 

@@ -62,10 +62,8 @@ def slides(indicators: Sequence[SlipIndicator], way: Array, period: float) -> Ma
     One slip indicator is sure of it somewhere, each sample of it is possible to one, and it covers LEAST_PATH.
     way: (N,), the speed [m/s] at which it does; the ringing of its filter beside what is fast counts as rest.
     """
-    from scipy.ndimage import maximum_filter1d  # costs start-up
-
     way = np.nan_to_num(way)
-    ringing = RINGING * maximum_filter1d(way, 2 * round(1 / SLIP_CUTOFF / period) + 1)
+    ringing = RINGING * _largest_around(way, round(1 / SLIP_CUTOFF / period))
     possible, sure = (np.zeros(len(way), dtype=bool) for _ in range(2))
     for indicator in indicators:
         speed, least = np.nan_to_num(indicator.speed), np.maximum(LEAST_SPEED, ringing)
@@ -135,15 +133,23 @@ def unresisted(indicator: SlipIndicator, velocity: Array, friction: Array, perio
     return found
 
 
+def _largest_around(values: Array, reach: int) -> Array:
+    """The largest of the values (n,) up to `reach` samples from each."""
+    wide, width, spanned = np.pad(values, reach, mode="edge"), 2 * reach + 1, 1
+    while spanned < width:
+        step = min(spanned, width - spanned)
+        wide, spanned = np.maximum(wide[:-step], wide[step:]), spanned + step
+    return wide
+
+
 def _without_drift(values: Array, period: float) -> Array:
     """Values (n,) without their running median: it keeps jumps and trends, and does not see what is short."""
-    from scipy.ndimage import median_filter  # costs start-up
-
     step = max(1, round(1 / DRIFT_RATE / period))
     places = np.arange(0, len(values), step)
     thinned = values[places]
     window = min(round(DRIFT_WINDOW / step / period), len(places)) | 1
     half = min(window // 2, len(places) - 1)
     padded = np.pad(thinned, half, mode="reflect", reflect_type="odd")
-    drift = median_filter(padded, window, mode="nearest")[half : half + len(places)]
+    around = np.lib.stride_tricks.sliding_window_view(np.pad(padded, window // 2, mode="edge"), window)
+    drift = np.median(around[half : half + len(places)], axis=1)
     return np.asarray(values - np.interp(np.arange(len(values)), places, drift))

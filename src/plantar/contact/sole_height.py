@@ -30,15 +30,13 @@ def height_changes(log: MotionLog, robot: RobotModel) -> Iterator[tuple[str, Arr
         return
     stride = max(1, round(1 / (RATE * log.period)))
     positions, attitude = log.positions(robot)[::stride], orientation[::stride]
-    still = np.zeros((len(attitude), 3))
-    unloaded = {foot: np.zeros((len(attitude), 6)) for foot in robot.feet}
 
     def height(of: RobotModel, angles: Array, quaternions: Array) -> Array:
+        still = np.zeros((len(angles), 3))
+        unloaded = dict.fromkeys(of.feet, np.zeros((len(angles), 6)))
         states = bush_states(of, angles, np.zeros_like(angles), quaternions, still, unloaded)
         left, right = (states[foot] for foot in robot.feet)
         return np.asarray(relative_pose(left, right).position[:, 2])
-
-    before = height(robot, positions, attitude)
 
     def change(after: Array, deviation: float) -> Array:
         return np.asarray(np.interp(log.time, log.time[::stride], (after - before) * deviation / STEP))
@@ -46,14 +44,20 @@ def height_changes(log: MotionLog, robot: RobotModel) -> Iterator[tuple[str, Arr
     path = frozenset().union(
         *(robot.joints_between(imu.placement, foot.bush) for foot in robot.feet.values())
     )
+    # All motions that differ from the recorded one, in one batch.
+    causes, angles, attitudes = list[tuple[str, float]](), [positions], [attitude]
     for column, joint in enumerate(robot.joint_names):
         if joint in path and known.encoder_zero:
-            moved = positions.copy()
-            moved[:, column] += STEP
-            yield joint, change(height(robot, moved, attitude), known.encoder_zero)
+            causes.append((joint, known.encoder_zero))
+            angles.append(positions + STEP * (np.arange(positions.shape[1]) == column))
+            attitudes.append(attitude)
     for axis in range(3 if known.imu_mount else 0):
-        moved = turned(attitude, STEP * np.eye(3)[axis])
-        yield f"imu {'xyz'[axis]}", change(height(robot, positions, moved), known.imu_mount)
+        causes.append((f"imu {'xyz'[axis]}", known.imu_mount))
+        angles.append(positions)
+        attitudes.append(turned(attitude, STEP * np.eye(3)[axis]))
+    before, *others = np.split(height(robot, np.vstack(angles), np.vstack(attitudes)), len(angles))
+    for (cause, deviation), after in zip(causes, others, strict=True):
+        yield cause, change(after, deviation)
     for name, foot in robot.feet.items():
         for axis in range(2 if known.bush_position else 0):
             bush = replace(foot.bush, xyz=foot.bush.xyz + STEP * foot.bush.rotation[:, axis])

@@ -12,12 +12,14 @@ from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.resampling import shifted
 
 
-def inertial_motion(robot: RobotModel, log: MotionLog, cutoff: float, late: float = 0.0) -> Motion:
+def inertial_motion(
+    robot: RobotModel, log: MotionLog, cutoff: float, late: float = 0.0, kept: slice = slice(None)
+) -> Motion:
     """Motion of root and joints from proper acceleration, angular velocity and joint positions.
 
-    Everything is filtered at `cutoff` [Hz] without lag; velocities and accelerations are differences of the filtered
-    positions, which the encoders report `late` by so much [s]. Raises RobotError without an IMU, LogError where its
-    columns are missing.
+    Of all samples or of those `kept`. Everything is filtered at `cutoff` [Hz] without lag; velocities and
+    accelerations are differences of the filtered positions, which the encoders report `late` by so much [s]. Raises
+    RobotError without an IMU, LogError where its columns are missing.
     """
     if robot.imu is None:
         raise RobotError(located("names no imu", path=robot.path, valid="imu: {name: ..., link: ...}"))
@@ -29,6 +31,7 @@ def inertial_motion(robot: RobotModel, log: MotionLog, cutoff: float, late: floa
     proper = low_pass(log.linear_acceleration(robot.imu.name), period, cutoff)
     carrier, placement = robot.frame(robot.imu.placement)
     tree = KinematicTree.from_model(robot.model)
-    relative = relative_motion(tree, carrier - 1, placement, positions, velocities, accelerations)
-    base = root_motion(relative, proper, rate, differentiate(rate, period))
-    return Motion(base, positions, velocities, accelerations)
+    moving = tuple(values[kept] for values in (positions, velocities, accelerations))
+    relative = relative_motion(tree, carrier - 1, placement, *moving)
+    base = root_motion(relative, proper[kept], rate[kept], differentiate(rate, period)[kept])
+    return Motion(base, *moving)

@@ -26,6 +26,7 @@ class StanceRows:
 class Block:
     """One recording's rows: `regressor` (n, k) without the offset's column, `response` (n,), `period` [s].
 
+    Rows may be every `thinned`th sample of a filtered signal, `period` apart: white residuals are those of all samples.
     `nuisance` (n, m) are columns of this recording alone, fitted beside its offset and then forgotten; `noise` (k,) is
     the variance of what is noise in the regressor's columns.
 
@@ -38,6 +39,7 @@ class Block:
     regressor: Array
     response: Array
     period: float
+    thinned: int = 1
     nuisance: Array | None = None
     noise: Array | None = None
     stances: StanceRows | None = None

@@ -14,7 +14,7 @@ import numpy as np
 from plantar.conventions import Array, Mask
 from plantar.estimation.blocks import Block
 from plantar.estimation.linear import information_inverse
-from plantar.signals.filters import FILTER_ORDER, low_pass
+from plantar.signals.filters import gain, low_pass
 
 ABOVE = 4.0  # cutoffs: from there on a signal counts as noise
 NORMAL = 1.4826  # standard deviation over median absolute value, of normal noise
@@ -37,17 +37,14 @@ def noise_after_filter(raw: Array, response: Array, period: float, cutoff: float
     whole = np.asarray(np.isfinite(smoother).all(axis=1) & np.isfinite(both).all(axis=1))
     if whole.sum() < FEWEST:
         return np.zeros(raw.shape[1])
-    frequency = np.linspace(0.0, highest, 2000)
-
-    def gain(at: float) -> Array:
-        return np.asarray(1 / (1 + (frequency / at) ** (2 * FILTER_ORDER)))
-
-    upper, lower = 1 - gain(ABOVE * cutoff), gain(ABOVE * cutoff) - gain(ABOVE / 2 * cutoff)
+    frequency = np.linspace(0.0, highest, 2000, endpoint=False)
+    passed, wide, narrow = (gain(frequency, period, share * cutoff) for share in (1, ABOVE, ABOVE / 2))
+    upper, lower = 1 - wide, wide - narrow
     densities = [
         (NORMAL * np.median(np.abs(_unexplained(part, whole, raw.shape[1])), axis=0)) ** 2 / np.mean(shape**2)
         for part, shape in ((both - smooth, upper), (smooth - smoother, lower))
     ]
-    return np.asarray(np.minimum(*densities) * np.mean(gain(cutoff) ** 2))
+    return np.asarray(np.minimum(*densities) * np.mean(passed**2))
 
 
 def _unexplained(band: Array, whole: Mask, count: int) -> Array:

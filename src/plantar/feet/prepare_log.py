@@ -93,7 +93,7 @@ def prepare(
         noise={name: np.zeros((2, 2)) for name in raw},
         places=places,
         notes=tuple(notes),
-        imu_turns=imu_turn_effects(robot, positions, orientation),
+        imu_turns=imu_turn_effects(robot, positions, orientation, log.period),
         zeros=tuple(row for name, zero in zeros.items() for row in zero.rows(log.name, name)),
     )
 

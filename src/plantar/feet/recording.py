@@ -21,6 +21,7 @@ from plantar.signals.filters import low_pass
 from plantar.signals.segments import run_ends
 
 FILTER_EDGE = 1.0  # of the filter's period, left out where a run of samples begins or ends
+SAMPLES_PER_CYCLE = 8  # of the cutoff, that a fit takes
 SHORTEST_STANCE_RUN = 8  # samples of a stance, for it to be filtered by itself
 
 Role = Literal["fit", "validate"]
@@ -65,6 +66,18 @@ class Recording:
     def used(self, foot: str) -> Mask:
         """Samples of this foot that are used."""
         return self.contacts[foot].used
+
+    def rows(self, foot: str) -> Mask:
+        """Those of the used samples that a fit takes: behind its filter a few of each cycle say all."""
+        rows = np.zeros(len(self.time), dtype=bool)
+        stride = self.stride(foot)
+        rows[::stride] = self.used(foot)[::stride]
+        return rows
+
+    def stride(self, foot: str) -> int:
+        """Samples from one of `rows` to the next; stances are too short to be thinned."""
+        thick = self.stances[foot] is not None
+        return 1 if thick else max(1, int(1 / (SAMPLES_PER_CYCLE * self.cutoff * self.period)))
 
     def without(self, foot: str, samples: Mask, reason: Reason, detail: str = "") -> Recording:
         """The same recording with these samples of one foot left out."""

@@ -7,7 +7,6 @@ from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from plantar.conventions import Array
 from plantar.models.bush_model import BushMotion
@@ -63,6 +62,8 @@ class BranchCurve:
     """
 
     def __init__(self, sharpness: float) -> None:
+        from scipy.interpolate import CubicSpline  # costs start-up
+
         fall = np.linspace(0.0, DEEPEST, 8001)  # -log(1 - |z|)
         z = -np.expm1(-fall)
         power = sharpness * np.log1p(-np.exp(-np.maximum(fall, 1e-15)))  # log |z|^n

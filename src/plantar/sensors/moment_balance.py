@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy import stats
+from scipy import special
 
 from plantar.conventions import ROTATIONAL_AXES, Array, Axis
 from plantar.dynamics import Contact, Equation
@@ -95,8 +95,8 @@ def torque_gains(robot: RobotModel, residuals: Sequence[NewtonEulerResidual]) ->
 def _beyond_chance(values: Array, usual: Array, draws: int) -> bool:
     """Whether gains (k,) are larger than a covariance (k, k) from so many `draws` lets them be by chance."""
     distance = float(values @ np.linalg.solve(usual, values)) / len(values)
-    freedom = max(draws - len(values), 2) if draws else np.inf
-    return distance > float(stats.f.ppf(1 - CHANCE, len(values), freedom))
+    freedom = max(draws - len(values), 2) if draws else 1e9
+    return distance > float(special.fdtri(len(values), freedom, 1 - CHANCE))
 
 
 def torque_gain_notes(gains: Mapping[Axis, TorqueGain]) -> dict[Axis, Note]:
@@ -176,15 +176,17 @@ def _solved(sides: Sequence[_Sides], prior: Array) -> tuple[Array, Array]:
         weights = 2 * CUTOFF * sides[0].period / np.mean(np.vstack(left) ** 2, axis=0)
         normal, target = known.copy(), np.zeros(len(prior))
         for side in sides:
-            normal += np.einsum("inc,jnc,c->ij", side.columns, side.columns, weights)
-            target += np.einsum("inc,nc,c->i", side.columns, side.missing, weights)
+            weighted = (side.columns * weights).reshape(len(prior), -1)
+            normal += weighted @ side.columns.reshape(len(prior), -1).T
+            target += weighted @ side.missing.ravel()
         values[:] = np.linalg.solve(normal, target)
     inverse, scatter = np.linalg.inv(normal), known.copy()
     moved: Array = np.zeros((len(prior), len(sides[0].drawn)))
     for side in sides:
         missed = side.missing - np.tensordot(values, side.columns, 1)
-        scores = np.einsum("inc,nc,c->ni", side.columns, missed, weights)
+        scores = np.sum(side.columns * (missed * weights), axis=2).T
         scatter += cosine_covariance(scores, len(scores) * side.period)[0]
         if moved.size:
-            moved += inverse @ np.einsum("inc,dnc,c->id", side.columns, side.drawn, weights)
+            weighted = (side.columns * weights).reshape(len(prior), -1)
+            moved += inverse @ weighted @ side.drawn.reshape(len(side.drawn), -1).T
     return values, inverse @ scatter @ inverse + moved @ moved.T / max(moved.shape[1], 1)

@@ -98,7 +98,7 @@ def newton_euler_residual(robot: RobotModel, log: MotionLog) -> NewtonEulerResid
         ]
 
     def predicted_at(late: float) -> Array:
-        moved = inertial_motion(robot, log, CUTOFF, late).select(kept) if late else part
+        moved = inertial_motion(robot, log, CUTOFF, late, kept) if late else part
         return equation.inverse_dynamics(moved, parameters)[BASE_ROWS].T
 
     readings = low_pass(wrenches[longest], log.period, CUTOFF)

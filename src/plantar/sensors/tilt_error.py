@@ -17,7 +17,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import fft
 
 from plantar.contact.deflection import BushState
 from plantar.contact.phases import FootContact
@@ -190,8 +189,8 @@ def _lean(push: Array, place: Array, period: float) -> Array:
     left = smooth[:, :2] + differentiate(differentiate(smooth[:, 2:], period), period)
     padding = min(round(PADDING / period), len(left) - 1)
     mirrored = np.vstack([left[padding:0:-1], left, left[-2 : -padding - 2 : -1]])
-    frequency = fft.rfftfreq(len(mirrored), period)
+    frequency = np.fft.rfftfreq(len(mirrored), period)
     height = -float(np.median(place[:, 2]))
     gain = 1 / (GRAVITY + height * (2 * np.pi * frequency) ** 2) / (1 + (frequency / CORRECTED) ** 8)
-    lean = fft.irfft(fft.rfft(mirrored, axis=0) * gain[:, None], len(mirrored), axis=0)
+    lean = np.fft.irfft(np.fft.rfft(mirrored, axis=0) * gain[:, None], len(mirrored), axis=0)
     return np.asarray(lean[padding : padding + len(left)])

@@ -3,45 +3,42 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy import fft
 
+from plantar import _core
 from plantar.conventions import Array
 from plantar.signals.segments import runs
 
 FILTER_ORDER = 4  # Butterworth, run forth and back
 SHORTEST_RUN = 27  # samples
+PADDED = 3.0  # of the cutoff's period, by which a run is continued: its filter has settled by then
+MOST_PADDED = 10_000  # samples
 
 
 def low_pass(values: Array, period: float, cutoff: float, shortest: int = SHORTEST_RUN) -> Array:
     """Zero-phase low-pass of (N,) or (N, k) at `cutoff` [Hz], each run without NaN by itself.
 
-    The gain is a Butterworth filter's, run forth and back, 1 / (1 + (f / cutoff)^(2·order)), applied to the spectrum
-    of the run mirrored about its ends. A cutoff at or above the Nyquist frequency changes nothing; runs of `shortest`
-    samples or fewer become NaN.
+    A Butterworth filter of fourth order, run forth and back (`gain`), on the run continued point-symmetrically beyond
+    both ends. A cutoff at or above the Nyquist frequency changes nothing; runs of `shortest` samples or fewer become
+    NaN.
     """
     if cutoff >= 0.95 * 0.5 / period:
         return values.copy()
-    padding = int(min(3 / cutoff / period, 10_000))
-    flat = values.reshape(len(values), -1)
+    padding = int(min(PADDED / cutoff / period, MOST_PADDED))
+    flat = np.ascontiguousarray(values.reshape(len(values), -1), dtype=np.float64)
+    found = runs(np.asarray(np.isfinite(flat).all(axis=1)))
+    if len(found) == 1 and found[0].stop - found[0].start == len(flat) > shortest:
+        return _core.low_pass(flat, cutoff * period, padding).reshape(values.shape)
     result = np.full_like(flat, np.nan)
-    for run in runs(np.asarray(np.isfinite(flat).all(axis=1))):
+    for run in found:
         if run.stop - run.start > shortest:
-            result[run] = _filtered(flat[run], period, cutoff, min(padding, run.stop - run.start - 1))
+            result[run] = _core.low_pass(flat[run], cutoff * period, padding)
     return result.reshape(values.shape)
 
 
-def _filtered(values: Array, period: float, cutoff: float, padding: int) -> Array:
-    """One run (n, k) through the low-pass, continued beyond both ends point-symmetrically."""
-    before = 2 * values[0] - values[padding:0:-1]
-    after = 2 * values[-1] - values[-2 : -padding - 2 : -1]
-    extended = np.vstack([before, values, after])
-    # What is left after the line between the ends is periodic: the spectrum of a jump would ring.
-    line = np.linspace(extended[0], extended[-1], len(extended))
-    length = fft.next_fast_len(len(extended), real=True)
-    spectrum = fft.rfft(extended - line, length, axis=0)
-    gain = 1 / (1 + (fft.rfftfreq(length, period) / cutoff) ** (2 * FILTER_ORDER))
-    smooth = fft.irfft(spectrum * gain[:, None], length, axis=0)[: len(extended)] + line
-    return np.asarray(smooth[padding : padding + len(values)])
+def gain(frequency: Array, period: float, cutoff: float) -> Array:
+    """What `low_pass` leaves of tones at these frequencies [Hz], of signals sampled each `period` [s]."""
+    share = np.tan(np.pi * period * frequency) / np.tan(np.pi * period * cutoff)
+    return np.asarray(1 / (1 + share ** (2 * FILTER_ORDER)))
 
 
 def differentiate(values: Array, period: float) -> Array:
@@ -49,10 +46,18 @@ def differentiate(values: Array, period: float) -> Array:
 
     Second order next to the ends and to NaN.
     """
-    if len(values) < 2:
-        return np.zeros_like(values)
-    slope = np.gradient(values, period, axis=0)
-    if len(values) > 4:
-        inner = (8 * (values[3:-1] - values[1:-3]) - (values[4:] - values[:-4])) / (12 * period)
-        slope[2:-2] = np.where(np.isfinite(inner), inner, slope[2:-2])
-    return np.asarray(slope)
+    if len(values) < 5:
+        return np.asarray(np.gradient(values, period, axis=0)) if len(values) > 1 else np.zeros_like(values)
+    values = np.asarray(values, dtype=np.float64)
+    slope = np.empty_like(values)
+    np.subtract(values[3:-1], values[1:-3], out=slope[2:-2])
+    slope[2:-2] *= 8
+    slope[2:-2] -= values[4:]
+    slope[2:-2] += values[:-4]
+    slope[2:-2] /= 12 * period
+    slope[[0, -1]] = (values[[1, -1]] - values[[0, -2]]) / period
+    slope[[1, -2]] = (values[[2, -1]] - values[[0, -3]]) / (2 * period)
+    if not np.isfinite(slope).all():
+        near = np.gradient(values, period, axis=0)
+        slope = np.where(np.isfinite(slope), slope, near)
+    return slope

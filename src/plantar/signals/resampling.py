@@ -98,10 +98,14 @@ def shifted(values: Array, period: float, delay: float) -> Array:
     """Evenly sampled `values` (N, k) as they were `delay` [s] later: undoes a sensor that reports late by `delay`."""
     if delay == 0:
         return values
-    time: Array = period * np.arange(len(values), dtype=np.float64)
-    flat = values.reshape(len(values), -1)
-    moved = [interpolate(time + delay, time, column, 2 * period) for column in flat.T]
-    return np.column_stack(moved).reshape(values.shape)
+    whole, share = int(delay // period), delay % period / period
+    wide = np.full((len(values) + 2 * abs(whole) + 2, *values.shape[1:]), np.nan)
+    first = abs(whole)
+    wide[first : first + len(values)] = values
+    before = wide[first + whole :][: len(values)]
+    return (
+        before.copy() if share == 0 else before + share * (wide[first + whole + 1 :][: len(values)] - before)
+    )
 
 
 def _aligned(log: MotionLog) -> dict[str, Array]:

@@ -10,13 +10,24 @@ from plantar.conventions import Mask
 
 def runs(valid: Mask) -> list[slice]:
     """The segments of consecutive true samples, as slices."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], valid, [False]]).astype(np.int8)))
-    return [slice(int(start), int(stop)) for start, stop in edges.reshape(-1, 2)]
+    return [slice(start, stop) for start, stop in _edges(valid).reshape(-1, 2).tolist()]
+
+
+def _edges(valid: Mask) -> NDArray[np.intp]:
+    """Where runs start and stop, in turn."""
+    changes = np.flatnonzero(valid[1:] != valid[:-1]) + 1
+    return np.concatenate(
+        [[0] * bool(valid[:1].any()), changes, [len(valid)] * bool(valid[-1:].any())]
+    ).astype(np.intp)
 
 
 def longest_run(valid: Mask) -> slice:
     """The longest of `runs`, empty where there is none."""
-    return max(runs(valid), key=lambda run: run.stop - run.start, default=slice(0, 0))
+    edges = _edges(valid)
+    if not edges.size:
+        return slice(0, 0)
+    longest = int(np.argmax(edges[1::2] - edges[::2]))
+    return slice(int(edges[2 * longest]), int(edges[2 * longest + 1]))
 
 
 def run_numbers(valid: Mask) -> NDArray[np.intp]:

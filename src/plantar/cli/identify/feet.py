@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
 from typing import Annotated
 
 import numpy as np
@@ -10,9 +11,7 @@ import typer
 from plantar.cli.identify import identification
 from plantar.cli.identify.feet_tables import print_feet
 from plantar.cli.terminal import progress
-from plantar.feet.identify import identify_feet
 from plantar.feet.settings import AUTOMATIC, DEFAULT_CUTOFF, MODEL_CHOICES, FeetSettings, OffsetRule
-from plantar.report import write_feet_report
 
 MODEL_HELP = (
     f"Model of the bush: {', '.join(MODEL_CHOICES)}. "
@@ -49,8 +48,12 @@ def run(
     reach = None if window is None else float(np.radians(window))
     late = None if wrench_delay is None else 1e-3 * wrench_delay
     settings = FeetSettings(offset, model, cutoff, window=reach, wrench_delay=late)
-    # The logs live no longer than the fit: the report needs their memory.
-    result = identify_feet(
-        *identification.opened(robot, logs, validate, out), settings=settings, progress=progress(quiet)
-    )
+    with ThreadPoolExecutor(1) as reader:
+        inputs = reader.submit(identification.opened, robot, logs, validate, out)
+        # What fits them is imported while they are read.
+        from plantar.feet.identify import identify_feet
+        from plantar.report import write_feet_report
+
+        result = identify_feet(*inputs.result(), settings=settings, progress=progress(quiet))
+    del inputs  # the report needs the logs' memory
     identification.keep(result, out, write_feet_report, print_feet, json=json, quiet=quiet)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Annotated, Any, Protocol, TypeVar
 
@@ -48,7 +50,9 @@ def opened(
     """The robot, the logs to fit and those to score; an `out` that cannot be used is refused before any work."""
     refuse_file(out)
     known = load_robot(robot)
-    return known, [open_log(path, known) for path in logs], [open_log(path, known) for path in validate or ()]
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        opened = list(pool.map(lambda path: open_log(path, known), [*logs, *(validate or ())]))
+    return known, opened[: len(logs)], opened[len(logs) :]
 
 
 def keep(

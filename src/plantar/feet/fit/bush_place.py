@@ -92,7 +92,7 @@ def about_its_place(
     if blocks[0].stances is not None or not spread.deviations.any():
         return fit
     chosen = [one for one in recordings if one.name in {block.label for block in blocks}]
-    columns = [_columns(one, fit)[one.used(fit.foot)] for one in chosen]
+    columns = [_columns(one, fit)[one.rows(fit.foot)] for one in chosen]
     spreads = np.where(_seen(blocks, columns, spread.deviations), spread.deviations, 0.0)
     size, tried = blocks[0].regressor.shape[1], np.flatnonzero(spreads)
     before = np.array([*fit.moment_arms, fit.turned, *fit.imu_turned])

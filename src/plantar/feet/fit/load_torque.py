@@ -15,9 +15,10 @@ def load_of(recording: Recording, foot: str) -> Array:
 
 
 def _filtered_as_torque(recording: Recording, foot: str, values: Array) -> Array:
-    """Values (N,) through the filter that the torque went through, 0 where they are not known."""
-    smooth = within_stances(values[:, None], recording.period, recording.cutoff, recording.stances[foot])
-    return np.nan_to_num(smooth[:, 0])
+    """Values (N, ...) through the filter that the torque went through, 0 where they are not known."""
+    rows = values.reshape(len(values), -1)
+    smooth = within_stances(rows, recording.period, recording.cutoff, recording.stances[foot])
+    return np.nan_to_num(smooth).reshape(values.shape)
 
 
 def moment_columns(recording: Recording, foot: str, axis: Axis) -> Array:
@@ -27,8 +28,8 @@ def moment_columns(recording: Recording, foot: str, axis: Axis) -> Array:
     slide is such a height. One that is aside adds a torque as large as the load.
     """
     column = ROTATIONAL_AXES.index(axis)
-    across = across_force(recording, foot, column)
-    return np.column_stack([load_of(recording, foot), _filtered_as_torque(recording, foot, across)])
+    both = np.column_stack([recording.bushes[foot].force_z, across_force(recording, foot, column)])
+    return _filtered_as_torque(recording, foot, both)
 
 
 def place_columns(recording: Recording, foot: str, axis: Axis) -> Array:

@@ -47,22 +47,24 @@ def blocks_of(
     steps = any(recording.stances[foot] is not None for recording in recordings)
     blocks = []
     for recording in recordings:
-        used, bush = recording.used(foot), recording.bushes[foot]
-        if used.sum() < FEWEST_SAMPLES or (fit is not None and recording.name not in fit.offsets):
+        rows, bush = recording.rows(foot), recording.bushes[foot]
+        few = recording.used(foot).sum() < FEWEST_SAMPLES
+        if few or (fit is not None and recording.name not in fit.offsets):
             continue
-        regressor = model_columns(recording, foot, axis, fit)[used]
+        regressor = model_columns(recording, foot, axis, fit)[rows]
         noise = np.zeros(regressor.shape[1])
         noise[:2] = recording.noise[foot][:, column]
         blocks.append(
             Block(
                 label=recording.name,
                 regressor=regressor,
-                response=(bush.torque[:, column] - _taken_off(recording, fit))[used],
-                period=recording.period,
+                response=(bush.torque[:, column] - _taken_off(recording, fit))[rows],
+                period=recording.period * recording.stride(foot),
+                thinned=recording.stride(foot),
                 nuisance=_nuisance(recording, foot, column, fit) if drift else None,
                 noise=noise,
                 stances=_stance_rows(recording, foot) if steps else None,
-                common_nuisance=moment_columns(recording, foot, axis)[used] if steps else None,
+                common_nuisance=moment_columns(recording, foot, axis)[rows] if steps else None,
                 common_spread=MOMENT_SPREAD if steps else None,
             )
         )
@@ -90,7 +92,7 @@ def beside(block: Block, columns: Array) -> Block:
 
 def _shape_slopes(recording: Recording, fit: AxisFit) -> Array:
     """Change of the torque with each nonlinear parameter at the used samples, (n, s), the states at the start held."""
-    slopes, used = [], recording.used(fit.foot)
+    slopes, used = [], recording.rows(fit.foot)
     for place, value in enumerate(fit.shape):
         ends = []
         for share in (1 + SHAPE_STEP, 1 - SHAPE_STEP):
@@ -111,7 +113,7 @@ def _nuisance(recording: Recording, foot: str, column: int, fit: AxisFit | None)
     """Columns (n, m) of one recording alone; None where a foot steps: the offsets of its stances follow any drift."""
     if recording.stances[foot] is not None:
         return None
-    used = recording.used(foot)
+    used = recording.rows(foot)
     time = recording.time[used]
     line = (time - time.mean())[:, None]
     if fit is None or not fit.model.zero_matters:
@@ -122,7 +124,7 @@ def _nuisance(recording: Recording, foot: str, column: int, fit: AxisFit | None)
 
 def _stance_rows(recording: Recording, foot: str) -> StanceRows:
     """The stance and the weight of each used sample; a foot that stands has one stance in all."""
-    stances, used = recording.stances[foot], recording.used(foot)
+    stances, used = recording.stances[foot], recording.rows(foot)
     if stances is None:
         return StanceRows(np.zeros(int(used.sum()), dtype=np.intp), np.ones(int(used.sum())))
     return StanceRows(stances.number[used], stances.weight[used])

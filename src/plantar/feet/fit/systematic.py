@@ -70,7 +70,7 @@ def systematic_causes(
     foot, column = fit.foot, ROTATIONAL_AXES.index(fit.axis)
     blocks = tangent_blocks(recordings, fit, drift=not shared)
     by_name = {recording.name: recording for recording in recordings}
-    parts = [(by_name[block.label], by_name[block.label].used(foot)) for block in blocks]
+    parts = [(by_name[block.label], by_name[block.label].rows(foot)) for block in blocks]
 
     def moved_by(changes: Sequence[Array]) -> Array:
         return effect_of(blocks, changes, shared_offset=shared)

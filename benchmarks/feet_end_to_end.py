@@ -1,0 +1,116 @@
+"""`plantar identify feet` beside the plain way (`plain_feet.py`), as whole processes, on the twin's logs.
+
+Prints seconds, CPU seconds and peak memory of each, and how many times faster plantar is, best of several turns.
+
+    python benchmarks/feet_end_to_end.py [--preset sensors] [--times 3]
+    python benchmarks/feet_end_to_end.py --long 600          one Parquet log of 600 s at 1 kHz
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from plantar.logs.motion_log import MotionLog
+from plantar.logs.save import save_log
+from plantar.motions import CAMPAIGN
+from plantar.robot.model import load_robot
+from plantar.twin import play_all, write_campaign
+from plantar.twin.cache import folder
+
+LOGS = CAMPAIGN[:9]  # six tilts and three manual sways
+LEFT_OUT = (".velocity", ".effort")  # what neither way reads
+LONG_RATE = 1000.0  # Hz
+
+
+@dataclass(frozen=True)
+class Spent:
+    """Clock and CPU time [s], and peak memory [MB], of a whole process."""
+
+    clock: float
+    cpu: float
+    memory: float
+
+
+def spent(command: Sequence[str]) -> Spent:
+    """Run a command to its end; CalledProcessError where it fails."""
+    start = time.perf_counter()
+    # As installed: compiled modules are kept from one turn to the next.
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+    environment["PYTHONPYCACHEPREFIX"] = str(folder() / "compiled")
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, env=environment)
+    _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode:
+        raise subprocess.CalledProcessError(process.returncode, command)
+    return Spent(time.perf_counter() - start, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024)
+
+
+def kept(preset: str, long: float) -> tuple[Path, list[Path]]:
+    """Robot file and logs, played once and kept in the cache's folder."""
+    out = folder() / f"feet_end_to_end_{preset}"
+    robot = out / "robot.yaml"
+    logs = [out / f"{name}.csv" for name in LOGS]
+    if not all(path.exists() for path in (robot, *logs)):
+        (recordings,) = play_all(LOGS, preset=preset)
+        write_campaign(out, recordings, None, preset)
+        for recording, path in zip(recordings, logs, strict=True):
+            save_log(_short(recording.log), path)
+    if not long:
+        return robot, logs
+    path = out / f"long_{long:g}.parquet"
+    if not path.exists():
+        save_log(_repeated(logs[0], robot, long), path)
+    return robot, [path]
+
+
+def _short(log: MotionLog) -> MotionLog:
+    """The log without columns that neither way reads."""
+    columns = {name: values for name, values in log.columns.items() if not name.endswith(LEFT_OUT)}
+    return MotionLog(log.name, log.time, columns)
+
+
+def _repeated(path: Path, robot: Path, seconds: float) -> MotionLog:
+    """A log that begins and ends at rest in the same pose, again and again, read at LONG_RATE between its samples."""
+    from plantar.logs.readers import open_log
+
+    log = open_log(path, load_robot(robot))
+    time = np.arange(0.0, seconds, 1 / LONG_RATE)
+    at = np.mod(time, log.duration)
+    columns = {name: np.interp(at, log.time - log.time[0], values) for name, values in log.columns.items()}
+    return MotionLog("long", time, columns)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--preset", default="sensors")
+    parser.add_argument("--times", type=int, default=3)
+    parser.add_argument("--long", type=float, default=0.0, help="seconds of one Parquet log at 1 kHz instead")
+    chosen = parser.parse_args()
+    robot, logs = kept(chosen.preset, chosen.long)
+    files = [str(robot), *map(str, logs)]
+    out = str(robot.parent / "result")
+    ways = {
+        "plain": [sys.executable, str(Path(__file__).with_name("plain_feet.py")), *files],
+        "plantar": [sys.executable, "-m", "plantar", "identify", "feet", *files, "--out", out, "--quiet"],
+    }
+    # In turns, so that what else the machine does at a time weighs on both.
+    turns = [{way: spent(command) for way, command in ways.items()} for _ in range(chosen.times)]
+    print(f"{'way':8} {'s':>7} {'CPU s':>7} {'MB':>6}")
+    best = {way: min((turn[way] for turn in turns), key=lambda run: run.clock) for way in ways}
+    for way, run in best.items():
+        print(f"{way:8} {run.clock:7.2f} {run.cpu:7.2f} {run.memory:6.0f}")
+    plain, ours = best["plain"], best["plantar"]
+    print(f"times faster: {plain.clock / ours.clock:.2f} (CPU {plain.cpu / ours.cpu:.2f})")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,50 @@
+#include "bindings.hpp"
+
+#include <nanobind/ndarray.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <stdexcept>
+
+#include "kernels.hpp"
+
+namespace nb = nanobind;
+using namespace plantar;
+
+namespace {
+
+// values (n, k) through a Butterworth low-pass of fourth order at `cutoff` (a share of the rate), forth and back.
+nb::ndarray<nb::numpy, double> low_pass(
+    const nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>& values, double cutoff,
+    std::size_t padding) {
+  const std::size_t n = values.shape(0), k = values.shape(1);
+  if (n < 2 || !(cutoff > 0.0 && cutoff < 0.5)) throw std::invalid_argument("two samples and a cutoff below Nyquist's");
+  LowPass filter;
+  filter.padding = padding;
+  const double warped = std::tan(std::numbers::pi * cutoff);
+  for (int pair = 0; pair < 2; ++pair) {
+    const double damping = 2.0 * std::cos(std::numbers::pi * (1 + 2 * pair) / 8.0);
+    const double norm = 1.0 / (1.0 + damping * warped + warped * warped);
+    filter.sections[pair] = {warped * warped * norm, 2.0 * (warped * warped - 1.0) * norm,
+                             (1.0 - damping * warped + warped * warped) * norm};
+  }
+  const Kernels& table = **runnable_kernels();
+  std::unique_ptr<double[]> data(new double[std::max<std::size_t>(n * k, 1)]);
+  {
+    nb::gil_scoped_release release;
+    const std::unique_ptr<double[]> work(new double[(n + 2 * padding) * table.lanes]);
+    for (std::size_t column = 0; column < k; column += table.lanes)
+      table.low_pass(filter, values.data(), n, k, column, work.get(), data.get());
+  }
+  double* found = data.release();
+  nb::capsule owner(found, [](void* p) noexcept { delete[] static_cast<double*>(p); });
+  return nb::ndarray<nb::numpy, double>(found, {n, k}, owner);
+}
+
+}  // namespace
+
+void bind_low_pass(nb::module_& m) {
+  m.def("low_pass", &low_pass, nb::arg("values"), nb::arg("cutoff"), nb::arg("padding"));
+}

@@ -1,0 +1,19 @@
+// A low-pass as the kernels see it.
+#pragma once
+
+#include <cstddef>
+
+namespace plantar {
+
+// y = b (x + 2 x[-1] + x[-2]) - a1 y[-1] - a2 y[-2]
+struct Section {
+  double b, a1, a2;
+};
+
+// Two sections in series, run forth and back over `padding` samples more at each end.
+struct LowPass {
+  Section sections[2];
+  std::size_t padding;
+};
+
+}  // namespace plantar

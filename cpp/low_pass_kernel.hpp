@@ -1,0 +1,66 @@
+// A zero-phase low-pass along rows of (n, k), one column a lane: Butterworth of fourth order, run forth and back.
+#pragma once
+
+#include "lanes.hpp"
+#include "low_pass.hpp"
+#include "pack.hpp"
+
+namespace plantar::PLANTAR_ISA {
+
+struct SectionState {
+  Lanes first, second;
+};
+
+// The state in which a section answers to a signal that was always `x` with just that.
+PLANTAR_INLINE SectionState settled(const Section& section, Lanes x) {
+  return {(1.0 - section.b) * x, (section.b - section.a2) * x};
+}
+
+PLANTAR_INLINE Lanes advance(const Section& section, SectionState& state, Lanes x) {
+  const Lanes y = section.b * x + state.first;
+  state.first = 2.0 * section.b * x - section.a1 * y + state.second;
+  state.second = section.b * x - section.a2 * y;
+  return y;
+}
+
+// Columns [column, column + LANES) of the signal; `work` holds LANES doubles for each of n + 2 padding samples.
+inline void low_pass(const LowPass& filter, const double* values, std::size_t n, std::size_t k, std::size_t column,
+                     double* work, double* out) {
+  const std::size_t count = k - column < LANES ? k - column : LANES;
+  const auto read = [&](std::size_t row) {
+    Lanes x = Lanes{};
+    const double* from = values + row * k + column;
+    if (count == LANES) return load(from);
+    for (std::size_t l = 0; l < count; ++l) x[l] = from[l];
+    return x;
+  };
+  const std::ptrdiff_t last = static_cast<std::ptrdiff_t>(n) - 1, padding = static_cast<std::ptrdiff_t>(filter.padding);
+  const Lanes rise = 2.0 * (read(last) - read(0));
+  // Beyond both ends the signal goes on point-symmetrically, again and again.
+  const auto at = [&](std::ptrdiff_t place) {
+    if (place >= 0 && place <= last) return read(place);
+    if (place < 0 && place >= -last) return 2.0 * read(0) - read(-place);
+    if (place > last && place <= 2 * last) return 2.0 * read(last) - read(2 * last - place);
+    std::ptrdiff_t turns = place / (2 * last), rest = place % (2 * last);
+    if (rest < 0) {
+      rest += 2 * last;
+      --turns;
+    }
+    const Lanes x = rest <= last ? read(rest) : 2.0 * read(last) - read(2 * last - rest);
+    return x + static_cast<double>(turns) * rise;
+  };
+  const Section &one = filter.sections[0], &two = filter.sections[1];
+  Lanes x = at(-padding);
+  SectionState first = settled(one, x), second = settled(two, x);
+  for (std::ptrdiff_t i = -padding; i <= last + padding; ++i) {
+    x = advance(two, second, advance(one, first, at(i)));
+    store(work + (i + padding) * LANES, x);
+  }
+  first = settled(one, x), second = settled(two, x);
+  for (std::ptrdiff_t i = last + padding; i >= 0; --i) {
+    x = advance(two, second, advance(one, first, load(work + (i + padding) * LANES)));
+    if (i <= last) scatter(out + i * k + column, x, count);
+  }
+}
+
+}  // namespace plantar::PLANTAR_ISA
