@@ -24,6 +24,7 @@ from plantar.signals.filters import low_pass
 LOOSE = 0.3  # share: deviation of a torque's gain before the moments are asked
 LEAST_GAIN = 0.01  # share, of the forces' gains and of what their places add: nuisances need a finite prior
 LEAST_ARM = 0.003  # m, likewise
+BAND = 2.0  # Hz: the robot moves below it, and most of the sensors' noise is above
 UP = np.array([0.0, 0.0, 1.0])  # of a force sensor, about which it is mounted turned
 MOUNT = 0.1  # rad, by which sensors and IMU may be turned: wide, so that no turned mount passes for a gain
 CHANCE = 0.02  # that torques without a fault are called wrong about an axis, by deviations that are on the safe side
@@ -57,11 +58,15 @@ class TorqueGain(NamedTuple):
 
 @dataclass(frozen=True)
 class _Sides:
-    """One log's columns (k, n, 6) and what they must add up to (n, 6); `drawn` (draws, n, 6): of a wrong URDF."""
+    """One log's columns (k, n, 6) and what they must add up to (n, 6); `drawn` (draws, n, 6): of a wrong URDF.
+
+    Slower than BAND; `fast` (k + 1, n, 6) are columns and what is missing above it.
+    """
 
     columns: Array
     missing: Array
     drawn: Array
+    fast: Array
     period: float
 
 
@@ -151,7 +156,10 @@ def _sides(robot: RobotModel, residual: NewtonEulerResidual) -> _Sides:
     force, moment = np.split(pair.predicted, 2, axis=1)
     others += [np.hstack([np.cross(turn, force), np.cross(turn, moment)]) for turn in np.eye(3)]
     moving = _moving(np.stack([*torques[0], *torques[1], *others]), pair.period)
-    return _Sides(moving, pair.predicted - pair.measured, pair.model_errors, pair.period)
+    every = np.concatenate([moving, [pair.predicted - pair.measured], pair.model_errors])
+    slow, count = _low_passed(every, pair.period, BAND), len(moving)
+    fast = (every - slow)[: count + 1]
+    return _Sides(slow[:count], slow[count], slow[count + 1 :], fast, pair.period)
 
 
 def _directions(foot: Foot) -> Array:
@@ -163,8 +171,30 @@ def _directions(foot: Foot) -> Array:
 
 def _moving(columns: Array, period: float) -> Array:
     """Columns (k, n, 6) without what postures and drifting zeros do to them."""
+    return columns - _low_passed(columns, period, SLOW)
+
+
+def _low_passed(columns: Array, period: float, cutoff: float) -> Array:
+    """Columns (k, n, 6) through a low-pass."""
     rows = columns.transpose(1, 0, 2).reshape(columns.shape[1], -1)
-    return np.asarray((rows - low_pass(rows, period, SLOW)).reshape(len(rows), -1, 6).transpose(1, 0, 2))
+    return np.asarray(low_pass(rows, period, cutoff).reshape(len(rows), -1, 6).transpose(1, 0, 2))
+
+
+def _products(side: _Sides, weights: Array) -> Array:
+    """Products (k + 1, k + 1) of columns and what is missing, without what the sensors' noise adds to them.
+
+    The feet's own readings are in the columns and in what is missing: their noise, multiplied with itself, would pass
+    for arms of centimetres. It is as large below BAND as it is above, where hardly anything else is.
+    """
+    slow = np.concatenate([side.columns, [side.missing]])
+    noise = BAND / (CUTOFF - BAND) * np.einsum("inc,jnc,c->ij", side.fast, side.fast, weights)
+    return np.asarray(np.einsum("inc,jnc,c->ij", slow, slow, weights) - noise)
+
+
+def _positive(products: Array) -> Array:
+    """The nearest products (k, k) that real columns can have: noise taken off may leave less than nothing."""
+    sizes, vectors = np.linalg.eigh(products)
+    return np.asarray((vectors * np.maximum(sizes, 0.0)) @ vectors.T)
 
 
 def _solved(sides: Sequence[_Sides], prior: Array) -> tuple[Array, Array]:
@@ -173,13 +203,10 @@ def _solved(sides: Sequence[_Sides], prior: Array) -> tuple[Array, Array]:
     for _ in range(2):  # weights from what is left, then the coefficients once more
         left = [side.missing - np.tensordot(values, side.columns, 1) for side in sides]
         # A filtered signal has two independent samples in a period of its cutoff.
-        weights = 2 * CUTOFF * sides[0].period / np.mean(np.vstack(left) ** 2, axis=0)
-        normal, target = known.copy(), np.zeros(len(prior))
-        for side in sides:
-            weighted = (side.columns * weights).reshape(len(prior), -1)
-            normal += weighted @ side.columns.reshape(len(prior), -1).T
-            target += weighted @ side.missing.ravel()
-        values[:] = np.linalg.solve(normal, target)
+        weights = 2 * BAND * sides[0].period / np.mean(np.vstack(left) ** 2, axis=0)
+        both = np.sum([_products(side, weights) for side in sides], axis=0)
+        normal = _positive(both[:-1, :-1]) + known
+        values[:] = np.linalg.solve(normal, both[:-1, -1])
     inverse, scatter = np.linalg.inv(normal), known.copy()
     moved: Array = np.zeros((len(prior), len(sides[0].drawn)))
     for side in sides:
