@@ -22,7 +22,14 @@ from plantar.notes import Note
 from plantar.robot.model import RobotModel
 from plantar.sensors.lagged_log import SEARCHED, STEP, lagged_log
 from plantar.sensors.newton_euler import NewtonEulerResidual
-from plantar.sensors.refined_delays import LEAST_STD, Each, RefinedDelays, read_in_time, refined_delays
+from plantar.sensors.refined_delays import (
+    LEAST_STD,
+    WELL_KNOWN,
+    Each,
+    RefinedDelays,
+    read_in_time,
+    refined_delays,
+)
 
 KNOWN_STD = 0.001  # s: better known than this, the delay is corrected without a warning
 CLOCK = 0.06  # of a period: within it, nobody knows when a sample was taken
@@ -98,12 +105,14 @@ def _in_doubt(lags: Lags, found: RefinedDelays | None, searched: Mask) -> bool:
     """Whether Newton's law, in logs that move, closes at no lag, or at lags that are not those found.
 
     Where somebody pushes it cannot close, and torques are far larger or smaller than predicted: that says nothing of
-    the sensors' moments.
+    the sensors' moments. Nor do logs that do not close beside others that show the delay well: a hand that steadies a
+    robot takes less than a push.
     """
     missed = lags.missed > 1 - LEAST_CLOSED
     pushed = np.maximum(lags.power, 1 / np.maximum(lags.power, 1e-9)) > PUSHED
     if (missed & ~pushed).any():
-        return found is None or not found.closed[searched][missed & ~pushed].all()
+        closed = found is not None and found.closed[searched][missed & ~pushed].all()
+        return not closed and (found is None or found.std > WELL_KNOWN)
     if missed.all():
         return False
     reached = np.zeros_like(lags.values) if found is None else found.values
