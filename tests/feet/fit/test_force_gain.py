@@ -56,6 +56,16 @@ def test_a_shift_of_weight_shows_whose_gain_it_is(weighed: RobotModel) -> None:
     assert errors(weighed, scaled(record(SHIFTING), left=1.12)) == pytest.approx({"left": 0.12}, abs=0.02)
 
 
+@pytest.mark.parametrize(("left", "right", "feet"), [
+    (1.06, 1.015, {"left", "right"}), (1.06, 0.98, {"left"}), (1.01, 1.01, set()),
+])  # fmt: skip
+def test_a_foot_that_is_off_the_same_way_less_is_counted_too(
+    weighed: RobotModel, left: float, right: float, feet: set[str]
+) -> None:
+    log = scaled(record(SHIFTING), left=left, right=right)
+    assert set(force_gain_errors(weighed, [prepare(weighed, checked(weighed, log), "fit")])) == feet
+
+
 def test_a_robot_file_that_doubts_its_masses_allows_more(tmp_path: Path, weighed: RobotModel) -> None:
     log = scaled(record(sway()), left=1.12, right=1.12)
     assert errors(weighed, log)

@@ -26,6 +26,7 @@ ALIKE = 3.0  # deviations of a gain, by which a robot's force sensors differ whe
 SURELY_ALIKE = 1e-4  # share: of sensors without any gain error, and a prior that stays finite
 NORMAL95 = 1.96  # deviations that a 95 % interval reaches
 LEAST_DEVIATION = 0.02  # of the weight: what a hand on the robot may carry of it through whole logs
+WITH_OTHERS = 0.5  # deviations of a gain that counts beside another foot's that is off the same way
 BEYOND_DOUBT = 3.0  # deviations of what the robot file allows for gains and masses
 
 
@@ -43,6 +44,8 @@ class GainError(NamedTuple):
 
 def force_gain_errors(robot: RobotModel, recordings: Sequence[Recording]) -> dict[str, GainError]:
     """By foot, where its sensor reads more or less than the weight by more than one deviation of what may be.
+
+    With one foot those that are off the same way: what a wrong mass or one amplifier does shows here more, there less.
 
     Gains 1/h are those for which the feet's forces add up to the weight, Σ h_i f_i = m g, in windows of all recordings;
     a prior holds the sensors alike where the weight does not move.
@@ -63,7 +66,13 @@ def force_gain_errors(robot: RobotModel, recordings: Sequence[Recording]) -> dic
         for name, gain in zip(robot.feet, inverse, strict=True)
         if gain > 0
     }
-    return {name: error for name, error in found.items() if abs(error.share) > deviation}
+    beyond = {error.share > 0 for error in found.values() if abs(error.share) > deviation}
+    least = WITH_OTHERS * deviation
+    return {
+        name: error
+        for name, error in found.items()
+        if (error.share > 0) in beyond and abs(error.share) > least
+    }
 
 
 def force_gain_notes(robot: RobotModel, errors: Mapping[str, GainError]) -> list[Note]:
