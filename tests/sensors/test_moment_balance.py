@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ import pytest
 from plantar.feet.prepare_log import checked
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
+from plantar.robot.uncertainty import EXACT
 from plantar.sensors import moment_balance
 from plantar.sensors.moment_balance import TorqueGain, torque_gain_notes, torque_gains
 from plantar.sensors.newton_euler import newton_euler_residual
@@ -44,6 +46,14 @@ def found(twin: RobotModel, log: MotionLog, gains: Mapping[str, float]) -> Mappi
 def test_torques_that_balance_the_motion_are_right(twin: RobotModel, sweep: MotionLog) -> None:
     assert found(twin, sweep, {}) == {}
     assert found(twin, sweep, {"wrench.": 1.1}) == {}  # forces too: the weight shows that, not the balance
+
+
+def test_a_robot_that_is_as_its_file_says_needs_no_draws_of_another(
+    twin: RobotModel, sweep: MotionLog
+) -> None:
+    exact = replace(twin, uncertainty=EXACT)
+    assert found(exact, sweep, {}) == {}
+    assert found(exact, sweep, {".torque.": 1.1})["pitch"].mean == pytest.approx(0.1, abs=0.02)
 
 
 @pytest.mark.parametrize("gain", [0.85, 1.15])

@@ -122,19 +122,18 @@ def _fits(
     found: dict[Axis, AxisFit] = {}
     timed = not ready.sensor_delay.doubtful
 
-    def fit(axis: Axis, place: PlaceSpread) -> None:
-        with gives_up(axis, given_up):
-            own = fit_axis(ready.fitted, foot, axis, ready.settings, models.get(axis), place, timed)
-            found.update({axis: own} if own is not None else {})
-
-    for axis in ROTATIONAL_AXES:
-        if axis not in given_up:
-            fit(axis, place)
-    if set(ROTATIONAL_AXES) <= set(found):
-        for axis, other in (ROTATIONAL_AXES, ROTATIONAL_AXES[::-1]):
-            if (known := place.known_from(found[other], found[axis])) is not None:
-                fit(axis, known)
-                break
+    asked: dict[Axis, PlaceSpread] = dict.fromkeys(ROTATIONAL_AXES, place)
+    for _ in range(2):  # about the robot file's place, then about the height that the other axis shows
+        for axis, own in asked.items():
+            if axis in given_up:
+                continue
+            with gives_up(axis, given_up):
+                fit = fit_axis(ready.fitted, foot, axis, ready.settings, models.get(axis), own, timed)
+                if fit is not None:
+                    found[axis] = fit
+        both = set(ROTATIONAL_AXES) <= set(found)
+        heights = {axis: place.known_from(found, axis) for axis in ROTATIONAL_AXES if both}
+        asked = {axis: known for axis, known in heights.items() if known is not None}
     return found
 
 

@@ -156,7 +156,8 @@ def _sides(robot: RobotModel, residual: NewtonEulerResidual) -> _Sides:
     force, moment = np.split(pair.predicted, 2, axis=1)
     others += [np.hstack([np.cross(turn, force), np.cross(turn, moment)]) for turn in np.eye(3)]
     moving = _moving(np.stack([*torques[0], *torques[1], *others]), pair.period)
-    every = np.concatenate([moving, [pair.predicted - pair.measured], pair.model_errors])
+    drawn = pair.model_errors.reshape(-1, *moving.shape[1:])
+    every = np.concatenate([moving, [pair.predicted - pair.measured], drawn])
     slow, count = _low_passed(every, pair.period, BAND), len(moving)
     fast = (every - slow)[: count + 1]
     return _Sides(slow[:count], slow[count], slow[count + 1 :], fast, pair.period)

@@ -88,7 +88,8 @@ def placed(axis: Axis, height: float, *codes: str) -> AxisFit:
 def test_an_axis_whose_motions_show_less_takes_the_height_from_the_other(
     pitch: float, roll: float, expected: float | None
 ) -> None:
-    known = PlaceSpread(0.005, 0.005, 0.02).known_from(placed("pitch", pitch), placed("roll", roll))
+    fits = {"pitch": placed("pitch", pitch), "roll": placed("roll", roll)}
+    known = PlaceSpread(0.005, 0.005, 0.02).known_from(fits, "roll")
     assert (known and known.height) == expected
     assert known is None or known.above == 0.005
 

@@ -9,12 +9,12 @@ not leave it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from plantar.conventions import Array, Mask
+from plantar.conventions import Array, Axis, Mask
 from plantar.estimation import Block, effect_of, fit_blocks
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.load_torque import place_columns
@@ -45,14 +45,14 @@ class PlaceSpread:
         """Of the centre's place, the force sensor's yaw, and the IMU's turn about three axes, (6,)."""
         return np.array([self.aside, self.above, *[self.turned] * 4])
 
-    def known_from(self, other: AxisFit, own: AxisFit) -> PlaceSpread | None:
+    def known_from(self, fits: Mapping[Axis, AxisFit], axis: Axis) -> PlaceSpread | None:
         """The centre about the other axis of the same foot, where that shows it far off, and farther than this one.
 
         Bush and force sensor have one height: a robot file that is wrong about it is so for both axes, and draws the
         one more to itself whose motions show less.
         """
-        height = other.moment_arms[1]
-        far = abs(height) > max(CLEAR * self.above, abs(own.moment_arms[1]))
+        (height,) = (fit.moment_arms[1] for other, fit in fits.items() if other != axis)
+        far = abs(height) > max(CLEAR * self.above, abs(fits[axis].moment_arms[1]))
         return replace(self, height=height) if far else None
 
     def doubted_by(self, others: Sequence[AxisFit], own: Sequence[AxisFit]) -> PlaceSpread:
