@@ -93,7 +93,7 @@ def torque_gains(robot: RobotModel, residuals: Sequence[NewtonEulerResidual]) ->
     return {
         axis: gain
         for axis, gain in gains.items()
-        if beyond[axis] and gain.reach > WORTH_SAYING and not gain.opposed
+        if beyond[axis] and abs(gain.mean) > WORTH_SAYING and not gain.opposed
     }
 
 
