@@ -6,10 +6,12 @@ import json
 from pathlib import Path
 
 import pytest
+import yaml
 
 from plantar.cli import main
 from plantar.logs.readers import open_log
 from plantar.robot.model import load_robot
+from plantar.twin.robots.hrp2 import write
 
 
 def run(*arguments: str) -> int:
@@ -36,6 +38,18 @@ def test_logs_truth_and_robot_file_appear(tmp_path: Path, capsys: pytest.Capture
     )
     assert (tmp_path / "again" / "Squat.parquet").read_bytes() == before
     assert capsys.readouterr().err == ""
+
+
+def test_a_robot_of_the_users_own_comes_with_its_robot_file(tmp_path: Path) -> None:
+    """So that what is simulated can be identified: URDF and robot file stand beside the logs."""
+    own = Path(write(tmp_path / "own"))
+    assert (
+        run("Squat", "--robot", str(own), "--out", str(tmp_path / "out"), "--preset", "ideal", "--quiet") == 0
+    )
+    copy = tmp_path / "out" / "robot.yaml"
+    assert yaml.safe_load(copy.read_text()) == yaml.safe_load(own.read_text())
+    robot = load_robot(copy)
+    assert open_log(tmp_path / "out" / "Squat.parquet", robot).has_imu("chest", "orientation")
 
 
 @pytest.mark.parametrize(

@@ -172,16 +172,18 @@ def write_campaign(
 ) -> Path:
     """Write the robot file with its URDF, and each recording's log and truth; returns the robot file's path.
 
-    A robot of one's own keeps its file, unless the preset's log has another IMU: then its copy is named after it.
+    A robot of one's own has its file copied to `robot.yaml`; where the preset's log has another IMU, the copy is named
+    after the preset.
     """
     directory = Path(directory)
     for recording in recordings:
         recording.write(directory)
-    if preset_named(preset).logger is None:
-        return hrp2.write(directory) if robot is None else robot.path
+    logged = preset_named(preset).logger is not None
     if robot is None:
-        return write_robot(load_robot(hrp2.write(directory)), directory / "robot.yaml")
-    return write_robot(robot, directory / f"{robot.path.stem}_{preset}.yaml")
+        built_in = hrp2.write(directory)
+        return write_robot(load_robot(built_in), built_in, True) if logged else built_in
+    file = directory / (f"{robot.path.stem}_{preset}.yaml" if logged else "robot.yaml")
+    return robot.path if file.resolve() == robot.path.resolve() else write_robot(robot, file, logged)
 
 
 def postures_of(robot: RobotModel) -> Postures:

@@ -62,6 +62,16 @@ def test_hysteresis_is_chosen_by_held_out_motions_and_the_linear_fit_is_kept_bes
     assert "held-out" in fit.reason
 
 
+def test_where_timing_is_in_doubt_no_memory_is_tried() -> None:
+    """Sensors that are late make a loop of torque over angle as rubber's memory does."""
+    fit = fit_axis(recordings(SLIPPING), FOOT, "pitch", FeetSettings(), timed=False)
+    assert fit is not None
+    assert fit.choice is not None
+    tried = [candidate.model for candidate in fit.choice.ranking]
+    assert {model.name for model in tried} >= {"kelvin_voigt", "coulomb"}
+    assert not any(model.remembers for model in (*tried, fit.model))
+
+
 def test_without_noise_nothing_richer_is_tried_and_under_a_strange_torque_neither() -> None:
     exact = fitted(recordings(LINEAR, noise=0.0))
     assert exact.choice is None

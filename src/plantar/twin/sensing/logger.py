@@ -75,11 +75,12 @@ def with_base_attitude(robot: RobotModel) -> RobotModel:
     return replace(robot, imu=Imu(BASE, Placement(root, np.zeros(3), np.zeros(3))))
 
 
-def write_robot(robot: RobotModel, path: Path) -> Path:
-    """Write the robot file of `with_base_attitude(robot)`, its URDF beside it; returns the robot file's path."""
+def write_robot(robot: RobotModel, path: Path, attitude_of_base: bool) -> Path:
+    """Write a robot's file, its URDF beside it; with `attitude_of_base`, that of `with_base_attitude(robot)`."""
     file: dict[str, object] = dict(_entries(robot))
     file["urdf"] = robot.urdf_path.name
-    file["imu"] = {"name": BASE, "link": robot.model.frames[1].name}
+    if attitude_of_base:
+        file["imu"] = {"name": BASE, "link": robot.model.frames[1].name}
     write_text(path.with_name(robot.urdf_path.name), robot.urdf)
     write_text(path, yaml.safe_dump(file, sort_keys=False, default_flow_style=None))
     return path
