@@ -25,9 +25,8 @@ LOOSE = 0.3  # share: deviation of a torque's gain before the moments are asked
 LEAST_GAIN = 0.01  # share, of the forces' gains and of what their places add: nuisances need a finite prior
 LEAST_ARM = 0.003  # m, likewise
 BAND = 2.0  # Hz: the robot moves below it, and most of the sensors' noise is above
-UP = np.array([0.0, 0.0, 1.0])  # of a force sensor, about which it is mounted turned
 MOUNT = 0.1  # rad, by which sensors and IMU may be turned: wide, so that no turned mount passes for a gain
-CHANCE = 0.02  # that torques without a fault are called wrong about an axis, by deviations that are on the safe side
+CHANCE = 0.01  # that torques without a fault are called wrong about an axis, by deviations that are on the safe side
 OPPOSED = 0.1  # share: feet that are off by more, each the other way, are no gains but another fault's trace
 WORTH_SAYING = 0.03  # share: what the force sensors' makers promise is seldom better
 
@@ -119,7 +118,7 @@ def torque_gain_notes(gains: Mapping[Axis, TorqueGain]) -> dict[Axis, Note]:
 
 
 def _prior(robot: RobotModel) -> Array:
-    """Deviations of the columns of `_sides`: torques of both axes; of each foot its gain, moment arms and turn; the
+    """Deviations of the columns of `_sides`: torques of both axes; of each foot its gain, moment arms and turns; the
     IMU's mount.
     """
     uncertainty, feet = robot.uncertainty, len(robot.feet)
@@ -128,7 +127,7 @@ def _prior(robot: RobotModel) -> Array:
     return np.concatenate(
         [
             np.full(2 * feet, LOOSE),
-            np.tile([gain, arm, arm, arm, MOUNT], feet),
+            np.tile([gain, arm, arm, arm, MOUNT, MOUNT, MOUNT], feet),
             np.full(3, MOUNT),
         ]
     )
@@ -142,13 +141,13 @@ def _sides(robot: RobotModel, residual: NewtonEulerResidual) -> _Sides:
         force, torque = np.split(residual.readings[:, 6 * place : 6 * place + 6], 2, axis=1)
         contact = Contact(*robot.frame(foot.wrench.placement))
         transfer = equation.contact_transfer(residual.motion.positions, contact)[:, BASE_ROWS]
-        # Each axis' torque alone; the whole wrench; the force on an arm along x, y and z; the wrench turned.
+        # Each axis' torque alone; the whole wrench; the force on an arm along x, y and z; the wrench turned about them.
         alone = [np.hstack([0 * force, np.outer(torque @ along, along)]) for along in _directions(foot)]
         moved = [np.hstack([0 * force, np.cross(arm, force)]) for arm in np.eye(3)]
-        turned = np.hstack([np.cross(UP, force), np.cross(UP, torque)])
+        turned = [np.hstack([np.cross(turn, force), np.cross(turn, torque)]) for turn in np.eye(3)]
         carried = [
             np.einsum("nij,nj->ni", transfer, wrench)
-            for wrench in (*alone, np.hstack([force, torque]), *moved, turned)
+            for wrench in (*alone, np.hstack([force, torque]), *moved, *turned)
         ]
         for own, column in zip(torques, carried[:2], strict=True):
             own.append(column)
