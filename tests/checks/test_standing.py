@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
 
+from plantar.checks import standing
 from plantar.checks.log_checks import check_log
 from plantar.checks.standing import check_balance
 from plantar.logs.motion_log import MotionLog
@@ -113,6 +115,23 @@ def test_wrenches_of_exchanged_feet_are_refused(sway: MotionLog) -> None:
     assert list(check_balance(hrp2.robot(), sway)) == []
     (finding,) = check_balance(hrp2.robot(), sway.with_columns(swapped))
     assert (finding.code, finding.fatal) == ("swapped_feet", True)
+
+
+@pytest.mark.parametrize(("left", "told"), [(0.01, True), (0.08, False)])
+def test_a_reversed_joint_that_explains_as_much_as_swapped_wrenches_is_named_with_them(
+    monkeypatch: pytest.MonkeyPatch, tilt: MotionLog, left: float, told: bool
+) -> None:
+    """Of a robot on one foot, whose ankle's roll moves the centre of mass as far as the other foot is."""
+    stance = Mock()
+    stance.sides.return_value = Mock(misfit=0.3, lean=0.0, moment_arms=np.zeros((20, 2, 6, 3)))
+    stance.exchanged_wrenches.return_value.sides.return_value.misfit = 0.02
+    monkeypatch.setattr(standing, "stance_of", lambda *_: stance)
+    monkeypatch.setattr(standing, "_reversed_joints", lambda *_: {"column 'joint.ankle.position'": left})
+    monkeypatch.setattr(standing, "_reversed_components", lambda *_: {})
+    monkeypatch.setattr(standing, "_exchanged_joints", lambda *_: None)
+    (finding,) = check_balance(hrp2.robot(), tilt)
+    assert finding.code == "swapped_feet"
+    assert ("or column 'joint.ankle.position' is reversed" in finding.text) == told
 
 
 @pytest.mark.parametrize("rpy", [(0.15, 0.0, 0.0), (0.0, -0.15, 0.0), (np.pi / 2, 0.0, 0.0)])

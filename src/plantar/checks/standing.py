@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import pairwise
 
 import numpy as np
@@ -63,11 +63,12 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         yield Finding("joint_names", f"{text} (check the joints' names and order)", True)
     elif as_is > NOTABLE and exchanged < BETTER * as_is and exchanged < best + ALIKE * as_is:
         text = "the feet's wrenches look swapped: exchanged, they balance gravity far better"
+        text += f"; or {_alike(left, best, as_is)} is reversed" if best < exchanged + ALIKE * as_is else ""
         yield Finding("swapped_feet", f"{text} (check the sensors' names)", True)
     elif as_is > NOTABLE and best < BETTER * as_is:
-        alike = sorted((name for name in left if left[name] < best + ALIKE * as_is), key=left.__getitem__)
-        text = f"{' or '.join(alike[:MOST_NAMED])}: reversed, the wrenches balance gravity to {100 * best:.1f} cm"
-        joint = "'joint." in alike[0]
+        alike = _alike(left, best, as_is)
+        text = f"{alike}: reversed, the wrenches balance gravity to {100 * best:.1f} cm"
+        joint = "'joint." in min(left, key=left.__getitem__)
         certain = (certain and best < CERTAIN * as_is) or sides.lean > IMPOSSIBLE
         valid = "valid: the signs of URDF and robot file"
         yield Finding("sign", f"{text} instead of {100 * as_is:.1f} cm ({valid})", joint and certain)
@@ -82,6 +83,12 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         yield Finding("balance", f"{text} (valid: below {100 * NOTABLE:.0f} cm; {where})")
     else:
         yield from _turned(stance, sides)
+
+
+def _alike(left: Mapping[str, float], best: float, as_is: float) -> str:
+    """The changes that leave about as little of the misfit as the best one."""
+    alike = sorted((name for name in left if left[name] < best + ALIKE * as_is), key=left.__getitem__)
+    return " or ".join(alike[:MOST_NAMED])
 
 
 def _turned(stance: Stance, sides: StanceSides) -> Iterator[Finding]:
