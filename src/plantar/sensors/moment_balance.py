@@ -27,7 +27,8 @@ LEAST_ARM = 0.003  # m, likewise
 BAND = 2.0  # Hz: the robot moves below it, and most of the sensors' noise is above
 MOUNT = 0.1  # rad, by which sensors and IMU may be turned: wide, so that no turned mount passes for a gain
 CHANCE = 0.01  # that torques without a fault are called wrong about an axis, by deviations that are on the safe side
-OPPOSED = 0.1  # share: feet that are off by more, each the other way, are no gains but another fault's trace
+OPPOSED = 0.1  # share: feet that are off by more, each the other way, are rather another fault's trace
+OPPOSED_LIMIT = 2.0  # times what chance allows: beyond it gains are wrong, whichever foot's
 WORTH_SAYING = 0.03  # share: what the force sensors' makers promise is seldom better
 
 
@@ -87,20 +88,20 @@ def torque_gains(robot: RobotModel, residuals: Sequence[NewtonEulerResidual]) ->
         gains[axis] = TorqueGain(shares, float(np.sqrt(covariance[mine, mine].sum())) / feet)
         beyond[axis] = _beyond_chance(values[mine], usual[mine, mine], len(sides[0].drawn))
     # One foot's torques that are off about both axes show less about each than about both together.
-    if not any(beyond.values()) and not any(gain.opposed for gain in gains.values()):
+    if max(beyond.values()) <= 1 and not any(gain.opposed for gain in gains.values()):
         beyond = dict.fromkeys(gains, _beyond_chance(values, usual, len(sides[0].drawn)))
     return {
         axis: gain
         for axis, gain in gains.items()
-        if beyond[axis] and abs(gain.mean) > WORTH_SAYING and not gain.opposed
+        if beyond[axis] > (OPPOSED_LIMIT if gain.opposed else 1) and abs(gain.mean) > WORTH_SAYING
     }
 
 
-def _beyond_chance(values: Array, usual: Array, draws: int) -> bool:
-    """Whether gains (k,) are larger than a covariance (k, k) from so many `draws` lets them be by chance."""
+def _beyond_chance(values: Array, usual: Array, draws: int) -> float:
+    """How many times larger gains (k,) are than a covariance (k, k) from so many `draws` lets them be by chance."""
     distance = float(values @ np.linalg.solve(usual, values)) / len(values)
     freedom = max(draws - len(values), 2) if draws else 1e9
-    return distance > float(special.fdtri(len(values), freedom, 1 - CHANCE))
+    return distance / float(special.fdtri(len(values), freedom, 1 - CHANCE))
 
 
 def torque_gain_notes(gains: Mapping[Axis, TorqueGain]) -> dict[Axis, Note]:
