@@ -134,6 +134,20 @@ def test_a_hand_that_carries_the_robot_is_no_late_sensor(twin: RobotModel, sweep
     assert found.std == twin.uncertainty.wrench_delay
 
 
+def test_a_log_that_a_hand_steadies_puts_no_delay_in_doubt_that_another_shows(
+    twin: RobotModel, sweep: MotionLog
+) -> None:
+    """Half of what the sway asks for is taken by somebody: too little to be called a push, too much to close."""
+    names = [name for name in sweep.columns if name.startswith("wrench.")]
+    wrenches = sweep.stack(names)
+    steadied = wrenches.mean(axis=0) + 0.6 * (wrenches - wrenches.mean(axis=0))
+    held = replace(sweep.with_columns(dict(zip(names, steadied.T, strict=True))), name="held")
+    alone, both = (estimate_wrench_delay(twin, logs) for logs in ([held], [sweep, held]))
+    assert alone.doubtful
+    assert not both.doubtful
+    assert both.delay == pytest.approx(0.0, abs=1e-3)
+
+
 def test_a_robot_that_stands_still_leaves_the_robot_files_word(twin: RobotModel, sweep: MotionLog) -> None:
     """Noise closes nothing, though its squares may be alike on both sides; that is no reason for doubt."""
     random = np.random.default_rng(3)

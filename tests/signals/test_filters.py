@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.signal import butter, sosfiltfilt
 
-from plantar.signals.filters import differentiate, gain, low_pass
+from plantar.signals.filters import PADDED, differentiate, gain, low_pass
 
 PERIOD = 0.005
 
@@ -39,6 +40,15 @@ def test_the_gain_is_what_is_left_of_a_tone(hertz: float) -> None:
     middle = slice(1000, -1000)
     left = np.std(low_pass(tone(hertz), PERIOD, 5.0)[middle]) / np.std(tone(hertz)[middle])
     assert left == pytest.approx(float(gain(np.array([hertz]), PERIOD, 5.0)[0]), rel=1e-3, abs=1e-7)
+
+
+@pytest.mark.parametrize(("cutoff", "columns"), [(0.8, 1), (5.0, 3), (40.0, 11)])
+def test_the_filter_is_scipys_of_the_same_name(cutoff: float, columns: int) -> None:
+    """Fourth order forth and back, continued point-symmetrically, each way begun in its settled state."""
+    values = np.cumsum(np.random.default_rng(1).normal(size=(1500, columns)), axis=0)
+    sections = butter(4, 2 * cutoff * PERIOD, output="sos")
+    expected = sosfiltfilt(sections, values, axis=0, padtype="odd", padlen=int(PADDED / cutoff / PERIOD))
+    np.testing.assert_allclose(low_pass(values, PERIOD, cutoff), expected, atol=1e-10 * np.ptp(values))
 
 
 def test_a_line_stays_a_line_in_runs_far_shorter_than_the_filter() -> None:

@@ -16,9 +16,7 @@ from plantar.robot.model import RobotModel
 BETTER = 0.5  # share of the misfit that must be left after the change
 NOTABLE = 0.02  # m: a moment arm below it is within the model's own error
 ALIKE = 0.1  # of the misfit: changes that do as well as the best are named with it
-CERTAIN_MOMENT_ARM = (
-    0.05  # m: an operator's hand adds less, of which one of many joints undoes most by chance
-)
+CERTAIN_MOMENT_ARM = 0.05  # m: an operator's hand adds less, and one of many joints undoes that by chance
 CERTAIN = 0.1  # share left: no larger error of masses or mounting is undone so well by chance
 UNEXPLAINED = 0.12  # m: beyond any sole; masses, encoder zeros or the sensors' places are off
 FARTHEST = 1.5  # m: no posture and no mass is that far off
@@ -63,10 +61,10 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         yield Finding("joint_names", f"{text} (check the joints' names and order)", True)
     elif as_is > NOTABLE and exchanged < BETTER * as_is and exchanged < best + ALIKE * as_is:
         text = "the feet's wrenches look swapped: exchanged, they balance gravity far better"
-        text += f"; or {_alike(left, best, as_is)} is reversed" if best < exchanged + ALIKE * as_is else ""
+        text += f"; or {_alike(left, as_is)} is reversed" if best < exchanged + ALIKE * as_is else ""
         yield Finding("swapped_feet", f"{text} (check the sensors' names)", True)
     elif as_is > NOTABLE and best < BETTER * as_is:
-        alike = _alike(left, best, as_is)
+        alike = _alike(left, as_is)
         text = f"{alike}: reversed, the wrenches balance gravity to {100 * best:.1f} cm"
         joint = "'joint." in min(left, key=left.__getitem__)
         certain = (certain and best < CERTAIN * as_is) or sides.lean > IMPOSSIBLE
@@ -85,9 +83,10 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         yield from _turned(stance, sides)
 
 
-def _alike(left: Mapping[str, float], best: float, as_is: float) -> str:
+def _alike(left: Mapping[str, float], as_is: float) -> str:
     """The changes that leave about as little of the misfit as the best one."""
-    alike = sorted((name for name in left if left[name] < best + ALIKE * as_is), key=left.__getitem__)
+    most = min(left.values()) + ALIKE * as_is
+    alike = sorted((name for name in left if left[name] < most), key=left.__getitem__)
     return " or ".join(alike[:MOST_NAMED])
 
 

@@ -8,10 +8,8 @@ J. Business & Economic Statistics 36, 2018), whose few degrees of freedom go int
 
 from __future__ import annotations
 
-from functools import lru_cache
-
 import numpy as np
-from scipy import special
+from scipy import fft, special
 
 from plantar.conventions import Array
 
@@ -27,15 +25,9 @@ def cosine_covariance(scores: Array, duration: float) -> tuple[Array, int]:
     """
     count = len(scores)
     cosines = int(np.clip(round(2 * SCORE_BANDWIDTH * duration), FEWEST_COSINES, max(count - 1, 1)))
-    coefficients = _cosines(min(cosines, count - 1), count) @ scores
+    # DCT-II: 2 Σ s_t cos(π j (2t + 1) / 2n); the orthonormal one makes every coefficient's variance the density.
+    coefficients = fft.dct(scores, type=2, norm="ortho", axis=0)[1 : cosines + 1]
     return np.asarray(count * coefficients.T @ coefficients / max(len(coefficients), 1)), len(coefficients)
-
-
-@lru_cache(maxsize=32)
-def _cosines(highest: int, count: int) -> Array:
-    """The lowest cosines but the constant, (highest, count), each of length 1: coefficients have the density's size."""
-    order, middle = np.arange(1, highest + 1)[:, None], np.arange(count) + 0.5
-    return np.asarray(np.sqrt(2 / count) * np.cos(np.pi / count * order * middle))
 
 
 def pooled_freedom(variances: Array, freedoms: Array) -> Array:

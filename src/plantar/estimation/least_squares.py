@@ -32,7 +32,7 @@ def fit_linear(blocks: Sequence[Block], *, shared_offset: bool = False) -> Linea
         values=solution[:columns],
         offsets={label: float(solution[own[columns]]) for label, own in zip(labels, places, strict=True)},
         covariance=covariance,
-        white_covariance=variance * inverse / blocks[0].thinned,
+        white_covariance=variance * inverse * total.rows / sum(len(b.response) * b.thinned for b in blocks),
         freedom=freedom,
         residuals=dict(zip(labels, residuals, strict=True)),
         rank=total.rank,

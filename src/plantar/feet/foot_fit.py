@@ -121,7 +121,7 @@ def _fits(
 ) -> dict[Axis, AxisFit]:
     found: dict[Axis, AxisFit] = {}
     timed = not ready.sensor_delay.doubtful
-
+    steps = any(recording.stances[foot] is not None for recording in ready.fitted)
     asked: dict[Axis, PlaceSpread] = dict.fromkeys(ROTATIONAL_AXES, place)
     for _ in range(2):  # about the robot file's place, then about the height that the other axis shows
         for axis, own in asked.items():
@@ -131,7 +131,7 @@ def _fits(
                 fit = fit_axis(ready.fitted, foot, axis, ready.settings, models.get(axis), own, timed)
                 if fit is not None:
                     found[axis] = fit
-        both = set(ROTATIONAL_AXES) <= set(found)
+        both = set(ROTATIONAL_AXES) <= set(found) and not steps
         heights = {axis: place.known_from(found, axis) for axis in ROTATIONAL_AXES if both}
         asked = {axis: known for axis, known in heights.items() if known is not None}
     return found

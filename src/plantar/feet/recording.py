@@ -76,8 +76,9 @@ class Recording:
 
     def stride(self, foot: str) -> int:
         """Samples from one of `rows` to the next; stances are too short to be thinned."""
-        thick = self.stances[foot] is not None
-        return 1 if thick else max(1, int(1 / (SAMPLES_PER_CYCLE * self.cutoff * self.period)))
+        if self.stances[foot] is not None:
+            return 1
+        return max(1, int(1 / (SAMPLES_PER_CYCLE * self.cutoff * self.period)))
 
     def without(self, foot: str, samples: Mask, reason: Reason, detail: str = "") -> Recording:
         """The same recording with these samples of one foot left out."""

@@ -81,15 +81,15 @@ def torque_gains(robot: RobotModel, residuals: Sequence[NewtonEulerResidual]) ->
     sides, feet = [_sides(robot, residual) for residual in residuals], len(robot.feet)
     values, covariance = (part[..., : 2 * feet] for part in _solved(sides, _prior(robot)))
     usual = covariance[: 2 * feet] + robot.uncertainty.wrench_gain**2 * np.eye(2 * feet)
-    gains, beyond = {}, {}
+    gains, beyond, draws = {}, {}, len(sides[0].drawn)
     for place, axis in enumerate(ROTATIONAL_AXES):
         mine = slice(place * feet, (place + 1) * feet)
         shares = dict(zip(robot.feet, (-values[mine] / (1 + values[mine])).tolist(), strict=True))
         gains[axis] = TorqueGain(shares, float(np.sqrt(covariance[mine, mine].sum())) / feet)
-        beyond[axis] = _beyond_chance(values[mine], usual[mine, mine], len(sides[0].drawn))
+        beyond[axis] = _beyond_chance(values[mine], usual[mine, mine], draws)
     # One foot's torques that are off about both axes show less about each than about both together.
     if max(beyond.values()) <= 1 and not any(gain.opposed for gain in gains.values()):
-        beyond = dict.fromkeys(gains, _beyond_chance(values, usual, len(sides[0].drawn)))
+        beyond = dict.fromkeys(gains, _beyond_chance(values, usual, draws))
     return {
         axis: gain
         for axis, gain in gains.items()

@@ -172,8 +172,8 @@ def write_campaign(
 ) -> Path:
     """Write the robot file with its URDF, and each recording's log and truth; returns the robot file's path.
 
-    A robot of one's own has its file copied to `robot.yaml`; where the preset's log has another IMU, the copy is named
-    after the preset.
+    A robot of one's own has its file copied to `robot.yaml`, unless it lies there already; where the preset's log has
+    another IMU, the copy is named after the preset.
     """
     directory = Path(directory)
     for recording in recordings:
@@ -182,8 +182,10 @@ def write_campaign(
     if robot is None:
         built_in = hrp2.write(directory)
         return write_robot(load_robot(built_in), built_in, True) if logged else built_in
+    if not logged and robot.path.parent.resolve() == directory.resolve():
+        return robot.path
     file = directory / (f"{robot.path.stem}_{preset}.yaml" if logged else "robot.yaml")
-    return robot.path if file.resolve() == robot.path.resolve() else write_robot(robot, file, logged)
+    return write_robot(robot, file, logged)
 
 
 def postures_of(robot: RobotModel) -> Postures:

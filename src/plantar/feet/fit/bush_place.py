@@ -46,7 +46,7 @@ class PlaceSpread:
         return np.array([self.aside, self.above, *[self.turned] * 4])
 
     def known_from(self, fits: Mapping[Axis, AxisFit], axis: Axis) -> PlaceSpread | None:
-        """The centre about the other axis of the same foot, where that shows it far off, and farther than this one.
+        """Expecting the height that the other axis shows, where that is far off, and farther than this axis shows it.
 
         Bush and force sensor have one height: a robot file that is wrong about it is so for both axes, and draws the
         one more to itself whose motions show less.

@@ -45,7 +45,8 @@ class GainError(NamedTuple):
 def force_gain_errors(robot: RobotModel, recordings: Sequence[Recording]) -> dict[str, GainError]:
     """By foot, where its sensor reads more or less than the weight by more than one deviation of what may be.
 
-    With one foot those that are off the same way: what a wrong mass or one amplifier does shows here more, there less.
+    Beside such a foot, another that is off the same way counts from WITH_OTHERS deviations on: what a wrong mass or a
+    common amplifier does shows more at one foot and less at the other.
 
     Gains 1/h are those for which the feet's forces add up to the weight, Σ h_i f_i = m g, in windows of all recordings;
     a prior holds the sensors alike where the weight does not move.

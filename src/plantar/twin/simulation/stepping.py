@@ -53,11 +53,12 @@ class Stepper:
         """
         model, data = self.model, self.data
         before = data.qvel.copy()
-        model.opt.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_SENSOR)
-        self.steps.run(row[None])
+        self.blind(row[None])
         after = data.qvel.copy()
-        # MuJoCo has read its sensors at accelerations without the implicit damping of servos and bushes, which light
-        # links miss by some percent: forces would not follow from the motion, nor torques from a bush's rate.
+        # MuJoCo itself would read its sensors at accelerations without the implicit damping of servos and bushes, which
+        # light links miss by some percent: forces would not follow from the motion, nor torques from a bush's rate.
+        model.opt.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_SENSOR)
+        mujoco.mj_sensorPos(model, data)
         data.qvel[:], data.qacc[:] = before, (after - before) / model.opt.timestep
         mujoco.mj_rnePostConstraint(model, data)
         mujoco.mj_sensorAcc(model, data)
@@ -65,7 +66,6 @@ class Stepper:
         mujoco.mj_fwdVelocity(model, data)
         mujoco.mj_sensorVel(model, data)
         mujoco.mj_fwdActuation(model, data)
-        model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_SENSOR)
 
     def blind(self, rows: Array) -> None:
         """Steps with inputs (count, nu) whose sensors nobody reads: they are not computed."""
