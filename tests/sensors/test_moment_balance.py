@@ -73,6 +73,20 @@ def test_one_axis_of_one_foot_is_told_from_the_others(twin: RobotModel, sweep: M
     assert gains["pitch"].reach == shares["left"]
 
 
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_an_imu_that_is_turned_is_told_from_torques(twin: RobotModel, sweep: MotionLog, axis: int) -> None:
+    """Its readings turn with it; what joints do to the moments does not."""
+    assert twin.imu is not None
+    turn, placement = 0.05 * np.eye(3)[axis], twin.imu.placement
+    turned = replace(placement, rpy=(np.array(placement.rpy) + turn).tolist())
+    told = replace(twin, imu=replace(twin.imu, placement=turned))
+    residual = newton_euler_residual(told, sweep)
+    assert residual is not None
+    values, _ = moment_balance._solved([moment_balance._sides(told, residual)], moment_balance._prior(told))
+    np.testing.assert_allclose(values[-3:], -turn, atol=0.004)
+    assert torque_gains(told, [residual]) == {}
+
+
 @pytest.mark.parametrize("seed", [0, 1])
 def test_the_noise_of_the_feet_s_sensors_is_no_gain(twin: RobotModel, sweep: MotionLog, seed: int) -> None:
     """Five newtons of it stand in columns and in what is missing; multiplied with themselves they make 18 to 28 %."""

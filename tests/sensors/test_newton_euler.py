@@ -39,9 +39,9 @@ def late_pair(delay: float, seed: int, push: float = 0.0) -> Pair:
 def closed(pair: Pair) -> NewtonEulerResidual:
     """The pair as one foot's closure, under still joints."""
     still = Motion(*(np.zeros((0, size)) for size in (9, 0, 0, 0)))
-    return NewtonEulerResidual(
-        pair, pair.measured[None], pair.rate[None], 0 * pair.predicted, still, pair.measured
-    )
+    flat = 0 * pair.predicted
+    measured, rate = pair.measured[None], pair.rate[None]
+    return NewtonEulerResidual(pair, measured, rate, flat, np.array([flat] * 3), still, pair.measured)
 
 
 @pytest.mark.parametrize("slow_first", [True, False])

@@ -153,9 +153,7 @@ def _sides(robot: RobotModel, residual: NewtonEulerResidual) -> _Sides:
         for own, column in zip(torques, carried[:2], strict=True):
             own.append(column)
         others += carried[2:]
-    force, moment = np.split(pair.predicted, 2, axis=1)
-    others += [np.hstack([np.cross(turn, force), np.cross(turn, moment)]) for turn in np.eye(3)]
-    moving = _moving(np.stack([*torques[0], *torques[1], *others]), pair.period)
+    moving = _moving(np.stack([*torques[0], *torques[1], *others, *-residual.by_mount]), pair.period)
     drawn = pair.model_errors.reshape(-1, *moving.shape[1:])
     every = np.concatenate([moving, [pair.predicted - pair.measured], drawn])
     slow, count = _low_passed(every, pair.period, BAND), len(moving)

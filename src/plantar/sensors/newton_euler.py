@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+import pinocchio as pin
 
 from plantar.contact.phases import shaken
 from plantar.conventions import FORCE, GRAVITY, Array, Mask
@@ -27,6 +28,7 @@ SLOW = 0.05  # Hz: below it both sides differ by postures and drifting zeros
 BASE_ROWS = slice(0, 6)
 WINDOW = 2.0  # s, in which the forces must follow from the prediction
 SHORTEST = 8.0  # s that a log must offer without a push or a blow
+TURN = 0.01  # rad, of the IMU, for the slope of what it predicts
 EDGE = 0.3  # s at both ends of a run, where the filter is unsure
 
 
@@ -36,13 +38,15 @@ class NewtonEulerResidual:
 
     `pair`: all feet together; `measured` and `rates` (feet, n, 6): each foot's wrench, and how it changes with the
     moment at which its sensor is read; `by_encoders` (n, 6): how the prediction changes with the moment at which the
-    encoders are. `motion` and `readings` (n, 6 feet), the sensors' own, are what both sides come from.
+    encoders are; `by_mount` (3, n, 6): with the angle [rad] by which the IMU is turned about each of its axes.
+    `motion` and `readings` (n, 6 feet), the sensors' own, are what both sides come from.
     """
 
     pair: Pair
     measured: Array
     rates: Array
     by_encoders: Array
+    by_mount: Array
     motion: Motion
     readings: Array
 
@@ -97,9 +101,8 @@ def newton_euler_residual(robot: RobotModel, log: MotionLog) -> NewtonEulerResid
             for contact, own in zip(contacts, split, strict=True)
         ]
 
-    def predicted_at(late: float) -> Array:
-        moved = inertial_motion(robot, log, CUTOFF, late, kept) if late else part
-        return equation.inverse_dynamics(moved, parameters)[BASE_ROWS].T
+    def predicted_by(motion: Motion) -> Array:
+        return equation.inverse_dynamics(motion, parameters)[BASE_ROWS].T
 
     readings = low_pass(wrenches[longest], log.period, CUTOFF)
     changes = differentiate(readings, log.period)[inner]
@@ -108,22 +111,35 @@ def newton_euler_residual(robot: RobotModel, log: MotionLog) -> NewtonEulerResid
         rows = np.hstack(sides)
         return (rows - low_pass(rows, period, SLOW)).reshape(len(rows), -1, 6).transpose(1, 0, 2)
 
-    sides = moving([*carried(readings[inner]), *carried(changes), predicted_at(0.0)])
+    sides = moving([*carried(readings[inner]), *carried(changes), predicted_by(part)])
     measured, rates, predicted = sides[: len(contacts)], sides[len(contacts) : -1], sides[-1]
     calm = _longest_closed(measured.sum(axis=0), rates.sum(axis=0), predicted, period)
     measured, rates, predicted = measured[:, calm], rates[:, calm], predicted[calm]
     pair = Pair(log.name, measured.sum(axis=0), rates.sum(axis=0), predicted, period)
     if len(predicted) * period < SHORTEST or not closes(pair):
         return None
-    step = log.period
     errors = [
         equation.inverse_dynamics(part, drawn)[BASE_ROWS].T[calm] for drawn in drawn_parameter_errors(robot)
     ]
     pair = replace(pair, model_errors=np.array(errors)) if errors else pair
-    by_encoders = moving([(predicted_at(step) - predicted_at(-step)) / (2 * step)])[0]
+    by_encoders, *by_mount = moving(_slopes(robot, log, kept, predicted_by))[:, calm]
     return NewtonEulerResidual(
-        pair, measured, rates, by_encoders[calm], part.select(calm), readings[inner][calm]
+        pair, measured, rates, by_encoders, np.array(by_mount), part.select(calm), readings[inner][calm]
     )
+
+
+def _slopes(
+    robot: RobotModel, log: MotionLog, kept: slice, predicted_by: Callable[[Motion], Array]
+) -> list[Array]:
+    """How the prediction (n, 6) changes with the encoders' delay, and with the IMU's turn about each of its axes."""
+
+    def predicted(late: float, turn: Array) -> Array:
+        return predicted_by(inertial_motion(robot, log, CUTOFF, late, kept, pin.exp3(turn)))
+
+    step, straight = log.period, np.zeros(3)
+    by_encoders = (predicted(step, straight) - predicted(-step, straight)) / (2 * step)
+    turns = TURN * np.eye(3)
+    return [by_encoders, *((predicted(0.0, turn) - predicted(0.0, -turn)) / (2 * TURN) for turn in turns)]
 
 
 def _struck(robot: RobotModel, wrenches: Array, period: float) -> Mask:
