@@ -57,7 +57,9 @@ def residual(delays: Sequence[float], seed: int) -> NewtonEulerResidual:
     pair = Pair("sweep", measured.sum(axis=0), rates.sum(axis=0), predicted(0.0)[INNER], PERIOD)
     still = Motion(*(np.zeros((0, size)) for size in (9, 0, 0, 0)))
     by_encoders, by_mount = by_encoders[INNER], np.zeros((3, *measured[0].shape))
-    return NewtonEulerResidual(pair, measured, rates, by_encoders, by_mount, still, measured[0])
+    return NewtonEulerResidual(
+        pair, measured, rates, by_encoders, 0 * by_encoders, by_mount, still, measured[0]
+    )
 
 
 @pytest.mark.parametrize(

@@ -52,8 +52,9 @@ def test_a_robot_that_is_as_its_file_says_needs_no_draws_of_another(
     twin: RobotModel, sweep: MotionLog
 ) -> None:
     exact = replace(twin, uncertainty=EXACT)
-    assert found(exact, sweep, {}) == {}
-    assert found(exact, sweep, {".torque.": 1.1})["pitch"].mean == pytest.approx(0.1, abs=0.02)
+    ideal = checked(twin, play_all(["Myrand5"], twin, PAPER, "ideal", [0])[0][0].log)
+    assert found(exact, ideal, {}) == {}
+    assert found(exact, sweep, {".torque.": 1.1})["pitch"].mean == pytest.approx(0.1, abs=0.03)
 
 
 @pytest.mark.parametrize("gain", [0.85, 1.15])
@@ -62,7 +63,7 @@ def test_the_gain_of_all_torques_is_found(twin: RobotModel, sweep: MotionLog, ga
     assert "pitch" in gains  # one sweep shows it best: the robot leans forward more than aside
     for each in gains.values():
         assert each.mean == pytest.approx(gain - 1, abs=2.5 * each.std)
-        assert each.std < 0.03
+    assert gains["pitch"].std < 0.04
 
 
 def test_one_axis_of_one_foot_is_told_from_the_others(twin: RobotModel, sweep: MotionLog) -> None:
@@ -83,7 +84,7 @@ def test_an_imu_that_is_turned_is_told_from_torques(twin: RobotModel, sweep: Mot
     residual = newton_euler_residual(told, sweep)
     assert residual is not None
     values, _ = moment_balance._solved([moment_balance._sides(told, residual)], moment_balance._prior(told))
-    np.testing.assert_allclose(values[-3:], -turn, atol=0.004)
+    np.testing.assert_allclose(values[-4:-1], -turn, atol=0.004)
     assert torque_gains(told, [residual]) == {}
 
 
@@ -98,29 +99,28 @@ def test_the_noise_of_the_feet_s_sensors_is_no_gain(twin: RobotModel, sweep: Mot
     np.testing.assert_allclose(values[:4], 0.0, atol=0.12)
 
 
-def test_feet_that_are_off_in_opposite_ways_are_no_gains() -> None:
-    assert TorqueGain({"left": 0.5, "right": -0.4}, 0.02).opposed
-    assert not TorqueGain({"left": 0.22, "right": -0.05}, 0.02).opposed
-    assert not TorqueGain({"left": 0.5, "right": 0.4}, 0.02).opposed
+def test_an_interval_reaches_as_far_as_one_foot_alone_can_be_off() -> None:
+    assert TorqueGain(0.05, 0.01, {"left": 0.6, "right": -0.4}).reach == pytest.approx(2 * (0.05 + 0.0196))
+    assert TorqueGain(-0.05, 0.02, {"left": -0.06, "right": -0.04}).reach == 0.06
 
 
 def test_the_warning_names_axis_and_size() -> None:
-    (note,) = torque_gain_notes({"roll": TorqueGain({"left": 0.12, "right": 0.08}, 0.02)}).values()
+    (note,) = torque_gain_notes({"roll": TorqueGain(0.1, 0.02, {"left": 0.12, "right": 0.08})}).values()
     assert note.severity == "warning"
     assert "roll" in note.text
     assert "+10 ± 4 %" in note.text
-    assert "left +12 %, right +8 %" in note.text
+    assert "up to 12 %" in note.text
 
 
-@pytest.mark.parametrize(("off", "axes"), [(3.2, set()), (3.4, {"pitch", "roll"}), (3.7, {"pitch", "roll"})])
+@pytest.mark.parametrize(("off", "axes"), [(2.5, set()), (2.7, {"pitch", "roll"}), (3.2, {"pitch", "roll"})])
 def test_one_foot_that_is_off_about_both_axes_shows_in_both_together(
     twin: RobotModel, sweep: MotionLog, monkeypatch: pytest.MonkeyPatch, off: float, axes: set[str]
 ) -> None:
-    """The left foot's gain is `off` deviations away about each axis: 3.6 would show about one, 3.3 about both."""
+    """The left foot's gain is `off` deviations away about each axis: 3.0 would show about one, 2.6 about both."""
     residual = newton_euler_residual(twin, sweep)
     assert residual is not None
     deviation = 0.05
     values = -off * deviation * np.array([1.0, 0.0, 1.0, 0.0])
-    covariance = (deviation**2 - twin.uncertainty.wrench_gain**2) * np.eye(4)
-    monkeypatch.setattr(moment_balance, "_solved", lambda *_: (values, covariance))
+    part = moment_balance._Part((deviation**2 - twin.uncertainty.wrench_gain**2) * np.eye(4), 1e6)
+    monkeypatch.setattr(moment_balance, "_solved", lambda *_: (values, [part]))
     assert set(torque_gains(twin, [residual])) == axes

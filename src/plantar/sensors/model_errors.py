@@ -8,7 +8,7 @@ import pinocchio as pin
 from plantar.conventions import Array
 from plantar.robot.model import RobotModel
 
-DRAWS = 16  # a spread is then known to a sixth of itself
+DRAWS = 48  # a spread is then known to a tenth of itself
 SEED = 0  # the same draws for every recording: the robot is the same
 
 

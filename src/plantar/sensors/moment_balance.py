@@ -11,56 +11,57 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+import pinocchio as pin
 from scipy import special
 
 from plantar.conventions import ROTATIONAL_AXES, Array, Axis
 from plantar.dynamics import Contact, Equation
-from plantar.estimation.intervals import cosine_covariance
+from plantar.estimation.intervals import MOST_FREEDOM, NORMAL95, cosine_covariance, pooled_freedom
 from plantar.notes import Note
 from plantar.robot.model import Foot, RobotModel
 from plantar.sensors.newton_euler import BASE_ROWS, CUTOFF, SLOW, NewtonEulerResidual
-from plantar.signals.filters import low_pass
+from plantar.signals.filters import gain, low_pass
 
 LOOSE = 0.3  # share: deviation of a torque's gain before the moments are asked
 LEAST_GAIN = 0.01  # share, of the forces' gains and of what their places add: nuisances need a finite prior
 LEAST_ARM = 0.003  # m, likewise
+LEAST_BETWEEN = 0.001  # N.m/N, likewise
 BAND = 2.0  # Hz: the robot moves below it, and most of the sensors' noise is above
+LATE = 0.005  # s, of the gyroscope behind the accelerometer: its filter
 MOUNT = 0.1  # rad, by which sensors and IMU may be turned: wide, so that no turned mount passes for a gain
 CHANCE = 0.01  # that torques without a fault are called wrong about an axis, by deviations that are on the safe side
-OPPOSED = 0.1  # share: feet that are off by more, each the other way, are rather another fault's trace
-OPPOSED_LIMIT = 2.0  # times what chance allows: beyond it gains are wrong, whichever foot's
 WORTH_SAYING = 0.03  # share: what the force sensors' makers promise is seldom better
 
 
 class TorqueGain(NamedTuple):
-    """By which `shares` each foot's torque about an axis reads too much, and the `std` of their mean.
+    """By which share the feet's torques about an axis read too much on average, with its deviation, and each foot's.
 
     What belongs to which foot is known far worse than the mean: both feet turn alike.
     """
 
-    shares: Mapping[str, float]
+    mean: float
     std: float
-
-    @property
-    def mean(self) -> float:
-        return float(np.mean(list(self.shares.values())))
-
-    @property
-    def opposed(self) -> bool:
-        """Whether one foot's torque reads far too much and another's far too little."""
-        return min(self.shares.values()) < -OPPOSED and max(self.shares.values()) > OPPOSED
+    shares: Mapping[str, float]
 
     @property
     def reach(self) -> float:
-        """By which share any foot's torque may be off."""
-        return max(map(abs, self.shares.values()))
+        """By which share any foot's torque may be off: at most all that is missing is one foot's."""
+        alone = len(self.shares) * (abs(self.mean) + NORMAL95 * self.std)
+        return min(alone, max(map(abs, self.shares.values())))
+
+
+class _Part(NamedTuple):
+    """One part of a covariance, and the degrees of freedom that it is known with."""
+
+    covariance: Array
+    freedom: float
 
 
 @dataclass(frozen=True)
 class _Sides:
     """One log's columns (k, n, 6) and what they must add up to (n, 6); `drawn` (draws, n, 6): of a wrong URDF.
 
-    Slower than BAND; `fast` (k + 1, n, 6) are columns and what is missing above it.
+    Slower than BAND; `fast` (k + 1, n, 6) are what is missing and the columns above it.
     """
 
     columns: Array
@@ -79,86 +80,103 @@ def torque_gains(robot: RobotModel, residuals: Sequence[NewtonEulerResidual]) ->
     if not residuals:
         return {}
     sides, feet = [_sides(robot, residual) for residual in residuals], len(robot.feet)
-    values, covariance = (part[..., : 2 * feet] for part in _solved(sides, _prior(robot)))
-    usual = covariance[: 2 * feet] + robot.uncertainty.wrench_gain**2 * np.eye(2 * feet)
-    gains, beyond, draws = {}, {}, len(sides[0].drawn)
+    values, parts = _solved(sides, _prior(robot))
+    usual = np.diag(np.full(len(values), robot.uncertainty.wrench_gain**2))
+    gains, beyond = {}, {}
     for place, axis in enumerate(ROTATIONAL_AXES):
         mine = slice(place * feet, (place + 1) * feet)
-        shares = dict(zip(robot.feet, (-values[mine] / (1 + values[mine])).tolist(), strict=True))
-        gains[axis] = TorqueGain(shares, float(np.sqrt(covariance[mine, mine].sum())) / feet)
-        beyond[axis] = _beyond_chance(values[mine], usual[mine, mine], draws)
+        shares = dict(zip(robot.feet, map(_share, values[mine]), strict=True))
+        std = float(np.sqrt(sum(part.covariance[mine, mine].sum() for part in parts))) / feet
+        gains[axis] = TorqueGain(_share(values[mine].mean()), std, shares)
+        beyond[axis] = _beyond_chance(values, [*parts, _Part(usual, MOST_FREEDOM)], mine)
     # One foot's torques that are off about both axes show less about each than about both together.
-    if max(beyond.values()) <= 1 and not any(gain.opposed for gain in gains.values()):
-        beyond = dict.fromkeys(gains, _beyond_chance(values, usual, draws))
-    return {
-        axis: gain
-        for axis, gain in gains.items()
-        if beyond[axis] > (OPPOSED_LIMIT if gain.opposed else 1) and abs(gain.mean) > WORTH_SAYING
-    }
+    if max(beyond.values()) <= 1:
+        both = slice(0, len(ROTATIONAL_AXES) * feet)
+        beyond = dict.fromkeys(gains, _beyond_chance(values, [*parts, _Part(usual, MOST_FREEDOM)], both))
+    return {axis: gain for axis, gain in gains.items() if beyond[axis] > 1 and abs(gain.mean) > WORTH_SAYING}
 
 
-def _beyond_chance(values: Array, usual: Array, draws: int) -> float:
-    """How many times larger gains (k,) are than a covariance (k, k) from so many `draws` lets them be by chance."""
-    distance = float(values @ np.linalg.solve(usual, values)) / len(values)
-    freedom = max(draws - len(values), 2) if draws else 1e9
-    return distance / float(special.fdtri(len(values), freedom, 1 - CHANCE))
+def _beyond_chance(values: Array, parts: Sequence[_Part], some: slice) -> float:
+    """How many times larger `some` gains are than their covariance, the sum of `parts`, lets them be by chance."""
+    own = np.array([part.covariance[some, some] for part in parts])
+    weights = np.linalg.solve(own.sum(axis=0), values[some])
+    count, variances = len(weights), np.einsum("i,kij,j->k", weights, own, weights)
+    freedom = float(pooled_freedom(variances[:, None], np.array([[part.freedom] for part in parts]))[0])
+    return (
+        float(weights @ values[some])
+        / count
+        / float(special.fdtri(count, max(freedom - count, 2), 1 - CHANCE))
+    )
+
+
+def _share(missing: float) -> float:
+    """By which share a torque reads too much that must be larger by the share `missing`."""
+    return float(-missing / (1 + missing))
 
 
 def torque_gain_notes(gains: Mapping[Axis, TorqueGain]) -> dict[Axis, Note]:
     """A warning for each axis about which the feet's torques cannot be right."""
     notes = {}
-    for axis, gain in gains.items():
-        each = ", ".join(f"{foot} {100 * share:+.0f} %" for foot, share in gain.shares.items())
+    for axis, found in gains.items():
         text = (
             f"{axis}: the feet's torques do not give the moments that the robot's motion needs: they read "
-            f"{100 * gain.mean:+.0f} ± {196 * gain.std:.0f} % too much on average (95 %; most likely {each}), and "
-            "stiffness and damping follow them. Check unit and calibration of the torque channels"
+            f"{100 * found.mean:+.0f} ± {196 * found.std:.0f} % too much on average of the feet (95 %; one foot's "
+            f"alone by up to {100 * found.reach:.0f} %), and stiffness and damping follow them. Check unit and "
+            "calibration of the torque channels"
         )
         notes[axis] = Note("torque_gain", "warning", text)
     return notes
 
 
 def _prior(robot: RobotModel) -> Array:
-    """Deviations of the columns of `_sides`: torques of both axes; of each foot its gain, moment arms and turns; the
-    IMU's mount.
-    """
-    uncertainty, feet = robot.uncertainty, len(robot.feet)
-    gain = max(uncertainty.wrench_gain, LEAST_GAIN)
-    arm = max(float(np.hypot(uncertainty.bush_position, uncertainty.wrench_crosstalk)), LEAST_ARM)
+    """Deviations of the columns of `_sides`: gains of torques, each foot's other errors, the IMU's turns and lag."""
+    feet = len(robot.feet)
     return np.concatenate(
-        [
-            np.full(2 * feet, LOOSE),
-            np.tile([gain, arm, arm, arm, MOUNT, MOUNT, MOUNT], feet),
-            np.full(3, MOUNT),
-        ]
+        [np.full(2 * feet, LOOSE), np.tile(_sensor_errors(robot)[1], feet), np.full(3, MOUNT), [LATE]]
     )
+
+
+def _sensor_errors(robot: RobotModel) -> tuple[Array, Array]:
+    """What else a force sensor may get wrong: matrices (k, 6, 6) that act on what it reads, and their deviations (k,).
+
+    The gain of all channels, the place along x, y and z, the turn about them, each channel's own gain and what one
+    channel does to another; no torque reaches a force.
+    """
+    uncertainty = robot.uncertainty
+    gain = max(uncertainty.wrench_gain, LEAST_GAIN)
+    place = max(uncertainty.bush_position, LEAST_ARM)
+    between = max(uncertainty.wrench_crosstalk, LEAST_BETWEEN)
+    none, crosses = np.zeros((3, 3)), [pin.skew(axis) for axis in np.eye(3)]
+    errors = [(np.eye(6), gain)]
+    errors += [(np.block([[none, none], [cross, none]]), place) for cross in crosses]
+    errors += [(np.block([[cross, none], [none, cross]]), MOUNT) for cross in crosses]
+    for read, real in (pair for pair in np.ndindex(6, 6) if pair[0] >= 3 or pair[1] < 3):
+        single = np.zeros((6, 6))
+        single[read, real] = 1.0
+        errors.append((single, gain if read == real else between))
+    matrices, deviations = zip(*errors, strict=True)
+    return np.array(matrices), np.array(deviations)
 
 
 def _sides(robot: RobotModel, residual: NewtonEulerResidual) -> _Sides:
     pair, equation = residual.pair, Equation(robot.floating_model)
-    torques: list[list[Array]] = [[], []]
-    others = []
+    gains: list[list[Array]] = [[], []]
+    others: list[Array] = []
     for place, foot in enumerate(robot.feet.values()):
-        force, torque = np.split(residual.readings[:, 6 * place : 6 * place + 6], 2, axis=1)
+        wrench = residual.readings[:, 6 * place : 6 * place + 6]
         contact = Contact(*robot.frame(foot.wrench.placement))
         transfer = equation.contact_transfer(residual.motion.positions, contact)[:, BASE_ROWS]
-        # Each axis' torque alone; the whole wrench; the force on an arm along x, y and z; the wrench turned about them.
-        alone = [np.hstack([0 * force, np.outer(torque @ along, along)]) for along in _directions(foot)]
-        moved = [np.hstack([0 * force, np.cross(arm, force)]) for arm in np.eye(3)]
-        turned = [np.hstack([np.cross(turn, force), np.cross(turn, torque)]) for turn in np.eye(3)]
-        carried = [
-            np.einsum("nij,nj->ni", transfer, wrench)
-            for wrench in (*alone, np.hstack([force, torque]), *moved, *turned)
-        ]
-        for own, column in zip(torques, carried[:2], strict=True):
+        alone = np.zeros((2, 6, 6))
+        alone[:, 3:, 3:] = [np.outer(along, along) for along in _directions(foot)]
+        read = np.einsum("kij,nj->kni", np.concatenate([alone, _sensor_errors(robot)[0]]), wrench)
+        carried = np.einsum("nij,knj->kni", transfer, read)
+        for own, column in zip(gains, carried[:2], strict=True):
             own.append(column)
-        others += carried[2:]
-    moving = _moving(np.stack([*torques[0], *torques[1], *others, *-residual.by_mount]), pair.period)
-    drawn = pair.model_errors.reshape(-1, *moving.shape[1:])
-    every = np.concatenate([moving, [pair.predicted - pair.measured], drawn])
-    slow, count = _low_passed(every, pair.period, BAND), len(moving)
-    fast = (every - slow)[: count + 1]
-    return _Sides(slow[:count], slow[count], slow[count + 1 :], fast, pair.period)
+        others += [*carried[2:]]
+    moving = [*gains[0], *gains[1], *others, *-residual.by_mount, -residual.by_gyroscope, *pair.model_errors]
+    every = np.concatenate([[pair.predicted - pair.measured], _moving(np.stack(moving), pair.period)])
+    slow, count = _low_passed(every, pair.period, BAND), len(every) - len(pair.model_errors)
+    return _Sides(slow[1:count], slow[0], slow[count:], (every - slow)[:count], pair.period)
 
 
 def _directions(foot: Foot) -> Array:
@@ -180,14 +198,21 @@ def _low_passed(columns: Array, period: float, cutoff: float) -> Array:
 
 
 def _products(side: _Sides, weights: Array) -> Array:
-    """Products (k + 1, k + 1) of columns and what is missing, without what the sensors' noise adds to them.
+    """Products (k + 1, k + 1) of what is missing and the columns, without what the sensors' noise adds to them.
 
     The feet's own readings are in the columns and in what is missing: their noise, multiplied with itself, would pass
     for arms of centimetres. It is as large below BAND as it is above, where hardly anything else is.
     """
-    slow = np.concatenate([side.columns, [side.missing]])
-    noise = BAND / (CUTOFF - BAND) * np.einsum("inc,jnc,c->ij", side.fast, side.fast, weights)
+    slow = np.concatenate([[side.missing], side.columns])
+    noise = _below_to_above(side.period) * np.einsum("inc,jnc,c->ij", side.fast, side.fast, weights)
     return np.asarray(np.einsum("inc,jnc,c->ij", slow, slow, weights) - noise)
+
+
+def _below_to_above(period: float) -> float:
+    """Power of white noise below BAND over that above it, behind the filters that both have passed."""
+    hertz = np.linspace(0.0, 0.5 / period, 2000)
+    passed, slow = (gain(hertz, period, cutoff) for cutoff in (CUTOFF, BAND))
+    return float(np.sum((passed * slow) ** 2) / np.sum((passed * (1 - slow)) ** 2))
 
 
 def _positive(products: Array) -> Array:
@@ -196,23 +221,29 @@ def _positive(products: Array) -> Array:
     return np.asarray((vectors * np.maximum(sizes, 0.0)) @ vectors.T)
 
 
-def _solved(sides: Sequence[_Sides], prior: Array) -> tuple[Array, Array]:
-    """Coefficients of the columns, those of torques first, and their covariance."""
+def _solved(sides: Sequence[_Sides], prior: Array) -> tuple[Array, list[_Part]]:
+    """Coefficients of the columns, those of torques first, and their covariance: of priors, noise and wrong URDFs."""
     values, known = np.zeros(len(prior)), np.diag(prior**-2.0)
     for _ in range(2):  # weights from what is left, then the coefficients once more
         left = [side.missing - np.tensordot(values, side.columns, 1) for side in sides]
         # A filtered signal has two independent samples in a period of its cutoff.
         weights = 2 * BAND * sides[0].period / np.mean(np.vstack(left) ** 2, axis=0)
         both = np.sum([_products(side, weights) for side in sides], axis=0)
-        normal = _positive(both[:-1, :-1]) + known
-        values[:] = np.linalg.solve(normal, both[:-1, -1])
-    inverse, scatter = np.linalg.inv(normal), known.copy()
+        normal = _positive(both[1:, 1:]) + known
+        values[:] = np.linalg.solve(normal, both[1:, 0])
+    inverse, scatter, cosines = np.linalg.inv(normal), 0 * known, 0
     moved: Array = np.zeros((len(prior), len(sides[0].drawn)))
     for side in sides:
         missed = side.missing - np.tensordot(values, side.columns, 1)
         scores = np.sum(side.columns * (missed * weights), axis=2).T
-        scatter += cosine_covariance(scores, len(scores) * side.period)[0]
+        own, freedom = cosine_covariance(scores, len(scores) * side.period)
+        scatter, cosines = scatter + own, cosines + freedom
         if moved.size:
             weighted = (side.columns * weights).reshape(len(prior), -1)
             moved += inverse @ weighted @ side.drawn.reshape(len(side.drawn), -1).T
-    return values, inverse @ scatter @ inverse + moved @ moved.T / max(moved.shape[1], 1)
+    draws = max(moved.shape[1], 1)
+    return values, [
+        _Part(inverse @ known @ inverse, MOST_FREEDOM),
+        _Part(inverse @ scatter @ inverse, cosines),
+        _Part(moved @ moved.T / draws, draws),
+    ]

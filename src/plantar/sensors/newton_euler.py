@@ -20,6 +20,7 @@ from plantar.robot.model import RobotModel
 from plantar.sensors.model_errors import drawn_parameter_errors
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.orientation import attitude
+from plantar.signals.resampling import shifted
 from plantar.signals.segments import longest_run
 
 CUTOFF = 8.0  # Hz: above it differentiated encoders are noise
@@ -38,14 +39,16 @@ class NewtonEulerResidual:
 
     `pair`: all feet together; `measured` and `rates` (feet, n, 6): each foot's wrench, and how it changes with the
     moment at which its sensor is read; `by_encoders` (n, 6): how the prediction changes with the moment at which the
-    encoders are; `by_mount` (3, n, 6): with the angle [rad] by which the IMU is turned about each of its axes.
-    `motion` and `readings` (n, 6 feet), the sensors' own, are what both sides come from.
+    encoders are, `by_gyroscope` (n, 6): with that of the gyroscope; `by_mount` (3, n, 6): with the angle [rad] by
+    which the IMU is turned about each of its axes. `motion` and `readings` (n, 6 feet), the sensors' own, are what both
+    sides come from.
     """
 
     pair: Pair
     measured: Array
     rates: Array
     by_encoders: Array
+    by_gyroscope: Array
     by_mount: Array
     motion: Motion
     readings: Array
@@ -122,24 +125,40 @@ def newton_euler_residual(robot: RobotModel, log: MotionLog) -> NewtonEulerResid
         equation.inverse_dynamics(part, drawn)[BASE_ROWS].T[calm] for drawn in drawn_parameter_errors(robot)
     ]
     pair = replace(pair, model_errors=np.array(errors)) if errors else pair
-    by_encoders, *by_mount = moving(_slopes(robot, log, kept, predicted_by))[:, calm]
+    by_encoders, by_gyroscope, *by_mount = moving(_slopes(robot, log, kept, predicted_by))[:, calm]
     return NewtonEulerResidual(
-        pair, measured, rates, by_encoders, np.array(by_mount), part.select(calm), readings[inner][calm]
+        pair,
+        measured,
+        rates,
+        by_encoders,
+        by_gyroscope,
+        np.array(by_mount),
+        part.select(calm),
+        readings[inner][calm],
     )
 
 
 def _slopes(
     robot: RobotModel, log: MotionLog, kept: slice, predicted_by: Callable[[Motion], Array]
 ) -> list[Array]:
-    """How the prediction (n, 6) changes with the encoders' delay, and with the IMU's turn about each of its axes."""
+    """How the prediction (n, 6) changes with the moments at which encoders and gyroscope are read, and with turns of
+    the IMU about its axes.
+    """
+    assert robot.imu is not None
+    gyroscope = imu_columns(robot.imu.name, "angular_velocity")
 
-    def predicted(late: float, turn: Array) -> Array:
-        return predicted_by(inertial_motion(robot, log, CUTOFF, late, kept, pin.exp3(turn)))
+    def predicted(encoders: float = 0.0, gyro: float = 0.0, turn: Array | None = None) -> Array:
+        read = shifted(log.stack(gyroscope), log.period, gyro)
+        moved = log.with_columns(dict(zip(gyroscope, read.T, strict=True)))
+        turned = None if turn is None else pin.exp3(turn)
+        return predicted_by(inertial_motion(robot, moved, CUTOFF, encoders, kept, turned))
 
-    step, straight = log.period, np.zeros(3)
-    by_encoders = (predicted(step, straight) - predicted(-step, straight)) / (2 * step)
-    turns = TURN * np.eye(3)
-    return [by_encoders, *((predicted(0.0, turn) - predicted(0.0, -turn)) / (2 * TURN) for turn in turns)]
+    step, turns = log.period, TURN * np.eye(3)
+    return [
+        (predicted(encoders=step) - predicted(encoders=-step)) / (2 * step),
+        (predicted(gyro=step) - predicted(gyro=-step)) / (2 * step),
+        *((predicted(turn=turn) - predicted(turn=-turn)) / (2 * TURN) for turn in turns),
+    ]
 
 
 def _struck(robot: RobotModel, wrenches: Array, period: float) -> Mask:

@@ -10,8 +10,10 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
+from scipy import optimize, special
 
 from plantar.conventions import GRAVITY, Array, Axis
+from plantar.estimation.intervals import NORMAL95
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.systematic import Cause
 from plantar.feet.recording import Recording
@@ -21,32 +23,63 @@ from plantar.sensors.moment_balance import TorqueGain
 
 WINDOW = 1.0  # s, over which accelerations average out
 CARRIED = 0.5  # of the weight: with less on its feet, the robot hangs or its sensors were zeroed under load
-SCATTER = 0.02  # of the weight, by which a window's sum may be off: accelerations, zeros, a hand on the robot
-ALIKE = 3.0  # deviations of a gain, by which a robot's force sensors differ where one of them has a fault
+SCATTER = 0.005  # of the weight, by which a recording's sums may be off: zeros of sensors, accelerations
+HAND = 2.0  # times the scatter of a recording's sums: what a hand may carry on average that carries now more, now less
+REWEIGHTED = 5  # rounds
+ALIKE = 10.0  # deviations of a gain, by which a robot's force sensors differ where one of them has a fault
+LEAST_GAIN = 1e-4  # share: a sensor without any gain error, and a deviation that stays finite
 SURELY_ALIKE = 1e-4  # share: of sensors without any gain error, and a prior that stays finite
-NORMAL95 = 1.96  # deviations that a 95 % interval reaches
 LEAST_DEVIATION = 0.02  # of the weight: what a hand on the robot may carry of it through whole logs
-WITH_OTHERS = 0.5  # deviations of a gain that counts beside another foot's that is off the same way
 BEYOND_DOUBT = 3.0  # deviations of what the robot file allows for gains and masses
+FAULTY = 0.15  # of robots: their force sensors are off by more than the robot file says,
+FAULT = (
+    0.1  # by such a share (standard deviation): another unit of load, an old calibration, a wrong amplifier
+)
 
 
 class GainError(NamedTuple):
-    """By which `share` a sensor seems to read too much, and the `deviation` of that which the robot file allows."""
+    """By which `share` a sensor seems to read too much, with its `std`.
+
+    And the deviations of a `usual` gain and of all `other` reasons for it.
+    """
 
     share: float
-    deviation: float
+    std: float
+    usual: float
+    other: float
 
     @property
     def sure(self) -> bool:
         """Whether the robot file's uncertainty cannot explain it."""
-        return abs(self.share) > BEYOND_DOUBT * self.deviation
+        return abs(self.share) > BEYOND_DOUBT * float(np.hypot(self.usual, self.other))
+
+    @property
+    def reach(self) -> float:
+        """Share of a foot's numbers by which its sensor's gain puts them wrong, with 95 % probability.
+
+        What is seen, d, is the sum of the gain's error and of all else. Most sensors are as good as the robot file
+        says, FAULTY of them far worse; either kind of error has a normal distribution given d. That a gain is off
+        by more than d and something hides it is left out: d and the usual error are all that is added.
+        """
+        seen = abs(self.share / (1 + self.share))
+        sizes = np.array([self.usual, FAULT])
+        total = np.hypot(sizes, self.other)
+        odds = np.array([1 - FAULTY, FAULTY]) * np.exp(-0.5 * (seen / total) ** 2) / total
+        mean, std = seen * (sizes / total) ** 2, np.maximum(sizes * self.other / total, LEAST_GAIN)
+
+        def outside(reach: float) -> float:
+            beyond = special.ndtr((mean - reach) / std) + special.ndtr((-mean - reach) / std)
+            return float(odds @ beyond / odds.sum()) - 0.05
+
+        found = float(optimize.brentq(outside, 0.0, 1.0))
+        return min(found, float(np.linalg.norm([seen, NORMAL95 * self.std, NORMAL95 * self.usual])))
 
 
 def force_gain_errors(robot: RobotModel, recordings: Sequence[Recording]) -> dict[str, GainError]:
-    """By foot, where its sensor reads more or less than the weight by more than one deviation of what may be.
+    """By foot, where its sensor reads more or less than the weight.
 
-    Beside such a foot, another that is off the same way counts from WITH_OTHERS deviations on: what a wrong mass or a
-    common amplifier does shows more at one foot and less at the other.
+    Or than all feet together where they are farther off and the weight moves too little to tell them apart: what a
+    wrong mass or a common amplifier does then shows more at one foot and less at the other.
 
     Gains 1/h are those for which the feet's forces add up to the weight, Σ h_i f_i = m g, in windows of all recordings;
     a prior holds the sensors alike where the weight does not move.
@@ -54,26 +87,41 @@ def force_gain_errors(robot: RobotModel, recordings: Sequence[Recording]) -> dic
     if not robot.feet or any(foot.contact == "always" for foot in robot.feet.values()):
         return {}
     weight = robot.mass * GRAVITY
-    shares = np.vstack([_windows(recording, weight) for recording in recordings])
-    if len(shares) == 0:
+    windows = [each for each in (_windows(recording, weight) for recording in recordings) if len(each)]
+    if not windows:
         return {}
-    feet, own = len(robot.feet), robot.uncertainty.wrench_gain
-    alike = (np.eye(feet) - 1 / feet) / max(ALIKE * own, SURELY_ALIKE)
-    rows, targets = np.vstack([shares / SCATTER, alike]), np.repeat([1 / SCATTER, 0.0], [len(shares), feet])
-    inverse = np.linalg.lstsq(rows, targets, rcond=None)[0]
-    deviation = float(np.linalg.norm([own, _mass_deviation(robot), LEAST_DEVIATION]))
-    found = {
-        name: GainError(1 / float(gain) - 1, deviation)
-        for name, gain in zip(robot.feet, inverse, strict=True)
-        if gain > 0
-    }
-    beyond = {error.share > 0 for error in found.values() if abs(error.share) > deviation}
-    least = WITH_OTHERS * deviation
-    return {
-        name: error
-        for name, error in found.items()
-        if (error.share > 0) in beyond and abs(error.share) > least
-    }
+    own, other = robot.uncertainty.wrench_gain, float(np.hypot(_mass_deviation(robot), LEAST_DEVIATION))
+    apart = np.eye(len(robot.feet)) - 1 / len(robot.feet)
+    inverse, covariance = _inverse_gains(windows, apart / max(ALIKE * own, SURELY_ALIKE) ** 2)
+    told_apart = np.abs(apart @ inverse) > NORMAL95 * np.sqrt(np.diag(apart @ covariance @ apart))
+    together = 1 / float(inverse.mean()) - 1
+    errors = {}
+    for name, gain, std, alone in zip(
+        robot.feet, inverse, np.sqrt(np.diag(covariance)), told_apart, strict=True
+    ):
+        if gain > 0:
+            found = GainError(float(1 / gain - 1), float(std), own, other)
+            doubted = not (alone or found.sure) and abs(together) > abs(found.share)
+            errors[name] = found._replace(share=together) if doubted else found
+    return errors
+
+
+def _inverse_gains(windows: Sequence[Array], alike: Array) -> tuple[Array, Array]:
+    """Inverse gains h (feet,) and their covariance: forces over weight (n, feet) of each recording sum up to 1.
+
+    alike: prior precision (feet, feet).
+    """
+    deviations = [SCATTER] * len(windows)
+    for _ in range(REWEIGHTED):
+        precision, right = alike.copy(), np.zeros(len(alike))
+        for each, deviation in zip(windows, deviations, strict=True):
+            # What is wrong in one window is so in others of its recording: together they count once.
+            precision += each.T @ each / (len(each) * deviation**2)
+            right += each.mean(axis=0) / deviation**2
+        inverse = np.linalg.solve(precision, right)
+        # A hand on the robot carries now more, now less.
+        deviations = [float(np.hypot(SCATTER, HAND * (each @ inverse).std())) for each in windows]
+    return np.asarray(inverse), np.asarray(np.linalg.inv(precision))
 
 
 def force_gain_notes(robot: RobotModel, errors: Mapping[str, GainError]) -> list[Note]:
@@ -91,15 +139,13 @@ def force_gain_notes(robot: RobotModel, errors: Mapping[str, GainError]) -> list
 
 
 def force_gain_causes(fit: AxisFit, errors: Mapping[str, GainError]) -> list[Cause]:
-    """What a foot's numbers may be off by where its sensor's gain is in doubt: by all of it, or by nothing.
+    """What a foot's numbers may be off by, beyond the usual error of a gain, where its sensor's is in doubt.
 
     Every term of a model that is linear in its torque follows the gain.
     """
-    if fit.foot not in errors:
-        return []
-    error = errors[fit.foot]
-    reach = abs(error.share / (1 + error.share)) + (0.0 if error.sure else error.deviation)
-    return [Cause("force gain", fit.values, reach / NORMAL95)]
+    error = errors.get(fit.foot)
+    beyond = 0.0 if error is None else (error.reach / NORMAL95) ** 2 - error.usual**2
+    return [Cause("force gain", fit.values, float(np.sqrt(beyond)))] if beyond > 0 else []
 
 
 def torque_gain_causes(fit: AxisFit, gains: Mapping[Axis, TorqueGain]) -> list[Cause]:
