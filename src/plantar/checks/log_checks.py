@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from plantar.checks.air_readings import check_air_readings
 from plantar.checks.channels import check_channels, named
 from plantar.checks.closed_chain import check_closed_chain
 from plantar.checks.gaps import check_gaps
@@ -81,7 +82,7 @@ def _joints(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
 
 
 def _wrenches(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
-    loads = {}
+    loads, wrenches = {}, {}
     for foot in robot.feet.values():
         sensor = foot.wrench
         wrench = log.wrench(sensor.name)
@@ -101,7 +102,7 @@ def _wrenches(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
             text = f"columns 'wrench.{sensor.name}.force.*': never hold a value together: the load is unknown"
             yield Finding("dead_channel", text)
             continue
-        loads[foot.name] = load
+        loads[foot.name], wrenches[foot.name] = load, wrench
         spans = np.array(
             [np.ptp(values[np.isfinite(values)]) if np.isfinite(values).any() else 0.0 for values in wrench.T]
         )
@@ -116,6 +117,7 @@ def _wrenches(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
             )
             yield Finding("dead_channel", f"{text}; is the {'channel' if len(dead) == 1 else 'sensor'} dead?")
     yield from check_load_signs(robot, loads)
+    yield from check_air_readings(robot, log.period, loads, wrenches)
     weight = robot.mass * GRAVITY
     automatic = bool(loads) and all(foot.contact == "auto" for foot in robot.feet.values())
     if automatic and len(loads) == len(robot.feet):
