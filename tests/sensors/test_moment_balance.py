@@ -84,7 +84,7 @@ def test_an_imu_that_is_turned_is_told_from_torques(twin: RobotModel, sweep: Mot
     residual = newton_euler_residual(told, sweep)
     assert residual is not None
     values, _ = moment_balance._solved([moment_balance._sides(told, residual)], moment_balance._prior(told))
-    np.testing.assert_allclose(values[-4:-1], -turn, atol=0.004)
+    np.testing.assert_allclose(values[-7:-4], -turn, atol=0.004)
     assert torque_gains(told, [residual]) == {}
 
 
@@ -112,11 +112,11 @@ def test_the_warning_names_axis_and_size() -> None:
     assert "up to 12 %" in note.text
 
 
-@pytest.mark.parametrize(("off", "axes"), [(2.5, set()), (2.7, {"pitch", "roll"}), (3.2, {"pitch", "roll"})])
+@pytest.mark.parametrize(("off", "axes"), [(2.9, set()), (3.2, {"pitch", "roll"}), (3.8, {"pitch", "roll"})])
 def test_one_foot_that_is_off_about_both_axes_shows_in_both_together(
     twin: RobotModel, sweep: MotionLog, monkeypatch: pytest.MonkeyPatch, off: float, axes: set[str]
 ) -> None:
-    """The left foot's gain is `off` deviations away about each axis: 3.0 would show about one, 2.6 about both."""
+    """The left foot's gain is `off` deviations away about each axis: 3.6 would show about one, 3.0 about both."""
     residual = newton_euler_residual(twin, sweep)
     assert residual is not None
     deviation = 0.05

@@ -27,7 +27,7 @@ LEAST_GAIN = 0.01  # share, of the forces' gains and of what their places add: n
 LEAST_ARM = 0.003  # m, likewise
 LEAST_BETWEEN = 0.001  # N.m/N, likewise
 BAND = 2.0  # Hz: the robot moves below it, and most of the sensors' noise is above
-LATE = 0.005  # s, of the gyroscope behind the accelerometer: its filter
+LATE = 0.02  # s, of feet's sensors, encoders and gyroscope behind the accelerometer
 MOUNT = 0.1  # rad, by which sensors and IMU may be turned: wide, so that no turned mount passes for a gain
 CHANCE = 0.01  # that torques without a fault are called wrong about an axis, by deviations that are on the safe side
 WORTH_SAYING = 0.03  # share: what the force sensors' makers promise is seldom better
@@ -81,23 +81,42 @@ def torque_gains(robot: RobotModel, residuals: Sequence[NewtonEulerResidual]) ->
         return {}
     sides, feet = [_sides(robot, residual) for residual in residuals], len(robot.feet)
     values, parts = _solved(sides, _prior(robot))
-    usual = np.diag(np.full(len(values), robot.uncertainty.wrench_gain**2))
-    gains, beyond = {}, {}
-    for place, axis in enumerate(ROTATIONAL_AXES):
-        mine = slice(place * feet, (place + 1) * feet)
-        shares = dict(zip(robot.feet, map(_share, values[mine]), strict=True))
-        std = float(np.sqrt(sum(part.covariance[mine, mine].sum() for part in parts))) / feet
-        gains[axis] = TorqueGain(_share(values[mine].mean()), std, shares)
-        beyond[axis] = _beyond_chance(values, [*parts, _Part(usual, MOST_FREEDOM)], mine)
+    usual = max(robot.uncertainty.wrench_gain, LEAST_GAIN)
+    parts.append(_Part(usual**2 * np.eye(len(values)), MOST_FREEDOM))
+    mean = _mean_gains(np.sum([part.covariance for part in parts], axis=0), feet)
+    means, parts = mean @ values, [_Part(mean @ part.covariance @ mean.T, part.freedom) for part in parts]
+    stds = np.sqrt(np.sum([np.diag(part.covariance) for part in parts], axis=0))
+    beyond = [_beyond_chance(means, parts, slice(place, place + 1)) for place in range(len(means))]
     # One foot's torques that are off about both axes show less about each than about both together.
-    if max(beyond.values()) <= 1:
-        both = slice(0, len(ROTATIONAL_AXES) * feet)
-        beyond = dict.fromkeys(gains, _beyond_chance(values, [*parts, _Part(usual, MOST_FREEDOM)], both))
-    return {axis: gain for axis, gain in gains.items() if beyond[axis] > 1 and abs(gain.mean) > WORTH_SAYING}
+    if max(beyond) <= 1:
+        beyond = [_beyond_chance(means, parts, slice(None))] * len(means)
+    return {
+        axis: TorqueGain(
+            _share(means[place]),
+            float(stds[place]),
+            {foot: _share(values[place * feet + number]) for number, foot in enumerate(robot.feet)},
+        )
+        for place, axis in enumerate(ROTATIONAL_AXES)
+        if beyond[place] > 1 and abs(_share(means[place])) > WORTH_SAYING
+    }
+
+
+def _mean_gains(covariance: Array, feet: int) -> Array:
+    """Weights (axes, k) by which coefficients make the feet's mean gain about each axis, with the least variance.
+
+    How the gains of the feet differ is no part of it: both feet turn alike, so that a moment of a few newton-metres
+    which nothing here explains passes for one foot's torques too large by half and the other's too small by half.
+    """
+    weights = np.zeros((len(ROTATIONAL_AXES), len(covariance)))
+    for place, row in enumerate(weights):
+        mine = slice(place * feet, (place + 1) * feet)
+        best = np.linalg.solve(covariance[mine, mine], np.ones(feet))
+        row[mine] = best / best.sum()
+    return weights
 
 
 def _beyond_chance(values: Array, parts: Sequence[_Part], some: slice) -> float:
-    """How many times larger `some` gains are than their covariance, the sum of `parts`, lets them be by chance."""
+    """How many times larger `some` values are than their covariance, the sum of `parts`, lets them be by chance."""
     own = np.array([part.covariance[some, some] for part in parts])
     weights = np.linalg.solve(own.sum(axis=0), values[some])
     count, variances = len(weights), np.einsum("i,kij,j->k", weights, own, weights)
@@ -129,10 +148,15 @@ def torque_gain_notes(gains: Mapping[Axis, TorqueGain]) -> dict[Axis, Note]:
 
 
 def _prior(robot: RobotModel) -> Array:
-    """Deviations of the columns of `_sides`: gains of torques, each foot's other errors, the IMU's turns and lag."""
+    """Deviations of the columns of `_sides`: gains of torques, each foot's other errors, turns of the IMU, delays."""
     feet = len(robot.feet)
     return np.concatenate(
-        [np.full(2 * feet, LOOSE), np.tile(_sensor_errors(robot)[1], feet), np.full(3, MOUNT), [LATE]]
+        [
+            np.full(2 * feet, LOOSE),
+            np.tile(_sensor_errors(robot)[1], feet),
+            np.full(3, MOUNT),
+            np.full(feet + 2, LATE),
+        ]
     )
 
 
@@ -168,15 +192,19 @@ def _sides(robot: RobotModel, residual: NewtonEulerResidual) -> _Sides:
         transfer = equation.contact_transfer(residual.motion.positions, contact)[:, BASE_ROWS]
         alone = np.zeros((2, 6, 6))
         alone[:, 3:, 3:] = [np.outer(along, along) for along in _directions(foot)]
-        read = np.einsum("kij,nj->kni", np.concatenate([alone, _sensor_errors(robot)[0]]), wrench)
-        carried = np.einsum("nij,knj->kni", transfer, read)
+        errors = np.concatenate([alone, _sensor_errors(robot)[0]])
+        carried = np.einsum("nij,knj->kni", transfer, np.einsum("kij,nj->kni", errors, wrench))
         for own, column in zip(gains, carried[:2], strict=True):
             own.append(column)
         others += [*carried[2:]]
-    moving = [*gains[0], *gains[1], *others, *-residual.by_mount, -residual.by_gyroscope, *pair.model_errors]
-    every = np.concatenate([[pair.predicted - pair.measured], _moving(np.stack(moving), pair.period)])
+    read = [*gains[0], *gains[1], *others]
+    late = [*residual.rates, residual.by_encoders, -residual.by_gyroscope]
+    moving = _moving(np.stack([*read, *-residual.by_mount, *late, *pair.model_errors]), pair.period)
+    every = np.concatenate([[pair.predicted - pair.measured], moving])
     slow, count = _low_passed(every, pair.period, BAND), len(every) - len(pair.model_errors)
-    return _Sides(slow[1:count], slow[0], slow[count:], (every - slow)[:count], pair.period)
+    fast = (every - slow)[:count]
+    fast[1 + len(read) :] = 0.0  # slopes are smooth: their noise is not white, and small below BAND
+    return _Sides(slow[1:count], slow[0], slow[count:], fast, pair.period)
 
 
 def _directions(foot: Foot) -> Array:
