@@ -30,6 +30,7 @@ ALIKE = 10.0  # deviations of a gain, by which a robot's force sensors differ wh
 LEAST_GAIN = 1e-4  # share: a sensor without any gain error, and a deviation that stays finite
 SURELY_ALIKE = 1e-4  # share: of sensors without any gain error, and a prior that stays finite
 LEAST_DEVIATION = 0.02  # of the weight: what a hand on the robot may carry of it through whole logs
+SAFE = 0.5  # deviations by which a share may be larger than it looks
 BEYOND_DOUBT = 3.0  # deviations of what the robot file allows for gains and masses
 FAULTY = 0.15  # of robots: their force sensors are off by more than the robot file says,
 FAULT = (
@@ -61,7 +62,8 @@ class GainError(NamedTuple):
         says, FAULTY of them far worse; either kind of error has a normal distribution given d. That a gain is off
         by more than d and something hides it is left out: d and the usual error are all that is added.
         """
-        seen = abs(self.share / (1 + self.share))
+        safe = 0.0 if self.sure else SAFE * self.std
+        seen = abs(self.share / (1 + self.share)) + safe
         sizes = np.array([self.usual, FAULT])
         total = np.hypot(sizes, self.other)
         odds = np.array([1 - FAULTY, FAULTY]) * np.exp(-0.5 * (seen / total) ** 2) / total
