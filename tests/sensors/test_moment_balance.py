@@ -15,6 +15,7 @@ from plantar.robot.uncertainty import EXACT
 from plantar.sensors import moment_balance
 from plantar.sensors.moment_balance import TorqueGain, torque_gain_notes, torque_gains
 from plantar.sensors.newton_euler import newton_euler_residual
+from plantar.signals.resampling import shifted
 from plantar.twin import PAPER, play_all
 from plantar.twin.robots import hrp2
 
@@ -97,6 +98,17 @@ def test_the_noise_of_the_feet_s_sensors_is_no_gain(twin: RobotModel, sweep: Mot
     assert residual is not None
     values, _ = moment_balance._solved([moment_balance._sides(twin, residual)], moment_balance._prior(twin))
     np.testing.assert_allclose(values[:4], 0.0, atol=0.12)
+
+
+def test_a_late_wrench_is_no_gain_of_torques(twin: RobotModel, sweep: MotionLog) -> None:
+    """Ten milliseconds, told from torques by all six of its channels."""
+    names = [name for name in sweep.columns if name.startswith("wrench.")]
+    late = shifted(sweep.stack(names), sweep.period, -0.01)
+    residual = newton_euler_residual(twin, sweep.with_columns(dict(zip(names, late.T, strict=True))))
+    assert residual is not None
+    values, _ = moment_balance._solved([moment_balance._sides(twin, residual)], moment_balance._prior(twin))
+    np.testing.assert_allclose(values[-4:-2], 0.01, atol=0.001)
+    assert torque_gains(twin, [residual]) == {}
 
 
 def test_an_interval_reaches_as_far_as_one_foot_alone_can_be_off() -> None:
