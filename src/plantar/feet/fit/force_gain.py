@@ -62,7 +62,9 @@ class GainError(NamedTuple):
         says, FAULTY of them far worse; either kind of error has a normal distribution given d. That a gain is off
         by more than d and something hides it is left out: d and the usual error are all that is added.
         """
-        safe = 0.0 if self.sure else SAFE * self.std
+        safe = (
+            0.0 if self.sure else SAFE * min(self.std, abs(self.share))
+        )  # nothing is missing, nothing is off
         seen = abs(self.share / (1 + self.share)) + safe
         sizes = np.array([self.usual, FAULT])
         total = np.hypot(sizes, self.other)
