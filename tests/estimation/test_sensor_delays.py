@@ -11,7 +11,7 @@ import pytest
 from biped import record, sway
 from biped_robot import make_robot
 from plantar.conventions import Array
-from plantar.dynamics.motion import Motion
+from plantar.dynamics.inertial_motion import InertialSignals
 from plantar.estimation.delay import Pair
 from plantar.estimation.sensor_delays import estimate_delays
 from plantar.logs.motion_log import MotionLog
@@ -55,10 +55,9 @@ def residual(delays: Sequence[float], seed: int) -> NewtonEulerResidual:
     rates = [differentiate(reading, PERIOD) for reading in readings]
     measured, rates = np.array(readings)[:, INNER], np.array(rates)[:, INNER]
     pair = Pair("sweep", measured.sum(axis=0), rates.sum(axis=0), predicted(0.0)[INNER], PERIOD)
-    still = Motion(*(np.zeros((0, size)) for size in (9, 0, 0, 0)))
-    by_encoders, by_mount = by_encoders[INNER], np.zeros((3, *measured[0].shape))
+    signals, none = InertialSignals(*np.zeros((3, 0, 3)), PERIOD), np.zeros((0, 0, 6))
     return NewtonEulerResidual(
-        pair, measured, rates, by_encoders, 0 * by_encoders, by_mount, still, measured[0]
+        pair, measured, rates, by_encoders[INNER], measured[0], signals, slice(0), none
     )
 
 

@@ -13,7 +13,8 @@ from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
 from plantar.robot.uncertainty import EXACT
 from plantar.sensors import moment_balance
-from plantar.sensors.moment_balance import TorqueGain, torque_gain_notes, torque_gains
+from plantar.sensors.moment_balance import TorqueGain, solved, torque_gain_notes, torque_gains
+from plantar.sensors.moment_columns import moment_columns, prior_deviations
 from plantar.sensors.newton_euler import newton_euler_residual
 from plantar.signals.resampling import shifted
 from plantar.twin import PAPER, play_all
@@ -84,7 +85,7 @@ def test_an_imu_that_is_turned_is_told_from_torques(twin: RobotModel, sweep: Mot
     told = replace(twin, imu=replace(twin.imu, placement=turned))
     residual = newton_euler_residual(told, sweep)
     assert residual is not None
-    values, _ = moment_balance._solved([moment_balance._sides(told, residual)], moment_balance._prior(told))
+    values, _ = solved([moment_columns(told, residual)], prior_deviations(told))
     np.testing.assert_allclose(values[-7:-4], -turn, atol=0.004)
     assert torque_gains(told, [residual]) == {}
 
@@ -96,7 +97,7 @@ def test_the_noise_of_the_feet_s_sensors_is_no_gain(twin: RobotModel, sweep: Mot
     noisy = {name: sweep.column(name) + 5 * random.normal(size=len(sweep)) for name in names}
     residual = newton_euler_residual(twin, sweep.with_columns(noisy))
     assert residual is not None
-    values, _ = moment_balance._solved([moment_balance._sides(twin, residual)], moment_balance._prior(twin))
+    values, _ = solved([moment_columns(twin, residual)], prior_deviations(twin))
     np.testing.assert_allclose(values[:4], 0.0, atol=0.12)
 
 
@@ -106,7 +107,7 @@ def test_a_late_wrench_is_no_gain_of_torques(twin: RobotModel, sweep: MotionLog)
     late = shifted(sweep.stack(names), sweep.period, -0.01)
     residual = newton_euler_residual(twin, sweep.with_columns(dict(zip(names, late.T, strict=True))))
     assert residual is not None
-    values, _ = moment_balance._solved([moment_balance._sides(twin, residual)], moment_balance._prior(twin))
+    values, _ = solved([moment_columns(twin, residual)], prior_deviations(twin))
     np.testing.assert_allclose(values[-4:-2], 0.01, atol=0.001)
     assert torque_gains(twin, [residual]) == {}
 
@@ -134,5 +135,5 @@ def test_one_foot_that_is_off_about_both_axes_shows_in_both_together(
     deviation = 0.05
     values = -off * deviation * np.array([1.0, 0.0, 1.0, 0.0])
     part = moment_balance._Part((deviation**2 - twin.uncertainty.wrench_gain**2) * np.eye(4), 1e6)
-    monkeypatch.setattr(moment_balance, "_solved", lambda *_: (values, [part]))
+    monkeypatch.setattr(moment_balance, "solved", lambda *_: (values, [part]))
     assert set(torque_gains(twin, [residual])) == axes

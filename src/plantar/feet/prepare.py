@@ -89,7 +89,9 @@ def prepare_checked(
     progress("fit z")
     vertical = fit_vertical_stiffness(recordings[: len(logs)], robot)
     moved = [moved_centre(recording, vertical.compliance) for recording in recordings]
-    forces, torques = force_gain_errors(robot, recordings), torque_gains(robot, delay.residuals)
+    forces = force_gain_errors(robot, recordings)
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        torques = torque_gains(robot, delay.residuals, pool.map)
     file = robot.path.name
     odd = [
         *naming_notes(file, robot.guesses),

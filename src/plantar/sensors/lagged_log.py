@@ -6,7 +6,7 @@ import numpy as np
 
 from plantar.conventions import FORCE, GRAVITY, Array
 from plantar.dynamics import Contact, Equation, model_parameters
-from plantar.dynamics.inertial_motion import inertial_motion
+from plantar.dynamics.inertial_motion import inertial_motion, inertial_signals
 from plantar.estimation.lag_search import WINDOW, LagGrid
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
@@ -32,7 +32,8 @@ def lagged_log(robot: RobotModel, log: MotionLog) -> LagGrid | None:
     readings = np.stack([foot.wrench.sign * thin.wrench(foot.wrench.name) for foot in robot.feet.values()])
     steps = np.arange(-round(SEARCHED / thin.period), round(SEARCHED / thin.period) + 1)
     lags: Array = thin.period * steps.astype(np.float64)
-    motions = [inertial_motion(robot, thin, CUTOFF, late) for late in lags]
+    signals = inertial_signals(robot, thin, CUTOFF)
+    motions = [inertial_motion(robot, signals, encoders_late=late) for late in lags]
     known = np.isfinite(readings).all(axis=(0, 2)) & np.all([motion.finite for motion in motions], axis=0)
     longest = longest_run(known)
     inner = slice(longest.start + steps[-1], longest.stop - steps[-1])

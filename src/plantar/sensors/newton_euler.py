@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
-import pinocchio as pin
 
 from plantar.contact.phases import shaken
 from plantar.conventions import FORCE, GRAVITY, Array, Mask
 from plantar.dynamics import Contact, Equation, model_parameters
-from plantar.dynamics.inertial_motion import inertial_motion
+from plantar.dynamics.inertial_motion import InertialSignals, inertial_motion, inertial_signals
 from plantar.dynamics.motion import Motion
 from plantar.estimation.delay import LEAST_CLOSED, Pair, closes, unexplained
 from plantar.estimation.sensor_delays import Balance
@@ -20,7 +19,6 @@ from plantar.robot.model import RobotModel
 from plantar.sensors.model_errors import drawn_parameter_errors
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.orientation import attitude
-from plantar.signals.resampling import shifted
 from plantar.signals.segments import longest_run
 
 CUTOFF = 8.0  # Hz: above it differentiated encoders are noise
@@ -29,7 +27,7 @@ SLOW = 0.05  # Hz: below it both sides differ by postures and drifting zeros
 BASE_ROWS = slice(0, 6)
 WINDOW = 2.0  # s, in which the forces must follow from the prediction
 SHORTEST = 8.0  # s that a log must offer without a push or a blow
-TURN = 0.01  # rad, of the IMU, for the slope of what it predicts
+DELAY_DRAWS = 16  # of a wrong URDF that take part in delays: these are filtered in every band
 EDGE = 0.3  # s at both ends of a run, where the filter is unsure
 
 
@@ -39,19 +37,18 @@ class NewtonEulerResidual:
 
     `pair`: all feet together; `measured` and `rates` (feet, n, 6): each foot's wrench, and how it changes with the
     moment at which its sensor is read; `by_encoders` (n, 6): how the prediction changes with the moment at which the
-    encoders are, `by_gyroscope` (n, 6): with that of the gyroscope; `by_mount` (3, n, 6): with the angle [rad] by
-    which the IMU is turned about each of its axes. `motion` and `readings` (n, 6 feet), the sensors' own, are what both
-    sides come from.
+    encoders are. `readings` (n, 6 feet), the sensors' own, and the samples `kept` of `signals` are what both sides come
+    from. `model_errors` (draws, n, 6): what inertial parameters as wrong as the robot file allows would add.
     """
 
     pair: Pair
     measured: Array
     rates: Array
     by_encoders: Array
-    by_gyroscope: Array
-    by_mount: Array
-    motion: Motion
     readings: Array
+    signals: InertialSignals
+    kept: slice
+    model_errors: Array
 
     @property
     def balance(self) -> Balance:
@@ -80,10 +77,9 @@ def newton_euler_residual(robot: RobotModel, log: MotionLog) -> NewtonEulerResid
     complete = with_gyroscope(robot, log)
     if complete is None:
         return None
-    log = complete
-    motion = inertial_motion(robot, log, CUTOFF)
+    signals = inertial_signals(robot, complete, CUTOFF)
     wrenches = np.hstack([foot.wrench.sign * log.wrench(foot.wrench.name) for foot in robot.feet.values()])
-    whole = motion.finite & np.isfinite(wrenches).all(axis=1)
+    whole = np.asarray(np.isfinite(np.hstack([*signals[:3], wrenches])).all(axis=1))
     edge = round(EDGE / log.period)
     longest = longest_run(whole & ~_struck(robot, wrenches, log.period))
     if (longest.stop - longest.start) * log.period < SHORTEST + 2 * EDGE:
@@ -95,12 +91,12 @@ def newton_euler_residual(robot: RobotModel, log: MotionLog) -> NewtonEulerResid
     stride = max(1, round(1 / (KEPT_RATE * log.period)))
     period, inner = stride * log.period, slice(edge, longest.stop - longest.start - edge, stride)
     kept = slice(longest.start + edge, longest.stop - edge, stride)
-    part = motion.select(kept)
+    motion = inertial_motion(robot, signals, kept)
 
     def carried(readings: Array) -> list[Array]:
         split = [np.ascontiguousarray(readings[:, 6 * i : 6 * i + 6]) for i in range(len(contacts))]
         return [
-            -equation.inverse_dynamics(part, None, [contact], [own])[BASE_ROWS].T
+            -equation.inverse_dynamics(motion, None, [contact], [own])[BASE_ROWS].T
             for contact, own in zip(contacts, split, strict=True)
         ]
 
@@ -109,56 +105,30 @@ def newton_euler_residual(robot: RobotModel, log: MotionLog) -> NewtonEulerResid
 
     readings = low_pass(wrenches[longest], log.period, CUTOFF)
     changes = differentiate(readings, log.period)[inner]
-
-    def moving(sides: Sequence[Array]) -> Array:
-        rows = np.hstack(sides)
-        return (rows - low_pass(rows, period, SLOW)).reshape(len(rows), -1, 6).transpose(1, 0, 2)
-
-    sides = moving([*carried(readings[inner]), *carried(changes), predicted_by(part)])
-    measured, rates, predicted = sides[: len(contacts)], sides[len(contacts) : -1], sides[-1]
-    calm = _longest_closed(measured.sum(axis=0), rates.sum(axis=0), predicted, period)
-    measured, rates, predicted = measured[:, calm], rates[:, calm], predicted[calm]
-    pair = Pair(log.name, measured.sum(axis=0), rates.sum(axis=0), predicted, period)
+    sides = [*carried(readings[inner]), *carried(changes), predicted_by(motion)]
+    step = log.period
+    late, early = (inertial_motion(robot, signals, kept, encoders_late=by) for by in (step, -step))
+    sides.append((predicted_by(late) - predicted_by(early)) / (2 * step))
+    moving = _moving(sides, period)
+    measured, rates = moving[: len(contacts)], moving[len(contacts) : -2]
+    calm = _longest_closed(measured.sum(axis=0), rates.sum(axis=0), moving[-2], period)
+    measured, rates, predicted, by_encoders = (part[..., calm, :] for part in (measured, rates, *moving[-2:]))
+    motion = motion.select(calm)
+    errors = [equation.inverse_dynamics(motion, one)[BASE_ROWS].T for one in drawn_parameter_errors(robot)]
+    drawn = np.array(errors).reshape(len(errors), *predicted.shape)
+    totals = measured.sum(axis=0), rates.sum(axis=0)
+    pair = Pair(log.name, *totals, predicted, period, drawn[:DELAY_DRAWS])
     if len(predicted) * period < SHORTEST or not closes(pair):
         return None
-    errors = [
-        equation.inverse_dynamics(part, drawn)[BASE_ROWS].T[calm] for drawn in drawn_parameter_errors(robot)
-    ]
-    pair = replace(pair, model_errors=np.array(errors)) if errors else pair
-    by_encoders, by_gyroscope, *by_mount = moving(_slopes(robot, log, kept, predicted_by))[:, calm]
-    return NewtonEulerResidual(
-        pair,
-        measured,
-        rates,
-        by_encoders,
-        by_gyroscope,
-        np.array(by_mount),
-        part.select(calm),
-        readings[inner][calm],
-    )
+    start, stop, _ = calm.indices(len(range(*kept.indices(len(log)))))
+    own = slice(kept.start + start * stride, kept.start + stop * stride, stride)
+    return NewtonEulerResidual(pair, measured, rates, by_encoders, readings[inner][calm], signals, own, drawn)
 
 
-def _slopes(
-    robot: RobotModel, log: MotionLog, kept: slice, predicted_by: Callable[[Motion], Array]
-) -> list[Array]:
-    """How the prediction (n, 6) changes with the moments at which encoders and gyroscope are read, and with turns of
-    the IMU about its axes.
-    """
-    assert robot.imu is not None
-    gyroscope = imu_columns(robot.imu.name, "angular_velocity")
-
-    def predicted(encoders: float = 0.0, gyro: float = 0.0, turn: Array | None = None) -> Array:
-        read = shifted(log.stack(gyroscope), log.period, gyro)
-        moved = log.with_columns(dict(zip(gyroscope, read.T, strict=True)))
-        turned = None if turn is None else pin.exp3(turn)
-        return predicted_by(inertial_motion(robot, moved, CUTOFF, encoders, kept, turned))
-
-    step, turns = log.period, TURN * np.eye(3)
-    return [
-        (predicted(encoders=step) - predicted(encoders=-step)) / (2 * step),
-        (predicted(gyro=step) - predicted(gyro=-step)) / (2 * step),
-        *((predicted(turn=turn) - predicted(turn=-turn)) / (2 * TURN) for turn in turns),
-    ]
+def _moving(sides: Sequence[Array], period: float) -> Array:
+    """Sides (k, n, 6) without what postures and drifting zeros do to them."""
+    rows = np.hstack(sides)
+    return (rows - low_pass(rows, period, SLOW)).reshape(len(rows), -1, 6).transpose(1, 0, 2)
 
 
 def _struck(robot: RobotModel, wrenches: Array, period: float) -> Mask:

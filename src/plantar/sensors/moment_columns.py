@@ -1,0 +1,157 @@
+"""What may be wrong where the moments of eq. 1's base rows do not balance: one column for each error of a sensor."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import pinocchio as pin
+
+from plantar.conventions import Array
+from plantar.dynamics import Contact, Equation, model_parameters
+from plantar.dynamics.inertial_motion import inertial_motion
+from plantar.robot.model import Foot, RobotModel
+from plantar.sensors.newton_euler import BASE_ROWS, CUTOFF, SLOW, NewtonEulerResidual
+from plantar.signals.filters import gain, low_pass
+
+LOOSE = 0.3  # share: deviation of a torque's gain before the moments are asked
+LEAST_GAIN = 0.01  # share, of the forces' gains and of what their places add: nuisances need a finite prior
+LEAST_ARM = 0.003  # m, likewise
+LEAST_BETWEEN = 0.001  # N.m/N, likewise
+BAND = 2.0  # Hz: the robot moves below it, and most of the sensors' noise is above
+LATE = 0.02  # s, of feet's sensors, encoders and gyroscope behind the accelerometer
+MOUNT = 0.1  # rad, by which sensors and IMU may be turned: wide, so that no turned mount passes for a gain
+KEPT_PER_BAND = 5.0  # samples for each period of BAND: far above what has passed the filter
+TURN = 0.01  # rad, of the IMU, for the slope of what it predicts
+
+
+@dataclass(frozen=True)
+class MomentColumns:
+    """One log's `columns` (6, k, n), slower than BAND, and what they must add up to, `missing` (6, n).
+
+    The first axis is the six rows of Newton's law.
+
+    The columns are, in this order: torques about pitch of each foot, torques about roll of each foot, what else each
+    foot's sensor may get wrong, the IMU's turn about its three axes, and the delays of each foot, of the encoders and
+    of the gyroscope. `products` (6, k + 1, k + 1) are those of missing and columns, without what the sensors' noise
+    adds to them; `drawn` (6, k, draws) those of columns and what a wrong URDF adds.
+    """
+
+    columns: Array
+    missing: Array
+    products: Array
+    drawn: Array
+    period: float
+
+
+def moment_columns(robot: RobotModel, residual: NewtonEulerResidual) -> MomentColumns:
+    """The columns of one log in which Newton's law closes."""
+    readings = _reading_columns(robot, residual)
+    by_gyroscope, by_mount = _imu_slopes(robot, residual)
+    slopes = [*-by_mount, *residual.rates, residual.by_encoders, -by_gyroscope]
+    pair, period = residual.pair, residual.pair.period
+    moving = np.hstack([*readings, *slopes, *residual.model_errors])
+    moving -= low_pass(moving, period, SLOW)  # what postures and drifting zeros do to them
+    every = np.hstack([pair.predicted - pair.measured, moving])
+    slow, count = low_pass(every, period, BAND), 1 + len(readings) + len(slopes)
+    # Slopes are smooth: their noise is not white, and small below BAND.
+    noisy = 6 * (1 + len(readings))
+    noise = _by_row(every[:, :noisy] - slow[:, :noisy])
+    stride = max(1, round(1 / (KEPT_PER_BAND * BAND * period)))
+    thin = _by_row(slow[::stride])
+    columns, drawn = thin[:, :count], thin[:, count:]
+    products = columns @ columns.transpose(0, 2, 1)
+    share = _below_to_above(period) / stride
+    products[:, : len(readings) + 1, : len(readings) + 1] -= share * (noise @ noise.transpose(0, 2, 1))
+    wrong = columns[:, 1:] @ drawn.transpose(0, 2, 1)
+    return MomentColumns(columns[:, 1:], columns[:, 0], products, wrong, stride * period)
+
+
+def _by_row(signals: Array) -> Array:
+    """Signals (n, 6 k) as (6, k, n): the rows of Newton's law apart."""
+    return np.ascontiguousarray(signals.reshape(len(signals), -1, 6).transpose(2, 1, 0))
+
+
+def prior_deviations(robot: RobotModel) -> Array:
+    """Deviations of the columns' coefficients before the moments are asked, (k,)."""
+    feet = len(robot.feet)
+    of_feet = np.tile(_sensor_errors(robot)[1], feet)
+    return np.concatenate([np.full(2 * feet, LOOSE), of_feet, np.full(3, MOUNT), np.full(feet + 2, LATE)])
+
+
+def _reading_columns(robot: RobotModel, residual: NewtonEulerResidual) -> list[Array]:
+    """What gains of torques and other errors of the feet's sensors add to the measured side, (n, 6) each."""
+    equation, positions = Equation(robot.floating_model), residual.signals.positions[residual.kept]
+    matrices = _sensor_errors(robot)[0]
+    gains: list[list[Array]] = [[], []]
+    others: list[Array] = []
+    for place, foot in enumerate(robot.feet.values()):
+        wrench = residual.readings[:, 6 * place : 6 * place + 6]
+        contact = Contact(*robot.frame(foot.wrench.placement))
+        transfer = equation.contact_transfer(positions, contact)[:, BASE_ROWS]
+        alone = np.zeros((2, 6, 6))
+        alone[:, 3:, 3:] = [np.outer(along, along) for along in _directions(foot)]
+        wrong = np.concatenate([alone, matrices]) @ wrench.T
+        carried = np.asarray(transfer @ wrong.transpose(2, 1, 0)).transpose(2, 0, 1)
+        for own, column in zip(gains, carried[:2], strict=True):
+            own.append(column)
+        others += [*carried[2:]]
+    return [*gains[0], *gains[1], *others]
+
+
+def _sensor_errors(robot: RobotModel) -> tuple[Array, Array]:
+    """What else a force sensor may get wrong: matrices (k, 6, 6) that act on what it reads, and their deviations (k,).
+
+    The gain of all channels, the place along x, y and z, the turn about them, each channel's own gain and what one
+    channel does to another; no torque reaches a force.
+    """
+    uncertainty = robot.uncertainty
+    share = max(uncertainty.wrench_gain, LEAST_GAIN)
+    place = max(uncertainty.bush_position, LEAST_ARM)
+    between = max(uncertainty.wrench_crosstalk, LEAST_BETWEEN)
+    none, crosses = np.zeros((3, 3)), [pin.skew(axis) for axis in np.eye(3)]
+    errors = [(np.eye(6), share)]
+    errors += [(np.block([[none, none], [cross, none]]), place) for cross in crosses]
+    errors += [(np.block([[cross, none], [none, cross]]), MOUNT) for cross in crosses]
+    for read, real in (pair for pair in np.ndindex(6, 6) if pair[0] >= 3 or pair[1] < 3):
+        single = np.zeros((6, 6))
+        single[read, real] = 1.0
+        errors.append((single, share if read == real else between))
+    matrices, deviations = zip(*errors, strict=True)
+    return np.array(matrices), np.array(deviations)
+
+
+def _directions(foot: Foot) -> Array:
+    """The bush's pitch and roll axes in the force sensor's frame, (2, 3)."""
+    same = foot.bush.link == foot.wrench.placement.link
+    turn = foot.wrench.placement.rotation.T @ foot.bush.rotation if same else np.eye(3)
+    return np.asarray(turn.T[[1, 0]])
+
+
+def _imu_slopes(robot: RobotModel, residual: NewtonEulerResidual) -> tuple[Array, Array]:
+    """How the prediction changes with the moment at which the gyroscope is read, (n, 6), and with the angle [rad] by
+    which the IMU is turned about each of its axes, (3, n, 6).
+    """
+    equation, parameters = Equation(robot.floating_model), model_parameters(robot.floating_model)
+
+    def predicted(gyroscope_late: float = 0.0, turned: Array | None = None) -> Array:
+        motion = inertial_motion(robot, residual.signals, residual.kept, 0.0, gyroscope_late, turned)
+        return equation.inverse_dynamics(motion, parameters)[BASE_ROWS].T
+
+    step, turns = residual.signals.period, TURN * np.eye(3)
+    by_gyroscope = (predicted(step) - predicted(-step)) / (2 * step)
+    by_mount = [
+        (predicted(turned=pin.exp3(turn)) - predicted(turned=pin.exp3(-turn))) / (2 * TURN) for turn in turns
+    ]
+    return by_gyroscope, np.array(by_mount)
+
+
+def _below_to_above(period: float) -> float:
+    """Power of white noise below BAND over that above it, behind the filters that both have passed.
+
+    The feet's own readings are in the columns and in what is missing: their noise, multiplied with itself, would pass
+    for arms of centimetres. Above BAND is hardly anything else.
+    """
+    hertz = np.linspace(0.0, 0.5 / period, 2000)
+    passed, slow = (gain(hertz, period, cutoff) for cutoff in (CUTOFF, BAND))
+    return float(np.sum((passed * slow) ** 2) / np.sum((passed * (1 - slow)) ** 2))
