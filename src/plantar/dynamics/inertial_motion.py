@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
-import numpy as np
-import pinocchio as pin
-
 from plantar.conventions import Array
-from plantar.dynamics.base_motion import relative_motion, root_motion
+from plantar.dynamics.base_motion import RelativeMotion, relative_motion, root_motion
 from plantar.dynamics.motion import Motion
 from plantar.errors import RobotError, located
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.kinematics import KinematicTree
-from plantar.robot.model import RobotModel
+from plantar.robot.model import Imu, RobotModel
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.resampling import shifted
 
@@ -34,38 +33,56 @@ def inertial_signals(robot: RobotModel, log: MotionLog, cutoff: float) -> Inerti
 
     Raises RobotError without an IMU, LogError where its columns are missing.
     """
-    if robot.imu is None:
-        raise RobotError(located("names no imu", path=robot.path, valid="imu: {name: ..., link: ...}"))
+    imu = _imu(robot).name
     positions = low_pass(log.positions(robot), log.period, cutoff)
-    rate = low_pass(log.angular_velocity(robot.imu.name), log.period, cutoff)
-    proper = low_pass(log.linear_acceleration(robot.imu.name), log.period, cutoff)
+    rate = low_pass(log.angular_velocity(imu), log.period, cutoff)
+    proper = low_pass(log.linear_acceleration(imu), log.period, cutoff)
     return InertialSignals(positions, rate, proper, log.period)
 
 
 def inertial_motion(
-    robot: RobotModel,
-    signals: InertialSignals,
-    kept: slice = slice(None),
-    encoders_late: float = 0.0,
-    gyroscope_late: float = 0.0,
-    turned: Array | None = None,
+    robot: RobotModel, signals: InertialSignals, kept: slice = slice(None), encoders_late: float = 0.0
 ) -> Motion:
     """Motion of root and joints at the samples `kept`; velocities and accelerations are differences of positions.
 
-    encoders_late, gyroscope_late: by which these report late [s]; turned: (3, 3), how the IMU stands from where the
-    robot file has it.
+    encoders_late: by which these report late [s].
     """
-    assert robot.imu is not None
-    period = signals.period
-    positions = shifted(signals.positions, period, encoders_late) if encoders_late else signals.positions
-    rate = shifted(signals.rate, period, gyroscope_late) if gyroscope_late else signals.rate
-    velocities = differentiate(positions, period)
-    accelerations = differentiate(velocities, period)
-    carrier, placement = robot.frame(robot.imu.placement)
-    if turned is not None:
-        placement = placement * pin.SE3(turned, np.zeros(3))
-    tree = KinematicTree.from_model(robot.model)
-    moving = tuple(values[kept] for values in (positions, velocities, accelerations))
-    relative = relative_motion(tree, carrier - 1, placement, *moving)
-    base = root_motion(relative, signals.proper[kept], rate[kept], differentiate(rate, period)[kept])
-    return Motion(base, *moving)
+    joints = _joint_motion(signals, kept, encoders_late)
+    return _with_base(_imu_motion(robot, joints), joints, signals, kept)
+
+
+def turned_motions(
+    robot: RobotModel, signals: InertialSignals, kept: slice, turns: Sequence[Array]
+) -> list[Motion]:
+    """`inertial_motion` for each of `turns`: rotations (3, 3) of the IMU from where the robot file has it."""
+    joints = _joint_motion(signals, kept)
+    seen = _imu_motion(robot, joints)
+    turned = [replace(seen, rotation=seen.rotation @ turn) for turn in turns]
+    return [_with_base(each, joints, signals, kept) for each in turned]
+
+
+def _joint_motion(signals: InertialSignals, kept: slice, late: float = 0.0) -> tuple[Array, Array, Array]:
+    """Positions, velocities and accelerations at the samples `kept`, of encoders that report `late` [s]."""
+    positions = shifted(signals.positions, signals.period, late) if late else signals.positions
+    velocities = differentiate(positions, signals.period)
+    accelerations = differentiate(velocities, signals.period)
+    return positions[kept], velocities[kept], accelerations[kept]
+
+
+def _imu_motion(robot: RobotModel, joints: tuple[Array, Array, Array]) -> RelativeMotion:
+    """The IMU seen from the root link."""
+    carrier, placement = robot.frame(_imu(robot).placement)
+    return relative_motion(KinematicTree.from_model(robot.model), carrier - 1, placement, *joints)
+
+
+def _with_base(
+    seen: RelativeMotion, joints: tuple[Array, Array, Array], signals: InertialSignals, kept: slice
+) -> Motion:
+    slope = differentiate(signals.rate, signals.period)
+    return Motion(root_motion(seen, signals.proper[kept], signals.rate[kept], slope[kept]), *joints)
+
+
+def _imu(robot: RobotModel) -> Imu:
+    if robot.imu is None:
+        raise RobotError(located("names no imu", path=robot.path, valid="imu: {name: ..., link: ...}"))
+    return robot.imu

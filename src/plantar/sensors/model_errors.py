@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import pinocchio as pin
 
 from plantar.conventions import Array
 from plantar.robot.model import RobotModel
@@ -21,25 +20,25 @@ def drawn_parameter_errors(robot: RobotModel) -> Array:
     mass, centre = robot.uncertainty.link_mass, robot.uncertainty.link_com
     if mass == 0 and centre == 0:
         return np.zeros((0, 10 * (robot.floating_model.njoints - 1)))
-    random = np.random.default_rng(SEED)
-    return np.array([_drawn(robot.floating_model, random, mass, centre) for _ in range(DRAWS)])
+    bodies = list(robot.floating_model.inertias)[1:]
+    masses = np.array([body.mass for body in bodies])
+    centres, inertias = np.array([body.lever for body in bodies]), np.array([body.inertia for body in bodies])
+    random = np.random.default_rng(SEED).standard_normal((DRAWS, len(bodies), 4))
+    shares = np.maximum(1 + mass * random[..., 0], 0.0)
+    moved = centres + centre * random[..., 1:]
+    drawn = _parameters(shares * masses, moved, shares[..., None, None] * inertias)
+    return np.asarray((drawn - _parameters(masses, centres, inertias)).reshape(DRAWS, -1))
 
 
-def _drawn(model: pin.Model, random: np.random.Generator, mass: float, centre: float) -> Array:
-    changes = []
-    for inertia in list(model.inertias)[1:]:
-        share, moved = 1 + mass * random.standard_normal(), centre * random.standard_normal(3)
-        share = max(share, 0.0)
-        heavier = _parameters(share * inertia.mass, inertia.lever + moved, share * inertia.inertia)
-        changes.append(heavier - inertia.toDynamicParameters())
-    return np.concatenate(changes)
-
-
-def _parameters(mass: float, centre: Array, inertia: Array) -> Array:
-    """The ten parameters of a body with its rotational inertia (3, 3) about the centre of mass, in Pinocchio's order.
+def _parameters(mass: Array, centre: Array, inertia: Array) -> Array:
+    """The ten parameters (..., 10) of bodies of `mass` (...), with `centre` (..., 3) and rotational inertia (..., 3, 3)
+    about it, in Pinocchio's order.
 
     Pinocchio itself refuses inertias that rounding made a hair negative, as of links with next to no mass.
     """
-    about_origin = inertia + mass * (centre @ centre * np.eye(3) - np.outer(centre, centre))
+    square = np.sum(centre**2, axis=-1)[..., None, None] * np.eye(3)
+    about_origin = inertia + mass[..., None, None] * (square - centre[..., :, None] * centre[..., None, :])
     rows, columns = [0, 0, 1, 0, 1, 2], [0, 1, 1, 2, 2, 2]
-    return np.concatenate([[mass], mass * centre, about_origin[rows, columns]])
+    return np.concatenate(
+        [mass[..., None], mass[..., None] * centre, about_origin[..., rows, columns]], axis=-1
+    )

@@ -9,10 +9,12 @@ import pinocchio as pin
 
 from plantar.conventions import Array
 from plantar.dynamics import Contact, Equation, model_parameters
-from plantar.dynamics.inertial_motion import inertial_motion
+from plantar.dynamics.inertial_motion import inertial_motion, turned_motions
+from plantar.dynamics.motion import Motion
 from plantar.robot.model import Foot, RobotModel
 from plantar.sensors.newton_euler import BASE_ROWS, CUTOFF, SLOW, NewtonEulerResidual
 from plantar.signals.filters import gain, low_pass
+from plantar.signals.resampling import shifted
 
 LOOSE = 0.3  # share: deviation of a torque's gain before the moments are asked
 LEAST_GAIN = 0.01  # share, of the forces' gains and of what their places add: nuisances need a finite prior
@@ -133,17 +135,20 @@ def _imu_slopes(robot: RobotModel, residual: NewtonEulerResidual) -> tuple[Array
     which the IMU is turned about each of its axes, (3, n, 6).
     """
     equation, parameters = Equation(robot.floating_model), model_parameters(robot.floating_model)
+    signals, kept, step = residual.signals, residual.kept, residual.signals.period
 
-    def predicted(gyroscope_late: float = 0.0, turned: Array | None = None) -> Array:
-        motion = inertial_motion(robot, residual.signals, residual.kept, 0.0, gyroscope_late, turned)
-        return equation.inverse_dynamics(motion, parameters)[BASE_ROWS].T
+    def slope(late: Motion, early: Motion, apart: float) -> Array:
+        ends = [equation.inverse_dynamics(motion, parameters)[BASE_ROWS].T for motion in (late, early)]
+        return (ends[0] - ends[1]) / apart
 
-    step, turns = residual.signals.period, TURN * np.eye(3)
-    by_gyroscope = (predicted(step) - predicted(-step)) / (2 * step)
-    by_mount = [
-        (predicted(turned=pin.exp3(turn)) - predicted(turned=pin.exp3(-turn))) / (2 * TURN) for turn in turns
-    ]
-    return by_gyroscope, np.array(by_mount)
+    read = [signals._replace(rate=shifted(signals.rate, step, by)) for by in (step, -step)]
+    late, early = (inertial_motion(robot, one, kept) for one in read)
+    ahead, back = (
+        turned_motions(robot, signals, kept, [pin.exp3(by * axis) for axis in np.eye(3)])
+        for by in (TURN, -TURN)
+    )
+    by_mount = [slope(*ends, 2 * TURN) for ends in zip(ahead, back, strict=True)]
+    return slope(late, early, 2 * step), np.array(by_mount)
 
 
 def _below_to_above(period: float) -> float:
