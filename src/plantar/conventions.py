@@ -22,6 +22,7 @@ Mask = NDArray[np.bool_]
 Axis = Literal["pitch", "roll", "z"]
 
 GRAVITY: Final = 9.80665  # m/s², standard gravity
+NORMAL95: Final = 1.96  # deviations that a 95 % interval of a normal value reaches
 ROTATIONAL_AXES: Final[tuple[Axis, Axis]] = ("pitch", "roll")
 AXES: Final[tuple[Axis, Axis, Axis]] = ("pitch", "roll", "z")
 

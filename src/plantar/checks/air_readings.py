@@ -39,7 +39,7 @@ def check_air_readings(
             kind, axis = ("force", "torque")[worst // 3], "xyz"[worst % 3]
             text = (
                 f"column 'wrench.{robot.feet[name].wrench.name}.{kind}.{axis}', value {usual[worst]:.4g}: reads this "
-                f"while the other foot carries the robot, so its zero is off (valid: below {limits[worst]:.2g}; zero "
+                f"while {name} hangs in the air, so its zero is off (valid: below {limits[worst]:.2g}; zero "
                 "the sensor in the air)"
             )
             yield Finding("air_reading", text)

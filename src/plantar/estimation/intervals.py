@@ -15,7 +15,6 @@ from plantar.conventions import Array
 
 SCORE_BANDWIDTH = 0.10  # Hz: the scores' spectrum counts as flat below it (docs/intervals.md: coverage study)
 FEWEST_COSINES = 4
-NORMAL95 = 1.96  # deviations that a 95 % interval reaches
 MOST_FREEDOM = 1e6  # stands for a deviation that is known
 
 

@@ -8,7 +8,7 @@ from itertools import combinations
 
 import numpy as np
 
-from plantar.conventions import ROTATIONAL_AXES, Array
+from plantar.conventions import NORMAL95, ROTATIONAL_AXES, Array
 from plantar.errors import DataError
 from plantar.estimation import fit_blocks
 from plantar.estimation.intervals import cosine_covariance
@@ -155,7 +155,7 @@ def _promise(
         covariance = inverse @ np.sum([part.scores for part in present], axis=0) @ inverse
         for term, variance in zip(KelvinVoigt().terms, np.diag(covariance), strict=True):
             value = values[foot, axis, term]
-            width = 196 * float(np.sqrt(variance)) / abs(value) if value else UNKNOWN
+            width = 100 * NORMAL95 * float(np.sqrt(variance)) / abs(value) if value else UNKNOWN
             widths[foot, axis, term] = min(width, UNKNOWN)
     return Choice(motions, widths, condition)
 

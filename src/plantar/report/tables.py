@@ -8,6 +8,7 @@ from pathlib import PurePath
 from typing import Any
 
 from plantar.contact.phases import Phase
+from plantar.conventions import NORMAL95
 from plantar.report.content import Cell, Column, Table
 from plantar.report.verdict import MARKS, symbol, why_of
 from plantar.results.dynamics import DynamicsScore, JointParameter
@@ -64,7 +65,7 @@ def offset_table(offsets: Sequence[Offset]) -> Table:
         line: list[Cell | str] = [motion]
         for foot, axis, _ in keys:
             row = found.get((motion, foot, axis))
-            half = None if row is None or row.std is None else 1.96 * row.std
+            half = None if row is None or row.std is None else NORMAL95 * row.std
             line.append(MISSING if row is None else with_uncertainty(row.value, half))
         rows.append(line)
     columns = [Column("motion", numeric=False)]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from plantar.conventions import NORMAL95
 from plantar.results.feet_rows import DelayEstimate, Parameter, ValidationRow
 from plantar.results.numbers import number, percent, unit, with_uncertainty
 
@@ -91,7 +92,7 @@ def delay_line(delay: DelayEstimate | None) -> list[str]:
     """How late the force sensors were taken to be."""
     if delay is None:
         return []
-    late = with_uncertainty(1e3 * delay.wrench_delay, 1.96e3 * delay.std if delay.std > 0 else None)
+    late = with_uncertainty(1e3 * delay.wrench_delay, 1e3 * NORMAL95 * delay.std if delay.std > 0 else None)
     known = "measured" if delay.measured else "as given" if delay.std == 0 else "not measured from these logs"
     return [f"Force sensors {late} ms late, {known}"]
 

@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy import special
 
-from plantar.conventions import ROTATIONAL_AXES, Array, Axis
-from plantar.estimation.intervals import MOST_FREEDOM, NORMAL95, cosine_covariance, pooled_freedom
+from plantar.conventions import NORMAL95, ROTATIONAL_AXES, Array, Axis
+from plantar.estimation.intervals import MOST_FREEDOM, cosine_covariance, pooled_freedom
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
 from plantar.sensors.moment_columns import BAND, LEAST_GAIN, MomentColumns, moment_columns, prior_deviations

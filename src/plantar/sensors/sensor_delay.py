@@ -14,7 +14,7 @@ from functools import partial
 
 import numpy as np
 
-from plantar.conventions import Mask
+from plantar.conventions import NORMAL95, Mask
 from plantar.estimation.delay import LEAST_CLOSED
 from plantar.estimation.lag_search import Lags, search_lags
 from plantar.logs.motion_log import MotionLog
@@ -125,10 +125,10 @@ def _doubtful(robot: RobotModel, lags: Lags) -> SensorDelay:
     left = whole if lags.at_edge else min(whole, float(np.hypot(lags.std, lags.values).max()))
     std = float(np.hypot(robot.uncertainty.wrench_delay, left))
     text = (
-        f"sensors may be late by {1e3 * 1.96 * std:.0f} ms: no delays up to {1e3 * SEARCHED:.0f} ms were found with "
-        "which the ground's wrench follows from IMU, encoders and URDF, though the robot moves; not corrected. Check "
-        "the clocks of IMU, encoders and force sensors, the IMU's mount and the URDF, or record arm sweeps of 0.3 to "
-        "1 Hz that nobody disturbs; --wrench-delay gives a delay that is known"
+        f"sensors may be late by {1e3 * NORMAL95 * std:.0f} ms: no delays up to {1e3 * SEARCHED:.0f} ms were found "
+        "with which the ground's wrench follows from IMU, encoders and URDF, though the robot moves; not corrected. "
+        "Check the clocks of IMU, encoders and force sensors, the IMU's mount and the URDF, or record arm sweeps of "
+        "0.3 to 1 Hz that nobody disturbs; --wrench-delay gives a delay that is known"
     )
     note = Note("delay_beyond_search", "warning", text)
     return SensorDelay(0.0, std, np.inf, False, note, doubtful=True)
@@ -159,7 +159,7 @@ def _told(robot: RobotModel, found: RefinedDelays) -> SensorDelay:
     gain = prior**2 / (prior**2 + found.std**2) if usual else 1.0
     clock = max(CLOCK * found.slowest, LEAST_STD)
     delay, std = gain * value, float(np.hypot(np.sqrt(gain) * found.std, clock))
-    told = f"wrenches are {1e3 * delay:+.1f} ± {1e3 * 1.96 * std:.1f} ms late (95 %) against IMU and encoders"
+    told = f"wrenches are {1e3 * delay:+.1f} ± {1e3 * NORMAL95 * std:.1f} ms late (95 %) against IMU and encoders"
     if std <= KNOWN_STD:
         return SensorDelay(delay, std, found.freedom, True, Note("delay", "info", f"{told}: corrected"))
     advice = "uncertain, which widens the interval of the damping: record arm sweeps of 0.3 to 1 Hz without an operator"
@@ -178,7 +178,7 @@ def _apart(names: Sequence[str], found: RefinedDelays) -> SensorDelay:
     each = ", ".join(f"{name} {1e3 * delay:+.1f}" for name, delay in delays.items()) or f"{1e3 * mean:+.1f}"
     text = (
         f"sensors have different delays relative to the IMU: wrenches {each} ms, encoders {1e3 * encoders:+.1f} ms "
-        f"(± {1e3 * 1.96 * found.std:.1f} ms, 95 %): corrected"
+        f"(± {1e3 * NORMAL95 * found.std:.1f} ms, 95 %): corrected"
     )
     note = Note("delays_apart", "warning", text)
     return SensorDelay(mean, found.std, found.freedom, True, note, delays, encoders)

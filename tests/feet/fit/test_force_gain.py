@@ -10,7 +10,7 @@ import pytest
 from biped import TRUTH, record, sway
 from biped_robot import make_robot, robot_entry
 from feet_trials import LINEAR, codes
-from plantar.estimation.intervals import NORMAL95
+from plantar.conventions import NORMAL95
 from plantar.feet.fit.force_gain import GainError, force_gain_errors
 from plantar.feet.identify import identify_feet
 from plantar.feet.prepare_log import checked, prepare

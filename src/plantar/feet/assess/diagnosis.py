@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from plantar.conventions import NORMAL95
 from plantar.feet.assess.data_faults import ADVICE
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.systematic import Cause
@@ -56,7 +57,7 @@ def diagnose_axis(
         shares[name] = float(fit.std[place] / total) ** 2
         limit = max(shares, key=lambda cause: shares[cause])
         without = float(np.sqrt(max(0.0, 1 - shares[limit])))
-        percent = 196 * total / abs(row.value)
+        percent = 100 * NORMAL95 * total / abs(row.value)
         term = row.name.replace("_", " ")
         text = (
             f"{row.foot} {row.axis} {term}: ±{percent:.2g} %, {100 * shares[limit]:.0f} % of its variance from "

@@ -12,8 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy import optimize, special
 
-from plantar.conventions import GRAVITY, Array, Axis
-from plantar.estimation.intervals import NORMAL95
+from plantar.conventions import GRAVITY, NORMAL95, Array, Axis
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.systematic import Cause
 from plantar.feet.recording import Recording

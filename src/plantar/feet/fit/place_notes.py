@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from plantar.conventions import ROTATIONAL_AXES, Array, Axis
+from plantar.conventions import NORMAL95, ROTATIONAL_AXES, Array, Axis
 from plantar.feet.fit.axis import AxisFit
 from plantar.notes import Note
 
@@ -29,8 +29,8 @@ def place_notes(fit: AxisFit, place: Array, std: Array, prior: Array) -> list[No
     """
     least = np.array([WORTH_SAYING] * 2 + [TURN_WORTH_SAYING] * 4)
     aside, above, turned, *imu = np.abs(place) > np.maximum(CLEAR * np.hypot(prior, std), least)
-    (x, z), (of_x, of_z) = 1e3 * place[:2], 1.96e3 * std[:2]
-    degrees, of = np.degrees(np.abs(place)), np.degrees(1.96 * std)
+    (x, z), (of_x, of_z) = 1e3 * place[:2], 1e3 * NORMAL95 * std[:2]
+    degrees, of = np.degrees(np.abs(place)), np.degrees(NORMAL95 * std)
     told, key = [], f"feet.{fit.foot}"
     if aside:
         where = "forward or backward" if fit.axis == "pitch" else "to the side"
