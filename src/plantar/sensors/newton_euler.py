@@ -22,7 +22,7 @@ from plantar.signals.orientation import attitude
 from plantar.signals.segments import longest_run
 
 CUTOFF = 8.0  # Hz: above it differentiated encoders are noise
-KEPT_RATE = 67.0  # Hz of the samples that are kept: the cutoff is far below
+KEPT_RATE = 40.0  # Hz of the samples that are kept: the cutoff is far below
 SLOW = 0.05  # Hz: below it both sides differ by postures and drifting zeros
 BASE_ROWS = slice(0, 6)
 WINDOW = 2.0  # s, in which the forces must follow from the prediction
