@@ -14,7 +14,7 @@ from plantar.robot.model import RobotModel
 from plantar.robot.uncertainty import EXACT
 from plantar.sensors import moment_balance
 from plantar.sensors.moment_balance import TorqueGain, solved, torque_gain_notes, torque_gains
-from plantar.sensors.moment_columns import moment_columns, prior_deviations
+from plantar.sensors.moment_errors import moment_errors, prior_deviations
 from plantar.sensors.newton_euler import newton_euler_residual
 from plantar.signals.resampling import shifted
 from plantar.twin import PAPER, play_all
@@ -85,7 +85,7 @@ def test_an_imu_that_is_turned_is_told_from_torques(twin: RobotModel, sweep: Mot
     told = replace(twin, imu=replace(twin.imu, placement=turned))
     residual = newton_euler_residual(told, sweep)
     assert residual is not None
-    values, _ = solved([moment_columns(told, residual)], prior_deviations(told))
+    values, _ = solved([moment_errors(told, residual)], prior_deviations(told))
     np.testing.assert_allclose(values[-7:-4], -turn, atol=0.004)
     assert torque_gains(told, [residual]) == {}
 
@@ -97,7 +97,7 @@ def test_the_noise_of_the_feet_s_sensors_is_no_gain(twin: RobotModel, sweep: Mot
     noisy = {name: sweep.column(name) + 5 * random.normal(size=len(sweep)) for name in names}
     residual = newton_euler_residual(twin, sweep.with_columns(noisy))
     assert residual is not None
-    values, _ = solved([moment_columns(twin, residual)], prior_deviations(twin))
+    values, _ = solved([moment_errors(twin, residual)], prior_deviations(twin))
     np.testing.assert_allclose(values[:4], 0.0, atol=0.12)
 
 
@@ -107,7 +107,7 @@ def test_a_late_wrench_is_no_gain_of_torques(twin: RobotModel, sweep: MotionLog)
     late = shifted(sweep.stack(names), sweep.period, -0.01)
     residual = newton_euler_residual(twin, sweep.with_columns(dict(zip(names, late.T, strict=True))))
     assert residual is not None
-    values, _ = solved([moment_columns(twin, residual)], prior_deviations(twin))
+    values, _ = solved([moment_errors(twin, residual)], prior_deviations(twin))
     np.testing.assert_allclose(values[-4:-2], 0.01, atol=0.001)
     assert torque_gains(twin, [residual]) == {}
 

@@ -17,7 +17,7 @@ from plantar.conventions import NORMAL95, ROTATIONAL_AXES, Array, Axis
 from plantar.estimation.intervals import MOST_FREEDOM, cosine_covariance, pooled_freedom
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
-from plantar.sensors.moment_columns import BAND, LEAST_GAIN, MomentColumns, moment_columns, prior_deviations
+from plantar.sensors.moment_errors import BAND, LEAST_GAIN, MomentErrors, moment_errors, prior_deviations
 from plantar.sensors.newton_euler import NewtonEulerResidual
 from plantar.sensors.refined_delays import Each
 
@@ -61,7 +61,7 @@ def torque_gains(
     """
     if not residuals:
         return {}
-    logs, feet = list(each(partial(moment_columns, robot), residuals)), len(robot.feet)
+    logs, feet = list(each(partial(moment_errors, robot), residuals)), len(robot.feet)
     values, parts = solved(logs, prior_deviations(robot))
     usual = max(robot.uncertainty.wrench_gain, LEAST_GAIN)
     parts.append(_Part(usual**2 * np.eye(len(values)), MOST_FREEDOM))
@@ -135,7 +135,7 @@ def _positive(products: Array) -> Array:
     return np.asarray((vectors * np.maximum(sizes, 0.0)) @ vectors.T)
 
 
-def solved(logs: Sequence[MomentColumns], prior: Array) -> tuple[Array, list[_Part]]:
+def solved(logs: Sequence[MomentErrors], prior: Array) -> tuple[Array, list[_Part]]:
     """Coefficients (k,) of the columns, and their covariance: of priors, noise and wrong URDFs.
 
     prior: (k,), their deviations before the moments are asked.

@@ -28,7 +28,7 @@ TURN = 0.01  # rad, of the IMU, for the slope of what it predicts
 
 
 @dataclass(frozen=True)
-class MomentColumns:
+class MomentErrors:
     """One log's `columns` (6, k, n), slower than BAND, and what they must add up to, `missing` (6, n).
 
     The first axis is the six rows of Newton's law.
@@ -46,7 +46,7 @@ class MomentColumns:
     period: float
 
 
-def moment_columns(robot: RobotModel, residual: NewtonEulerResidual) -> MomentColumns:
+def moment_errors(robot: RobotModel, residual: NewtonEulerResidual) -> MomentErrors:
     """The columns of one log in which Newton's law closes."""
     readings = _reading_columns(robot, residual)
     by_gyroscope, by_mount = _imu_slopes(robot, residual)
@@ -66,7 +66,7 @@ def moment_columns(robot: RobotModel, residual: NewtonEulerResidual) -> MomentCo
     share = _below_to_above(period) / stride
     products[:, : len(readings) + 1, : len(readings) + 1] -= share * (noise @ noise.transpose(0, 2, 1))
     wrong = columns[:, 1:] @ drawn.transpose(0, 2, 1)
-    return MomentColumns(columns[:, 1:], columns[:, 0], products, wrong, stride * period)
+    return MomentErrors(columns[:, 1:], columns[:, 0], products, wrong, stride * period)
 
 
 def _by_row(signals: Array) -> Array:
