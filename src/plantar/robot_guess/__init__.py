@@ -29,10 +29,11 @@ from plantar.robot_guess.bush import bush_shift
 from plantar.robot_guess.evidence import Remark, check_stance, widen_outline
 from plantar.robot_guess.feet import Sole, find_sole, fixed_links
 from plantar.robot_guess.imu import find_frame, turned_to_gravity
+from plantar.robot_guess.seat import urdf_seat
 from plantar.robot_guess.sensors import Sensors, look_at, sensor_of
 from plantar.robot_guess.stance import find_stance
 from plantar.robot_guess.text import BushHeight, Draft
-from plantar.robot_guess.wrench import seats_by_log, urdf_seat
+from plantar.robot_guess.wrench import seats_by_log
 from plantar.robot_guess.zeros import without_zeros
 
 THIN = 0.02  # m: rubber bushes sit about so far above the sole
@@ -129,7 +130,7 @@ def _seen_standing(draft: Draft, tree: UrdfTree, model: pin.Model, logs: Sequenc
         return replace(draft, remarks=[*draft.remarks, remark])
     poses = _seat_poses(draft, tree)
     imu = None if mount is None or name is None else (name, turned_to_gravity(mount, stance))
-    seats, left = seats_by_log(draft.seats, draft.soles, stance, poses)
+    seats, left = seats_by_log(draft.seats, draft.soles, stance, imu and imu[1], poses)
     soles, remarks = list[Sole](), [*draft.remarks, *seen]
     for sole in draft.soles:
         side = sole.limb.side

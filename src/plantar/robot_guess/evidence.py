@@ -9,8 +9,8 @@ import numpy as np
 
 from plantar.conventions import FORCE, GRAVITY, Array
 from plantar.robot_guess.feet import Sole, box
+from plantar.robot_guess.seat import Seat, pressure, sensor_pose
 from plantar.robot_guess.stance import Stance
-from plantar.robot_guess.wrench import Seat, pressure, sensor_pose
 
 LOADED = 0.3  # of the weight on a foot whose centre of pressure is looked at
 FEWEST = 20

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pinocchio as pin
+from numpy.typing import NDArray
 
 from plantar.conventions import FORCE, GRAVITY, Array, Mask, rotation_from_quaternion
 from plantar.logs.motion_log import MotionLog, wrench_columns
@@ -26,6 +27,7 @@ class Stance:
 
     rotations, places: of each foot's ankle link, (n, 3, 3) and (n, 3) [m]; centre: of mass, (n, 3) [m];
     up: by the soles that are loaded, flat on level ground, (n, 3); loaded: each foot, (n,);
+    logs: the number of each sample's log, (n,);
     wrenches: of each foot as recorded, (n, 6); felt: up in the IMU's axes, (n, 3), None without IMU; carriers: pose of
     every link asked for, (n, 4, 4).
     """
@@ -38,6 +40,7 @@ class Stance:
     wrenches: Mapping[str, Array]
     felt: Array | None
     carriers: Mapping[str, Array]
+    logs: NDArray[np.intp]
 
     @property
     def double(self) -> Mask:
@@ -90,6 +93,7 @@ def find_stance(
         wrenches,
         felt,
         {link: poses[link] for link in links},
+        np.repeat(np.arange(len(chosen)), [len(rows) for rows in chosen]),
     )
 
 

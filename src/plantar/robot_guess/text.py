@@ -13,7 +13,7 @@ from plantar.robot.uncertainty import Uncertainty
 from plantar.robot_guess.evidence import Remark
 from plantar.robot_guess.feet import Sole, placement, vector
 from plantar.robot_guess.imu import Mount
-from plantar.robot_guess.wrench import Seat
+from plantar.robot_guess.seat import Seat
 
 
 @dataclass(frozen=True)
