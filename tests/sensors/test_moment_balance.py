@@ -27,10 +27,8 @@ def twin() -> RobotModel:
 
 
 @pytest.fixture(scope="module")
-def sweep(twin: RobotModel, tmp_path_factory: pytest.TempPathFactory) -> MotionLog:
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("PLANTAR_CACHE", str(tmp_path_factory.getbasetemp() / "simulate-cache"))
-        return checked(twin, play_all(["Myrand5"], twin, PAPER, "sensors", [0])[0][0].log)
+def sweep(twin: RobotModel) -> MotionLog:
+    return checked(twin, play_all(["Myrand5"], twin, PAPER, "sensors", [0])[0][0].log)
 
 
 def found(twin: RobotModel, log: MotionLog, gains: Mapping[str, float]) -> Mapping[str, TorqueGain]:
