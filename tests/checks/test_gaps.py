@@ -42,3 +42,14 @@ def test_short_holes_and_late_starts_are_not_worth_a_word(robot: RobotModel, log
     assert list(check_gaps(robot, emptied(log, "imu.", log.time < 5))) == []
     assert list(check_gaps(robot, emptied(log, "imu.", np.arange(len(log)) % 4 > 0))) == []
     assert list(check_gaps(robot, emptied(log, "wrench.left", (log.time > 4) & (log.time < 4.4)))) == []
+
+
+def test_an_encoder_that_drops_out_is_named(robot: RobotModel, log: MotionLog) -> None:
+    column = "joint.left_ankle_pitch.position"
+    gone = log.time % 5 > 4.8
+    angle = np.where(gone, 0.0, log.column(column) + 0.3)
+    (found,) = check_gaps(robot, log.with_columns({column: angle}))
+    assert (found.code, found.severity) == ("dropout", "warning")
+    assert f"'{column}', t = 4.8" in found.text
+    assert "in 3 stretches" in found.text
+    assert not list(check_gaps(robot, log.with_columns({"joint.neck.position": angle})))

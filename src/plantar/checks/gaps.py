@@ -10,14 +10,29 @@ from plantar.conventions import Mask
 from plantar.logs.motion_log import MotionLog, imu_columns, wrench_columns
 from plantar.notes import Finding
 from plantar.robot.model import RobotModel
+from plantar.signals.dropouts import dropouts_of
 from plantar.signals.resampling import BRIDGED, sampling
 from plantar.signals.segments import runs
 
+JOINTS = "columns 'joint.*.position'"
 LEAST_LOST = 0.03  # share of a log's time: less costs an interval nothing that anyone would notice
 
 
 def check_gaps(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
-    """A finding on the time that is lost to gaps, where it is worth knowing: filters and delays need whole pieces."""
+    """A finding on the time that is lost to gaps, where it is worth knowing: filters and delays need whole pieces.
+
+    One more for each joint between IMU and feet whose encoder drops out.
+    """
+    needed = _sensors(robot).get(JOINTS, ())
+    for column, mask in dropouts_of(log).items():
+        if column in needed:
+            first = int(np.flatnonzero(mask)[0])
+            text = (
+                f"column '{column}', t = {log.time[first]:g} s, value 0: reads exactly 0 between jumps in "
+                f"{len(runs(mask))} stretches, {100 * np.mean(mask):.2g} % of the log, left out; does the encoder lose "
+                "its connection? (valid: leave such cells empty)"
+            )
+            yield Finding("dropout", text)
     gaps = [(start, end, "rows") for start, end in sampling(log).gaps]
     for what, names in _sensors(robot).items():
         present = [name for name in names if name in log.columns]
@@ -51,5 +66,5 @@ def _sensors(robot: RobotModel) -> dict[str, Sequence[str]]:
         path = frozenset().union(
             *(robot.joints_between(robot.imu.placement, foot.bush) for foot in robot.feet.values())
         )
-        found["columns 'joint.*.position'"] = [f"joint.{name}.position" for name in sorted(path)]
+        found[JOINTS] = [f"joint.{name}.position" for name in sorted(path)]
     return found

@@ -21,6 +21,7 @@ from plantar.notes import Finding, Note
 from plantar.robot.model import Imu, RobotModel
 from plantar.sensors.air_zero import AirZero, air_zero
 from plantar.sensors.tilt_error import NO_TILT_ERROR, TiltError, right_attitude
+from plantar.signals.dropouts import without_dropouts
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.held import without_held
 from plantar.signals.orientation import attitude
@@ -33,7 +34,7 @@ WEIGHT_MISMATCH = 0.15  # share by which the feet may carry more or less than th
 
 
 def checked(robot: RobotModel, log: MotionLog, findings: Sequence[Finding] | None = None) -> MotionLog:
-    """The log on an even grid, without held samples and spikes, with what is odd about it as notes.
+    """The log on an even grid, without held samples, dropouts and spikes, with what is odd about it as notes.
 
     findings: of `check_log`, where that has been asked already.
 
@@ -46,7 +47,7 @@ def checked(robot: RobotModel, log: MotionLog, findings: Sequence[Finding] | Non
     if problems:
         raise DataError(located(problems[0].text, path=log.source))
     odd = [Note(found.code, found.severity, f"{log.name}: {found.text}") for found in findings]
-    even = without_spikes(without_holes(without_held(evenly_sampled(log))))
+    even = without_spikes(without_holes(without_held(without_dropouts(evenly_sampled(log)))))
     return even.with_columns({}, *log.joint_notes(robot), *odd)
 
 
