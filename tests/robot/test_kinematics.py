@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pinocchio as pin
 import pytest
@@ -11,23 +13,18 @@ from plantar.errors import RobotError
 from plantar.robot.kinematics import KinematicTree
 
 
-def test_the_tree_rebuilds_pinocchios_placements() -> None:
-    """Composing the arrays by hand gives Pinocchio's frames, with prismatic and unaligned joints."""
-    for urdf in (example_robots.TIAGO, example_robots.PANDA, example_robots.HAND):
-        model = example_robots.model(urdf)
-        tree = KinematicTree.from_model(model)
-        data = model.createData()
-        pin.seed(3)
-        q = pin.randomConfiguration(model, -np.ones(model.nq), np.ones(model.nq))
-        pin.forwardKinematics(model, data, q)
-        positions = tree.joint_positions(q[None])[0]
-        frames = []
-        for j, parent in enumerate(tree.parents):
-            moved = positions[j] * tree.axes[j]
-            joint = pin.SE3(np.eye(3), moved) if tree.slides[j] else pin.SE3(pin.exp3(moved), np.zeros(3))
-            placement = pin.SE3(tree.rotations[j], tree.translations[j])
-            frames.append((frames[parent] if parent >= 0 else pin.SE3.Identity()) * placement * joint)
-            assert frames[j].isApprox(data.oMi[j + 1], 1e-12), tree.names[j]
+@pytest.mark.parametrize("urdf", [example_robots.TIAGO, example_robots.PANDA, example_robots.HAND])
+def test_the_tree_rebuilds_pinocchios_poses(urdf: Path) -> None:
+    """With prismatic, continuous and unaligned joints, of many samples at once."""
+    model = example_robots.model(urdf)
+    tree, data = KinematicTree.from_model(model), model.createData()
+    pin.seed(3)
+    q = np.array([pin.randomConfiguration(model, -np.ones(model.nq), np.ones(model.nq)) for _ in range(4)])
+    rotations, places = tree.poses(tree.joint_positions(q))
+    for sample, configuration in enumerate(q):
+        pin.forwardKinematics(model, data, configuration)
+        for j, name in enumerate(tree.names):
+            assert pin.SE3(rotations[j, sample], places[j, sample]).isApprox(data.oMi[j + 1], 1e-12), name
 
 
 def test_continuous_joints_are_read_as_one_angle() -> None:

@@ -10,6 +10,7 @@ import pinocchio as pin
 
 from plantar.conventions import GRAVITY, Array, rotation_from_quaternion
 from plantar.logs.motion_log import MotionLog
+from plantar.robot.kinematics import KinematicTree
 from plantar.robot.model import Imu, RobotModel
 
 SAMPLES = 50  # spread over the log: enough to tell
@@ -102,28 +103,22 @@ class Stance:
 
     def _poses(self, frames: Sequence[tuple[int, pin.SE3]]) -> tuple[Array, Array, Array]:
         """Centre of mass (n, 3), and rotations (f, n, 3, 3) and translations (f, n, 3) of frames, in the root link."""
-        robot, model = self.robot, self.robot.model
-        data, count = model.createData(), len(self.positions)
-        configurations = np.tile(pin.neutral(model), (count, 1))
-        for joint, angles in enumerate(self.positions.T, start=1):
-            at = model.idx_qs[joint]
-            if model.nqs[joint] == 1:
-                configurations[:, at] = angles
-            else:
-                configurations[:, at], configurations[:, at + 1] = np.cos(angles), np.sin(angles)
-        # The root link is fixed in `model`, and Pinocchio leaves what does not move out of the centre of mass.
-        root, moving = model.inertias[0], robot.mass - model.inertias[0].mass
-        centre, poses = np.empty((count, 3)), np.empty((len(frames), count, 4, 4))
-        for sample, configuration in enumerate(configurations):
-            centre[sample] = pin.centerOfMass(model, data, configuration)
-            for k, (carrier, _) in enumerate(frames):
-                poses[k, sample] = data.oMi[carrier].homogeneous
-        poses = poses @ np.array([placement.homogeneous for _, placement in frames])[:, None]
-        return (
-            (root.mass * root.lever + moving * centre) / robot.mass,
-            poses[..., :3, :3],
-            poses[..., :3, 3],
+        robot, bodies = self.robot, list(self.robot.model.inertias)
+        root = np.eye(3), np.zeros(3)
+        rotations, places = KinematicTree.from_model(robot.model).poses(self.positions)
+        # The root link stays where it is.
+        moved = sum(
+            body.mass * (place + rotation @ body.lever)
+            for body, rotation, place in zip(bodies[1:], rotations, places, strict=True)
         )
+        turns, at = (
+            np.empty((len(frames), len(self.positions), 3, 3)),
+            np.empty((len(frames), len(self.positions), 3)),
+        )
+        for k, (carrier, placement) in enumerate(frames):
+            rotation, place = (rotations[carrier - 1], places[carrier - 1]) if carrier > 0 else root
+            turns[k], at[k] = rotation @ placement.rotation, place + rotation @ placement.translation
+        return (bodies[0].mass * bodies[0].lever + moved) / robot.mass, turns, at
 
 
 def stance_of(robot: RobotModel, log: MotionLog) -> Stance | None:

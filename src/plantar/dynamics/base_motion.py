@@ -17,7 +17,7 @@ import numpy as np
 import pinocchio as pin
 
 from plantar.conventions import GRAVITY, Array
-from plantar.robot.kinematics import KinematicTree
+from plantar.robot.kinematics import KinematicTree, rotations_about
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ def relative_motion(
         else:
             alpha = alpha + second * axis + turning
             omega = omega + rate * axis
-            rotation = rotation @ _about(tree.axes[index], angle[:, 0])
+            rotation = rotation @ rotations_about(tree.axes[index], angle[:, 0])
     carried(rotation @ placement.translation)
     return RelativeMotion(rotation @ placement.rotation, position, omega, alpha, velocity, acceleration)
 
@@ -96,10 +96,3 @@ def root_motion_from_sole(relative: RelativeMotion) -> Array:
     up = still.copy()
     up[:, 2] = GRAVITY
     return root_motion(relative, up, still, still)
-
-
-def _about(axis: Array, angle: Array) -> Array:
-    """Rotations about one axis, (N, 3, 3) (Rodrigues)."""
-    k = pin.skew(axis)
-    s, c = np.sin(angle)[:, None, None], np.cos(angle)[:, None, None]
-    return np.asarray(np.eye(3) + s * k + (1 - c) * (k @ k))

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 import pinocchio as pin
 
-from plantar.conventions import Array
+from plantar.conventions import Array, skew
 from plantar.errors import RobotError
 
 _REVOLUTE = {"RX", "RY", "RZ", "RUBX", "RUBY", "RUBZ", "RevoluteUnaligned", "RevoluteUnboundedUnaligned"}
@@ -103,6 +103,25 @@ class KinematicTree:
         positions[:, self._unbounded] = np.arctan2(q[:, turning + 1], q[:, turning])
         return positions
 
+    def poses(self, positions: Array) -> tuple[Array, Array]:
+        """Rotations (n_joints, N, 3, 3) and places (n_joints, N, 3) [m] of the joints' frames in the root link.
+
+        positions: of the joints, (N, n_joints).
+        """
+        rotations = np.empty((len(self), len(positions), 3, 3))
+        places = np.empty((len(self), len(positions), 3))
+        for joint, parent in enumerate(self.parents):
+            rotations[joint] = (
+                rotations[parent] @ self.rotations[joint] if parent >= 0 else self.rotations[joint]
+            )
+            start = self.translations[joint]
+            places[joint] = places[parent] + rotations[parent] @ start if parent >= 0 else start
+            if self.slides[joint]:
+                places[joint] += rotations[joint] @ self.axes[joint] * positions[:, joint, None]
+            else:
+                rotations[joint] = rotations[joint] @ rotations_about(self.axes[joint], positions[:, joint])
+        return rotations, places
+
     def path(self, start: int, end: int) -> list[tuple[int, int]]:
         """Joints passed on the way from link `start` to link `end` (-1: the root link) as (joint, sign).
 
@@ -112,6 +131,13 @@ class KinematicTree:
         down = self.ancestors[end] if end >= 0 else ()
         shared = set(up) & set(down)
         return [(j, -1) for j in up if j not in shared] + [(j, +1) for j in reversed(down) if j not in shared]
+
+
+def rotations_about(axis: Array, angle: Array) -> Array:
+    """Rotations (N, 3, 3) by `angle` (N,) [rad] about one unit axis (3,) (Rodrigues)."""
+    k = skew(axis)
+    s, c = np.sin(angle)[:, None, None], np.cos(angle)[:, None, None]
+    return np.asarray(np.eye(3) + s * k + (1 - c) * (k @ k))
 
 
 def _subspace(model: pin.Model, index: int) -> Array:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from plantar.conventions import FORCE, GRAVITY, Array, Mask, rotation_from_quaternion
 from plantar.logs.motion_log import MotionLog, wrench_columns
+from plantar.robot.kinematics import KinematicTree
 from plantar.robot_guess.feet import Sole
 from plantar.signals.filters import low_pass
 
@@ -73,11 +74,9 @@ def find_stance(
     felt = None
     if imu is not None:
         felt = np.concatenate([felt_up(log, imu)[rows] for log, rows in zip(logs, chosen, strict=True)])
-    configurations = np.concatenate(
-        [_configurations(model, log, rows) for log, rows in zip(logs, chosen, strict=True)]
-    )
+    positions = np.concatenate([_positions(model, log, rows) for log, rows in zip(logs, chosen, strict=True)])
     ankles = [sole.limb.link for sole in soles]
-    poses, centre = _poses(model, configurations, [*ankles, *links])
+    poses, centre = _poses(model, positions, [*ankles, *links])
     loaded = {side: np.linalg.norm(w[:, FORCE], axis=1) > SHARES * weight for side, w in wrenches.items()}
     up = np.zeros((count, 3))
     for sole in soles:
@@ -112,7 +111,7 @@ def felt_up(log: MotionLog, imu: str) -> Array:
 
 def _rows(
     log: MotionLog, sensors: Mapping[str, str], imu: str | None, weight: float, model: pin.Model
-) -> np.ndarray[tuple[int], np.dtype[np.int64]]:
+) -> NDArray[np.int64]:
     columns = [column for name in sensors.values() for column in wrench_columns(name)]
     if not sensors or not log.has(*columns):
         return np.zeros(0, dtype=np.int64)
@@ -129,34 +128,26 @@ def _rows(
     return np.asarray(rows[:: max(1, rows.size // SAMPLES)], dtype=np.int64)
 
 
-def _configurations(
-    model: pin.Model, log: MotionLog, rows: np.ndarray[tuple[int], np.dtype[np.int64]]
-) -> Array:
-    found = np.tile(pin.neutral(model), (len(rows), 1))
-    for joint in range(1, model.njoints):
-        values = log.joint(model.names[joint], "position")
-        at = model.idx_qs[joint]
-        if values is None:
-            continue
-        if model.nqs[joint] == 1:
-            found[:, at] = values[rows]
-        elif model.nqs[joint] == 2:
-            found[:, at], found[:, at + 1] = np.cos(values[rows]), np.sin(values[rows])
-    return found
+def _positions(model: pin.Model, log: MotionLog, rows: NDArray[np.int64]) -> Array:
+    """Of the joints at some samples, 0 where they are not recorded, (n, n_joints)."""
+    read = [log.joint(name, "position") for name in list(model.names)[1:]]
+    return np.column_stack([np.zeros(len(rows)) if values is None else values[rows] for values in read])
 
 
-def _poses(model: pin.Model, configurations: Array, links: Sequence[str]) -> tuple[dict[str, Array], Array]:
+def _poses(model: pin.Model, positions: Array, links: Sequence[str]) -> tuple[dict[str, Array], Array]:
     """Poses (n, 4, 4) of links and the centre of mass (n, 3), in the root link's axes."""
-    data = model.createData()
-    poses = {link: np.empty((len(configurations), 4, 4)) for link in links}
-    frames = {link: model.getFrameId(link) for link in links}
-    root = model.inertias[0]  # what does not move is left out of Pinocchio's centre of mass
-    moving = sum(inertia.mass for inertia in list(model.inertias)[1:])
-    centre = np.empty((len(configurations), 3))
-    for row, configuration in enumerate(configurations):
-        middle = pin.centerOfMass(model, data, configuration) if moving else np.zeros(3)
-        centre[row] = (root.mass * root.lever + moving * middle) / max(root.mass + moving, 1e-9)
-        pin.framesForwardKinematics(model, data, configuration)
-        for link, frame in frames.items():
-            poses[link][row] = data.oMf[frame].homogeneous
-    return poses, centre
+    rotations, places = KinematicTree.from_model(model).poses(positions)
+    root = np.tile(np.eye(4), (len(positions), 1, 1))
+    frames = np.concatenate([root[None], np.tile(root, (len(rotations), 1, 1, 1))])
+    frames[1:, :, :3, :3], frames[1:, :, :3, 3] = rotations, places
+    found = [model.frames[model.getFrameId(link)] for link in links]
+    poses = {
+        link: frames[frame.parentJoint] @ frame.placement.homogeneous
+        for link, frame in zip(links, found, strict=True)
+    }
+    bodies = list(model.inertias)
+    moments = sum(
+        body.mass * (pose[:, :3, :3] @ body.lever + pose[:, :3, 3])
+        for body, pose in zip(bodies, frames, strict=True)
+    )
+    return poses, np.asarray(moments / max(sum(body.mass for body in bodies), 1e-9))
