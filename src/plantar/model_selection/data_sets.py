@@ -36,9 +36,11 @@ class StepColumns:
         """Every nth sample."""
         return StepColumns(self.stance[::stride], self.nuisance[::stride], self.share)
 
-    def centred(self, rows: Array, used: Mask) -> Array:
-        """Rows (n, m) of the used samples less that share of their stances' means; the mean of all stays."""
-        _, place = np.unique(self.stance[used], return_inverse=True)
+    def centred(self, rows: Array, place: NDArray[np.intp]) -> Array:
+        """Rows (n, m) of the used samples less that share of their stances' means; the mean of all stays.
+
+        place: (n,), the number of each row's stance.
+        """
         count = np.bincount(place)
         sums = np.column_stack([np.bincount(place, column) for column in rows.T])
         return np.asarray(rows - self.share * ((sums / count[:, None])[place] - rows.mean(axis=0)))
@@ -132,7 +134,7 @@ class FilteredDataSet:
         """Samples that are used, (n, ...), without what is their recording's own; their means stay."""
         if self.steps is None:
             return self._without_drift(rows)
-        flat = self.steps.centred(rows.reshape(len(rows), -1), self.used)
+        flat = self.steps.centred(rows.reshape(len(rows), -1), self._stance)
         own = self._nuisance
         return np.asarray(flat - own @ (own.T @ flat)).reshape(rows.shape)
 
@@ -140,10 +142,16 @@ class FilteredDataSet:
     def _nuisance(self) -> Array:
         """Orthonormal columns (n, m) of what is the recording's own, about their means; of a foot that steps."""
         assert self.steps is not None, "asked only where the foot steps"
-        nuisance = self.steps.centred(self.steps.nuisance[self.used], self.used)
+        nuisance = self.steps.centred(self.steps.nuisance[self.used], self._stance)
         nuisance = nuisance - nuisance.mean(axis=0)
         left, size, _ = np.linalg.svd(nuisance, full_matrices=False)
         return np.asarray(left[:, size > RANK_TOLERANCE * max(float(size.max(initial=0.0)), 1e-300)])
+
+    @cached_property
+    def _stance(self) -> NDArray[np.intp]:
+        """The number of each used sample's stance among those used, (n,); of a foot that steps."""
+        assert self.steps is not None, "asked only where the foot steps"
+        return np.asarray(np.unique(self.steps.stance[self.used], return_inverse=True)[1])
 
     def _without_drift(self, rows: Array) -> Array:
         """Used samples without their line in time."""

@@ -11,6 +11,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import ClassVar, Final
 
 import numpy as np
@@ -21,9 +22,11 @@ from plantar.signals.segments import runs
 BESIDE: Final = ("stiffness", "damping")  # the spring and damper of every model, first among its terms
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class BushMotion:
     """One axis of one foot over one recording, at an even period [s]; NaN where nothing is known (a gap, the air).
+
+    A motion equals itself alone, so that what is worked out of it once can be kept.
 
     `deflection` [rad] and `rate` [rad/s] are (N,), wide-band: a model that does not commute with a filter needs the
     path itself. `across` and `across_rate` are (N, m): the same foot's other axes, for models that couple them.
@@ -35,7 +38,7 @@ class BushMotion:
     across: Array | None = None
     across_rate: Array | None = None
 
-    @property
+    @cached_property
     def runs(self) -> tuple[slice, ...]:
         """Segments without a gap: the model's memory lasts over each of them and starts anew in the next."""
         return tuple(runs(np.isfinite(self.deflection) & np.isfinite(self.rate)))

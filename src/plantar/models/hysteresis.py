@@ -9,6 +9,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
@@ -49,6 +50,12 @@ class Branches:
             branch[: len(path), column] = place
             travelled[: len(path), column] = np.abs(path - path[turns[place]])
         return cls(direction, length, branch, travelled)
+
+
+@lru_cache(maxsize=32)
+def _branches_of(motions: tuple[BushMotion, ...]) -> Branches:
+    """The branches of all runs of these motions: a fit asks for them again with each of its steps."""
+    return Branches.of([motion.deflection[run] for motion in motions for run in motion.runs])
 
 
 def _turning_points(path: Array) -> tuple[NDArray[np.intp], float]:
@@ -96,7 +103,7 @@ class Hysteretic(BushModel):
         places = [(m, run) for m, motion in enumerate(motions) for run in motion.runs]
         columns = [np.full((len(motion), 1, len(shapes)), np.nan) for motion in motions]
         if places:
-            branches = Branches.of([motions[m].deflection[run] for m, run in places])
+            branches = _branches_of(tuple(motions))
             state = self.states(branches, shapes, np.concatenate([start.T for start in initial_states]))
             for column, (m, run) in enumerate(places):
                 columns[m][run, 0] = state[: run.stop - run.start, column]

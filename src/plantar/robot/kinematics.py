@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 import pinocchio as pin
 
-from plantar.conventions import Array, skew
+from plantar.conventions import Array
 from plantar.errors import RobotError
 
 _REVOLUTE = {"RX", "RY", "RZ", "RUBX", "RUBY", "RUBZ", "RevoluteUnaligned", "RevoluteUnboundedUnaligned"}
@@ -135,7 +135,7 @@ class KinematicTree:
 
 def rotations_about(axis: Array, angle: Array) -> Array:
     """Rotations (N, 3, 3) by `angle` (N,) [rad] about one unit axis (3,) (Rodrigues)."""
-    k = skew(axis)
+    k = pin.skew(axis)
     s, c = np.sin(angle)[:, None, None], np.cos(angle)[:, None, None]
     return np.asarray(np.eye(3) + s * k + (1 - c) * (k @ k))
 
