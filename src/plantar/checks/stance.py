@@ -10,7 +10,6 @@ import pinocchio as pin
 
 from plantar.conventions import GRAVITY, Array, rotation_from_quaternion
 from plantar.logs.motion_log import MotionLog
-from plantar.robot.kinematics import KinematicTree
 from plantar.robot.model import Imu, RobotModel
 
 SAMPLES = 50  # spread over the log: enough to tell
@@ -105,7 +104,7 @@ class Stance:
         """Centre of mass (n, 3), and rotations (f, n, 3, 3) and translations (f, n, 3) of frames, in the root link."""
         robot, bodies = self.robot, list(self.robot.model.inertias)
         root = np.eye(3), np.zeros(3)
-        rotations, places = KinematicTree.from_model(robot.model).poses(self.positions)
+        rotations, places = robot.tree.poses(self.positions)
         # The root link stays where it is.
         moved = sum(
             body.mass * (place + rotation @ body.lever)

@@ -100,7 +100,7 @@ def bush_states(
     _expect("velocities", velocities, (samples, joints))
     _expect("orientation", orientation, (samples, 4))
     _expect("angular velocity", angular_velocity, (samples, 3))
-    tree = KinematicTree.from_model(robot.model)
+    tree = robot.tree
     imu = robot.frame(robot.imu.placement)
     least = LEAST_LOAD * max(robot.mass * GRAVITY, 1.0)
     states = {}

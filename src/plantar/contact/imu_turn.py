@@ -10,7 +10,6 @@ import numpy as np
 
 from plantar.contact.deflection import foot_motion, foot_path
 from plantar.conventions import Array
-from plantar.robot.kinematics import KinematicTree
 from plantar.robot.model import RobotModel
 
 RATE = 50.0  # Hz, at which effects are computed: they follow hips and waist, not the feet
@@ -27,7 +26,7 @@ def imu_turn_effects(
     """
     if robot.imu is None:
         return {}
-    tree, imu = KinematicTree.from_model(robot.model), robot.frame(robot.imu.placement)
+    tree, imu = robot.tree, robot.frame(robot.imu.placement)
     every = np.arange(len(positions))
     places = every[:: max(1, round(1 / (RATE * period)))]
     ways = [np.zeros(3), *STEP * np.eye(3)]

@@ -11,7 +11,6 @@ from plantar.dynamics.base_motion import RelativeMotion, relative_motion, root_m
 from plantar.dynamics.motion import Motion
 from plantar.errors import RobotError, located
 from plantar.logs.motion_log import MotionLog
-from plantar.robot.kinematics import KinematicTree
 from plantar.robot.model import Imu, RobotModel
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.resampling import shifted
@@ -72,7 +71,7 @@ def _joint_motion(signals: InertialSignals, kept: slice, late: float = 0.0) -> t
 def _imu_motion(robot: RobotModel, joints: tuple[Array, Array, Array]) -> RelativeMotion:
     """The IMU seen from the root link."""
     carrier, placement = robot.frame(_imu(robot).placement)
-    return relative_motion(KinematicTree.from_model(robot.model), carrier - 1, placement, *joints)
+    return relative_motion(robot.tree, carrier - 1, placement, *joints)
 
 
 def _with_base(

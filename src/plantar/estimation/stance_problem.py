@@ -79,19 +79,20 @@ class StanceProblem:
     def solve(self, total: Array | None = None) -> Solution:
         """The solution of all recordings, or of other reduced sums `total` (k + 1, k + 1)."""
         total = self._total if total is None else total
-        inverse = _scaled_inverse(total[:-1, :-1])
-        values = inverse @ total[:-1, -1]
+        values, inverse = _solved(total)
         own = np.array([back[:, -1] - back[:, :-1] @ values for _, back in self._parts])
         return Solution(values, own, inverse, float(total[-1, -1] - values @ total[:-1, -1]))
 
     def without_each_stance(self) -> Array:
         """Values (S, k) of the fits that lack one stance each."""
         found = []
-        for stance, place in enumerate(self.recording):
-            rest = np.flatnonzero((self.recording == place) & (np.arange(len(self.recording)) != stance))
-            less = self._reduced(rest)[0] if rest.size else 0.0
-            found.append(self.solve(self._total - self._parts[place][0] + less).values)
-        return np.array(found)
+        for place in range(self.recordings):
+            stances = np.flatnonzero(self.recording == place)
+            drawn = self._drawn(stances)
+            less = self._own_eliminated(drawn.sum(axis=0) - drawn)[0] if len(stances) > 1 else 0.0
+            totals = self._total - self._parts[place][0] + less
+            found.append(_solved(np.broadcast_to(totals, (len(stances), *self._total.shape)))[0])
+        return np.concatenate(found)
 
     def without_each_recording(self) -> Array:
         """Values (R, k) of the fits that lack one recording each."""
@@ -108,14 +109,22 @@ class StanceProblem:
     def _reduced(self, stances: NDArray[np.intp]) -> tuple[Array, Array]:
         """Products (k + 1, k + 1) of one recording's `stances` with all that is its own eliminated, and the map
         (m + 1, k + 1) that gives its own back."""
+        return self._own_eliminated(self._drawn(stances).sum(axis=0))
+
+    def _drawn(self, stances: NDArray[np.intp]) -> Array:
+        """Products (s, ...) of each of one recording's stances, their offsets drawn together."""
         sums = self.products[stances]
         ones = sums[:, :, -2]
         least = NEVER_FREE * float(ones[:, -2].max(initial=0.0)) or 1.0
         share = 1 / (ones[:, -2] + max(self.prior, least))
-        drawn = (sums - share[:, None, None] * ones[:, :, None] * ones[:, None, :]).sum(axis=0)
-        own, kept = slice(self.common, -1), [*range(self.common), sums.shape[-1] - 1]
-        back = _scaled_inverse(drawn[own, own]) @ drawn[own][:, kept]
-        return drawn[np.ix_(kept, kept)] - drawn[kept][:, own] @ back, back
+        return np.asarray(sums - share[:, None, None] * ones[:, :, None] * ones[:, None, :])
+
+    def _own_eliminated(self, drawn: Array) -> tuple[Array, Array]:
+        """The same of sums (..., n, n) over stances."""
+        own, kept = slice(self.common, -1), [*range(self.common), drawn.shape[-1] - 1]
+        both = drawn[..., kept]
+        back = _scaled_inverse(drawn[..., own, own]) @ both[..., own, :]
+        return both[..., kept, :] - drawn[..., kept, own] @ back, back
 
 
 def common_columns(block: Block) -> Array:
@@ -133,12 +142,19 @@ def design(block: Block, widest: int) -> Array:
     return np.column_stack([common_columns(block), own, np.ones(len(block.response))])
 
 
+def _solved(total: Array) -> tuple[Array, Array]:
+    """Values (..., k) by normal equations (..., k + 1, k + 1), and the inverse (..., k, k) of their left side."""
+    inverse = _scaled_inverse(total[..., :-1, :-1])
+    return np.asarray((inverse @ total[..., :-1, -1:])[..., 0]), inverse
+
+
 def _scaled_inverse(square: Array) -> Array:
-    """Pseudo-inverse of a positive semidefinite matrix, its rows scaled alike first: newtons and radians meet here."""
-    scale = np.sqrt(np.diag(square))
+    """Pseudo-inverse of positive semidefinite matrices (..., k, k), their rows scaled alike first: newtons and radians
+    meet here."""
+    scale = np.sqrt(np.diagonal(square, axis1=-2, axis2=-1))
     scale = np.where(scale > 0, scale, 1.0)
-    inverse = np.linalg.pinv(square / np.outer(scale, scale), rcond=RANK_TOLERANCE, hermitian=True)
-    return np.asarray(inverse / np.outer(scale, scale))
+    outer = scale[..., :, None] * scale[..., None, :]
+    return np.asarray(np.linalg.pinv(square / outer, rcond=RANK_TOLERANCE, hermitian=True) / outer)
 
 
 def _offset_prior(blocks: Sequence[Block], free: Solution) -> float:

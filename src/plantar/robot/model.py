@@ -19,6 +19,7 @@ from plantar.errors import RobotError, located
 from plantar.files import read_bounded
 from plantar.robot.guesses import Guess
 from plantar.robot.joint_names import JointNames
+from plantar.robot.kinematics import KinematicTree
 from plantar.robot.schema import FootEntry, FrameEntry, JointEntry, read_robot_file
 from plantar.robot.uncertainty import Uncertainty
 
@@ -125,6 +126,11 @@ class RobotModel:
     def floating_model(self) -> pin.Model:
         """Pinocchio's model with a free-flyer above the root link."""
         return parse_urdf(self.urdf, self.urdf_path, floating=True)
+
+    @cached_property
+    def tree(self) -> KinematicTree:
+        """The joints of `model` as plain arrays. Raises RobotError where one has several coordinates."""
+        return KinematicTree.from_model(self.model)
 
     @cached_property
     def joint_names(self) -> tuple[str, ...]:
