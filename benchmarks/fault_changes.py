@@ -30,6 +30,11 @@ def shifted(columns: Columns, amount: float) -> Change:
     return altered(columns, lambda values: values + amount)
 
 
+def stepped(columns: Columns, start: float, amount: float) -> Change:
+    """Columns whose zero jumps by an amount at this share of each log."""
+    return altered(columns, lambda values: values + amount * (np.arange(len(values)) >= start * len(values)))
+
+
 def removed(columns: Columns) -> Change:
     def change(case: Case) -> Case:
         names = chosen(case, columns)

@@ -25,6 +25,7 @@ from fault_changes import (
     scaled,
     shifted,
     shuffled,
+    stepped,
     tared,
     thinned,
     timed,
@@ -55,6 +56,13 @@ UNITS = (
     Fault("torques in N·mm", "units", scaled(TORQUES, 1000), UNIT),
     Fault("left torques in N·mm", "units", scaled(wrench("left", quantity="torque.*"), 1000), UNIT),
     Fault("torques in N·cm", "units", scaled(TORQUES, 100), UNIT),
+    Fault("torques in kgf.m", "units", scaled(TORQUES, 1 / GRAVITY), (*UNIT, "calibration")),
+    Fault(
+        "wrenches in lbf and lbf.in",
+        "units",
+        one_after_another(scaled(FORCES, 0.2248), scaled(TORQUES, 8.851)),
+        (*UNIT, "carr"),
+    ),
     Fault("forces in kgf", "units", scaled(FORCES, 1 / GRAVITY), (*UNIT, "kgf")),
     Fault("wrenches in kgf", "units", scaled(wrench(), 1 / GRAVITY), (*UNIT, "kgf")),
     Fault("wrenches in kN", "units", scaled(wrench(), 1e-3), (*UNIT, "no load", "carr")),
@@ -180,6 +188,9 @@ FREEZING = (
     Fault("orientation held for a fifth", "freezing", overwritten(ORIENTATION, 0.4, 0.6), (*STUCK, "gyroscope")),
     Fault("all joints held for a tenth", "freezing", overwritten(encoders(), 0.45, 0.55), STUCK),
     *(_stuck_encoder(*joint, *when) for joint, when in product(ENCODERS, WHEN)),
+    *(Fault(f"left ankle pitch slips by {size} deg half way", "freezing",
+            stepped(encoder("left", place=ANKLE_PITCH, quantity="position"), 0.5, np.radians(size)), ("jumps",))
+      for size in (0.4, 1.5)),
     *(Fault(f"left {name} stuck, velocity goes on", "freezing",
             overwritten(encoder("left", place=place, quantity="position"), 0, 1), STUCK) for name, place in ENCODERS),
 )  # fmt: skip

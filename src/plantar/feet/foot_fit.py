@@ -13,6 +13,7 @@ from plantar.feet.assess.parameter_rows import axis_rows, missing_rows, unseen_r
 from plantar.feet.assess.residual_table import Predictions
 from plantar.feet.assess.scores import score_axis
 from plantar.feet.assess.stance_stiffness import stance_stiffness, walk_stiffness
+from plantar.feet.assess.zero_jumps import zero_jumps
 from plantar.feet.exclusion.outliers import outlier_masks
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.axis_fit import fit_axis
@@ -79,7 +80,7 @@ def fit_foot(
             found.parameters.extend(missing_rows(foot, axis, given_up[axis]))
         elif axis not in fits:
             found.parameters.extend(unseen_rows(foot, axis))
-    return replace(found, notes=internal_errors(foot, given_up)), ready
+    return replace(found, notes=(*found.notes, *internal_errors(foot, given_up))), ready
 
 
 def _with_axis(found: FootFit, ready: PreparedLogs, fit: AxisFit) -> FootFit:
@@ -94,8 +95,10 @@ def _with_axis(found: FootFit, ready: PreparedLogs, fit: AxisFit) -> FootFit:
     rows = axis_rows(wide, ready.fitted, predictions, scores)
     limits = diagnose_axis(fit, wide, causes, rows)
     gain = {foot: error for foot, error in ready.gain_errors.items() if foot == fit.foot}
+    jumps = zero_jumps(ready.fitted, fit, shared)
     faults = [
         *data_faults(ready.fitted, fit),
+        *jumps,
         *force_gain_notes(ready.robot, gain),
         # Torque channels that are wrong about one axis are trusted about neither.
         *torque_gain_notes(ready.torque_gains).values(),
@@ -109,6 +112,7 @@ def _with_axis(found: FootFit, ready: PreparedLogs, fit: AxisFit) -> FootFit:
         predictions={**found.predictions, **predictions},
         stances=[*found.stances, *stance_stiffness(ready.recordings, wide)],
         walks=[*found.walks, *walk_stiffness(ready.recordings, wide)],
+        notes=(*found.notes, *jumps),
     )
 
 

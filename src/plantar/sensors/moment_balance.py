@@ -17,10 +17,19 @@ from plantar.conventions import NORMAL95, ROTATIONAL_AXES, Array, Axis
 from plantar.estimation.intervals import MOST_FREEDOM, cosine_covariance, pooled_freedom
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
-from plantar.sensors.moment_errors import BAND, LEAST_GAIN, MomentErrors, moment_errors, prior_deviations
+from plantar.sensors.moment_errors import (
+    BAND,
+    LEAST_GAIN,
+    LOOSE,
+    MomentErrors,
+    moment_errors,
+    prior_deviations,
+)
 from plantar.sensors.newton_euler import NewtonEulerResidual
 from plantar.sensors.refined_delays import Each
 
+STRAINED = 2.0  # deviations of its prior, beyond which a gain is looked for anew
+ANOTHER_UNIT = 10.0  # share: kgf.m for N.m
 CHANCE = 0.01  # that torques without a fault are called wrong about an axis, by deviations that are on the safe side
 WORTH_SAYING = 0.03  # share: what the force sensors' makers promise is seldom better
 
@@ -62,7 +71,12 @@ def torque_gains(
     if not residuals:
         return {}
     logs, feet = list(each(partial(moment_errors, robot), residuals)), len(robot.feet)
-    values, parts = solved(logs, prior_deviations(robot))
+    prior = prior_deviations(robot)
+    values, parts = solved(logs, prior)
+    if np.abs(values[: 2 * feet]).max() > STRAINED * LOOSE:
+        # Only another unit is so far off: the prior that keeps a gain from passing for other errors would hide it.
+        prior[: 2 * feet] = ANOTHER_UNIT
+        values, parts = solved(logs, prior)
     usual = max(robot.uncertainty.wrench_gain, LEAST_GAIN)
     parts.append(_Part(usual**2 * np.eye(len(values)), MOST_FREEDOM))
     mean = _mean_gains(np.sum([part.covariance for part in parts], axis=0), feet)

@@ -11,11 +11,11 @@ from plantar.feet.recording import Recording
 from plantar.notes import Note
 from plantar.results.feet import Parameter
 
-# Codes of warnings on a log's signs, frames, times and full scales, and on a bush far from its place.
+# Codes of warnings on a log's signs, frames, times, full scales and load, and on a bush far from its place.
 UNMENDED = frozenset(
     {
         "sign", "force_leans", "imu_turned", "imu_late", "gyroscope_frame", "gyroscope_scale",
-        "path_joint_missing", "stuck_channel", FAR, BUSH_TURNED,
+        "path_joint_missing", "stuck_channel", "weight", FAR, BUSH_TURNED,
     }
 )  # fmt: skip
 ADVICE = "mend what the warning names, or leave this log out"

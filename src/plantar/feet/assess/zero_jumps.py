@@ -1,0 +1,94 @@
+"""Logs within which a zero jumps: an encoder that slips, an IMU or a force sensor that is zeroed anew.
+
+One offset a recording cannot follow that: stiffness and damping bend towards it, or a memory is made up for it. A jump
+stands out in what spring and damper leave: the mean changes at one moment as it does at no other, and stays.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plantar.conventions import Array
+from plantar.estimation import Block, fit_blocks
+from plantar.feet.fit.axis import AxisFit
+from plantar.feet.fit.regression_data import blocks_of, tangent_blocks
+from plantar.feet.recording import Recording
+from plantar.models import KelvinVoigt
+from plantar.notes import Note
+from plantar.signals.segments import run_numbers
+
+BESIDE = 1.0  # s before and after a moment, over which means are compared
+FAR = 8.0  # times the usual difference of two such means
+EXPLAINS = 0.5  # of the squares that spring and damper leave of the recording
+WORTH = 0.03  # of the recording's spread of torque: a smaller jump does no harm
+CODE = "zero_jump"
+
+
+def zero_jumps(recordings: Sequence[Recording], fit: AxisFit, shared: bool) -> list[Note]:
+    """A warning for each recording in which the zero of one axis jumps while the foot stands.
+
+    Not of a foot that steps: each of its stances has an offset of its own.
+    """
+    blocks = blocks_of(recordings, fit.foot, fit.axis)
+    if blocks[0].stances is not None or shared:
+        return []
+    jumps = _jumps(blocks, recordings, fit.foot)
+    if not isinstance(fit.model, KelvinVoigt):  # beside a true memory, its own misfit shows a jump better
+        jumps = _jumps(tangent_blocks(recordings, fit), recordings, fit.foot) | jumps
+    return [
+        Note(
+            CODE,
+            "warning",
+            f"{label}: t = {time:.1f} s: the zero of {fit.foot} {fit.axis} jumps: an encoder between IMU and foot "
+            "slipped, or IMU or force sensor were zeroed anew (valid: one zero throughout a log; cut it there)",
+        )
+        for label, time in jumps.items()
+    ]
+
+
+def _jumps(blocks: Sequence[Block], recordings: Sequence[Recording], foot: str) -> dict[str, float]:
+    """Moment [s] of the jump in each recording that has one, in what the blocks' fit leaves."""
+    whole, found = fit_blocks(blocks), {}
+    by_name = {recording.name: recording for recording in recordings}
+    for block in blocks:
+        recording, missed = by_name[block.label], whole.residuals[block.label]
+        places = np.flatnonzero(recording.rows(foot))
+        row = _jump(missed, run_numbers(recording.contacts[foot].loaded)[places], block.period)
+        if row is not None and _is_all(missed, row, block):
+            found[block.label] = float(recording.time[places[row]])
+    return found
+
+
+def _jump(missed: Array, stands: NDArray[np.intp], period: float) -> int | None:
+    """The row of `missed` (n,) about which its mean changes by far most; None where it does about none.
+
+    stands: (n,), the number of the stance: a foot that was lifted meanwhile stands elsewhere.
+    """
+    width = max(1, round(BESIDE / period))
+    if len(missed) < 6 * width:
+        return None
+    until = np.concatenate([[0.0], np.cumsum(missed)])
+    means = (until[width:] - until[:-width]) / width
+    apart = np.abs(means[width:] - means[:-width])
+    same = stands[2 * width - 1 :] == stands[: len(stands) - 2 * width + 1]
+    if not same.any():
+        return None
+    best = int(np.argmax(np.where(same, apart, 0.0)))
+    return best + width if apart[best] > FAR * float(np.median(apart[same])) else None
+
+
+def _is_all(missed: Array, row: int, block: Block) -> bool:
+    """Whether a step at this row is most of what is `missed` (n,), beside the block's own columns, and large enough."""
+    step = np.where(np.arange(len(missed)) >= row, 1.0, 0.0)[:, None]
+    own = replace(block, response=missed, noise=None)
+    kept = [] if block.nuisance is None else [block.nuisance]
+    freed = replace(own, nuisance=np.column_stack([*kept, step]))
+    left = fit_blocks([freed]).residuals[block.label]
+    size = abs(float(missed[row:].mean() - missed[:row].mean()))
+    return bool(
+        left @ left < (1 - EXPLAINS) * float(missed @ missed) and size > WORTH * float(np.std(block.response))
+    )

@@ -1,0 +1,90 @@
+"""A zero that jumps within a log, and what looks like one: memory, drift, one sway in a quiet log, another stance."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from biped import TRUTH, record, sway
+from bush_data_sets import Rubber
+from made_recording import FOOT, PERIOD, made_recording, swayed
+from plantar.contact.phases import AIR, SUPPORTS
+from plantar.contact.reasons import Reason
+from plantar.feet.assess.zero_jumps import CODE, zero_jumps
+from plantar.feet.fit.axis_fit import fit_axis
+from plantar.feet.identify import identify_feet
+from plantar.feet.recording import Recording
+from plantar.feet.settings import FeetSettings
+from plantar.robot.model import RobotModel
+
+COUNT = 6000
+PLAIN = Rubber(stiffness=420.0, damping=18.0)
+SLIPPING = Rubber(stiffness=420.0, damping=18.0, slip_torque=4.0, slip_angle=0.006)
+LATER = PERIOD * np.arange(COUNT) >= 33.0
+
+
+def swaying(
+    rubber: Rubber, added: np.ndarray | float = 0.0, angle: np.ndarray | None = None
+) -> list[Recording]:
+    made = []
+    for seed in (0, 1):
+        moved = swayed(COUNT, seed=seed) if angle is None else angle
+        torque = rubber.torque(moved, np.gradient(moved, PERIOD)) + 0.1 * np.random.default_rng(
+            seed
+        ).standard_normal(COUNT)
+        made.append(made_recording(f"sway_{seed}", moved, torque + (added if seed else 0.0)))
+    return made
+
+
+def said(recordings: list[Recording], model: str = "kelvin_voigt") -> list[str]:
+    fit = fit_axis(recordings, FOOT, "pitch", FeetSettings(model=model))
+    assert fit is not None
+    return [note.text for note in zero_jumps(recordings, fit, False)]
+
+
+@pytest.mark.parametrize(("rubber", "model"), [(PLAIN, "kelvin_voigt"), (SLIPPING, "elastoplastic")])
+def test_a_jump_is_told_with_its_log_and_time(rubber: Rubber, model: str) -> None:
+    (text,) = said(swaying(rubber, 6.0 * LATER), model)
+    assert text.startswith("sway_1: t = 3")
+    assert abs(float(text.split()[3]) - 33.0) < 0.3
+
+
+@pytest.mark.parametrize(
+    "recordings",
+    [
+        swaying(PLAIN),
+        swaying(SLIPPING),
+        swaying(PLAIN, 6.0 * PERIOD * np.arange(COUNT) / 60),  # a line
+        swaying(PLAIN, 3.0 * np.sin(0.15 * PERIOD * np.arange(COUNT))),  # drift
+        swaying(SLIPPING, angle=np.where(np.abs(np.arange(COUNT) - 3000) < 300, swayed(COUNT, seed=0), 0.0)),
+        swaying(PLAIN, 0.02 * LATER),  # too small to matter
+    ],
+)
+@pytest.mark.parametrize("model", ["kelvin_voigt", "elastoplastic"])
+def test_what_is_no_jump_is_not_taken_for_one(recordings: list[Recording], model: str) -> None:
+    assert said(recordings, model) == []
+
+
+def test_a_foot_that_was_lifted_meanwhile_stands_elsewhere() -> None:
+    recordings = swaying(PLAIN, 6.0 * LATER)
+    contact = recordings[1].contacts[FOOT]
+    support = contact.support.copy()
+    support[3250:3300] = SUPPORTS.index(AIR)
+    lifted = replace(recordings[1], contacts={FOOT: replace(contact, support=support)})
+    assert said([recordings[0], lifted.without(FOOT, support > 0, Reason.FILTER_EDGE)]) == []
+
+
+def test_an_encoder_that_slips_keeps_numbers_from_being_usable(robot: RobotModel) -> None:
+    log = record(sway(duration=60.0))
+    column = "joint.left_ankle_pitch.position"
+    slipped = log.with_columns({column: log.column(column) + 0.01 * (log.time > 35)})
+    found = identify_feet(robot, [slipped], settings=FeetSettings(model="kelvin_voigt"))
+    (note,) = [note for note in found.notes if note.code == CODE]
+    assert "zero of left pitch jumps" in note.text
+    for name in ("stiffness", "damping"):
+        assert found.parameter("left", "pitch", name).verdict != "usable"
+    healthy = found.parameter("right", "pitch", "stiffness")
+    assert healthy.value == pytest.approx(TRUTH["right", "pitch"].stiffness, rel=0.01)
+    assert not [note for note in identify_feet(robot, [log]).notes if note.code == CODE]
