@@ -1,0 +1,35 @@
+"""Bushes whose axes the robot file has wrong: pitch and roll would be exchanged, and nothing else would show it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from biped import record, sway
+from biped_robot import make_robot, robot_entry
+from plantar.checks.bush_axes import check_bush_axes
+from plantar.feet.identify import identify_feet
+from plantar.robot.model import RobotModel
+
+
+def turned(folder: Path, degrees: float) -> RobotModel:
+    feet = robot_entry()["feet"]
+    assert isinstance(feet, dict)
+    for foot in feet.values():
+        foot["bush"] = {**foot["bush"], "rpy": [0.0, 0.0, float(np.radians(degrees))]}
+    return make_robot(folder, feet=feet)
+
+
+@pytest.mark.parametrize(("degrees", "count"), [(0, 0), (20, 0), (-30, 0), (90, 2), (-90, 2)])
+def test_an_x_axis_that_points_to_the_other_foot_is_told(tmp_path: Path, degrees: float, count: int) -> None:
+    found = list(check_bush_axes(turned(tmp_path, degrees), record(sway())))
+    assert len(found) == count
+    assert all(one.code == "bush_axes" and not one.fatal for one in found)
+    assert all("feet.left.bush.rpy" in one.text for one in found[:1])
+
+
+def test_no_number_of_such_a_foot_is_usable(tmp_path: Path) -> None:
+    found = identify_feet(turned(tmp_path, 90), [record(sway())])
+    assert not [row for row in found.parameters if row.axis != "z" and row.verdict == "usable"]
