@@ -40,6 +40,7 @@ GEOMETRY = (
     Fault("bushes +3 cm in x", "geometry", frame("bush", "xyz", X, 0.03), PLACE),
     Fault("bushes +2 cm in y", "geometry", frame("bush", "xyz", Y, 0.02), PLACE),
     Fault("bushes turned by 10 deg about z", "geometry", frame("bush", "rpy", Z, 10 * DEGREE), (*PLACE, *TURN)),
+    Fault("bushes turned by 90 deg about z", "geometry", frame("bush", "rpy", Z, 90 * DEGREE), (*PLACE, *TURN)),
     *(Fault(f"wrenches {100 * by:+.0f} cm in z", "geometry", frame("wrench", "xyz", Z, by), PLACE)
       for by in (-0.03, -0.01, 0.01, 0.03)),
     Fault("wrenches at the ankle or sole", "geometry", lambda case: case.with_robot(sensors_elsewhere), PLACE),
