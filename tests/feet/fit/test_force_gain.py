@@ -99,6 +99,13 @@ def test_an_exact_sensor_on_a_robot_that_was_weighed_has_no_error() -> None:
     assert GainError(0.0, 0.01, 0.0, 0.02).reach == pytest.approx(0.0, abs=1e-3)
 
 
+@pytest.mark.parametrize("share", [-0.9, -0.6, 1.0, 9.0])
+def test_a_sensor_that_reads_a_fraction_or_a_multiple_reaches_as_far(share: float) -> None:
+    """As one that was zeroed under load, or reads another unit."""
+    seen = abs(share / (1 + share))
+    assert GainError(share, 0.01, 0.01, 0.02).reach == pytest.approx(seen, rel=0.1)
+
+
 def test_a_robot_file_that_doubts_its_masses_allows_more(tmp_path: Path, weighed: RobotModel) -> None:
     log = scaled(record(sway()), left=1.12, right=1.12)
     assert errors(weighed, log)

@@ -74,7 +74,7 @@ class GainError(NamedTuple):
             beyond = special.ndtr((mean - reach) / std) + special.ndtr((-mean - reach) / std)
             return float(odds @ beyond / odds.sum()) - 0.05
 
-        found = float(optimize.brentq(outside, 0.0, 1.0))
+        found = float(optimize.brentq(outside, 0.0, 1.0 + seen))
         return min(found, float(np.linalg.norm([seen, NORMAL95 * self.std, NORMAL95 * self.usual])))
 
 
