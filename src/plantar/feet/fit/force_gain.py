@@ -67,7 +67,8 @@ class GainError(NamedTuple):
         seen = abs(self.share / (1 + self.share)) + safe
         sizes = np.array([self.usual, FAULT])
         total = np.hypot(sizes, self.other)
-        odds = np.array([1 - FAULTY, FAULTY]) * np.exp(-0.5 * (seen / total) ** 2) / total
+        exponents = -0.5 * (seen / total) ** 2
+        odds = np.array([1 - FAULTY, FAULTY]) * np.exp(exponents - exponents.max()) / total
         mean, std = seen * (sizes / total) ** 2, np.maximum(sizes * self.other / total, LEAST_GAIN)
 
         def outside(reach: float) -> float:
