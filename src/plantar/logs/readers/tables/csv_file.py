@@ -79,9 +79,8 @@ class _Rows:
         end = self._count + table.num_rows
         if end > self._values.shape[1]:
             raise LogError(located("changed while it was read", path=self.path))
-        for name in sorted(
-            self.names, key=lambda name: name != "time"
-        ):  # a message about another tells the time
+        # Time first: a message about another column tells it.
+        for name in sorted(self.names, key=lambda name: name != "time"):
             if name not in self._texts:
                 numbers = self._numbers(table.column(name), name)
                 self._values[self._place[name], self._count : end] = np.nan if numbers is None else numbers
