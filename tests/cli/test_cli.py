@@ -152,6 +152,8 @@ def test_validate(campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[
     assert run("identify", "feet", robot, campaign / "first.csv", "--out", tmp_path, "-q") == 0
     assert run("validate", tmp_path / "result.json", robot, campaign / "third.csv") == 0
     assert "Table 3" in capsys.readouterr().out
+    words = ("validate", tmp_path / "result.json", robot, campaign / "third.csv", "-q")
+    assert "more with --memory" in refused(capsys, *words, "--memory", "1kB")
     assert run("validate", tmp_path / "result.json", robot, campaign / "third.csv", "--json", "-q") == 0
     rows = json.loads(capsys.readouterr().out)["validation"]
     assert {(row["foot"], row["axis"]) for row in rows} >= {
@@ -181,6 +183,29 @@ def test_bad_logs_are_one_line_and_leave_nothing(
     assert "bad.csv" in line
     assert expected in line
     assert not out.exists()
+
+
+@pytest.mark.parametrize(
+    "verb", ["inspect", "identify feet", "identify inertia", "identify joints", "select"]
+)
+def test_logs_keep_to_the_memory_given(
+    verb: str, campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = ("--out", tmp_path / "out") if verb.startswith("identify") else ()
+    words = (*verb.split(), campaign / "robot.yaml", campaign / "first.csv", *out, "--memory")
+    message = refused(capsys, *words, "0.1 mb", *(() if verb.startswith("identify") else ("--quiet",)))
+    assert "first.csv: holds 1201 rows x " in message
+    assert "at most 100 kB, or more with --memory" in message
+    assert not (tmp_path / "out").exists()
+    assert run(*words, "much") == 2
+
+
+def test_convert_keeps_to_the_memory_given(
+    campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ("convert", campaign / "first.csv", "--out", tmp_path / "log.parquet", "--memory")
+    assert "at most 1 kB" in refused(capsys, *words, "1KB")
+    assert run(*words, "1GB") == 0
 
 
 def test_an_error_leaves_an_earlier_result_untouched(

@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from plantar.cli.memory import Memory
 from plantar.errors import PlantarError, located
 from plantar.logs.readers import motion_name, open_log
 from plantar.logs.save import ENDINGS, save_log
@@ -23,6 +24,7 @@ def run(
     out: Annotated[Path, typer.Option("--out", help=OUT_HELP, metavar="FILE")],
     to: Annotated[str, typer.Option("--to", help="Format of the files in a directory.")] = "parquet",
     robot: Annotated[Path | None, typer.Option("--robot", help=ROBOT_HELP, metavar="ROBOT.yaml")] = None,
+    memory: Memory = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Do not print what was assumed.")] = False,
 ) -> None:
     """A log in another format: a table with plantar's columns, or a ROS 2 bag.
@@ -31,7 +33,7 @@ def run(
     """
     loaded = None if robot is None else load_robot(robot)
     for path, target in zip(logs, _targets(logs, out, to), strict=True):
-        log = open_log(path, loaded)
+        log = open_log(path, loaded, memory=memory)
         notes = (*log.notes, *save_log(log, target, loaded))
         if not quiet:
             for note in notes:

@@ -10,6 +10,7 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
+from plantar.cli.memory import Memory
 from plantar.cli.terminal import SEVERITY_STYLE, VERDICT_STYLE, console, end_progress, number, progress, table
 from plantar.inspection import LogSummary, inspect_log
 from plantar.logs.readers import open_log
@@ -21,6 +22,7 @@ def run(
     robot: Annotated[Path, typer.Argument(help="Robot file (YAML).", metavar="ROBOT.yaml")],
     logs: Annotated[list[Path], typer.Argument(help="Logs to look at.", metavar="LOG...")],
     columns: Annotated[bool, typer.Option("--columns", help="Also the range of every column.")] = False,
+    memory: Memory = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")] = False,
     quiet: Annotated[
         bool, typer.Option("--quiet", "-q", help="Only the exit code: 1 where a log cannot be used.")
@@ -35,7 +37,7 @@ def run(
     summaries = []
     for path in logs:
         step(f"inspect {path.name}")
-        summaries.append(inspect_log(loaded, open_log(path, loaded)))
+        summaries.append(inspect_log(loaded, open_log(path, loaded, memory=memory)))
     end_progress(quiet)
     if json:
         print(

@@ -8,9 +8,12 @@ from typing import Annotated, Any
 
 import typer
 
+from plantar.cli.memory import Memory
 from plantar.cli.terminal import console, end_progress, number, progress, table
 from plantar.feet.select_motions import UNKNOWN, Choice, Selection, select_motions
+from plantar.logs.inputs import open_together
 from plantar.results.io import dump_json
+from plantar.robot.model import load_robot
 
 
 def run(
@@ -20,6 +23,7 @@ def run(
         str, typer.Option(help="Motions to compare with the best set, separated by commas.")
     ] = "",
     largest: Annotated[int, typer.Option(help="Most logs in a set.", min=1, max=20)] = 6,
+    memory: Memory = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")] = False,
 ) -> None:
@@ -28,8 +32,9 @@ def run(
     Example: plantar select robot.yaml out/*.csv --compare Manual_right_roll,Manual_left_roll,Tilt3
     """
     step = progress(quiet)
+    known = load_robot(robot)
     named = [name.strip() for name in compare.split(",") if name.strip()]
-    found = select_motions(robot, logs, named, largest, progress=step)
+    found = select_motions(known, open_together(logs, known, memory), named, largest, progress=step)
     end_progress(quiet)
     if json:
         print(dump_json({"schema": "plantar.selection/1", **_plain(found)}), end="")

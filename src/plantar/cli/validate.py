@@ -9,15 +9,20 @@ from typing import Annotated
 import typer
 
 from plantar.cli.identify.feet_tables import validation_table
+from plantar.cli.memory import Memory
 from plantar.cli.terminal import console, end_progress, progress
 from plantar.feet.validate import validate_feet
+from plantar.logs.inputs import open_together
+from plantar.results.feet import FeetResult
 from plantar.results.io import dump_json
+from plantar.robot.model import load_robot
 
 
 def run(
     result: Annotated[Path, typer.Argument(help="The result of `identify feet`.", metavar="RESULT.json")],
     robot: Annotated[Path, typer.Argument(help="Robot file (YAML).", metavar="ROBOT.yaml")],
     logs: Annotated[list[Path], typer.Argument(help="Logs that the fit has not seen.", metavar="LOG...")],
+    memory: Memory = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No table, no progress.")] = False,
 ) -> None:
@@ -26,7 +31,9 @@ def run(
     Example: plantar validate out/feet/result.json robot.yaml squat.csv
     """
     step = progress(quiet)
-    rows = validate_feet(result, robot, logs, step)
+    found = FeetResult.load(result, residuals=False)
+    known = load_robot(robot)
+    rows = validate_feet(found, known, open_together(logs, known, memory), step)
     end_progress(quiet)
     if json:
         print(

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from threading import Lock
 
 from plantar.errors import DataError, LogError, RobotError, located
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import open_log
+from plantar.logs.readers.read_limit import shown, usual_memory
 from plantar.robot.model import RobotModel, load_robot
 
 PathInput = str | os.PathLike[str]
@@ -33,6 +37,29 @@ def logs_of(logs: LogInputs, robot: RobotModel) -> tuple[MotionLog, ...]:
     if not isinstance(logs, Iterable):
         raise _no_log(logs)
     return tuple(_log_of(log, robot) for log in logs)
+
+
+def open_together(paths: Sequence[Path], robot: RobotModel, memory: int | None = None) -> list[MotionLog]:
+    """Several logs, read on all cores, that must fit in `memory` bytes together; if left out, the usual memory.
+
+    Raises LogError as `open_log`, and where a log does not fit beside those that were read before.
+    """
+    left = usual_memory() if memory is None else memory
+    lock = Lock()
+
+    def opened(path: Path) -> MotionLog:
+        nonlocal left
+        log = open_log(path, robot, memory=left)
+        with lock:
+            left -= log.size
+            if left < 0:
+                message = f"does not fit beside the other logs: {shown(-left)} too much"
+                valid = "fewer logs at a time, or more with --memory (memory= in Python)"
+                raise LogError(located(message, path=path, valid=valid))
+        return log
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        return list(pool.map(opened, paths))
 
 
 def check_names(logs: Sequence[MotionLog]) -> None:

@@ -105,6 +105,11 @@ class MotionLog:
         return int(self.time.size)
 
     @property
+    def size(self) -> int:
+        """Bytes of its numbers."""
+        return self.time.nbytes + sum(values.nbytes for values in self.columns.values())
+
+    @property
     def duration(self) -> float:
         """Time from the first sample to the last [s]."""
         return float(self.time[-1] - self.time[0])

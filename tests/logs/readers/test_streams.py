@@ -8,8 +8,11 @@ import numpy as np
 import pytest
 
 from plantar.errors import LogError
+from plantar.logs.readers.read_limit import ReadLimit
 from plantar.logs.readers.streams import Stream, merge, resample
 from plantar.notes import Note
+
+LIMIT = ReadLimit(Path("x"), files=[])
 
 
 def stream(name: str, time: np.ndarray, **columns: np.ndarray) -> Stream:
@@ -21,7 +24,7 @@ def test_the_fastest_clock_is_the_base_and_the_rest_is_linear_in_between() -> No
     notes: list[Note] = []
     joints = stream("j", fast, joint__a__position=np.sin(fast))
     force = stream("w", slow, wrench__l__force__z=3 * slow + 1)
-    time, columns = merge([force, joints], Path("x"), notes)
+    time, columns = merge([force, joints], LIMIT, notes)
     assert np.isin(time, fast).all()
     np.testing.assert_allclose(columns["wrench.l.force.z"], 3 * time + 1, atol=1e-12)
     assert "streams_resampled" in {note.code for note in notes}
@@ -65,13 +68,13 @@ def test_the_log_is_cut_to_what_all_streams_cover_unless_little_is_left() -> Non
     joints = stream("j", base, joint__a__position=base)
     notes: list[Note] = []
     late = base[base > 2]
-    time, columns = merge([joints, stream("w", late, wrench__l__force__z=late)], Path("x"), notes)
+    time, columns = merge([joints, stream("w", late, wrench__l__force__z=late)], LIMIT, notes)
     assert time[0] == late[0]
     assert not np.isnan(columns["wrench.l.force.z"]).any()
     assert "log_cut_to_overlap" in {note.code for note in notes}
     notes = []
     late = base[base > 9]
-    time, columns = merge([joints, stream("w", late, wrench__l__force__z=late)], Path("x"), notes)
+    time, columns = merge([joints, stream("w", late, wrench__l__force__z=late)], LIMIT, notes)
     assert time.size == base.size
     assert np.isnan(columns["wrench.l.force.z"][0])
     assert "streams_apart" in {note.code for note in notes}
@@ -82,10 +85,10 @@ def test_stray_stamps_go_with_a_note_and_a_clock_that_jumps_is_refused() -> None
     time[500] = np.nan
     time[700] = 3.0
     notes: list[Note] = []
-    cleaned, _ = merge([stream("j", time, joint__a__position=time)], Path("x"), notes)
+    cleaned, _ = merge([stream("j", time, joint__a__position=time)], LIMIT, notes)
     assert cleaned.size == time.size - 2
     assert "time_order" in {note.code for note in notes}
     jumped = np.r_[np.arange(0, 10, 0.01), np.arange(5, 15, 0.01)]
     with pytest.raises(LogError, match="steps back") as caught:
-        merge([stream("/joint_states", jumped, joint__a__position=jumped)], Path("x"), [])
+        merge([stream("/joint_states", jumped, joint__a__position=jumped)], LIMIT, [])
     assert "/joint_states" in str(caught.value)

@@ -10,6 +10,7 @@ import typer
 
 from plantar.cli.identify import identification
 from plantar.cli.identify.feet_tables import print_feet
+from plantar.cli.memory import Memory
 from plantar.cli.terminal import progress
 from plantar.feet.settings import AUTOMATIC, DEFAULT_CUTOFF, MODEL_CHOICES, FeetSettings, OffsetRule
 
@@ -36,6 +37,7 @@ def run(
     wrench_delay: Annotated[float | None, typer.Option(help=DELAY_HELP)] = None,
     cutoff: Annotated[float | None, typer.Option(help=CUTOFF_HELP, min=0.1)] = None,
     window: Annotated[float | None, typer.Option(help=WINDOW_HELP, min=0.01)] = None,
+    memory: Memory = None,
     json: identification.Json = False,
     quiet: identification.Quiet = False,
 ) -> None:
@@ -49,7 +51,7 @@ def run(
     late = None if wrench_delay is None else 1e-3 * wrench_delay
     settings = FeetSettings(offset, model, cutoff, window=reach, wrench_delay=late)
     with ThreadPoolExecutor(1) as reader:
-        inputs = reader.submit(identification.opened, robot, logs, validate, out)
+        inputs = reader.submit(identification.opened, robot, logs, validate, out, memory)
         # What fits them is imported while they are read.
         from plantar.feet.identify import identify_feet
         from plantar.report import write_feet_report

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Annotated, Any, Protocol, TypeVar
 
@@ -13,8 +11,8 @@ from rich.console import Console
 
 from plantar.cli.terminal import console, end_progress, progress
 from plantar.files import refuse_file
+from plantar.logs.inputs import open_together
 from plantar.logs.motion_log import MotionLog
-from plantar.logs.readers import open_log
 from plantar.results.io import dump_json
 from plantar.robot.model import RobotModel, load_robot
 
@@ -45,13 +43,12 @@ Found = TypeVar("Found", bound=Result)
 
 
 def opened(
-    robot: Path, logs: Sequence[Path], validate: Sequence[Path] | None, out: Path
+    robot: Path, logs: Sequence[Path], validate: Sequence[Path] | None, out: Path, memory: int | None
 ) -> tuple[RobotModel, list[MotionLog], list[MotionLog]]:
     """The robot, the logs to fit and those to score; an `out` that cannot be used is refused before any work."""
     refuse_file(out)
     known = load_robot(robot)
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        opened = list(pool.map(lambda path: open_log(path, known), [*logs, *(validate or ())]))
+    opened = open_together([*logs, *(validate or ())], known, memory)
     return known, opened[: len(logs)], opened[len(logs) :]
 
 

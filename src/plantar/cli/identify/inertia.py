@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from plantar.cli.identify import identification
 from plantar.cli.identify.dynamics_tables import print_inertia
+from plantar.cli.memory import Memory
 from plantar.cli.terminal import progress
 from plantar.report import write_dynamics_report
 from plantar.results.dynamics import URDF
@@ -18,6 +19,7 @@ def run(
     validate: identification.Validate = None,
     cutoff: identification.Cutoff = DynamicsSettings.cutoff,
     as_recorded: identification.AsRecorded = False,
+    memory: Memory = None,
     json: identification.Json = False,
     quiet: identification.Quiet = False,
 ) -> None:
@@ -25,7 +27,7 @@ def run(
 
     Example: plantar identify inertia talos.yaml walk_1.csv --validate walk_2.csv --out out/inertia
     """
-    known, fitted, unseen = identification.opened(robot, logs, validate, out)
+    known, fitted, unseen = identification.opened(robot, logs, validate, out, memory)
     settings = DynamicsSettings(cutoff, as_recorded)
     result = identify_inertia(known, fitted, unseen, settings, progress(quiet))
     identification.keep(

@@ -8,6 +8,7 @@ import typer
 
 from plantar.cli.identify import identification
 from plantar.cli.identify.dynamics_tables import print_joints
+from plantar.cli.memory import Memory
 from plantar.cli.terminal import progress
 from plantar.report import write_dynamics_report
 from plantar.results.dynamics import URDF
@@ -25,6 +26,7 @@ def run(
     inertia: Annotated[Inertia, typer.Option("--inertia", help=HELP)] = "together",
     cutoff: identification.Cutoff = DynamicsSettings.cutoff,
     as_recorded: identification.AsRecorded = False,
+    memory: Memory = None,
     json: identification.Json = False,
     quiet: identification.Quiet = False,
 ) -> None:
@@ -32,7 +34,7 @@ def run(
 
     Example: plantar identify joints arm.yaml sweep_1.csv --validate sweep_2.csv --out out/joints
     """
-    known, fitted, unseen = identification.opened(robot, logs, validate, out)
+    known, fitted, unseen = identification.opened(robot, logs, validate, out, memory)
     settings = DynamicsSettings(cutoff, as_recorded)
     result = identify_joints(known, fitted, unseen, settings, progress(quiet), inertia=inertia)
     identification.keep(

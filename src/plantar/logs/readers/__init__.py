@@ -11,19 +11,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from plantar.errors import LogError, located
+from plantar.logs.readers.read_limit import ReadLimit
 from plantar.logs.readers.urdf_names import with_urdf_names
 
 if TYPE_CHECKING:
     from plantar.logs.motion_log import MotionLog
     from plantar.robot.model import RobotModel
 
-Reader = Callable[[Path, "RobotModel | None"], "MotionLog"]
+Reader = Callable[[Path, "RobotModel | None", ReadLimit], "MotionLog"]
 
-# Ending of the file's name -> module of this package with `read(path, robot) -> MotionLog`.
+# Ending of the file's name -> module of this package with `read(path, robot, limit) -> MotionLog`.
 FORMATS: dict[str, str] = {
-    ".csv": "table",
-    ".csv.gz": "table",
-    ".parquet": "table",
+    ".csv": "tables.table",
+    ".csv.gz": "tables.table",
+    ".parquet": "tables.table",
     ".mcap": "ros.bag",
     ".db3": "ros.bag",
     ".bag": "ros.bag",
@@ -37,19 +38,22 @@ FORMATS: dict[str, str] = {
 }
 
 
-def open_log(path: str | os.PathLike[str], robot: RobotModel | None = None) -> MotionLog:
+def open_log(
+    path: str | os.PathLike[str], robot: RobotModel | None = None, *, memory: int | None = None
+) -> MotionLog:
     """Read one recording, whatever its format.
 
     Args:
         path: a table (.csv, .csv.gz, .parquet), a bag or its folder (.mcap, .db3, .bag), or a log of mc_rtc, hrpsys,
             YARP and others.
         robot: gives topics or column names where a format needs them, and what the log calls the joints.
+        memory: most bytes that the log's numbers may take; a quarter of the machine's memory if left out.
 
     Returns:
         The log in SI units, with the columns of `docs/log_columns.md`.
 
     Raises:
-        LogError: the file is missing, of an unknown format, or broken. MissingExtra: its format's package is missing.
+        LogError: the file is missing, of an unknown format, broken or too large. MissingExtra: a package is missing.
 
     Example:
         >>> import plantar
@@ -63,7 +67,7 @@ def open_log(path: str | os.PathLike[str], robot: RobotModel | None = None) -> M
     module = _module(path, robot)
     reader: Reader = import_module(f"plantar.logs.readers.{module}").read
     with np.errstate(over="ignore", invalid="ignore"):  # a damaged file may hold any number
-        log = reader(path, robot)
+        log = reader(path, robot, ReadLimit(path, memory))
     return log if robot is None else with_urdf_names(log, robot.joint_names_in_logs, robot.joint_names)
 
 
@@ -77,7 +81,7 @@ def _module(path: Path, robot: RobotModel | None) -> str:
     ending = next((e for e in sorted(FORMATS, key=len, reverse=True) if path.name.lower().endswith(e)), None)
     mapped = robot is not None and any(key not in ("joints", "ports") for key in robot.columns)
     if ending is not None:
-        return "column_file" if FORMATS[ending] == "table" and mapped else FORMATS[ending]
+        return "column_file" if FORMATS[ending] == "tables.table" and mapped else FORMATS[ending]
     from plantar.logs.readers.hrpsys import is_port_file
 
     named = (

@@ -15,17 +15,21 @@ from plantar.conventions import Array
 from plantar.errors import LogError, located
 from plantar.files import sha256
 from plantar.logs.motion_log import COLUMN, MotionLog
-from plantar.logs.readers import motion_name, table
+from plantar.logs.readers import motion_name
 from plantar.logs.readers.column_map import apply, maps_columns
+from plantar.logs.readers.read_limit import COLUMNS, NUMBER, ReadLimit
 from plantar.logs.readers.streams import Stream, increasing
+from plantar.logs.readers.tables import table
 from plantar.logs.readers.text_numbers import read_numbers
 from plantar.notes import Note
 
 if TYPE_CHECKING:
     from plantar.robot.model import RobotModel
 
-NPZ_LIMIT = 4 * 2**30  # bytes of arrays
-COLUMN_LIMIT = 10_000  # of one array
+PACKED = (
+    zipfile.ZIP_STORED,
+    zipfile.ZIP_DEFLATED,
+)  # as NumPy writes them; others may ask for gigabytes to unpack
 BROKEN = (
     zipfile.BadZipFile,
     zlib.error,
@@ -38,16 +42,16 @@ BROKEN = (
 )
 
 
-def read(path: Path, robot: RobotModel | None = None) -> MotionLog:
-    """Read a file of columns by the robot file's map. LogError: broken, or no map where one is needed."""
+def read(path: Path, robot: RobotModel | None, limit: ReadLimit) -> MotionLog:
+    """Read a file of columns by the robot file's map. LogError: broken, or no map where one is needed, too large."""
     notes: list[Note] = []
     ending = path.name.lower()
     if ending.endswith(".npz"):
-        columns = _read_npz(path, notes)
+        columns = _read_npz(path, limit, notes)
     elif ending.endswith((".csv", ".csv.gz", ".parquet")):
-        columns = table.read_raw(path, notes)
+        columns = table.read_raw(path, limit, notes)
     else:
-        values, names = read_numbers(path, notes)
+        values, names = read_numbers(path, limit, notes)
         columns = {name: values[:, i] for i, name in enumerate(names or map(str, range(values.shape[1])))}
     time, mapped = _mapped(columns, robot, path)
     if not mapped:
@@ -68,7 +72,7 @@ def _mapped(
     return columns["time"], {name: values for name, values in columns.items() if COLUMN.fullmatch(name)}
 
 
-def _read_npz(path: Path, notes: list[Note]) -> dict[str, Array]:
+def _read_npz(path: Path, limit: ReadLimit, notes: list[Note]) -> dict[str, Array]:
     """Every numeric array of an NPZ, those of two dimensions column by column as name.0, name.1, ...
 
     Nothing is unpickled; sizes are checked before memory is asked for. A damaged array is left out with a note.
@@ -77,12 +81,13 @@ def _read_npz(path: Path, notes: list[Note]) -> dict[str, Array]:
     try:
         with zipfile.ZipFile(path) as archive:
             entries = [entry for entry in archive.infolist() if entry.filename.endswith(".npy")]
-            if sum(entry.file_size for entry in entries) > NPZ_LIMIT:
-                raise LogError(located(f"holds more than {NPZ_LIMIT} bytes", path=path))
+            limit.unpack(sum(entry.file_size for entry in entries))
             for entry in entries:
                 name = entry.filename.removesuffix(".npy")
                 try:
-                    arrays |= _by_column(name, _read_npy(archive.read(entry)))
+                    if entry.compress_type not in PACKED:
+                        raise ValueError("neither stored nor deflated")
+                    arrays |= _by_column(name, _read_npy(archive.read(entry), limit))
                 except BROKEN as error:
                     reason = " ".join(str(error).split())[:80]
                     notes.append(
@@ -104,10 +109,10 @@ def _by_column(name: str, array: Array | None) -> dict[str, Array]:
         return {}
     if array.ndim == 1:
         return {name: array}
-    return {f"{name}.{index}": array[:, index] for index in range(min(array.shape[1], COLUMN_LIMIT))}
+    return {f"{name}.{index}": array[:, index] for index in range(min(array.shape[1], COLUMNS))}
 
 
-def _read_npy(content: bytes) -> Array | None:
+def _read_npy(content: bytes, limit: ReadLimit) -> Array | None:
     handle = BytesIO(content)
     version = np.lib.format.read_magic(handle)
     header = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
@@ -117,5 +122,7 @@ def _read_npy(content: bytes) -> Array | None:
     count = int(np.prod(shape, dtype=object))
     if count * kind.itemsize != len(content) - handle.tell():
         raise ValueError("an array's shape does not agree with its data")
+    limit.numbers(count, 1)
+    limit.hold(NUMBER * count)
     values = np.frombuffer(content, kind, count, handle.tell()).astype(np.float64)
     return values.reshape(shape, order="F" if fortran else "C")

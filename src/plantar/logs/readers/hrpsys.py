@@ -18,6 +18,7 @@ from plantar.files import sha256
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers.column_map import Port, ports
 from plantar.logs.readers.ports import log_of_ports
+from plantar.logs.readers.read_limit import ReadLimit
 from plantar.logs.readers.streams import origin
 from plantar.logs.readers.text_numbers import read_numbers
 from plantar.notes import Note
@@ -40,9 +41,10 @@ USUAL: tuple[tuple[str, str], ...] = (
 )
 
 
-def read(path: Path, robot: RobotModel | None = None) -> MotionLog:
+def read(path: Path, robot: RobotModel | None, limit: ReadLimit) -> MotionLog:
     """Read the ports of one recording. LogError: a broken file, or no port of a known role."""
     base, files = port_files(path)
+    limit = ReadLimit(path, limit.memory, files.values())
     notes: list[Note] = []
     given = ports(robot)
     roles: dict[str, tuple[Port, ...]] = {}
@@ -51,7 +53,7 @@ def read(path: Path, robot: RobotModel | None = None) -> MotionLog:
         roles[port] = given.get(port) or _usual(port, robot)
         if not roles[port]:
             continue
-        values, _ = read_numbers(file, notes)
+        values, _ = read_numbers(file, limit, notes)
         if values.shape[1] < 2:
             raise LogError(located("holds no values beside the time", path=file))
         data[port] = (values[:, 0], values[:, 1:])
@@ -59,7 +61,7 @@ def read(path: Path, robot: RobotModel | None = None) -> MotionLog:
         start = origin(min(float(np.nanmin(time)) for time, _ in data.values() if time.size))
         data = {port: (time - start, values) for port, (time, values) in data.items()}
     digest = sha256(next(iter(files.values())))
-    return log_of_ports(base, path, digest, data, roles, robot, notes)
+    return log_of_ports(base, limit, digest, data, roles, robot, notes)
 
 
 def port_files(path: Path) -> tuple[str, dict[str, Path]]:

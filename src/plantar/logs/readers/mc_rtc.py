@@ -23,6 +23,7 @@ from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import motion_name
 from plantar.logs.readers.column_map import Port, ports
 from plantar.logs.readers.ports import port_columns
+from plantar.logs.readers.read_limit import NUMBER, ReadLimit
 from plantar.logs.readers.streams import Stream, merge
 from plantar.notes import Note
 
@@ -31,9 +32,10 @@ if TYPE_CHECKING:
 
 MAGIC = b"ANN"
 NEWEST = 10  # versions that may be tried
-ENTRY_LIMIT = 64 * 2**20  # bytes of one entry
+ENTRY_LIMIT = 4 * 2**20  # bytes of one entry: a sample of a humanoid takes some ten thousand
+WIDTH_LIMIT = 1000  # numbers in one vector
 KEY_LIMIT = 100_000
-BATCH = 512  # entries turned into arrays at a time
+BATCH = 512  # entries turned into arrays at a time, or fewer where they are long
 FORCE_VECTOR = 19
 
 JOINT_KEYS = {"qIn": "joints.position", "alphaIn": "joints.velocity", "tauIn": "joints.effort"}
@@ -44,14 +46,14 @@ IMU_KEYS = (
 )
 
 
-def read(path: Path, robot: RobotModel | None = None) -> MotionLog:
+def read(path: Path, robot: RobotModel | None, limit: ReadLimit) -> MotionLog:
     """Read a log. LogError: another kind of file, no time, nothing of use. MissingExtra: no msgpack."""
     try:
         import msgpack  # noqa: F401
     except ImportError as error:
         raise MissingExtra("msgpack", "logs", "reading mc_rtc logs") from error
     notes: list[Note] = []
-    entries = _Entries(path, robot)
+    entries = _Entries(path, robot, limit)
     with open(path, "rb") as handle:
         magic = handle.read(4)
         version = magic[3] - 0x45 if len(magic) == 4 and magic[:3] == MAGIC else -1
@@ -77,21 +79,22 @@ def read(path: Path, robot: RobotModel | None = None) -> MotionLog:
                 valid="qIn, rateIn, ...ForceSensor",
             )
         )
-    time, columns = merge([Stream("t", time, columns)], path, notes)
+    time, columns = merge([Stream("t", time, columns)], limit, notes)
     return MotionLog(motion_name(path), time, columns, path, sha256(path), tuple(notes))
 
 
 class _Entries:
     """The entries of one file: current keys, and the numbers of those that have a role."""
 
-    def __init__(self, path: Path, robot: RobotModel | None) -> None:
-        self.path, self.robot = path, robot
+    def __init__(self, path: Path, robot: RobotModel | None, limit: ReadLimit) -> None:
+        self.path, self.robot, self.limit = path, robot, limit
         self.roles: dict[str, Port] = {}
         self._given = ports(robot)
         self._keys: list[str] = []
         self._types: dict[str, int] = {}
         self._wanted: list[tuple[int, str]] = []
         self._pending: list[dict[str, Any]] = []
+        self._pending_size = 0
         self._chunks: list[dict[str, Array]] = []
         self._widths: dict[str, int] = {}
 
@@ -113,6 +116,7 @@ class _Entries:
                     located(f"an entry of {size} bytes", path=self.path, valid=f"at most {ENTRY_LIMIT}")
                 )
             left -= size
+            self._pending_size += size
             try:
                 self._entry(
                     msgpack.unpackb(
@@ -147,7 +151,7 @@ class _Entries:
         if len(values) != len(self._keys):
             raise ValueError("values and keys do not agree")
         self._pending.append({key: values[index] for index, key in self._wanted})
-        if len(self._pending) >= BATCH:
+        if len(self._pending) >= BATCH or self._pending_size > ENTRY_LIMIT:
             self._gather()
 
     def _change(self, changes: list[Any]) -> None:
@@ -207,17 +211,20 @@ class _Entries:
         for key in keys:
             rows = [entry.get(key) for entry in self._pending]
             width = self._widths.setdefault(key, next((_width(row) for row in rows if _width(row)), 0)) or 0
+            self.limit.hold(NUMBER * width * len(rows))
             gap = [np.nan] * width
             chunk[key] = np.array([_numbers(row, width) or gap for row in rows], dtype=np.float64).reshape(
                 len(rows), width
             )
         chunk["\0size"] = np.zeros((len(self._pending), 0))
         self._chunks.append(chunk)
-        self._pending = []
+        self._pending, self._pending_size = [], 0
 
     def columns(self) -> dict[str, Array]:
         """By key the values (n, k), NaN where the key was absent."""
         sizes = [len(chunk["\0size"]) for chunk in self._chunks]
+        self.limit.columns(sum(self._widths.values()))
+        self.limit.numbers(sum(sizes), sum(self._widths.values()))
         found = {}
         for key, width in self._widths.items():
             parts = [chunk.get(key, np.empty((0, 0))) for chunk in self._chunks]
@@ -229,7 +236,9 @@ class _Entries:
 
 
 def _width(value: Any) -> int:
-    return len(value) if isinstance(value, list) else int(isinstance(value, int | float))
+    if isinstance(value, list):
+        return len(value) if len(value) <= WIDTH_LIMIT else 0
+    return int(isinstance(value, int | float))
 
 
 def _numbers(value: Any, width: int) -> list[float] | None:

@@ -10,6 +10,7 @@ from plantar.conventions import Array
 from plantar.errors import LogError, located
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers.column_map import Port, joint_order
+from plantar.logs.readers.read_limit import ReadLimit
 from plantar.logs.readers.roles import role_columns
 from plantar.logs.readers.streams import Stream, merge
 from plantar.notes import Note
@@ -45,7 +46,7 @@ def port_columns(
 
 def log_of_ports(
     name: str,
-    path: Path,
+    limit: ReadLimit,
     digest: str | None,
     data: Mapping[str, tuple[Array, Array]],
     roles: Mapping[str, Sequence[Port]],
@@ -53,6 +54,7 @@ def log_of_ports(
     notes: list[Note],
 ) -> MotionLog:
     """A log from ports (time, values (n, k)) and their roles. LogError when no port has a role."""
+    path = limit.path
     streams = []
     for port, (time, values) in data.items():
         columns: dict[str, Array] = {}
@@ -69,5 +71,5 @@ def log_of_ports(
                 valid="columns.ports in the robot file",
             )
         )
-    time, merged = merge(streams, path, notes)
+    time, merged = merge(streams, limit, notes)
     return MotionLog(name, time, merged, path, digest, tuple(notes))

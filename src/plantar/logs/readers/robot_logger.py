@@ -8,6 +8,7 @@ the signal in `columns.ports` with its unit.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,14 +22,14 @@ from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import motion_name
 from plantar.logs.readers.column_map import Port, ports
 from plantar.logs.readers.ports import log_of_ports
+from plantar.logs.readers.read_limit import NUMBER, ReadLimit
 from plantar.logs.readers.streams import origin
 from plantar.notes import Note
 
 if TYPE_CHECKING:
     from plantar.robot.model import RobotModel
 
-DATA_LIMIT = 4 * 2**30  # bytes of one signal
-NAME_LIMIT = 1000  # characters
+NAME_LIMIT = 1000  # characters of a name, and joints
 SIGNALS = {
     "joints_state/positions": "joints.position",
     "joints_state/velocities": "joints.velocity",
@@ -43,7 +44,7 @@ GROUPS = {
 }
 
 
-def read(path: Path, robot: RobotModel | None = None) -> MotionLog:
+def read(path: Path, robot: RobotModel | None, limit: ReadLimit) -> MotionLog:
     """Read a logger's file. LogError: not HDF5, or no signal of use. MissingExtra: no h5py."""
     try:
         import h5py
@@ -55,18 +56,18 @@ def read(path: Path, robot: RobotModel | None = None) -> MotionLog:
             root = next(
                 (g for name, g in file.items() if isinstance(g, h5py.Group) and "joints_state" in g), file
             )
-            data, roles = _signals(root, ports(robot), path)
+            data, roles = _signals(root, ports(robot), limit)
     except (OSError, KeyError, RuntimeError, ValueError, TypeError, AttributeError, MemoryError) as error:
         reason = " ".join(str(error).split())[:120]
         raise LogError(located(f"is not a readable MATLAB 7.3 file: {reason}", path=path)) from error
     if data:
         start = origin(min(float(np.nanmin(time)) for time, _ in data.values()))
         data = {port: (time - start, values) for port, (time, values) in data.items()}
-    return log_of_ports(motion_name(path), path, sha256(path), data, roles, robot, notes)
+    return log_of_ports(motion_name(path), limit, sha256(path), data, roles, robot, notes)
 
 
 def _signals(
-    root: Any, given: dict[str, tuple[Port, ...]], path: Path
+    root: Any, given: dict[str, tuple[Port, ...]], limit: ReadLimit
 ) -> tuple[dict[str, tuple[Array, Array]], dict[str, tuple[Port, ...]]]:
     wanted = {name: Port(role) for name, role in SIGNALS.items()}
     for group, role in GROUPS.items():
@@ -77,7 +78,7 @@ def _signals(
         if name not in root:
             continue
         group = root[name].get("measured", root[name])
-        time, values = _signal(group, name, path)
+        time, values = _signal(group, name, limit)
         joints = _names(root, group)
         mine = given.get(name) or (wanted[name],)
         data[name] = (time, values)
@@ -90,13 +91,16 @@ def _signals(
     return data, roles
 
 
-def _signal(group: Any, name: str, path: Path) -> tuple[Array, Array]:
+def _signal(group: Any, name: str, limit: ReadLimit) -> tuple[Array, Array]:
     """Stamps (n,) and values (n, k) of a signal; MATLAB's (k, 1, n) comes out of HDF5 as (n, 1, k)."""
     parts = []
     for key in ("timestamps", "data"):
         source = group[key]
-        if source.dtype.kind not in "fiu" or source.size * 8 > DATA_LIMIT:
-            raise LogError(located(f"{name}/{key} is no array of numbers of a size to read", path=path))
+        if source.dtype.kind not in "fiu":
+            raise LogError(located(f"{name}/{key} is no array of numbers", path=limit.path))
+        # HDF5 unpacks whole chunks, which may be larger than what is in use of them.
+        limit.unpack(NUMBER * max(source.size, math.prod(source.chunks or ())))
+        limit.hold(NUMBER * source.size)
         parts.append(np.asarray(source[()], dtype=np.float64))
     time = parts[0].ravel()
     values = parts[1].reshape(parts[1].shape[0], -1)
@@ -107,7 +111,9 @@ def _signal(group: Any, name: str, path: Path) -> tuple[Array, Array]:
     ):
         values = values.T
     if values.shape[0] != time.size:
-        raise LogError(located(f"{name} has {values.shape[0]} samples and {time.size} stamps", path=path))
+        raise LogError(
+            located(f"{name} has {values.shape[0]} samples and {time.size} stamps", path=limit.path)
+        )
     return time, values
 
 
@@ -115,13 +121,15 @@ def _names(root: Any, group: Any) -> Sequence[str] | None:
     """A signal's element names, else the file's list of joints; None where neither is there."""
     for holder, key in ((group, "elements_names"), (root, "description_list")):
         if key in holder:
-            cells = np.asarray(holder[key][()]).ravel()
-            return tuple(_text(holder.file[cell]) for cell in cells[:NAME_LIMIT])
+            cells = holder[key]
+            if cells.size > NAME_LIMIT or math.prod(cells.chunks or ()) > NAME_LIMIT:
+                raise ValueError(f"{key} holds more than {NAME_LIMIT} names")
+            return tuple(_text(holder.file[cell]) for cell in np.asarray(cells[()]).ravel())
     return None
 
 
 def _text(source: Any) -> str:
     """A MATLAB char array: 16-bit codes."""
-    if source.size > NAME_LIMIT:
+    if source.size > NAME_LIMIT or math.prod(source.chunks or ()) > NAME_LIMIT:
         raise ValueError("a name is too long")
     return "".join(chr(int(code)) for code in np.asarray(source[()]).ravel())

@@ -10,6 +10,7 @@ import numpy as np
 
 from plantar.conventions import Array, Mask
 from plantar.errors import LogError, located
+from plantar.logs.readers.read_limit import ReadLimit
 from plantar.notes import Note
 
 STRAY_STAMPS = 0.01  # share of a stream's stamps that may step back before the file is refused
@@ -55,12 +56,14 @@ def increasing(stream: Stream, path: Path, notes: list[Note]) -> Stream:
     return stream.take(keep)
 
 
-def merge(streams: Sequence[Stream], path: Path, notes: list[Note]) -> tuple[Array, dict[str, Array]]:
+def merge(streams: Sequence[Stream], limit: ReadLimit, notes: list[Note]) -> tuple[Array, dict[str, Array]]:
     """One time base, (N,), for all streams: the clock of the one that ticks fastest, cut to what all cover.
 
     Between samples values are linear (quaternions along the shorter arc); in a hole of more than
-    `GAP_PERIODS` periods, and outside a stream's span, they are NaN. Raises LogError when nothing is left.
+    `GAP_PERIODS` periods, and outside a stream's span, they are NaN. Raises LogError when nothing is left,
+    or when all columns at the fastest clock are more than `limit` allows.
     """
+    path = limit.path
     kept = [increasing(stream, path, notes) for stream in streams]
     kept = [stream for stream in kept if stream.time.size >= 2]
     if not kept:
@@ -80,6 +83,9 @@ def merge(streams: Sequence[Stream], path: Path, notes: list[Note]) -> tuple[Arr
         notes.append(Note("streams_apart", "warning", f"{path.name}: {text}"))
     if time.size < 2:
         raise LogError(located("the streams have no two samples in common", path=path))
+    count = sum(len(stream.columns) for stream in kept)
+    limit.columns(count)
+    limit.numbers(time.size, count)
     columns: dict[str, Array] = {}
     resampled = []
     for stream in kept:

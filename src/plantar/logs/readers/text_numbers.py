@@ -8,23 +8,24 @@ import numpy as np
 
 from plantar.conventions import Array
 from plantar.errors import LogError, located
+from plantar.logs.readers.read_limit import ReadLimit
 from plantar.notes import Note
 
-TEXT_LIMIT = 2**30  # bytes
 BLOCK = 8 * 2**20  # bytes parsed at a time
 BAD_LINES = 0.01  # share of lines of another length before the file is refused
 COMMENT = (b"#", b"%", b"//")
 
 
-def read_numbers(path: Path, notes: list[Note], strip: bytes = b"") -> tuple[Array, list[str]]:
+def read_numbers(
+    path: Path, limit: ReadLimit, notes: list[Note], strip: bytes = b""
+) -> tuple[Array, list[str]]:
     """A file's numbers (n, k), and the names of its columns where its first line holds names.
 
-    `strip` are bytes that count as spaces (brackets, commas). Raises LogError: empty, too long, no number.
+    `strip` are bytes that count as spaces (brackets, commas). Raises LogError: empty, no number, or
+    larger than `limit`.
     """
-    if path.stat().st_size > TEXT_LIMIT:
-        raise LogError(located(f"is larger than {TEXT_LIMIT} bytes", path=path))
     spaces = bytes.maketrans(strip + b"\t\r,;", b" " * (len(strip) + 4))
-    reader = _Lines(path)
+    reader = _Lines(path, limit)
     with open(path, "rb") as handle:
         rest = b""
         while block := handle.read(BLOCK):
@@ -43,8 +44,8 @@ def read_numbers(path: Path, notes: list[Note], strip: bytes = b"") -> tuple[Arr
 
 
 class _Lines:
-    def __init__(self, path: Path) -> None:
-        self.path, self.names = path, list[str]()
+    def __init__(self, path: Path, limit: ReadLimit) -> None:
+        self.path, self.limit, self.names = path, limit, list[str]()
         self._width, self._line, self._bad, self._first_bad = 0, 0, 0, 0
         self._blocks: list[Array] = []
 
@@ -62,6 +63,7 @@ class _Lines:
         except ValueError:
             values = self._one_by_one(lines)
         self._line += len(lines)
+        self.limit.hold(values.nbytes)
         self._blocks.append(values)
 
     def _start(self, lines: list[bytes]) -> list[bytes]:
@@ -71,6 +73,7 @@ class _Lines:
             if line.lstrip().startswith(COMMENT) or not _is_number(words[0] if words else b""):
                 self.names = [word.decode("utf-8", "replace") for word in words]
                 continue
+            self.limit.columns(len(words))
             self._width, self._line = len(words), index
             if len(self.names) != self._width:
                 self.names = []

@@ -18,6 +18,7 @@ from plantar.files import sha256
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers.column_map import Port, ports
 from plantar.logs.readers.ports import log_of_ports
+from plantar.logs.readers.read_limit import ReadLimit
 from plantar.logs.readers.streams import origin
 from plantar.logs.readers.text_numbers import read_numbers
 from plantar.notes import Note
@@ -30,10 +31,11 @@ DEPTH = 5  # directories below the one given
 INFO_LIMIT = 4096  # bytes of info.log that are looked at
 
 
-def read(path: Path, robot: RobotModel | None = None) -> MotionLog:
+def read(path: Path, robot: RobotModel | None, limit: ReadLimit) -> MotionLog:
     """Read every dumped port under a directory, or the one a `data.log` belongs to."""
     root = path if path.is_dir() else path.parent
     files = dumps(root)
+    limit = ReadLimit(path, limit.memory, files)
     notes: list[Note] = []
     given = ports(robot)
     data: dict[str, tuple[Array, Array]] = {}
@@ -44,7 +46,7 @@ def read(path: Path, robot: RobotModel | None = None) -> MotionLog:
         if not roles[port]:
             notes.append(Note("port_ignored", "info", f"{port}: no role in columns.ports, not used"))
             continue
-        values, _ = read_numbers(file, notes, strip=b'()"[]')
+        values, _ = read_numbers(file, limit, notes, strip=b'()"[]')
         stamps = 2 if _both_stamps(file.parent / "info.log") else 1
         if values.shape[1] <= 1 + stamps:
             raise LogError(located("holds no values beside packet number and stamp", path=file))
@@ -53,7 +55,7 @@ def read(path: Path, robot: RobotModel | None = None) -> MotionLog:
         start = origin(min(float(np.nanmin(time)) for time, _ in data.values() if time.size))
         data = {port: (time - start, values) for port, (time, values) in data.items()}
     found = {port: data.get(port, (np.empty(0), np.empty((0, 0)))) for port in roles}
-    return log_of_ports(root.name, path, sha256(files[0]), found, roles, robot, notes)
+    return log_of_ports(root.name, limit, sha256(files[0]), found, roles, robot, notes)
 
 
 def dumps(root: Path) -> list[Path]:

@@ -12,6 +12,7 @@ from plantar.errors import LogError, located
 from plantar.files import sha256
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import motion_name
+from plantar.logs.readers.read_limit import ReadLimit
 from plantar.logs.readers.ros.layouts import JOINT_STATE
 from plantar.logs.readers.ros.mcap_file import read_mcap
 from plantar.logs.readers.ros.ros1_file import read_ros1
@@ -27,14 +28,14 @@ FILES = (".mcap", ".db3", ".bag", ".active")  # .bag.active: a ROS 1 bag that wa
 NO_ORIENTATION = -1.0  # orientation_covariance[0] of an IMU that has none
 
 
-def read(path: Path, robot: RobotModel | None = None) -> MotionLog:
+def read(path: Path, robot: RobotModel | None, limit: ReadLimit) -> MotionLog:
     """Read a bag; `robot` says which topics its sensors are. LogError: broken, or nothing of use in it."""
     notes: list[Note] = []
-    topics = _topics(path, notes)
+    topics = _topics(path, limit, notes)
     _check(topics, path, notes)
     columns_by_topic = assign(topics.values(), robot, path, notes)
     streams = _streams(columns_by_topic, path, notes)
-    time, columns = merge(streams, path, notes)
+    time, columns = merge(streams, limit, notes)
     del streams, columns_by_topic
     for column in (time, *columns.values()):
         column.setflags(write=False)  # handed over, not copied
@@ -44,14 +45,14 @@ def read(path: Path, robot: RobotModel | None = None) -> MotionLog:
 def bag_topics(path: Path, robot: RobotModel | None = None) -> dict[str, list[Topic]]:
     """What a bag's topics are taken for: keys `joints`, `imu.<name>`, `wrench.<name>`. LogError: broken."""
     notes: list[Note] = []
-    return assign(_topics(path, notes).values(), robot, path, notes)
+    return assign(_topics(path, ReadLimit(path), notes).values(), robot, path, notes)
 
 
-def _topics(path: Path, notes: list[Note]) -> dict[str, Topic]:
+def _topics(path: Path, limit: ReadLimit, notes: list[Note]) -> dict[str, Topic]:
     topics: dict[str, Topic] = {}
     for file in bag_files(path):
         reader = {".mcap": read_mcap, ".db3": read_sqlite}.get(file.suffix.lower(), read_ros1)
-        reader(file, topics, notes)
+        reader(file, topics, limit, notes)
     return topics
 
 

@@ -5,28 +5,40 @@ from __future__ import annotations
 import bz2
 import zlib
 
-from plantar.errors import MissingExtra
+from plantar.errors import LogError, MissingExtra, located
+from plantar.logs.readers.read_limit import ReadLimit, shown
 
-CHUNK_LIMIT = 2**28  # bytes that one chunk of a bag may hold
-SMALL = 2**28  # bytes that any bag may unpack to
-RATIO = 100  # bytes that a bag may unpack to for each of its own: recordings shrink to a tenth at best
+CHUNK_LIMIT = 2**27  # bytes that one compressed chunk of a bag may hold: recorders write a few million
 
 
 class BrokenChunk(ValueError):
     """A compressed chunk that does not hold what it says."""
 
 
-class Budget:
-    """How much a whole bag may unpack to, from its own size."""
+class TooLong(BrokenChunk):
+    """More comes out of a chunk than was asked for."""
 
-    def __init__(self, file_size: int) -> None:
-        self._left = SMALL + RATIO * file_size
 
-    def spend(self, size: int) -> None:
-        """BrokenChunk when the bag unpacks to more than any recording does."""
-        self._left -= size
-        if self._left < 0:
-            raise BrokenChunk("the bag unpacks to a size that no recording has")
+def unpack_chunk(kind: str, data: bytes | memoryview, claimed: int, limit: ReadLimit) -> bytes:
+    """The content of a chunk that says it holds `claimed` bytes.
+
+    Raises BrokenChunk: damaged, or longer than it says. LogError: more than `limit` allows, whatever it says.
+    """
+    if kind in ("", "none"):
+        return bytes(data)
+    most = min(CHUNK_LIMIT, limit.left)
+    try:
+        content = decompress(kind, data, min(claimed, most))
+    except TooLong:
+        if claimed <= most:
+            raise
+        if most < CHUNK_LIMIT:
+            raise limit.too_much(f"unpacks to more than {shown(limit.unpacks_to)}") from None
+        valid = f"at most {shown(CHUNK_LIMIT)} a chunk"
+        message = f"a chunk unpacks to more than {shown(CHUNK_LIMIT)}"
+        raise LogError(located(message, path=limit.path, valid=valid)) from None
+    limit.unpack(len(content))
+    return content
 
 
 def decompress(kind: str, data: bytes | memoryview, limit: int = CHUNK_LIMIT) -> bytes:
@@ -50,7 +62,7 @@ def decompress(kind: str, data: bytes | memoryview, limit: int = CHUNK_LIMIT) ->
     except (OSError, ValueError, EOFError, zlib.error, RuntimeError) as error:
         raise BrokenChunk(str(error) or "damaged") from error
     if len(content) > limit:
-        raise BrokenChunk(f"holds more than {limit} bytes")
+        raise TooLong(f"holds more than {limit} bytes")
     return content
 
 

@@ -12,13 +12,15 @@ from pathlib import Path
 import numpy as np
 
 from plantar.errors import LogError, located
-from plantar.logs.readers.ros.compressed import CHUNK_LIMIT, BrokenChunk, Budget, decompress
+from plantar.logs.readers.read_limit import ReadLimit
+from plantar.logs.readers.ros.compressed import BrokenChunk, unpack_chunk
 from plantar.logs.readers.ros.layouts import IMU, JOINT_STATE, WRENCH, Encoding
 from plantar.logs.readers.ros.topics import Topic
 from plantar.notes import Note
 
 MAGIC = b"\x89MCAP0\r\n"
 BLOCK = 4 * 2**20  # bytes read at a time
+MESSAGES = 2**16  # messages of a topic decoded at a time
 FOOTER, SCHEMA, CHANNEL, MESSAGE, CHUNK, DATA_END = 0x02, 0x03, 0x04, 0x05, 0x06, 0x0F
 READ = {JOINT_STATE, IMU, WRENCH}
 
@@ -27,9 +29,9 @@ _MESSAGE = struct.Struct("<HIQQ")
 _CHUNK = struct.Struct("<QQQI")
 
 
-def read_mcap(path: Path, topics: dict[str, Topic], notes: list[Note]) -> None:
+def read_mcap(path: Path, topics: dict[str, Topic], limit: ReadLimit, notes: list[Note]) -> None:
     """Add the file's messages to `topics`. LogError when it is not MCAP; a note when it is cut or damaged."""
-    scan = _Scan(path, topics, notes)
+    scan = _Scan(path, topics, limit, notes)
     size = path.stat().st_size
     with open(path, "rb") as handle:
         if handle.read(len(MAGIC)) != MAGIC:
@@ -51,10 +53,9 @@ def read_mcap(path: Path, topics: dict[str, Topic], notes: list[Note]) -> None:
 class _Scan:
     """Walks over records: learns schemas and channels, hands messages to their topics."""
 
-    def __init__(self, path: Path, topics: dict[str, Topic], notes: list[Note]) -> None:
-        self.path, self.topics, self.notes = path, topics, notes
+    def __init__(self, path: Path, topics: dict[str, Topic], limit: ReadLimit, notes: list[Note]) -> None:
+        self.path, self.topics, self.limit, self.notes = path, topics, limit, notes
         self.needed = 0  # bytes that the record at the end of a block wants
-        self._budget = Budget(path.stat().st_size)
         self._schemas: dict[int, str] = {}
         self._channels: dict[int, Topic | None] = {}
 
@@ -84,6 +85,8 @@ class _Scan:
                     lists[0].append(start + _MESSAGE.size)
                     lists[1].append(end)
                     lists[2].append(received)
+                    if len(lists[0]) >= MESSAGES:
+                        self._flush(data, found)
             elif code == CHUNK and not inside_chunk:
                 self._flush(data, found)
                 self._chunk(data[start:end])
@@ -113,6 +116,7 @@ class _Scan:
         for channel, (starts, ends, received) in found.items():
             topic = self._channels.get(channel)
             if topic is not None:
+                self.limit.hold(sum(ends) - sum(starts))
                 topic.add(buffer, starts, ends, received)
         found.clear()
 
@@ -127,8 +131,7 @@ class _Scan:
             kind, at = _string(body, _CHUNK.size + 0)
             (length,) = struct.unpack_from("<Q", body, at)
             packed = body[at + 8 : at + 8 + min(length, len(body))]
-            content = decompress(kind, packed, min(size, CHUNK_LIMIT))
-            self._budget.spend(len(content))
+            content = unpack_chunk(kind, packed, size, self.limit)
             if whole and (len(content) != size or (checksum and zlib.crc32(content) != checksum)):
                 raise BrokenChunk("its checksum or length does not agree")
         except (BrokenChunk, struct.error, UnicodeDecodeError) as error:

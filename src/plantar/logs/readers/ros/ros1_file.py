@@ -11,8 +11,9 @@ from pathlib import Path
 import numpy as np
 
 from plantar.errors import LogError, located
-from plantar.logs.readers.ros.compressed import CHUNK_LIMIT, BrokenChunk, Budget, decompress
-from plantar.logs.readers.ros.mcap_file import BLOCK, READ
+from plantar.logs.readers.read_limit import ReadLimit
+from plantar.logs.readers.ros.compressed import BrokenChunk, unpack_chunk
+from plantar.logs.readers.ros.mcap_file import BLOCK, MESSAGES, READ
 from plantar.logs.readers.ros.topics import Topic
 from plantar.notes import Note
 
@@ -22,9 +23,9 @@ MESSAGE, CHUNK, CONNECTION = 0x02, 0x05, 0x07
 _SIZE = struct.Struct("<I")
 
 
-def read_ros1(path: Path, topics: dict[str, Topic], notes: list[Note]) -> None:
+def read_ros1(path: Path, topics: dict[str, Topic], limit: ReadLimit, notes: list[Note]) -> None:
     """Add the file's messages to `topics`. LogError when it is no bag; a note when it is cut or damaged."""
-    scan = _Scan(path, topics, notes)
+    scan = _Scan(path, topics, limit, notes)
     size = path.stat().st_size
     with open(path, "rb") as handle:
         if handle.read(len(MAGIC)) != MAGIC:
@@ -43,10 +44,9 @@ def read_ros1(path: Path, topics: dict[str, Topic], notes: list[Note]) -> None:
 
 
 class _Scan:
-    def __init__(self, path: Path, topics: dict[str, Topic], notes: list[Note]) -> None:
-        self.path, self.topics, self.notes = path, topics, notes
+    def __init__(self, path: Path, topics: dict[str, Topic], limit: ReadLimit, notes: list[Note]) -> None:
+        self.path, self.topics, self.limit, self.notes = path, topics, limit, notes
         self.needed, self.lost = 0, False
-        self._budget = Budget(path.stat().st_size)
         self._channels: dict[int, Topic | None] = {}
 
     def records(self, data: bytes, *, inside_chunk: bool = False) -> int:
@@ -78,6 +78,8 @@ class _Scan:
             code = header.get(b"op", b"\0")[:1]
             if code == bytes([MESSAGE]):
                 self._message(header, start + 4, end, found)
+                if any(len(starts) >= MESSAGES for starts, _, _ in found.values()):
+                    self._flush(data, found)
             elif code == bytes([CONNECTION]):
                 self._flush(data, found)
                 self._connection(header, _fields(data[start + 4 : end]))
@@ -110,6 +112,7 @@ class _Scan:
         for channel, (starts, ends, received) in found.items():
             topic = self._channels.get(channel)
             if topic is not None:
+                self.limit.hold(sum(ends) - sum(starts))
                 topic.add(buffer, starts, ends, received)
         found.clear()
 
@@ -138,8 +141,7 @@ class _Scan:
     def _chunk(self, header: dict[bytes, bytes], body: bytes, *, whole: bool = True) -> None:
         try:
             (size,) = _SIZE.unpack(header[b"size"])
-            content = decompress(header[b"compression"].decode(), body, min(size, CHUNK_LIMIT))
-            self._budget.spend(len(content))
+            content = unpack_chunk(header[b"compression"].decode(), body, size, self.limit)
             if whole and len(content) != size:
                 raise BrokenChunk("its length does not agree")
         except (KeyError, struct.error, UnicodeDecodeError, BrokenChunk) as error:

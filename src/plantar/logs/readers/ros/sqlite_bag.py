@@ -8,15 +8,17 @@ from pathlib import Path
 import numpy as np
 
 from plantar.errors import LogError, located
+from plantar.logs.readers.read_limit import ReadLimit
 from plantar.logs.readers.ros.mcap_file import READ
 from plantar.logs.readers.ros.topics import Topic
 from plantar.notes import Note
 
-BATCH = 2000  # messages decoded at a time
+BATCH = 2000  # messages decoded at a time, or fewer where they are long
+BATCH_SIZE = 4 * 2**20  # bytes
 MESSAGE_LIMIT = 64 * 2**20  # bytes
 
 
-def read_sqlite(path: Path, topics: dict[str, Topic], notes: list[Note]) -> None:
+def read_sqlite(path: Path, topics: dict[str, Topic], limit: ReadLimit, notes: list[Note]) -> None:
     """Add the file's messages to `topics`. LogError when it is no bag; a note when it breaks off."""
     try:
         connection = sqlite3.connect(f"file:{_quoted(path)}?mode=ro&immutable=1", uri=True)
@@ -24,9 +26,10 @@ def read_sqlite(path: Path, topics: dict[str, Topic], notes: list[Note]) -> None
         raise LogError(located(f"is not a readable sqlite3 bag: {error}", path=path)) from error
     connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MESSAGE_LIMIT)
     try:
+        _plain_tables(connection, path)
         channels = _channels(connection, path, topics)
         for identity, topic in channels.items():
-            _messages(connection, identity, topic, path, notes)
+            _messages(connection, identity, topic, limit, path, notes)
     except (sqlite3.Error, OverflowError, ValueError, TypeError) as error:
         if not any(topic.series for topic in topics.values()):
             raise LogError(located(f"is not a readable sqlite3 bag: {error}", path=path)) from error
@@ -35,6 +38,17 @@ def read_sqlite(path: Path, topics: dict[str, Topic], notes: list[Note]) -> None
         )
     finally:
         connection.close()
+
+
+def _plain_tables(connection: sqlite3.Connection, path: Path) -> None:
+    """LogError where the bag computes its rows: a view or a computed column may have no end."""
+    for name in ("topics", "messages"):
+        kinds = connection.execute("SELECT type FROM sqlite_master WHERE name = ?", (name,)).fetchall()
+        hidden = connection.execute(
+            "SELECT COUNT(*) FROM pragma_table_xinfo(?) WHERE hidden", (name,)
+        ).fetchone()
+        if kinds not in ([], [("table",)]) or hidden != (0,):
+            raise LogError(located(f"'{name}' is not a plain table", path=path, valid="a bag of rosbag2"))
 
 
 def _channels(connection: sqlite3.Connection, path: Path, topics: dict[str, Topic]) -> dict[int, Topic]:
@@ -50,7 +64,12 @@ def _channels(connection: sqlite3.Connection, path: Path, topics: dict[str, Topi
 
 
 def _messages(
-    connection: sqlite3.Connection, identity: int, topic: Topic, path: Path, notes: list[Note]
+    connection: sqlite3.Connection,
+    identity: int,
+    topic: Topic,
+    limit: ReadLimit,
+    path: Path,
+    notes: list[Note],
 ) -> None:
     cursor = connection.execute(
         "SELECT timestamp, data FROM messages WHERE topic_id = ? ORDER BY timestamp", (identity,)
@@ -59,7 +78,10 @@ def _messages(
         broken: sqlite3.Error | None = None
         rows: list[tuple[object, object]] = []
         try:
-            rows = cursor.fetchmany(BATCH)
+            size = 0
+            while len(rows) < BATCH and size < BATCH_SIZE and (row := cursor.fetchone()) is not None:
+                rows.append(row)
+                size += len(row[1]) if isinstance(row[1], bytes | str) else 0
         except sqlite3.Error as error:
             broken = error
         whole = [(t, d) for t, d in rows if isinstance(t, int) and isinstance(d, bytes) and 0 <= t < 2**63]
@@ -67,6 +89,7 @@ def _messages(
         topic.count += len(rows) - len(whole)
         if whole:
             ends = np.cumsum([len(data) for _, data in whole]).tolist()
+            limit.hold(ends[-1])
             buffer = np.frombuffer(b"".join(data for _, data in whole), np.uint8)
             topic.add(buffer, [0, *ends[:-1]], ends, [stamp for stamp, _ in whole])
         if broken is not None:

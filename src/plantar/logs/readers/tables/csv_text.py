@@ -1,0 +1,159 @@
+"""The text of a CSV or CSV.gz in blocks: surveyed once, so that what is then kept is known to fit."""
+
+from __future__ import annotations
+
+import codecs
+import csv
+import zlib
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from plantar.errors import LogError, located
+from plantar.logs.readers.read_limit import COLUMNS, ReadLimit
+
+BLOCK = 2**20  # bytes of text at a time
+PIECE = 2**23  # bytes of whole lines at a time: few enough to hold, enough for two cores
+LINE_LIMIT = 2**20  # bytes of one line: COLUMNS numbers at full precision need a quarter of it
+MARK = codecs.BOM_UTF8
+
+
+@dataclass(frozen=True)
+class Survey:
+    """Names of the columns, where in the text its rows begin and end, and how many there are at most.
+
+    `cut` says what is missing at the end of the file, if anything is.
+    """
+
+    names: list[str]
+    first: int
+    end: int
+    rows: int
+    last_line: bytes
+    cut: str | None
+
+
+def survey(path: Path, limit: ReadLimit) -> Survey:
+    """Walk over the whole text without keeping it. LogError: empty, no text, or more than `limit` allows."""
+    check = codecs.getincrementaldecoder("utf-8")()
+    head, size, rows, end, tail = b"", 0, 0, 0, b""
+    names: list[str] | None = None
+    first = 0
+    text = _Text(path)
+    for block in text.blocks():
+        limit.unpack(len(block))
+        try:
+            check.decode(block)
+        except UnicodeDecodeError as error:
+            line = 1 + rows + (0 if names is None else 1) + block.count(b"\n", 0, error.start)
+            raise LogError(located(f"is not UTF-8 text at line {line}", path=path, valid="a CSV")) from error
+        tail = (tail + block)[-LINE_LIMIT:]
+        size += len(block)
+        if names is None:
+            head += block
+            found = _header(head, path, limit)
+            if found is None:
+                continue
+            names, first = found
+            rows, end = _ends(head[first:]), size - len(block) + _after_last(block)
+        elif cut := _after_last(block):
+            rows, end = rows + _ends(block), size - len(block) + cut
+        if size - end > LINE_LIMIT:
+            raise _long_line(path)
+    if names is None:
+        if not head.strip(MARK + b" \t\r\n"):
+            raise LogError(located("is empty", path=path, valid="a header and one row a sample"))
+        raise LogError(located("holds no samples", path=path, valid="a header and one row a sample"))
+    cut_by = text.cut or (None if end == size else "ends in the middle of a line; that line is left out")
+    last = tail[: len(tail) - (size - end)].rstrip().rsplit(b"\n", 1)[-1]
+    return Survey(names, first, end, rows, last, cut_by)
+
+
+def pieces(path: Path, found: Survey) -> Iterator[bytes]:
+    """The rows of a surveyed text, some whole lines at a time."""
+    kept: list[bytes] = []
+    held = at = 0
+    for block in _Text(path).blocks():
+        part = block[max(found.first - at, 0) : max(found.end - at, 0)]
+        at += len(block)
+        if held + len(part) >= PIECE and (cut := _after_last(part)):
+            yield b"".join((*kept, part[:cut]))
+            kept, part, held = [], part[cut:], 0
+        kept.append(part)
+        held += len(part)
+        if at >= found.end:
+            break
+    if rest := b"".join(kept):
+        yield rest
+
+
+def _header(head: bytes, path: Path, limit: ReadLimit) -> tuple[list[str], int] | None:
+    """The names in the first line that is not blank, and where the next begins; None where it goes on."""
+    at = len(head) - len(head.removeprefix(MARK).lstrip(b" \t\r\n"))
+    ends = [place for mark in (b"\n", b"\r") if (place := head.find(mark, at)) >= 0]
+    line = head[at : min(ends)] if ends else head[at:]
+    if line.count(b",") >= COLUMNS:
+        limit.columns(line.count(b",") + 1)
+    if len(line) > LINE_LIMIT or (not line and len(head) > LINE_LIMIT):
+        raise _long_line(path)
+    if not ends:
+        return None
+    try:
+        return next(csv.reader([line.decode()])), min(ends) + 1
+    except csv.Error as error:
+        raise LogError(located(f"has no readable header: {error}", path=path)) from error
+
+
+def _ends(text: bytes) -> int:
+    """How many lines end in a text, whatever ends them."""
+    returns = text.count(b"\r")
+    return text.count(b"\n") + returns - (text.count(b"\r\n") if returns else 0)
+
+
+def _after_last(text: bytes) -> int:
+    """Where the last line that ends in a text ends."""
+    return max(text.rfind(b"\n"), text.rfind(b"\r")) + 1
+
+
+def _long_line(path: Path) -> LogError:
+    message = f"has a line of more than {LINE_LIMIT} bytes"
+    return LogError(located(message, path=path, valid="one sample a line"))
+
+
+class _Text:
+    """The text of a file in blocks; a gzip file that was cut gives what is whole, and `cut` says so."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self.cut: str | None = None
+
+    def blocks(self) -> Iterator[bytes]:
+        try:
+            with open(self._path, "rb") as handle:
+                packed = iter(lambda: handle.read(BLOCK), b"")
+                yield from self._inflated(packed) if self._path.name.lower().endswith(".gz") else packed
+        except OSError as error:
+            raise LogError(located(f"cannot be read: {error.strerror}", path=self._path)) from error
+        except zlib.error as error:
+            raise LogError(located(f"is not a readable gzip file: {error}", path=self._path)) from error
+
+    def _inflated(self, packed: Iterator[bytes]) -> Iterator[bytes]:
+        """One gzip stream after another; zeros between them are padding."""
+        inflater = zlib.decompressobj(wbits=31)
+        begun = False
+        for data in packed:
+            while data:
+                if not begun:
+                    data = data.lstrip(b"\0")
+                    begun = bool(data)
+                if text := inflater.decompress(data, BLOCK):
+                    yield text
+                data = inflater.unused_data if inflater.eof else inflater.unconsumed_tail
+                if inflater.eof:
+                    inflater, begun = zlib.decompressobj(wbits=31), False
+        if begun:
+            # Some text may still be inside the inflater where the file ends.
+            if text := inflater.flush():
+                yield text
+            if not inflater.eof:
+                self.cut = "is a cut gzip file; what is whole was read"

@@ -1,0 +1,97 @@
+"""Parquet as numbers: what the footer claims and what the pages unpack to is checked, then rows come in batches."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pa_parquet
+
+from plantar.conventions import Array
+from plantar.errors import LogError, located
+from plantar.logs.readers.read_limit import COLUMNS, ReadLimit
+from plantar.logs.readers.tables.csv_file import Choice
+from plantar.logs.readers.tables.parquet_pages import BrokenPage, check_pages
+
+BATCH = 2**16  # rows at a time
+BUFFER = 2**18  # bytes of a column read at a time
+TOO_MANY = "Exceeded size limit"  # what the footer's decoder says of a longer list
+
+
+def read_parquet(path: Path, limit: ReadLimit, choose: Choice, *, strict: bool) -> dict[str, Array]:
+    """The chosen columns, (n,) each, in the file's order.
+
+    A column of something else than numbers is an error; where not `strict` it is left out. Raises LogError: broken,
+    or larger than `limit`.
+    """
+    try:
+        # Lists in the footer name columns and groups of rows; memory for them is taken by the length they claim.
+        with pa_parquet.ParquetFile(
+            path, pre_buffer=False, buffer_size=BUFFER, thrift_container_size_limit=2 * COLUMNS
+        ) as source:
+            schema = source.schema_arrow
+            limit.columns(len(schema.names))
+            names = choose(schema.names)
+            numeric = [name for name in names if _holds_numbers(schema, name, path, strict)]
+            limit.numbers(source.metadata.num_rows, len(numeric))
+            _check_unpacked(path, source.metadata, numeric, limit)
+            return _columns(source, numeric, path)
+    except (pa.ArrowException, OSError, UnicodeDecodeError, BrokenPage) as error:
+        reason = str(error).splitlines()[0]
+        if TOO_MANY in reason:
+            message = f"claims more than {2 * COLUMNS} columns or groups of rows"
+            raise LogError(located(message, path=path, valid=f"at most {COLUMNS} columns")) from error
+        raise LogError(located(f"is not a readable Parquet file: {reason}", path=path)) from error
+
+
+def _holds_numbers(schema: pa.Schema, name: str, path: Path, strict: bool) -> bool:
+    places = schema.get_all_field_indices(name)
+    kind = schema.field(places[0]).type
+    numeric = any(
+        is_kind(kind)
+        for is_kind in (pa.types.is_floating, pa.types.is_integer, pa.types.is_decimal, pa.types.is_null)
+    )
+    if numeric and len(places) > 1:
+        raise LogError(located("stands twice in the header", path=path, column=name))
+    if numeric and any(other.startswith(f"{name}.") for other in schema.names):
+        # Arrow would read what is called <name>.<more> with it, unchecked.
+        raise LogError(located("is also the beginning of another column's name", path=path, column=name))
+    if strict and not numeric:
+        raise LogError(located(f"holds {kind}", path=path, column=name, valid="numbers"))
+    return numeric
+
+
+def _check_unpacked(
+    path: Path, metadata: pa_parquet.FileMetaData, names: Sequence[str], limit: ReadLimit
+) -> None:
+    """LogError when the pages of the columns that will be read unpack to more than `limit` allows."""
+    wanted = set(names)
+    with open(path, "rb") as handle:
+        for index in range(metadata.num_row_groups):
+            group = metadata.row_group(index)
+            for place in range(group.num_columns):
+                column = group.column(place)
+                if column.path_in_schema in wanted:
+                    first = column.dictionary_page_offset if column.has_dictionary_page else None
+                    start = min(offset for offset in (first, column.data_page_offset) if offset is not None)
+                    check_pages(handle, start, column.total_compressed_size, limit)
+
+
+def _columns(source: pa_parquet.ParquetFile, names: list[str], path: Path) -> dict[str, Array]:
+    """One column after another: pages of all of them at once would take as much memory as their numbers."""
+    rows = source.metadata.num_rows
+    values = np.empty((len(names), rows))
+    for row, name in zip(values, names, strict=True):
+        count = 0
+        for batch in source.iter_batches(BATCH, columns=[name]):
+            end = count + batch.num_rows
+            if end > rows:
+                break
+            row[count:end] = batch.column(name).cast(pa.float64()).to_numpy(zero_copy_only=False)
+            count = end
+        if count != rows:
+            message = f"does not hold the {rows} rows that the file claims"
+            raise LogError(located(message, path=path, column=name))
+    return dict(zip(names, values, strict=True))

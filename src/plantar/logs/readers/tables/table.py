@@ -1,0 +1,108 @@
+"""Table logs: CSV, CSV.gz and Parquet with one row a sample and the contract's column names."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+
+from plantar.conventions import Array, Mask
+from plantar.errors import LogError, located
+from plantar.files import sha256
+from plantar.logs.motion_log import COLUMN, MotionLog
+from plantar.logs.readers import motion_name
+from plantar.logs.readers.read_limit import ReadLimit
+from plantar.logs.readers.tables.csv_file import Choice, read_csv
+from plantar.logs.readers.tables.parquet_file import read_parquet
+from plantar.notes import Note
+from plantar.robot.model import RobotModel
+
+LATEST = 1e20  # in any unit, nanoseconds since 1970 among them: what no clock shows
+STRAY_ROWS = 0.01  # share of rows whose time may step back before the file is refused
+
+
+def read(path: Path, robot: RobotModel | None, limit: ReadLimit) -> MotionLog:
+    """Read a table log; `robot` is not needed. Raises LogError with file, column, time and value."""
+    notes: list[Note] = []
+    header: list[str] = []
+
+    def choose(names: Sequence[str]) -> list[str]:
+        header.extend(names)
+        return _known(names, path)
+
+    columns = _columns(path, limit, choose, notes, strict=True)
+    time = columns.pop("time")
+    if not time.size:
+        raise LogError(located("holds no samples", path=path, valid="a header and one row a sample"))
+    ignored = [name for name in header if name not in columns and name != "time"]
+    if ignored:
+        shown = ", ".join(ignored[:6]) + (f" and {len(ignored) - 6} more" if len(ignored) > 6 else "")
+        notes.append(
+            Note("columns_ignored", "info", f"{path.name}: columns of no known name, not used: {shown}")
+        )
+    keep = _increasing(time, path, notes)
+    if not keep.all():
+        time, columns = time[keep], {name: values[keep] for name, values in columns.items()}
+    for values in (time, *columns.values()):
+        values.setflags(write=False)  # handed over, not copied
+    return MotionLog(motion_name(path), time, columns, path, sha256(path), tuple(notes))
+
+
+def read_raw(path: Path, limit: ReadLimit, notes: list[Note]) -> dict[str, Array]:
+    """Every column of numbers of a table under its own name, for logs with a column map. Raises LogError."""
+    columns = _columns(path, limit, list, notes, strict=False)
+    columns = {name: values for name, values in columns.items() if not np.isnan(values).all()}
+    twice = next((name for name in columns if name.endswith("\0")), None)
+    if twice is not None:
+        raise LogError(located("stands twice in the header", path=path, column=twice.rstrip("\0")))
+    return columns
+
+
+def _columns(
+    path: Path, limit: ReadLimit, choose: Choice, notes: list[Note], *, strict: bool
+) -> dict[str, Array]:
+    try:
+        if path.name.lower().endswith(".parquet"):
+            return read_parquet(path, limit, choose, strict=strict)
+        return read_csv(path, limit, choose, notes, strict=strict)
+    finally:
+        # Arrow keeps what it has freed: with many logs, a tenth of all memory.
+        pa.default_memory_pool().release_unused()
+
+
+def _known(names: Sequence[str], path: Path) -> list[str]:
+    """The names that mean something. LogError: one stands twice, or time is missing."""
+    seen: set[str] = set()
+    for name in names:
+        if name.endswith("\0") or name in seen:
+            raise LogError(located("stands twice in the header", path=path, column=name.rstrip("\0")))
+        seen.add(name)
+    if "time" not in seen:
+        raise LogError(located("is missing", path=path, column="time", valid="a first column 'time' [s]"))
+    return [name for name in names if name == "time" or COLUMN.fullmatch(name)]
+
+
+def _increasing(time: Array, path: Path, notes: list[Note]) -> Mask:
+    """Which rows to keep so that time increases: a few strays go with a note, more is an error."""
+    finite = np.isfinite(time) & (np.abs(time) < LATEST)
+    latest = np.maximum.accumulate(np.where(finite, time, -np.inf))
+    keep = finite.copy()
+    keep[1:] &= time[1:] > latest[:-1]
+    strays = np.flatnonzero(~keep)
+    if strays.size == 0:
+        return keep
+    first = int(strays[0])
+    at = float(time[first - 1]) if first else None
+    if strays.size > max(1, STRAY_ROWS * time.size):
+        message = f"does not increase in {strays.size} of {time.size} rows, first here"
+        valid = "seconds that increase from row to row"
+        raise LogError(
+            located(message, path=path, column="time", time=at, value=float(time[first]), valid=valid)
+        )
+    text = (
+        f"{path.name}: time does not increase in {strays.size} of {time.size} rows (first after t = {at} s); "
+    )
+    notes.append(Note("time_order", "warning", text + "those rows are left out"))
+    return keep
