@@ -92,6 +92,13 @@ def leaning_imu(log: MotionLog) -> MotionLog:
     return log.with_columns(columns)
 
 
+def in_bursts(log: MotionLog) -> MotionLog:
+    """Ten rows at once, each stamped as it comes."""
+    row = np.arange(len(log))
+    last = np.minimum(row // 10 * 10 + 9, len(log) - 1)
+    return MotionLog(log.name, log.time[last] + 1e-4 * (row % 10), log.columns)
+
+
 FAULTS: dict[str, tuple[Fault, str, str]] = {
     "joint in degrees": (constant("joint.neck.position", 45.0), "degrees", "joint.neck.position"),
     "gyroscope in degrees": (scaled(GYROSCOPE, 180 / np.pi), "degrees", "angular_velocity"),
@@ -114,6 +121,7 @@ FAULTS: dict[str, tuple[Fault, str, str]] = {
         "time_unit",
         "'time'",
     ),
+    "times of arrival": (in_bursts, "time_bursts", "rows come in bursts"),
     "a blink": (lambda log: log.select(slice(0, 20)), "too_short", "0.19 s"),
     "quaternion empty": (constant("imu.chest.orientation.w", np.nan), "dead_channel", "orientation"),
 }
@@ -228,6 +236,15 @@ def test_real_recordings_raise_no_fatal_alarm(shared_data: Path) -> None:
 
 def test_of_a_log_in_another_unit_of_time_only_that_is_said(robot: RobotModel, log: MotionLog) -> None:
     assert names_of(check_log(robot, milliseconds(swapped(log)))) == ["time_unit"]
+
+
+@pytest.mark.parametrize("share", [0.3, 0.5])
+def test_rows_that_got_lost_here_and_there_are_no_bursts(
+    robot: RobotModel, log: MotionLog, share: float
+) -> None:
+    kept = np.random.default_rng(0).random(len(log)) > share
+    thin = MotionLog(log.name, log.time[kept], {name: log.column(name)[kept] for name in log.columns})
+    assert "time_bursts" not in names_of(check_log(robot, thin))
 
 
 def test_a_load_that_cannot_be_known_is_told_once(robot: RobotModel, log: MotionLog) -> None:

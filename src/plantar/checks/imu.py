@@ -65,7 +65,9 @@ def _accelerometer_size(name: str, log: MotionLog) -> Finding | None:
     size = float(np.nanmedian(norm))
     if 0.8 < size < 1.2:
         return Finding(
-            "accelerometer_unit", f"{where}: its norm is {size:.3g}, which looks like g ({valid})", True
+            "accelerometer_unit",
+            f"{where}: its norm is {size:.3g}, which looks like g, or like an acceleration without gravity ({valid})",
+            True,
         )
     if not 0.6 * GRAVITY < size < 1.6 * GRAVITY:
         return Finding("accelerometer_unit", f"{where}: its usual norm is {size:.3g} ({valid})")

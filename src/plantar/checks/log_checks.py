@@ -19,9 +19,11 @@ from plantar.conventions import GRAVITY
 from plantar.logs.motion_log import MotionLog, wrench_columns
 from plantar.notes import Finding
 from plantar.robot.model import RobotModel
+from plantar.signals.resampling import sampling
 
 DEGREES = 180 / np.pi
 FASTEST, SLOWEST = 1e-5, 1.0  # s between samples: beyond them time is in another unit
+QUICK, MANY = 0.25, 0.02  # usual step over the mean one, and gaps over rows: fewer are rows that got lost
 SHORTEST = 0.5  # s of a log from which anything can be said
 
 
@@ -53,6 +55,11 @@ def _time(log: MotionLog) -> Iterator[Finding]:
         yield Finding(
             "too_short", f"column 'time': lasts {log.duration:g} s (valid: {SHORTEST:g} s or more)", True
         )
+    elif log.period < QUICK * (mean := log.duration / len(log)) and len(sampling(log).gaps) > MANY * len(log):
+        apart = f"usually {1e3 * log.period:.3g} ms apart, {1e3 * mean:.3g} ms on average"
+        text = f"column 'time': rows come in bursts, {apart}"
+        valid = "valid: the moment at which each row was measured; these look like moments of arrival"
+        yield Finding("time_bursts", f"{text} ({valid})", True)
 
 
 def _joints(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
