@@ -10,6 +10,7 @@ from plantar.signals.segments import runs
 
 FAR_STEPS = 10.0  # usual steps from sample to sample, by which the angle must jump: no joint moves so
 FINEST = 1e-7  # rad: smaller steps are rounding, as of a coarse encoder that stands still
+LEAST = 0.01  # rad: several steps of the coarsest encoder, which reads zero wherever its joint is near it
 FEWEST = 2  # stretches: a joint that was switched on has one
 BESIDE = 1  # samples around a stretch, that resampling may have put between the angle and zero
 
@@ -25,7 +26,7 @@ def dropped_samples(values: Array) -> Mask:
         near[run.start - BESIDE : run.stop + BESIDE] = True
     steps = np.abs(np.diff(np.where(near, np.nan, values)))
     moving = steps[steps > FINEST]
-    far = FAR_STEPS * float(np.median(moving)) if moving.size else 0.0
+    far = max(LEAST, FAR_STEPS * float(np.median(moving)) if moving.size else 0.0)
     outside = [np.abs([values[run.start - 1 - BESIDE], values[run.stop + BESIDE]]).min() for run in inner]
     found = [run for run, away in zip(inner, outside, strict=True) if away > far]
     if len(found) < max(FEWEST, len(inner) / 2):  # a joint that passes its zero reads it too
