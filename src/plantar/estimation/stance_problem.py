@@ -100,16 +100,12 @@ class StanceProblem:
 
     @cached_property
     def _parts(self) -> list[tuple[Array, Array]]:
-        return [self._reduced(np.flatnonzero(self.recording == place)) for place in range(self.recordings)]
+        each = (np.flatnonzero(self.recording == place) for place in range(self.recordings))
+        return [self._own_eliminated(self._drawn(stances).sum(axis=0)) for stances in each]
 
     @cached_property
     def _total(self) -> Array:
         return np.asarray(np.sum([part for part, _ in self._parts], axis=0))
-
-    def _reduced(self, stances: NDArray[np.intp]) -> tuple[Array, Array]:
-        """Products (k + 1, k + 1) of one recording's `stances` with all that is its own eliminated, and the map
-        (m + 1, k + 1) that gives its own back."""
-        return self._own_eliminated(self._drawn(stances).sum(axis=0))
 
     def _drawn(self, stances: NDArray[np.intp]) -> Array:
         """Products (s, ...) of each of one recording's stances, their offsets drawn together."""
@@ -120,7 +116,8 @@ class StanceProblem:
         return np.asarray(sums - share[:, None, None] * ones[:, :, None] * ones[:, None, :])
 
     def _own_eliminated(self, drawn: Array) -> tuple[Array, Array]:
-        """The same of sums (..., n, n) over stances."""
+        """Products (..., k + 1, k + 1) of sums (..., n, n) over stances, all that is a recording's own eliminated, and
+        the map (..., m + 1, k + 1) that gives its own back."""
         own, kept = slice(self.common, -1), [*range(self.common), drawn.shape[-1] - 1]
         both = drawn[..., kept]
         back = _scaled_inverse(drawn[..., own, own]) @ both[..., own, :]

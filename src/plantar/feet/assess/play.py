@@ -1,0 +1,59 @@
+"""Play between an encoder and the foot: the angle jumps wherever the torque changes its sign.
+
+torque = K·(angle - play·sign(torque)) + C·rate + offset. It bends every other model: taken for hardening or for a
+memory, it makes the spring too soft.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from plantar.conventions import ROTATIONAL_AXES, Array
+from plantar.estimation import Block, fit_blocks
+from plantar.feet.fit.axis import AxisFit
+from plantar.feet.fit.regression_data import beside, blocks_of, tangent_blocks
+from plantar.feet.recording import Recording
+from plantar.notes import Note
+
+SOFT = 0.1  # of a recording's spread of torque, within which its sign changes: behind a filter it is no step
+BETTER = 1.5  # times less is left of the squares than by the model that was found
+SURE = 5.0  # deviations of the play
+CODE = "play"
+
+
+def play_note(recordings: Sequence[Recording], fit: AxisFit, shared: bool) -> Note | None:
+    """A warning where play explains a standing foot's torque far better than the model that was found."""
+    blocks = blocks_of(recordings, fit.foot, fit.axis, drift=not shared)
+    if blocks[0].stances is not None:
+        return None
+    column = ROTATIONAL_AXES.index(fit.axis)
+    by_name = {recording.name: recording for recording in recordings}
+    signs = [_sign(by_name[block.label], fit.foot, column) for block in blocks]
+    found = fit_blocks(
+        [beside(block, sign[:, None]) for block, sign in zip(blocks, signs, strict=True)],
+        shared_offset=shared,
+    )
+    stiffness, loss = float(found.values[0]), -float(found.values[2])
+    left = _squares(tangent_blocks(recordings, fit, drift=not shared), shared)
+    with_play = sum(float(residual @ residual) for residual in found.residuals.values())
+    if stiffness <= 0 or loss < SURE * float(found.std[2]) or left < BETTER * with_play:
+        return None
+    text = (
+        f"{fit.foot} {fit.axis}: the angle jumps by {2e3 * loss / stiffness:.2g} mrad where the torque changes its "
+        "sign: play between an encoder and the foot, which makes the spring look softer (valid: encoders on the foot's "
+        "side of every gear; or keep the torque on one side of zero)"
+    )
+    return Note(CODE, "warning", text)
+
+
+def _sign(recording: Recording, foot: str, column: int) -> Array:
+    """The sign of the torque at the rows of a fit, (n,), smooth about zero."""
+    torque = recording.bushes[foot].torque[recording.rows(foot), column]
+    return np.asarray(np.tanh(torque / max(SOFT * float(np.std(torque)), 1e-12)))
+
+
+def _squares(blocks: Sequence[Block], shared: bool) -> float:
+    left = fit_blocks(blocks, shared_offset=shared).residuals.values()
+    return sum(float(residual @ residual) for residual in left)

@@ -1,0 +1,56 @@
+"""Play between an encoder and the foot, and what resembles it: hardening, memory, friction."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from bush_data_sets import Rubber
+from made_recording import FOOT, PERIOD, made_recording, swayed
+from plantar.feet.assess.play import CODE, play_note
+from plantar.feet.fit.axis_fit import fit_axis
+from plantar.feet.recording import Recording
+from plantar.feet.settings import FeetSettings
+from plantar.notes import Note
+
+COUNT = 6000
+PLAIN = Rubber(stiffness=420.0, damping=18.0)
+
+
+def swaying(rubber: Rubber, play: float = 0.0) -> list[Recording]:
+    """Sways whose encoder reads `play` [rad] more on the one side of the torque's zero than on the other."""
+    made = []
+    for seed in (0, 1):
+        angle, random = swayed(COUNT, seed=seed), np.random.default_rng(seed)
+        torque = rubber.torque(angle, np.gradient(angle, PERIOD))
+        read = angle + play / 2 * np.tanh(torque / 0.05)
+        noise = 0.05 * random.standard_normal(COUNT)
+        made.append(made_recording(f"sway_{seed}", read, torque + noise, rate=np.gradient(angle, PERIOD)))
+    return made
+
+
+def said(recordings: list[Recording]) -> Note | None:
+    fit = fit_axis(recordings, FOOT, "pitch", FeetSettings())
+    assert fit is not None
+    return play_note(recordings, fit, False)
+
+
+@pytest.mark.parametrize("play", [0.004, 0.01])
+def test_play_is_told_with_its_size(play: float) -> None:
+    note = said(swaying(PLAIN, play))
+    assert note is not None
+    assert (note.code, note.severity) == (CODE, "warning")
+    assert float(note.text.split("jumps by ")[1].split()[0]) == pytest.approx(1e3 * play, rel=0.25)
+
+
+@pytest.mark.parametrize(
+    "rubber",
+    [
+        PLAIN,
+        Rubber(stiffness=420.0, damping=18.0, slip_torque=4.0, slip_angle=0.006),
+        Rubber(stiffness=420.0, damping=18.0, hardening=3e5),
+        Rubber(stiffness=420.0, damping=18.0, coulomb=1.5),
+    ],
+)
+def test_no_foot_without_play_is_told_of_it(rubber: Rubber) -> None:
+    assert said(swaying(rubber)) is None
