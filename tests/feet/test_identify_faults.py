@@ -238,3 +238,15 @@ def test_robots_without_feet_or_imu_are_refused(tmp_path: Path, logs: list[Motio
     del entry["imu"]
     with pytest.raises(RobotError, match="imu"):
         identify_feet(make_robot(tmp_path / "b", imu=None), logs)
+
+
+@pytest.mark.parametrize("unit", [0.2248, 0.3])
+def test_feet_that_carry_another_weight_than_the_robot_s_identify_nothing_usable(
+    robot: RobotModel, logs: list[MotionLog], unit: float
+) -> None:
+    """Forces and torques alike in another unit: stiffness follows them, and no residual shows it."""
+    names = [name for name in logs[0].columns if name.startswith("wrench.")]
+    other = [log.with_columns({name: unit * log.column(name) for name in names}) for log in logs]
+    found = identify_feet(robot, other)
+    assert "weight" in codes(found)
+    assert not [row for row in found.parameters if row.axis != "z" and row.verdict == "usable"]

@@ -66,6 +66,16 @@ def test_the_gain_of_all_torques_is_found(twin: RobotModel, sweep: MotionLog, ga
     assert gains["pitch"].std < 0.04
 
 
+@pytest.mark.parametrize("unit", [1 / 9.80665, 8.851])
+def test_torques_in_another_unit_than_forces_are_found(
+    twin: RobotModel, sweep: MotionLog, unit: float
+) -> None:
+    """Of kgf.m or lbf.in beside newtons: the prior of a gain would hide what is so far off."""
+    gains = found(twin, sweep, {".torque.": unit})
+    assert gains["pitch"].mean == pytest.approx(unit - 1, rel=0.25)
+    assert gains["pitch"].reach > 0.7
+
+
 def test_one_axis_of_one_foot_is_told_from_the_others(twin: RobotModel, sweep: MotionLog) -> None:
     gains = found(twin, sweep, {"left_foot.torque.y": 1.25})
     assert set(gains) == {"pitch"}
