@@ -13,7 +13,7 @@ from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
 from plantar.robot.uncertainty import EXACT
 from plantar.sensors import moment_balance
-from plantar.sensors.moment_balance import TorqueGain, solved, torque_gain_notes, torque_gains
+from plantar.sensors.moment_balance import TorqueGain, clear_gains, solved, torque_gain_notes, torque_gains
 from plantar.sensors.moment_errors import moment_errors, prior_deviations
 from plantar.sensors.newton_euler import newton_euler_residual
 from plantar.signals.resampling import shifted
@@ -74,6 +74,19 @@ def test_torques_in_another_unit_than_forces_are_found(
     gains = found(twin, sweep, {".torque.": unit})
     assert gains["pitch"].mean == pytest.approx(unit - 1, rel=0.25)
     assert gains["pitch"].reach > 0.7
+
+
+def test_of_logs_with_steps_only_another_unit_is_told(twin: RobotModel, sweep: MotionLog) -> None:
+    """What comes again with every step passes for a gain of some ten percent."""
+    for unit, steps, axes in ((1.2, True, set()), (1.2, False, {"pitch"}), (0.1, True, {"pitch"})):
+        names = [name for name in sweep.columns if ".torque." in name]
+        log = sweep.with_columns({name: unit * sweep.column(name) for name in names})
+        residual = newton_euler_residual(twin, log)
+        assert residual is not None
+        stepping = {log.name} if steps else set[str]()
+        assert axes <= set(clear_gains(twin, [residual], stepping))
+        assert axes or not clear_gains(twin, [residual], stepping)
+    assert clear_gains(twin, [], set()) == {}
 
 
 def test_one_axis_of_one_foot_is_told_from_the_others(twin: RobotModel, sweep: MotionLog) -> None:
