@@ -8,16 +8,14 @@ from pathlib import Path
 import pytest
 import yaml
 
-from plantar.cli import main
+import command_line
 from plantar.logs.readers import open_log
 from plantar.robot.model import load_robot
 from plantar.twin.robots.hrp2 import write
 
 
 def run(*arguments: str) -> int:
-    with pytest.raises(SystemExit) as left:
-        main(["simulate", *arguments])
-    return int(left.value.code or 0)
+    return command_line.run("simulate", *arguments)
 
 
 def test_logs_truth_and_robot_file_appear(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -7,16 +7,16 @@ from mutant import Mutant
 MADE_CHEAPER = (
     Mutant(
         "feet/fit/force_gain.py", "a gain in doubt widens by a quarter of what it may be",
-        "fit.values, reach / NORMAL95", "fit.values, reach / NORMAL95 / 4", ("feet/fit/test_force_gain.py",),
+        "(error.reach / NORMAL95) ** 2", "(error.reach / NORMAL95 / 4) ** 2", ("feet/fit/test_force_gain.py",),
     ),
     Mutant(
-        "feet/fit/robot_causes.py", "what recordings differ by counts a tenth",
+        "feet/fit/between_recordings.py", "what recordings differ by counts a tenth",
         "np.sqrt(np.maximum(beyond, 0.0))", "0.1 * np.sqrt(np.maximum(beyond, 0.0))",
-        ("feet/fit/test_robot_causes.py",),
+        ("feet/fit/test_between_recordings.py",),
     ),
     Mutant(
         "feet/fit/bush_place.py", "a bush elsewhere is corrected the wrong way",
-        "moved = -follows @ arms", "moved = follows @ arms", ("feet/fit/test_bush_place.py",),
+        "moved = -follows @ (place", "moved = follows @ (place", ("feet/fit/test_bush_place.py",),
     ),
     Mutant(
         "feet/fit/systematic.py", "a suspected cube widens nothing",
@@ -31,7 +31,8 @@ MADE_CHEAPER = (
     ),
     Mutant(
         "feet/foot_fit.py", "a fault of one axis loses the other too",
-        "        if axis in given_up:\n            continue\n", "        if given_up:\n            continue\n",
+        "            if axis in given_up:\n                continue\n",
+        "            if given_up:\n                continue\n",
         ("feet/test_foot_fit.py",),
     ),
     Mutant(

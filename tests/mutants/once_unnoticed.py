@@ -92,7 +92,7 @@ NUMBERS_SHOWN = (
         "channel, _, received, _ = message(", "channel, _, _, received = message(",
     ),
     Mutant(
-        "report/tables.py", "an offset's deviation shown as half an interval", "1.96 * row.std", "1.0 * row.std",
+        "report/tables.py", "an offset's deviation shown as half an interval", "NORMAL95 * row.std", "1.0 * row.std",
     ),
     Mutant(
         "report/tables.py", "torques shown as forces", 'Column("mean |error|", "N·m")', 'Column("mean |error|", "N")',

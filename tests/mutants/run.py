@@ -4,7 +4,7 @@ Each mutant stands alone in a copy of the source in a temporary folder; pytest r
 copy, which PYTHONPATH puts before the installed package. Nothing is changed in place. A mutant is caught when a test
 fails or takes far longer than without it; it is stale when the text that it replaces has left the source.
 
-    python tests/mutants/run.py [--list drawn|made_cheaper|once_unnoticed] [--only TEXT] [--near | --tests PATH ...]
+    python tests/mutants/run.py [--list NAME] [--only TEXT] [--near | --tests PATH ...]
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ from pathlib import Path
 from queue import SimpleQueue
 from typing import TypeVar
 
+from data_faults import DATA_FAULTS
 from drawn import DRAWN
 from made_cheaper import MADE_CHEAPER
 from mutant import Mutant, StaleMutant
@@ -34,7 +35,12 @@ Found = TypeVar("Found")
 Tests = tuple[str, ...]  # folders and files below `tests`
 
 ROOT = Path(__file__).resolve().parents[2]
-LISTS = {"drawn": DRAWN, "once_unnoticed": ONCE_UNNOTICED, "made_cheaper": MADE_CHEAPER}
+LISTS = {
+    "drawn": DRAWN,
+    "once_unnoticed": ONCE_UNNOTICED,
+    "made_cheaper": MADE_CHEAPER,
+    "data_faults": DATA_FAULTS,
+}
 LEAST_CAUGHT = 0.85
 PATIENCE, LEAST_PATIENCE = 20.0, 300.0  # usual seconds of the tests, and seconds: beyond, a mutant hangs
 PASSED, NOTICED = 0, (1, 2, None)  # pytest's codes: a test failed, one could not be imported; None: it hangs

@@ -25,10 +25,8 @@ def check_bush_axes(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     frames = {}
     for name, foot in robot.feet.items():
         carrier, placement = robot.frame(foot.bush)
-        turn, place = (
-            (rotations[carrier - 1, 0], places[carrier - 1, 0]) if carrier else (np.eye(3), np.zeros(3))
-        )
-        frames[name] = turn @ placement.rotation, place + turn @ placement.translation
+        turn = rotations[carrier, 0]
+        frames[name] = turn @ placement.rotation, places[carrier, 0] + turn @ placement.translation
     (first, second) = (place for _, place in frames.values())
     for name, (turn, _) in frames.items():
         x, y, _ = np.abs(turn.T @ (second - first))

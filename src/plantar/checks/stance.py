@@ -10,6 +10,7 @@ import pinocchio as pin
 
 from plantar.conventions import GRAVITY, Array, rotation_from_quaternion
 from plantar.logs.motion_log import MotionLog
+from plantar.robot.kinematics import centre_of_mass
 from plantar.robot.model import Imu, RobotModel
 
 SAMPLES = 50  # spread over the log: enough to tell
@@ -102,22 +103,10 @@ class Stance:
 
     def _poses(self, frames: Sequence[tuple[int, pin.SE3]]) -> tuple[Array, Array, Array]:
         """Centre of mass (n, 3), and rotations (f, n, 3, 3) and translations (f, n, 3) of frames, in the root link."""
-        robot, bodies = self.robot, list(self.robot.model.inertias)
-        root = np.eye(3), np.zeros(3)
-        rotations, places = robot.tree.poses(self.positions)
-        # The root link stays where it is.
-        moved = sum(
-            body.mass * (place + rotation @ body.lever)
-            for body, rotation, place in zip(bodies[1:], rotations, places, strict=True)
-        )
-        turns, at = (
-            np.empty((len(frames), len(self.positions), 3, 3)),
-            np.empty((len(frames), len(self.positions), 3)),
-        )
-        for k, (carrier, placement) in enumerate(frames):
-            rotation, place = (rotations[carrier - 1], places[carrier - 1]) if carrier > 0 else root
-            turns[k], at[k] = rotation @ placement.rotation, place + rotation @ placement.translation
-        return (bodies[0].mass * bodies[0].lever + moved) / robot.mass, turns, at
+        rotations, places = self.robot.tree.poses(self.positions)
+        turns = [rotations[carrier] @ placement.rotation for carrier, placement in frames]
+        at = [places[carrier] + rotations[carrier] @ placement.translation for carrier, placement in frames]
+        return centre_of_mass(self.robot.model, rotations, places), np.array(turns), np.array(at)
 
 
 def stance_of(robot: RobotModel, log: MotionLog) -> Stance | None:

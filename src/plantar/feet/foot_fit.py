@@ -10,7 +10,7 @@ from plantar.conventions import ROTATIONAL_AXES, Axis, Mask
 from plantar.feet.assess.data_faults import data_faults, doubted
 from plantar.feet.assess.diagnosis import advised, diagnose_axis, mend_first
 from plantar.feet.assess.parameter_rows import axis_rows, missing_rows, unseen_rows
-from plantar.feet.assess.play import play_note
+from plantar.feet.assess.play import play_notes
 from plantar.feet.assess.residual_table import Predictions
 from plantar.feet.assess.scores import score_axis
 from plantar.feet.assess.stance_stiffness import stance_stiffness, walk_stiffness
@@ -96,8 +96,7 @@ def _with_axis(found: FootFit, ready: PreparedLogs, fit: AxisFit) -> FootFit:
     rows = axis_rows(wide, ready.fitted, predictions, scores)
     limits = diagnose_axis(fit, wide, causes, rows)
     gain = {foot: error for foot, error in ready.gain_errors.items() if foot == fit.foot}
-    play = play_note(ready.fitted, fit, shared)
-    odd = [*zero_jumps(ready.fitted, fit, shared), *([] if play is None else [play])]
+    odd = [*zero_jumps(ready.fitted, fit, shared), *play_notes(ready.fitted, fit, shared)]
     faults = [
         *data_faults(ready.fitted, fit),
         *odd,

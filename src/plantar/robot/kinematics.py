@@ -104,22 +104,21 @@ class KinematicTree:
         return positions
 
     def poses(self, positions: Array) -> tuple[Array, Array]:
-        """Rotations (n_joints, N, 3, 3) and places (n_joints, N, 3) [m] of the joints' frames in the root link.
+        """Rotations (1 + n_joints, N, 3, 3) and places (1 + n_joints, N, 3) [m] in the root link, of that link itself
+        and then of the joints' frames: a Pinocchio model's joint has its own index there.
 
         positions: of the joints, (N, n_joints).
         """
-        rotations = np.empty((len(self), len(positions), 3, 3))
-        places = np.empty((len(self), len(positions), 3))
+        rotations = np.tile(np.eye(3), (1 + len(self), len(positions), 1, 1))
+        places = np.zeros((1 + len(self), len(positions), 3))
         for joint, parent in enumerate(self.parents):
-            rotations[joint] = (
-                rotations[parent] @ self.rotations[joint] if parent >= 0 else self.rotations[joint]
-            )
-            start = self.translations[joint]
-            places[joint] = places[parent] + rotations[parent] @ start if parent >= 0 else start
+            rotation = rotations[1 + parent] @ self.rotations[joint]
+            places[1 + joint] = places[1 + parent] + rotations[1 + parent] @ self.translations[joint]
             if self.slides[joint]:
-                places[joint] += rotations[joint] @ self.axes[joint] * positions[:, joint, None]
+                places[1 + joint] += rotation @ self.axes[joint] * positions[:, joint, None]
             else:
-                rotations[joint] = rotations[joint] @ rotations_about(self.axes[joint], positions[:, joint])
+                rotation = rotation @ rotations_about(self.axes[joint], positions[:, joint])
+            rotations[1 + joint] = rotation
         return rotations, places
 
     def path(self, start: int, end: int) -> list[tuple[int, int]]:
@@ -131,6 +130,16 @@ class KinematicTree:
         down = self.ancestors[end] if end >= 0 else ()
         shared = set(up) & set(down)
         return [(j, -1) for j in up if j not in shared] + [(j, +1) for j in reversed(down) if j not in shared]
+
+
+def centre_of_mass(model: pin.Model, rotations: Array, places: Array) -> Array:
+    """Of all bodies in the root link, (N, 3) [m], at the `KinematicTree.poses` of a model with its root fixed."""
+    bodies = list(model.inertias)
+    moments = sum(
+        body.mass * (rotation @ body.lever + place)
+        for body, rotation, place in zip(bodies, rotations, places, strict=True)
+    )
+    return np.asarray(moments / max(sum(body.mass for body in bodies), 1e-9))
 
 
 def rotations_about(axis: Array, angle: Array) -> Array:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from plantar.conventions import FORCE, GRAVITY, Array, Mask, rotation_from_quaternion
 from plantar.logs.motion_log import MotionLog, wrench_columns
-from plantar.robot.kinematics import KinematicTree
+from plantar.robot.kinematics import KinematicTree, centre_of_mass
 from plantar.robot_guess.feet import Sole
 from plantar.signals.filters import low_pass
 
@@ -137,17 +137,11 @@ def _positions(model: pin.Model, log: MotionLog, rows: NDArray[np.int64]) -> Arr
 def _poses(model: pin.Model, positions: Array, links: Sequence[str]) -> tuple[dict[str, Array], Array]:
     """Poses (n, 4, 4) of links and the centre of mass (n, 3), in the root link's axes."""
     rotations, places = KinematicTree.from_model(model).poses(positions)
-    root = np.tile(np.eye(4), (len(positions), 1, 1))
-    frames = np.concatenate([root[None], np.tile(root, (len(rotations), 1, 1, 1))])
-    frames[1:, :, :3, :3], frames[1:, :, :3, 3] = rotations, places
+    frames = np.tile(np.eye(4), (*places.shape[:2], 1, 1))
+    frames[..., :3, :3], frames[..., :3, 3] = rotations, places
     found = [model.frames[model.getFrameId(link)] for link in links]
     poses = {
         link: frames[frame.parentJoint] @ frame.placement.homogeneous
         for link, frame in zip(links, found, strict=True)
     }
-    bodies = list(model.inertias)
-    moments = sum(
-        body.mass * (pose[:, :3, :3] @ body.lever + pose[:, :3, 3])
-        for body, pose in zip(bodies, frames, strict=True)
-    )
-    return poses, np.asarray(moments / max(sum(body.mass for body in bodies), 1e-9))
+    return poses, centre_of_mass(model, rotations, places)

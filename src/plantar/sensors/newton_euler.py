@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -113,13 +113,13 @@ def newton_euler_residual(robot: RobotModel, log: MotionLog) -> NewtonEulerResid
     measured, rates = moving[: len(contacts)], moving[len(contacts) : -2]
     calm = _longest_closed(measured.sum(axis=0), rates.sum(axis=0), moving[-2], period)
     measured, rates, predicted, by_encoders = (part[..., calm, :] for part in (measured, rates, *moving[-2:]))
+    pair = Pair(log.name, measured.sum(axis=0), rates.sum(axis=0), predicted, period)
+    if len(predicted) * period < SHORTEST or not closes(pair):
+        return None
     motion = motion.select(calm)
     errors = [equation.inverse_dynamics(motion, one)[BASE_ROWS].T for one in drawn_parameter_errors(robot)]
     drawn = np.array(errors).reshape(len(errors), *predicted.shape)
-    totals = measured.sum(axis=0), rates.sum(axis=0)
-    pair = Pair(log.name, *totals, predicted, period, drawn[:DELAY_DRAWS])
-    if len(predicted) * period < SHORTEST or not closes(pair):
-        return None
+    pair = replace(pair, model_errors=drawn[:DELAY_DRAWS])
     start, stop, _ = calm.indices(len(range(*kept.indices(len(log)))))
     own = slice(kept.start + start * stride, kept.start + stop * stride, stride)
     return NewtonEulerResidual(pair, measured, rates, by_encoders, readings[inner][calm], signals, own, drawn)

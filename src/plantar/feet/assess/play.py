@@ -23,11 +23,11 @@ SURE = 5.0  # deviations of the play
 CODE = "play"
 
 
-def play_note(recordings: Sequence[Recording], fit: AxisFit, shared: bool) -> Note | None:
+def play_notes(recordings: Sequence[Recording], fit: AxisFit, shared: bool) -> list[Note]:
     """A warning where play explains a standing foot's torque far better than the model that was found."""
     blocks = blocks_of(recordings, fit.foot, fit.axis, drift=not shared)
     if blocks[0].stances is not None:
-        return None
+        return []
     column = ROTATIONAL_AXES.index(fit.axis)
     by_name = {recording.name: recording for recording in recordings}
     signs = [_sign(by_name[block.label], fit.foot, column) for block in blocks]
@@ -39,13 +39,13 @@ def play_note(recordings: Sequence[Recording], fit: AxisFit, shared: bool) -> No
     left = _squares(tangent_blocks(recordings, fit, drift=not shared), shared)
     with_play = sum(float(residual @ residual) for residual in found.residuals.values())
     if stiffness <= 0 or loss < SURE * float(found.std[2]) or left < BETTER * with_play:
-        return None
+        return []
     text = (
         f"{fit.foot} {fit.axis}: the angle jumps by {2e3 * loss / stiffness:.2g} mrad where the torque changes its "
         "sign: play between an encoder and the foot, which makes the spring look softer (valid: encoders on the foot's "
         "side of every gear; or keep the torque on one side of zero)"
     )
-    return Note(CODE, "warning", text)
+    return [Note(CODE, "warning", text)]
 
 
 def _sign(recording: Recording, foot: str, column: int) -> Array:

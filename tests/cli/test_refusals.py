@@ -1,0 +1,141 @@
+"""The commands on bad files and words: one line for known errors, the exit code, and nothing left behind."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from command_line import refused, run
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("", "is empty"),
+        ("time,joint.a.position\n0,1\n0,2\n0,3\n", "does not increase"),
+        ("time,joint.a.position\n0,1\n0.1,2\n0.2,3\n", "joint_names"),
+        ("time,joint.a.position\n0,1\n0.1,x\n", "value 'x'"),
+    ],
+)
+def test_bad_logs_are_one_line_and_leave_nothing(
+    campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str, expected: str
+) -> None:
+    bad = tmp_path / "bad.csv"
+    bad.write_text(text)
+    out = tmp_path / "out"
+    line = refused(
+        capsys, "identify", "feet", campaign / "robot.yaml", campaign / "first.csv", bad, "--out", out
+    )
+    assert "bad.csv" in line
+    assert expected in line
+    assert not out.exists()
+
+
+@pytest.mark.parametrize(
+    "verb", ["inspect", "identify feet", "identify inertia", "identify joints", "select"]
+)
+def test_logs_keep_to_the_memory_given(
+    verb: str, campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = ("--out", tmp_path / "out") if verb.startswith("identify") else ()
+    words = (*verb.split(), campaign / "robot.yaml", campaign / "first.csv", *out, "--memory")
+    message = refused(capsys, *words, "0.1 mb", *(() if verb.startswith("identify") else ("--quiet",)))
+    assert "first.csv: holds 1201 rows x " in message
+    assert "at most 100 kB, or more with --memory" in message
+    assert not (tmp_path / "out").exists()
+    assert run(*words, "much") == 2
+
+
+def test_convert_keeps_to_the_memory_given(
+    campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ("convert", campaign / "first.csv", "--out", tmp_path / "log.parquet", "--memory")
+    assert "at most 1 kB" in refused(capsys, *words, "1KB")
+    assert run(*words, "1GB") == 0
+
+
+def test_an_error_leaves_an_earlier_result_untouched(
+    campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arguments = ["identify", "feet", campaign / "robot.yaml", campaign / "first.csv", "--out", tmp_path, "-q"]
+    assert run(*arguments) == 0
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    refused(capsys, *arguments, campaign / "nowhere.csv")
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+def test_bad_robot_files_and_places(
+    campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    robot = tmp_path / "robot.yaml"
+    robot.write_text((campaign / "robot.yaml").read_text() + "colour: red\n")
+    log = campaign / "first.csv"
+    assert "unknown key 'colour'" in refused(capsys, "inspect", robot, log)
+    assert "No such file" in refused(capsys, "inspect", tmp_path / "none.yaml", log)
+    assert "does not exist" in refused(
+        capsys, "inspect", campaign / "robot.yaml", tmp_path / "none.csv", "-q"
+    )
+    assert "is a file" in refused(capsys, "identify", "feet", campaign / "robot.yaml", log, "--out", robot)
+    assert "is a file" in refused(capsys, "simulate", "Tilt3", "--out", robot)
+    twice = ["identify", "feet", campaign / "robot.yaml", log, log, "--out", tmp_path / "out"]
+    assert "two logs are called 'first'" in refused(capsys, *twice)
+    assert "not such a result" in refused(
+        capsys, "validate", write_json(tmp_path, {"schema": "x"}), campaign / "robot.yaml", log
+    )
+
+
+def write_json(folder: Path, content: object) -> Path:
+    path = folder / "content.json"
+    path.write_text(json.dumps(content))
+    return path
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["nonsense"],
+        ["identify"],
+        ["identify", "hands"],
+        ["identify", "feet"],
+        ["identify", "feet", "robot.yaml", "log.csv"],
+        ["identify", "feet", "robot.yaml", "log.csv", "--out", "x", "--offset", "none"],
+        ["identify", "feet", "robot.yaml", "log.csv", "--out", "x", "--model", "x"],
+        ["identify", "feet", "robot.yaml", "log.csv", "--out", "x", "--cutoff", "fast"],
+        ["identify", "feet", "robot.yaml", "log.csv", "--out", "x", "--cutof", "5"],
+        ["inspect"],
+        ["--unknown"],
+    ],
+)
+def test_wrong_usage_is_2(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(*arguments) == 2
+    captured = capsys.readouterr()
+    assert "Traceback" not in captured.err + captured.out
+
+
+def test_a_setting_out_of_its_range_is_one_line(
+    campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arguments = [
+        "identify",
+        "feet",
+        campaign / "robot.yaml",
+        campaign / "first.csv",
+        "--out",
+        tmp_path / "out",
+    ]
+    assert "wrench_delay is not valid" in refused(capsys, *arguments, "--wrench-delay", "5000")
+    assert "window is not valid" in refused(capsys, *arguments, "--window", "400")
+    assert not (tmp_path / "out").exists()
+
+
+def test_no_traceback_in_a_real_process(tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "plantar", "inspect", str(tmp_path / "none.yaml"), "none.csv"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 1
+    assert done.stdout == ""
+    assert done.stderr.count("\n") == 1
+    assert "none.yaml" in done.stderr

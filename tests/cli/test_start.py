@@ -1,0 +1,94 @@
+"""The command line itself: help, version, tables, and a light start."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from importlib import import_module
+from typing import get_type_hints
+
+import pytest
+from rich.markup import render
+
+from command_line import run
+from plantar import __version__
+from plantar.cli import COMMANDS
+from plantar.cli.terminal import console, table
+
+
+def test_units_in_brackets_are_text_not_markup(capsys: pytest.CaptureFixture[str]) -> None:
+    console().print(table("Sway [deg]", ("mass [kg]", "of"), [("3", "[red]")]))
+    shown = capsys.readouterr().out
+    for text in ("Sway [deg]", "mass [kg]", "[red]"):
+        assert text in shown
+
+
+def test_numbers_stand_to_the_right_and_sentences_to_the_left() -> None:
+    drawn = table("", ("value", "why"), [("4.1 ± 0.5", "95 % interval ±1 %, 44 s served"), ("1e+05", "")])
+    assert [column.justify for column in drawn.columns] == ["right", "left"]
+
+
+@pytest.mark.parametrize("verb", COMMANDS)
+def test_no_help_loses_a_unit_to_markup(verb: str) -> None:
+    """`[ms]` in a help text is a tag to the one who prints it, and vanishes."""
+    run = import_module(f"plantar.cli.{COMMANDS[verb][0]}").run
+    annotations = get_type_hints(run, include_extras=True).values()
+    options = [option for annotation in annotations for option in getattr(annotation, "__metadata__", ())]
+    assert all(render(option.help or "").plain == option.help for option in options)
+
+
+def test_version(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run("--version") == 0
+    assert capsys.readouterr().out.strip() == __version__
+
+
+def python(code: str) -> str:
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    return done.stdout
+
+
+HEAVY = (
+    "numpy",
+    "scipy",
+    "pinocchio",
+    "pyarrow",
+    "mujoco",
+    "matplotlib",
+    "rosbags",
+    "viser",
+    "clarabel",
+    "pink",
+    "pydantic",
+    "jinja2",
+)
+
+
+def test_help_lists_every_command_and_imports_nothing_heavy() -> None:
+    code = f"""
+import sys
+from plantar.cli import main
+try:
+    main(["--help"])
+except SystemExit as done:
+    assert not done.code
+print("HEAVY:", [name for name in {HEAVY!r} if name in sys.modules])
+"""
+    out = python(code)
+    for verb in COMMANDS:
+        assert verb.split()[0] in out
+    assert "HEAVY: []" in out
+
+
+def test_importing_plantar_imports_nothing_heavy() -> None:
+    out = python(f"import sys, plantar; print([name for name in {HEAVY!r} if name in sys.modules])")
+    assert out.strip() == "[]"
+
+
+def test_public_names() -> None:
+    import plantar
+
+    for name in plantar.__all__:
+        if name not in ("dynamics", "identify_inertia", "identify_joints"):
+            assert getattr(plantar, name) is not None
+    with pytest.raises(AttributeError, match="no attribute 'nonsense'"):
+        _ = plantar.nonsense
