@@ -52,6 +52,26 @@ def test_a_column_that_is_full_of_them_is_what_the_sensor_reads() -> None:
     assert spikes_in(often) == []
 
 
+def test_knocks_of_landing_feet_are_motion_and_a_spike_among_them_is_one() -> None:
+    """Each second a foot lands or leaves, and its edge knocks for a sample or two, now harder, now softer."""
+    random, changes = np.random.default_rng(0), np.arange(200, COUNT - 100, 200)
+    loaded = np.cumsum(np.isin(np.arange(COUNT), changes)) % 2 == 1
+    columns = {f"wrench.foot.force.{axis}": signal(k) for k, axis in enumerate("xyz", start=1)}
+    for change in changes:
+        # Below 8 quick samples in the time around, as a log at 200 Hz shows them.
+        columns["wrench.foot.force.x"][change + np.array([-5, -2, 2, 5])] += random.uniform(10, 40, size=4)
+    columns["wrench.foot.force.z"] += 500.0 * loaded
+    walk = MotionLog("walk", TIME, columns)
+    assert without_spikes(walk) is walk
+    standing = walk.with_columns({"wrench.foot.force.z": signal(3) + 500.0})
+    assert without_spikes(standing) is not standing
+    spoilt = columns["wrench.foot.force.x"].copy()
+    spoilt[changes[4] + 1] += 2000.0
+    mended = without_spikes(walk.with_columns({"wrench.foot.force.x": spoilt}))
+    assert [note.severity for note in mended.notes] == ["info"]
+    assert np.flatnonzero(mended.column("wrench.foot.force.x") != spoilt).tolist() == [changes[4] + 1]
+
+
 def test_spikes_are_bridged_and_told_with_their_time() -> None:
     clean, orientation = signal(), np.cos(TIME)
     spoilt, turned = clean.copy(), orientation.copy()

@@ -6,18 +6,19 @@ After a filter a spike is a hump of the filter's length, that nothing tells from
 from __future__ import annotations
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
-from plantar.conventions import Array, Mask
-from plantar.logs.motion_log import MotionLog
+from plantar.conventions import FORCE, Array, Mask
+from plantar.logs.motion_log import MotionLog, wrench_columns
 from plantar.notes import Note, Severity
 
 FAR_STEPS = 10.0  # usual steps from sample to sample, beyond which a sample does not belong to its neighbours
 NEIGHBOURS = 2  # on either side: a segment of more than two samples is no spike
 LOCAL = 1.0  # s over which steps are compared: an impact among impacts is no spike
-GROUP_GAP, FEW = (
-    0.15,
-    8,
-)  # s around a spike, and quick steps in them: more make an impact and what it leaves ringing
+GROUP_GAP = 0.15  # s around a spike, or around a foot that lands or leaves
+FEW = 8  # quick steps around a spike: more make an impact and what it leaves ringing
+LOADED = 0.1  # of a foot's largest force: where it passes this, the foot lands or leaves
+QUICK = 0.9  # quantile of the steps around landings: usual there
 SERIOUS = 0.005  # share of a column that is worth a look at the sensor; coarse sampling makes half as many
 MOST = 0.02  # share of a column that may be spikes: more of them are what this sensor reads
 
@@ -33,7 +34,7 @@ def without_spikes(log: MotionLog) -> MotionLog:
     if not names:
         return log
     values = log.stack(names)
-    spikes = lone_spikes(values, log.period)
+    spikes = lone_spikes(values, log.period, _landings(log))
     if not spikes.any():
         return log
     place, bridged, told = np.arange(len(log)), {}, []
@@ -51,13 +52,35 @@ def without_spikes(log: MotionLog) -> MotionLog:
     return log.with_columns(bridged, Note("spikes", severity, text))
 
 
-def lone_spikes(values: Array, period: float) -> Mask:
-    """Samples of `values` (N, k) that one or two alone stand out from those around them by far, (N, k)."""
+def _landings(log: MotionLog) -> Mask:
+    """Samples (N,) around those at which a foot lands or leaves: the sole's edge knocks there, on every sensor."""
+    around = np.zeros(len(log), dtype=bool)
+    reach = max(1, round(GROUP_GAP / log.period))
+    sensors = {name[len("wrench.") :].rsplit(".", 2)[0] for name in log.columns if name.startswith("wrench.")}
+    for force_columns in (wrench_columns(sensor)[FORCE] for sensor in sensors):
+        if len(log) > 2 * NEIGHBOURS and all(column in log.columns for column in force_columns):
+            force = np.nan_to_num(np.linalg.norm(log.stack(force_columns), axis=1))
+            # The median of five: no lone sample lands a foot.
+            steady = np.median(sliding_window_view(force, 2 * NEIGHBOURS + 1), axis=1)
+            for change in NEIGHBOURS + np.flatnonzero(np.diff(steady > LOADED * steady.max())):
+                around[max(0, change - reach) : change + reach + 2] = True
+    return around
+
+
+def lone_spikes(values: Array, period: float, landings: Mask | None = None) -> Mask:
+    """Samples of `values` (N, k) that one or two alone stand out from those around them by far, (N, k).
+
+    landings: samples (N,) at which steps are compared with those at all landings.
+    """
     found = np.zeros(values.shape, dtype=bool)
     if len(values) < 2 * NEIGHBOURS + 2:
         return found
     steps = np.abs(np.diff(values, axis=0))
-    far, reach = FAR_STEPS * _usual(steps, period), max(NEIGHBOURS, round(GROUP_GAP / period))
+    usual = _usual(steps, period)
+    if landings is not None and landings.any():
+        at = landings[1:]
+        usual[at] = np.maximum(usual[at], np.nanquantile(steps[at], QUICK, axis=0))
+    far, reach = FAR_STEPS * usual, max(NEIGHBOURS, round(GROUP_GAP / period))
     # Only where a step is far is a median worth its time: in clean columns nowhere.
     for column in np.flatnonzero((steps > far).any(axis=0)):
         jumps = np.flatnonzero(steps[:, column] > far[:, column])
