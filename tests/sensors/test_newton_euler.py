@@ -41,7 +41,9 @@ def closed(pair: Pair) -> NewtonEulerResidual:
     still = Motion(*(np.zeros((0, size)) for size in (9, 0, 0, 0)))
     flat = 0 * pair.predicted
     measured, rate = pair.measured[None], pair.rate[None]
-    return NewtonEulerResidual(pair, measured, rate, flat, flat, np.array([flat] * 3), still, pair.measured)
+    return NewtonEulerResidual(
+        pair, measured, rate, flat, flat, np.array([flat] * 3), still, np.zeros(0), pair.measured
+    )
 
 
 @pytest.mark.parametrize("slow_first", [True, False])

@@ -8,7 +8,7 @@ import numpy as np
 import pinocchio as pin
 
 from plantar.conventions import Array
-from plantar.dynamics import Contact, Equation, model_parameters
+from plantar.dynamics import Contact, Equation
 from plantar.dynamics.inertial_motion import inertial_motion, turned_motions
 from plantar.dynamics.motion import Motion
 from plantar.robot.model import Foot, RobotModel
@@ -134,7 +134,7 @@ def _imu_slopes(robot: RobotModel, residual: NewtonEulerResidual) -> tuple[Array
     """How the prediction changes with the moment at which the gyroscope is read, (n, 6), and with the angle [rad] by
     which the IMU is turned about each of its axes, (3, n, 6).
     """
-    equation, parameters = Equation(robot.floating_model), model_parameters(robot.floating_model)
+    equation, parameters = Equation(robot.floating_model), residual.parameters
     signals, kept, step = residual.signals, residual.kept, residual.signals.period
 
     def slope(late: Motion, early: Motion, apart: float) -> Array:

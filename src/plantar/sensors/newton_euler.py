@@ -16,6 +16,7 @@ from plantar.estimation.delay import LEAST_CLOSED, Pair, closes, unexplained
 from plantar.estimation.sensor_delays import Balance
 from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.robot.model import RobotModel
+from plantar.sensors.below_sensor import parameters_below
 from plantar.sensors.model_errors import drawn_parameter_errors
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.orientation import attitude
@@ -48,6 +49,7 @@ class NewtonEulerResidual:
     readings: Array
     signals: InertialSignals
     kept: slice
+    parameters: Array
     model_errors: Array
 
     @property
@@ -86,7 +88,7 @@ def newton_euler_residual(robot: RobotModel, log: MotionLog) -> NewtonEulerResid
         longest = longest_run(whole)
     if longest.stop - longest.start < 4 * edge + 400:
         return None
-    equation, parameters = Equation(robot.floating_model), model_parameters(robot.floating_model)
+    equation = Equation(robot.floating_model)
     contacts = [Contact(*robot.frame(foot.wrench.placement)) for foot in robot.feet.values()]
     stride = max(1, round(1 / (KEPT_RATE * log.period)))
     period, inner = stride * log.period, slice(edge, longest.stop - longest.start - edge, stride)
@@ -104,6 +106,8 @@ def newton_euler_residual(robot: RobotModel, log: MotionLog) -> NewtonEulerResid
         return equation.inverse_dynamics(motion, parameters)[BASE_ROWS].T
 
     readings = low_pass(wrenches[longest], log.period, CUTOFF)
+    below = parameters_below(robot, equation, motion, readings[inner], period)
+    parameters = model_parameters(robot.floating_model) - below
     changes = differentiate(readings, log.period)[inner]
     sides = [*carried(readings[inner]), *carried(changes), predicted_by(motion)]
     step = log.period
@@ -122,7 +126,9 @@ def newton_euler_residual(robot: RobotModel, log: MotionLog) -> NewtonEulerResid
     pair = replace(pair, model_errors=drawn[:DELAY_DRAWS])
     start, stop, _ = calm.indices(len(range(*kept.indices(len(log)))))
     own = slice(kept.start + start * stride, kept.start + stop * stride, stride)
-    return NewtonEulerResidual(pair, measured, rates, by_encoders, readings[inner][calm], signals, own, drawn)
+    return NewtonEulerResidual(
+        pair, measured, rates, by_encoders, readings[inner][calm], signals, own, parameters, drawn
+    )
 
 
 def _moving(sides: Sequence[Array], period: float) -> Array:

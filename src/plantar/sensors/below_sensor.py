@@ -1,0 +1,69 @@
+"""What hangs below the feet's force sensors, from what they read while a foot swings.
+
+A sensor measures what passes through it: in the air nothing but the weight and the inertia of the part below it. Its
+place in the last link is in no URDF, so the ten inertial parameters of that part are unknown; a walking foot, which
+accelerates as much as gravity does, shows them. Left out, they pass for wrong forces, torques and delays.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from plantar.contact.phases import widened
+from plantar.conventions import FORCE, GRAVITY, TORQUE, Array, Mask
+from plantar.dynamics import Contact, Equation
+from plantar.dynamics.equation import ALL_PARAMETERS, BASE_ROWS, PER_LINK
+from plantar.dynamics.motion import Motion
+from plantar.robot.model import RobotModel
+
+IN_AIR = 0.1  # of the weight, that a foot in the air may read
+LANDING = 0.15  # s around contact: the filters smear it
+SHORTEST = 1.0  # s in the air: less is hardly more than the noise
+REWEIGHTED = 2  # times: forces and torques are weighed by what is left of them
+
+
+def parameters_below(
+    robot: RobotModel, equation: Equation, motion: Motion, readings: Array, period: float
+) -> Array:
+    """Inertial parameters of what hangs below each foot's force sensor, added up by link, (10 n_links,).
+
+    Least squares of eq. 1's base rows over the samples in which a foot is in the air, beside a constant zero of its
+    sensor. The last link's own size is the prior's deviation: what no swing shows stays near nothing.
+
+    readings: the sensors' low-passed wrenches along `motion`, in their own frames, with the sign of what the ground
+    does to the robot, (N, 6 feet).
+    """
+    found = np.zeros((len(equation.links), PER_LINK))
+    for place, foot in enumerate(robot.feet.values()):
+        contact, own = Contact(*robot.frame(foot.wrench.placement)), readings[:, 6 * place : 6 * place + 6]
+        body, swings = robot.model.inertias[contact.link], _in_air(own, robot.mass * GRAVITY, period)
+        if np.count_nonzero(swings) * period < SHORTEST or body.mass <= 0:
+            continue
+        aloft = motion.select(swings)
+        masks = [ALL_PARAMETERS * (link == contact.link) for link in range(len(equation.links))]
+        inertia = equation.regressor(aloft, masks)[:BASE_ROWS].transpose(2, 0, 1)
+        zeros = equation.contact_transfer(aloft.positions, contact)[:, :BASE_ROWS]
+        read = (zeros @ own[swings][:, :, None])[..., 0]
+        radius = np.sqrt(np.trace(body.matrix()[TORQUE, TORQUE]) / (2 * body.mass))
+        sizes = body.mass * radius ** np.repeat([0, 1, 2], [1, 3, 6])
+        largest = IN_AIR * robot.mass * GRAVITY
+        columns = np.concatenate([-inertia, zeros], axis=2)
+        found[contact.link] += _least_squares(columns, read, np.append(sizes, np.full(6, largest)))[:PER_LINK]
+    return found.ravel()
+
+
+def _in_air(readings: Array, weight: float, period: float) -> Mask:
+    """Samples in which a foot's reading (N, 6) is that of a foot in the air, clear of landing and lift-off."""
+    touching = np.linalg.norm(readings[:, FORCE], axis=1) > IN_AIR * weight
+    return np.asarray(~widened(touching, round(LANDING / period)))
+
+
+def _least_squares(columns: Array, read: Array, sizes: Array) -> Array:
+    """Coefficients (k,) of `columns` (n, 6, k) for `read` (n, 6); `sizes` (k,): their deviations before it."""
+    weights, scaled = np.ones(6), columns * sizes
+    for _ in range(REWEIGHTED):
+        weighed = weights[:, None] * scaled
+        normal = np.tensordot(weighed, scaled, ((0, 1), (0, 1))) + np.eye(len(sizes))
+        values = np.linalg.solve(normal, np.tensordot(weighed, read, ((0, 1), (0, 1))))
+        weights = 1 / np.mean((read - scaled @ values) ** 2, axis=0)
+    return np.asarray(sizes * values)

@@ -1,0 +1,91 @@
+"""What hangs below a force sensor is found from a swinging foot, and from a standing one nothing is."""
+
+from __future__ import annotations
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+from plantar.conventions import GRAVITY
+from plantar.dynamics import Equation
+from plantar.dynamics.motion import Motion, pinocchio_motion
+from plantar.robot.model import RobotModel
+from plantar.sensors.below_sensor import parameters_below
+from plantar.twin.robots import hrp2
+
+PERIOD, COUNT = 0.025, 800
+TIME = PERIOD * np.arange(COUNT)
+ZERO = np.array([3.0, -2.0, 5.0, 0.2, -0.1, 0.3])
+
+
+@pytest.fixture(scope="module")
+def robot() -> RobotModel:
+    return hrp2.robot()
+
+
+def moved(robot: RobotModel, size: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """q, v and a of every joint and of the pelvis about one posture, sums of sines, `size` [rad]."""
+    model, random = robot.floating_model, np.random.default_rng(0)
+    frequency, phase = 2 * np.pi * random.uniform(0.5, 1.5, model.nv), random.uniform(0, 6, model.nv)
+    angle = frequency * TIME[:, None] + phase
+    amplitude = np.append(np.zeros(6), np.full(model.nv - 6, size))
+    v, a = amplitude * frequency * np.cos(angle), -amplitude * frequency**2 * np.sin(angle)
+    neutral = pin.neutral(model)
+    q = np.array([pin.integrate(model, neutral, row) for row in amplitude * np.sin(angle)])
+    return q, v, a
+
+
+def readings(
+    robot: RobotModel, motion: tuple[np.ndarray, np.ndarray, np.ndarray], part: pin.Inertia
+) -> np.ndarray:
+    """What both sensors read by Pinocchio's accelerations of their links, with `part` below each; the feet step."""
+    model, data, rows = robot.floating_model, robot.floating_model.createData(), []
+    frames = [robot.frame(foot.wrench.placement) for foot in robot.feet.values()]
+    for sample, (q, v, a) in enumerate(zip(*motion, strict=True)):
+        pin.rnea(model, data, q, v, a)
+        row = []
+        for foot, (carrier, placement) in enumerate(frames):
+            rate, acceleration = data.v[carrier + 1], data.a_gf[carrier + 1]
+            hanging = placement.actInv(part * acceleration + part.vxiv(rate)).vector
+            stands = (TIME[sample] // 0.8) % 2 == foot
+            ground = np.array([0, 0, 500.0, 0, 0, 0]) if stands else np.zeros(6)
+            row.append(ground + ZERO - hanging)
+        rows.append(np.concatenate(row))
+    return np.array(rows)
+
+
+def found(robot: RobotModel, size: float, noise: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
+    """The parameters found of each foot's part, (feet, 10), and the part's own (10,)."""
+    part = pin.Inertia(0.7, np.array([0.03, 0.01, -0.08]), np.diag([0.003, 0.004, 0.002]))
+    motion, equation = moved(robot, size), Equation(robot.floating_model)
+    read = readings(robot, motion, part)
+    read += noise * np.random.default_rng(1).standard_normal(read.shape)
+    rates: Motion = pinocchio_motion(robot.floating_model, equation.tree, *motion)
+    below = parameters_below(robot, equation, rates, read, PERIOD).reshape(-1, 10)
+    links = [robot.frame(foot.wrench.placement)[0] for foot in robot.feet.values()]
+    assert not np.delete(below, links, axis=0).any()
+    return below[links], part.toDynamicParameters()
+
+
+def test_a_swinging_foot_shows_what_hangs_below_its_sensor(robot: RobotModel) -> None:
+    below, part = found(robot, 0.3)
+    np.testing.assert_allclose(below, [part, part], atol=1e-5)
+
+
+def test_noise_of_the_sensors_moves_it_by_grams(robot: RobotModel) -> None:
+    below, part = found(robot, 0.3, noise=1.0)
+    np.testing.assert_allclose(below[:, 0], part[0], atol=0.03)
+    np.testing.assert_allclose(below[:, 1:4], [part[1:4]] * 2, atol=0.01)
+
+
+def test_a_foot_that_hardly_moves_shows_nothing(robot: RobotModel) -> None:
+    """Gravity alone is the sensor's zero as well: no more than half of the part is believed."""
+    below, part = found(robot, 1e-4, noise=1.0)
+    assert (np.abs(below[:, 0]) < 0.5 * part[0]).all()
+
+
+def test_a_foot_that_never_leaves_the_ground_shows_nothing(robot: RobotModel) -> None:
+    equation, motion = Equation(robot.floating_model), moved(robot, 0.3)
+    rates = pinocchio_motion(robot.floating_model, equation.tree, *motion)
+    standing = np.zeros((COUNT, 12)) + 0.5 * robot.mass * GRAVITY
+    assert not parameters_below(robot, equation, rates, standing, PERIOD).any()
