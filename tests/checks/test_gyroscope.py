@@ -32,6 +32,43 @@ def changed(log: MotionLog, rates: np.ndarray) -> MotionLog:
     return log.with_columns(dict(zip(GYROSCOPE, rates.T, strict=True)))
 
 
+def small(log: MotionLog) -> MotionLog:
+    """The same with turns of a hundredth, in noise of a good IMU: as a walking robot's chest turns."""
+    random, orientation = np.random.default_rng(0), log.orientation("chest")
+    assert orientation is not None
+    turn = Rotation.from_rotvec(0.01 * Rotation.from_quat(orientation, scalar_first=True).as_rotvec())
+    turn = Rotation.from_rotvec(2e-5 * random.standard_normal((len(log), 3))) * turn
+    quaternions = turn.as_quat(scalar_first=True).T
+    names = [f"imu.chest.orientation.{part}" for part in "wxyz"]
+    rates = 0.01 * log.stack(GYROSCOPE) + 2e-4 * random.standard_normal((len(log), 3))
+    return changed(log.with_columns(dict(zip(names, quaternions, strict=True))), rates)
+
+
+@pytest.mark.parametrize(
+    ("factor", "found"),
+    [
+        (1.0, []),
+        (57.3, ["degrees"]),
+        ([1, -1, 1], ["sign"]),
+        (1.2, ["gyroscope_scale"]),
+        (3.0, ["gyroscope_scale"]),
+    ],
+)
+def test_small_turns_tell_where_the_imu_s_noise_is_less(
+    log: MotionLog, factor: float | list[float], found: list[str]
+) -> None:
+    few = small(log)
+    assert codes(changed(few, factor * few.stack(GYROSCOPE) + [0.02, -0.01, 0.03])) == found
+
+
+def test_turns_that_drown_in_noise_tell_nothing(log: MotionLog) -> None:
+    few = small(log)
+    noise = 2e-3 * np.random.default_rng(1).standard_normal((len(log), 3))
+    orientation = few.orientation("chest")
+    assert orientation is not None
+    assert Turns.of(changed(few, few.stack(GYROSCOPE) + noise), "chest", orientation) is None
+
+
 def test_a_bias_is_no_fault(log: MotionLog) -> None:
     assert codes(changed(log, log.stack(GYROSCOPE) + [0.02, -0.01, 0.03])) == []
 

@@ -47,7 +47,15 @@ DATA_FAULTS = (
         "STRAINED = 2.0", "STRAINED = 200.0", ("sensors/test_moment_balance.py",),
     ),
     Mutant(
-        "sensors/moment_balance.py", "landings are torques too large", "BEYOND_STEPS = 0.4", "BEYOND_STEPS = 0.0",
+        "sensors/moment_balance.py", "a foot is judged by itself where nothing tells it from the other", "APART = 2.0",
+        "APART = 200.0", ("sensors/test_moment_balance.py",),
+    ),
+    Mutant(
+        "sensors/moment_balance.py", "no foot is judged by itself", "APART = 2.0", "APART = 0.0",
+        ("sensors/test_moment_balance.py",),
+    ),
+    Mutant(
+        "sensors/moment_errors.py", "a walk is as slow as a sway", "    if steps:", "    if False:",
         ("sensors/test_moment_balance.py",),
     ),
     Mutant(
@@ -69,5 +77,41 @@ DATA_FAULTS = (
     Mutant(
         "logs/readers/read_limit.py", "a small file may unpack to anything", "RATIO = 100", "RATIO = 10**6",
         ("logs/readers/test_read_limit.py",),
+    ),
+    Mutant(
+        "checks/stepping_joints.py", "one landing is a step", "FEWEST = 2 ", "FEWEST = 1 ",
+        ("checks/test_stepping_joints.py",),
+    ),
+    Mutant(
+        "checks/stepping_joints.py", "the other leg may stand as well", "if turned[same] > TURNED:",
+        "if turned[same] >= 0:", ("checks/test_stepping_joints.py",),
+    ),
+    Mutant(
+        "checks/gyroscope.py", "a gyroscope's bias turns", "integral = _centred(total[ends] - total[starts])",
+        "integral = total[ends] - total[starts]", ("checks/test_gyroscope.py",),
+    ),
+    Mutant(
+        "checks/gyroscope.py", "small turns never tell", "min(LEAST_TURN, ABOVE_NOISE * float(noise))", "LEAST_TURN",
+        ("checks/test_gyroscope.py",),
+    ),
+    Mutant(
+        "signals/footfalls.py", "a lone sample lands a foot", "LONE = 5 ", "LONE = 1 ", ("signals/test_footfalls.py",),
+    ),
+    Mutant(
+        "signals/spikes.py", "landings are spikes", "usual[at] = np.maximum(usual[at], ",
+        "usual[at] = np.minimum(usual[at], ", ("signals/test_spikes.py",),
+    ),
+    Mutant(
+        "sensors/below_sensor.py", "landings count as air", "touching, round(LANDING / period)", "touching, 0",
+        ("sensors/test_below_sensor.py",),
+    ),
+    Mutant(
+        "sensors/below_sensor.py", "no prior holds what nothing shows", "+ np.eye(len(sizes))",
+        "+ 1e-9 * np.eye(len(sizes))", ("sensors/test_below_sensor.py",),
+    ),
+    Mutant(
+        "sensors/newton_euler.py", "what hangs below the sensors moves with the robot",
+        "model_parameters(robot.floating_model) - below.parameters", "model_parameters(robot.floating_model)",
+        ("sensors/test_newton_euler.py", "sensors/test_below_sensor.py", "sensors/test_moment_balance.py"),
     ),
 )  # fmt: skip

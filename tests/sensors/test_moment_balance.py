@@ -13,12 +13,13 @@ from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
 from plantar.robot.uncertainty import EXACT
 from plantar.sensors import moment_balance
-from plantar.sensors.moment_balance import TorqueGain, clear_gains, solved, torque_gain_notes, torque_gains
+from plantar.sensors.moment_balance import TorqueGain, solved, torque_gain_notes, torque_gains
 from plantar.sensors.moment_errors import moment_errors, prior_deviations
 from plantar.sensors.newton_euler import newton_euler_residual
 from plantar.signals.resampling import shifted
 from plantar.twin import PAPER, play_all
 from plantar.twin.robots import hrp2
+from twin_samples import walked
 
 
 @pytest.fixture(scope="module")
@@ -31,7 +32,9 @@ def sweep(twin: RobotModel) -> MotionLog:
     return checked(twin, play_all(["Myrand5"], twin, PAPER, "sensors", [0])[0][0].log)
 
 
-def found(twin: RobotModel, log: MotionLog, gains: Mapping[str, float]) -> Mapping[str, TorqueGain]:
+def found(
+    twin: RobotModel, log: MotionLog, gains: Mapping[str, float], *, steps: bool = False
+) -> Mapping[str, TorqueGain]:
     columns = {name: log.column(name) for name in log.columns}
     scaled = {
         name: values * next((gain for part, gain in gains.items() if part in name), 1.0)
@@ -40,7 +43,7 @@ def found(twin: RobotModel, log: MotionLog, gains: Mapping[str, float]) -> Mappi
     }
     residual = newton_euler_residual(twin, log.with_columns(scaled))
     assert residual is not None
-    return torque_gains(twin, [residual])
+    return torque_gains(twin, [residual], [log.name] if steps else ())
 
 
 def test_torques_that_balance_the_motion_are_right(twin: RobotModel, sweep: MotionLog) -> None:
@@ -76,17 +79,40 @@ def test_torques_in_another_unit_than_forces_are_found(
     assert gains["pitch"].reach > 0.7
 
 
-def test_of_logs_with_steps_only_another_unit_is_told(twin: RobotModel, sweep: MotionLog) -> None:
-    """What comes again with every step passes for a gain of some ten percent."""
-    for unit, steps, axes in ((1.2, True, set()), (1.2, False, {"pitch"}), (0.1, True, {"pitch"})):
-        names = [name for name in sweep.columns if ".torque." in name]
-        log = sweep.with_columns({name: unit * sweep.column(name) for name in names})
-        residual = newton_euler_residual(twin, log)
-        assert residual is not None
-        stepping = {log.name} if steps else set[str]()
-        assert axes <= set(clear_gains(twin, [residual], stepping))
-        assert axes or not clear_gains(twin, [residual], stepping)
-    assert clear_gains(twin, [], set()) == {}
+@pytest.mark.parametrize(
+    ("gains", "axes"),
+    [
+        ({}, set()),
+        ({".torque.": 1.12}, {"pitch", "roll"}),
+        ({"left_foot.torque.": 0.85}, {"pitch", "roll"}),
+        ({"left_foot.torque.y": 1.2}, {"pitch"}),
+        ({".torque.x": -1.0}, {"roll"}),
+    ],
+)
+def test_a_walk_shows_each_foots_gain(twin: RobotModel, gains: Mapping[str, float], axes: set[str]) -> None:
+    told = found(twin, checked(twin, walked()), gains, steps=True)
+    assert set(told) == axes
+    for axis in axes:
+        for foot, share in told[axis].shares.items():
+            column = f"wrench.{foot}_foot.torque.{'y' if axis == 'pitch' else 'x'}"
+            gain = next((gain for part, gain in gains.items() if part in column), 1.0)
+            assert share == pytest.approx(gain - 1, abs=0.06)
+
+
+def test_feet_that_nothing_tells_apart_are_not_told_against_each_other(
+    twin: RobotModel, sweep: MotionLog, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A moment that nothing explains passes for one foot's torques too small and the other's too large."""
+    residual = newton_euler_residual(twin, sweep)
+    assert residual is not None
+    same, other = np.ones((2, 2)), np.array([[1.0, -1.0], [-1.0, 1.0]])
+    part = moment_balance._Part(np.kron(np.eye(2), 0.03**2 * same + 0.12**2 * other), 1e6)
+    monkeypatch.setattr(moment_balance, "solved", lambda *_: (np.array([0.6, -0.6, 0.0, 0.0]), [part]))
+    assert torque_gains(twin, [residual], ()) == {}
+
+
+def test_no_log_shows_no_gain(twin: RobotModel) -> None:
+    assert torque_gains(twin, [], ()) == {}
 
 
 def test_one_axis_of_one_foot_is_told_from_the_others(twin: RobotModel, sweep: MotionLog) -> None:
@@ -106,9 +132,9 @@ def test_an_imu_that_is_turned_is_told_from_torques(twin: RobotModel, sweep: Mot
     told = replace(twin, imu=replace(twin.imu, placement=turned))
     residual = newton_euler_residual(told, sweep)
     assert residual is not None
-    values, _ = solved([moment_errors(told, residual)], prior_deviations(told))
+    values, _ = solved([moment_errors(told, residual, False)], prior_deviations(told))
     np.testing.assert_allclose(values[-7:-4], -turn, atol=0.004)
-    assert torque_gains(told, [residual]) == {}
+    assert torque_gains(told, [residual], ()) == {}
 
 
 @pytest.mark.parametrize("seed", [0, 1])
@@ -121,7 +147,7 @@ def test_the_noise_of_the_feet_s_sensors_is_no_gain_and_no_crosstalk(
     noisy = {name: sweep.column(name) + 5 * random.normal(size=len(sweep)) for name in names}
     residual = newton_euler_residual(twin, sweep.with_columns(noisy))
     assert residual is not None
-    values, _ = solved([moment_errors(twin, residual)], prior_deviations(twin))
+    values, _ = solved([moment_errors(twin, residual, False)], prior_deviations(twin))
     np.testing.assert_allclose(values[:4], 0.0, atol=0.12)
     channels = [pair for pair in np.ndindex(6, 6) if pair[0] >= 3 or pair[1] < 3]
     place = 7 + channels.index((5, 0))  # behind gain, place and turn of a sensor
@@ -134,9 +160,9 @@ def test_a_late_wrench_is_no_gain_of_torques(twin: RobotModel, sweep: MotionLog)
     late = shifted(sweep.stack(names), sweep.period, -0.01)
     residual = newton_euler_residual(twin, sweep.with_columns(dict(zip(names, late.T, strict=True))))
     assert residual is not None
-    values, _ = solved([moment_errors(twin, residual)], prior_deviations(twin))
+    values, _ = solved([moment_errors(twin, residual, False)], prior_deviations(twin))
     np.testing.assert_allclose(values[-4:-2], 0.01, atol=0.001)
-    assert torque_gains(twin, [residual]) == {}
+    assert torque_gains(twin, [residual], ()) == {}
 
 
 def test_an_interval_reaches_as_far_as_one_foot_alone_can_be_off() -> None:
@@ -161,6 +187,8 @@ def test_one_foot_that_is_off_about_both_axes_shows_in_both_together(
     assert residual is not None
     deviation = 0.05
     values = -off * deviation * np.array([1.0, 0.0, 1.0, 0.0])
-    part = moment_balance._Part((deviation**2 - twin.uncertainty.wrench_gain**2) * np.eye(4), 1e6)
+    same, other = np.ones((2, 2)), np.array([[1.0, -1.0], [-1.0, 1.0]])  # which foot it is hardly shows
+    known = np.kron(np.eye(2), deviation**2 / 2 * same + other)
+    part = moment_balance._Part(known - twin.uncertainty.wrench_gain**2 * np.eye(4), 1e6)
     monkeypatch.setattr(moment_balance, "solved", lambda *_: (values, [part]))
-    assert set(torque_gains(twin, [residual])) == axes
+    assert set(torque_gains(twin, [residual], ())) == axes

@@ -7,8 +7,15 @@ from functools import cache
 
 import numpy as np
 
+from plantar.logs.motion_log import MotionLog
 from plantar.motions import Plan, Walk
+from plantar.motions.body import Body
+from plantar.motions.gait import Gait
+from plantar.motions.stance import stand
+from plantar.motions.walk import walk_plan
 from plantar.twin.play import planned, rolled
+from plantar.twin.presets import preset_named
+from plantar.twin.recording import record
 from plantar.twin.robots import hrp2
 from plantar.twin.simulation.physics import Physics
 from plantar.twin.simulation.rollout import Rollout, roll_out, scene_xml
@@ -60,3 +67,12 @@ def tilted() -> Rollout:
 def flung() -> Rollout:
     """Three seconds of Myrand5 on the paper's bushes."""
     return rolled(short(plan("Myrand5"), 10.0, 13.0), hrp2.robot(), Physics())
+
+
+@cache
+def walked() -> MotionLog:
+    """Ten steps of 15 cm, read by sensors with noise and offsets; each foot was zeroed in the air."""
+    robot = hrp2.robot()
+    body, gait = Body(robot), Gait(step=0.15, period=0.9, turn=0.0, steps=10, trial=1)
+    played = walk_plan(body, "Walk15", stand(body, hrp2.postures().standing, {}), gait)
+    return record(roll(played), robot, Physics(), preset_named("sensors"), 0).log

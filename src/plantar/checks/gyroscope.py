@@ -18,7 +18,8 @@ from plantar.signals.segments import longest_run
 
 WINDOW = 0.5  # s over which the orientation's turn is compared with the gyroscope's integral
 OVERLAP = 5  # windows begin in each window's time
-LEAST_TURN = np.radians(0.5)  # in one window: smaller ones hold noise
+LEAST_TURN = np.radians(0.5)  # in one window: as large as what an attitude filter adds of its own
+ABOVE_NOISE = 6.0  # times the noise of a window's turn: large enough where that is less
 FEWEST_WINDOWS = 20
 WRONG_TURN, RIGHT_TURN = 0.8, 0.3  # difference of the two turns over the turn itself
 BETTER = 0.5  # share of that difference which another reading of the quaternion must leave at most
@@ -28,6 +29,7 @@ FOLLOWED = 0.25  # share of the difference's square that turning one side may le
 PLANAR = 0.05  # second over first singular value: turns about one axis do not show how the other two lie
 LATE, EXPLAINED = 0.005, 0.1  # s, share: of a delay between gyroscope and orientation
 BAND = 8.0  # Hz, in which it is looked for
+MEDIAN = 0.6745  # of absolute values over the deviation, of a normal distribution
 REVERSED = -0.9  # correlation, and slope within a factor of two, of an axis that reads the opposite
 
 
@@ -35,12 +37,14 @@ REVERSED = -0.9  # correlation, and slope within a factor of two, of an axis tha
 class Turns:
     """Turns in windows of WINDOW, (n, 3) [rad]: the gyroscope's `integral`, and the orientation's `by_reading`.
 
-    `world`: the orientation's about the world's axes.
+    `world`: the orientation's about the world's axes. All without their means: a constant bias is no fault, the fit
+    takes it off. `least` [rad]: turns smaller than that do not count.
     """
 
     integral: Array
     by_reading: Mapping[str, Array]
     world: Array
+    least: float
 
     @classmethod
     def of(cls, log: MotionLog, name: str, orientation: Array) -> Turns | None:
@@ -62,7 +66,12 @@ class Turns:
         before, after = readings(orientation[starts]), readings(orientation[ends])
         by_reading = {reading: (before[reading].inv() * after[reading]).as_rotvec() for reading in before}
         world = before["as it is"].apply(by_reading["as it is"])
-        found = cls(total[ends] - total[starts], by_reading, world)
+        integral = _centred(total[ends] - total[starts])
+        turns = {reading: _centred(turn) for reading, turn in by_reading.items()}
+        # As a share of what the gyroscope itself shows: it may read degrees.
+        drowned = _white(rates) * np.sqrt(WINDOW * log.period) / max(float(np.std(integral)), 1e-12)
+        noise = np.hypot(drowned * np.std(turns["as it is"]), np.sqrt(2) * _white(2 * orientation))
+        found = cls(integral, turns, _centred(world), min(LEAST_TURN, ABOVE_NOISE * float(noise)))
         return found if found.moving.sum() >= FEWEST_WINDOWS else None
 
     @property
@@ -75,7 +84,7 @@ class Turns:
 
     @cached_property
     def moving(self) -> Mask:
-        return np.asarray(self.size > LEAST_TURN)
+        return np.asarray(self.size > self.least)
 
     @cached_property
     def apart(self) -> dict[str, float]:
@@ -96,9 +105,18 @@ class Turns:
     @property
     def about_world(self) -> bool:
         """Whether the gyroscope turns as the orientation does about the world's axes, and not about the IMU's own."""
-        # A constant bias is no fault: the fit takes it off.
-        integral, turn, world = (side - side.mean(axis=0) for side in (self.integral, self.turn, self.world))
-        return float(np.sum((integral - world) ** 2)) < FOLLOWED * float(np.sum((integral - turn) ** 2))
+        apart, from_world = (np.sum((self.integral - turn) ** 2) for turn in (self.turn, self.world))
+        return float(from_world) < FOLLOWED * float(apart)
+
+
+def _centred(turns: Array) -> Array:
+    return np.asarray(turns - turns.mean(axis=0))
+
+
+def _white(signals: Array) -> float:
+    """Deviation of the white noise of `signals` (n, k), of all columns together, from their second differences."""
+    usual = np.nanmedian(np.abs(np.diff(signals, 2, axis=0)), axis=0) / MEDIAN / np.sqrt(6)
+    return float(np.linalg.norm(np.nan_to_num(usual)))
 
 
 def check_gyroscope(name: str, log: MotionLog, orientation: Array, turns: Turns) -> Iterator[Finding]:
@@ -116,11 +134,13 @@ def check_gyroscope(name: str, log: MotionLog, orientation: Array, turns: Turns)
         )
         return
     if not _upside_down(name, log, orientation):
-        opposite = _reversed_axes(turns.integral, turns.turn)
+        opposite = _reversed_axes(turns)
         if opposite:
             names = " and ".join(f"'imu.{name}.angular_velocity.{axis}'" for axis in opposite)
             text = f"column {names}: turns against the orientation, which the accelerometer's up does not contradict"
             text += ", or all of the gyroscope turns about the world's axes" if turns.about_world else ""
+            inverted = turns.apart["inverted"] < RIGHT_TURN
+            text += ", or the orientation is inverted, world to body" if inverted else ""
             yield Finding("sign", f"{text} (valid: right-handed about the IMU's axes)", True)
             return
     yield from _late(name, log, orientation)
@@ -136,7 +156,7 @@ def check_gyroscope(name: str, log: MotionLog, orientation: Array, turns: Turns)
 
 def _axes_and_scale(where: str, turns: Turns) -> Iterator[Finding]:
     """A gyroscope that reads nearly what the orientation does, but about other axes, or too much or too little."""
-    integral, turn = (side - side.mean(axis=0) for side in (turns.integral, turns.turn))
+    integral, turn = turns.integral, turns.turn
     apart, power = float(np.sum((integral - turn) ** 2)), float(np.sum(turn**2))
     if power == 0 or apart == 0:
         return
@@ -185,16 +205,14 @@ def _late(name: str, log: MotionLog, orientation: Array) -> Iterator[Finding]:
         yield Finding("imu_late", f"{text}: {cause} (valid: both of one moment)")
 
 
-def _reversed_axes(integral: Array, turn: Array) -> str:
+def _reversed_axes(turns: Turns) -> str:
     """The gyroscope's axes that read the opposite; none where one axis agrees with nothing, as in another frame."""
     opposite = ""
-    for axis, integrated, turned in zip("xyz", integral.T, turn.T, strict=True):
-        if (np.abs(turned) > LEAST_TURN).sum() < FEWEST_WINDOWS:
+    for axis, integrated, turned in zip("xyz", turns.integral.T, turns.turn.T, strict=True):
+        if (np.abs(turned) > turns.least).sum() < FEWEST_WINDOWS:
             continue
         apart = float(np.std(integrated) * np.std(turned))
-        alike = float(np.mean((integrated - integrated.mean()) * (turned - turned.mean()))) / max(
-            apart, 1e-12
-        )
+        alike = float(np.mean(integrated * turned)) / max(apart, 1e-12)
         slope = float(integrated @ turned / (turned @ turned))
         if alike < REVERSED and -2 < slope < -0.5:
             opposite += axis

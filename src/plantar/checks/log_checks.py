@@ -15,6 +15,7 @@ from plantar.checks.imu import check_imu
 from plantar.checks.joints import check_joint_names, check_path_joints
 from plantar.checks.load_signs import check_load_signs
 from plantar.checks.standing import check_balance
+from plantar.checks.stepping_joints import check_stepping_joints
 from plantar.conventions import GRAVITY
 from plantar.logs.motion_log import MotionLog, wrench_columns
 from plantar.notes import Finding
@@ -37,7 +38,7 @@ def check_log(robot: RobotModel, log: MotionLog) -> list[Finding]:
         return [*names, *time]
     imu = check_imu(robot.imu.name, log) if robot.imu is not None else ()
     channels, chain = (
-        [*check_gaps(robot, log), *check_channels(robot, log)],
+        [*check_gaps(robot, log), *check_channels(robot, log), *check_stepping_joints(robot, log)],
         list(check_closed_chain(robot, log)),
     )
     wrenches = list(_wrenches(robot, log))

@@ -22,7 +22,7 @@ from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note, unique
 from plantar.robot.guesses import guess_notes, naming_notes
 from plantar.robot.model import RobotModel
-from plantar.sensors.moment_balance import TorqueGain, clear_gains, torque_gain_notes
+from plantar.sensors.moment_balance import TorqueGain, torque_gain_notes, torque_gains
 from plantar.sensors.sensor_delay import SensorDelay, estimate_wrench_delay, in_time, known_delay
 from plantar.sensors.tilt_error import NO_TILT_ERROR, log_tilt_error
 
@@ -92,7 +92,7 @@ def prepare_checked(
     forces = force_gain_errors(robot, recordings)
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         stepping = {one.name for one in recordings if any(each is not None for each in one.stances.values())}
-        torques = clear_gains(robot, delay.residuals, stepping, pool.map)
+        torques = torque_gains(robot, delay.residuals, stepping, pool.map)
     file = robot.path.name
     odd = [
         *naming_notes(file, robot.guesses),

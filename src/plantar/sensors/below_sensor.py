@@ -7,6 +7,8 @@ accelerates as much as gravity does, shows them. Left out, they pass for wrong f
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from plantar.contact.phases import widened
@@ -17,23 +19,34 @@ from plantar.dynamics.motion import Motion
 from plantar.robot.model import RobotModel
 
 IN_AIR = 0.1  # of the weight, that a foot in the air may read
-LANDING = 0.15  # s around contact: the filters smear it
+LANDING = 0.15  # s around contact: the low-pass smears it
 SHORTEST = 1.0  # s in the air: less is hardly more than the noise
 REWEIGHTED = 2  # times: forces and torques are weighed by what is left of them
 
 
-def parameters_below(
-    robot: RobotModel, equation: Equation, motion: Motion, readings: Array, period: float
-) -> Array:
-    """Inertial parameters of what hangs below each foot's force sensor, added up by link, (10 n_links,).
+class BelowSensors(NamedTuple):
+    """What hangs below the feet's force sensors.
 
-    Least squares of eq. 1's base rows over the samples in which a foot is in the air, beside a constant zero of its
-    sensor. The last link's own size is the prior's deviation: what no swing shows stays near nothing.
+    Its inertial `parameters`, added up by link, (10 n_links,); the sensors' `zeros`, (6 feet,) [N, N·m], which a
+    sensor that was zeroed with its foot in the air has for the weight of that part.
+    """
+
+    parameters: Array
+    zeros: Array
+
+
+def below_sensors(
+    robot: RobotModel, equation: Equation, motion: Motion, readings: Array, period: float
+) -> BelowSensors:
+    """What swings show of it; nothing of a foot that never leaves the ground.
+
+    Least squares of eq. 1's base rows over the samples in which a foot is in the air. The last link's own size is the
+    prior's deviation: what no swing shows stays near nothing.
 
     readings: the sensors' low-passed wrenches along `motion`, in their own frames, with the sign of what the ground
     does to the robot, (N, 6 feet).
     """
-    found = np.zeros((len(equation.links), PER_LINK))
+    parameters, zeros = np.zeros((len(equation.links), PER_LINK)), np.zeros((len(robot.feet), 6))
     for place, foot in enumerate(robot.feet.values()):
         contact, own = Contact(*robot.frame(foot.wrench.placement)), readings[:, 6 * place : 6 * place + 6]
         body, swings = robot.model.inertias[contact.link], _in_air(own, robot.mass * GRAVITY, period)
@@ -42,19 +55,21 @@ def parameters_below(
         aloft = motion.select(swings)
         masks = [ALL_PARAMETERS * (link == contact.link) for link in range(len(equation.links))]
         inertia = equation.regressor(aloft, masks)[:BASE_ROWS].transpose(2, 0, 1)
-        zeros = equation.contact_transfer(aloft.positions, contact)[:, :BASE_ROWS]
-        read = (zeros @ own[swings][:, :, None])[..., 0]
+        carried = equation.contact_transfer(aloft.positions, contact)[:, :BASE_ROWS]
+        read = (carried @ own[swings][:, :, None])[..., 0]
         radius = np.sqrt(np.trace(body.matrix()[TORQUE, TORQUE]) / (2 * body.mass))
         sizes = body.mass * radius ** np.repeat([0, 1, 2], [1, 3, 6])
         largest = IN_AIR * robot.mass * GRAVITY
-        columns = np.concatenate([-inertia, zeros], axis=2)
-        found[contact.link] += _least_squares(columns, read, np.append(sizes, np.full(6, largest)))[:PER_LINK]
-    return found.ravel()
+        columns = np.concatenate([-inertia, carried], axis=2)
+        values = _least_squares(columns, read, np.append(sizes, np.full(6, largest)))
+        parameters[contact.link] += values[:PER_LINK]
+        zeros[place] = values[PER_LINK:]
+    return BelowSensors(parameters.ravel(), zeros.ravel())
 
 
-def _in_air(readings: Array, weight: float, period: float) -> Mask:
-    """Samples in which a foot's reading (N, 6) is that of a foot in the air, clear of landing and lift-off."""
-    touching = np.linalg.norm(readings[:, FORCE], axis=1) > IN_AIR * weight
+def _in_air(reading: Array, weight: float, period: float) -> Mask:
+    """Samples (N,) in which a foot's reading (N, 6) is that of a foot in the air, clear of landing and lift-off."""
+    touching = np.linalg.norm(reading[:, FORCE], axis=1) > IN_AIR * weight
     return np.asarray(~widened(touching, round(LANDING / period)))
 
 

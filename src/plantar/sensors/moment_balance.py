@@ -18,7 +18,6 @@ from plantar.estimation.intervals import MOST_FREEDOM, cosine_covariance, pooled
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
 from plantar.sensors.moment_errors import (
-    BAND,
     LEAST_GAIN,
     LOOSE,
     MomentErrors,
@@ -28,10 +27,10 @@ from plantar.sensors.moment_errors import (
 from plantar.sensors.newton_euler import NewtonEulerResidual
 from plantar.sensors.refined_delays import Each
 
+APART = 2.0  # times the deviation of the feet's mean: a foot's gain known so well is judged by itself
 STRAINED = 2.0  # deviations of its prior, beyond which a gain is looked for anew
 ANOTHER_UNIT = 10.0  # share: kgf.m for N.m
 CHANCE = 0.01  # that torques without a fault are called wrong about an axis, by deviations that are on the safe side
-BEYOND_STEPS = 0.4  # share: three times what steps were seen to make of a healthy robot's torques
 WORTH_SAYING = 0.03  # share: what the force sensors' makers promise is seldom better
 
 
@@ -60,18 +59,19 @@ class _Part(NamedTuple):
 
 
 def torque_gains(
-    robot: RobotModel, residuals: Sequence[NewtonEulerResidual], each: Each = map
+    robot: RobotModel, residuals: Sequence[NewtonEulerResidual], stepping: Collection[str], each: Each = map
 ) -> dict[Axis, TorqueGain]:
     """The torques' gains about each axis about which the moments do not balance with gains as they should be.
 
     A generalised least-squares fit of what Newton's law misses to each foot's torques, beside the forces' gains and
     places, which may be off by what the robot file says; the deviation holds coloured noise and a wrong URDF.
 
-    `each` maps a function over logs: a pool's map uses all cores.
+    stepping: names of the logs in which feet step. `each` maps a function over logs: a pool's map uses all cores.
     """
-    if not residuals:
+    steps, feet = [one.pair.label in stepping for one in residuals], len(robot.feet)
+    logs = [one for one in each(partial(moment_errors, robot), residuals, steps) if one.columns.size]
+    if not logs:
         return {}
-    logs, feet = list(each(partial(moment_errors, robot), residuals)), len(robot.feet)
     prior = prior_deviations(robot)
     values, parts = solved(logs, prior)
     if np.abs(values[: 2 * feet]).max() > STRAINED * LOOSE:
@@ -81,36 +81,26 @@ def torque_gains(
     usual = max(robot.uncertainty.wrench_gain, LEAST_GAIN)
     parts.append(_Part(usual**2 * np.eye(len(values)), MOST_FREEDOM))
     mean = _mean_gains(np.sum([part.covariance for part in parts], axis=0), feet)
-    means, parts = mean @ values, [_Part(mean @ part.covariance @ mean.T, part.freedom) for part in parts]
-    stds = np.sqrt(np.sum([np.diag(part.covariance) for part in parts], axis=0))
-    beyond = [_beyond_chance(means, parts, slice(place, place + 1)) for place in range(len(means))]
+    weights = np.vstack([mean, np.eye(2 * feet, len(values))])
+    shares = weights @ values
+    parts = [_Part(weights @ part.covariance @ weights.T, part.freedom) for part in parts]
+    stds, axes = np.sqrt(np.sum([np.diag(part.covariance) for part in parts], axis=0)), len(ROTATIONAL_AXES)
+    wrong = np.array([_is_wrong(shares, parts, [place]) for place in range(len(shares))])
+    # Where the feet turn alike, what nothing explains passes for one foot's torques against the other's.
+    wrong[axes:] &= stds[axes:] < APART * np.repeat(stds[:axes], feet)
+    about = wrong[:axes] | wrong[axes:].reshape(axes, feet).any(axis=1)
     # One foot's torques that are off about both axes show less about each than about both together.
-    if max(beyond) <= 1:
-        beyond = [_beyond_chance(means, parts, slice(None))] * len(means)
+    if not about.any():
+        about[:] = _is_wrong(shares, parts, list(range(axes)))
     return {
         axis: TorqueGain(
-            _share(means[place]),
+            _share(shares[place]),
             float(stds[place]),
             {foot: _share(values[place * feet + number]) for number, foot in enumerate(robot.feet)},
         )
         for place, axis in enumerate(ROTATIONAL_AXES)
-        if beyond[place] > 1 and abs(_share(means[place])) > WORTH_SAYING
+        if about[place]
     }
-
-
-def clear_gains(
-    robot: RobotModel, residuals: Sequence[NewtonEulerResidual], stepping: Collection[str], each: Each = map
-) -> dict[Axis, TorqueGain]:
-    """`torque_gains` of the logs in which no foot steps; of others only gains as another unit makes them.
-
-    Where feet land, what the model and the sampling of a blow get wrong comes again with every step, and passes for a
-    gain: 13 % on a healthy walk of a simulated robot. stepping: names of the logs in which feet step.
-    """
-    standing = [one for one in residuals if one.pair.label not in stepping]
-    if standing or not residuals:
-        return torque_gains(robot, standing, each)
-    gains = torque_gains(robot, residuals, each)
-    return {axis: gain for axis, gain in gains.items() if abs(gain.mean) > BEYOND_STEPS}
 
 
 def _mean_gains(covariance: Array, feet: int) -> Array:
@@ -127,16 +117,15 @@ def _mean_gains(covariance: Array, feet: int) -> Array:
     return weights
 
 
-def _beyond_chance(values: Array, parts: Sequence[_Part], some: slice) -> float:
-    """How many times larger `some` values are than their covariance, the sum of `parts`, lets them be by chance."""
-    own = np.array([part.covariance[some, some] for part in parts])
+def _is_wrong(values: Array, parts: Sequence[_Part], some: list[int]) -> bool:
+    """Whether `some` values are worth saying, and larger than their covariance, the sum of `parts`, lets them be."""
+    own = np.array([part.covariance[np.ix_(some, some)] for part in parts])
     weights = np.linalg.solve(own.sum(axis=0), values[some])
     count, variances = len(weights), np.einsum("i,kij,j->k", weights, own, weights)
     freedom = float(pooled_freedom(variances[:, None], np.array([[part.freedom] for part in parts]))[0])
+    limit = count * float(special.fdtri(count, max(freedom - count, 2), 1 - CHANCE))
     return (
-        float(weights @ values[some])
-        / count
-        / float(special.fdtri(count, max(freedom - count, 2), 1 - CHANCE))
+        bool(weights @ values[some] > limit) and max(abs(_share(values[one])) for one in some) > WORTH_SAYING
     )
 
 
@@ -165,6 +154,18 @@ def _positive(products: Array) -> Array:
     return np.asarray((vectors * np.maximum(sizes, 0.0)) @ vectors.T)
 
 
+def _weights(logs: Sequence[MomentErrors], left: Sequence[Array]) -> list[Array]:
+    """Of each log's rows, (6,), by what logs of its kind have `left` (6, n): standing and walking miss differently."""
+    power = {
+        kind: np.mean(
+            np.hstack([own for own, log in zip(left, logs, strict=True) if log.independent == kind]) ** 2,
+            axis=1,
+        )
+        for kind in {log.independent for log in logs}
+    }
+    return [np.asarray(log.independent / power[log.independent]) for log in logs]
+
+
 def solved(logs: Sequence[MomentErrors], prior: Array) -> tuple[Array, list[_Part]]:
     """Coefficients (k,) of the columns, and their covariance: of priors, noise and wrong URDFs.
 
@@ -173,19 +174,21 @@ def solved(logs: Sequence[MomentErrors], prior: Array) -> tuple[Array, list[_Par
     values: Array = np.zeros(len(prior))
     known = np.diag(prior**-2.0)
     for _ in range(2):  # weights from what is left, then the coefficients once more
-        left = [log.missing - values @ log.columns for log in logs]
-        # A filtered signal has two independent samples in a period of its cutoff.
-        weights = 2 * BAND * logs[0].period / np.mean(np.hstack(left) ** 2, axis=1)
-        both = np.tensordot(weights, np.sum([log.products for log in logs], axis=0), 1)
+        weights = _weights(logs, [log.missing - values @ log.columns for log in logs])
+        both = np.sum(
+            [np.tensordot(own, log.products, 1) for own, log in zip(weights, logs, strict=True)], axis=0
+        )
         normal = _positive(both[1:, 1:]) + known
         values = np.asarray(np.linalg.solve(normal, both[1:, 0]))
     inverse, scatter, cosines = np.linalg.inv(normal), 0 * known, 0
-    for log in logs:
+    wrong = np.zeros((len(prior), logs[0].drawn.shape[2]))
+    for weight, log in zip(weights, logs, strict=True):
         missed = log.missing - values @ log.columns
-        scores = np.sum(log.columns * (weights[:, None] * missed)[:, None], axis=0).T
+        scores = np.sum(log.columns * (weight[:, None] * missed)[:, None], axis=0).T
         own, freedom = cosine_covariance(scores, len(scores) * log.period)
         scatter, cosines = scatter + own, cosines + freedom
-    moved = inverse @ np.tensordot(weights, np.sum([log.drawn for log in logs], axis=0), 1)
+        wrong += np.tensordot(weight, log.drawn, 1)
+    moved = inverse @ wrong
     draws = max(moved.shape[1], 1)
     return values, [
         _Part(inverse @ known @ inverse, MOST_FREEDOM),

@@ -29,14 +29,15 @@ TURN = 0.01  # rad, of the IMU, for the slope of what it predicts
 
 @dataclass(frozen=True)
 class MomentErrors:
-    """One log's `columns` (6, k, n), slower than BAND, and what they must add up to, `missing` (6, n).
+    """One log's `columns` (6, k, n), and what they must add up to, `missing` (6, n).
 
     The first axis is the six rows of Newton's law.
 
     The columns are, in this order: torques about pitch of each foot, torques about roll of each foot, what else each
     foot's sensor may get wrong, the IMU's turn about its three axes, and the delays of each foot, of the encoders and
     of the gyroscope. `products` (6, k + 1, k + 1) are those of missing and columns, without what the sensors' noise
-    adds to them; `drawn` (6, k, draws) those of columns and what a wrong URDF adds.
+    adds to them; `drawn` (6, k, draws) those of columns and what a wrong URDF adds; `independent` is the share of
+    samples [each `period` s] that are.
     """
 
     columns: Array
@@ -44,29 +45,41 @@ class MomentErrors:
     products: Array
     drawn: Array
     period: float
+    independent: float
 
 
-def moment_errors(robot: RobotModel, residual: NewtonEulerResidual) -> MomentErrors:
-    """The columns of one log in which Newton's law closes."""
+def moment_errors(robot: RobotModel, residual: NewtonEulerResidual, steps: bool) -> MomentErrors:
+    """The columns of one log in which Newton's law closes; `steps`: whether feet step in it.
+
+    Of a standing robot what is slower than BAND, without what the sensors' noise does to it. A walk moves faster, and
+    so strongly that noise is small beside it.
+    """
     readings = _reading_columns(robot, residual)
     by_gyroscope, by_mount = _imu_slopes(robot, residual)
     slopes = [*-by_mount, *residual.rates, residual.by_encoders, -by_gyroscope]
-    pair, period = residual.pair, residual.pair.period
+    pair, period, count = residual.pair, residual.pair.period, len(readings) + len(slopes)
     moving = np.hstack([*readings, *slopes, *residual.model_errors])
     moving -= low_pass(moving, period, SLOW)  # what postures and drifting zeros do to them
     every = np.hstack([pair.predicted - pair.measured, moving])
-    slow, count = low_pass(every, period, BAND), 1 + len(readings) + len(slopes)
+    if steps:
+        return _errors(_by_row(every), count, period, CUTOFF)
+    slow = low_pass(every, period, BAND)
     # Slopes are smooth: their noise is not white, and small below BAND.
     noisy = 6 * (1 + len(readings))
     noise = _by_row(every[:, :noisy] - slow[:, :noisy])
     stride = max(1, round(1 / (KEPT_PER_BAND * BAND * period)))
-    thin = _by_row(slow[::stride])
-    columns, drawn = thin[:, :count], thin[:, count:]
-    products = columns @ columns.transpose(0, 2, 1)
+    found = _errors(_by_row(slow[::stride]), count, stride * period, BAND)
     share = _below_to_above(period) / stride
-    products[:, : len(readings) + 1, : len(readings) + 1] -= share * (noise @ noise.transpose(0, 2, 1))
-    wrong = columns[:, 1:] @ drawn.transpose(0, 2, 1)
-    return MomentErrors(columns[:, 1:], columns[:, 0], products, wrong, stride * period)
+    found.products[:, : len(readings) + 1, : len(readings) + 1] -= share * (noise @ noise.transpose(0, 2, 1))
+    return found
+
+
+def _errors(rows: Array, count: int, period: float, band: float) -> MomentErrors:
+    """Of what is missing, `count` columns and drawn URDFs, (6, k, n), that hold what is slower than `band` [Hz]."""
+    columns, drawn = rows[:, : count + 1], rows[:, count + 1 :]
+    products, wrong = columns @ columns.transpose(0, 2, 1), columns[:, 1:] @ drawn.transpose(0, 2, 1)
+    # A filtered signal has two independent samples in a period of its cutoff.
+    return MomentErrors(columns[:, 1:], columns[:, 0], products, wrong, period, 2 * band * period)
 
 
 def _by_row(signals: Array) -> Array:

@@ -16,7 +16,7 @@ from plantar.estimation.delay import LEAST_CLOSED, Pair, closes, unexplained
 from plantar.estimation.sensor_delays import Balance
 from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.robot.model import RobotModel
-from plantar.sensors.below_sensor import parameters_below
+from plantar.sensors.below_sensor import below_sensors
 from plantar.sensors.model_errors import drawn_parameter_errors
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.orientation import attitude
@@ -106,8 +106,8 @@ def newton_euler_residual(robot: RobotModel, log: MotionLog) -> NewtonEulerResid
         return equation.inverse_dynamics(motion, parameters)[BASE_ROWS].T
 
     readings = low_pass(wrenches[longest], log.period, CUTOFF)
-    below = parameters_below(robot, equation, motion, readings[inner], period)
-    parameters = model_parameters(robot.floating_model) - below
+    below = below_sensors(robot, equation, motion, readings[inner], period)
+    parameters, readings = model_parameters(robot.floating_model) - below.parameters, readings - below.zeros
     changes = differentiate(readings, log.period)[inner]
     sides = [*carried(readings[inner]), *carried(changes), predicted_by(motion)]
     step = log.period

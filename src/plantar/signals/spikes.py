@@ -6,18 +6,17 @@ After a filter a spike is a hump of the filter's length, that nothing tells from
 from __future__ import annotations
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
 
-from plantar.conventions import FORCE, Array, Mask
-from plantar.logs.motion_log import MotionLog, wrench_columns
+from plantar.conventions import Array, Mask
+from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note, Severity
+from plantar.signals.footfalls import footfalls
 
 FAR_STEPS = 10.0  # usual steps from sample to sample, beyond which a sample does not belong to its neighbours
 NEIGHBOURS = 2  # on either side: a segment of more than two samples is no spike
 LOCAL = 1.0  # s over which steps are compared: an impact among impacts is no spike
 GROUP_GAP = 0.15  # s around a spike, or around a foot that lands or leaves
 FEW = 8  # quick steps around a spike: more make an impact and what it leaves ringing
-LOADED = 0.1  # of a foot's largest force: where it passes this, the foot lands or leaves
 QUICK = 0.9  # quantile of the steps around landings: usual there
 SERIOUS = 0.005  # share of a column that is worth a look at the sensor; coarse sampling makes half as many
 MOST = 0.02  # share of a column that may be spikes: more of them are what this sensor reads
@@ -56,14 +55,11 @@ def _landings(log: MotionLog) -> Mask:
     """Samples (N,) around those at which a foot lands or leaves: the sole's edge knocks there, on every sensor."""
     around = np.zeros(len(log), dtype=bool)
     reach = max(1, round(GROUP_GAP / log.period))
-    sensors = {name[len("wrench.") :].rsplit(".", 2)[0] for name in log.columns if name.startswith("wrench.")}
-    for force_columns in (wrench_columns(sensor)[FORCE] for sensor in sensors):
-        if len(log) > 2 * NEIGHBOURS and all(column in log.columns for column in force_columns):
-            force = np.nan_to_num(np.linalg.norm(log.stack(force_columns), axis=1))
-            # The median of five: no lone sample lands a foot.
-            steady = np.median(sliding_window_view(force, 2 * NEIGHBOURS + 1), axis=1)
-            for change in NEIGHBOURS + np.flatnonzero(np.diff(steady > LOADED * steady.max())):
-                around[max(0, change - reach) : change + reach + 2] = True
+    for sensor in {
+        name[len("wrench.") :].rsplit(".", 2)[0] for name in log.columns if name.startswith("wrench.")
+    }:
+        for change in footfalls(log, sensor):
+            around[max(0, change - reach) : change + reach + 2] = True
     return around
 
 
