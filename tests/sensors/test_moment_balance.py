@@ -176,6 +176,9 @@ def test_the_warning_names_axis_and_size() -> None:
     assert "roll" in note.text
     assert "+10 ± 4 %" in note.text
     assert "up to 12 %" in note.text
+    (note,) = torque_gain_notes({"roll": TorqueGain(1.4, 0.0, {"left": -2.0, "right": 0.0}, True)}).values()
+    assert "by left -200 % and right +0 %" in note.text
+    assert "Check sign, unit and calibration" in note.text
 
 
 @pytest.mark.parametrize(("off", "axes"), [(2.9, set()), (3.2, {"pitch", "roll"}), (3.8, {"pitch", "roll"})])

@@ -31,18 +31,20 @@ APART = 2.0  # times the deviation of the feet's mean: a foot's gain known so we
 STRAINED = 2.0  # deviations of its prior, beyond which a gain is looked for anew
 ANOTHER_UNIT = 10.0  # share: kgf.m for N.m
 CHANCE = 0.01  # that torques without a fault are called wrong about an axis, by deviations that are on the safe side
+REVERSED = -1.5  # share: a torque of the wrong sign reads 200 % too little
 WORTH_SAYING = 0.03  # share: what the force sensors' makers promise is seldom better
 
 
 class TorqueGain(NamedTuple):
     """By which share the feet's torques about an axis read too much on average, with its deviation, and each foot's.
 
-    What belongs to which foot is known far worse than the mean: both feet turn alike.
+    apart: whether each foot's is known about as well as the mean. Where both feet turn alike it is known far worse.
     """
 
     mean: float
     std: float
     shares: Mapping[str, float]
+    apart: bool = False
 
     @property
     def reach(self) -> float:
@@ -87,8 +89,8 @@ def torque_gains(
     stds, axes = np.sqrt(np.sum([np.diag(part.covariance) for part in parts], axis=0)), len(ROTATIONAL_AXES)
     wrong = np.array([_is_wrong(shares, parts, [place]) for place in range(len(shares))])
     # Where the feet turn alike, what nothing explains passes for one foot's torques against the other's.
-    wrong[axes:] &= stds[axes:] < APART * np.repeat(stds[:axes], feet)
-    about = wrong[:axes] | wrong[axes:].reshape(axes, feet).any(axis=1)
+    apart = (stds[axes:].reshape(axes, feet) < APART * stds[:axes, None]).all(axis=1)
+    about = wrong[:axes] | (apart & wrong[axes:].reshape(axes, feet).any(axis=1))
     # One foot's torques that are off about both axes show less about each than about both together.
     if not about.any():
         about[:] = _is_wrong(shares, parts, list(range(axes)))
@@ -97,6 +99,7 @@ def torque_gains(
             _share(shares[place]),
             float(stds[place]),
             {foot: _share(values[place * feet + number]) for number, foot in enumerate(robot.feet)},
+            bool(apart[place]),
         )
         for place, axis in enumerate(ROTATIONAL_AXES)
         if about[place]
@@ -138,11 +141,18 @@ def torque_gain_notes(gains: Mapping[Axis, TorqueGain]) -> dict[Axis, Note]:
     """A warning for each axis about which the feet's torques cannot be right."""
     notes = {}
     for axis, found in gains.items():
+        opposite = any(share < REVERSED for share in found.shares.values())
+        if found.apart or opposite:
+            feet = " and ".join(f"{foot} {100 * share:+.0f} %" for foot, share in found.shares.items())
+            read = f"they read too much by {feet}"
+        else:
+            read = (
+                f"they read {100 * found.mean:+.0f} ± {100 * NORMAL95 * found.std:.0f} % too much on average of the "
+                f"feet (95 %; one foot's alone by up to {100 * found.reach:.0f} %)"
+            )
         text = (
-            f"{axis}: the feet's torques do not give the moments that the robot's motion needs: they read "
-            f"{100 * found.mean:+.0f} ± {100 * NORMAL95 * found.std:.0f} % too much on average of the feet (95 %; one "
-            f"foot's alone by up to {100 * found.reach:.0f} %), and stiffness and damping follow them. Check unit and "
-            "calibration of the torque channels"
+            f"{axis}: the feet's torques do not give the moments that the robot's motion needs: {read}, and stiffness "
+            f"and damping follow them. Check {'sign, ' * opposite}unit and calibration of the torque channels"
         )
         notes[axis] = Note("torque_gain", "warning", text)
     return notes
