@@ -21,6 +21,7 @@ from plantar.robot.model import RobotModel
 IN_AIR = 0.1  # of the weight, that a foot in the air may read
 LANDING = 0.15  # s around contact: the low-pass smears it
 SHORTEST = 1.0  # s in the air: less is hardly more than the noise
+LEAST_NOISE = 1e-3  # N, N.m: a dead sensor reads without any
 REWEIGHTED = 2  # times: forces and torques are weighed by what is left of them
 
 
@@ -80,5 +81,5 @@ def _least_squares(columns: Array, read: Array, sizes: Array) -> Array:
         weighed = weights[:, None] * scaled
         normal = np.tensordot(weighed, scaled, ((0, 1), (0, 1))) + np.eye(len(sizes))
         values = np.linalg.solve(normal, np.tensordot(weighed, read, ((0, 1), (0, 1))))
-        weights = 1 / np.mean((read - scaled @ values) ** 2, axis=0)
+        weights = 1 / (LEAST_NOISE**2 + np.mean((read - scaled @ values) ** 2, axis=0))
     return np.asarray(sizes * values)
