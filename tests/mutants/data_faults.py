@@ -114,4 +114,16 @@ DATA_FAULTS = (
         "model_parameters(robot.floating_model) - below.parameters", "model_parameters(robot.floating_model)",
         ("sensors/test_newton_euler.py", "sensors/test_below_sensor.py", "sensors/test_moment_balance.py"),
     ),
+    Mutant(
+        "sensors/bandwidth.py", "any slope is a filter", "abs(found.slope) < SURE * found.std", "False",
+        ("sensors/test_bandwidth.py",),
+    ),
+    Mutant(
+        "sensors/bandwidth.py", "the other side fades", "1 if found.slope < 0 else -1", "1 if found.slope > 0 else -1",
+        ("sensors/test_bandwidth.py",),
+    ),
+    Mutant(
+        "feet/assess/data_faults.py", "a filter leaves no stiffness",
+        'note.code != FILTERED or row.name != "stiffness"', "True", ("feet/assess/test_data_faults.py",),
+    ),
 )  # fmt: skip

@@ -27,7 +27,7 @@ MADE_CHEAPER = (
     ),
     Mutant(
         "feet/assess/data_faults.py", "a fault of the data takes nothing away",
-        "    if not faults:\n", "    if faults:\n", ("feet/assess/test_data_faults.py",),
+        'if own and row.verdict == "usable":', "if False:", ("feet/assess/test_data_faults.py",),
     ),
     Mutant(
         "feet/foot_fit.py", "a fault of one axis loses the other too",

@@ -140,7 +140,7 @@ def check_gyroscope(name: str, log: MotionLog, orientation: Array, turns: Turns)
             text = f"column {names}: turns against the orientation, which the accelerometer's up does not contradict"
             text += ", or all of the gyroscope turns about the world's axes" if turns.about_world else ""
             inverted = turns.apart["inverted"] < RIGHT_TURN
-            text += ", or the orientation is inverted, world to body" if inverted else ""
+            text += ", or the orientation's quaternion is inverted, world to body" if inverted else ""
             yield Finding("sign", f"{text} (valid: right-handed about the IMU's axes)", True)
             return
     yield from _late(name, log, orientation)

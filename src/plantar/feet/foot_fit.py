@@ -31,6 +31,7 @@ from plantar.notes import Note
 from plantar.results.feet import Diagnosis, Parameter, ValidationRow
 from plantar.results.walk_rows import StanceStiffness, WalkStiffness
 from plantar.robot.guesses import naming_notes
+from plantar.sensors.bandwidth import FILTERED
 from plantar.sensors.moment_balance import torque_gain_notes
 
 ROUNDS = 3  # of leaving outliers out: a large one hides smaller ones
@@ -104,6 +105,7 @@ def _with_axis(found: FootFit, ready: PreparedLogs, fit: AxisFit) -> FootFit:
         # Torque channels that are wrong about one axis are trusted about neither.
         *torque_gain_notes(ready.torque_gains).values(),
         *naming_notes(ready.robot.path.name, ready.robot.guesses),
+        *(note for note in ready.notes if note.code == FILTERED),
     ]
     return FootFit(
         fits=[*found.fits, wide],

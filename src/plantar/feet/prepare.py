@@ -22,6 +22,7 @@ from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note, unique
 from plantar.robot.guesses import guess_notes, naming_notes
 from plantar.robot.model import RobotModel
+from plantar.sensors.bandwidth import fading, fading_notes
 from plantar.sensors.moment_balance import TorqueGain, torque_gain_notes, torque_gains
 from plantar.sensors.sensor_delay import SensorDelay, estimate_wrench_delay, in_time, known_delay
 from plantar.sensors.tilt_error import NO_TILT_ERROR, log_tilt_error
@@ -99,6 +100,7 @@ def prepare_checked(
         *guess_notes(file, robot.guesses),
         *force_gain_notes(robot, forces),
         *torque_gain_notes(torques).values(),
+        *fading_notes(fading(delay.residuals)),
     ]
     notes = [*odd, *(note for one in recordings for note in one.notes), delay.note, *vertical.notes]
     fitted, unseen = tuple(moved[: len(logs)]), tuple(moved[len(logs) :])

@@ -15,6 +15,7 @@ from plantar.feet.prepare import PreparedLogs, prepare_all
 from plantar.notes import Note
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
+from plantar.sensors.bandwidth import FILTERED
 
 
 @pytest.fixture(scope="module")
@@ -51,3 +52,16 @@ def test_what_was_put_right_or_is_only_said_takes_nothing_away(ready: PreparedLo
     for note in (Note("spikes", "warning", "bridged"), Note("sign", "info", "looks odd")):
         assert data_faults(with_note(ready, note).fitted, fit) == []
     assert doubted([], [Note("sign", "warning", "reversed")]) == []
+
+
+def test_a_slow_filter_on_one_side_leaves_the_stiffness(
+    robot: RobotModel, ready: PreparedLogs, healthy: FeetResult
+) -> None:
+    note = Note(FILTERED, "warning", "torques fade")
+    faded = fit_prepared(robot, replace(ready, notes=(*ready.notes, note)))
+    before = {(row.foot, row.axis, row.name): row.verdict for row in healthy.parameters}
+    usable = {key for key, verdict in before.items() if verdict == "usable" and key[1] != "z"}
+    assert {name for _, _, name in usable} >= {"stiffness", "damping"}
+    after = {(row.foot, row.axis, row.name): row for row in faded.parameters}
+    assert all((after[key].verdict == "usable") == (key[2] == "stiffness") for key in usable)
+    assert all("torques fade" in after[key].reason for key in usable if key[2] == "damping")

@@ -10,6 +10,7 @@ from plantar.feet.fit.place_notes import BUSH_TURNED, FAR
 from plantar.feet.recording import Recording
 from plantar.notes import Note
 from plantar.results.feet import Parameter
+from plantar.sensors.bandwidth import FILTERED
 
 # Codes of warnings on a log's signs, frames, times, full scales and load, and on a bush far from its place.
 UNMENDED = frozenset(
@@ -28,12 +29,13 @@ def data_faults(recordings: Sequence[Recording], fit: AxisFit) -> list[Note]:
 
 
 def doubted(rows: Sequence[Parameter], faults: Sequence[Note]) -> list[Parameter]:
-    """The rows, no longer usable where the data have a fault."""
-    if not faults:
-        return list(rows)
-    return [
-        replace(row, verdict="weak", reason=f"a fault of the data: {faults[0].text}", advice=ADVICE)
-        if row.verdict == "usable"
-        else row
-        for row in rows
-    ]
+    """The rows, no longer usable where the data have a fault: a sensor behind a slow filter leaves the stiffness."""
+    found = []
+    for row in rows:
+        own = [note for note in faults if note.code != FILTERED or row.name != "stiffness"]
+        if own and row.verdict == "usable":
+            reason = f"a fault of the data: {own[0].text}"
+            found.append(replace(row, verdict="weak", reason=reason, advice=ADVICE))
+        else:
+            found.append(row)
+    return found
