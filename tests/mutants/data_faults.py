@@ -43,7 +43,7 @@ DATA_FAULTS = (
         "log.period < QUICK * (mean", "log.period < 4 * (mean", ("checks/test_log_checks.py",),
     ),
     Mutant(
-        "sensors/moment_balance.py", "another unit hides behind its prior",
+        "sensors/moment_fit.py", "another unit hides behind its prior",
         "STRAINED = 2.0", "STRAINED = 200.0", ("sensors/test_moment_balance.py",),
     ),
     Mutant(
@@ -125,5 +125,13 @@ DATA_FAULTS = (
     Mutant(
         "feet/assess/data_faults.py", "a filter leaves no stiffness",
         'note.code != FILTERED or row.name != "stiffness"', "True", ("feet/assess/test_data_faults.py",),
+    ),
+    Mutant(
+        "sensors/sensor_turns.py", "a turn that is hardly known is told", "and is_wrong(", "and not is_wrong(",
+        ("sensors/test_sensor_turns.py",),
+    ),
+    Mutant(
+        "sensors/moment_errors.py", "a sensor's place is its turn", "place * own + 4 for", "place * own + 1 for",
+        ("sensors/test_sensor_turns.py",),
     ),
 )  # fmt: skip

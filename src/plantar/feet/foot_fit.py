@@ -105,6 +105,7 @@ def _with_axis(found: FootFit, ready: PreparedLogs, fit: AxisFit) -> FootFit:
         # Torque channels that are wrong about one axis are trusted about neither.
         *torque_gain_notes(ready.torque_gains).values(),
         *naming_notes(ready.robot.path.name, ready.robot.guesses),
+        *(note for foot, note in ready.turned.items() if foot == fit.foot),
         *(note for note in ready.notes if note.code == FILTERED),
     ]
     return FootFit(

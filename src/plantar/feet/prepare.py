@@ -24,7 +24,9 @@ from plantar.robot.guesses import guess_notes, naming_notes
 from plantar.robot.model import RobotModel
 from plantar.sensors.bandwidth import fading, fading_notes
 from plantar.sensors.moment_balance import TorqueGain, torque_gain_notes, torque_gains
+from plantar.sensors.moment_fit import fit_moments
 from plantar.sensors.sensor_delay import SensorDelay, estimate_wrench_delay, in_time, known_delay
+from plantar.sensors.sensor_turns import sensor_turn_notes
 from plantar.sensors.tilt_error import NO_TILT_ERROR, log_tilt_error
 
 Progress = Callable[[str], None]
@@ -35,6 +37,7 @@ class PreparedLogs:
     """Recordings to fit and to validate, the wrenches' delay and the bushes' vertical compliance behind them.
 
     `settings` hold the cutoff that was used. `gain_errors`: see `force_gain_errors`; `torque_gains`: see there.
+    `turned`: by foot, a warning that its force sensor is.
     """
 
     robot: RobotModel
@@ -46,6 +49,7 @@ class PreparedLogs:
     notes: tuple[Note, ...]
     gain_errors: Mapping[str, GainError] = field(default_factory=dict)
     torque_gains: Mapping[Axis, TorqueGain] = field(default_factory=dict)
+    turned: Mapping[str, Note] = field(default_factory=dict)
 
     @property
     def recordings(self) -> tuple[Recording, ...]:
@@ -93,18 +97,22 @@ def prepare_checked(
     forces = force_gain_errors(robot, recordings)
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         stepping = {one.name for one in recordings if any(each is not None for each in one.stances.values())}
-        torques = torque_gains(robot, delay.residuals, stepping, pool.map)
+        moments = fit_moments(robot, delay.residuals, stepping, pool.map)
+    torques, turned = torque_gains(robot, moments), sensor_turn_notes(robot, moments)
     file = robot.path.name
     odd = [
         *naming_notes(file, robot.guesses),
         *guess_notes(file, robot.guesses),
         *force_gain_notes(robot, forces),
         *torque_gain_notes(torques).values(),
+        *turned.values(),
         *fading_notes(fading(delay.residuals)),
     ]
     notes = [*odd, *(note for one in recordings for note in one.notes), delay.note, *vertical.notes]
     fitted, unseen = tuple(moved[: len(logs)]), tuple(moved[len(logs) :])
-    return PreparedLogs(robot, fitted, unseen, settings, delay, vertical, unique(notes), forces, torques)
+    return PreparedLogs(
+        robot, fitted, unseen, settings, delay, vertical, unique(notes), forces, torques, turned
+    )
 
 
 def prepare_unseen(

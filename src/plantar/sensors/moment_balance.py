@@ -6,31 +6,19 @@ and angle shows it. The whole body does: forces, torques and their places must g
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
-from functools import partial
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
-from scipy import special
 
 from plantar.conventions import NORMAL95, ROTATIONAL_AXES, Array, Axis
-from plantar.estimation.intervals import MOST_FREEDOM, cosine_covariance, pooled_freedom
+from plantar.estimation.intervals import MOST_FREEDOM
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
-from plantar.sensors.moment_errors import (
-    LEAST_GAIN,
-    LOOSE,
-    MomentErrors,
-    moment_errors,
-    prior_deviations,
-)
-from plantar.sensors.newton_euler import NewtonEulerResidual
-from plantar.sensors.refined_delays import Each
+from plantar.sensors.moment_errors import LEAST_GAIN
+from plantar.sensors.moment_fit import MomentFit, Part, is_wrong
 
 APART = 2.0  # times the deviation of the feet's mean: a foot's gain known so well is judged by itself
-STRAINED = 2.0  # deviations of its prior, beyond which a gain is looked for anew
-ANOTHER_UNIT = 10.0  # share: kgf.m for N.m
-CHANCE = 0.01  # that torques without a fault are called wrong about an axis, by deviations that are on the safe side
 REVERSED = -1.5  # share: a torque of the wrong sign reads 200 % too little
 WORTH_SAYING = 0.03  # share: what the force sensors' makers promise is seldom better
 
@@ -53,47 +41,26 @@ class TorqueGain(NamedTuple):
         return min(alone, max(map(abs, self.shares.values())))
 
 
-class _Part(NamedTuple):
-    """One part of a covariance, and the degrees of freedom that it is known with."""
-
-    covariance: Array
-    freedom: float
-
-
-def torque_gains(
-    robot: RobotModel, residuals: Sequence[NewtonEulerResidual], stepping: Collection[str], each: Each = map
-) -> dict[Axis, TorqueGain]:
-    """The torques' gains about each axis about which the moments do not balance with gains as they should be.
-
-    A generalised least-squares fit of what Newton's law misses to each foot's torques, beside the forces' gains and
-    places, which may be off by what the robot file says; the deviation holds coloured noise and a wrong URDF.
-
-    stepping: names of the logs in which feet step. `each` maps a function over logs: a pool's map uses all cores.
-    """
-    steps, feet = [one.pair.label in stepping for one in residuals], len(robot.feet)
-    logs = [one for one in each(partial(moment_errors, robot), residuals, steps) if one.columns.size]
-    if not logs:
+def torque_gains(robot: RobotModel, fit: MomentFit | None) -> dict[Axis, TorqueGain]:
+    """The torques' gains about each axis about which the moments do not balance with gains as they should be."""
+    if fit is None:
         return {}
-    prior = prior_deviations(robot)
-    values, parts = solved(logs, prior)
-    if np.abs(values[: 2 * feet]).max() > STRAINED * LOOSE:
-        # Only another unit is so far off: the prior that keeps a gain from passing for other errors would hide it.
-        prior[: 2 * feet] = ANOTHER_UNIT
-        values, parts = solved(logs, prior)
+    values, feet = fit.values, len(robot.feet)
     usual = max(robot.uncertainty.wrench_gain, LEAST_GAIN)
-    parts.append(_Part(usual**2 * np.eye(len(values)), MOST_FREEDOM))
+    parts = [*fit.parts, Part(usual**2 * np.eye(len(values)), MOST_FREEDOM)]
     mean = _mean_gains(np.sum([part.covariance for part in parts], axis=0), feet)
     weights = np.vstack([mean, np.eye(2 * feet, len(values))])
     shares = weights @ values
-    parts = [_Part(weights @ part.covariance @ weights.T, part.freedom) for part in parts]
+    parts = [Part(weights @ part.covariance @ weights.T, part.freedom) for part in parts]
     stds, axes = np.sqrt(np.sum([np.diag(part.covariance) for part in parts], axis=0)), len(ROTATIONAL_AXES)
-    wrong = np.array([_is_wrong(shares, parts, [place]) for place in range(len(shares))])
+    large = np.abs([_share(share) for share in shares]) > WORTH_SAYING
+    wrong = large & [is_wrong(shares, parts, [place]) for place in range(len(shares))]
     # Where the feet turn alike, what nothing explains passes for one foot's torques against the other's.
     apart = (stds[axes:].reshape(axes, feet) < APART * stds[:axes, None]).all(axis=1)
     about = wrong[:axes] | (apart & wrong[axes:].reshape(axes, feet).any(axis=1))
     # One foot's torques that are off about both axes show less about each than about both together.
     if not about.any():
-        about[:] = _is_wrong(shares, parts, list(range(axes)))
+        about[:] = large[:axes].any() and is_wrong(shares, parts, list(range(axes)))
     return {
         axis: TorqueGain(
             _share(shares[place]),
@@ -120,18 +87,6 @@ def _mean_gains(covariance: Array, feet: int) -> Array:
     return weights
 
 
-def _is_wrong(values: Array, parts: Sequence[_Part], some: list[int]) -> bool:
-    """Whether `some` values are worth saying, and larger than their covariance, the sum of `parts`, lets them be."""
-    own = np.array([part.covariance[np.ix_(some, some)] for part in parts])
-    weights = np.linalg.solve(own.sum(axis=0), values[some])
-    count, variances = len(weights), np.einsum("i,kij,j->k", weights, own, weights)
-    freedom = float(pooled_freedom(variances[:, None], np.array([[part.freedom] for part in parts]))[0])
-    limit = count * float(special.fdtri(count, max(freedom - count, 2), 1 - CHANCE))
-    return (
-        bool(weights @ values[some] > limit) and max(abs(_share(values[one])) for one in some) > WORTH_SAYING
-    )
-
-
 def _share(missing: float) -> float:
     """By which share a torque reads too much that must be larger by the share `missing`."""
     return float(-missing / (1 + missing))
@@ -156,52 +111,3 @@ def torque_gain_notes(gains: Mapping[Axis, TorqueGain]) -> dict[Axis, Note]:
         )
         notes[axis] = Note("torque_gain", "warning", text)
     return notes
-
-
-def _positive(products: Array) -> Array:
-    """The nearest products (k, k) that real columns can have: noise taken off may leave less than nothing."""
-    sizes, vectors = np.linalg.eigh(products)
-    return np.asarray((vectors * np.maximum(sizes, 0.0)) @ vectors.T)
-
-
-def _weights(logs: Sequence[MomentErrors], left: Sequence[Array]) -> list[Array]:
-    """Of each log's rows, (6,), by what logs of its kind have `left` (6, n): standing and walking miss differently."""
-    power = {
-        kind: np.mean(
-            np.hstack([own for own, log in zip(left, logs, strict=True) if log.independent == kind]) ** 2,
-            axis=1,
-        )
-        for kind in {log.independent for log in logs}
-    }
-    return [np.asarray(log.independent / power[log.independent]) for log in logs]
-
-
-def solved(logs: Sequence[MomentErrors], prior: Array) -> tuple[Array, list[_Part]]:
-    """Coefficients (k,) of the columns, and their covariance: of priors, noise and wrong URDFs.
-
-    prior: (k,), their deviations before the moments are asked.
-    """
-    values: Array = np.zeros(len(prior))
-    known = np.diag(prior**-2.0)
-    for _ in range(2):  # weights from what is left, then the coefficients once more
-        weights = _weights(logs, [log.missing - values @ log.columns for log in logs])
-        both = np.sum(
-            [np.tensordot(own, log.products, 1) for own, log in zip(weights, logs, strict=True)], axis=0
-        )
-        normal = _positive(both[1:, 1:]) + known
-        values = np.asarray(np.linalg.solve(normal, both[1:, 0]))
-    inverse, scatter, cosines = np.linalg.inv(normal), 0 * known, 0
-    wrong = np.zeros((len(prior), logs[0].drawn.shape[2]))
-    for weight, log in zip(weights, logs, strict=True):
-        missed = log.missing - values @ log.columns
-        scores = np.sum(log.columns * (weight[:, None] * missed)[:, None], axis=0).T
-        own, freedom = cosine_covariance(scores, len(scores) * log.period)
-        scatter, cosines = scatter + own, cosines + freedom
-        wrong += np.tensordot(weight, log.drawn, 1)
-    moved = inverse @ wrong
-    draws = max(moved.shape[1], 1)
-    return values, [
-        _Part(inverse @ known @ inverse, MOST_FREEDOM),
-        _Part(inverse @ scatter @ inverse, cosines),
-        _Part(moved @ moved.T / draws, draws),
-    ]

@@ -94,6 +94,15 @@ def prior_deviations(robot: RobotModel) -> Array:
     return np.concatenate([np.full(2 * feet, LOOSE), of_feet, np.full(3, MOUNT), np.full(feet + 2, LATE)])
 
 
+def turn_columns(robot: RobotModel) -> dict[str, slice]:
+    """By foot, the three columns of its force sensor's turn."""
+    feet, own = len(robot.feet), len(_sensor_errors(robot)[1])
+    starts = {
+        foot: 2 * feet + place * own + 4 for place, foot in enumerate(robot.feet)
+    }  # behind gain and place
+    return {foot: slice(start, start + 3) for foot, start in starts.items()}
+
+
 def _reading_columns(robot: RobotModel, residual: NewtonEulerResidual) -> list[Array]:
     """What gains of torques and other errors of the feet's sensors add to the measured side, (n, 6) each."""
     equation, positions = Equation(robot.floating_model), residual.signals.positions[residual.kept]
