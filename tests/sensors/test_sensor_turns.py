@@ -49,7 +49,7 @@ def test_sensors_that_are_as_the_file_says_are_not_told(twin: RobotModel) -> Non
     assert told(twin, {}, gain=1.1) == {}
 
 
-@pytest.mark.parametrize(("turn", "axis"), [((0.0, 0.0, 0.14), "z"), ((0.08, 0.0, 0.0), "x")])
+@pytest.mark.parametrize(("turn", "axis"), [((0.0, 0.0, 0.14), "z"), ((0.0, 0.0, -0.1), "z")])
 def test_one_that_is_turned_is_told_with_its_turn(
     twin: RobotModel, turn: tuple[float, float, float], axis: str
 ) -> None:
