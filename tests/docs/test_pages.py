@@ -3,19 +3,31 @@
 from __future__ import annotations
 
 import re
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from page_blocks import ROOT, RUN, blocks, shown
-from page_folders import many_formats, own_logs, stand_in, with_robot_file
+from example_folder import make_folder
+from page_blocks import PRINTED, ROOT, RUN, blocks, shown
+from page_folders import many_formats, nothing, own_logs, stand_in, with_robot_file
 from page_runner import Reader, same
 
 DOCS = ROOT / "docs"
 PAGES = [ROOT / "README.md", *sorted(DOCS.rglob("*.md"))]
 # Kinds of blocks that are shown and not typed. YAML and JSON have tests of their own.
-SHOWN = ("text", "yaml", "json", "{toctree}", "{eval-rst}", "{commands}", "{include}")
+SHOWN = (
+    PRINTED,
+    "text",
+    "yaml",
+    "json",
+    "{toctree}",
+    "{eval-rst}",
+    "{commands}",
+    "{include}",
+    "{literalinclude}",
+)
 
 # Pages that start from files of the reader: what they find in their folder.
 OWN: dict[str, Callable[[Path], object]] = {
@@ -25,9 +37,28 @@ OWN: dict[str, Callable[[Path], object]] = {
     "docs/robot_file.md": own_logs,
     "docs/walking.md": with_robot_file,
     "docs/walks.md": with_robot_file,
+    "docs/how_to/install.md": nothing,
+    "docs/how_to/solref.md": nothing,
+    "docs/how_to/regressors.md": nothing,
 }
+# Pages that go on from a robot, logs and results: those of the examples in docstrings.
+RESULTS = (
+    "docs/how_to/randomisation.md",
+    "docs/how_to/stabiliser.md",
+    "docs/how_to/observer.md",
+    "docs/how_to/openhrp.md",
+    "docs/how_to/excitation.md",
+    "docs/how_to/identifiability.md",
+    "docs/how_to/joint_friction.md",
+)
 # Pages that make their logs by `plantar simulate`: here on small made logs, by `make docs-test` on the twin.
-TWIN: tuple[str, ...] = ()
+TWIN = (
+    "docs/start.md",
+    "docs/tutorials/own_robot.md",
+    "docs/tutorials/walking.md",
+    "docs/tutorials/mujoco.md",
+    "docs/tutorials/choose_motions.md",
+)
 # Whose snippets another test runs, or why they do not run.
 ELSEWHERE = {
     "docs/python.md": "tests/test_front_door.py",
@@ -36,13 +67,19 @@ ELSEWHERE = {
 }
 
 
+def assert_shown(reader: Reader) -> None:
+    for block, outputs in reader.outputs.items():
+        for one, output in zip(shown(block), outputs, strict=True):
+            assert same(one.output, output), f"{block.where}: {one.command}\n{output}"
+
+
 def typed(page: Path) -> bool:
     return any(block.kind in RUN for block in blocks(page))
 
 
 def test_every_page_with_something_to_type_is_run() -> None:
     pages = {str(page.relative_to(ROOT)) for page in PAGES if typed(page)}
-    assert pages == {*OWN, *TWIN, *ELSEWHERE}
+    assert pages == {*OWN, *RESULTS, *TWIN, *ELSEWHERE}
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
@@ -60,6 +97,19 @@ def test_every_block_says_what_it_is(page: Path) -> None:
 @pytest.mark.parametrize("page", OWN)
 def test_a_page_works_on_the_readers_own_files(page: str, tmp_path: Path) -> None:
     OWN[page](tmp_path)
+    reader = Reader(tmp_path, stand_in)
+    reader.read(ROOT / page)
+    assert_shown(reader)
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return make_folder(tmp_path_factory.mktemp("results"))
+
+
+@pytest.mark.parametrize("page", RESULTS)
+def test_a_page_works_on_a_readers_results(page: str, results: Path, tmp_path: Path) -> None:
+    shutil.copytree(results, tmp_path, dirs_exist_ok=True)
     Reader(tmp_path, stand_in).read(ROOT / page)
 
 
@@ -73,9 +123,7 @@ def test_a_page_works_on_small_made_logs(page: str, tmp_path: Path) -> None:
 def test_a_page_shows_what_the_twin_gives(page: str, tmp_path: Path) -> None:
     reader = Reader(tmp_path)
     reader.read(ROOT / page)
-    for block, outputs in reader.outputs.items():
-        for one, output in zip(shown(block), outputs, strict=True):
-            assert same(one.output, output), f"{block.where}: {one.command}\n{output}"
+    assert_shown(reader)
 
 
 def test_a_command_that_fails_is_told(tmp_path: Path) -> None:

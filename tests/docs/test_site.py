@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
+import inspect
 import os
 import re
 import subprocess
 import sys
+import tomllib
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
+import yaml
 
 import plantar
 from check_site import faults
 from command_reference import parameters, reference, section
 from plantar.cli import COMMANDS
+from plantar.results import feet
 from plantar.results.dynamics import DynamicsResult
 from plantar.results.feet import FeetResult
 
@@ -115,3 +119,36 @@ def test_nothing_of_the_recipe_needs_the_network() -> None:
     recipe = (DOCS / "conf.py").read_text()
     assert "http" not in recipe
     assert "intersphinx" not in recipe
+
+
+def test_every_key_of_a_result_is_documented() -> None:
+    text = (DOCS / "reference" / "result_file.md").read_text()
+    documented = set(re.findall(r"`(\w+)`", text))
+    for kind in (FeetResult, DynamicsResult):
+        for key in re.findall(r'"(\w+)":|content\["(\w+)"\]', inspect.getsource(kind.to_dict)):
+            assert {*key} - {""} <= documented, key
+    assert set(feet._WALKING) <= documented
+
+
+def test_versions_agree() -> None:
+    """One version, in the package; what else has to name it says the same."""
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text())
+    assert citation["version"] == plantar.__version__
+    assert re.search(
+        rf"^## {re.escape(plantar.__version__)}\b", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE
+    )
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    assert project["dynamic"] == ["version"]
+    assert "version" not in project
+
+
+def test_questions_lead_to_every_how_to_page() -> None:
+    text = (DOCS / "how_to" / "questions.md").read_text()
+    pages = {path.name for path in (DOCS / "how_to").glob("*.md")} - {"questions.md", "install.md"}
+    assert pages == set(re.findall(r"\]\((\w+\.md)\)", text))
+
+
+def test_issue_forms_ask_for_the_bug_report() -> None:
+    forms = [path.read_text() for path in (ROOT / ".github" / "ISSUE_TEMPLATE").glob("*.md")]
+    assert len(forms) == 3
+    assert sum("plantar bug-report" in form for form in forms) == 2

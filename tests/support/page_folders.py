@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import argparse
+import json
 from functools import cache
 from pathlib import Path
 
 import mujoco
 import numpy as np
 
-from biped import record, sway
-from biped_robot import URDF, Frame, Mounting, make_robot, write_robot
+from biped import TRUTH, record, sway
+from biped_robot import FEET, URDF, Frame, Mounting, make_robot, write_robot
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.save import save_log
 from plantar.motions import CAMPAIGN, DEMO
@@ -39,6 +40,10 @@ def stepping(name: str, seed: int) -> MotionLog:
             if part == "force":
                 changed[right] = log.columns[right] + np.where(loaded, 0.0, log.columns[left])
     return log.with_columns(changed)
+
+
+def nothing(folder: Path) -> None:
+    """For pages that need no file."""
 
 
 def own_logs(folder: Path) -> None:
@@ -88,6 +93,11 @@ def stand_in(words: list[str]) -> None:
     robot = write_robot(given.out, MOUNTING)
     if given.robot is not None:
         robot.rename(given.out / given.robot.name)
+    (given.out / "hrp2.urdf").write_text(URDF.replace('"torso"', '"CHEST_LINK1"'))
+    bushes: dict[str, dict[str, float]] = {foot: {} for foot in FEET}
+    for (foot, axis), law in TRUTH.items():
+        bushes[foot] |= {f"{axis}_stiffness": law.stiffness, f"{axis}_damping": law.damping}
     for seed, name in enumerate(names):
         made = stepping(name, seed) if name.startswith("Walk") else swaying(name, seed)
         save_log(made, given.out / f"{name}.parquet")
+        (given.out / f"{name}.truth.json").write_text(json.dumps({"bushes": bushes}))

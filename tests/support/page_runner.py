@@ -6,7 +6,6 @@ import contextlib
 import doctest
 import io
 import os
-import re
 import shlex
 import subprocess
 import sys
@@ -16,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from command_line import run
-from page_blocks import Block, blocks
+from page_blocks import Block, blocks, cut
 
 # Commands that set a machine up; a test of the documents does not.
 SET_UP = ("pip", "git", "make", "python3", "cd")
@@ -29,7 +28,7 @@ class Reader:
     """Somebody who types what a page says, in `folder`.
 
     `simulate` takes the words behind `plantar simulate` where the twin shall not play; `names` is what the page's
-    Python snippets have defined so far; `outputs` is what commands of `console` blocks printed, by block.
+    Python snippets have defined so far; `outputs` is what was printed that the page shows, by block.
     """
 
     folder: Path
@@ -39,20 +38,33 @@ class Reader:
 
     def read(self, page: Path) -> None:
         """Run every block of the page that is meant to be typed."""
+        printed = ""
         with inside(self.folder):
             for block in blocks(page):
                 if block.kind == "python":
-                    exec(compile(block.text, block.where, "exec"), self.names)
+                    printed = self._python(block)
+                elif block.kind == "output":
+                    self.outputs[block] = [printed]
                 elif block.kind == "sh":
                     for command in block.commands():
                         self.type(command, block)
                 elif block.kind == "console":
                     self.outputs[block] = [self.type(command, block) for command in block.commands()]
 
+    def _python(self, block: Block) -> str:
+        """What a snippet prints."""
+        printed = io.StringIO()
+        with contextlib.redirect_stdout(printed):
+            exec(compile(block.text, block.where, "exec"), self.names)
+        return printed.getvalue()
+
     def type(self, command: str, block: Block) -> str:
         """What one command prints on stdout; AssertionError with its stderr where it fails."""
         line, _, target = command.partition(" > ")
-        words = [match for word in shlex.split(line) for match in globbed(word)]
+        quoted = {word[1:-1] for word in shlex.split(line, posix=False) if word[0] in "'\""}
+        words = [
+            match for word in shlex.split(line) for match in ([word] if word in quoted else globbed(word))
+        ]
         if words[0] in SET_UP:
             return ""
         printed, complained = io.StringIO(), io.StringIO()
@@ -90,12 +102,7 @@ def globbed(word: str) -> list[str]:
 
 def same(expected: str, printed: str) -> bool:
     """Whether an output is the one shown; `...` stands for anything, spaces count as one."""
-    return doctest.OutputChecker().check_output(tidy(expected), tidy(printed), ELLIPSIS)
-
-
-def tidy(text: str) -> str:
-    """Lines without the spaces at their ends, no empty lines at either end."""
-    return re.sub(r"[ \t]+$", "", text, flags=re.MULTILINE).strip("\n") + "\n"
+    return doctest.OutputChecker().check_output(cut(expected, None), cut(printed, None), ELLIPSIS)
 
 
 @contextlib.contextmanager
