@@ -14,7 +14,7 @@ DOCUMENTING := .venv/.documenting
 export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: demo test mutants check docs docs-test docs-outputs format clean
+.PHONY: demo test mutants check docs docs-test docs-outputs wheel format clean
 
 demo: $(RUNNING)
 	$(BIN)/plantar demo
@@ -46,6 +46,10 @@ docs-test: $(INSTALLED)
 # The outputs that those pages show, written anew.
 docs-outputs: $(INSTALLED)
 	$(BIN)/python tests/docs/write_outputs.py
+
+# A release: sdist and wheel into dist, the wheel tried in a fresh environment without a compiler.
+wheel:
+	$(PYTHON) tests/release/try_wheel.py dist
 
 format: $(INSTALLED)
 	$(BIN)/ruff check --fix .
