@@ -12,6 +12,7 @@ import numpy as np
 
 from biped import TRUTH, record, sway
 from biped_robot import FEET, URDF, Frame, Mounting, make_robot, write_robot
+from page_blocks import ROOT, blocks
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.save import save_log
 from plantar.motions import CAMPAIGN, DEMO
@@ -76,6 +77,30 @@ def with_robot_file(folder: Path) -> None:
         save_log(stepping(name, seed), folder / f"{name}.csv")
 
 
+def other_names(folder: Path) -> None:
+    """A table of a logger that has names, units and an order of its own, and the map that the page shows."""
+    own_logs(folder)
+    page = ROOT / "docs" / "how_to" / "other_names.md"
+    (folder / "columns.yaml").write_text(next(block.text for block in blocks(page) if block.kind == "yaml"))
+    log = swaying("logger", 1)
+    renamed = {"time": 1e3 * log.time}
+    for name, values in log.columns.items():
+        kind, sensor, *rest = name.split(".")
+        if kind == "wrench":
+            renamed[f"{sensor[0]}f_{'f' if rest[0] == 'force' else 'm'}{rest[1]}"] = values
+        elif rest[0] == "orientation":
+            renamed[f"q{rest[1]}"] = values
+        elif rest[0] == "angular_velocity":
+            renamed[f"g{rest[1]}"] = values
+        elif name in ("joint.left_ankle_pitch.position", "joint.left_ankle_roll.position"):
+            renamed[f"q_{sensor}"] = np.degrees(values)
+        elif rest[0] != "linear_acceleration":
+            renamed[name] = values
+    header = ",".join(["stamp", *list(renamed)[1:]])
+    rows = np.column_stack(list(renamed.values()))
+    np.savetxt(folder / "logger.csv", rows, delimiter=",", header=header, comments="", fmt="%.10g")
+
+
 def stand_in(words: list[str]) -> None:
     """`plantar simulate` without the twin: the made robot's logs under the motions' names, and its robot file."""
     asked = argparse.ArgumentParser(exit_on_error=True)
@@ -90,9 +115,7 @@ def stand_in(words: list[str]) -> None:
     given = asked.parse_args(words)
     assert given.robot is None or given.robot.is_file()
     names = {"campaign": CAMPAIGN, "demo": DEMO}.get(given.motion, tuple(given.motion.split(",")))
-    robot = write_robot(given.out, MOUNTING)
-    if given.robot is not None:
-        robot.rename(given.out / given.robot.name)
+    write_robot(given.out, MOUNTING)
     (given.out / "hrp2.urdf").write_text(URDF.replace('"torso"', '"CHEST_LINK1"'))
     bushes: dict[str, dict[str, float]] = {foot: {} for foot in FEET}
     for (foot, axis), law in TRUTH.items():

@@ -69,23 +69,23 @@ class Reader:
             return ""
         printed, complained = io.StringIO(), io.StringIO()
         with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(complained):
-            code = self._done(words, complained)
+            code = self._done(words, line, complained)
         assert code == 0, f"{block.where}: {command}\n{complained.getvalue()}"
         if target:
             Path(target.strip()).write_text(printed.getvalue())
             return ""
         return printed.getvalue()
 
-    def _done(self, words: list[str], complained: io.StringIO) -> int:
+    def _done(self, words: list[str], line: str, complained: io.StringIO) -> int:
         if words[:2] == ["plantar", "simulate"] and self.simulate is not None:
             self.simulate(words[2:])
             return 0
         if words[0] == "plantar":
             return run(*words[1:])
-        program = [
-            sys.executable if word == "python" and not place else word for place, word in enumerate(words)
-        ]
-        done = subprocess.run(program, capture_output=True, text=True, check=False)
+        path = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
+        done = subprocess.run(
+            line, shell=True, capture_output=True, text=True, check=False, env={**os.environ, "PATH": path}
+        )
         print(done.stdout, end="")
         print(done.stderr, end="", file=complained)
         return done.returncode
