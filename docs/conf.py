@@ -14,7 +14,13 @@ author = "the authors of plantar"
 version = release = __version__
 language = "en"
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "command_reference"]
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "command_reference",
+    "raised_errors",
+]
 exclude_patterns = ["extensions"]
 
 myst_heading_anchors = 4  # links such as formats.md#large-files, as in the repository's own view of the pages
@@ -22,6 +28,7 @@ suppress_warnings = ["myst.xref_ambiguous"]
 
 default_role = "code"  # docstrings quote code with single backticks, as the pages do
 napoleon_numpy_docstring = False
+napoleon_use_rtype = False  # "Returns" are sentences, not types
 autodoc_preserve_defaults = True
 autodoc_typehints = "description"
 autodoc_typehints_description_target = "documented"

@@ -22,6 +22,7 @@ from plantar.cli import COMMANDS
 from plantar.results import feet
 from plantar.results.dynamics import DynamicsResult
 from plantar.results.feet import FeetResult
+from raised_errors import line_for_each
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
@@ -151,3 +152,24 @@ def test_issue_forms_ask_for_the_bug_report() -> None:
     forms = [path.read_text() for path in (ROOT / ".github" / "ISSUE_TEMPLATE").glob("*.md")]
     assert len(forms) == 3
     assert sum("plantar bug-report" in form for form in forms) == 2
+
+
+def test_each_error_has_a_line_of_its_own() -> None:
+    text = """Read.
+
+    Raises:
+        RobotError: the file is wrong. LogError, DataError: a log
+            cannot be used.
+        Each is one line.
+
+    Example:
+        >>> 1
+    """
+    lines = line_for_each(inspect.cleandoc(text).splitlines())
+    assert lines[2:6] == [
+        "Raises:",
+        "    RobotError: the file is wrong.",
+        "    LogError, DataError: a log cannot be used. Each is one line.",
+        "",
+    ]
+    assert line_for_each(["Nothing", "here."]) == ["Nothing", "here."]
