@@ -18,7 +18,7 @@ from plantar.logs.save import save_log
 from plantar.motions import CAMPAIGN, DEMO
 
 MOUNTING = Mounting(wrench=Frame())  # force sensors at a link of the URDF, as drivers say in their messages
-SECONDS = 12.0
+SECONDS = 8.0
 STEP, STANDS = 1.5, 1.0  # s, of a step and of its stance
 
 
