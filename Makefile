@@ -8,12 +8,13 @@ JOBS ?= 2
 BIN := .venv/bin
 INSTALLED := .venv/.installed
 RUNNING := .venv/.running
+DOCUMENTING := .venv/.documenting
 
 # Small problems on few cores: threads inside threads only get in each other's way.
 export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: demo test mutants check format clean
+.PHONY: demo test mutants check docs docs-test docs-outputs wheel format clean
 
 demo: $(RUNNING)
 	$(BIN)/plantar demo
@@ -30,7 +31,25 @@ check: $(INSTALLED)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
-	$(BIN)/python -m pytest tests/test_architecture.py tests/test_docs.py
+	$(BIN)/python -m pytest tests/test_architecture.py tests/test_docs.py tests/docs/test_site.py
+
+# The site as it is published: out/site/index.html opens from disk. A warning or a dead link stops it.
+docs: $(DOCUMENTING)
+	rm -rf out/site
+	$(BIN)/python -m sphinx -E -W --keep-going -q -b html docs out/site
+	$(BIN)/python docs/extensions/check_site.py out/site
+
+# Commands and snippets of the pages that play the twin: some minutes, so `make test` runs them on small made logs only.
+docs-test: $(INSTALLED)
+	$(BIN)/python -m pytest -m twin_pages tests/docs
+
+# The outputs that those pages show, written anew.
+docs-outputs: $(INSTALLED)
+	$(BIN)/python tests/docs/write_outputs.py
+
+# A release: sdist and wheel into dist, the wheel tried in a fresh environment without a compiler.
+wheel:
+	$(PYTHON) tests/release/try_wheel.py dist
 
 format: $(INSTALLED)
 	$(BIN)/ruff check --fix .
@@ -51,4 +70,9 @@ $(INSTALLED): pyproject.toml CMakeLists.txt $(wildcard cpp/*)
 	@$(PYTHON) -c '$(NEW_ENOUGH)' || { echo "plantar needs Python >= 3.11: make PYTHON=/path/to/python3" >&2; exit 1; }
 	test -x $(BIN)/python || $(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	touch $@
+
+# What builds the site is no part of `.[dev]`: neither tests nor checks need it.
+$(DOCUMENTING): $(INSTALLED)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'
 	touch $@

@@ -50,7 +50,7 @@ def test_links_lead_somewhere(document: Path) -> None:
 def test_commands_in_documents_exist(document: Path) -> None:
     verbs = {verb.split()[0] for verb in COMMANDS}
     for block in re.findall(r"```.*?```|`plantar [^`]*`", document.read_text(), re.DOTALL):
-        for verb in re.findall(r"^[`$ ]*plantar ([a-z]+)", block, re.MULTILINE):
+        for verb in re.findall(r"^[`$ ]*plantar ([a-z][a-z-]*)", block, re.MULTILINE):
             assert verb in verbs, verb
 
 
@@ -93,8 +93,14 @@ def test_every_key_of_the_robot_file_is_documented() -> None:
 
 
 def test_changes_are_listed_newest_first() -> None:
-    versions = re.findall(r"^## (\d+)\.(\d+)\.(\d+)", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)
+    versions = re.findall(
+        r"^## \[(\d+)\.(\d+)\.(\d+)\] - (?:unreleased|\d{4}-\d\d-\d\d)$",
+        (ROOT / "CHANGELOG.md").read_text(),
+        re.MULTILINE,
+    )
     assert versions
+    kinds = re.findall(r"^### (.+)$", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)
+    assert {*kinds} <= {"Added", "Changed", "Deprecated", "Removed", "Fixed", "Security"}
     for newer, older in pairwise([tuple(map(int, version)) for version in versions]):
         assert newer > older
 

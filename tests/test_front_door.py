@@ -147,6 +147,14 @@ def test_the_document_runs_and_names_every_residual_column(inside: Path) -> None
     assert sorted(columns) == sorted(names["result"].residuals.column_names)
 
 
+def test_the_snippets_of_the_report_run(inside: Path) -> None:
+    names: dict[str, Any] = {}
+    for block in re.findall(r"```python\n(.*?)```", (ROOT / "docs" / "report.md").read_text(), re.DOTALL):
+        exec(compile(block, "docs/report.md", "exec"), names)
+    assert (inside / "out" / "inertia" / "report.html").is_file()
+    assert names["pictures"]
+
+
 def test_paths_and_objects_give_the_same(inside: Path) -> None:
     robot = plantar.load_robot("robot.yaml")
     by_object = plantar.identify_feet(robot, [plantar.open_log("sway_1.csv", robot)], settings=KNOWN)

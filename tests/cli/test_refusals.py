@@ -19,6 +19,7 @@ from command_line import refused, run
         ("time,joint.a.position\n0,1\n0,2\n0,3\n", "does not increase"),
         ("time,joint.a.position\n0,1\n0.1,2\n0.2,3\n", "joint_names"),
         ("time,joint.a.position\n0,1\n0.1,x\n", "value 'x'"),
+        ("stamp,joint.a.position\n0,1\n0.1,2\n", "`columns` in the robot file"),
     ],
 )
 def test_bad_logs_are_one_line_and_leave_nothing(

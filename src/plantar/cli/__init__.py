@@ -26,6 +26,7 @@ COMMANDS = {
     "report": ("report", "Write the result's report.html again."),
     "convert": ("convert", "A log in another format."),
     "init": ("init", "A first robot file from a URDF and, if given, logs; every guess is marked."),
+    "bug-report": ("bug_report", "What to send with a question: versions, settings, what inspect says."),
 }
 SEVERAL = "--validate"  # takes one log or more
 GROUPS = {"identify": "Identify feet, inertial parameters or joints from logs."}

@@ -55,7 +55,7 @@ def _print(out: Console, log: LogSummary, columns: bool) -> None:
     sampling = log.sampling
     out.print(
         f"\n[bold]{escape(log.name)}[/]: {log.duration:.1f} s, {log.samples} samples at {sampling.rate:.4g} Hz, "
-        f"jitter {1e3 * sampling.jitter:.2g} ms, {len(sampling.gaps)} gaps, {len(log.columns)} columns"
+        f"jitter {round(1e3 * sampling.jitter, 6):.2g} ms, {len(sampling.gaps)} gaps, {len(log.columns)} columns"
     )
     for start, end in sampling.gaps[:5]:
         out.print(f"  gap from {start:.3f} to {end:.3f} s")

@@ -22,7 +22,7 @@ class InertialParameter:
 @dataclass(frozen=True)
 class BaseParameter:
     """One minimal parameter; std and interval95 (Student's) count coloured residuals and the regularisation;
-    relative_std_percent is 100·std/|value|."""
+    relative_std_percent is 100·std over the value without its sign."""
 
     expression: str
     value: float

@@ -80,7 +80,14 @@ def _known(names: Sequence[str], path: Path) -> list[str]:
             raise LogError(located("stands twice in the header", path=path, column=name.rstrip("\0")))
         seen.add(name)
     if "time" not in seen:
-        raise LogError(located("is missing", path=path, column="time", valid="a first column 'time' [s]"))
+        raise LogError(
+            located(
+                "is missing",
+                path=path,
+                column="time",
+                valid="a first column 'time' [s], or `columns` in the robot file",
+            )
+        )
     return [name for name in names if name == "time" or COLUMN.fullmatch(name)]
 
 

@@ -1,0 +1,126 @@
+"""What a reader of a page has in front of him: a small made robot, and logs under the names that the page uses."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from functools import cache
+from pathlib import Path
+
+import mujoco
+import numpy as np
+
+from biped import TRUTH, record, sway
+from biped_robot import FEET, URDF, Frame, Mounting, make_robot, write_robot
+from page_blocks import ROOT, blocks
+from plantar.logs.motion_log import MotionLog
+from plantar.logs.save import save_log
+from plantar.motions import CAMPAIGN, DEMO
+
+MOUNTING = Mounting(wrench=Frame())  # force sensors at a link of the URDF, as drivers say in their messages
+SECONDS = 8.0
+STEP, STANDS = 1.5, 1.0  # s, of a step and of its stance
+
+
+@cache
+def swaying(name: str, seed: int) -> MotionLog:
+    """The robot sways over both feet."""
+    return record(sway(name, seed, duration=SECONDS), MOUNTING)
+
+
+@cache
+def stepping(name: str, seed: int) -> MotionLog:
+    """The same with the left foot lifted for a third of each step; the right one carries what it does not."""
+    log = swaying(name, seed)
+    loaded = np.mod(log.time, STEP) < STANDS
+    changed = {}
+    for part in ("force", "torque"):
+        for axis in "xyz":
+            left, right = (f"wrench.{foot}.{part}.{axis}" for foot in ("left", "right"))
+            changed[left] = np.where(loaded, log.columns[left], 0.0)
+            if part == "force":
+                changed[right] = log.columns[right] + np.where(loaded, 0.0, log.columns[left])
+    return log.with_columns(changed)
+
+
+def nothing(folder: Path) -> None:
+    """For pages that need no file."""
+
+
+def own_logs(folder: Path) -> None:
+    """A URDF and bags, and no robot file yet."""
+    known = make_robot(folder / "known", MOUNTING)
+    for name in ("robot.urdf", "talos.urdf"):
+        (folder / name).write_text(URDF)
+    scene = mujoco.MjModel.from_xml_string(URDF)
+    mujoco.mj_saveLastXML(str(folder / "robot.xml"), scene)
+    for seed, name in enumerate(("sway_1", "sway_2", "squat", "another_day"), start=1):
+        save_log(swaying(name, seed), folder / f"{name}.mcap", known)
+
+
+def many_formats(folder: Path) -> None:
+    """Beside the bags tables."""
+    own_logs(folder)
+    for seed, name in enumerate(("one", "two"), start=1):
+        save_log(swaying(name, seed), folder / f"{name}.csv")
+
+
+def with_robot_file(folder: Path) -> None:
+    """Robot files and tables."""
+    own_logs(folder)
+    for name in ("robot", "talos"):
+        written = write_robot(folder / name, MOUNTING)
+        (folder / f"{name}.yaml").write_text(written.read_text().replace("biped.urdf", f"{name}.urdf"))
+    for seed, name in enumerate(("sway_1", "sway_2", "squat"), start=1):
+        save_log(swaying(name, seed), folder / f"{name}.csv")
+    for seed, name in enumerate(("walk_1", "walk_2", "other_walk"), start=1):
+        save_log(stepping(name, seed), folder / f"{name}.csv")
+
+
+def other_names(folder: Path) -> None:
+    """A table of a logger that has names, units and an order of its own, and the map that the page shows."""
+    own_logs(folder)
+    page = ROOT / "docs" / "how_to" / "other_names.md"
+    (folder / "columns.yaml").write_text(next(block.text for block in blocks(page) if block.kind == "yaml"))
+    log = swaying("logger", 1)
+    renamed = {"time": 1e3 * log.time}
+    for name, values in log.columns.items():
+        kind, sensor, *rest = name.split(".")
+        if kind == "wrench":
+            renamed[f"{sensor[0]}f_{'f' if rest[0] == 'force' else 'm'}{rest[1]}"] = values
+        elif rest[0] == "orientation":
+            renamed[f"q{rest[1]}"] = values
+        elif rest[0] == "angular_velocity":
+            renamed[f"g{rest[1]}"] = values
+        elif name in ("joint.left_ankle_pitch.position", "joint.left_ankle_roll.position"):
+            renamed[f"q_{sensor}"] = np.degrees(values)
+        elif rest[0] != "linear_acceleration":
+            renamed[name] = values
+    header = ",".join(["stamp", *list(renamed)[1:]])
+    rows = np.column_stack(list(renamed.values()))
+    np.savetxt(folder / "logger.csv", rows, delimiter=",", header=header, comments="", fmt="%.10g")
+
+
+def stand_in(words: list[str]) -> None:
+    """`plantar simulate` without the twin: the made robot's logs under the motions' names, and its robot file."""
+    asked = argparse.ArgumentParser(exit_on_error=True)
+    asked.add_argument("motion")
+    asked.add_argument("--out", type=Path, required=True)
+    for option in ("--preset", "--bush"):
+        asked.add_argument(option)
+    asked.add_argument("--robot", type=Path)
+    for option in ("--seed", "--sway", "--vertical", "--apart", "--period"):
+        asked.add_argument(option, type=float)
+    asked.add_argument("-q", "--quiet", action="store_true")
+    given = asked.parse_args(words)
+    assert given.robot is None or given.robot.is_file()
+    names = {"campaign": CAMPAIGN, "demo": DEMO}.get(given.motion, tuple(given.motion.split(",")))
+    write_robot(given.out, MOUNTING)
+    (given.out / "hrp2.urdf").write_text(URDF.replace('"torso"', '"CHEST_LINK1"'))
+    bushes: dict[str, dict[str, float]] = {foot: {} for foot in FEET}
+    for (foot, axis), law in TRUTH.items():
+        bushes[foot] |= {f"{axis}_stiffness": law.stiffness, f"{axis}_damping": law.damping}
+    for seed, name in enumerate(names):
+        made = stepping(name, seed) if name.startswith("Walk") else swaying(name, seed)
+        save_log(made, given.out / f"{name}.parquet")
+        (given.out / f"{name}.truth.json").write_text(json.dumps({"bushes": bushes}))
