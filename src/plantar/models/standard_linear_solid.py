@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import ClassVar
 
 import numpy as np
-from scipy.linalg import solve_banded
 
 from plantar.conventions import Array
 from plantar.models.bush_model import BESIDE, BushModel, BushMotion, reach
@@ -67,6 +66,8 @@ def _decaying(decay: float, added: Array, first: float) -> Array:
 
     A filter would do it too, but takes half a second to import.
     """
+    from scipy.linalg import solve_banded  # costs start-up
+
     bands = np.ones((2, len(added)))
     bands[1] = -decay
     right = added.copy()

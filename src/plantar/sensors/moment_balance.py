@@ -11,10 +11,10 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from scipy import special
 
 from plantar.conventions import NORMAL95, ROTATIONAL_AXES, Array, Axis
-from plantar.estimation.intervals import MOST_FREEDOM, cosine_covariance, pooled_freedom
+from plantar.estimation.intervals import cosine_covariance, pooled_freedom
+from plantar.estimation.quantiles import MOST_FREEDOM, fisher_quantile
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
 from plantar.sensors.moment_errors import (
@@ -133,11 +133,8 @@ def _beyond_chance(values: Array, parts: Sequence[_Part], some: slice) -> float:
     weights = np.linalg.solve(own.sum(axis=0), values[some])
     count, variances = len(weights), np.einsum("i,kij,j->k", weights, own, weights)
     freedom = float(pooled_freedom(variances[:, None], np.array([[part.freedom] for part in parts]))[0])
-    return (
-        float(weights @ values[some])
-        / count
-        / float(special.fdtri(count, max(freedom - count, 2), 1 - CHANCE))
-    )
+    limit = fisher_quantile(1 - CHANCE, count, max(freedom - count, 2))
+    return float(weights @ values[some]) / count / limit
 
 
 def _share(missing: float) -> float:
