@@ -9,7 +9,7 @@ import numpy as np
 
 from plantar.contact.deflection import bush_states, relative_pose
 from plantar.contact.imu_turn import turned
-from plantar.conventions import Array
+from plantar.conventions import Array, Mask
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
 
@@ -17,8 +17,11 @@ RATE = 20.0  # Hz, at which heights are computed: a standing robot moves below 2
 STEP = 1e-3  # rad or m, of the differences that stand for derivatives
 
 
-def height_changes(log: MotionLog, robot: RobotModel) -> Iterator[tuple[str, Array]]:
-    """Each cause and its change (N,) [m] of the right sole's height over the left one's, at one deviation of the cause.
+def height_changes(
+    log: MotionLog, robot: RobotModel, rows: Mask | slice = slice(None)
+) -> Iterator[tuple[str, Array]]:
+    """Each cause and its change (n,) [m] of the right sole's height over the left one's, at one deviation of the cause,
+    at the n samples `rows` (N,).
 
     Deviations are the robot file's: of each joint's zero between IMU and feet, of the IMU's mount about its three axes,
     and of each bush's place in its two horizontal directions, about which a sole that leans rises and falls. None where
@@ -39,7 +42,7 @@ def height_changes(log: MotionLog, robot: RobotModel) -> Iterator[tuple[str, Arr
         return np.asarray(relative_pose(left, right).position[:, 2])
 
     def change(after: Array, deviation: float) -> Array:
-        return np.asarray(np.interp(log.time, log.time[::stride], (after - before) * deviation / STEP))
+        return np.asarray(np.interp(log.time[rows], log.time[::stride], (after - before) * deviation / STEP))
 
     path = frozenset().union(
         *(robot.joints_between(imu.placement, foot.bush) for foot in robot.feet.values())

@@ -68,10 +68,13 @@ class Recording:
         return self.contacts[foot].used
 
     def rows(self, foot: str) -> Mask:
-        """Those of the used samples that a fit takes: behind its filter a few of each cycle say all."""
-        rows = np.zeros(len(self.time), dtype=bool)
-        stride = self.stride(foot)
-        rows[::stride] = self.used(foot)[::stride]
+        """Those of the used samples that a fit takes."""
+        return self.thinned(foot, self.used(foot))
+
+    def thinned(self, foot: str, samples: Mask) -> Mask:
+        """Those of some samples (N,) that a fit of this foot takes: behind its filter a few of each cycle say all."""
+        rows, stride = np.zeros_like(samples), self.stride(foot)
+        rows[::stride] = samples[::stride]
         return rows
 
     def stride(self, foot: str) -> int:

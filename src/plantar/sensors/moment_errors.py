@@ -12,7 +12,7 @@ from plantar.dynamics import Contact, Equation, model_parameters
 from plantar.dynamics.inertial_motion import inertial_motion, turned_motions
 from plantar.dynamics.motion import Motion
 from plantar.robot.model import Foot, RobotModel
-from plantar.sensors.newton_euler import BASE_ROWS, CUTOFF, SLOW, NewtonEulerResidual
+from plantar.sensors.newton_euler import BASE_ROWS, CUTOFF, SLOW, NewtonEulerResidual, predicted_errors
 from plantar.signals.filters import gain, low_pass
 from plantar.signals.resampling import shifted
 
@@ -20,6 +20,7 @@ LOOSE = 0.3  # share: deviation of a torque's gain before the moments are asked
 LEAST_GAIN = 0.01  # share, of the forces' gains and of what their places add: nuisances need a finite prior
 LEAST_ARM = 0.003  # m, likewise
 LEAST_BETWEEN = 0.001  # N.m/N, likewise
+RATE = 20.0  # Hz of the samples that take part: above it nothing has passed the filter
 BAND = 2.0  # Hz: the robot moves below it, and most of the sensors' noise is above
 LATE = 0.02  # s, of feet's sensors, encoders and gyroscope behind the accelerometer
 MOUNT = 0.1  # rad, by which sensors and IMU may be turned: wide, so that no turned mount passes for a gain
@@ -48,11 +49,13 @@ class MomentErrors:
 
 def moment_errors(robot: RobotModel, residual: NewtonEulerResidual) -> MomentErrors:
     """The columns of one log in which Newton's law closes."""
+    residual = residual.thinned(max(1, round(1 / (RATE * residual.pair.period))))
     readings = _reading_columns(robot, residual)
     by_gyroscope, by_mount = _imu_slopes(robot, residual)
     slopes = [*-by_mount, *residual.rates, residual.by_encoders, -by_gyroscope]
     pair, period = residual.pair, residual.pair.period
-    moving = np.hstack([*readings, *slopes, *residual.model_errors])
+    errors = predicted_errors(robot, inertial_motion(robot, residual.signals, residual.kept))
+    moving = np.hstack([*readings, *slopes, *errors])
     moving -= low_pass(moving, period, SLOW)  # what postures and drifting zeros do to them
     every = np.hstack([pair.predicted - pair.measured, moving])
     slow, count = low_pass(every, period, BAND), 1 + len(readings) + len(slopes)
