@@ -22,6 +22,12 @@ def cosine_covariance(scores: Array, duration: float) -> tuple[Array, int]:
 
     Zero-mean scores of a least-squares fit; the sum over one recording.
     """
+    cosines = score_cosines(scores, duration)
+    return np.asarray(cosines.T @ cosines), len(cosines)
+
+
+def score_cosines(scores: Array, duration: float) -> Array:
+    """The root (m, p) of `cosine_covariance`: its products are the covariance, m the degrees of freedom."""
     count = len(scores)
     cosines = int(np.clip(round(2 * SCORE_BANDWIDTH * duration), FEWEST_COSINES, max(count - 1, 1)))
     # Orthonormal DCT-II, √(2/n) Σ s_t cos(π j (2t + 1) / 2n): every coefficient's variance is the density. As a Fourier
@@ -30,7 +36,7 @@ def cosine_covariance(scores: Array, duration: float) -> tuple[Array, int]:
     turned = np.fft.fft(np.concatenate([scores[::2], scores[1::2][::-1]]), axis=0)[order]
     phases = np.exp(-0.5j * np.pi * order / count)[:, None]
     coefficients = np.sqrt(2 / count) * (phases * turned).real
-    return np.asarray(count * coefficients.T @ coefficients / max(len(coefficients), 1)), len(coefficients)
+    return np.asarray(np.sqrt(count / max(len(coefficients), 1)) * coefficients)
 
 
 def pooled_freedom(variances: Array, freedoms: Array) -> Array:

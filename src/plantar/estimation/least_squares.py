@@ -8,7 +8,7 @@ import numpy as np
 
 from plantar.conventions import Array
 from plantar.estimation.blocks import Block, LinearFit
-from plantar.estimation.intervals import cosine_covariance, pooled_freedom
+from plantar.estimation.intervals import pooled_freedom, score_cosines
 from plantar.estimation.triangular import TriangularFactor
 
 
@@ -78,8 +78,8 @@ def _robust(
     """Sandwich covariance with the coloured scores of each recording inside, and degrees of freedom."""
     parts, freedoms = [], []
     for block, own, residual in zip(blocks, places, residuals, strict=True):
-        middle, freedom = cosine_covariance(_design(block) * residual[:, None], block.duration)
-        parts.append(inverse[:, own] @ middle @ inverse[own])
-        freedoms.append(freedom)
+        moved = score_cosines(_design(block) * residual[:, None], block.duration) @ inverse[own]
+        parts.append(moved.T @ moved)
+        freedoms.append(len(moved))
     variances = np.array([np.diag(part) for part in parts])
     return np.sum(parts, axis=0), pooled_freedom(variances, np.array(freedoms, dtype=float)[:, None])
