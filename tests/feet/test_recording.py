@@ -57,7 +57,8 @@ def test_a_fit_reads_the_same_rows_of_a_decimated_recording(robot: RobotModel) -
     (whole,), (few,) = (blocks_of([one], "left", "pitch") for one in (standing, thin))
     np.testing.assert_array_equal(whole.regressor, few.regressor)
     np.testing.assert_array_equal(whole.response, few.response)
-    assert few.thinned == whole.thinned and few.period == pytest.approx(whole.period)
+    assert few.thinned == whole.thinned
+    assert few.period == pytest.approx(whole.period)
     rows = standing.rows("left")
     for of_whole, of_few in zip(
         moment_columns(standing, "left", "pitch")[rows].T,
