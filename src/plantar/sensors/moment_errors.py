@@ -14,7 +14,6 @@ from plantar.dynamics.motion import Motion
 from plantar.robot.model import Foot, RobotModel
 from plantar.sensors.newton_euler import BASE_ROWS, CUTOFF, SLOW, NewtonEulerResidual, predicted_errors
 from plantar.signals.filters import gain, low_pass
-from plantar.signals.resampling import shifted
 
 LOOSE = 0.3  # share: deviation of a torque's gain before the moments are asked
 LEAST_GAIN = 0.01  # share, of the forces' gains and of what their places add: nuisances need a finite prior
@@ -144,13 +143,10 @@ def _imu_slopes(robot: RobotModel, residual: NewtonEulerResidual) -> tuple[Array
         ends = [equation.inverse_dynamics(motion, parameters)[BASE_ROWS].T for motion in (late, early)]
         return (ends[0] - ends[1]) / apart
 
-    read = [signals._replace(rate=shifted(signals.rate, step, by)) for by in (step, -step)]
-    late, early = (inertial_motion(robot, one, kept) for one in read)
-    ahead, back = (
-        turned_motions(robot, signals, kept, [pin.exp3(by * axis) for axis in np.eye(3)])
-        for by in (TURN, -TURN)
-    )
-    by_mount = [slope(*ends, 2 * TURN) for ends in zip(ahead, back, strict=True)]
+    late, early = (inertial_motion(robot, signals, kept, gyroscope_late=by) for by in (step, -step))
+    turns = [pin.exp3(by * axis) for by in (TURN, -TURN) for axis in np.eye(3)]
+    turned = turned_motions(robot, signals, kept, turns)
+    by_mount = [slope(*ends, 2 * TURN) for ends in zip(turned[:3], turned[3:], strict=True)]
     return slope(late, early, 2 * step), np.array(by_mount)
 
 

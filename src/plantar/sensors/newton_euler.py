@@ -93,7 +93,9 @@ def newton_euler_residual(robot: RobotModel, log: MotionLog) -> NewtonEulerResid
         return None
     signals = inertial_signals(robot, complete, CUTOFF)
     wrenches = np.hstack([foot.wrench.sign * log.wrench(foot.wrench.name) for foot in robot.feet.values()])
-    whole = np.asarray(np.isfinite(np.hstack([*signals[:3], wrenches])).all(axis=1))
+    whole = np.asarray(
+        np.isfinite(np.hstack([signals.positions, signals.rate, signals.proper, wrenches])).all(axis=1)
+    )
     edge = round(EDGE / log.period)
     longest = longest_run(whole & ~_struck(robot, wrenches, log.period))
     if (longest.stop - longest.start) * log.period < SHORTEST + 2 * EDGE:
@@ -132,9 +134,12 @@ def newton_euler_residual(robot: RobotModel, log: MotionLog) -> NewtonEulerResid
         return None
     motion = motion.select(calm)
     pair = replace(pair, model_errors=predicted_errors(robot, motion, DELAY_DRAWS))
+    # A copy of the signals holds no differences: they cost little beside the memory of all logs'.
     start, stop, _ = calm.indices(len(range(*kept.indices(len(log)))))
     own = slice(kept.start + start * stride, kept.start + stop * stride, stride)
-    return NewtonEulerResidual(pair, measured, rates, by_encoders, readings[inner][calm], signals, own)
+    return NewtonEulerResidual(
+        pair, measured, rates, by_encoders, readings[inner][calm], replace(signals), own
+    )
 
 
 def predicted_errors(robot: RobotModel, motion: Motion, draws: int | None = None) -> Array:
