@@ -60,7 +60,7 @@ class NewtonEulerResidual:
             self.rates[:, rows],
             self.by_encoders[rows],
             self.readings[rows],
-            self.signals,
+            replace(self.signals),
             kept,
         )
 
@@ -134,7 +134,7 @@ def newton_euler_residual(robot: RobotModel, log: MotionLog) -> NewtonEulerResid
         return None
     motion = motion.select(calm)
     pair = replace(pair, model_errors=predicted_errors(robot, motion, DELAY_DRAWS))
-    # A copy of the signals holds no differences: they cost little beside the memory of all logs'.
+    # A copy of the signals holds no differences yet: of all logs together these are large.
     start, stop, _ = calm.indices(len(range(*kept.indices(len(log)))))
     own = slice(kept.start + start * stride, kept.start + stop * stride, stride)
     return NewtonEulerResidual(
