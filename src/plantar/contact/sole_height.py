@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from plantar.contact.deflection import bush_states, relative_pose
+from plantar.contact.deflection import foot_motion, path_to
 from plantar.contact.imu_turn import turned
 from plantar.conventions import Array, Mask
 from plantar.logs.motion_log import MotionLog
@@ -35,11 +35,12 @@ def height_changes(
     positions, attitude = log.positions(robot)[::stride], orientation[::stride]
 
     def height(of: RobotModel, angles: Array, quaternions: Array) -> Array:
-        still = np.zeros((len(angles), 3))
-        unloaded = dict.fromkeys(of.feet, np.zeros((len(angles), 6)))
-        states = bush_states(of, angles, np.zeros_like(angles), quaternions, still, unloaded)
-        left, right = (states[foot] for foot in robot.feet)
-        return np.asarray(relative_pose(left, right).position[:, 2])
+        still = np.zeros_like(angles), np.zeros((len(angles), 3))
+        left, right = (
+            foot_motion(path_to(of, foot)[0], angles, still[0], quaternions, still[1]).sole_position[:, 2]
+            for foot in robot.feet
+        )
+        return np.asarray(right - left)
 
     def change(after: Array, deviation: float) -> Array:
         return np.asarray(np.interp(log.time[rows], log.time[::stride], (after - before) * deviation / STEP))
