@@ -21,7 +21,7 @@ from plantar import _core
 from plantar.conventions import FORCE, GRAVITY, TORQUE, Array, skew
 from plantar.errors import DataError, RobotError, located
 from plantar.robot.kinematics import KinematicTree
-from plantar.robot.model import RobotModel
+from plantar.robot.model import Placement, RobotModel
 
 LEAST_LOAD = 0.02  # of the robot's weight: a foot that carries less has no centre of pressure
 
@@ -111,13 +111,15 @@ def bush_states(
     return states
 
 
-def path_to(robot: RobotModel, name: str) -> tuple[FootPath, pin.SE3, pin.SE3]:
+def path_to(
+    robot: RobotModel, name: str, place: Placement | None = None
+) -> tuple[FootPath, pin.SE3, pin.SE3]:
     """The chain from a robot's IMU to one foot's bush, the sole's placement in the bush frame, and what takes a
-    placement in the ankle's joint there.
+    placement in the ankle's joint there. `place`: of the bush, where it is not the robot file's.
     """
     assert robot.imu is not None, "checked"
     foot = robot.feet[name]
-    bush = robot.frame(foot.bush)
+    bush = robot.frame(place or foot.bush)
     to_bush = bush[1].inverse()
     sole = to_bush * robot.frame(foot.sole.placement)[1]
     return foot_path(robot.tree, robot.frame(robot.imu.placement), bush, sole), sole, to_bush

@@ -11,7 +11,7 @@ from plantar.contact.deflection import foot_motion, path_to
 from plantar.contact.imu_turn import turned
 from plantar.conventions import Array, Mask
 from plantar.logs.motion_log import MotionLog
-from plantar.robot.model import RobotModel
+from plantar.robot.model import Placement, RobotModel
 
 RATE = 20.0  # Hz, at which heights are computed: a standing robot moves below 2 Hz
 STEP = 1e-3  # rad or m, of the differences that stand for derivatives
@@ -34,16 +34,13 @@ def height_changes(
     stride = max(1, round(1 / (RATE * log.period)))
     positions, attitude = log.positions(robot)[::stride], orientation[::stride]
 
-    def height(of: RobotModel, angles: Array, quaternions: Array) -> Array:
-        still = np.zeros_like(angles), np.zeros((len(angles), 3))
-        left, right = (
-            foot_motion(path_to(of, foot)[0], angles, still[0], quaternions, still[1]).sole_position[:, 2]
-            for foot in robot.feet
-        )
-        return np.asarray(right - left)
+    def sole(name: str, angles: Array, quaternions: Array, bush: Placement | None = None) -> Array:
+        path, still = path_to(robot, name, bush)[0], np.zeros((len(angles), 3))
+        motion = foot_motion(path, angles, np.zeros_like(angles), quaternions, still)
+        return motion.sole_position[:, 2]
 
-    def change(after: Array, deviation: float) -> Array:
-        return np.asarray(np.interp(log.time[rows], log.time[::stride], (after - before) * deviation / STEP))
+    def change(by: Array, deviation: float) -> Array:
+        return np.asarray(np.interp(log.time[rows], log.time[::stride], by * deviation / STEP))
 
     path = frozenset().union(
         *(robot.joints_between(imu.placement, foot.bush) for foot in robot.feet.values())
@@ -59,11 +56,14 @@ def height_changes(
         causes.append((f"imu {'xyz'[axis]}", known.imu_mount))
         angles.append(positions)
         attitudes.append(turned(attitude, STEP * np.eye(3)[axis]))
-    before, *others = np.split(height(robot, np.vstack(angles), np.vstack(attitudes)), len(angles))
+    soles = [
+        np.split(sole(name, np.vstack(angles), np.vstack(attitudes)), len(angles)) for name in robot.feet
+    ]
+    before, *others = (right - left for left, right in zip(*soles, strict=True))
     for (cause, deviation), after in zip(causes, others, strict=True):
-        yield cause, change(after, deviation)
-    for name, foot in robot.feet.items():
+        yield cause, change(after - before, deviation)
+    for side, (name, foot), (lies, *_) in zip((-1.0, 1.0), robot.feet.items(), soles, strict=True):
         for axis in range(2 if known.bush_position else 0):
             bush = replace(foot.bush, xyz=foot.bush.xyz + STEP * foot.bush.rotation[:, axis])
-            other = replace(robot, feet={**robot.feet, name: replace(foot, bush=bush)})
-            yield f"{name} {'xyz'[axis]}", change(height(other, positions, attitude), known.bush_position)
+            moved = side * (sole(name, positions, attitude, bush) - lies)
+            yield f"{name} {'xyz'[axis]}", change(moved, known.bush_position)
