@@ -54,16 +54,15 @@ def moment_errors(robot: RobotModel, residual: NewtonEulerResidual) -> MomentErr
     slopes = [*-by_mount, *residual.rates, residual.by_encoders, -by_gyroscope]
     pair, period = residual.pair, residual.pair.period
     errors = predicted_errors(robot, inertial_motion(robot, residual.signals, residual.kept))
-    moving = np.hstack([*readings, *slopes, *errors])
-    moving -= low_pass(moving, period, SLOW)  # what postures and drifting zeros do to them
-    every = np.hstack([pair.predicted - pair.measured, moving])
+    every = np.hstack([pair.predicted - pair.measured, *readings, *slopes, *errors])
+    every[:, 6:] -= low_pass(every[:, 6:], period, SLOW)  # what postures and drifting zeros do to them
     slow, count = low_pass(every, period, BAND), 1 + len(readings) + len(slopes)
     # Slopes are smooth: their noise is not white, and small below BAND.
     noisy = 6 * (1 + len(readings))
     noise = _by_row(every[:, :noisy] - slow[:, :noisy])
     stride = max(1, round(1 / (KEPT_PER_BAND * BAND * period)))
     thin = _by_row(slow[::stride])
-    columns, drawn = thin[:, :count], thin[:, count:]
+    columns, drawn = thin[:, :count].copy(), thin[:, count:]
     products = columns @ columns.transpose(0, 2, 1)
     share = _below_to_above(period) / stride
     products[:, : len(readings) + 1, : len(readings) + 1] -= share * (noise @ noise.transpose(0, 2, 1))
