@@ -1,7 +1,8 @@
-// Python's views of stepping.hpp and low_pass.hpp, which have files of their own.
+// Python's views of drift.hpp, low_pass.hpp and stepping.hpp, which have files of their own.
 #pragma once
 
 #include <nanobind/nanobind.h>
 
+void bind_drift(nanobind::module_& m);
 void bind_low_pass(nanobind::module_& m);
 void bind_stepping(nanobind::module_& m);

@@ -42,7 +42,7 @@ LONGEST = 350  # lines
 
 # Who may import what is heavy, optional or has effects.
 KEEPERS = {
-    "plantar._core": {"dynamics", "contact", "signals", "twin"},
+    "plantar._core": {"contact", "dynamics", "estimation", "signals", "twin"},
     "mujoco": {"twin", "exporters"},
     "pink": {"motions", "twin"},
     "qpsolvers": {"motions", "twin"},

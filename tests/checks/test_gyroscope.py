@@ -8,7 +8,6 @@ from scipy.spatial.transform import Rotation
 
 from biped import record, sines, sway
 from plantar.checks.gyroscope import SCALE_OFF, TURNED, Turns, check_gyroscope
-from plantar.checks.quaternions import readings
 from plantar.logs.motion_log import MotionLog
 
 GYROSCOPE = [f"imu.chest.angular_velocity.{axis}" for axis in "xyz"]
@@ -82,12 +81,3 @@ def test_a_scale_is_told_beyond_its_limit(log: MotionLog, share: float, found: l
 def test_axes_are_told_beyond_theirs(log: MotionLog, share: float, found: list[str]) -> None:
     turn = Rotation.from_rotvec([0.0, share * TURNED, 0.0])
     assert codes(changed(log, turn.apply(log.stack(GYROSCOPE)))) == found
-
-
-def test_readings_of_a_quaternion() -> None:
-    """A turn by 0.2 rad about z: as it is, misread as about x by nearly half a turn, and backwards."""
-    w, z = np.cos(0.1), np.sin(0.1)
-    turns = {name: turn.as_rotvec()[0] for name, turn in readings(np.array([[w, 0.0, 0.0, z]])).items()}
-    assert turns["as it is"] == pytest.approx([0, 0, 0.2])
-    assert turns["inverted"] == pytest.approx([0, 0, -0.2])
-    assert turns["read as x y z w"] == pytest.approx([np.pi - 0.2, 0, 0])

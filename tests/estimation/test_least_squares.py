@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from plantar.estimation.least_squares import Block, fit_linear
+from plantar.estimation.least_squares import Block, fit_linear, values_without_each
 
 
 def block(label: str, seed: int, offset: float = 0.0, rows: int = 300, noise: float = 0.5) -> Block:
@@ -124,3 +124,19 @@ def test_rows_that_are_thinned_leave_the_papers_deviation_as_it_is() -> None:
     thin = Block("log", regressor[::stride], response[::stride], 0.005 * stride, thinned=stride)
     np.testing.assert_allclose(fit_linear([thin]).white_std, every.white_std, rtol=0.05)
     assert thin.duration == pytest.approx(100.0)
+
+
+def test_values_without_each_recording_are_those_of_fits_of_the_others() -> None:
+    random = np.random.default_rng(5)
+    blocks = [
+        Block(
+            str(place),
+            random.normal(size=(40, 2)),
+            random.normal(size=40),
+            0.1,
+            nuisance=np.arange(40.0)[:, None],
+        )
+        for place in range(4)
+    ]
+    expected = [fit_linear([*blocks[:place], *blocks[place + 1 :]]).values for place in range(4)]
+    assert values_without_each(blocks) == pytest.approx(np.array(expected), rel=1e-10)

@@ -55,9 +55,9 @@ def residual(delays: Sequence[float], seed: int) -> NewtonEulerResidual:
     rates = [differentiate(reading, PERIOD) for reading in readings]
     measured, rates = np.array(readings)[:, INNER], np.array(rates)[:, INNER]
     pair = Pair("sweep", measured.sum(axis=0), rates.sum(axis=0), predicted(0.0)[INNER], PERIOD)
-    signals, none = InertialSignals(*np.zeros((3, 0, 3)), PERIOD), np.zeros((0, 0, 6))
+    signals, none = InertialSignals(*np.zeros((3, 0, 3)), PERIOD), np.zeros(0)
     return NewtonEulerResidual(
-        pair, measured, rates, by_encoders[INNER], measured[0], signals, slice(0), np.zeros(0), none
+        pair, measured, rates, by_encoders[INNER], measured[0], signals, slice(0), none
     )
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from biped import record, sway
+from plantar.feet.fit.load_torque import moment_columns
 from plantar.feet.fit.regression_data import blocks_of
 from plantar.feet.prepare_log import checked, prepare
 from plantar.feet.recording import Recording, filtered_recording, moved_centre
@@ -46,3 +47,26 @@ def test_the_load_of_a_used_sample_is_not_taken_for_none(walk: Recording) -> Non
     for block in blocks_of([walk], "left", "pitch"):
         assert block.common_nuisance is not None
         assert block.common_nuisance[:, 0].min() > 50.0
+
+
+def test_a_fit_reads_the_same_rows_of_a_decimated_recording(robot: RobotModel) -> None:
+    """Columns and torque as they are, the load's torque within what the wide filter leaves of it."""
+    standing = filtered_recording(prepare(robot, checked(robot, record(sway(duration=20.0))), "fit"), CUTOFF)
+    thin = standing.decimated("left")
+    assert (thin.every, len(thin.time)) == (standing.stride("left"), thin.rows("left").size)
+    (whole,), (few,) = (blocks_of([one], "left", "pitch") for one in (standing, thin))
+    np.testing.assert_array_equal(whole.regressor, few.regressor)
+    np.testing.assert_array_equal(whole.response, few.response)
+    assert few.thinned == whole.thinned
+    assert few.period == pytest.approx(whole.period)
+    rows = standing.rows("left")
+    for of_whole, of_few in zip(
+        moment_columns(standing, "left", "pitch")[rows].T,
+        moment_columns(thin, "left", "pitch")[thin.rows("left")].T,
+        strict=True,
+    ):
+        assert np.abs(of_few - of_whole).max() < 0.01 * np.ptp(of_whole)
+
+
+def test_a_foot_that_steps_is_not_decimated(walk: Recording) -> None:
+    assert walk.decimated("left") is walk

@@ -6,7 +6,8 @@ from mutant import Mutant
 
 ESTIMATION = (
     Mutant(
-        "estimation/intervals.py", "the mean counts as a cosine", "[1 : cosines + 1]", "[: cosines]",
+        "estimation/intervals.py", "the mean counts as a cosine",
+        "np.arange(1, min(cosines, count - 1) + 1)", "np.arange(min(cosines, count - 1))",
     ),
     Mutant(
         "estimation/intervals.py", "half as many cosines",
@@ -37,7 +38,8 @@ ESTIMATION = (
         "-float(mean @ change)", "float(mean @ change)",
     ),
     Mutant(
-        "estimation/velocity_drift.py", "deviations in reversed time", "np.sqrt(variance[::-1])", "np.sqrt(variance)",
+        "estimation/velocity_drift.py", "variances for deviations",
+        "np.sqrt(_core.drift_variance(weight, *chain))", "_core.drift_variance(weight, *chain)",
     ),
     Mutant(
         "estimation/sensor_delays.py", "cells weighed by their noise, not by their length too",

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from biped_robot import make_robot
-from plantar.dynamics.motion import Motion
+from plantar.dynamics.inertial_motion import InertialSignals
 from plantar.estimation.delay import Pair
 from plantar.logs.motion_log import MotionLog
 from plantar.sensors.newton_euler import NewtonEulerResidual
@@ -38,12 +38,10 @@ def late_pair(delay: float, seed: int, push: float = 0.0) -> Pair:
 
 def closed(pair: Pair) -> NewtonEulerResidual:
     """The pair as one foot's closure, under still joints."""
-    still = Motion(*(np.zeros((0, size)) for size in (9, 0, 0, 0)))
     flat = 0 * pair.predicted
+    still = InertialSignals(flat[:, :0], flat[:, :3], flat[:, :3], PERIOD)
     measured, rate = pair.measured[None], pair.rate[None]
-    return NewtonEulerResidual(
-        pair, measured, rate, flat, flat, np.array([flat] * 3), still, np.zeros(0), pair.measured
-    )
+    return NewtonEulerResidual(pair, measured, rate, flat, flat, still, slice(len(flat)), np.zeros(0))
 
 
 @pytest.mark.parametrize("slow_first", [True, False])

@@ -7,10 +7,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
-from plantar.checks.quaternions import misread, readings
-from plantar.conventions import GRAVITY, Array, Mask
+from plantar.checks.quaternions import misread, readings, turns_between
+from plantar.conventions import GRAVITY, Array, Mask, rotation_from_quaternion
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding
 from plantar.signals.filters import differentiate, low_pass
@@ -64,8 +63,9 @@ class Turns:
         if starts.size == 0:
             return None
         before, after = readings(orientation[starts]), readings(orientation[ends])
-        by_reading = {reading: (before[reading].inv() * after[reading]).as_rotvec() for reading in before}
-        world = before["as it is"].apply(by_reading["as it is"])
+        by_reading = {reading: turns_between(before[reading], after[reading]) for reading in before}
+        rotation = rotation_from_quaternion(orientation[starts])
+        world = np.einsum("nij,nj->ni", rotation, by_reading["as it is"])
         integral = _centred(total[ends] - total[starts])
         turns = {reading: _centred(turn) for reading, turn in by_reading.items()}
         # As a share of what the gyroscope itself shows: it may read degrees.
@@ -163,9 +163,10 @@ def _axes_and_scale(where: str, turns: Turns) -> Iterator[Finding]:
     if turns.about_world:
         yield Finding("gyroscope_frame", f"{where}: turns about the world's axes (valid: the IMU's own)")
         return
-    mount, left = Rotation.align_vectors(integral, turn)
-    angle, shown = float(mount.magnitude()), np.linalg.svd(turn, compute_uv=False)
-    if angle > TURNED and left**2 < FOLLOWED * apart and shown[1] > PLANAR * shown[0]:
+    mount, shown = _turned_onto(integral, turn), np.linalg.svd(turn, compute_uv=False)
+    angle = float(np.arccos(np.clip((np.trace(mount) - 1) / 2, -1, 1)))
+    left = float(np.sum((integral - turn @ mount.T) ** 2))
+    if angle > TURNED and left < FOLLOWED * apart and shown[1] > PLANAR * shown[0]:
         text = f"{where}: turns about axes {np.degrees(angle):.0f} deg beside the orientation's"
         yield Finding("gyroscope_frame", f"{text} (valid: both in the IMU's own frame)")
         return
@@ -177,6 +178,13 @@ def _axes_and_scale(where: str, turns: Turns) -> Iterator[Finding]:
         yield Finding("gyroscope_scale", text)
 
 
+def _turned_onto(one: Array, other: Array) -> Array:
+    """The rotation (3, 3) that turns vectors `other` (n, 3) best onto `one` (W. Kabsch, Acta Cryst. A32, 1976)."""
+    left, _, right = np.linalg.svd(one.T @ other)
+    left[:, -1] *= np.linalg.det(left @ right)
+    return np.asarray(left @ right)
+
+
 def _late(name: str, log: MotionLog, orientation: Array) -> Iterator[Finding]:
     """Whether orientation and gyroscope tell of the same turn at different times: rates and angles then disagree."""
     period, edge = log.period, round(0.5 / log.period)
@@ -186,8 +194,7 @@ def _late(name: str, log: MotionLog, orientation: Array) -> Iterator[Finding]:
     run = longest_run(whole)
     if run.stop - run.start < 10 * edge:
         return
-    attitude = Rotation.from_quat(orientation[run], scalar_first=True)
-    turned = (attitude[:-1].inv() * attitude[1:]).as_rotvec() / period
+    turned = turns_between(orientation[run][:-1], orientation[run][1:]) / period
     measured = (rates[run][1:] + rates[run][:-1]) / 2
     apart = low_pass(measured - turned, period, BAND)[edge:-edge]
     change = differentiate(low_pass(measured, period, BAND), period)[edge:-edge]
@@ -231,7 +238,7 @@ def _upside_down(name: str, log: MotionLog, orientation: Array) -> bool:
     if whole.size < 10:
         return True
     rows = whole[:: max(1, whole.size // 2000)]
-    up = Rotation.from_quat(orientation[rows], scalar_first=True).inv().apply(np.array([0.0, 0.0, 1.0]))
+    up = rotation_from_quaternion(orientation[rows])[:, 2]
     felt = acceleration[rows] / GRAVITY
     up, felt = up - up.mean(axis=0), felt - felt.mean(axis=0)
     return bool(np.sum(up * felt) < 0.5 * np.sum(up**2))

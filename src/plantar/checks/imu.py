@@ -8,7 +8,7 @@ import numpy as np
 
 from plantar.checks.gyroscope import Turns, check_gyroscope
 from plantar.checks.quaternions import misread, readings
-from plantar.conventions import GRAVITY, Array
+from plantar.conventions import GRAVITY, Array, rotation_from_quaternion
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding
 
@@ -83,8 +83,12 @@ def _accelerometer_agrees(name: str, log: MotionLog, orientation: Array, turns: 
     rows = whole[:: max(1, whole.size // 2000)]
     up = acceleration[rows] / np.linalg.norm(acceleration[rows], axis=1, keepdims=True)
     apart = {
-        reading: float(np.median(np.arccos(np.clip(rotation.apply(up)[:, 2], -1, 1))))
-        for reading, rotation in readings(orientation[rows]).items()
+        reading: float(
+            np.median(
+                np.arccos(np.clip(np.einsum("ni,ni->n", rotation_from_quaternion(read)[:, 2], up), -1, 1))
+            )
+        )
+        for reading, read in readings(orientation[rows]).items()
     }
     best = min(apart, key=apart.__getitem__)
     if apart["as it is"] < WRONG_ANGLE:

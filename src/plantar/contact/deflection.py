@@ -21,7 +21,7 @@ from plantar import _core
 from plantar.conventions import FORCE, GRAVITY, TORQUE, Array, skew
 from plantar.errors import DataError, RobotError, located
 from plantar.robot.kinematics import KinematicTree
-from plantar.robot.model import RobotModel
+from plantar.robot.model import Placement, RobotModel
 
 LEAST_LOAD = 0.02  # of the robot's weight: a foot that carries less has no centre of pressure
 
@@ -100,20 +100,29 @@ def bush_states(
     _expect("velocities", velocities, (samples, joints))
     _expect("orientation", orientation, (samples, 4))
     _expect("angular velocity", angular_velocity, (samples, 3))
-    tree = robot.tree
-    imu = robot.frame(robot.imu.placement)
     least = LEAST_LOAD * max(robot.mass * GRAVITY, 1.0)
     states = {}
     for name, foot in robot.feet.items():
         _expect(f"wrench of foot '{name}'", wrenches[name], (samples, 6))
-        bush = robot.frame(foot.bush)
-        to_bush = bush[1].inverse()
-        sole = to_bush * robot.frame(foot.sole.placement)[1]
+        path, sole, to_bush = path_to(robot, name)
         sensor = to_bush * robot.frame(foot.wrench.placement)[1]
-        path = foot_path(tree, imu, bush, sole)
         motion = foot_motion(path, positions, velocities, orientation, angular_velocity, threads)
         states[name] = bush_state(motion, moved_wrench(wrenches[name], sensor, foot.wrench.sign), sole, least)
     return states
+
+
+def path_to(
+    robot: RobotModel, name: str, place: Placement | None = None
+) -> tuple[FootPath, pin.SE3, pin.SE3]:
+    """The chain from a robot's IMU to one foot's bush, the sole's placement in the bush frame, and what takes a
+    placement in the ankle's joint there. `place`: of the bush, where it is not the robot file's.
+    """
+    assert robot.imu is not None, "checked"
+    foot = robot.feet[name]
+    bush = robot.frame(place or foot.bush)
+    to_bush = bush[1].inverse()
+    sole = to_bush * robot.frame(foot.sole.placement)[1]
+    return foot_path(robot.tree, robot.frame(robot.imu.placement), bush, sole), sole, to_bush
 
 
 def foot_path(

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from plantar.contact.deflection import foot_motion, foot_path
+from plantar.contact.deflection import foot_motion, path_to
 from plantar.conventions import Array
 from plantar.robot.model import RobotModel
 
@@ -26,7 +26,6 @@ def imu_turn_effects(
     """
     if robot.imu is None:
         return {}
-    tree, imu = robot.tree, robot.frame(robot.imu.placement)
     every = np.arange(len(positions))
     places = every[:: max(1, round(1 / (RATE * period)))]
     ways = [np.zeros(3), *STEP * np.eye(3)]
@@ -34,9 +33,8 @@ def imu_turn_effects(
     angles = np.tile(positions[places], (len(ways), 1))
     still = np.zeros_like(angles), np.zeros((len(angles), 3))
     found = {}
-    for name, foot in robot.feet.items():
-        bush = robot.frame(foot.bush)
-        path = foot_path(tree, imu, bush, bush[1].inverse() * robot.frame(foot.sole.placement)[1])
+    for name in robot.feet:
+        path = path_to(robot, name)[0]
         read, *moved = np.split(
             foot_motion(path, angles, still[0], attitudes, still[1]).deflection, len(ways)
         )

@@ -78,6 +78,10 @@ class FootContact:
         code = np.where(samples & (self.code == 0), np.int8(reasons.index(why) + 1), self.code)
         return replace(self, code=code, reasons=reasons)
 
+    def decimated(self, rows: slice) -> FootContact:
+        """Every nth sample."""
+        return replace(self, support=self.support[rows], code=self.code[rows])
+
     def left_out_for(self, reasons: Collection[Reason]) -> Mask:
         """Samples that are left out for one of these reasons."""
         given = [place + 1 for place, why in enumerate(self.reasons) if why.reason in reasons]

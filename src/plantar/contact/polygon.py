@@ -6,15 +6,30 @@ import numpy as np
 
 from plantar.conventions import Array
 
+ROUNDING = 1e-12  # of the points' extent squared: a smaller turn is none
+
 
 def convex_hull(points: Array) -> Array:
     """Corners of the convex hull of (n, 2) points, counter-clockwise; the points themselves when they span no area."""
-    from scipy.spatial import ConvexHull, QhullError  # costs start-up
-
-    try:
-        return np.asarray(points[ConvexHull(points).vertices])
-    except (QhullError, ValueError):
-        return np.asarray(points)
+    if len(points) < 3 or not np.isfinite(points).all():
+        return points
+    least = ROUNDING * float(np.ptp(points, axis=0).max()) ** 2
+    ordered = points[np.lexsort(points.T[::-1])].tolist()
+    corners: list[list[float]] = []
+    for side in (
+        ordered,
+        ordered[::-1],
+    ):  # the lower chain of corners, then the upper one (A. M. Andrew, 1979)
+        first = len(corners)
+        for x, y in side:
+            while len(corners) >= first + 2:
+                (ax, ay), (bx, by) = corners[-2:]
+                if (bx - ax) * (y - ay) - (by - ay) * (x - ax) > least:
+                    break
+                corners.pop()
+            corners.append([x, y])
+        corners.pop()
+    return np.array(corners) if len(corners) > 2 else points
 
 
 def edge_distances(points: Array, polygon: Array) -> Array:

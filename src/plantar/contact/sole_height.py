@@ -7,18 +7,21 @@ from dataclasses import replace
 
 import numpy as np
 
-from plantar.contact.deflection import bush_states, relative_pose
+from plantar.contact.deflection import foot_motion, path_to
 from plantar.contact.imu_turn import turned
-from plantar.conventions import Array
+from plantar.conventions import Array, Mask
 from plantar.logs.motion_log import MotionLog
-from plantar.robot.model import RobotModel
+from plantar.robot.model import Placement, RobotModel
 
 RATE = 20.0  # Hz, at which heights are computed: a standing robot moves below 2 Hz
 STEP = 1e-3  # rad or m, of the differences that stand for derivatives
 
 
-def height_changes(log: MotionLog, robot: RobotModel) -> Iterator[tuple[str, Array]]:
-    """Each cause and its change (N,) [m] of the right sole's height over the left one's, at one deviation of the cause.
+def height_changes(
+    log: MotionLog, robot: RobotModel, rows: Mask | slice = slice(None)
+) -> Iterator[tuple[str, Array]]:
+    """Each cause and its change (n,) [m] of the right sole's height over the left one's, at one deviation of the cause,
+    at the n samples `rows` (N,).
 
     Deviations are the robot file's: of each joint's zero between IMU and feet, of the IMU's mount about its three axes,
     and of each bush's place in its two horizontal directions, about which a sole that leans rises and falls. None where
@@ -31,15 +34,13 @@ def height_changes(log: MotionLog, robot: RobotModel) -> Iterator[tuple[str, Arr
     stride = max(1, round(1 / (RATE * log.period)))
     positions, attitude = log.positions(robot)[::stride], orientation[::stride]
 
-    def height(of: RobotModel, angles: Array, quaternions: Array) -> Array:
-        still = np.zeros((len(angles), 3))
-        unloaded = dict.fromkeys(of.feet, np.zeros((len(angles), 6)))
-        states = bush_states(of, angles, np.zeros_like(angles), quaternions, still, unloaded)
-        left, right = (states[foot] for foot in robot.feet)
-        return np.asarray(relative_pose(left, right).position[:, 2])
+    def sole(name: str, angles: Array, quaternions: Array, bush: Placement | None = None) -> Array:
+        path, still = path_to(robot, name, bush)[0], np.zeros((len(angles), 3))
+        motion = foot_motion(path, angles, np.zeros_like(angles), quaternions, still)
+        return motion.sole_position[:, 2]
 
-    def change(after: Array, deviation: float) -> Array:
-        return np.asarray(np.interp(log.time, log.time[::stride], (after - before) * deviation / STEP))
+    def change(by: Array, deviation: float) -> Array:
+        return np.asarray(np.interp(log.time[rows], log.time[::stride], by * deviation / STEP))
 
     path = frozenset().union(
         *(robot.joints_between(imu.placement, foot.bush) for foot in robot.feet.values())
@@ -55,11 +56,14 @@ def height_changes(log: MotionLog, robot: RobotModel) -> Iterator[tuple[str, Arr
         causes.append((f"imu {'xyz'[axis]}", known.imu_mount))
         angles.append(positions)
         attitudes.append(turned(attitude, STEP * np.eye(3)[axis]))
-    before, *others = np.split(height(robot, np.vstack(angles), np.vstack(attitudes)), len(angles))
+    soles = [
+        np.split(sole(name, np.vstack(angles), np.vstack(attitudes)), len(angles)) for name in robot.feet
+    ]
+    before, *others = (right - left for left, right in zip(*soles, strict=True))
     for (cause, deviation), after in zip(causes, others, strict=True):
-        yield cause, change(after, deviation)
-    for name, foot in robot.feet.items():
+        yield cause, change(after - before, deviation)
+    for side, (name, foot), (lies, *_) in zip((-1.0, 1.0), robot.feet.items(), soles, strict=True):
         for axis in range(2 if known.bush_position else 0):
             bush = replace(foot.bush, xyz=foot.bush.xyz + STEP * foot.bush.rotation[:, axis])
-            other = replace(robot, feet={**robot.feet, name: replace(foot, bush=bush)})
-            yield f"{name} {'xyz'[axis]}", change(height(other, positions, attitude), known.bush_position)
+            moved = side * (sole(name, positions, attitude, bush) - lies)
+            yield f"{name} {'xyz'[axis]}", change(moved, known.bush_position)

@@ -9,7 +9,6 @@ from typing import Literal
 
 import numpy as np
 import pinocchio as pin
-from scipy import linalg
 
 from plantar import _core
 from plantar.conventions import Array
@@ -62,7 +61,7 @@ class BaseParameterFit:
         """Largest over smallest singular value of the stacked regressor; infinite where the rank lacks."""
         if self.rank < len(self.values):
             return float("inf")
-        singular = linalg.svdvals(self.triangle[:-1, :-1])
+        singular = np.linalg.svd(self.triangle[:-1, :-1], compute_uv=False)
         return float(singular[0] / singular[-1])
 
     def predict(self, q: Array, v: Array, a: Array) -> Array:
@@ -204,7 +203,7 @@ def solve_triangle(triangle: Array) -> TriangleSolution:
             return TriangleSolution(
                 values, spread, np.ones(n, dtype=bool), n, abs(float(triangle[-1, -1])), True
             )
-    u, singular, vt = linalg.svd(unit)
+    u, singular, vt = np.linalg.svd(unit)
     rank = int(np.sum(singular > RANK_TOLERANCE * singular[0])) if singular[0] > 0 else 0
     seen = vt[:rank].T / singular[:rank]
     values = seen @ (u[:, :rank].T @ z) / scale

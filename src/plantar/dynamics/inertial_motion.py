@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
-from typing import NamedTuple
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 from plantar.conventions import Array
 from plantar.dynamics.base_motion import RelativeMotion, relative_motion, root_motion
@@ -16,7 +16,8 @@ from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.resampling import shifted
 
 
-class InertialSignals(NamedTuple):
+@dataclass(frozen=True)
+class InertialSignals:
     """Joint `positions` (n, joints), the IMU's angular velocity `rate` [rad/s] and `proper` acceleration (n, 3), all
     of them filtered without lag.
     """
@@ -25,6 +26,17 @@ class InertialSignals(NamedTuple):
     rate: Array
     proper: Array
     period: float
+
+    @cached_property
+    def joints(self) -> tuple[Array, Array, Array]:
+        """Positions, velocities and accelerations of the joints; velocities and accelerations are differences."""
+        velocities = differentiate(self.positions, self.period)
+        return self.positions, velocities, differentiate(velocities, self.period)
+
+    @cached_property
+    def turning(self) -> tuple[Array, Array]:
+        """The IMU's angular velocity and acceleration."""
+        return self.rate, differentiate(self.rate, self.period)
 
 
 def inertial_signals(robot: RobotModel, log: MotionLog, cutoff: float) -> InertialSignals:
@@ -40,14 +52,18 @@ def inertial_signals(robot: RobotModel, log: MotionLog, cutoff: float) -> Inerti
 
 
 def inertial_motion(
-    robot: RobotModel, signals: InertialSignals, kept: slice = slice(None), encoders_late: float = 0.0
+    robot: RobotModel,
+    signals: InertialSignals,
+    kept: slice = slice(None),
+    encoders_late: float = 0.0,
+    gyroscope_late: float = 0.0,
 ) -> Motion:
-    """Motion of root and joints at the samples `kept`; velocities and accelerations are differences of positions.
+    """Motion of root and joints at the samples `kept`.
 
-    encoders_late: by which these report late [s].
+    encoders_late, gyroscope_late: by which these report late [s].
     """
     joints = _joint_motion(signals, kept, encoders_late)
-    return _with_base(_imu_motion(robot, joints), joints, signals, kept)
+    return _with_base(_imu_motion(robot, joints), joints, signals, kept, gyroscope_late)
 
 
 def turned_motions(
@@ -62,10 +78,10 @@ def turned_motions(
 
 def _joint_motion(signals: InertialSignals, kept: slice, late: float = 0.0) -> tuple[Array, Array, Array]:
     """Positions, velocities and accelerations at the samples `kept`, of encoders that report `late` [s]."""
-    positions = shifted(signals.positions, signals.period, late) if late else signals.positions
-    velocities = differentiate(positions, signals.period)
-    accelerations = differentiate(velocities, signals.period)
-    return positions[kept], velocities[kept], accelerations[kept]
+    positions, velocities, accelerations = (
+        shifted(values, signals.period, late)[kept] for values in signals.joints
+    )
+    return positions, velocities, accelerations
 
 
 def _imu_motion(robot: RobotModel, joints: tuple[Array, Array, Array]) -> RelativeMotion:
@@ -75,10 +91,14 @@ def _imu_motion(robot: RobotModel, joints: tuple[Array, Array, Array]) -> Relati
 
 
 def _with_base(
-    seen: RelativeMotion, joints: tuple[Array, Array, Array], signals: InertialSignals, kept: slice
+    seen: RelativeMotion,
+    joints: tuple[Array, Array, Array],
+    signals: InertialSignals,
+    kept: slice,
+    late: float = 0.0,
 ) -> Motion:
-    slope = differentiate(signals.rate, signals.period)
-    return Motion(root_motion(seen, signals.proper[kept], signals.rate[kept], slope[kept]), *joints)
+    rate, slope = (shifted(values, signals.period, late)[kept] for values in signals.turning)
+    return Motion(root_motion(seen, signals.proper[kept], rate, slope), *joints)
 
 
 def _imu(robot: RobotModel) -> Imu:

@@ -108,11 +108,12 @@ def banded(signals: Array, period: float) -> Iterator[tuple[float, Array, slice]
     bands hold nothing else.
     """
     edges = [edge for edge in BAND_EDGES if edge < 0.4 / period]
-    layers = [low_pass(signals, period, edge) for edge in edges]
+    above = low_pass(signals, period, edges[0]) if edges else signals
     for place, edge in enumerate(edges[1:]):
+        below, above = above, low_pass(signals, period, edge)
         end = round(min(END_CYCLES / edges[place] / period, MOST_ENDS / 2 * len(signals)))
         stride = max(1, int(1 / (SAMPLES_PER_CYCLE * edge * period)))
-        yield edge - edges[place], layers[place + 1] - layers[place], slice(end, len(signals) - end, stride)
+        yield edge - edges[place], above - below, slice(end, len(signals) - end, stride)
 
 
 def _bands(pair: Pair) -> list[_Band]:
@@ -122,12 +123,15 @@ def _bands(pair: Pair) -> list[_Band]:
     whole = np.var(pair.measured, axis=0)
     found = []
     for width, band, kept in banded(together, period):
-        measured, rate, predicted = band[:, :6], band[:, 6:12], band[:, 12:18]
-        bend, predicted_rate = differentiate(rate, period)[kept], differentiate(predicted, period)[kept]
-        drawn = band[kept, 18:].reshape(len(bend), draws, 6).transpose(1, 0, 2)
-        enough = LEAST_SHARE * whole * len(bend)
-        parts = (measured[kept], rate[kept], bend, predicted[kept], predicted_rate, drawn, enough)
-        found.append(_Band(*parts, width, len(bend) * (kept.step or 1) * period))
+        rates = differentiate(band[:, 6:18], period)[
+            kept
+        ]  # of the measured rate, and of the predicted signal
+        thin = band[kept].copy()  # no view, which would hold the whole band
+        measured, rate, predicted = thin[:, :6], thin[:, 6:12], thin[:, 12:18]
+        drawn = thin[:, 18:].reshape(len(thin), draws, 6).transpose(1, 0, 2)
+        enough = LEAST_SHARE * whole * len(thin)
+        parts = (measured, rate, rates[:, :6], predicted, rates[:, 6:], drawn, enough)
+        found.append(_Band(*parts, width, len(thin) * (kept.step or 1) * period))
     return found
 
 

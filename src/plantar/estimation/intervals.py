@@ -9,13 +9,12 @@ J. Business & Economic Statistics 36, 2018), whose few degrees of freedom go int
 from __future__ import annotations
 
 import numpy as np
-from scipy import fft, special
 
 from plantar.conventions import Array
+from plantar.estimation.quantiles import MOST_FREEDOM, student_quantile
 
 SCORE_BANDWIDTH = 0.10  # Hz: the scores' spectrum counts as flat below it (docs/intervals.md: coverage study)
 FEWEST_COSINES = 4
-MOST_FREEDOM = 1e6  # stands for a deviation that is known
 
 
 def cosine_covariance(scores: Array, duration: float) -> tuple[Array, int]:
@@ -23,11 +22,21 @@ def cosine_covariance(scores: Array, duration: float) -> tuple[Array, int]:
 
     Zero-mean scores of a least-squares fit; the sum over one recording.
     """
+    cosines = score_cosines(scores, duration)
+    return np.asarray(cosines.T @ cosines), len(cosines)
+
+
+def score_cosines(scores: Array, duration: float) -> Array:
+    """The root (m, p) of `cosine_covariance`: its products are the covariance, m the degrees of freedom."""
     count = len(scores)
     cosines = int(np.clip(round(2 * SCORE_BANDWIDTH * duration), FEWEST_COSINES, max(count - 1, 1)))
-    # DCT-II: 2 Σ s_t cos(π j (2t + 1) / 2n); the orthonormal one makes every coefficient's variance the density.
-    coefficients = fft.dct(scores, type=2, norm="ortho", axis=0)[1 : cosines + 1]
-    return np.asarray(count * coefficients.T @ coefficients / max(len(coefficients), 1)), len(coefficients)
+    # Orthonormal DCT-II, √(2/n) Σ s_t cos(π j (2t + 1) / 2n): every coefficient's variance is the density. As a Fourier
+    # transform it is one of the even samples and, turned round, the odd ones.
+    order = np.arange(1, min(cosines, count - 1) + 1)
+    turned = np.fft.fft(np.concatenate([scores[::2], scores[1::2][::-1]]), axis=0)[order]
+    phases = np.exp(-0.5j * np.pi * order / count)[:, None]
+    coefficients = np.sqrt(2 / count) * (phases * turned).real
+    return np.asarray(np.sqrt(count / max(len(coefficients), 1)) * coefficients)
 
 
 def pooled_freedom(variances: Array, freedoms: Array) -> Array:
@@ -39,7 +48,7 @@ def pooled_freedom(variances: Array, freedoms: Array) -> Array:
 
 def interval95(value: float, std: float, freedom: float) -> tuple[float, float]:
     """Student's 95 % interval around `value` with `freedom` degrees of freedom."""
-    reach = float(special.stdtrit(max(freedom, 1.0), 0.975)) * std
+    reach = float(student_quantile(0.975, max(freedom, 1.0))) * std
     return value - reach, value + reach
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from plantar.conventions import Array
 from plantar.estimation.blocks import Block, LinearFit
-from plantar.estimation.intervals import cosine_covariance, pooled_freedom
+from plantar.estimation.intervals import pooled_freedom, score_cosines
 from plantar.estimation.triangular import TriangularFactor
 
 
@@ -47,6 +47,19 @@ def factor_of(blocks: Sequence[Block], shared_offset: bool = False) -> Triangula
     return _factor(blocks, places, size)
 
 
+def values_without_each(blocks: Sequence[Block]) -> Array:
+    """The values (blocks, k) of fits of all blocks but one each, every recording with an offset of its own."""
+    columns = blocks[0].regressor.shape[1]
+    places, size = _places(blocks, columns, shared_offset=False)
+    parts = [
+        TriangularFactor.of(_design(block), block.response).among(own, size)
+        for block, own in zip(blocks, places, strict=True)
+    ]
+    none = TriangularFactor(np.zeros((size + 1, size + 1)), 0)
+    rests = [sum((*parts[:place], *parts[place + 1 :]), none) for place in range(len(parts))]
+    return np.array([rest.solve()[:columns] for rest in rests])
+
+
 def _places(blocks: Sequence[Block], columns: int, shared_offset: bool) -> tuple[list[Array], int]:
     """Where each block's own columns stand among all parameters: common ones, offsets, then nuisances; and how many."""
     size = columns + (1 if shared_offset else len(blocks))
@@ -78,8 +91,8 @@ def _robust(
     """Sandwich covariance with the coloured scores of each recording inside, and degrees of freedom."""
     parts, freedoms = [], []
     for block, own, residual in zip(blocks, places, residuals, strict=True):
-        middle, freedom = cosine_covariance(_design(block) * residual[:, None], block.duration)
-        parts.append(inverse[:, own] @ middle @ inverse[own])
-        freedoms.append(freedom)
+        moved = score_cosines(_design(block) * residual[:, None], block.duration) @ inverse[own]
+        parts.append(moved.T @ moved)
+        freedoms.append(len(moved))
     variances = np.array([np.diag(part) for part in parts])
     return np.sum(parts, axis=0), pooled_freedom(variances, np.array(freedoms, dtype=float)[:, None])

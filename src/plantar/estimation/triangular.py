@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import linalg
 
 from plantar.conventions import Array
 
@@ -59,23 +58,23 @@ class TriangularFactor:
     @property
     def condition_number(self) -> float:
         """Condition of the regressor with its columns scaled to one length; inf where it is singular."""
-        values = linalg.svdvals(self._scaled()[0])
+        values = np.linalg.svd(self._scaled()[0], compute_uv=False)
         return float(values[0] / values[-1]) if values.size and values[-1] > 0 else float("inf")
 
     @property
     def rank(self) -> int:
         """How many directions of the parameters the rows excite."""
-        values = linalg.svdvals(self._scaled()[0])
+        values = np.linalg.svd(self._scaled()[0], compute_uv=False)
         return int(np.sum(values > RANK_TOLERANCE * max(values[0], 1e-300))) if values.size else 0
 
     def solve(self) -> Array:
         """The least-squares parameters (k,); of minimum norm in scaled columns where the rank is short."""
         triangle, scale = self._scaled()
-        solution = linalg.lstsq(triangle, self.factor[:-1, -1], cond=RANK_TOLERANCE)[0]
+        solution = np.linalg.lstsq(triangle, self.factor[:-1, -1], rcond=RANK_TOLERANCE)[0]
         return np.asarray(solution / scale)
 
     def information_inverse(self) -> Array:
         """(RᵀR)⁻¹, (k, k): the parameters' covariance for unit residuals; the pseudo-inverse where singular."""
         triangle, scale = self._scaled()
-        inverse = linalg.pinv(triangle, rtol=RANK_TOLERANCE) / scale[:, None]
+        inverse = np.linalg.pinv(triangle, rcond=RANK_TOLERANCE) / scale[:, None]
         return np.asarray(inverse @ inverse.T)

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from plantar import _core
 from plantar.conventions import Array
 
 OUTLYING = 5.0  # usual deviations: beyond them a sample is motion rather than drift
@@ -52,10 +53,11 @@ def fit_drift(
     stacked = known.transpose(1, 0, 2).reshape(len(velocity), -1)
     most = independent / noise**2
     weight = np.asarray(seen * most / STIFF)
+    # From one sample to the next the drift goes on by its slope, plus a step; the slope takes one, too.
+    chain = (np.maximum(jump, LEAST_JUMP), wander * period, period, (FIRST_DRIFT**-2, FIRST_SLOPE**-2))
     reach, settled = np.inf, 0
     while True:
-        matrix = _information(weight, np.maximum(jump, LEAST_JUMP), wander * period, period)
-        smooth = _smoothed(matrix, weight, stacked).reshape(len(velocity), -1, 2).transpose(1, 0, 2)
+        smooth = _core.smooth_drift(weight, *chain, stacked).reshape(len(velocity), -1, 2).transpose(1, 0, 2)
         size = _sizes(known - smooth, weight)
         left = known[0] - smooth[0] - np.tensordot(size, known[1:] - smooth[1:], 1)
         square = seen * (np.sum(left**2, axis=1) / (2 * noise**2) + unrest)
@@ -67,7 +69,7 @@ def fit_drift(
         weight = np.asarray(
             seen * (allowed / (square + allowed)) ** 2 * most / reach**2
         )  # Geman and McClure's
-    return Drift(known[0] - left, _deviation(matrix))
+    return Drift(known[0] - left, np.sqrt(_core.drift_variance(weight, *chain)))
 
 
 def _sizes(left: Array, weight: Array) -> Array:
@@ -76,61 +78,3 @@ def _sizes(left: Array, weight: Array) -> Array:
     length = np.linalg.norm(flat, axis=1) + 1e-12
     solved = np.linalg.lstsq((flat[1:] / length[1:, None]).T, flat[0], rcond=1e-6)[0]
     return np.asarray(solved / length[1:])
-
-
-def _information(weight: Array, jump: Array, wander: float, period: float) -> Array:
-    """Information about drift and slope of each sample by turns, as the (4, 2n) upper diagonals of a banded matrix.
-
-    From one sample to the next the drift goes on by slope·period, plus a step of variance `jump`; the slope takes one
-    of variance `wander`.
-    """
-    band, step = np.zeros((4, 2 * len(weight))), 1 / jump[:-1]
-    band[3, 0::2] = weight
-    band[3, 0:-2:2] += step
-    band[3, 2::2] += step
-    band[1, 2::2] = -step
-    band[3, 1:-2:2] += step * period**2 + 1 / wander
-    band[3, 3::2] += 1 / wander
-    band[1, 3::2] = -1 / wander
-    band[2, 1:-2:2] = step * period
-    band[2, 2::2] = -step * period
-    band[3, :2] += 1 / FIRST_DRIFT**2, 1 / FIRST_SLOPE**2
-    return band
-
-
-def _smoothed(band: Array, weight: Array, values: Array) -> Array:
-    """The drift that fits `values` (n, k) best, each column by itself."""
-    from scipy.linalg import solveh_banded  # costs start-up
-
-    right = np.zeros((band.shape[1], values.shape[1]))
-    right[0::2] = weight[:, None] * values
-    return np.asarray(solveh_banded(band, right)[0::2])
-
-
-def _deviation(band: Array) -> Array:
-    """Deviation (n,) of the drift: the inverse's diagonal, block by block, forth (elimination) and back."""
-    own = np.stack([band[3, 0::2], band[2, 1::2], band[3, 1::2]], axis=1).tolist()
-    onward = np.stack([band[1, 2::2], band[2, 2::2], band[0, 3::2], band[1, 3::2]], axis=1).tolist()
-    inverses: list[tuple[float, float, float]] = []
-    a, b, c = own[0]
-    for place in range(len(own)):
-        if place:
-            # The next block less onwardᵀ · inverse · onward of this one.
-            (p, q, r), (dd, sd, ds, ss) = inverses[-1], onward[place - 1]
-            pd, qd, ps, qs = p * dd + q * sd, q * dd + r * sd, p * ds + q * ss, q * ds + r * ss
-            a, b, c = own[place]
-            a, b, c = a - dd * pd - sd * qd, b - dd * ps - sd * qs, c - ds * ps - ss * qs
-        size = a * c - b * b
-        inverses.append((c / size, -b / size, a / size))
-    u, v, w = inverses[-1]
-    variance = [u]
-    for (p, q, r), (dd, sd, ds, ss) in zip(inverses[-2::-1], onward[::-1], strict=True):
-        # inverse + gain · covariance of the next · gainᵀ, gain = inverse · onward
-        pd, qd, ps, qs = p * dd + q * sd, q * dd + r * sd, p * ds + q * ss, q * ds + r * ss
-        u, v, w = (
-            p + pd * pd * u + 2 * pd * ps * v + ps * ps * w,
-            q + pd * qd * u + (pd * qs + ps * qd) * v + ps * qs * w,
-            r + qd * qd * u + 2 * qd * qs * v + qs * qs * w,
-        )
-        variance.append(u)
-    return np.asarray(np.sqrt(variance[::-1]))

@@ -61,15 +61,17 @@ def fit_foot(
     """
     progress(f"fit {foot}")
     given_up: dict[Axis, str] = {}
-    fits, several = _fits(ready, foot, place, {}, given_up), False
+    thin, several = _thin(ready, foot), False
+    fits = _fits(thin, foot, place, {}, given_up)
     for _ in range(ROUNDS):
         masks = _outliers(ready, fits, given_up)
         if not any(masks.values()):
             break
         several = True
         ready = replace(ready, fitted=tuple(_without(one, foot, masks) for one in ready.fitted))
-        fits = _fits(ready, foot, place, {axis: fit.model for axis, fit in fits.items()}, given_up)
-    fits = _fits(ready, foot, place, {}, given_up) if several else fits
+        thin = _thin(ready, foot)
+        fits = _fits(thin, foot, place, {axis: fit.model for axis, fit in fits.items()}, given_up)
+    fits = _fits(thin, foot, place, {}, given_up) if several else fits
     fits = {axis: fit for axis, fit in fits.items() if axis not in given_up}
     if (turned := turned_bush(fits)) is not None:
         fits = {axis: replace(fit, notes=(*fit.notes, turned)) for axis, fit in fits.items()}
@@ -77,7 +79,7 @@ def fit_foot(
     for axis in ROTATIONAL_AXES:
         if axis in fits:
             with gives_up(axis, given_up):
-                found = _with_axis(found, ready, fits[axis])
+                found = _with_axis(found, ready, thin, fits[axis])
         if axis in given_up:
             found.parameters.extend(missing_rows(foot, axis, given_up[axis]))
         elif axis not in fits:
@@ -85,19 +87,24 @@ def fit_foot(
     return replace(found, notes=(*found.notes, *internal_errors(foot, given_up))), ready
 
 
-def _with_axis(found: FootFit, ready: PreparedLogs, fit: AxisFit) -> FootFit:
+def _thin(ready: PreparedLogs, foot: str) -> PreparedLogs:
+    """The logs with no more samples to fit than the filter has left."""
+    return replace(ready, fitted=tuple(recording.decimated(foot) for recording in ready.fitted))
+
+
+def _with_axis(found: FootFit, ready: PreparedLogs, thin: PreparedLogs, fit: AxisFit) -> FootFit:
     """What was found, and one axis: its fit widened, scored, judged and diagnosed."""
     shared = ready.settings.offset == "shared"
-    causes = systematic_causes(fit, ready.fitted, ready.sensor_delay, ready.vertical, shared)
+    causes = systematic_causes(fit, thin.fitted, ready.sensor_delay, ready.vertical, shared)
     causes += force_gain_causes(fit, ready.gain_errors)
     causes += torque_gain_causes(fit, ready.torque_gains)
-    causes += robot_causes(fit, ready.fitted, ready.robot.uncertainty, shared)
+    causes += robot_causes(fit, thin.fitted, ready.robot.uncertainty, shared)
     wide = inflated(fit, causes)
     scores, predictions = score_axis(ready.recordings, wide)
     rows = axis_rows(wide, ready.fitted, predictions, scores)
     limits = diagnose_axis(fit, wide, causes, rows)
     gain = {foot: error for foot, error in ready.gain_errors.items() if foot == fit.foot}
-    odd = [*zero_jumps(ready.fitted, fit, shared), *play_notes(ready.fitted, fit, shared)]
+    odd = [*zero_jumps(thin.fitted, fit, shared), *play_notes(thin.fitted, fit, shared)]
     faults = [
         *data_faults(ready.fitted, fit),
         *odd,

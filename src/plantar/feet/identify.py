@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import os
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from typing import Any
 
@@ -17,7 +15,7 @@ from plantar.feet.assess.residual_table import residual_table
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.bush_place import PlaceSpread
 from plantar.feet.foot_fit import FootFit, fit_foot
-from plantar.feet.prepare import PreparedLogs, prepare_all
+from plantar.feet.prepare import PreparedLogs, over_logs, prepare_all
 from plantar.feet.recording import Recording
 from plantar.feet.settings import FeetSettings
 from plantar.logs.inputs import LogInputs, RobotInput, logs_of, robot_of
@@ -131,8 +129,8 @@ def _fitted_feet(
     places = {foot: PlaceSpread.of(ready.robot, foot) for foot in ready.robot.feet}
 
     def fit_all(places: Mapping[str, PlaceSpread]) -> dict[str, tuple[FootFit, PreparedLogs]]:
-        with ThreadPoolExecutor(os.cpu_count()) as pool:
-            found = pool.map(lambda foot: fit_foot(ready, foot, places[foot], progress), places)
+        with over_logs([recording.log for recording in ready.recordings]) as each:
+            found = each(lambda foot: fit_foot(ready, foot, places[foot], progress), places)
             return dict(zip(places, found, strict=True))
 
     found = fit_all(places)

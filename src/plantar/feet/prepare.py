@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 
 from plantar.conventions import Axis
@@ -25,11 +26,13 @@ from plantar.robot.model import RobotModel
 from plantar.sensors.bandwidth import fading, fading_notes
 from plantar.sensors.moment_balance import TorqueGain, torque_gain_notes, torque_gains
 from plantar.sensors.moment_fit import fit_moments
+from plantar.sensors.refined_delays import Each
 from plantar.sensors.sensor_delay import SensorDelay, estimate_wrench_delay, in_time, known_delay
 from plantar.sensors.sensor_turns import sensor_turn_notes
 from plantar.sensors.tilt_error import NO_TILT_ERROR, log_tilt_error
 
 Progress = Callable[[str], None]
+LONG = 50_000  # samples: with fewer, threads mostly hand Python's lock to each other, and hold memory each
 
 
 @dataclass(frozen=True)
@@ -56,6 +59,16 @@ class PreparedLogs:
         return self.fitted + self.unseen
 
 
+@contextmanager
+def over_logs(logs: Sequence[MotionLog]) -> Iterator[Each]:
+    """A map over logs, or over what comes of them: on all cores where one of them is long."""
+    if max(map(len, logs), default=0) <= LONG:
+        yield map
+        return
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        yield pool.map
+
+
 def prepare_all(
     robot: RobotModel,
     logs: Sequence[MotionLog],
@@ -70,8 +83,8 @@ def prepare_all(
     everything = [*logs, *validate]
     check_names(everything)
     progress("check the logs")
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        even = list(pool.map(lambda log: checked(robot, log), everything))
+    with over_logs(everything) as each:
+        even = list(each(lambda log: checked(robot, log), everything))
     return prepare_checked(robot, even[: len(logs)], even[len(logs) :], settings, progress)
 
 
@@ -86,8 +99,8 @@ def prepare_checked(
     even = [*logs, *validate]
     progress("estimate the sensors' delays")
     if settings.wrench_delay is None:
-        with ThreadPoolExecutor(os.cpu_count()) as pool:
-            delay = estimate_wrench_delay(robot, even, pool.map)
+        with over_logs(even) as each:
+            delay = estimate_wrench_delay(robot, even, each)
     else:
         delay = known_delay(settings.wrench_delay)
     recordings, settings = _recordings(robot, even, len(logs), settings, delay, progress)
@@ -95,9 +108,9 @@ def prepare_checked(
     vertical = fit_vertical_stiffness(recordings[: len(logs)], robot)
     moved = [moved_centre(recording, vertical.compliance) for recording in recordings]
     forces = force_gain_errors(robot, recordings)
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
+    with over_logs(even) as each:
         stepping = {one.name for one in recordings if any(each is not None for each in one.stances.values())}
-        moments = fit_moments(robot, delay.residuals, stepping, pool.map)
+        moments = fit_moments(robot, delay.residuals, stepping, each)
     torques, turned = torque_gains(robot, moments), sensor_turn_notes(robot, moments)
     file = robot.path.name
     odd = [
@@ -147,8 +160,8 @@ def _recordings(
         role: Role = "fit" if place < fitted else "validate"
         return prepare(robot, on_time[place], role, tilt_error, settings.highest_cutoff)
 
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        recordings = list(pool.map(ready, range(len(on_time))))
+    with over_logs(even) as each:
+        recordings = list(each(ready, range(len(on_time))))
         cutoff = settings.highest_cutoff
         if settings.cutoff is None:
             cutoff = min(cutoff, coherent_band(recordings[:fitted]))
@@ -157,8 +170,8 @@ def _recordings(
         def usable(recording: Recording) -> Recording:
             return without_torque_saturation(robot, filtered_recording(recording, cutoff), settings)
 
-        recordings = list(pool.map(usable, recordings))
+        recordings = list(each(usable, recordings))
         progress("look for soles that tip or slide")
         recordings = without_edge_rolling(robot, recordings, settings)
-        recordings = list(pool.map(lambda recording: without_slip(robot, recording), recordings))
+        recordings = list(each(lambda recording: without_slip(robot, recording), recordings))
     return recordings, settings

@@ -22,6 +22,7 @@ from plantar.signals.segments import run_ends
 
 FILTER_EDGE = 1.0  # of the filter's period, left out where a run of samples begins or ends
 SAMPLES_PER_CYCLE = 8  # of the cutoff, that a fit takes
+WIDE_BAND = 3.0  # cutoffs: at that of a fit nothing is lost, and nothing beyond twice as far is left
 SHORTEST_STANCE_RUN = 8  # samples of a stance, for it to be filtered by itself
 
 Role = Literal["fit", "validate"]
@@ -36,6 +37,7 @@ class Recording:
     `places` (N, 2) of each foot: of the sole from the IMU [m] in the attitude as recorded, which slides are judged by.
     `imu_turns` (N, 2, 3) of each foot: see `imu_turn_effects`; filtered as `bushes`.
     `zeros`: of force sensors, as read while their foot swings; they are taken off already.
+    `every`: of how many of the log's samples each is one.
     """
 
     log: MotionLog
@@ -50,6 +52,7 @@ class Recording:
     notes: tuple[Note, ...]
     zeros: tuple[SwingZero, ...] = ()
     imu_turns: Mapping[str, Array] = field(default_factory=dict)
+    every: int = 1
 
     @property
     def name(self) -> str:
@@ -68,10 +71,13 @@ class Recording:
         return self.contacts[foot].used
 
     def rows(self, foot: str) -> Mask:
-        """Those of the used samples that a fit takes: behind its filter a few of each cycle say all."""
-        rows = np.zeros(len(self.time), dtype=bool)
-        stride = self.stride(foot)
-        rows[::stride] = self.used(foot)[::stride]
+        """Those of the used samples that a fit takes."""
+        return self.thinned(foot, self.used(foot))
+
+    def thinned(self, foot: str, samples: Mask) -> Mask:
+        """Those of some samples (N,) that a fit of this foot takes: behind its filter a few of each cycle say all."""
+        rows, stride = np.zeros_like(samples), self.stride(foot)
+        rows[::stride] = samples[::stride]
         return rows
 
     def stride(self, foot: str) -> int:
@@ -79,6 +85,31 @@ class Recording:
         if self.stances[foot] is not None:
             return 1
         return max(1, int(1 / (SAMPLES_PER_CYCLE * self.cutoff * self.period)))
+
+    def decimated(self, foot: str) -> Recording:
+        """What a fit of this foot reads, `rows` alone, and nothing else of the log; itself where these are all.
+
+        What has not passed the fit's filter passes one that is wide enough to leave that one its band.
+        """
+        stride, bush = self.stride(foot), self.bushes[foot]
+        if stride == 1:
+            return self
+        rows = slice(None, None, stride)
+        loads = np.column_stack([bush.wrench, bush.force_z])
+        loads = low_pass(loads, self.period, WIDE_BAND * self.cutoff)[rows]
+        kept = BushState(*(np.ascontiguousarray(values[rows]) for values in vars(bush).values()))
+        kept = replace(kept, wrench=loads[:, :6], force_z=loads[:, 6])
+        return replace(
+            self,
+            log=MotionLog(self.name, self.time[rows], {}, self.log.path, self.log.sha256, self.log.notes),
+            raw={foot: kept},
+            bushes={foot: kept},
+            contacts={foot: self.contacts[foot].decimated(rows)},
+            stances={foot: None},
+            places={},
+            imu_turns={name: turns[rows] for name, turns in self.imu_turns.items()},
+            every=stride * self.every,
+        )
 
     def without(self, foot: str, samples: Mask, reason: Reason, detail: str = "") -> Recording:
         """The same recording with these samples of one foot left out."""

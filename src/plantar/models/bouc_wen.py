@@ -13,6 +13,7 @@ from plantar.models.bush_model import BushMotion
 from plantar.models.hysteresis import Branches, Hysteretic
 
 TABLE = 2001
+STEPS = 8000  # of the integrals behind it
 DEEPEST = 30.0  # -log(1 - z) at which z counts as 1
 SHARPNESS = (1.0, 2.0, 4.0)  # tried by the search; 1 is Dahl's friction, large ones are a Jenkins element
 
@@ -62,18 +63,17 @@ class BranchCurve:
     """
 
     def __init__(self, sharpness: float) -> None:
-        from scipy.interpolate import CubicSpline  # costs start-up
-
-        fall = np.linspace(0.0, DEEPEST, 8001)  # -log(1 - |z|)
+        fall = np.linspace(0.0, DEEPEST, STEPS + 1)  # -log(1 - |z|)
         z = -np.expm1(-fall)
         power = sharpness * np.log1p(-np.exp(-np.maximum(fall, 1e-15)))  # log |z|^n
         # Way / slip angle: ∫ dz / (1 + |z|^n) from -1 to 0, then ∫ dz / (1 - z^n), both over `fall`.
-        below = CubicSpline(fall, np.exp(-fall) / (1.0 + np.exp(power))).antiderivative()
-        above = CubicSpline(fall, np.exp(-fall) / -np.expm1(power)).antiderivative()
+        below, above = np.exp(-fall) / (1.0 + np.exp(power)), np.exp(-fall) / -np.expm1(power)
         z = np.unique(np.concatenate([np.linspace(0.0, 1.0, TABLE)[:-1], z[fall > 4.0][::8]]))
         fall = -np.log1p(-z)
-        zero = below(DEEPEST)
-        way = np.concatenate([[0.0], zero - below(fall[:0:-1]), zero + above(fall), [np.inf]])
+        zero, under, over = (
+            _integral(*each) for each in ((below, np.array([DEEPEST])), (below, fall[:0:-1]), (above, fall))
+        )
+        way = np.concatenate([[0.0], zero - under, zero + over, [np.inf]])
         self._state = np.concatenate([[-1.0], -z[:0:-1], z, [1.0]])
         self._place = -np.expm1(-sharpness * way)
         self._turned = self._place[::-1]
@@ -89,6 +89,22 @@ class BranchCurve:
     def turned(self, place: Array) -> Array:
         """p on the way back from p."""
         return np.asarray(np.interp(place, self._place, self._turned))
+
+
+def _integral(values: Array, ends: Array) -> Array:
+    """Integral from 0 to each of `ends` (n,) of a smooth function's `values` (STEPS + 1,), evenly spaced to DEEPEST.
+
+    Cubic: over each step from four values (Gregory), and within a step by Hermite's polynomial.
+    """
+    step = DEEPEST / STEPS
+    beside = np.pad(values, 1, mode="reflect", reflect_type="odd")
+    parts = step / 24 * (13 * (values[1:] + values[:-1]) - beside[:-3] - beside[3:])
+    until = np.concatenate([[0.0], np.cumsum(parts)])
+    place = np.minimum((ends / step).astype(np.intp), STEPS - 1)
+    t = ends / step - place
+    rise = until[place + 1] - until[place]
+    bend = t * (1 - t) * step * ((1 - t) * values[place] - t * values[place + 1])
+    return np.asarray(until[place] + t * t * (3 - 2 * t) * rise + bend)
 
 
 @lru_cache(maxsize=64)

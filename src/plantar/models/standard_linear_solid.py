@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import ClassVar
 
 import numpy as np
-from scipy.linalg import solve_banded
 
 from plantar.conventions import Array
 from plantar.models.bush_model import BESIDE, BushModel, BushMotion, reach
@@ -53,22 +52,18 @@ class StandardLinearSolid(BushModel):
             scale = reach([motion])
             for place, run in enumerate(motion.runs):
                 step = np.diff(motion.deflection[run], prepend=motion.deflection[run.start])
-                for variant, time in enumerate(shapes[:, 0]):
-                    ratio = motion.period / time
-                    decay, gain = np.exp(-ratio), -np.expm1(-ratio) / ratio
-                    first = start[variant, place] * scale
-                    column[run, 0, variant] = _decaying(decay, gain * step, first)
+                ratio = motion.period / shapes[:, 0]
+                added = step[:, None] * (-np.expm1(-ratio) / ratio)
+                added[0] += start[:, place] * scale
+                column[run, 0] = _decaying(np.exp(-ratio), added)
             columns.append(column)
         return columns
 
 
-def _decaying(decay: float, added: Array, first: float) -> Array:
-    """x (n,) with x_i = decay·x_{i-1} + added_i, of which x_{-1} leaves `first`: a bidiagonal system of equations.
-
-    A filter would do it too, but takes half a second to import.
-    """
-    bands = np.ones((2, len(added)))
-    bands[1] = -decay
-    right = added.copy()
-    right[0] += first
-    return np.asarray(solve_banded((1, 0), bands, right))
+def _decaying(decay: Array, added: Array) -> Array:
+    """x (n, b) with x_i = decay·x_{i-1} + added_i, nothing before: sums over 2, 4, 8, ... samples."""
+    x, reach = added.copy(), 1
+    while reach < len(x):
+        x[reach:] += decay * x[:-reach]
+        decay, reach = decay * decay, 2 * reach
+    return x

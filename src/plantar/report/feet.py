@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -19,7 +20,7 @@ from plantar.report.walks import walk_section
 from plantar.report.warning_groups import warning_groups
 from plantar.results.feet import FeetResult
 from plantar.results.io import result_path
-from plantar.results.residuals import read_residuals, residuals_path
+from plantar.results.residuals import read_residuals, residuals_path, tracks_of
 
 
 def write_feet_report(
@@ -28,17 +29,22 @@ def write_feet_report(
     *,
     figures: Sequence[Figure] = (),
     sections: Sequence[Section] = (),
+    table: Any = None,
 ) -> Path:
     """Write `report.html` beside a `result.json` (or to `out`) and return its path.
 
-    `result` is the file or its directory. The residuals beside it (`residuals.parquet`, `.csv` or `.csv.gz`) give the
-    plots; without them the page has none and says so. `sections` come after the tables, `figures` after the plots. The
-    page is one file that needs no network. Raises `PlantarError` for a result or residuals that cannot be read.
+    `result` is the file or its directory. The residuals beside it (`residuals.parquet`, `.csv` or `.csv.gz`), or
+    `table` where they are still in memory (Arrow), give the plots; without them the page has none and says so.
+    `sections` come after the tables, `figures` after the plots. The page is one file that needs no network. Raises
+    `PlantarError` for a result or residuals that cannot be read.
     """
     path = result_path(result)
     content = FeetResult.load(path, residuals=False)
     residuals = residuals_path(path.parent)
-    tracks = read_residuals(residuals) if residuals is not None else ()
+    if table is not None:
+        tracks = tracks_of(table)
+    else:
+        tracks = read_residuals(residuals) if residuals is not None else ()
     motions, stride = motion_views(content, tracks)
     page = render(
         "feet.html.j2",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -98,8 +98,8 @@ def tracks_of(table: Any, path: Path | None = None) -> tuple[Track, ...]:
     if not np.isfinite(time).all():
         raise PlantarError(located("is not finite", path=path, column="time", valid="seconds"))
     used = _floats(table, "used", path) > 0.5
-    values = {name: _floats(table, name, path) for name in table.column_names if name in names}
-    tracks = []
+    tracks: list[Track] = []
+    rows_of: list[NDArray[np.intp]] = []
     for m, motion_name in enumerate(motions):
         for f, foot_name in enumerate(feet):
             rows = np.flatnonzero((motion == m) & (foot == f))
@@ -108,9 +108,15 @@ def tracks_of(table: Any, path: Path | None = None) -> tuple[Track, ...]:
             rows = rows[np.argsort(time[rows], kind="stable")]
             role = text["role"][1][text["role"][0][rows[0]]] if "role" in text else ""
             support = _text(text.get("support"), rows)
-            columns = {name: column[rows] for name, column in values.items()}
-            tracks.append(Track(motion_name, role, foot_name, time[rows], used[rows], support, columns))
-    return tuple(tracks)
+            tracks.append(Track(motion_name, role, foot_name, time[rows], used[rows], support, {}))
+            rows_of.append(rows)
+    columns: list[dict[str, Array]] = [{} for _ in tracks]
+    for name in table.column_names:  # one column in memory at a time beside the tracks
+        if name in names:
+            values = _floats(table, name, path)
+            for own, rows in zip(columns, rows_of, strict=True):
+                own[name] = values[rows]
+    return tuple(replace(track, values=own) for track, own in zip(tracks, columns, strict=True))
 
 
 def read_table(path: Path) -> Any:

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from plantar.conventions import NORMAL95, ROTATIONAL_AXES, Array, Axis
-from plantar.estimation.intervals import MOST_FREEDOM
+from plantar.estimation.quantiles import MOST_FREEDOM
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
 from plantar.sensors.moment_errors import LEAST_GAIN

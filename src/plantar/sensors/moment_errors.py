@@ -12,14 +12,14 @@ from plantar.dynamics import Contact, Equation
 from plantar.dynamics.inertial_motion import inertial_motion, turned_motions
 from plantar.dynamics.motion import Motion
 from plantar.robot.model import Foot, RobotModel
-from plantar.sensors.newton_euler import BASE_ROWS, CUTOFF, SLOW, NewtonEulerResidual
+from plantar.sensors.newton_euler import BASE_ROWS, CUTOFF, SLOW, NewtonEulerResidual, predicted_errors
 from plantar.signals.filters import gain, low_pass
-from plantar.signals.resampling import shifted
 
 LOOSE = 0.3  # share: deviation of a torque's gain before the moments are asked
 LEAST_GAIN = 0.01  # share, of the forces' gains and of what their places add: nuisances need a finite prior
 LEAST_ARM = 0.003  # m, likewise
 LEAST_BETWEEN = 0.001  # N.m/N, likewise
+RATE = 20.0  # Hz of the samples that take part: above it nothing has passed the filter
 BAND = 2.0  # Hz: the robot moves below it, and most of the sensors' noise is above
 LATE = 0.02  # s, of feet's sensors, encoders and gyroscope behind the accelerometer
 MOUNT = 0.1  # rad, by which sensors and IMU may be turned: wide, so that no turned mount passes for a gain
@@ -54,13 +54,14 @@ def moment_errors(robot: RobotModel, residual: NewtonEulerResidual, steps: bool)
     Of a standing robot what is slower than BAND, without what the sensors' noise does to it. A walk moves faster, and
     so strongly that noise is small beside it.
     """
+    residual = residual.thinned(max(1, round(1 / (RATE * residual.pair.period))))
     readings = _reading_columns(robot, residual)
     by_gyroscope, by_mount = _imu_slopes(robot, residual)
     slopes = [*-by_mount, *residual.rates, residual.by_encoders, -by_gyroscope]
     pair, period, count = residual.pair, residual.pair.period, len(readings) + len(slopes)
-    moving = np.hstack([*readings, *slopes, *residual.model_errors])
-    moving -= low_pass(moving, period, SLOW)  # what postures and drifting zeros do to them
-    every = np.hstack([pair.predicted - pair.measured, moving])
+    errors = predicted_errors(robot, inertial_motion(robot, residual.signals, residual.kept))
+    every = np.hstack([pair.predicted - pair.measured, *readings, *slopes, *errors])
+    every[:, 6:] -= low_pass(every[:, 6:], period, SLOW)  # what postures and drifting zeros do to them
     if steps:
         return _errors(_by_row(every), count, period, CUTOFF)
     slow = low_pass(every, period, BAND)
@@ -76,7 +77,7 @@ def moment_errors(robot: RobotModel, residual: NewtonEulerResidual, steps: bool)
 
 def _errors(rows: Array, count: int, period: float, band: float) -> MomentErrors:
     """Of what is missing, `count` columns and drawn URDFs, (6, k, n), that hold what is slower than `band` [Hz]."""
-    columns, drawn = rows[:, : count + 1], rows[:, count + 1 :]
+    columns, drawn = rows[:, : count + 1].copy(), rows[:, count + 1 :]
     products, wrong = columns @ columns.transpose(0, 2, 1), columns[:, 1:] @ drawn.transpose(0, 2, 1)
     # A filtered signal has two independent samples in a period of its cutoff.
     return MomentErrors(columns[:, 1:], columns[:, 0], products, wrong, period, 2 * band * period)
@@ -163,13 +164,10 @@ def _imu_slopes(robot: RobotModel, residual: NewtonEulerResidual) -> tuple[Array
         ends = [equation.inverse_dynamics(motion, parameters)[BASE_ROWS].T for motion in (late, early)]
         return (ends[0] - ends[1]) / apart
 
-    read = [signals._replace(rate=shifted(signals.rate, step, by)) for by in (step, -step)]
-    late, early = (inertial_motion(robot, one, kept) for one in read)
-    ahead, back = (
-        turned_motions(robot, signals, kept, [pin.exp3(by * axis) for axis in np.eye(3)])
-        for by in (TURN, -TURN)
-    )
-    by_mount = [slope(*ends, 2 * TURN) for ends in zip(ahead, back, strict=True)]
+    late, early = (inertial_motion(robot, signals, kept, gyroscope_late=by) for by in (step, -step))
+    turns = [pin.exp3(by * axis) for by in (TURN, -TURN) for axis in np.eye(3)]
+    turned = turned_motions(robot, signals, kept, turns)
+    by_mount = [slope(*ends, 2 * TURN) for ends in zip(turned[:3], turned[3:], strict=True)]
     return slope(late, early, 2 * step), np.array(by_mount)
 
 

@@ -11,10 +11,10 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from scipy import special
 
 from plantar.conventions import Array
-from plantar.estimation.intervals import MOST_FREEDOM, cosine_covariance, pooled_freedom
+from plantar.estimation.intervals import cosine_covariance, pooled_freedom
+from plantar.estimation.quantiles import MOST_FREEDOM, fisher_quantile
 from plantar.robot.model import RobotModel
 from plantar.sensors.moment_errors import LOOSE, MomentErrors, moment_errors, prior_deviations
 from plantar.sensors.newton_euler import NewtonEulerResidual
@@ -65,7 +65,7 @@ def is_wrong(values: Array, parts: Sequence[Part], some: list[int]) -> bool:
     weights = np.linalg.solve(own.sum(axis=0), values[some])
     count, variances = len(weights), np.einsum("i,kij,j->k", weights, own, weights)
     freedom = float(pooled_freedom(variances[:, None], np.array([[part.freedom] for part in parts]))[0])
-    limit = count * float(special.fdtri(count, max(freedom - count, 2), 1 - CHANCE))
+    limit = count * fisher_quantile(1 - CHANCE, count, max(freedom - count, 2))
     return bool(weights @ values[some] > limit)
 
 

@@ -39,7 +39,7 @@ class NewtonEulerResidual:
     `pair`: all feet together; `measured` and `rates` (feet, n, 6): each foot's wrench, and how it changes with the
     moment at which its sensor is read; `by_encoders` (n, 6): how the prediction changes with the moment at which the
     encoders are. `readings` (n, 6 feet), the sensors' own, and the samples `kept` of `signals` are what both sides come
-    from. `model_errors` (draws, n, 6): what inertial parameters as wrong as the robot file allows would add.
+    from.
     """
 
     pair: Pair
@@ -50,7 +50,22 @@ class NewtonEulerResidual:
     signals: InertialSignals
     kept: slice
     parameters: Array
-    model_errors: Array
+
+    def thinned(self, stride: int) -> NewtonEulerResidual:
+        """Every nth sample, without draws of wrong models."""
+        pair, rows = self.pair, slice(None, None, stride)
+        measured, rate, predicted = pair.measured[rows], pair.rate[rows], pair.predicted[rows]
+        kept = slice(self.kept.start, self.kept.stop, (self.kept.step or 1) * stride)
+        return NewtonEulerResidual(
+            Pair(pair.label, measured, rate, predicted, stride * pair.period),
+            self.measured[:, rows],
+            self.rates[:, rows],
+            self.by_encoders[rows],
+            self.readings[rows],
+            replace(self.signals),
+            kept,
+            self.parameters,
+        )
 
     @property
     def balance(self) -> Balance:
@@ -81,7 +96,9 @@ def newton_euler_residual(robot: RobotModel, log: MotionLog) -> NewtonEulerResid
         return None
     signals = inertial_signals(robot, complete, CUTOFF)
     wrenches = np.hstack([foot.wrench.sign * log.wrench(foot.wrench.name) for foot in robot.feet.values()])
-    whole = np.asarray(np.isfinite(np.hstack([*signals[:3], wrenches])).all(axis=1))
+    whole = np.asarray(
+        np.isfinite(np.hstack([signals.positions, signals.rate, signals.proper, wrenches])).all(axis=1)
+    )
     edge = round(EDGE / log.period)
     longest = longest_run(whole & ~_struck(robot, wrenches, log.period))
     if (longest.stop - longest.start) * log.period < SHORTEST + 2 * EDGE:
@@ -121,14 +138,20 @@ def newton_euler_residual(robot: RobotModel, log: MotionLog) -> NewtonEulerResid
     if len(predicted) * period < SHORTEST or not closes(pair):
         return None
     motion = motion.select(calm)
-    errors = [equation.inverse_dynamics(motion, one)[BASE_ROWS].T for one in drawn_parameter_errors(robot)]
-    drawn = np.array(errors).reshape(len(errors), *predicted.shape)
-    pair = replace(pair, model_errors=drawn[:DELAY_DRAWS])
+    pair = replace(pair, model_errors=predicted_errors(robot, motion, DELAY_DRAWS))
+    # A copy of the signals holds no differences yet: of all logs together these are large.
     start, stop, _ = calm.indices(len(range(*kept.indices(len(log)))))
     own = slice(kept.start + start * stride, kept.start + stop * stride, stride)
     return NewtonEulerResidual(
-        pair, measured, rates, by_encoders, readings[inner][calm], signals, own, parameters, drawn
+        pair, measured, rates, by_encoders, readings[inner][calm], replace(signals), own, parameters
     )
+
+
+def predicted_errors(robot: RobotModel, motion: Motion, draws: int | None = None) -> Array:
+    """What inertial parameters as wrong as the robot file allows would add to the prediction, (draws, n, 6)."""
+    equation, drawn = Equation(robot.floating_model), drawn_parameter_errors(robot)[:draws]
+    errors = [equation.inverse_dynamics(motion, one)[BASE_ROWS].T for one in drawn]
+    return np.array(errors).reshape(len(errors), len(motion.positions), 6)
 
 
 def _moving(sides: Sequence[Array], period: float) -> Array:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from plantar.conventions import NORMAL95
-from plantar.estimation.intervals import MOST_FREEDOM
+from plantar.estimation.quantiles import MOST_FREEDOM
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
 from plantar.sensors.moment_errors import turn_columns

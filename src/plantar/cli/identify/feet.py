@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from typing import Annotated
 
 import numpy as np
@@ -58,4 +59,5 @@ def run(
 
         result = identify_feet(*inputs.result(), settings=settings, progress=progress(quiet))
     del inputs  # the report needs the logs' memory
-    identification.keep(result, out, write_feet_report, print_feet, json=json, quiet=quiet)
+    report = partial(write_feet_report, table=result.residuals)
+    identification.keep(result, out, report, print_feet, json=json, quiet=quiet)

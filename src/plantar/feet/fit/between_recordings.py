@@ -8,6 +8,7 @@ import numpy as np
 
 from plantar.conventions import Array
 from plantar.estimation import effect_of, fit_blocks
+from plantar.estimation.least_squares import values_without_each
 from plantar.estimation.random_effects import share_between
 from plantar.estimation.stance_least_squares import FEWEST_RECORDINGS, jackknife
 from plantar.feet.fit.axis import AxisFit
@@ -31,10 +32,7 @@ def between_recordings(
         return []
     whole = fit_blocks(blocks)
     if len(blocks) >= FEWEST_RECORDINGS:
-        refits = np.array(
-            [fit_blocks([*blocks[:place], *blocks[place + 1 :]]).values for place in range(len(blocks))]
-        )
-        covariance, freedom = jackknife(refits)
+        covariance, freedom = jackknife(values_without_each(blocks))
         beyond = np.diag(covariance) - whole.std**2
         return [Cause(NAME, np.sqrt(np.maximum(beyond, 0.0)), 1.0, float(freedom[0]))]
     torques = [block.regressor[:, :2] @ fit.values[:2] for block in blocks]

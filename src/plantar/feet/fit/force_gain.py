@@ -7,10 +7,10 @@ does: where it moves from foot to foot, it shows each foot's gain.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from math import erfc
 from typing import NamedTuple
 
 import numpy as np
-from scipy import optimize, special
 
 from plantar.conventions import GRAVITY, NORMAL95, Array, Axis
 from plantar.feet.fit.axis import AxisFit
@@ -31,6 +31,7 @@ SURELY_ALIKE = 1e-4  # share: of sensors without any gain error, and a prior tha
 LEAST_DEVIATION = 0.02  # of the weight: what a hand on the robot may carry of it through whole logs
 SAFE = 0.5  # deviations by which a share may be larger than it looks
 BEYOND_DOUBT = 3.0  # deviations of what the robot file allows for gains and masses
+HALVINGS = 50  # of an interval: what is left of it is rounding
 FAULTY = 0.15  # of robots: their force sensors are off by more than the robot file says,
 FAULT = (
     0.1  # by such a share (standard deviation): another unit of load, an old calibration, a wrong amplifier
@@ -72,11 +73,15 @@ class GainError(NamedTuple):
         mean, std = seen * (sizes / total) ** 2, np.maximum(sizes * self.other / total, LEAST_GAIN)
 
         def outside(reach: float) -> float:
-            beyond = special.ndtr((mean - reach) / std) + special.ndtr((-mean - reach) / std)
-            return float(odds @ beyond / odds.sum()) - 0.05
+            ends = np.array([reach - mean, reach + mean]) / (np.sqrt(2) * std)
+            beyond = [0.5 * (erfc(upper) + erfc(lower)) for upper, lower in ends.T]
+            return float(odds @ beyond / odds.sum())
 
-        found = float(optimize.brentq(outside, 0.0, 1.0 + seen))
-        return min(found, float(np.linalg.norm([seen, NORMAL95 * self.std, NORMAL95 * self.usual])))
+        low, high = 0.0, 1.0 + seen
+        for _ in range(HALVINGS):
+            middle = (low + high) / 2
+            low, high = (middle, high) if outside(middle) > 0.05 else (low, middle)
+        return min(high, float(np.linalg.norm([seen, NORMAL95 * self.std, NORMAL95 * self.usual])))
 
 
 def force_gain_errors(robot: RobotModel, recordings: Sequence[Recording]) -> dict[str, GainError]:

@@ -48,7 +48,7 @@ def blocks_of(
     blocks = []
     for recording in recordings:
         rows, bush = recording.rows(foot), recording.bushes[foot]
-        few = recording.used(foot).sum() < FEWEST_SAMPLES
+        few = recording.every * recording.used(foot).sum() < FEWEST_SAMPLES
         if few or (fit is not None and recording.name not in fit.offsets):
             continue
         regressor = model_columns(recording, foot, axis, fit)[rows]
@@ -60,7 +60,7 @@ def blocks_of(
                 regressor=regressor,
                 response=(bush.torque[:, column] - _taken_off(recording, fit))[rows],
                 period=recording.period * recording.stride(foot),
-                thinned=recording.stride(foot),
+                thinned=recording.every * recording.stride(foot),
                 nuisance=_nuisance(recording, foot, column, fit) if drift else None,
                 noise=noise,
                 stances=_stance_rows(recording, foot) if steps else None,

@@ -92,11 +92,11 @@ class VerticalStiffness:
 def fit_vertical_stiffness(recordings: Sequence[Recording], robot: RobotModel) -> VerticalStiffness:
     """Vertical stiffness of two feet; where no log shows it, compliance 0 with the deviation of soft rubber."""
     feet = tuple(robot.feet)
-    blocks, shown = list[Block](), list[Recording]()
+    blocks, shown = list[Block](), list[tuple[Recording, Mask]]()
     for recording in recordings if len(feet) == 2 else ():
-        if (block := _block(recording, feet)) is not None:
-            blocks.append(block)
-            shown.append(recording)
+        if (shows := _block(recording, feet)) is not None:
+            blocks.append(shows[0])
+            shown.append((recording, shows[1]))
     found = _compliances(blocks, _height_errors(shown, robot)) if blocks else None
     if found is None or not found.clear:
         text = "z: no log shows the vertical compliance; K of pitch and roll may come out too large by load²·compliance"
@@ -117,15 +117,13 @@ def fit_vertical_stiffness(recordings: Sequence[Recording], robot: RobotModel) -
     )
 
 
-def _height_errors(recordings: Sequence[Recording], robot: RobotModel) -> list[list[Array]]:
-    """Of each cause, the change of h in each recording's block, (n,)."""
-    feet = tuple(robot.feet)
+def _height_errors(shown: Sequence[tuple[Recording, Mask]], robot: RobotModel) -> list[list[Array]]:
+    """Of each cause, the change of h at the rows of each recording's block, (n,)."""
     causes: dict[str, list[Array]] = {}
-    for recording in recordings:
-        both = _both_stand(recording, feet)[0]
-        for cause, change in height_changes(recording.log, robot):
-            causes.setdefault(cause, []).append(change[both])
-    return [changes for changes in causes.values() if len(changes) == len(recordings)]
+    for recording, rows in shown:
+        for cause, change in height_changes(recording.log, robot, rows):
+            causes.setdefault(cause, []).append(change)
+    return [changes for changes in causes.values() if len(changes) == len(shown)]
 
 
 def _compliances(blocks: Sequence[Block], errors: Sequence[Sequence[Array]]) -> Compliances:
@@ -153,8 +151,9 @@ def _moved(blocks: Sequence[Block], errors: Sequence[Sequence[Array]]) -> Array:
     return np.asarray(sum((np.outer(effect, effect) for effect in effects), np.zeros((size, size))))
 
 
-def _block(recording: Recording, feet: tuple[str, ...]) -> Block | None:
-    """h over [s, m, t] in double support; t is the attitude's drift over the recording, a nuisance.
+def _block(recording: Recording, feet: tuple[str, ...]) -> tuple[Block, Mask] | None:
+    """h over [s, m, t] in double support; t is the attitude's drift over the recording, a nuisance; and the rows of the
+    recording that it takes.
 
     None where s hardly moves, m is 0 where it hardly does: a regressor of noise gives no compliance but a wrong one.
     """
@@ -164,9 +163,10 @@ def _block(recording: Recording, feet: tuple[str, ...]) -> Block | None:
     both, loads, values = _both_stand(recording, feet)
     if both.sum() < FEWEST_SAMPLES:
         return None
-    height, left_load, right_load = values[both].T
+    rows = recording.thinned(feet[0], both)
+    height, left_load, right_load = values[rows].T
     regressor = np.column_stack([(left_load - right_load) / 2, (left_load + right_load) / 2])
-    drift = np.column_stack([np.ones(len(height)), recording.time[both] - recording.time[both].mean()])
+    drift = np.column_stack([np.ones(len(height)), recording.time[rows] - recording.time[rows].mean()])
     joint = np.column_stack([regressor, height])
     clear = joint - drift @ np.linalg.lstsq(drift, joint, rcond=None)[0]
     beyond = (loads[both] - values[both][:, 1:]).sum(
@@ -177,7 +177,8 @@ def _block(recording: Recording, feet: tuple[str, ...]) -> Block | None:
     if not moves[0]:
         return None
     clear[:, 1] *= moves[1]
-    return Block(recording.name, clear[:, :2], clear[:, 2], recording.period)
+    stride = recording.stride(feet[0])
+    return Block(recording.name, clear[:, :2], clear[:, 2], stride * recording.period, stride), rows
 
 
 def _both_stand(recording: Recording, feet: tuple[str, ...]) -> tuple[Mask, Array, Array]:

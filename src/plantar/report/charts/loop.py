@@ -16,6 +16,7 @@ from plantar.results.residuals import Track
 WIDTH, HEIGHT = 300.0, 240.0
 PLACE: Final = (50.0, 8.0, 240.0, 190.0)  # left, top, width, height of the panel
 LINEAR, NEAREST = "K", "linear K"  # names of the straight line
+RATE: Final = 50.0  # Hz of the samples that are drawn: the fit's filter has left nothing faster
 MOST_POINTS: Final = 2500  # of the measured torque, and as many of the model's
 
 
@@ -80,8 +81,10 @@ def _loop(track: Track, axis: Axis, offsets: Mapping[str, float]) -> list[tuple[
     if not shown.any():
         return []
     model = values.get(f"{axis}.predicted", np.full(len(track.time), np.nan))
+    every = max(1, round(len(track.time) / (RATE * max(float(np.ptp(track.time)), 1e-9))))
     first, second, third = (
-        np.append(np.where(shown, column, np.nan), np.nan) for column in (angle, torque, model - offset)
+        np.append(np.where(shown, column, np.nan)[::every], np.nan)
+        for column in (angle, torque, model - offset)
     )
     return [(first, second, third)]
 

@@ -132,6 +132,8 @@ class _Rows:
 
     def _numbers(self, column: pa.ChunkedArray, name: str) -> Array | None:
         """A piece of a column as float64, empty cells as NaN; None where it holds a text and need not be read."""
+        if pa.types.is_floating(column.type):  # a cast would import what nothing else needs
+            return np.asarray(column.to_numpy())
         try:
             return np.asarray(column.cast(pa.float64()).to_numpy(), dtype=np.float64)
         except pa.ArrowInvalid:

@@ -106,7 +106,7 @@ def _header(head: bytes, path: Path, limit: ReadLimit) -> tuple[list[str], int] 
 
 def _ends(text: bytes) -> int:
     """How many lines end in a text, whatever ends them."""
-    returns = text.count(b"\r")
+    returns = text.count(b"\r") if b"\r" in text else 0
     return text.count(b"\n") + returns - (text.count(b"\r\n") if returns else 0)
 
 
