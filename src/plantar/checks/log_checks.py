@@ -8,6 +8,7 @@ import numpy as np
 
 from plantar.checks.air_readings import check_air_readings
 from plantar.checks.bush_axes import check_bush_axes
+from plantar.checks.bush_link import check_bush_link
 from plantar.checks.channels import check_channels, named
 from plantar.checks.closed_chain import check_closed_chain
 from plantar.checks.gaps import check_gaps
@@ -43,8 +44,8 @@ def check_log(robot: RobotModel, log: MotionLog) -> list[Finding]:
     )
     wrenches = list(_wrenches(robot, log))
     missing = check_path_joints(robot, log) if any(one.fatal for one in (*wrenches, *chain)) else ()
-    axes = check_bush_axes(robot, log)
-    return [*names, *time, *_joints(robot, log), *imu, *missing, *axes, *wrenches, *channels, *chain]
+    bushes = [*check_bush_link(robot, log), *check_bush_axes(robot, log)]
+    return [*names, *time, *_joints(robot, log), *imu, *missing, *bushes, *wrenches, *channels, *chain]
 
 
 def _time(log: MotionLog) -> Iterator[Finding]:
