@@ -25,7 +25,7 @@ def check_bush_link(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
             if moved > TURNED:
                 text = (
                     f"robot file, feet.{name}.bush.link: '{foot.bush.link}' has the joint "
-                    f"'{robot.model.names[joint]}' below it, which changes by {moved:.2g} rad and turns the sole unseen "
+                    f"'{robot.model.names[joint]}' below it: it moves by {moved:.2g} rad and turns the sole unseen "
                     "(valid: the last link of the leg)"
                 )
                 yield Finding("bush_link", text)
