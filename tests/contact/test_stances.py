@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -98,3 +100,15 @@ def test_what_rolls_on_the_outline_at_either_end_belongs_to_no_stance() -> None:
     cop[rows] = [-0.099, 0.0]  # a foot that stays on its heel keeps all but a tenth at either end
     kept = np.flatnonzero(without_rolling(stances, cop, sole).number == 2)
     assert len(kept) == len(rows) - 2 * int(0.1 * len(rows))
+
+
+def test_readings_of_a_sensor_that_repeats_its_values_count_once() -> None:
+    force = steps(1.0, 6)
+    stances = stances_of(contact_of(force), force, WEIGHT, PERIOD)
+    assert stances is not None
+    wrench = np.random.default_rng(0).standard_normal((len(force), 6))
+    whole = np.median(np.bincount(stances.number[stances.number >= 0]))
+    assert stances.readings(wrench) == whole
+    held = np.repeat(wrench[::10], 10, axis=0)[: len(wrench)]
+    assert stances.readings(held) == pytest.approx(whole / 10, abs=1)
+    assert replace(stances, number=np.full(len(force), -1)).readings(wrench) == 0

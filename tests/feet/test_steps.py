@@ -10,12 +10,16 @@ import pytest
 from biped import TRUTH, record, sway
 from feet_trials import LINEAR, noisy
 from plantar.feet.identify import identify_feet
+from plantar.feet.prepare_log import prepare
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
+from plantar.notes import Note
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
 from plantar.robot.uncertainty import Uncertainty
+from plantar.signals.resampling import evenly_sampled
 
+WRENCH = [f"wrench.left.{part}.{axis}" for part in ("force", "torque") for axis in "xyz"]
 ZERO = 20.0  # N, of the left force sensor along z
 PERIOD, STANDS = 1.5, 1.0  # s, of a step and of its stance
 CLOSE = 0.1  # of K: some seconds of a small roll, with the load's moment arms beside it
@@ -95,3 +99,22 @@ def test_the_zero_is_taken_off(found: FeetResult) -> None:
     table = found.residuals.to_pydict()
     swings = (np.array(table["foot"]) == "left") & (np.array(table["support"]) == "air")
     assert np.median(np.array(table["force_z"])[swings]) == pytest.approx(0.0, abs=0.5)
+
+
+def test_a_walk_recorded_too_slowly_is_told(robot: RobotModel) -> None:
+    logs = [stepping(record(sway(f"walk_{seed}", seed, duration=15.0))) for seed in (1, 2)]
+    slow = [
+        log.with_columns({name: np.repeat(log.column(name)[::20], 20)[: len(log)] for name in WRENCH})
+        for log in logs
+    ]
+    notes = {
+        log.name: [note for note in prepare_log(robot, log) if note.code == "sparse_stances"] for log in slow
+    }
+    assert all(
+        len(found) == 1 and "reads 6 values in a usual stance" in found[0].text for found in notes.values()
+    )
+    assert not [note for note in prepare_log(robot, logs[0]) if note.code == "sparse_stances"]
+
+
+def prepare_log(robot: RobotModel, log: MotionLog) -> tuple[Note, ...]:
+    return prepare(robot, evenly_sampled(log), "fit").notes

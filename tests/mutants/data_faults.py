@@ -138,4 +138,14 @@ DATA_FAULTS = (
         "checks/bush_link.py", "joints that stand still turn soles", "if moved > TURNED:", "if moved > 0:",
         ("checks/test_bush_link.py",),
     ),
+    Mutant(
+        "feet/fit/systematic.py", "a delay in doubt counts by its slope alone",
+        "if not sensor_delay.doubtful:", "if True:",
+        ("feet/fit/test_systematic.py",),
+    ),
+    Mutant(
+        "feet/prepare_log.py", "a sensor may repeat itself through a stance",
+        "if read < FEWEST_READINGS:", "if read < 0:",
+        ("feet/test_steps.py",),
+    ),
 )  # fmt: skip

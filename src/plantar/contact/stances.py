@@ -37,6 +37,16 @@ class Stances:
     def count(self) -> int:
         return int(self.number.max(initial=-1)) + 1
 
+    def readings(self, wrench: Array) -> float:
+        """How often the force sensor, `wrench` (N, 6), reads another value in a usual stance."""
+        changed = np.append(True, np.any(wrench[1:] != wrench[:-1], axis=1))
+        inside = self.number >= 0
+        return (
+            float(np.median(np.bincount(self.number[inside], changed[inside], self.count)))
+            if inside.any()
+            else 0.0
+        )
+
 
 def stances_of(contact: FootContact, force: Array, weight: float, period: float) -> Stances | None:
     """The stances of a foot that steps, None for one that does not.

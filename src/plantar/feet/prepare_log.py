@@ -30,6 +30,7 @@ from plantar.signals.spikes import without_spikes
 
 VELOCITY_BAND = 4.0  # times the fit's cutoff, up to which joint angles are differentiated
 CONTACT_BAND = 2.0  # times the fit's cutoff, up to which a force tells landing from lifting
+FEWEST_READINGS = 10  # of a force sensor in a stance: fewer miss how its torque changes
 WEIGHT_MISMATCH = 0.15  # share by which the feet may carry more or less than the model weighs
 
 
@@ -172,6 +173,11 @@ def _contacts(
         # Zeroed under load, its force is no share of the weight; a foot that steps strikes the floor by nature.
         found = stances[name]
         if found is not None:
+            read = found.readings(log.wrench(robot.feet[name].wrench.name))
+            if read < FEWEST_READINGS:
+                text = f"{log.name}: {name} foot: its force sensor reads {read:.0f} values in a usual stance"
+                valid = f"valid: {FEWEST_READINGS} or more; record faster, or walk slower"
+                notes.append(Note("sparse_stances", "warning", f"{text} ({valid})"))
             stances[name] = without_rolling(found, state.cop, robot.feet[name].sole.polygon)
         elif not always[name]:
             impacts = shaken(state.wrench[:, FORCE], weight, log.period)

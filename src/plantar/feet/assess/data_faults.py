@@ -16,7 +16,7 @@ from plantar.sensors.bandwidth import FILTERED
 UNMENDED = frozenset(
     {
         "sign", "force_leans", "imu_turned", "imu_late", "gyroscope_frame", "gyroscope_scale",
-        "path_joint_missing", "stuck_channel", "weight", "bush_axes", "bush_link", FAR, BUSH_TURNED,
+        "path_joint_missing", "stuck_channel", "weight", "bush_axes", "bush_link", "sparse_stances", FAR, BUSH_TURNED,
     }
 )  # fmt: skip
 ADVICE = "mend what the warning names, or leave this log out"

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from plantar.conventions import ROTATIONAL_AXES, Array
+from plantar.conventions import NORMAL95, ROTATIONAL_AXES, Array, Mask
 from plantar.estimation import Block, effect_of, fit_blocks
 from plantar.estimation.intervals import pooled_freedom
 from plantar.estimation.stance_least_squares import FEWEST_RECORDINGS
@@ -18,6 +18,7 @@ from plantar.feet.fit.vertical_stiffness import VerticalStiffness
 from plantar.feet.recording import Recording, moment_arm_effect
 from plantar.sensors.sensor_delay import SensorDelay
 from plantar.signals.filters import differentiate
+from plantar.signals.resampling import shifted
 from plantar.signals.segments import run_numbers
 
 SUSPECTED = 2.0  # deviations of a term that the model leaves out
@@ -75,11 +76,16 @@ def systematic_causes(
     def moved_by(changes: Sequence[Array]) -> Array:
         return effect_of(blocks, changes, shared_offset=shared)
 
-    rates = [differentiate(one.bushes[foot].torque[:, column], one.period)[used] for one, used in parts]
+    by_delay = _by_delay(
+        [(one.bushes[foot].torque[:, column], one.period, used) for one, used in parts], sensor_delay
+    )
     moment_arms = [moment_arm_effect(one, foot)[used, column] for one, used in parts]
     causes = [
         Cause(
-            "delay", moved_by([np.nan_to_num(rate) for rate in rates]), sensor_delay.std, sensor_delay.freedom
+            "delay",
+            max((moved_by(changes) for changes in by_delay), key=lambda effect: abs(effect[0])),
+            sensor_delay.std,
+            sensor_delay.freedom,
         ),
         Cause("lever", moved_by(moment_arms), vertical.compliance_std[foot], vertical.freedom),
     ]
@@ -100,6 +106,24 @@ def systematic_causes(
         )
         causes.append(Cause("yaw torque zero", np.sqrt(np.sum(effects**2, axis=0)), usual))
     return causes
+
+
+def _by_delay(torques: Sequence[tuple[Array, float, Mask]], sensor_delay: SensorDelay) -> list[list[Array]]:
+    """How torques (N,), sampled each period [s], change in the samples used with their sensors' delay [per s].
+
+    By their slope; where the delay is in doubt, by as far as it may be off, one way and the other: late by a tenth of a
+    second, a walk's torque is another one, and stiffness follows it as damping does.
+    """
+    if not sensor_delay.doubtful:
+        return [[np.nan_to_num(differentiate(torque, period)[used]) for torque, period, used in torques]]
+    reach = NORMAL95 * sensor_delay.std
+    return [
+        [
+            np.nan_to_num((shifted(torque, period, by) - torque)[used]) / reach
+            for torque, period, used in torques
+        ]
+        for by in (reach, -reach)
+    ]
 
 
 def _ends_of_stances(blocks: Sequence[Block]) -> Cause:
