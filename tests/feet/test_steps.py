@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from biped import TRUTH, record, sway
+from biped import TRUTH, BushModel, record, sway
+from biped_robot import make_robot, robot_entry
 from feet_trials import LINEAR, noisy
 from plantar.feet.identify import identify_feet
 from plantar.feet.prepare_log import prepare
@@ -118,3 +120,23 @@ def test_a_walk_recorded_too_slowly_is_told(robot: RobotModel) -> None:
 
 def prepare_log(robot: RobotModel, log: MotionLog) -> tuple[Note, ...]:
     return prepare(robot, evenly_sampled(log), "fit").notes
+
+
+def test_a_bush_that_is_turned_in_the_robot_file_is_told_by_steps(tmp_path: Path) -> None:
+    """Of two stiffnesses: each torque shows in the other, K of roll is off by more than its interval."""
+    feet = robot_entry()["feet"]
+    assert isinstance(feet, dict)
+    for foot in feet.values():
+        foot["bush"] = {**foot["bush"], "rpy": [0.0, 0.0, 0.2]}
+    truth = {
+        **TRUTH,
+        ("left", "roll"): TRUTH["right", "roll"],
+        ("left", "pitch"): BushModel(700.0, 22.0, -1.5),
+    }
+    logs = [stepping(record(sway(f"walk_{seed}", seed, duration=15.0, truth=truth))) for seed in (1, 2, 3)]
+    told = identify_feet(make_robot(tmp_path / "turned", feet=feet), logs, settings=LINEAR)
+    rows = [row for row in told.parameters if row.foot == "left" and row.axis != "z"]
+    assert any("left: pitch's torque shows in roll" in row.reason for row in rows)
+    assert not [row for row in rows if row.verdict == "usable"]
+    right = identify_feet(make_robot(tmp_path / "right"), logs, settings=LINEAR)
+    assert not [row for row in right.parameters if "shows in roll" in row.reason]

@@ -148,4 +148,8 @@ DATA_FAULTS = (
         "if read < FEWEST_READINGS:", "if read < 0:",
         ("feet/test_steps.py",),
     ),
+    Mutant(
+        "feet/fit/bush_place.py", "no step shows a turned bush", "if blocks[0].stances is None:\n        return None",
+        "if True:\n        return None", ("feet/test_steps.py",),
+    ),
 )  # fmt: skip

@@ -18,9 +18,8 @@ from plantar.feet.assess.zero_jumps import zero_jumps
 from plantar.feet.exclusion.outliers import outlier_masks
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.axis_fit import fit_axis
-from plantar.feet.fit.bush_place import PlaceSpread
+from plantar.feet.fit.bush_place import PlaceSpread, turned_bush_note
 from plantar.feet.fit.force_gain import force_gain_causes, force_gain_notes, torque_gain_causes
-from plantar.feet.fit.place_notes import turned_bush
 from plantar.feet.fit.robot_causes import robot_causes
 from plantar.feet.fit.systematic import inflated, systematic_causes
 from plantar.feet.internal_error import gives_up, internal_errors
@@ -73,7 +72,8 @@ def fit_foot(
         fits = _fits(thin, foot, place, {axis: fit.model for axis, fit in fits.items()}, given_up)
     fits = _fits(thin, foot, place, {}, given_up) if several else fits
     fits = {axis: fit for axis, fit in fits.items() if axis not in given_up}
-    if (turned := turned_bush(fits)) is not None:
+    shared = ready.settings.offset == "shared"
+    if (turned := turned_bush_note(fits, thin.fitted, shared)) is not None:
         fits = {axis: replace(fit, notes=(*fit.notes, turned)) for axis, fit in fits.items()}
     found = FootFit()
     for axis in ROTATIONAL_AXES:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -62,7 +60,6 @@ def test_far_from_its_place_is_no_oversight() -> None:
 )
 def test_a_turned_bush_shows_in_both_axes_alike(pitch: float, roll: float, said: bool) -> None:
     """A turned force sensor shows with opposite signs."""
-    fits = {"pitch": replace(FIT, turned=pitch), "roll": replace(FIT, axis="roll", turned=roll)}
-    note = turned_bush(fits)
+    note = turned_bush("left", pitch, roll, 0.02)
     assert (note is not None and note.code == BUSH_TURNED) == said
-    assert turned_bush({"pitch": fits["pitch"]}) is None
+    assert turned_bush("left", 0.01, 0.01, 0.005) is not None

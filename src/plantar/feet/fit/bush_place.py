@@ -14,13 +14,22 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from plantar.conventions import Array, Axis, Mask
+from plantar.conventions import ROTATIONAL_AXES, Array, Axis, Mask
 from plantar.estimation import Block, effect_of, fit_blocks
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.load_torque import place_columns
-from plantar.feet.fit.place_notes import CLEAR, FAR, PLACE, place_notes
+from plantar.feet.fit.place_notes import (
+    CLEAR,
+    FAR,
+    PLACE,
+    STEPS_WORTH_SAYING,
+    TURN_WORTH_SAYING,
+    place_notes,
+    turned_bush,
+)
 from plantar.feet.fit.regression_data import beside, model_columns, tangent_blocks
 from plantar.feet.recording import Recording
+from plantar.notes import Note
 from plantar.robot.model import RobotModel
 
 GUESSED = 0.02  # m: what a guess without a spread of its own may be off by
@@ -134,6 +143,36 @@ def about_its_place(
         imu_turned=(float(place[3]), float(place[4]), float(place[5])),
         notes=(*fit.notes, *place_notes(fit, place, np.sqrt(np.diag(unsure)), spread.deviations)),
     )
+
+
+def turned_bush_note(
+    fits: Mapping[Axis, AxisFit], recordings: Sequence[Recording], shared: bool
+) -> Note | None:
+    """`turned_bush` of one foot's fits, of which both axes must be there."""
+    if not set(ROTATIONAL_AXES) <= set(fits):
+        return None
+    stepping = [_others_torque(fits[axis], recordings, shared) for axis in ROTATIONAL_AXES]
+    pitch, roll = (
+        fits[axis].turned if share is None else share
+        for axis, share in zip(ROTATIONAL_AXES, stepping, strict=True)
+    )
+    least = TURN_WORTH_SAYING if None in stepping else STEPS_WORTH_SAYING
+    return turned_bush(fits["pitch"].foot, pitch, roll, least)
+
+
+def _others_torque(fit: AxisFit, recordings: Sequence[Recording], shared: bool) -> float | None:
+    """The share of the other axis' torque that shows in this one of a foot that steps; None of one that stands."""
+    blocks = tangent_blocks(recordings, fit, drift=not shared)
+    if blocks[0].stances is None:
+        return None
+    by_name = {recording.name: recording for recording in recordings}
+    chosen = [by_name[block.label] for block in blocks]
+    other = [place_columns(one, fit.foot, fit.axis)[one.rows(fit.foot)][:, 2:] for one in chosen]
+    found = fit_blocks(
+        [beside(block, own) for block, own in zip(blocks, other, strict=True)], shared_offset=shared
+    )
+    size = blocks[0].regressor.shape[1]
+    return float(found.values[size]) if found.condition_number <= SINGULAR else 0.0
 
 
 def _columns(recording: Recording, fit: AxisFit) -> Array:

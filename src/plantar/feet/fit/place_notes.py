@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 
-from plantar.conventions import NORMAL95, ROTATIONAL_AXES, Array, Axis
+from plantar.conventions import NORMAL95, Array
 from plantar.feet.fit.axis import AxisFit
 from plantar.notes import Note
 
 CLEAR = 3.0  # deviations of prior and data together, beyond which the robot file's place is called wrong
 WORTH_SAYING = 0.005  # m: a centre that is nearer to its place is within what drawings get wrong
 TURN_WORTH_SAYING = 0.02  # rad: of a mount, likewise
+STEPS_WORTH_SAYING = 0.012  # rad, of what stances show: ten times what healthy feet do
 FARTHEST = np.array(
     [0.04, 0.04, 0.12, 0.12, 0.12, 0.12]
 )  # m, m, rad: corrected without doubting all the rest
@@ -55,20 +54,17 @@ def place_notes(fit: AxisFit, place: Array, std: Array, prior: Array) -> list[No
     return [Note(PLACE, "warning", f"{text}; check the robot file")]
 
 
-def turned_bush(fits: Mapping[Axis, AxisFit]) -> Note | None:
+def turned_bush(foot: str, pitch: float, roll: float, least: float) -> Note | None:
     """A warning where the other axis' torque shows in both axes with one sign: the bush's own axes are elsewhere.
 
     A turned sensor gives each axis a share of the other's torque with opposite signs, a turned bush, of two
-    stiffnesses, with the same one.
+    stiffnesses, with the same one. pitch, roll: the shares of the other's torque; least: smaller ones say nothing.
     """
-    if not set(ROTATIONAL_AXES) <= set(fits):
-        return None
-    pitch, roll = fits["pitch"], fits["roll"]
-    of_sensor, of_bush = (pitch.turned - roll.turned) / 2, (pitch.turned + roll.turned) / 2
-    if abs(of_bush) < max(TURN_WORTH_SAYING, abs(of_sensor)):
+    of_sensor, of_bush = (pitch - roll) / 2, (pitch + roll) / 2
+    if abs(of_bush) < max(least, abs(of_sensor)):
         return None
     text = (
-        f"{pitch.foot}: pitch's torque shows in roll and roll's in pitch as if the bush were turned about the "
-        f"vertical: check feet.{pitch.foot}.bush.rpy"
+        f"{foot}: pitch's torque shows in roll and roll's in pitch as if the bush were turned about the "
+        f"vertical: check feet.{foot}.bush.rpy"
     )
     return Note(BUSH_TURNED, "warning", text)
