@@ -11,6 +11,7 @@ import pytest
 from biped import TRUTH, BushModel, record, sway
 from biped_robot import make_robot, robot_entry
 from feet_trials import LINEAR, noisy
+from plantar.feet.fit.place_notes import BUSH_TURNED
 from plantar.feet.identify import identify_feet
 from plantar.feet.prepare_log import prepare
 from plantar.feet.settings import FeetSettings
@@ -19,6 +20,7 @@ from plantar.notes import Note
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
 from plantar.robot.uncertainty import Uncertainty
+from plantar.signals.filters import low_pass
 from plantar.signals.resampling import evenly_sampled
 
 WRENCH = [f"wrench.left.{part}.{axis}" for part in ("force", "torque") for axis in "xyz"]
@@ -140,3 +142,19 @@ def test_a_bush_that_is_turned_in_the_robot_file_is_told_by_steps(tmp_path: Path
     assert not [row for row in rows if row.verdict == "usable"]
     right = identify_feet(make_robot(tmp_path / "right"), logs, settings=LINEAR)
     assert not [row for row in right.parameters if "shows in roll" in row.reason]
+
+
+def test_a_leg_that_gives_way_is_no_turned_bush(robot: RobotModel) -> None:
+    """Each torque shows a little in the other, and far more is left that nothing explains."""
+    random, logs = np.random.default_rng(0), []
+    for seed in (1, 2, 3):
+        log = stepping(record(sway(f"walk_{seed}", seed, duration=30.0)))
+        x, y = (log.column(f"wrench.left.torque.{axis}") for axis in "xy")
+        rest = low_pass(random.standard_normal((len(log), 2)), log.period, 4.0) * 5.0 * (x != 0)[:, None]
+        changed = {
+            "wrench.left.torque.x": x + 0.07 * y + rest[:, 0],
+            "wrench.left.torque.y": y + 0.07 * x + rest[:, 1],
+        }
+        logs.append(log.with_columns(changed))
+    found = identify_feet(robot, logs, settings=LINEAR)
+    assert not [note for note in found.notes if note.code == BUSH_TURNED]

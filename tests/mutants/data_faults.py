@@ -149,7 +149,12 @@ DATA_FAULTS = (
         ("feet/test_steps.py",),
     ),
     Mutant(
-        "feet/fit/bush_place.py", "no step shows a turned bush", "if blocks[0].stances is None:\n        return None",
-        "if True:\n        return None", ("feet/test_steps.py",),
+        "feet/fit/bush_place.py", "no step shows a turned bush",
+        "    if blocks[0].stances is None:\n        return None", "    if True:\n        return None",
+        ("feet/test_steps.py",),
+    ),
+    Mutant(
+        "feet/fit/bush_place.py", "a leg that gives way is a turned bush", "STEPS_LEAVE = 0.75", "STEPS_LEAVE = 1e9",
+        ("feet/test_steps.py",),
     ),
 )  # fmt: skip

@@ -36,6 +36,8 @@ GUESSED = 0.02  # m: what a guess without a spread of its own may be off by
 TURN_STEP = 1e-3  # rad, of the differences that stand for derivatives
 ALIKE = 0.5  # of another foot's height above the robot file's place
 UNSEEN = 1e-4  # of the torque's rms: what one deviation of a place adds beside it is as good as nothing
+SURE = 5.0  # deviations of the other axis' share, from which stances show it
+STEPS_LEAVE = 0.75  # of the squares that the model of one axis leaves
 SINGULAR = 1e6  # condition of the fit beyond which the motions do not show the place
 
 
@@ -151,28 +153,35 @@ def turned_bush_note(
     """`turned_bush` of one foot's fits, of which both axes must be there."""
     if not set(ROTATIONAL_AXES) <= set(fits):
         return None
-    stepping = [_others_torque(fits[axis], recordings, shared) for axis in ROTATIONAL_AXES]
-    pitch, roll = (
-        fits[axis].turned if share is None else share
-        for axis, share in zip(ROTATIONAL_AXES, stepping, strict=True)
-    )
-    least = TURN_WORTH_SAYING if None in stepping else STEPS_WORTH_SAYING
-    return turned_bush(fits["pitch"].foot, pitch, roll, least)
+    pitch, roll = (fits[axis] for axis in ROTATIONAL_AXES)
+    in_pitch, in_roll = (_others_torque(fit, recordings, shared) for fit in (pitch, roll))
+    if in_pitch is None or in_roll is None:
+        return turned_bush(pitch.foot, pitch.turned, roll.turned, TURN_WORTH_SAYING)
+    (of_roll, left), (of_pitch, also_left) = in_pitch, in_roll
+    # A leg that gives way shows some of it as well, but explains little of what the feet's models leave.
+    explained = min(left, also_left) < STEPS_LEAVE and of_roll != 0 and of_pitch != 0
+    return turned_bush(pitch.foot, of_roll, of_pitch, STEPS_WORTH_SAYING) if explained else None
 
 
-def _others_torque(fit: AxisFit, recordings: Sequence[Recording], shared: bool) -> float | None:
-    """The share of the other axis' torque that shows in this one of a foot that steps; None of one that stands."""
+def _others_torque(fit: AxisFit, recordings: Sequence[Recording], shared: bool) -> tuple[float, float] | None:
+    """The share of the other axis' torque that shows in this one, 0 where unsure; None of a foot that stands.
+
+    With it the share that it leaves of what the model leaves, in squares.
+    """
     blocks = tangent_blocks(recordings, fit, drift=not shared)
     if blocks[0].stances is None:
         return None
     by_name = {recording.name: recording for recording in recordings}
     chosen = [by_name[block.label] for block in blocks]
     other = [place_columns(one, fit.foot, fit.axis)[one.rows(fit.foot)][:, 2:] for one in chosen]
-    found = fit_blocks(
-        [beside(block, own) for block, own in zip(blocks, other, strict=True)], shared_offset=shared
+    wider = [beside(block, own) for block, own in zip(blocks, other, strict=True)]
+    fits = [fit_blocks(each, shared_offset=shared) for each in (blocks, wider)]
+    before, left = (
+        sum(float(residual @ residual) for residual in found.residuals.values()) for found in fits
     )
-    size = blocks[0].regressor.shape[1]
-    return float(found.values[size]) if found.condition_number <= SINGULAR else 0.0
+    size, found = blocks[0].regressor.shape[1], fits[1]
+    sure = found.condition_number <= SINGULAR and abs(found.values[size]) > SURE * found.std[size]
+    return (float(found.values[size]) if sure else 0.0), left / max(before, np.finfo(float).tiny)
 
 
 def _columns(recording: Recording, fit: AxisFit) -> Array:
