@@ -152,8 +152,8 @@ def test_a_leg_that_gives_way_is_no_turned_bush(robot: RobotModel) -> None:
         x, y = (log.column(f"wrench.left.torque.{axis}") for axis in "xy")
         rest = low_pass(random.standard_normal((len(log), 2)), log.period, 4.0) * 5.0 * (x != 0)[:, None]
         changed = {
-            "wrench.left.torque.x": x + 0.07 * y + rest[:, 0],
-            "wrench.left.torque.y": y + 0.07 * x + rest[:, 1],
+            "wrench.left.torque.x": x + 0.06 * y + rest[:, 0],
+            "wrench.left.torque.y": y + 0.10 * x + rest[:, 1],
         }
         logs.append(log.with_columns(changed))
     found = identify_feet(robot, logs, settings=LINEAR)
