@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from biped import record, sway
-from command_line import refused, run, write_csv
+from command_line import identifying_first, refused, run, write_csv
 
 
 def test_identify_feet_writes_results_and_tables(
@@ -30,14 +30,7 @@ def test_identify_feet_writes_results_and_tables(
 
 
 def test_json_and_quiet(campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    arguments = [
-        "identify",
-        "feet",
-        campaign / "robot.yaml",
-        campaign / "first.csv",
-        "--out",
-        tmp_path / "out",
-    ]
+    arguments = identifying_first(campaign, tmp_path / "out")
     assert run(*arguments, "--json", "--quiet") == 0
     captured = capsys.readouterr()
     assert json.loads(captured.out) == json.loads((tmp_path / "out" / "result.json").read_text())

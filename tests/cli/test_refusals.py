@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from command_line import refused, run
+from command_line import identifying_first, refused, run
 
 
 @pytest.mark.parametrize(
@@ -120,14 +120,7 @@ def test_wrong_usage_is_2(arguments: list[str], capsys: pytest.CaptureFixture[st
 def test_a_setting_out_of_its_range_is_one_line(
     campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    arguments = [
-        "identify",
-        "feet",
-        campaign / "robot.yaml",
-        campaign / "first.csv",
-        "--out",
-        tmp_path / "out",
-    ]
+    arguments = identifying_first(campaign, tmp_path / "out")
     assert "wrench_delay is not valid" in refused(capsys, *arguments, "--wrench-delay", "5000")
     assert "window is not valid" in refused(capsys, *arguments, "--window", "400")
     assert not (tmp_path / "out").exists()

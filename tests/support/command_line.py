@@ -42,3 +42,8 @@ def refused(capsys: pytest.CaptureFixture[str], *arguments: object) -> str:
     assert len(lines) == 1, captured.err
     assert lines[0].startswith("plantar: ")
     return lines[0]
+
+
+def identifying_first(campaign: Path, out: Path) -> list[object]:
+    """The words that identify the feet from a campaign's first log."""
+    return ["identify", "feet", campaign / "robot.yaml", campaign / "first.csv", "--out", out]

@@ -109,7 +109,9 @@ def prepare_checked(
     moved = [moved_centre(recording, vertical.compliance) for recording in recordings]
     forces = force_gain_errors(robot, recordings)
     with over_logs(even) as each:
-        stepping = {one.name for one in recordings if any(each is not None for each in one.stances.values())}
+        stepping = {
+            one.name for one in recordings if any(found is not None for found in one.stances.values())
+        }
         moments = fit_moments(robot, delay.residuals, stepping, each)
     torques, turned = torque_gains(robot, moments), sensor_turn_notes(robot, moments)
     file = robot.path.name

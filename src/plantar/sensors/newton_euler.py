@@ -38,8 +38,8 @@ class NewtonEulerResidual:
 
     `pair`: all feet together; `measured` and `rates` (feet, n, 6): each foot's wrench, and how it changes with the
     moment at which its sensor is read; `by_encoders` (n, 6): how the prediction changes with the moment at which the
-    encoders are. `readings` (n, 6 feet), the sensors' own, and the samples `kept` of `signals` are what both sides come
-    from.
+    encoders are. `readings` (n, 6 feet), the sensors' own without the zeros that swings show, and the samples `kept` of
+    `signals` are what both sides come from; `parameters` (10 n_links,): of what moves above the force sensors.
     """
 
     pair: Pair
@@ -52,7 +52,7 @@ class NewtonEulerResidual:
     parameters: Array
 
     def thinned(self, stride: int) -> NewtonEulerResidual:
-        """Every nth sample, without draws of wrong models."""
+        """Every nth sample; `pair` without its draws of wrong models."""
         pair, rows = self.pair, slice(None, None, stride)
         measured, rate, predicted = pair.measured[rows], pair.rate[rows], pair.predicted[rows]
         kept = slice(self.kept.start, self.kept.stop, (self.kept.step or 1) * stride)
