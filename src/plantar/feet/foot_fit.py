@@ -71,10 +71,11 @@ def fit_foot(
         thin = _thin(ready, foot)
         fits = _fits(thin, foot, place, {axis: fit.model for axis, fit in fits.items()}, given_up)
     fits = _fits(thin, foot, place, {}, given_up) if several else fits
-    fits = {axis: fit for axis, fit in fits.items() if axis not in given_up}
     shared = ready.settings.offset == "shared"
-    if (turned := turned_bush_note(fits, thin.fitted, shared)) is not None:
-        fits = {axis: replace(fit, notes=(*fit.notes, turned)) for axis, fit in fits.items()}
+    with gives_up("pitch", given_up):
+        if (turned := turned_bush_note(fits, thin.fitted, shared)) is not None:
+            fits = {axis: replace(fit, notes=(*fit.notes, turned)) for axis, fit in fits.items()}
+    fits = {axis: fit for axis, fit in fits.items() if axis not in given_up}
     found = FootFit()
     for axis in ROTATIONAL_AXES:
         if axis in fits:

@@ -13,7 +13,7 @@ from biped_robot import FEET, Frame, Mounting
 from feet_trials import AXES, LINEAR, PUNCTUAL, codes, noisy
 from plantar.conventions import Axis
 from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.bush_place import PlaceSpread
+from plantar.feet.fit.bush_place import PlaceSpread, shape_moved
 from plantar.feet.identify import identify_feet
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
@@ -217,3 +217,10 @@ def test_a_turned_imu_shows_in_a_memory(measured: RobotModel) -> None:
     for foot in FEET:
         for axis in AXES:
             assert found.parameter(foot, axis, "slip_angle").value == pytest.approx(0.006, rel=0.05)
+
+
+def test_a_shape_moves_in_its_logarithm_and_stays_positive() -> None:
+    shape = np.array([2e-3, 2.0, 1.0])
+    found = shape_moved(shape, np.array([1e-6, -40.0, 800.0]))
+    assert found[0] == pytest.approx(2e-3 + 1e-6, rel=1e-6)
+    assert found[1:] == pytest.approx([2.0 / np.e, np.e])

@@ -137,7 +137,7 @@ def about_its_place(
     return replace(
         fit,
         values=fit.values + moved[: len(fit.values)],
-        shape=fit.shape + moved[len(fit.values) :] if size == len(fit.numbers) else fit.shape,
+        shape=shape_moved(fit.shape, moved[len(fit.values) :]) if size == len(fit.numbers) else fit.shape,
         covariance=covariance,
         offsets=fit.offsets if shared else {**fit.offsets, **offsets},
         moment_arms=(float(place[0]), float(place[1])),
@@ -182,6 +182,14 @@ def _others_torque(fit: AxisFit, recordings: Sequence[Recording], shared: bool) 
     size, found = blocks[0].regressor.shape[1], fits[1]
     sure = found.condition_number <= SINGULAR and abs(found.values[size]) > SURE * found.std[size]
     return (float(found.values[size]) if sure else 0.0), left / max(before, np.finfo(float).tiny)
+
+
+def shape_moved(shape: Array, by: Array) -> Array:
+    """Nonlinear parameters (s,) after a linear step `by` (s,), taken in their logarithm, at most by a factor of e.
+
+    They are positive and found by their logarithm; a straight step from bad data would take them below zero.
+    """
+    return np.asarray(shape * np.exp(np.clip(by / shape, -1.0, 1.0)))
 
 
 def _columns(recording: Recording, fit: AxisFit) -> Array:
