@@ -108,6 +108,33 @@ def test_the_grid_holds_the_lag_and_the_steps_from_it_settle(twin: RobotModel, s
     np.testing.assert_allclose(found.values, [0.13, 0.13, 0.0], atol=1e-3)
 
 
+def test_encoders_that_seem_late_are_looked_for_on_the_grid(
+    twin: RobotModel, sweep: MotionLog, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Gentle motions close well enough at no delay, and say of the encoders' only that there is one."""
+    gentle = checked(
+        twin, play_all([short(plan("Myrand4"), 0.0, 40.0)], twin, PAPER, "sensors", [0])[0][0].log
+    )
+    still = np.zeros(3)
+    seen, timely = (
+        refined_delays(twin, [late(gentle, "joint.", delay)], map, still) for delay in (0.06, 0.0)
+    )
+    assert seen is not None
+    assert timely is not None
+    assert seen.suspect
+    assert not seen.encoders_differ
+    assert not timely.suspect
+    log = late(sweep, "joint.", 0.1)
+    sure = replace(seen, values=still, std=3e-4)
+    for suspect, encoders in ((True, 0.1), (False, 0.0)):
+        first = replace(sure, suspect=suspect)
+        monkeypatch.setattr(
+            "plantar.sensors.sensor_delay.refined_delays",
+            lambda *given, first=first: refined_delays(*given) if np.any(given[-1]) else first,
+        )
+        assert estimate_wrench_delay(twin, [log]).encoders == pytest.approx(encoders, abs=1e-3)
+
+
 @pytest.mark.parametrize("delay", [0.4, 1.0])
 def test_what_no_delay_closes_is_called_so(twin: RobotModel, sweep: MotionLog, delay: float) -> None:
     found = estimate_wrench_delay(twin, [late(sweep, "imu.", delay)])

@@ -30,6 +30,7 @@ from plantar.notes import Note
 from plantar.results.feet import Diagnosis, Parameter, ValidationRow
 from plantar.results.walk_rows import StanceStiffness, WalkStiffness
 from plantar.robot.guesses import naming_notes
+from plantar.sensors.attitude_scale import ATTITUDE_SCALE
 from plantar.sensors.bandwidth import FILTERED
 from plantar.sensors.moment_balance import torque_gain_notes
 
@@ -114,7 +115,7 @@ def _with_axis(found: FootFit, ready: PreparedLogs, thin: PreparedLogs, fit: Axi
         *torque_gain_notes(ready.torque_gains).values(),
         *naming_notes(ready.robot.path.name, ready.robot.guesses),
         *(note for foot, note in ready.turned.items() if foot == fit.foot),
-        *(note for note in ready.notes if note.code == FILTERED),
+        *(note for note in ready.notes if note.code in (FILTERED, ATTITUDE_SCALE)),
     ]
     return FootFit(
         fits=[*found.fits, wide],

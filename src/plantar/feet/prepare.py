@@ -23,6 +23,7 @@ from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note, unique
 from plantar.robot.guesses import guess_notes, naming_notes
 from plantar.robot.model import RobotModel
+from plantar.sensors.attitude_scale import AttitudeScale, attitude_scale_notes
 from plantar.sensors.bandwidth import fading, fading_notes
 from plantar.sensors.moment_balance import TorqueGain, torque_gain_notes, torque_gains
 from plantar.sensors.moment_fit import fit_moments
@@ -122,6 +123,7 @@ def prepare_checked(
         *torque_gain_notes(torques).values(),
         *turned.values(),
         *fading_notes(fading(delay.residuals)),
+        *attitude_scale_notes(sum((one.attitude_scale for one in recordings), AttitudeScale())),
     ]
     notes = [*odd, *(note for one in recordings for note in one.notes), delay.note, *vertical.notes]
     fitted, unseen = tuple(moved[: len(logs)]), tuple(moved[len(logs) :])

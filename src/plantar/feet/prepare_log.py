@@ -20,6 +20,7 @@ from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding, Note
 from plantar.robot.model import Imu, RobotModel
 from plantar.sensors.air_zero import AirZero, air_zero
+from plantar.sensors.attitude_scale import AttitudeScale, log_attitude_scale
 from plantar.sensors.tilt_error import NO_TILT_ERROR, TiltError, right_attitude
 from plantar.signals.dropouts import without_dropouts
 from plantar.signals.filters import differentiate, low_pass
@@ -84,6 +85,9 @@ def prepare(
         orientation = right[0]
         raw = bush_states(robot, positions, velocities, orientation, rates, wrenches)
         notes.append(right[1])
+        scale = AttitudeScale()
+    else:
+        scale = log_attitude_scale(log, imu, orientation, raw, contacts)
     return Recording(
         log=log,
         role=role,
@@ -96,6 +100,7 @@ def prepare(
         places=places,
         notes=tuple(notes),
         imu_turns=imu_turn_effects(robot, positions, orientation, log.period),
+        attitude_scale=scale,
         zeros=tuple(row for name, zero in zeros.items() for row in zero.rows(log.name, name)),
     )
 

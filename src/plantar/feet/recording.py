@@ -17,6 +17,7 @@ from plantar.estimation.errors_in_variables import noise_after_filter
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.results.walk_rows import SwingZero
+from plantar.sensors.attitude_scale import AttitudeScale
 from plantar.signals.filters import low_pass
 from plantar.signals.segments import run_ends
 
@@ -37,6 +38,7 @@ class Recording:
     `places` (N, 2) of each foot: of the sole from the IMU [m] in the attitude as recorded, which slides are judged by.
     `imu_turns` (N, 2, 3) of each foot: see `imu_turn_effects`; filtered as `bushes`.
     `zeros`: of force sensors, as read while their foot swings; they are taken off already.
+    `attitude_scale`: what its stances tell of the IMU's; nothing of an attitude that was put right.
     `every`: of how many of the log's samples each is one.
     """
 
@@ -52,6 +54,7 @@ class Recording:
     notes: tuple[Note, ...]
     zeros: tuple[SwingZero, ...] = ()
     imu_turns: Mapping[str, Array] = field(default_factory=dict)
+    attitude_scale: AttitudeScale = field(default_factory=AttitudeScale)
     every: int = 1
 
     @property

@@ -39,6 +39,7 @@ class RefinedDelays:
 
     `feet_differ`, `encoders_differ`: whether they have delays of their own.
     `closed` (logs,): in which logs Newton's law closes; `slowest`: the longest period among these [s].
+    `suspect`: they seem to, and how much is not known well: steps from elsewhere may end elsewhere.
     `drift`: of the clocks, where these logs show one; `residuals`: of these logs, read at these delays.
     """
 
@@ -49,6 +50,7 @@ class RefinedDelays:
     encoders_differ: bool
     closed: Mask
     slowest: float
+    suspect: bool = False
     drift: ClockDrift | None = None
     residuals: tuple[NewtonEulerResidual, ...] = ()
 
@@ -97,12 +99,13 @@ def _step(
     closed = np.array([residual is not None for residual in tried])
     slowest = max(log.period for log, one in zip(logs, tried, strict=True) if one is not None)
     balances = [residual.balance for residual in residuals]
-    contrasts, differ = _contrasts(len(at) - 1), np.zeros(len(at), dtype=bool)
+    contrasts, differ, suspect = _contrasts(len(at) - 1), np.zeros(len(at), dtype=bool), False
     free = estimate_delays(balances)
     if free is not None:
         apart = contrasts @ (at + free.values)
         spread = np.sqrt(np.diag(contrasts @ free.covariance @ contrasts.T) + LEAST_STD**2)
-        differ = (np.abs(apart) > np.maximum(DISTINCT * spread, LEAST_DISTINCT)) & (spread < WELL_KNOWN)
+        seem = np.abs(apart) > np.maximum(DISTINCT * spread, LEAST_DISTINCT)
+        differ, suspect = seem & (spread < WELL_KNOWN), bool((seem & (spread >= WELL_KNOWN)).any())
         differ[:-1] = differ[:-1].any()
     flags = (bool(differ[0]), bool(differ[-1]))
     held = contrasts[~differ]
@@ -114,12 +117,12 @@ def _step(
         if own is None or np.abs(own.values).max() > LONGEST:
             return None
         std = float(np.hypot(np.sqrt(np.diag(own.covariance).max()), LEAST_STD))
-        return RefinedDelays(at + own.values, std, float(own.cells), *flags, closed, slowest)
+        return RefinedDelays(at + own.values, std, float(own.cells), *flags, closed, slowest, suspect)
     common = estimate_delay([residual.pair for residual in residuals])
     if common is None:
         return None
     values = at + np.append(np.full(len(at) - 1, common.value), 0.0)
-    return RefinedDelays(values, common.std, common.freedom, *flags, closed, slowest)
+    return RefinedDelays(values, common.std, common.freedom, *flags, closed, slowest, suspect)
 
 
 def _contrasts(feet: int) -> Array:

@@ -79,7 +79,7 @@ def estimate_wrench_delay(robot: RobotModel, logs: Sequence[MotionLog], each: Ea
     """
     still = np.zeros(len(robot.feet) + 1)
     found = refined_delays(robot, logs, each, still)
-    if found is not None and found.std <= KNOWN_STD:
+    if found is not None and found.std <= KNOWN_STD and not found.suspect:
         return replace(_told(robot, found), residuals=found.residuals)
     grids = list(each(partial(lagged_log, robot), logs))
     shown = [grid for grid in grids if grid is not None]
@@ -97,8 +97,9 @@ def estimate_wrench_delay(robot: RobotModel, logs: Sequence[MotionLog], each: Ea
 
 
 def _surer(one: RefinedDelays, other: RefinedDelays) -> bool:
-    """Whether Newton's law closes in more logs with the one, or as many and it is better known."""
-    return (int(one.closed.sum()), -one.std) > (int(other.closed.sum()), -other.std)
+    """Whether nothing is suspect about the one alone, or Newton's law closes in more logs, or it is better known."""
+    better, worse = ((not each.suspect, int(each.closed.sum()), -each.std) for each in (one, other))
+    return better > worse
 
 
 def _in_doubt(lags: Lags, found: RefinedDelays | None, searched: Mask) -> bool:

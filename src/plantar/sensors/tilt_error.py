@@ -13,7 +13,7 @@ What does not change with time stays: the fit has an offset.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -150,23 +150,10 @@ def put_right(
     """
     from scipy.spatial.transform import Rotation  # costs start-up
 
-    push = np.einsum("nij,nj->ni", rotation_from_quaternion(orientation)[:, :2], acceleration)
-    standing = np.array([contacts[foot].standing for foot in bushes])
-    pattern = (1 << np.arange(len(standing))) @ standing
-    finite = np.isfinite(push).all(axis=1)
-    for bush in bushes.values():
-        finite &= np.isfinite(bush.sole_position).all(axis=1)
-    lean = np.full((len(push), 2), np.nan)
-    for which in np.unique(pattern[pattern > 0]):
-        feet = [
-            bush
-            for bush, stands in zip(bushes.values(), standing, strict=True)
-            if stands[pattern == which].all()
-        ]
-        for run in runs(np.asarray(finite & (pattern == which))):
-            if (run.stop - run.start) * period >= SHORTEST_STANCE:
-                place = np.mean([bush.sole_position[run] for bush in feet], axis=0)
-                lean[run] = _lean(push[run], place, period)
+    lean = np.full((len(orientation), 2), np.nan)
+    for run, found in stance_leans(orientation, acceleration, bushes, contacts, period):
+        lean[run] = found
+    finite = np.isfinite(orientation).all(axis=1)
     known = np.isfinite(lean).all(axis=1)
     if not known.any():
         return orientation
@@ -178,6 +165,35 @@ def put_right(
         scalar_first=True
     )
     return right
+
+
+def stance_leans(
+    orientation: Array,
+    acceleration: Array,
+    bushes: Mapping[str, BushState],
+    contacts: Mapping[str, FootContact],
+    period: float,
+) -> Iterator[tuple[slice, Array]]:
+    """Long stances on the same feet, and how far the believed vertical leans along the world's x and y, (n, 2) [rad].
+
+    Arguments as of `put_right`. Each stance has a zero of its own: the accelerometer's, the attitude's, the sole's.
+    """
+    push = np.einsum("nij,nj->ni", rotation_from_quaternion(orientation)[:, :2], acceleration)
+    standing = np.array([contacts[foot].standing for foot in bushes])
+    pattern = (1 << np.arange(len(standing))) @ standing
+    finite = np.isfinite(push).all(axis=1)
+    for bush in bushes.values():
+        finite &= np.isfinite(bush.sole_position).all(axis=1)
+    for which in np.unique(pattern[pattern > 0]):
+        feet = [
+            bush
+            for bush, stands in zip(bushes.values(), standing, strict=True)
+            if stands[pattern == which].all()
+        ]
+        for run in runs(np.asarray(finite & (pattern == which))):
+            if (run.stop - run.start) * period >= SHORTEST_STANCE:
+                place = np.mean([bush.sole_position[run] for bush in feet], axis=0)
+                yield run, _lean(push[run], place, period)
 
 
 def _lean(push: Array, place: Array, period: float) -> Array:

@@ -1,0 +1,101 @@
+"""An attitude that tells a share too much or too little of each tilt: stiffness and damping are off by that share.
+
+Gyroscope and attitude of one IMU may share the fault, so they do not contradict each other. The accelerometer does:
+over a sole that stands it shows how far the believed vertical leans (see `tilt_error`), and a lean that goes with the
+tilt itself is a scale. A scale of the accelerometer, common to its axes, leaves it as it is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from plantar.contact.deflection import BushState
+from plantar.contact.phases import FootContact
+from plantar.conventions import Array, rotation_from_quaternion
+from plantar.logs.motion_log import MotionLog
+from plantar.notes import Note
+from plantar.robot.model import Imu
+from plantar.sensors.tilt_error import CORRECTED, stance_leans, unit_quaternions
+from plantar.signals.filters import low_pass
+
+ATTITUDE_SCALE = "attitude_scale"
+SCALE_OFF = (
+    0.03  # an accelerometer whose axes differ by 2 % shows as much, and so does a URDF with wrong lengths
+)
+SURE = 6.0  # deviations
+EDGE = 1.0  # s, of each stance: the filter's
+RATE = 1.0  # 1/s, of samples of the lean that tell something new: it is slower than CORRECTED
+
+
+@dataclass(frozen=True)
+class AttitudeScale:
+    """Sums over stances, about the world's x and y (2,): of leans and tilts squared and of one times the other.
+
+    `seconds`: of all stances. Logs of one IMU add up.
+    """
+
+    lean: Array = field(default_factory=lambda: np.zeros(2))
+    product: Array = field(default_factory=lambda: np.zeros(2))
+    tilt: Array = field(default_factory=lambda: np.zeros(2))
+    seconds: float = 0.0
+
+    def __add__(self, other: AttitudeScale) -> AttitudeScale:
+        return AttitudeScale(
+            self.lean + other.lean,
+            self.product + other.product,
+            self.tilt + other.tilt,
+            self.seconds + other.seconds,
+        )
+
+    @property
+    def share(self) -> tuple[Array, Array]:
+        """By which share of each tilt the attitude is too small (2,), and its deviations; zero where nothing tilts."""
+        share, tilt = np.zeros(2), np.maximum(self.tilt, np.finfo(float).tiny)
+        if self.seconds > 0:
+            share = -self.product / tilt
+        left = np.maximum(self.lean - share**2 * self.tilt, 0.0)
+        return share, np.sqrt(left / tilt / max(RATE * self.seconds, 1.0))
+
+
+def log_attitude_scale(
+    log: MotionLog,
+    imu: Imu,
+    orientation: Array,
+    bushes: Mapping[str, BushState],
+    contacts: Mapping[str, FootContact],
+) -> AttitudeScale:
+    """What the stances of one log tell; nothing where it has no attitude or no accelerometer of its own.
+
+    orientation: w x y z, IMU to world, (N, 4); bushes and contacts: of every foot, computed with this orientation.
+    """
+    if log.orientation(imu.name) is None or not log.has_imu(imu.name, "linear_acceleration"):
+        return AttitudeScale()
+    unit, acceleration, period = unit_quaternions(orientation), log.linear_acceleration(imu.name), log.period
+    found, edge = AttitudeScale(), round(EDGE / period)
+    horizontal = rotation_from_quaternion(unit)[:, :2, 2]
+    for run, lean in stance_leans(unit, acceleration, bushes, contacts, period):
+        tilt = low_pass(horizontal[run], period, CORRECTED)
+        one, other = (part[edge:-edge] - part[edge:-edge].mean(axis=0) for part in (lean, tilt))
+        squares, product, tilts = (
+            np.asarray(period * np.sum(a * b, axis=0)) for a, b in ((one, one), (one, other), (other, other))
+        )
+        found = found + AttitudeScale(squares, product, tilts, len(one) * period)
+    return found
+
+
+def attitude_scale_notes(found: AttitudeScale) -> list[Note]:
+    """A warning where the attitude is off by a share that matters."""
+    share, std = found.share
+    off = np.abs(share) > np.maximum(SCALE_OFF, SURE * std)
+    if not off.any():
+        return []
+    worst = float(share[np.argmax(np.where(off, np.abs(share), 0.0))])
+    text = (
+        f"the IMU's orientation shows {1 / (1 + worst):.3g} times the tilts that its accelerometer and the standing "
+        "soles do; stiffness and damping are off by the same share (valid: 1; check the scales of gyroscope and "
+        "accelerometer, and the encoders between IMU and feet)"
+    )
+    return [Note(ATTITUDE_SCALE, "warning", text)]

@@ -1,0 +1,83 @@
+"""A tilt that orientation and gyroscope both scale is told by the accelerometer over standing soles."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from biped import record, sway
+from biped_robot import make_robot
+from plantar.feet.identify import identify_feet
+from plantar.feet.settings import FeetSettings
+from plantar.logs.motion_log import MotionLog
+from plantar.results.feet import FeetResult
+from plantar.robot.model import RobotModel
+from plantar.sensors.attitude_scale import ATTITUDE_SCALE, AttitudeScale, attitude_scale_notes
+
+KNOWN = FeetSettings(model="kelvin_voigt", wrench_delay=0.0)
+
+
+@pytest.fixture(scope="module")
+def robot(tmp_path_factory: pytest.TempPathFactory) -> RobotModel:
+    return make_robot(tmp_path_factory.mktemp("robot"))
+
+
+@pytest.fixture(scope="module")
+def logs() -> list[MotionLog]:
+    return [record(sway(f"sway_{seed}", seed=seed, duration=20.0)) for seed in (1, 2)]
+
+
+def scaled(log: MotionLog, by: float) -> MotionLog:
+    """Tilts and rates times `by`, heading as it is; the accelerometer keeps telling the truth."""
+    quaternion = log.orientation("chest")
+    assert quaternion is not None
+    yaw, pitch, roll = Rotation.from_quat(quaternion, scalar_first=True).as_euler("ZYX").T
+    told = Rotation.from_euler("ZYX", np.column_stack([yaw, by * pitch, by * roll]))
+    columns = dict(zip("wxyz", told.as_quat(scalar_first=True).T, strict=True))
+    rates = {
+        f"imu.chest.angular_velocity.{axis}": by * rate
+        for axis, rate in zip("xyz", log.angular_velocity("chest").T, strict=True)
+    }
+    return log.with_columns({f"imu.chest.orientation.{axis}": part for axis, part in columns.items()} | rates)
+
+
+def told(result: FeetResult) -> list[str]:
+    return [note.text for note in result.notes if note.code == ATTITUDE_SCALE]
+
+
+@pytest.mark.parametrize("by", [0.95, 1.06])
+def test_a_scaled_attitude_is_told_with_its_scale(
+    robot: RobotModel, logs: list[MotionLog], by: float
+) -> None:
+    result = identify_feet(robot, [scaled(log, by) for log in logs], settings=KNOWN)
+    (text,) = told(result)
+    assert float(text.split("shows ")[1].split()[0]) == pytest.approx(by, abs=0.005)
+    assert not [row for row in result.parameters if row.axis != "z" and row.verdict == "usable"]
+
+
+def test_a_right_attitude_and_one_without_accelerometer_say_nothing(
+    robot: RobotModel, logs: list[MotionLog]
+) -> None:
+    right = identify_feet(robot, logs, settings=KNOWN)
+    assert not told(right)
+    assert [row for row in right.parameters if row.verdict == "usable"]
+    scaled_logs = [scaled(log, 0.95) for log in logs]
+    blind = [
+        MotionLog(log.name, log.time, {k: v for k, v in log.columns.items() if "linear_acc" not in k})
+        for log in scaled_logs
+    ]
+    assert not told(identify_feet(robot, blind, settings=KNOWN))
+
+
+def test_sums_of_logs_add_up_and_a_share_that_is_not_sure_is_not_told() -> None:
+    one = AttitudeScale(np.array([4.0, 1.0]), np.array([-0.5, 0.1]), np.array([10.0, 10.0]), 40.0)
+    both = one + one
+    np.testing.assert_allclose(both.share[0], one.share[0])
+    np.testing.assert_allclose(both.share[1], one.share[1] / np.sqrt(2))
+    np.testing.assert_allclose(one.share[0], [0.05, -0.01])
+    np.testing.assert_allclose(one.share[1], np.sqrt([(4.0 - 0.025) / 400, (1.0 - 0.001) / 400]))
+    assert not attitude_scale_notes(one)
+    assert not attitude_scale_notes(AttitudeScale())
+    sure = AttitudeScale(np.array([0.03, 1.0]), np.array([-0.5, 0.1]), np.array([10.0, 10.0]), 40.0)
+    assert "0.952 times" in attitude_scale_notes(sure)[0].text
