@@ -76,6 +76,14 @@ def test_a_foot_that_was_lifted_meanwhile_stands_elsewhere() -> None:
     assert said([recordings[0], lifted.without(FOOT, support > 0, Reason.FILTER_EDGE)]) == []
 
 
+@pytest.mark.parametrize(("reason", "told"), [(Reason.OUTLIER, 1), (Reason.ON_THE_EDGE, 0)])
+def test_a_sole_that_tipped_meanwhile_lies_otherwise(reason: Reason, told: int) -> None:
+    """A jump's own samples are left out as well, but never as those of a sole that tips."""
+    recordings = swaying(PLAIN, 6.0 * LATER)
+    gone = np.abs(np.arange(COUNT) - 3300) < 30
+    assert len(said([recordings[0], recordings[1].without(FOOT, gone, reason)])) == told
+
+
 def test_an_encoder_that_slips_keeps_numbers_from_being_usable(robot: RobotModel) -> None:
     log = record(sway(duration=60.0))
     column = "joint.left_ankle_pitch.position"

@@ -12,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from plantar.contact.reasons import TIPPING
 from plantar.conventions import Array
 from plantar.estimation import Block, fit_blocks
 from plantar.feet.fit.axis import AxisFit
@@ -57,7 +58,10 @@ def _jumps(blocks: Sequence[Block], recordings: Sequence[Recording], foot: str) 
     for block in blocks:
         recording, missed = by_name[block.label], whole.residuals[block.label]
         places = np.flatnonzero(recording.rows(foot))
-        row = _jump(missed, run_numbers(recording.contacts[foot].loaded)[places], block.period)
+        contact = recording.contacts[foot]
+        # A jump may look like a slide, but not like a sole that tips, and then may come to lie otherwise.
+        stands = run_numbers(contact.loaded & ~contact.left_out_for(TIPPING))[places]
+        row = _jump(missed, stands, block.period)
         if row is not None and _is_all(missed, row, block):
             found[block.label] = float(recording.time[places[row]])
     return found
@@ -66,7 +70,7 @@ def _jumps(blocks: Sequence[Block], recordings: Sequence[Recording], foot: str) 
 def _jump(missed: Array, stands: NDArray[np.intp], period: float) -> int | None:
     """The row of `missed` (n,) about which its mean changes by far most; None where it does about none.
 
-    stands: (n,), the number of the stance: a foot that was lifted meanwhile stands elsewhere.
+    stands: (n,), the number of the stance: a foot that was lifted or tipped meanwhile stands elsewhere.
     """
     width = max(1, round(BESIDE / period))
     if len(missed) < 6 * width:
