@@ -1,4 +1,4 @@
-"""Clocks that run apart, seen in the halves of wrenches that are late by more and more."""
+"""Clocks that run apart, within a log and from log to log: wrenches late by more and more, or each otherwise."""
 
 from __future__ import annotations
 
@@ -7,19 +7,20 @@ import pytest
 
 from plantar.estimation.delay import Pair
 from plantar.sensors.clock_drift import clock_drift
+from plantar.sensors.delays_by_log import delays_by_log
 from plantar.signals.filters import differentiate, low_pass
 
 PERIOD, SAMPLES = 0.01, 4000
 
 
-def pair(share: float, seed: int) -> Pair:
-    """A random wrench below 1.5 Hz whose sensor's clock is late by `share` of the time since the middle."""
+def pair(share: float, seed: int, late: float = 0.0) -> Pair:
+    """A random wrench below 1.5 Hz, read `late` [s] and by a `share` of the time since the middle later."""
     random = np.random.default_rng(seed)
     time = PERIOD * (np.arange(SAMPLES) - SAMPLES / 2)
     true = 300 * low_pass(random.standard_normal((SAMPLES, 6)), PERIOD, 1.5)
-    read = np.column_stack([np.interp(time * (1 - share), time, column) for column in true.T])
+    read = np.column_stack([np.interp(time * (1 - share) - late, time, column) for column in true.T])
     measured = read + low_pass(random.standard_normal(read.shape), PERIOD, 8.0)
-    return Pair("sweep", measured, differentiate(measured, PERIOD), true, PERIOD)
+    return Pair(f"sweep_{seed}", measured, differentiate(measured, PERIOD), true, PERIOD)
 
 
 @pytest.mark.parametrize("share", [1e-3, -5e-4])
@@ -35,3 +36,18 @@ def test_a_clock_that_runs_apart_is_found(share: float) -> None:
 def test_clocks_that_agree_are_left_alone() -> None:
     assert clock_drift([pair(0.0, seed) for seed in range(4)]) is None
     assert clock_drift([]) is None
+
+
+def test_logs_with_delays_of_their_own_are_told_with_each() -> None:
+    """Read 10 ms later than recorded, as is right for none of them."""
+    found = delays_by_log([pair(0.0, 1, 0.01), pair(0.0, 2, -0.01), pair(0.0, 3)], 0.01)
+    assert found is not None
+    assert found.by_log == pytest.approx({"sweep_1": 0.02, "sweep_2": 0.0, "sweep_3": 0.01}, abs=1e-3)
+    assert found.std == pytest.approx(0.01, rel=0.1)
+    assert "sweep_1 +20" in found.note.text
+
+
+def test_logs_with_one_delay_and_a_single_log_say_nothing() -> None:
+    assert delays_by_log([pair(0.0, seed, 0.02) for seed in range(4)], 0.0) is None
+    assert delays_by_log([pair(0.0, 1, 0.002), pair(0.0, 2)], 0.0) is None, "too little to matter"
+    assert delays_by_log([pair(0.0, 1, 0.02)], 0.0) is None

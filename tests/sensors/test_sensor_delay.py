@@ -135,6 +135,16 @@ def test_encoders_that_seem_late_are_looked_for_on_the_grid(
         assert estimate_wrench_delay(twin, [log]).encoders == pytest.approx(encoders, abs=1e-3)
 
 
+def test_a_delay_of_another_length_in_each_log_leaves_damping_in_doubt(
+    twin: RobotModel, sweep: MotionLog
+) -> None:
+    other = replace(late(sweep, "wrench.", 0.03), name="other")
+    found = estimate_wrench_delay(twin, [sweep, other])
+    assert found.note.code == "delays_by_log"
+    assert found.doubtful
+    assert found.std == pytest.approx(0.03 / np.sqrt(2), rel=0.1)
+
+
 @pytest.mark.parametrize("delay", [0.4, 1.0])
 def test_what_no_delay_closes_is_called_so(twin: RobotModel, sweep: MotionLog, delay: float) -> None:
     found = estimate_wrench_delay(twin, [late(sweep, "imu.", delay)])

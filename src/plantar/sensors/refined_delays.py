@@ -18,6 +18,7 @@ from plantar.estimation.sensor_delays import estimate_delays
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
 from plantar.sensors.clock_drift import ClockDrift, clock_drift
+from plantar.sensors.delays_by_log import DelaysByLog, delays_by_log
 from plantar.sensors.newton_euler import NewtonEulerResidual, newton_euler_residual
 from plantar.signals.resampling import shifted
 
@@ -40,7 +41,8 @@ class RefinedDelays:
     `feet_differ`, `encoders_differ`: whether they have delays of their own.
     `closed` (logs,): in which logs Newton's law closes; `slowest`: the longest period among these [s].
     `suspect`: they seem to, and how much is not known well: steps from elsewhere may end elsewhere.
-    `drift`: of the clocks, where these logs show one; `residuals`: of these logs, read at these delays.
+    `unsteady`: that they are not the same throughout, where these logs show it.
+    `residuals`: of these logs, read at these delays.
     """
 
     values: Array
@@ -51,7 +53,7 @@ class RefinedDelays:
     closed: Mask
     slowest: float
     suspect: bool = False
-    drift: ClockDrift | None = None
+    unsteady: ClockDrift | DelaysByLog | None = None
     residuals: tuple[NewtonEulerResidual, ...] = ()
 
 
@@ -79,10 +81,12 @@ def refined_delays(
         step = _step(logs, tried, at)
         if step is None:
             return None
-        moved, at = float(np.abs(step.values - at).max()), step.values
+        moved, at, read_at = float(np.abs(step.values - at).max()), step.values, at
         if moved < SETTLED and step.std < np.inf:
             residuals = tuple(residual for residual in tried if residual is not None)
-            return replace(step, drift=clock_drift([one.pair for one in residuals]), residuals=residuals)
+            pairs, common = [one.pair for one in residuals], float(np.mean(read_at[:-1]))
+            unsteady = clock_drift(pairs) or delays_by_log(pairs, common)
+            return replace(step, unsteady=unsteady, residuals=residuals)
     return None
 
 

@@ -149,9 +149,9 @@ def _unseen(robot: RobotModel, logs: Sequence[MotionLog]) -> SensorDelay:
 
 def _told(robot: RobotModel, found: RefinedDelays) -> SensorDelay:
     """Delays that the logs show, with what is said of them."""
-    if found.drift is not None:
-        mean, std = float(np.mean(found.values[:-1])), float(np.hypot(found.std, found.drift.std))
-        return SensorDelay(mean, std, found.freedom, True, found.drift.note, doubtful=True)
+    if found.unsteady is not None:
+        mean, std = float(np.mean(found.values[:-1])), float(np.hypot(found.std, found.unsteady.std))
+        return SensorDelay(mean, std, found.freedom, True, found.unsteady.note, doubtful=True)
     if found.feet_differ or found.encoders_differ:
         return _apart(list(robot.feet), found)
     value, prior = float(found.values[0]), robot.uncertainty.wrench_delay
