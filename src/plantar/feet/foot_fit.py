@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from plantar.contact.reasons import Reason
@@ -77,11 +77,15 @@ def fit_foot(
         if (turned := turned_bush_note(fits, thin.fitted, shared)) is not None:
             fits = {axis: replace(fit, notes=(*fit.notes, turned)) for axis, fit in fits.items()}
     fits = {axis: fit for axis, fit in fits.items() if axis not in given_up}
-    found = FootFit()
+    jumps: list[Note] = []
+    for axis, fit in fits.items():
+        with gives_up(axis, given_up):
+            jumps.extend(zero_jumps(thin.fitted, fit, shared))
+    found = FootFit(notes=tuple(jumps))
     for axis in ROTATIONAL_AXES:
-        if axis in fits:
+        if axis in fits and axis not in given_up:
             with gives_up(axis, given_up):
-                found = _with_axis(found, ready, thin, fits[axis])
+                found = _with_axis(found, ready, thin, fits[axis], jumps)
         if axis in given_up:
             found.parameters.extend(missing_rows(foot, axis, given_up[axis]))
         elif axis not in fits:
@@ -94,8 +98,13 @@ def _thin(ready: PreparedLogs, foot: str) -> PreparedLogs:
     return replace(ready, fitted=tuple(recording.decimated(foot) for recording in ready.fitted))
 
 
-def _with_axis(found: FootFit, ready: PreparedLogs, thin: PreparedLogs, fit: AxisFit) -> FootFit:
-    """What was found, and one axis: its fit widened, scored, judged and diagnosed."""
+def _with_axis(
+    found: FootFit, ready: PreparedLogs, thin: PreparedLogs, fit: AxisFit, jumps: Sequence[Note]
+) -> FootFit:
+    """What was found, and one axis: its fit widened, scored, judged and diagnosed.
+
+    jumps: of the zeros of both axes; an encoder that slips about one tilts the other as well.
+    """
     shared = ready.settings.offset == "shared"
     causes = systematic_causes(fit, thin.fitted, ready.sensor_delay, ready.vertical, shared)
     causes += force_gain_causes(fit, ready.gain_errors)
@@ -106,10 +115,11 @@ def _with_axis(found: FootFit, ready: PreparedLogs, thin: PreparedLogs, fit: Axi
     rows = axis_rows(wide, ready.fitted, predictions, scores)
     limits = diagnose_axis(fit, wide, causes, rows)
     gain = {foot: error for foot, error in ready.gain_errors.items() if foot == fit.foot}
-    odd = [*zero_jumps(thin.fitted, fit, shared), *play_notes(thin.fitted, fit, shared)]
+    play = play_notes(thin.fitted, fit, shared)
     faults = [
         *data_faults(ready.fitted, fit),
-        *odd,
+        *jumps,
+        *play,
         *force_gain_notes(ready.robot, gain),
         # Torque channels that are wrong about one axis are trusted about neither.
         *torque_gain_notes(ready.torque_gains).values(),
@@ -125,7 +135,7 @@ def _with_axis(found: FootFit, ready: PreparedLogs, thin: PreparedLogs, fit: Axi
         predictions={**found.predictions, **predictions},
         stances=[*found.stances, *stance_stiffness(ready.recordings, wide)],
         walks=[*found.walks, *walk_stiffness(ready.recordings, wide)],
-        notes=(*found.notes, *odd),
+        notes=(*found.notes, *play),
     )
 
 

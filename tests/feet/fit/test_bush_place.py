@@ -94,6 +94,19 @@ def test_an_axis_whose_motions_show_less_takes_the_height_from_the_other(
     assert known is None or known.above == 0.005
 
 
+def test_a_guessed_height_is_one_for_both_axes_and_the_file_s_word_stays() -> None:
+    """Guessed to 4 cm, of pitch and roll at once: 5 mm is what they may seem to differ by."""
+    fits = {"pitch": placed("pitch", 0.052), "roll": placed("roll", 0.022)}
+    guessed = PlaceSpread(0.04, 0.04, 0.02, between=0.005)
+    known = guessed.known_from(fits, "roll")
+    assert known is not None
+    assert known.height == 0.052
+    assert known.deviations[1] == 0.04
+    assert known.expected[1] == 0.005
+    assert guessed.expected[1] == 0.04
+    assert PlaceSpread(0.04, 0.04, 0.02).known_from(fits, "roll") is None
+
+
 @pytest.mark.parametrize(("told", "own", "above"), [
     ("bush_place", (0.002, 0.03), 0.03), ("bush_place_far", (0.0, -0.001), 0.03), ("bush_turned", (0.0, 0.0), 0.005),
     ("bush_place", (0.02, -0.03), 0.005),
@@ -163,12 +176,14 @@ def test_guesses_are_less_sure_than_what_was_measured(robot: RobotModel, measure
     guessed = replace(measured, guesses=guesses)
     assert PlaceSpread.of(guessed, "left").above == pytest.approx(np.hypot(0.03, known.wrench_crosstalk))
     assert PlaceSpread.of(guessed, "right").above == pytest.approx(np.hypot(0.02, known.wrench_crosstalk))
-    assert not any(vars(PlaceSpread.of(robot, "left")).values())
+    assert not PlaceSpread.of(robot, "left").deviations.any()
+    assert PlaceSpread.of(replace(measured, guesses=(Guess("imu", "by name"),)), "left").turned == 0.02
+    assert PlaceSpread.of(replace(robot, guesses=(Guess("imu", "by name"),)), "left").turned == 0.0
 
 
 def test_a_sensor_zeroed_under_load_says_nothing_of_the_place(measured: RobotModel) -> None:
     feet = {name: replace(foot, contact="always") for name, foot in measured.feet.items()}
-    assert not any(vars(PlaceSpread.of(replace(measured, feet=feet), "left")).values())
+    assert not PlaceSpread.of(replace(measured, feet=feet), "left").deviations.any()
 
 
 def imu_turned(log: MotionLog, angle: float) -> MotionLog:

@@ -34,6 +34,7 @@ from plantar.robot.model import RobotModel
 
 GUESSED = 0.02  # m: what a guess without a spread of its own may be off by
 TURN_STEP = 1e-3  # rad, of the differences that stand for derivatives
+GUESSED_TURN = 0.02  # rad: of an IMU whose mount nobody measured, about any axis
 ALIKE = 0.5  # of another foot's height above the robot file's place
 UNSEEN = 1e-4  # of the torque's rms: what one deviation of a place adds beside it is as good as nothing
 SURE = 5.0  # deviations of the other axis' share, from which stances show it
@@ -44,26 +45,35 @@ SINGULAR = 1e6  # condition of the fit beyond which the motions do not show the 
 @dataclass(frozen=True)
 class PlaceSpread:
     """Deviation of the centre's place, `aside` and `above` [m], and of how far force sensor or IMU are `turned` [rad]
-    about any axis. `height` [m]: how far above the robot file's place the centre is expected."""
+    about any axis. `height` [m]: how far above the robot file's place the other axis shows the centre; `between` [m]:
+    by how much the axes' heights may seem to differ."""
 
     aside: float
     above: float
     turned: float
     height: float = 0.0
+    between: float = np.inf
 
     @property
     def deviations(self) -> Array:
         """Of the centre's place, the force sensor's yaw, and the IMU's turn about three axes, (6,)."""
         return np.array([self.aside, self.above, *[self.turned] * 4])
 
+    @property
+    def expected(self) -> Array:
+        """The deviations, that of the height from what the other axis shows where it does, (6,)."""
+        known = min(self.above, self.between) if self.height else self.above
+        return np.array([self.aside, known, *[self.turned] * 4])
+
     def known_from(self, fits: Mapping[Axis, AxisFit], axis: Axis) -> PlaceSpread | None:
         """Expecting the height that the other axis shows, where that is far off, and farther than this axis shows it.
 
         Bush and force sensor have one height: a robot file that is wrong about it is so for both axes, and draws the
-        one more to itself whose motions show less.
+        one more to itself whose motions show less. What is guessed is guessed of both axes at once: they differ less.
         """
         (height,) = (fit.moment_arms[1] for other, fit in fits.items() if other != axis)
-        far = abs(height) > max(CLEAR * self.above, abs(fits[axis].moment_arms[1]))
+        above = min(self.above, self.between)
+        far = abs(height) > max(CLEAR * above, abs(fits[axis].moment_arms[1]))
         return replace(self, height=height) if far else None
 
     def doubted_by(self, others: Sequence[AxisFit], own: Sequence[AxisFit]) -> PlaceSpread:
@@ -82,13 +92,17 @@ class PlaceSpread:
         """From the robot file: its uncertainty, and what its guesses of bush and force sensor may be off by."""
         if robot.feet[foot].contact == "always":  # its sensor was zeroed under load: the load is not known
             return cls(0.0, 0.0, 0.0)
-        position = robot.uncertainty.bush_position
+        position, turned = robot.uncertainty.bush_position, robot.uncertainty.imu_mount
         for guess in robot.guesses:
+            if guess.key == "imu" and turned:
+                turned = max(turned, GUESSED_TURN)
             if guess.key.startswith((f"feet.{foot}.bush", f"feet.{foot}.wrench")):
                 position = max(position, GUESSED if guess.spread is None else guess.spread)
         # Of a force sensor, a force that shows in a torque is like an arm: of the load aside, of the others above.
-        arm = float(np.hypot(position, robot.uncertainty.wrench_crosstalk)) if position else 0.0
-        return cls(arm, arm, robot.uncertainty.imu_mount)
+        crosstalk = robot.uncertainty.wrench_crosstalk
+        arm = float(np.hypot(position, crosstalk)) if position else 0.0
+        measured = float(np.hypot(robot.uncertainty.bush_position, crosstalk))
+        return cls(arm, arm, turned, between=measured or np.inf)
 
 
 def about_its_place(
@@ -104,7 +118,7 @@ def about_its_place(
         return fit
     chosen = [one for one in recordings if one.name in {block.label for block in blocks}]
     columns = [_columns(one, fit)[one.rows(fit.foot)] for one in chosen]
-    spreads = np.where(_seen(blocks, columns, spread.deviations), spread.deviations, 0.0)
+    spreads = np.where(_seen(blocks, columns, spread.expected), spread.expected, 0.0)
     size, tried = blocks[0].regressor.shape[1], np.flatnonzero(spreads)
     before = np.array([*fit.moment_arms, fit.turned, *fit.imu_turned])
     found = fit_blocks(
