@@ -87,7 +87,7 @@ def fading_notes(found: Fading | None) -> list[Note]:
     faded, other = ("forces and torques", "IMU and encoders")[:: 1 if found.slope < 0 else -1]
     text = (
         f"{faded} fade beside {other} as motion gets faster, as behind a low-pass of {found.corner:.2g} Hz, and "
-        "damping follows them (valid: filters far above the motion's frequencies, or the same one on all sensors; an IMU "
-        "that sits elsewhere than the robot file says looks alike)"
+        "damping follows them (valid: filters far above the motion's frequencies, or the same one on all sensors; an "
+        "IMU that sits elsewhere than the robot file says looks alike)"
     )
     return [Note(FILTERED, "warning", text)]
