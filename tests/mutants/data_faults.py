@@ -157,4 +157,41 @@ DATA_FAULTS = (
         "feet/fit/bush_place.py", "a leg that gives way is a turned bush", "STEPS_LEAVE = 0.75", "STEPS_LEAVE = 1e9",
         ("feet/test_steps.py",),
     ),
+    Mutant(
+        "sensors/attitude_scale.py", "a tilt too small is one too large", "share = -self.product / tilt",
+        "share = self.product / tilt", ("sensors/test_attitude_scale.py",),
+    ),
+    Mutant(
+        "feet/foot_fit.py", "a scaled attitude takes nothing away", "in (FILTERED, ATTITUDE_SCALE)", "in (FILTERED,)",
+        ("sensors/test_attitude_scale.py",),
+    ),
+    Mutant(
+        "sensors/attitude_scale.py", "each stance keeps its zero",
+        "part[edge:-edge] - part[edge:-edge].mean(axis=0) for", "part[edge:-edge] for",
+        ("sensors/test_attitude_scale.py",),
+    ),
+    Mutant(
+        "sensors/delays_by_log.py", "logs never differ", "if not (apart >", "if True or not (apart >",
+        ("sensors/test_clock_drift.py", "sensors/test_sensor_delay.py"),
+    ),
+    Mutant(
+        "sensors/sensor_delay.py", "encoders that seem late are let be", " and not found.suspect:", ":",
+        ("sensors/test_sensor_delay.py",),
+    ),
+    Mutant(
+        "feet/assess/zero_jumps.py", "a sole that tips keeps its zero",
+        "contact.loaded & ~contact.left_out_for(TIPPING)", "contact.loaded", ("feet/assess/test_zero_jumps.py",),
+    ),
+    Mutant(
+        "feet/foot_fit.py", "a zero that jumps doubts one axis", "jumps.extend(zero_jumps(thin.fitted, fit, shared))",
+        "jumps = zero_jumps(thin.fitted, fit, shared)", ("feet/assess/test_zero_jumps.py",),
+    ),
+    Mutant(
+        "feet/fit/bush_place.py", "a guessed height is one for each axis", "above = min(self.above, self.between)",
+        "above = self.above", ("feet/fit/test_bush_place.py",),
+    ),
+    Mutant(
+        "feet/fit/bush_place.py", "a shape may turn negative", "shape * np.exp(np.clip(by / shape, -1.0, 1.0))",
+        "shape + by", ("feet/fit/test_bush_place.py",),
+    ),
 )  # fmt: skip

@@ -42,6 +42,15 @@ def scaled(log: MotionLog, by: float) -> MotionLog:
     return log.with_columns({f"imu.chest.orientation.{axis}": part for axis, part in columns.items()} | rates)
 
 
+def leaning(log: MotionLog, by: float) -> MotionLog:
+    """An attitude that leans forward by `by` [rad] throughout: the zero of its accelerometer, say."""
+    quaternion = log.orientation("chest")
+    assert quaternion is not None
+    told = Rotation.from_rotvec([0.0, by, 0.0]) * Rotation.from_quat(quaternion, scalar_first=True)
+    columns = dict(zip("wxyz", told.as_quat(scalar_first=True).T, strict=True))
+    return log.with_columns({f"imu.chest.orientation.{axis}": part for axis, part in columns.items()})
+
+
 def told(result: FeetResult) -> list[str]:
     return [note.text for note in result.notes if note.code == ATTITUDE_SCALE]
 
@@ -56,12 +65,13 @@ def test_a_scaled_attitude_is_told_with_its_scale(
     assert not [row for row in result.parameters if row.axis != "z" and row.verdict == "usable"]
 
 
-def test_a_right_attitude_and_one_without_accelerometer_say_nothing(
+def test_a_right_attitude_one_that_leans_and_one_without_accelerometer_say_nothing(
     robot: RobotModel, logs: list[MotionLog]
 ) -> None:
     right = identify_feet(robot, logs, settings=KNOWN)
     assert not told(right)
     assert [row for row in right.parameters if row.verdict == "usable"]
+    assert not told(identify_feet(robot, [leaning(log, 0.02) for log in logs], settings=KNOWN))
     scaled_logs = [scaled(log, 0.95) for log in logs]
     blind = [
         MotionLog(log.name, log.time, {k: v for k, v in log.columns.items() if "linear_acc" not in k})
