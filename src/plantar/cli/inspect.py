@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -14,6 +15,7 @@ from plantar.cli.memory import Memory
 from plantar.cli.terminal import SEVERITY_STYLE, VERDICT_STYLE, console, end_progress, number, progress, table
 from plantar.inspection import LogSummary, inspect_log
 from plantar.logs.readers import open_log
+from plantar.notes import Note
 from plantar.results.io import dump_json
 from plantar.robot.model import load_robot
 
@@ -74,16 +76,26 @@ def _print(out: Console, log: LogSummary, columns: bool) -> None:
     if log.feet:
         out.print(table("Feet", ("foot", "double s", "single s", "load N", "serving s", "pitch deg rms", "roll deg rms",
                                  "pitch rad/s rms", "roll rad/s rms"), _foot_rows(log)))  # fmt: skip
+    warnings = [note for note in log.notes if note.severity == "warning"]
+    _print_notes(out, warnings)
     if log.parameters:
         heads = ("foot", "axis", "parameter", "value", "verdict", "reason")
-        rows = [(p.foot, p.axis, p.name, number(p.value), p.verdict, p.reason) for p in log.parameters]
+        above = ["", *(row.reason for row in log.parameters)]
+        rows = [
+            (p.foot, p.axis, p.name, number(p.value), p.verdict, "as above" if p.reason == last else p.reason)
+            for p, last in zip(log.parameters, above, strict=False)
+        ]
         styles = [VERDICT_STYLE[p.verdict] for p in log.parameters]
         out.print(table("What this log identifies by itself", heads, rows, styles))
     if columns:
         ranges = [(c.name, number(c.least), number(c.largest), str(c.missing)) for c in log.columns]
         out.print(table("Columns", ("column", "least", "largest", "missing"), ranges))
-    for note in log.notes:
-        out.print(f"  [{SEVERITY_STYLE[note.severity]}]note: {escape(note.text)}[/]")
+    _print_notes(out, [note for note in log.notes if note not in warnings])
+
+
+def _print_notes(out: Console, notes: Sequence[Note]) -> None:
+    for note in notes:
+        out.print(f"  [{SEVERITY_STYLE[note.severity]}]{note.severity}: {escape(note.text)}[/]")
 
 
 def _foot_rows(log: LogSummary) -> list[tuple[str, ...]]:
