@@ -12,7 +12,7 @@ from plantar.sensors.moment_errors import turn_columns
 from plantar.sensors.moment_fit import MomentFit, Part, is_wrong
 
 TURNED = "wrench_turned"
-LEAST = 0.05  # rad: damping is off by some percent
+LEAST = 0.05  # rad: damping is off by some percent; one that is known less well may be chance
 USUAL = 0.02  # rad, of a mount; crosstalk makes as much
 
 
@@ -26,7 +26,8 @@ def sensor_turn_notes(robot: RobotModel, fit: MomentFit | None) -> dict[str, Not
     for foot, columns in turn_columns(robot).items():
         turn, std = fit.values[columns], deviations[columns]
         worst = int(np.argmax(np.abs(turn)))
-        if abs(turn[worst]) > LEAST and is_wrong(fit.values, parts, [columns.start + worst]):
+        known = NORMAL95 * std[worst] < LEAST
+        if known and abs(turn[worst]) > LEAST and is_wrong(fit.values, parts, [columns.start + worst]):
             size, reach = np.degrees([turn[worst], NORMAL95 * std[worst]])
             text = (
                 f"{foot}: forces and torques give the moments of the robot's motion with the force sensor's frame "
