@@ -18,6 +18,7 @@ ROOMS = (
     "robot", "logs", "signals", "contact", "checks",
     "dynamics", "models", "estimation", "model_selection",
     "results", "sensors", "feet", "whole_body",
+    "online",
     "motions", "twin",
     "inspection", "exporters", "robot_guess", "report", "campaign", "cli",
 )  # fmt: skip
@@ -42,7 +43,7 @@ LONGEST = 350  # lines
 
 # Who may import what is heavy, optional or has effects.
 KEEPERS = {
-    "plantar._core": {"contact", "dynamics", "estimation", "signals", "twin"},
+    "plantar._core": {"contact", "dynamics", "estimation", "online", "signals", "twin"},
     "mujoco": {"twin", "exporters"},
     "pink": {"motions", "twin"},
     "qpsolvers": {"motions", "twin"},
