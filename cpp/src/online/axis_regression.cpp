@@ -42,18 +42,19 @@ AxisRegression::AxisRegression(const RegressionPrior& prior) noexcept : prior_(p
 
 void AxisRegression::Part::add(const Part& other) noexcept {
   triangle.add(other.triangle);
-  for (int i = 0; i < NOISY; ++i) noise[i] += other.noise[i];
+  for (int i = 0; i < NOISE_SOURCES; ++i) noise[i] += other.noise[i];
   rows += other.rows;
 }
 
 void AxisRegression::restart() noexcept {
-  open_ = {}, open_rows_ = 0, open_time_ = 0.0, open_noise_[0] = open_noise_[1] = 0.0;
+  open_ = {}, open_rows_ = 0, open_time_ = 0.0;
+  std::fill(open_noise_, open_noise_ + NOISE_SOURCES, 0.0);
   groups_ = {}, used_ = 1, current_ = 0, full_ = false, group_time_ = FIRST_GROUP;
   total_ = {};
   noise_ = FIRST_NOISE * prior_.scale[ASIDE];
   changed_ = unsure_ = fresh_ = false;
   values_ = {};
-  for (int i = 0; i < UNKNOWNS; ++i) values_.std[i] = prior_.spread[i];
+  values_.value = prior_.mean, values_.std = prior_.spread;
 }
 
 void AxisRegression::add(const RegressionRow& row, double dt) noexcept {
@@ -62,7 +63,7 @@ void AxisRegression::add(const RegressionRow& row, double dt) noexcept {
   for (int i = 0; i < UNKNOWNS; ++i) line[1 + i] = row.columns[i] / prior_.scale[i];
   line[UNKNOWNS + 1] = row.torque;
   open_.add(line);
-  for (int i = 0; i < NOISY; ++i) open_noise_[i] += row.noise[i] / (prior_.scale[i] * prior_.scale[i]);
+  for (int i = 0; i < NOISE_SOURCES; ++i) open_noise_[i] += row.noise[i];
   ++open_rows_, open_time_ += dt, fresh_ = true;
   if (open_time_ >= LONGEST_BLOCK) close();
 }
@@ -71,14 +72,15 @@ AxisRegression::Part AxisRegression::open_part() const noexcept {
   Part part;
   for (int i = 0; i <= UNKNOWNS; ++i)
     for (int j = i; j <= UNKNOWNS; ++j) part.triangle.r[i][j] = open_.r[i + 1][j + 1];
-  for (int i = 0; i < NOISY; ++i) part.noise[i] = open_noise_[i];
+  for (int i = 0; i < NOISE_SOURCES; ++i) part.noise[i] = open_noise_[i];
   part.rows = open_rows_ - 1;
   return part;
 }
 
 void AxisRegression::close() noexcept {
   if (open_rows_ >= FEWEST_ROWS) take(open_part());
-  open_ = {}, open_rows_ = 0, open_time_ = 0.0, open_noise_[0] = open_noise_[1] = 0.0;
+  open_ = {}, open_rows_ = 0, open_time_ = 0.0;
+  std::fill(open_noise_, open_noise_ + NOISE_SOURCES, 0.0);
 }
 
 void AxisRegression::take(const Part& part) noexcept {
@@ -122,10 +124,25 @@ AxisRegression::Shared AxisRegression::completed(const Part& data) const noexcep
   for (int i = 0; i < UNKNOWNS; ++i) {
     double line[UNKNOWNS + 1] = {};
     line[i] = noise_ / (prior_.spread[i] * prior_.scale[i]);
+    line[UNKNOWNS] = line[i] * prior_.mean[i] * prior_.scale[i];
     whole.add(line, i);
   }
-  for (int i = 0; i < NOISY; ++i) whole.remove(i, std::sqrt(data.noise[i]), MOST_NOISE);
+  for (int source = 0; source < NOISE_SOURCES; ++source) {
+    double line[UNKNOWNS + 1] = {};
+    const std::array<double, UNKNOWNS> along = direction(source);
+    for (int i = 0; i < UNKNOWNS; ++i) line[i] = std::sqrt(data.noise[source]) * along[i];
+    whole.remove(line, MOST_NOISE);
+  }
   return whole;
+}
+
+// What one unit of a source's noise adds to the columns.
+std::array<double, UNKNOWNS> AxisRegression::direction(int source) const noexcept {
+  std::array<double, UNKNOWNS> along = {};
+  if (source == OF_RATE) along[DAMPING] = 1.0 / prior_.scale[DAMPING];
+  else along[STIFFNESS] = 1.0 / prior_.scale[STIFFNESS];
+  if (source == OF_ANGLE_AND_ELEMENT) along[SLIP_TORQUE] = prior_.element_slope / prior_.scale[SLIP_TORQUE];
+  return along;
 }
 
 void AxisRegression::solve() noexcept {
@@ -157,7 +174,11 @@ void AxisRegression::find_deviations() noexcept {
     const Shared& part = groups_[g].triangle;
     double own[UNKNOWNS][UNKNOWNS], m[UNKNOWNS][UNKNOWNS], b[UNKNOWNS];
     squares_of(part, own);
-    for (int i = 0; i < NOISY; ++i) own[i][i] -= groups_[g].noise[i];
+    for (int source = 0; source < NOISE_SOURCES; ++source) {
+      const std::array<double, UNKNOWNS> along = direction(source);
+      for (int i = 0; i < UNKNOWNS; ++i)
+        for (int j = 0; j < UNKNOWNS; ++j) own[i][j] -= groups_[g].noise[source] * along[i] * along[j];
+    }
     for (int i = 0; i < UNKNOWNS; ++i) {
       b[i] = 0.0;
       for (int j = 0; j <= i; ++j) b[i] -= part.r[j][i] * part.r[j][UNKNOWNS];

@@ -17,7 +17,10 @@ namespace plantar {
 // Columns of a row beside the offset's: what each unknown multiplies.
 enum Unknown : int { STIFFNESS, DAMPING, SLIP_TORQUE, ASIDE, ABOVE };
 constexpr int UNKNOWNS = 5;
-constexpr int NOISY = 2;                  // deflection and rate
+
+// Where noise enters: the deflection alone, the rate, or the deflection and with it an element that does not slip.
+enum NoiseSource : int { OF_ANGLE, OF_RATE, OF_ANGLE_AND_ELEMENT };
+constexpr int NOISE_SOURCES = 3;
 
 constexpr int MOST_GROUPS = 12;
 constexpr int FEWEST_GROUPS = 3;          // that say how they differ
@@ -31,12 +34,14 @@ struct RegressionRow {
   double one;                             // what the filter has made of a constant
   double columns[UNKNOWNS];
   double torque;
-  double noise[NOISY];                    // variance of what the first columns hold of their sensors' noise
+  double noise[NOISE_SOURCES];            // variance, of each source
 };
 
 struct RegressionPrior {
   std::array<double, UNKNOWNS> scale;     // a usual size of each column
-  std::array<double, UNKNOWNS> spread;    // of each unknown, before any data
+  std::array<double, UNKNOWNS> mean;      // of each unknown, before any data, and how far it may be off
+  std::array<double, UNKNOWNS> spread;
+  double element_slope;                   // of the element's state over the deflection, where it does not slip [1/rad]
 };
 
 struct AxisValues {
@@ -66,7 +71,7 @@ class AxisRegression {
   using Shared = RootTriangle<UNKNOWNS>;
   struct Part {
     Shared triangle;
-    double noise[NOISY] = {};
+    double noise[NOISE_SOURCES] = {};
     double rows = 0.0;
     void add(const Part& other) noexcept;
   };
@@ -80,13 +85,14 @@ class AxisRegression {
   void sum_up() noexcept;
   // With the prior, without the noise: the triangle that the values are solved from.
   Shared completed(const Part& data) const noexcept;
+  std::array<double, UNKNOWNS> direction(int source) const noexcept;
   void solve() noexcept;
   void find_deviations() noexcept;
 
   RegressionPrior prior_;
   RootTriangle<UNKNOWNS + 1> open_;  // the offset first
   int open_rows_ = 0;
-  double open_time_ = 0.0, open_noise_[NOISY] = {};
+  double open_time_ = 0.0, open_noise_[NOISE_SOURCES] = {};
   std::array<Group, MOST_GROUPS> groups_;
   int used_ = 0, current_ = 0;
   bool full_ = false;

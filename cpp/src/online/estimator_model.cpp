@@ -75,7 +75,12 @@ void read_foot_line(FootModel& foot, Line& line) {
     foot.polygon.push_back({x, y});
   } else if (line.kind() == "place_std") foot.place_std[0] = line.next<double>(), foot.place_std[1] = line.next<double>();
   else if (line.kind() == "compliance") foot.compliance = line.next<double>();
-  else if (line.kind() == "slip_angle") foot.slip_angle[0] = line.next<double>(), foot.slip_angle[1] = line.next<double>();
+  else if (line.kind() == "element") {
+    const int axis = line.next<int>();
+    if (axis != 0 && axis != 1) line.fail("no axis (valid: 0 for pitch, 1 for roll)");
+    foot.slip_angle[axis] = line.next<double>();
+    foot.slip_torque[axis] = line.next<double>(), foot.slip_torque_std[axis] = line.next<double>();
+  }
   else line.fail("unknown word");
 }
 

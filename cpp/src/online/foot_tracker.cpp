@@ -21,6 +21,7 @@ constexpr double STIFFEST = 100.0;         // m, times the weight: stiffness bef
 constexpr double SLOWEST = 1.0;            // s: damping over stiffness before any data
 constexpr double NOISE_ABOVE = 4.0;        // cutoffs: from there on a signal counts as noise
 constexpr double NYQUIST_SHARE = 0.8;      // of the highest frequency, that this must stay below
+constexpr double HARDLY_SLIPS = 0.99;      // of an element's largest state: below it noise moves it as the deflection
 constexpr double TRUSTED = 0.1;            // half width over stiffness
 constexpr double NORMAL = 1.96;
 // Student's t for 95 %, by degrees of freedom from 2.
@@ -33,11 +34,16 @@ double outline_middle_depth(const FootModel& foot) noexcept {
   return depth(foot.polygon, middle);
 }
 
-RegressionPrior prior_of(const EstimatorModel& model, const FootModel& foot) noexcept {
-  const double w = model.weight;
-  return {{USUAL_ANGLE, USUAL_RATE, 1.0, w, USUAL_SLOPE * w},
-          {STIFFEST * w, SLOWEST * STIFFEST * w, w, std::max(foot.place_std[0], 1e-9),
-           std::max(foot.place_std[1], 1e-9)}};
+RegressionPrior prior_of(const EstimatorModel& model, const FootModel& foot, int axis) noexcept {
+  const double w = model.weight, slip = foot.slip_angle[axis];
+  const double torque_std = slip > 0.0 && foot.slip_torque_std[axis] > 0.0 ? foot.slip_torque_std[axis] : w;
+  RegressionPrior prior;
+  prior.scale = {USUAL_ANGLE, USUAL_RATE, 1.0, w, USUAL_SLOPE * w};
+  prior.mean = {0.0, 0.0, slip > 0.0 ? foot.slip_torque[axis] : 0.0, 0.0, 0.0};
+  prior.spread = {STIFFEST * w, SLOWEST * STIFFEST * w, torque_std, std::max(foot.place_std[0], 1e-9),
+                  std::max(foot.place_std[1], 1e-9)};
+  prior.element_slope = slip > 0.0 ? 1.0 / slip : 0.0;
+  return prior;
 }
 
 }  // namespace
@@ -53,7 +59,7 @@ FootTracker::FootTracker(const EstimatorModel& model, const FootModel& foot) noe
       delay_std_(model.wrench_delay_std),
       gate_(model.weight, foot.always),
       shaking_(model.weight),
-      axes_{AxisRegression(prior_of(model, foot)), AxisRegression(prior_of(model, foot))} {
+      axes_{AxisRegression(prior_of(model, foot, 0)), AxisRegression(prior_of(model, foot, 1))} {
   for (int axis = 0; axis < 2; ++axis) work(axis);
   estimate_.flags = NOT_STANDING | NEVER_LOADED | PITCH_UNKNOWN | ROLL_UNKNOWN;
 }
@@ -200,9 +206,16 @@ void FootTracker::commit(double before) noexcept {
 void FootTracker::give(const HeldRow& row) noexcept {
   const double* c = row.channels;
   // A centre that is higher takes its share of the horizontal force: F_x off the pitch torque, F_y onto the roll torque.
-  const double(&n)[2][NOISY] = noise_;
-  axes_[0].add({c[0], {c[4], c[5], c[6], c[1], c[2]}, c[7], {n[0][0], n[0][1]}}, row.dt);
-  axes_[1].add({c[0], {c[8], c[9], c[10], c[1], -c[3]}, c[11], {n[1][0], n[1][1]}}, row.dt);
+  double noise[2][NOISE_SOURCES];
+  for (int a = 0; a < 2; ++a) {
+    const bool follows = foot_->slip_angle[a] > 0.0 && std::abs(c[6 + 4 * a]) < HARDLY_SLIPS * c[0];
+    noise[a][OF_ANGLE] = follows ? 0.0 : noise_[a][0];
+    noise[a][OF_RATE] = noise_[a][1];
+    noise[a][OF_ANGLE_AND_ELEMENT] = follows ? noise_[a][0] : 0.0;
+  }
+  const double(&p)[NOISE_SOURCES] = noise[0], (&r)[NOISE_SOURCES] = noise[1];
+  axes_[0].add({c[0], {c[4], c[5], c[6], c[1], c[2]}, c[7], {p[0], p[1], p[2]}}, row.dt);
+  axes_[1].add({c[0], {c[8], c[9], c[10], c[1], -c[3]}, c[11], {r[0], r[1], r[2]}}, row.dt);
 }
 
 void FootTracker::work(int axis) noexcept {

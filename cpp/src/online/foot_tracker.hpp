@@ -74,7 +74,7 @@ class FootTracker {
   std::array<AxisRegression, 2> axes_;
   std::array<double, 6> raw_ = {}, wrench_ = {}, before_ = {};  // before_: load, force x, y, both torques, of last tick
   std::array<WhiteNoise, 2> angle_noise_;
-  double noise_[2][NOISY] = {};  // of each axis, behind the filter
+  double noise_[2][2] = {};  // variance of angle and rate of each axis, behind the filter
   double element_[2] = {}, last_angle_[2] = {};
   bool running_ = false;        // the filter has begun
   double row_time_ = 0.0;       // since the last row

@@ -62,11 +62,9 @@ struct RootTriangle {
     *this = changed;
   }
 
-  // Takes a row off again that has one value alone; at most a `share` of what the triangle has of it may go.
-  void remove(int place, double value, double share) noexcept {
-    double row[N + 1] = {};
-    row[place] = value;
-    for (int i = place; i < N; ++i) {
+  // Takes a row off again; at most a `share` of what the triangle has along it may go. The row is used up.
+  void remove(double* row, double share) noexcept {
+    for (int i = 0; i < N; ++i) {
       if (row[i] == 0.0) continue;
       const double most = std::sqrt(share) * r[i][i];
       const double s = r[i][i] > 0.0 ? std::clamp(row[i], -most, most) / r[i][i] : 0.0, c = std::sqrt(1.0 - s * s);

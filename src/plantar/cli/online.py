@@ -18,7 +18,7 @@ from plantar.results.feet import FeetResult
 from plantar.results.io import dump_json
 from plantar.robot.model import load_robot
 
-RESULT_HELP = "A result of `identify feet`: its slip angles, its compliance and its delay are used."
+RESULT_HELP = "A result of `identify feet`: its hysteresis, its compliance and its delay are used."
 DELAY_HELP = "How late the force sensors are against the IMU, in s; of the result, or unknown, if left out."
 
 
@@ -73,13 +73,13 @@ def _print(replay: Replay) -> None:
         for row in rows
     ]  # fmt: skip
     out.print(table("At the end of the log", heads, cells, [VERDICT_STYLE[row.verdict] for row in rows]))
-    heads = (
+    through = (
         "foot",
         "stands %",
         *(f"{axis} mrad rms" for axis in ("pitch", "roll")),
         "flags, % of the samples",
     )
-    out.print(table("Through the log", heads, [_foot_row(replay, foot) for foot in replay.feet]))
+    out.print(table("Through the log", through, [_foot_row(replay, foot) for foot in replay.feet]))
     time = replay.latency_us
     out.print(
         f"a step: median {time['median']:.1f} µs, 99.9 % {time['p999']:.1f} µs, longest {time['max']:.1f} µs"

@@ -17,7 +17,7 @@ from plantar.errors import DataError
 from plantar.files import write_text
 from plantar.logs.motion_log import MotionLog
 from plantar.online.estimates import FIELDS, FootEstimate, foot_estimate
-from plantar.online.estimator_model import estimator_model
+from plantar.online.estimator_model import Element, estimator_model
 from plantar.online.replay import Replay
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel, load_robot
@@ -34,7 +34,7 @@ class FootEstimator:
 
     Args:
         robot: the robot file, or what `load_robot` made of it.
-        result: of `identify_feet`, for the slip angles of bushes with hysteresis, the slides' compliance and the
+        result: of `identify_feet`, for elements that slip in bushes with hysteresis, the slides' compliance and the
             sensors' delay; without one bushes are springs with dampers.
         wrench_delay: how late the force sensors are against the IMU [s], > 0: late. None takes the result's; without a
             result none, and widens the damping's deviation by what the robot file's `uncertainty` allows.
@@ -68,7 +68,7 @@ class FootEstimator:
             self.robot,
             cutoff=cutoff,
             wrench_delay=_delay(self.robot, result, wrench_delay),
-            slip_angles=_slip_angles(result),
+            elements=_elements(result),
             compliance={} if result is None else result.compliance,
         )
         self._core = _core.FootEstimator(self._model)
@@ -175,12 +175,16 @@ def _delay(robot: RobotModel, result: FeetResult | None, told: float | None) -> 
     return 0.0, robot.uncertainty.wrench_delay
 
 
-def _slip_angles(result: FeetResult | None) -> dict[tuple[str, Axis], float]:
-    """The slip angles that a batch result has found, by foot and axis [rad]."""
+def _elements(result: FeetResult | None) -> dict[tuple[str, Axis], Element]:
+    """The elements that slip in a batch result, by foot and axis."""
     rows = () if result is None else result.parameters
-    return {
-        (row.foot, row.axis): row.value for row in rows if row.name == "slip_angle" and row.value is not None
-    }
+    known = {(row.foot, row.axis, row.name): row for row in rows if row.value is not None}
+    found = {}
+    for (foot, axis, name), angle in known.items():
+        torque = known.get((foot, axis, "slip_torque"))
+        if name == "slip_angle" and angle.value and torque is not None and torque.value is not None:
+            found[foot, axis] = Element(angle.value, torque.value, torque.std or abs(torque.value))
+    return found
 
 
 def _row(what: str, values: ArrayLike | None, size: int) -> Array | None:

@@ -6,6 +6,7 @@ One fact a line, a word and its values; frames are nine numbers of rotation, row
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -19,18 +20,27 @@ SCHEMA = "plantar.foot_estimator/1"
 SLIDE = 0.003  # m, by which a loaded bush is compressed, where nobody has measured it
 
 
+@dataclass(frozen=True)
+class Element:
+    """A Jenkins element beside a bush: slip angle [rad], slip torque with its deviation [N·m]."""
+
+    slip_angle: float
+    torque: float
+    torque_std: float
+
+
 def estimator_model(
     robot: RobotModel,
     *,
     cutoff: float,
     wrench_delay: tuple[float, float],
-    slip_angles: Mapping[tuple[str, Axis], float],
+    elements: Mapping[tuple[str, Axis], Element],
     compliance: Mapping[str, float],
 ) -> str:
     """The text of the model file.
 
     cutoff: of the filters before the regressions [Hz]; wrench_delay: of the force sensors behind the IMU, and
-    its deviation [s]; slip_angles: of the Jenkins elements by foot and axis [rad];
+    its deviation [s]; elements: Jenkins elements by foot and axis;
     compliance: of the slides by foot [m/N].
 
     Raises RobotError where the robot file names no IMU or no feet.
@@ -51,12 +61,15 @@ def estimator_model(
         *(f"joint {name.replace(' ', '_')}" for name in robot.joint_names),
     ]
     for name in robot.feet:
-        lines += _foot_lines(robot, name, [slip_angles.get((name, axis), 0.0) for axis in ROTATIONAL_AXES])
+        lines += _foot_lines(robot, name)
+        for place, axis in enumerate(ROTATIONAL_AXES):
+            if (found := elements.get((name, axis))) is not None:
+                lines.append(f"element {place} " + _numbers([found.slip_angle, found.torque, found.torque_std]))
         lines += _place_lines(robot, name, compliance.get(name, 0.0))
     return "\n".join(lines) + "\n"
 
 
-def _foot_lines(robot: RobotModel, name: str, slip_angles: list[float]) -> Iterator[str]:
+def _foot_lines(robot: RobotModel, name: str) -> Iterator[str]:
     foot = robot.feet[name]
     path, _, to_bush = path_to(robot, name)
     sensor = to_bush * robot.frame(foot.wrench.placement)[1]
@@ -67,7 +80,6 @@ def _foot_lines(robot: RobotModel, name: str, slip_angles: list[float]) -> Itera
     yield _line("bush", path.bush)
     yield _line("sole", path.sole)
     yield _line("sensor", [foot.wrench.sign, *place])
-    yield _line("slip_angle", slip_angles)
     for corner in convex_hull(foot.sole.polygon):
         yield _line("corner", corner)
 
