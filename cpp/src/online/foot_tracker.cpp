@@ -21,6 +21,7 @@ constexpr double STIFFEST = 100.0;         // m, times the weight: stiffness bef
 constexpr double SLOWEST = 1.0;            // s: damping over stiffness before any data
 constexpr double NOISE_ABOVE = 4.0;        // cutoffs: from there on a signal counts as noise
 constexpr double NYQUIST_SHARE = 0.8;      // of the highest frequency, that this must stay below
+constexpr double NEWLY_KNOWN = 0.02;       // of an element's range: less changes no offset
 constexpr double HARDLY_SLIPS = 0.99;      // of an element's largest state: below it noise moves it as the deflection
 constexpr double TRUSTED = 0.1;            // half width over stiffness
 constexpr double NORMAL = 1.96;
@@ -157,19 +158,8 @@ void FootTracker::filter(const FootKinematics& motion, double time, double dt, d
                    angles) &&
       forces_.pass(time, mean, -delay_, forces);
   if (!reaches) return;
-  if (estimate_.contact != ContactState::stance) {
-    // An element in the air is at rest; at its first sample it is loaded from there.
-    for (int a = 0; a < 2; ++a) {
-      const double slip = foot_->slip_angle[a];
-      element_[a] = slip > 0.0 ? std::clamp(angles[a] / slip, -1.0, 1.0) : 0.0, last_angle_[a] = angles[a];
-    }
-    return;
-  }
-  for (int a = 0; a < 2; ++a) {
-    const double slip = foot_->slip_angle[a];
-    if (slip > 0.0) element_[a] = std::clamp(element_[a] + (angles[a] - last_angle_[a]) / slip, -1.0, 1.0);
-    last_angle_[a] = angles[a];
-  }
+  follow_elements(angles.data(), time);
+  if (estimate_.contact != ContactState::stance) return;
   if (estimate_.flags & (EDGE | SLIP | IMPACT)) return;
   if (!running_) {
     filter_.design(cutoff_, period);
@@ -177,13 +167,40 @@ void FootTracker::filter(const FootKinematics& motion, double time, double dt, d
     running_ = true;
   }
   double channels[CHANNELS] = {1.0,       forces[0], forces[1],   forces[2], angles[0],   angles[2],
-                               element_[0], forces[3], angles[1], angles[3], element_[1], forces[4]};
+                               element_[0].state(), forces[3], angles[1], angles[3], element_[1].state(), forces[4]};
   filter_.pass(channels);
   row_time_ += dt;
   const int stride = std::max(1, static_cast<int>(1.0 / (ROWS_PER_CYCLE * cutoff_ * period)));
   if (++row_ticks_ < stride) return;
   hold(time, row_time_, channels);
   row_ticks_ = 0, row_time_ = 0.0;
+}
+
+// Elements from tick to tick. In the air one is at rest; at its first sample it is loaded from there. Of a foot that
+// stood when time began nobody knows: each time that less is unknown, the rows' offset changes.
+void FootTracker::follow_elements(const double* angles, double time) noexcept {
+  const bool air = estimate_.contact == ContactState::air;
+  swung_ = swung_ || air;
+  bool changed = false;
+  for (int a = 0; a < 2; ++a) {
+    const double slip = foot_->slip_angle[a], by = angles[a] - last_angle_[a];
+    last_angle_[a] = angles[a];
+    if (slip <= 0.0) continue;
+    ElementState& element = element_[a];
+    if (estimate_.contact == ContactState::stance) {
+      element.move(by / slip);
+      changed = changed || element.opened - element.gap() > NEWLY_KNOWN;
+    } else if (swung_) {
+      const double guess = std::clamp(angles[a] / slip, -1.0, 1.0);
+      element.begin(guess, guess);
+    } else {
+      element.begin(-1.0, 1.0);
+    }
+  }
+  if (!changed) return;
+  commit(time);
+  for (int a = 0; a < 2; ++a) axes_[a].close(), element_[a].opened = element_[a].gap();
+  restart_filter();
 }
 
 void FootTracker::hold(double time, double dt, const double* channels) noexcept {
@@ -244,6 +261,7 @@ void FootTracker::miss(std::uint32_t reason) noexcept {
   held_count_ = 0;
   if (reason & TIME_FAULT)  // who knows what has passed: zeros and offsets may be others
     for (AxisRegression& axis : axes_) axis.close();
+  if (reason & TIME_FAULT) swung_ = false;
   gate_.restart();
   estimate_.contact = gate_.contact();
   shaking_.restart();

@@ -1,6 +1,7 @@
 // One foot from tick to tick: contact, what may be learnt from it, and both axes' regressions.
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #include "online/air_zero.hpp"
@@ -25,6 +26,17 @@ struct FootKinematics {
   double mean_rate[2];
   double rate_noise;     // variance of the gyroscope's white noise [rad²/s²]; negative: rates come from the attitude
   SolePlace place;
+};
+
+// A Jenkins element whose state at the start may be unknown: the lowest and the highest that it can be.
+struct ElementState {
+  double low = 0.0, high = 0.0;
+  double opened = 0.0;  // how far apart these were when the offset of the rows began
+
+  double state() const noexcept { return 0.5 * (low + high); }
+  double gap() const noexcept { return high - low; }
+  void begin(double from, double to) noexcept { low = from, high = to, opened = to - from; }
+  void move(double by) noexcept { low = std::clamp(low + by, -1.0, 1.0), high = std::clamp(high + by, -1.0, 1.0); }
 };
 
 class FootTracker {
@@ -56,6 +68,7 @@ class FootTracker {
 
   void restart_filter() noexcept;
   void filter(const FootKinematics& motion, double time, double dt, double period) noexcept;
+  void follow_elements(const double* angles, double time) noexcept;
   void hold(double time, double dt, const double* channels) noexcept;
   void commit(double before) noexcept;
   void give(const HeldRow& row) noexcept;
@@ -75,7 +88,9 @@ class FootTracker {
   std::array<double, 6> raw_ = {}, wrench_ = {}, before_ = {};  // before_: load, force x, y, both torques, of last tick
   std::array<WhiteNoise, 2> angle_noise_;
   double noise_[2][2] = {};  // variance of angle and rate of each axis, behind the filter
-  double element_[2] = {}, last_angle_[2] = {};
+  ElementState element_[2];
+  double last_angle_[2] = {};
+  bool swung_ = false;          // the foot was in the air since time last jumped: its elements begin there at rest
   bool running_ = false;        // the filter has begun
   double row_time_ = 0.0;       // since the last row
   int row_ticks_ = 0;
