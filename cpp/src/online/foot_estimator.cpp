@@ -63,7 +63,8 @@ struct FootEstimator::State {
   }
 
   void step(const Reading& reading) noexcept;
-  bool keep_time(double time) noexcept;
+  enum class Time { onward, still, jumped };
+  Time keep_time(double now) noexcept;
   bool imu(const Reading& reading) noexcept;
   void joints(const Reading& reading) noexcept;
   void kinematics(std::size_t foot) noexcept;
@@ -98,22 +99,21 @@ struct FootEstimator::State {
   int next_work = 0;
 };
 
-// Whether this tick can be used: time went on, by no more than a gap.
-bool FootEstimator::State::keep_time(double now) noexcept {
-  if (!(std::abs(now) < LARGEST)) return false;
+FootEstimator::State::Time FootEstimator::State::keep_time(double now) noexcept {
+  if (!(std::abs(now) < LARGEST)) return Time::still;
   const double passed = now - time;
   const bool first = ticks == 0;
-  if (!first && passed == 0.0) return false;
+  if (!first && passed == 0.0) return Time::still;
   time = now;
   if (first || passed < 0.0 || passed > std::max(GAP, GAP_PERIODS * period)) {
     ticks = 1, known = false;
     slip.restart(), filter.restart();
-    return first;
+    return first ? Time::onward : Time::jumped;
   }
   dt = passed;
   period = ticks == 1 ? dt : period + PERIOD_NEWS * (dt - period);
   ++ticks;
-  return true;
+  return Time::onward;
 }
 
 bool FootEstimator::State::imu(const Reading& reading) noexcept {
@@ -208,7 +208,12 @@ void FootEstimator::State::miss_all(std::uint32_t reason) noexcept {
 }
 
 void FootEstimator::State::step(const Reading& reading) noexcept {
-  if (!keep_time(reading.time)) return miss_all(TIME_FAULT);
+  const Time went = keep_time(reading.time);
+  if (went == Time::jumped) return miss_all(TIME_FAULT);
+  if (went == Time::still) {  // the same tick again, or none: nothing happens
+    for (FootEstimate& estimate : estimates) estimate.flags |= TIME_FAULT;
+    return;
+  }
   const bool shaped = reading.position.size() == model.joints.size() && reading.wrench.size() == feet.size() &&
                       (reading.attitude.size() == 4 ||
                        (reading.angular_velocity.size() == 3 && reading.acceleration.size() == 3));
