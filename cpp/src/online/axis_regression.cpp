@@ -65,7 +65,7 @@ void AxisRegression::add(const RegressionRow& row, double dt) noexcept {
   open_.add(line);
   for (int i = 0; i < NOISE_SOURCES; ++i) open_noise_[i] += row.noise[i];
   ++open_rows_, open_time_ += dt, fresh_ = true;
-  if (open_time_ >= LONGEST_BLOCK) close();
+  if (open_time_ >= std::min(BLOCK * group_time_, LONGEST_BLOCK)) close();
 }
 
 AxisRegression::Part AxisRegression::open_part() const noexcept {
@@ -148,6 +148,9 @@ std::array<double, UNKNOWNS> AxisRegression::direction(int source) const noexcep
 void AxisRegression::solve() noexcept {
   Part data = total_;
   if (open_rows_ >= FEWEST_ROWS) data.add(open_part());
+  const double angle = data.triangle.r[0][0] * prior_.scale[STIFFNESS];
+  const double rate = std::hypot(data.triangle.r[0][1], data.triangle.r[1][1]) * prior_.scale[DAMPING];
+  values_.pace = angle > 0.0 ? rate * rate / (angle * angle) : 0.0;
   const double left = data.triangle.r[UNKNOWNS][UNKNOWNS];
   if (data.rows > 2 * UNKNOWNS) noise_ = std::max(left * std::sqrt(COLOUR / (data.rows - UNKNOWNS)), 1e-12);
   double x[UNKNOWNS];

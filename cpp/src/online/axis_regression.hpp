@@ -27,7 +27,8 @@ constexpr int FEWEST_GROUPS = 3;          // that say how they differ
 constexpr double FIRST_GROUP = 1.0;       // s of rows in one group, in the beginning
 constexpr double LARGEST_GROUP = 8.0;     // s: errors hang together for less
 constexpr double MEMORY = 2.0;            // fillings of each group that are remembered
-constexpr double LONGEST_BLOCK = 10.0;    // s with one offset, of a foot that stands: the attitude drifts more slowly
+constexpr double BLOCK = 2.5;             // groups with one offset, of a foot that stands: the attitude drifts more slowly
+constexpr double LONGEST_BLOCK = 10.0;    // s
 constexpr int FEWEST_ROWS = 8;            // of a block: with fewer its offset takes most of it
 
 struct RegressionRow {
@@ -48,6 +49,7 @@ struct AxisValues {
   std::array<double, UNKNOWNS> value = {};
   std::array<double, UNKNOWNS> std = {};  // of the rows' errors and of the prior
   double offset = 0.0;
+  double pace = 0.0;                      // squares of the rate over those of the deflection [1/s²]
   int groups = 0;
 };
 

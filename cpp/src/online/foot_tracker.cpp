@@ -245,7 +245,8 @@ void FootTracker::work(int axis) noexcept {
     const double std = found.std[unknown];
     return Parameter{found.value[unknown], std::hypot(std, systematic), std::hypot(quantile * std, NORMAL * systematic)};
   };
-  out.stiffness = parameter(STIFFNESS, gain_std_ * k);
+  // A wrench that is late by more than it was told to be takes K·delay off the damping and adds C·ω²·delay to K.
+  out.stiffness = parameter(STIFFNESS, std::hypot(gain_std_ * k, delay_std_ * c * found.pace));
   out.damping = parameter(DAMPING, std::hypot(gain_std_ * c, delay_std_ * k));
   out.slip_torque = foot_->slip_angle[axis] > 0.0 ? parameter(SLIP_TORQUE, gain_std_ * found.value[SLIP_TORQUE])
                                                   : Parameter{};
