@@ -263,8 +263,7 @@ void FootTracker::miss(std::uint32_t reason) noexcept {
   if (reason & TIME_FAULT)  // who knows what has passed: zeros and offsets may be others
     for (AxisRegression& axis : axes_) axis.close();
   if (reason & TIME_FAULT) swung_ = false;
-  gate_.restart();
-  estimate_.contact = gate_.contact();
+  gate_.restart();  // what is told of the contact stays, until readings say otherwise
   shaking_.restart();
   for (WhiteNoise& noise : angle_noise_) noise.restart();
   angles_.restart(), forces_.restart();
