@@ -23,7 +23,7 @@ from plantar.feet.settings import FeetSettings
 ROOT = Path(__file__).resolve().parents[1]
 PROMISED = {
     "load_robot", "open_log", "identify_feet", "identify_inertia", "identify_joints", "validate_feet", "export",
-    "select_motions", "read_residuals", "plot_torque", "FeetSettings", "DynamicsSettings", "FeetResult",
+    "select_motions", "read_residuals", "plot_torque", "FeetSettings", "FootEstimator", "DynamicsSettings", "FeetResult",
     "DynamicsResult", "RobotModel", "MotionLog", "PlantarError", "RobotError", "LogError", "DataError",
     "SettingsError", "MotionError", "ExportError", "MissingExtra", "dynamics",
 }  # fmt: skip

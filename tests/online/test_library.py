@@ -16,8 +16,6 @@ from plantar.online.estimator import FootEstimator
 
 ROOT = Path(__file__).resolve().parents[2]
 CONTROLLER = ROOT / "examples" / "controller"
-MEDIAN, P999 = 10.0, 30.0  # µs, of a tick of TALOS
-SLOWER = 5.0  # times, that a machine under other tests' load may be
 TICKS = 200_000
 
 pytestmark = [
@@ -86,11 +84,9 @@ def test_no_header_of_python_or_of_the_kernels_is_installed(built: Path) -> None
     assert headers == {"estimator_model.hpp", "foot_estimator.hpp", "frame.hpp"}
 
 
-def test_a_tick_takes_microseconds_and_no_memory(built: Path, talos_model: Path) -> None:
+def test_a_tick_takes_no_memory(built: Path, talos_model: Path) -> None:
     found = json.loads(run(built / "build/cpp/tests/estimator_ticks", talos_model, TICKS, where=built))
     assert found["allocations"] == 0
-    assert found["median"] < SLOWER * MEDIAN
-    assert found["p999"] < SLOWER * P999
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="seccomp is Linux's")

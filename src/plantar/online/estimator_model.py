@@ -64,7 +64,9 @@ def estimator_model(
         lines += _foot_lines(robot, name)
         for place, axis in enumerate(ROTATIONAL_AXES):
             if (found := elements.get((name, axis))) is not None:
-                lines.append(f"element {place} " + _numbers([found.slip_angle, found.torque, found.torque_std]))
+                lines.append(
+                    f"element {place} " + _numbers([found.slip_angle, found.torque, found.torque_std])
+                )
         lines += _place_lines(robot, name, compliance.get(name, 0.0))
     return "\n".join(lines) + "\n"
 
