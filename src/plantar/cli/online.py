@@ -12,13 +12,13 @@ from plantar.cli.memory import Memory
 from plantar.cli.terminal import VERDICT_STYLE, console, end_progress, number, progress, table
 from plantar.logs.readers import open_log
 from plantar.online.estimates import Flag
-from plantar.online.estimator import DEFAULT_CUTOFF, FootEstimator
+from plantar.online.estimator import FootEstimator
 from plantar.online.replay import Replay
 from plantar.results.feet import FeetResult
 from plantar.results.io import dump_json
 from plantar.robot.model import load_robot
 
-RESULT_HELP = "A result of `identify feet`: its hysteresis, its compliance and its delay are used."
+RESULT_HELP = "A result of `identify feet`: its hysteresis, compliance, delay and cutoff are used."
 DELAY_HELP = "How late the force sensors are against the IMU, in s; of the result, or unknown, if left out."
 
 
@@ -28,8 +28,8 @@ def run(
     result: Annotated[Path | None, typer.Option(help=RESULT_HELP, metavar="RESULT.json")] = None,
     wrench_delay: Annotated[float | None, typer.Option(help=DELAY_HELP)] = None,
     cutoff: Annotated[
-        float, typer.Option(help="Of the filters before the regressions, in Hz.")
-    ] = DEFAULT_CUTOFF,
+        float | None, typer.Option(help="Of the filters before the regressions, in Hz; the result's, or 5.")
+    ] = None,
     write_model: Annotated[
         Path | None,
         typer.Option(help="Also write the file that a controller in C++ constructs its estimator from."),

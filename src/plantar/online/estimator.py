@@ -23,6 +23,7 @@ from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel, load_robot
 
 DEFAULT_CUTOFF = 5.0  # Hz, as in `identify feet`
+LOWEST_CUTOFF = 0.1  # Hz
 LONGEST_DELAY = 0.1  # s
 
 
@@ -34,11 +35,12 @@ class FootEstimator:
 
     Args:
         robot: the robot file, or what `load_robot` made of it.
-        result: of `identify_feet`, for elements that slip in bushes with hysteresis, the slides' compliance and the
-            sensors' delay; without one bushes are springs with dampers.
+        result: of `identify_feet`, for elements that slip in bushes with hysteresis, the slides' compliance, the
+            sensors' delay and the filter's cutoff; without one bushes are springs with dampers.
         wrench_delay: how late the force sensors are against the IMU [s], > 0: late. None takes the result's; without a
             result none, and widens the damping's deviation by what the robot file's `uncertainty` allows.
-        cutoff: of the filter that deflection, rate and torque pass before they are compared [Hz].
+        cutoff: of the filter that deflection, rate and torque pass before they are compared [Hz]; None takes the
+            result's, 5 without one.
 
     Raises:
         RobotError: the robot file has no IMU or no feet. SettingsError: a value out of its range.
@@ -57,16 +59,16 @@ class FootEstimator:
         result: FeetResult | None = None,
         *,
         wrench_delay: float | None = None,
-        cutoff: float = DEFAULT_CUTOFF,
+        cutoff: float | None = None,
     ) -> None:
-        number_in("cutoff", cutoff, 0.1, math.inf, "Hz")
+        number_in("cutoff", cutoff, LOWEST_CUTOFF, math.inf, "Hz", optional="the result's, or 5 Hz")
         number_in(
             "wrench_delay", wrench_delay, -LONGEST_DELAY, LONGEST_DELAY, "s", optional="taken as 0, unsure"
         )
         self.robot = robot if isinstance(robot, RobotModel) else load_robot(robot)
         self._model = estimator_model(
             self.robot,
-            cutoff=cutoff,
+            cutoff=_cutoff(result) if cutoff is None else cutoff,
             wrench_delay=_delay(self.robot, result, wrench_delay),
             elements=_elements(result),
             compliance={} if result is None else result.compliance,
@@ -173,6 +175,12 @@ def _delay(robot: RobotModel, result: FeetResult | None, told: float | None) -> 
     if result is not None and result.sensor_delay is not None:
         return result.sensor_delay.wrench_delay, result.sensor_delay.std
     return 0.0, robot.uncertainty.wrench_delay
+
+
+def _cutoff(result: FeetResult | None) -> float:
+    """What a batch fit has used: up to where angle and torque hang together."""
+    used = None if result is None else result.settings.get("cutoff")
+    return float(used) if isinstance(used, int | float) and used >= LOWEST_CUTOFF else DEFAULT_CUTOFF
 
 
 def _elements(result: FeetResult | None) -> dict[tuple[str, Axis], Element]:
