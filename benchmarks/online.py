@@ -4,7 +4,7 @@
     python benchmarks/online.py --preset realistic --motions Walk12 Walk16 --seeds 20
 
 Motions of a seed are replayed one after the other by one estimator. The delay is told, and of rubber with hysteresis
-the element (as a batch result would), its torque wrong by a draw of 1 %. The robot file is exact, as the twin's robot is.
+the element (as a batch result would), its torque wrong by a draw of 1 %. The robot file is exact, as the twin is.
 A number that the estimator does not call identified is not scored, but counted.
 """
 

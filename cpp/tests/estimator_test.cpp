@@ -112,6 +112,26 @@ void survives(Fault fault, std::uint32_t flag, const char* what) {
   check::near(last.pitch.damping.value, DAMPING[0], 5e-3 * DAMPING[0], what);
 }
 
+// Onto mats with half the stiffness after 60 s: noticed within 3 s, and learnt anew.
+void notices_other_ground() {
+  FootEstimator estimator(two_feet());
+  double noticed = 0.0;
+  FootEstimate last;
+  for (int i = 0; i < 120000; ++i) {
+    const double t = 1e-3 * i;
+    Sensors sensors(t);
+    if (t >= 60.0)
+      for (auto& w : sensors.wrench)
+        w[4] -= 0.5 * STIFFNESS[0] * angle(0, t), w[3] -= 0.5 * STIFFNESS[1] * angle(1, t) / std::cos(angle(0, t));
+    last = estimator.step(sensors.reading(t))[0];
+    if ((last.flags & GROUND_CHANGED) && noticed == 0.0) noticed = t;
+  }
+  check::that(noticed > 60.0 && noticed < 63.0, "other ground is noticed within 3 s, and not before");
+  check::near(last.pitch.stiffness.value, STIFFNESS[0] / 2, 1e-3 * STIFFNESS[0], "half the stiffness in pitch");
+  check::near(last.roll.stiffness.value, STIFFNESS[1] / 2, 1e-3 * STIFFNESS[1], "half the stiffness in roll");
+  check::that((last.flags & GROUND_CHANGED) == 0, "told for some seconds");
+}
+
 void a_foot_that_never_stands() {
   FootEstimator estimator(two_feet());
   FootEstimate last;
@@ -164,6 +184,7 @@ int main() {
            "a frozen attitude");
   survives([](Sensors&, double& t) { t -= 20.5; }, TIME_FAULT, "time that steps back");
   survives([](Sensors&, double& t) { t = NAN_; }, TIME_FAULT, "no time");
+  notices_other_ground();
   a_foot_that_never_stands();
   broken_models_are_refused();
   return check::result();

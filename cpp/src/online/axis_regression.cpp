@@ -10,6 +10,7 @@ namespace {
 constexpr double COLOUR = 8.0;  // rows in a cycle of the filter: so many say the same
 constexpr double LEAST_LEFT = 1e-3;  // share of what is known that must stay when one group is left out
 constexpr double MOST_NOISE = 0.9;   // of a square: beyond, nothing of it is known
+constexpr double SETTLED = 0.1;      // deviation over stiffness, from which jumps are looked for
 constexpr double FIRST_NOISE = 1e-3; // of the weight, as torque at 1 m, before any residual is known
 
 void squares_of(const RootTriangle<UNKNOWNS>& root, double (&a)[UNKNOWNS][UNKNOWNS]) noexcept {
@@ -53,11 +54,31 @@ void AxisRegression::restart() noexcept {
   total_ = {};
   noise_ = FIRST_NOISE * prior_.scale[ASIDE];
   changed_ = unsure_ = fresh_ = false;
+  watch_.restart();
   values_ = {};
   values_.value = prior_.mean, values_.std = prior_.spread;
 }
 
+// Rows are compared with what was learnt, once that is worth it; at a jump everything is learnt anew.
+void AxisRegression::watch(const RegressionRow& row, double dt) noexcept {
+  const double stiffness = values_.value[STIFFNESS];
+  if (values_.groups < FEWEST_GROUPS || !(values_.std[STIFFNESS] < SETTLED * stiffness)) return;
+  double left = row.torque;
+  for (int i = 0; i < UNKNOWNS; ++i) left -= row.columns[i] * values_.value[i];
+  watch_.add(row.one, row.columns[STIFFNESS], left, dt);
+  if (!watch_.full() || !watch_.judge(stiffness, noise_)) return;
+  restart();
+  jumped_ = true;
+}
+
+bool AxisRegression::jumped() noexcept {
+  const bool since = jumped_;
+  jumped_ = false;
+  return since;
+}
+
 void AxisRegression::add(const RegressionRow& row, double dt) noexcept {
+  watch(row, dt);
   double line[UNKNOWNS + 2];
   line[0] = row.one;
   for (int i = 0; i < UNKNOWNS; ++i) line[1 + i] = row.columns[i] / prior_.scale[i];
@@ -78,6 +99,7 @@ AxisRegression::Part AxisRegression::open_part() const noexcept {
 }
 
 void AxisRegression::close() noexcept {
+  watch_.drop();
   if (open_rows_ >= FEWEST_ROWS) take(open_part());
   open_ = {}, open_rows_ = 0, open_time_ = 0.0;
   std::fill(open_noise_, open_noise_ + NOISE_SOURCES, 0.0);

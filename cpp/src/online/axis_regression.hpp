@@ -10,6 +10,7 @@
 
 #include <array>
 
+#include "online/change_watch.hpp"
 #include "online/root_triangle.hpp"
 
 namespace plantar {
@@ -63,6 +64,8 @@ class AxisRegression {
   void close() noexcept;
   // Forgets everything that was learnt.
   void restart() noexcept;
+  // Whether the stiffness has jumped since this was asked last; then everything before is forgotten.
+  bool jumped() noexcept;
   void set_spread(Unknown unknown, double spread) noexcept { prior_.spread[unknown] = spread; }
 
   // One piece of the work that keeps `values` current, each short enough for one tick.
@@ -90,6 +93,7 @@ class AxisRegression {
   std::array<double, UNKNOWNS> direction(int source) const noexcept;
   void solve() noexcept;
   void find_deviations() noexcept;
+  void watch(const RegressionRow& row, double dt) noexcept;
 
   RegressionPrior prior_;
   RootTriangle<UNKNOWNS + 1> open_;  // the offset first
@@ -102,6 +106,8 @@ class AxisRegression {
   Part total_;
   double noise_ = 0.0;          // of a row, as much as rows that hang together leave [N·m]
   bool changed_ = false, unsure_ = false, fresh_ = false;
+  bool jumped_ = false;
+  ChangeWatch watch_;
   AxisValues values_;
 };
 

@@ -24,6 +24,7 @@ constexpr double NYQUIST_SHARE = 0.8;      // of the highest frequency, that thi
 constexpr double NEWLY_KNOWN = 0.02;       // of an element's range: less changes no offset
 constexpr double HARDLY_SLIPS = 0.99;      // of an element's largest state: below it noise moves it as the deflection
 constexpr double TRUSTED = 0.1;            // half width over stiffness
+constexpr double CHANGE_TOLD = 5.0;        // s for which the flag of a change stands
 constexpr double NORMAL = 1.96;
 // Student's t for 95 %, by degrees of freedom from 2.
 constexpr double QUANTILE[] = {4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201};
@@ -117,6 +118,7 @@ void FootTracker::learn(const FootKinematics& motion, double others, SlipGate::V
   if (edge) flags |= EDGE;
   if (slips == SlipGate::Verdict::sure) flags |= SLIP;
   if (struck) flags |= IMPACT;
+  if (told_change_ > 0.0) flags |= GROUND_CHANGED, told_change_ -= dt;
   estimate_.flags = flags, estimate_.contact = contact;
   if (!fresh) {
     angles_.restart(), forces_.restart();
@@ -237,6 +239,7 @@ void FootTracker::give(const HeldRow& row) noexcept {
 
 void FootTracker::work(int axis) noexcept {
   axes_[axis].work();
+  if (axes_[axis].jumped()) told_change_ = CHANGE_TOLD;
   const AxisValues& found = axes_[axis].values();
   AxisEstimate& out = axis == 0 ? estimate_.pitch : estimate_.roll;
   const double k = found.value[STIFFNESS], c = found.value[DAMPING];

@@ -92,6 +92,7 @@ class FootTracker {
   double last_angle_[2] = {};
   bool swung_ = false;          // the foot was in the air since time last jumped: its elements begin there at rest
   bool running_ = false;        // the filter has begun
+  double told_change_ = 0.0;    // s for which a change of ground is still told
   double row_time_ = 0.0;       // since the last row
   int row_ticks_ = 0;
   std::array<HeldRow, HELD> held_;
