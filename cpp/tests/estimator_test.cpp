@@ -126,7 +126,7 @@ void notices_other_ground() {
     last = estimator.step(sensors.reading(t))[0];
     if ((last.flags & GROUND_CHANGED) && noticed == 0.0) noticed = t;
   }
-  check::that(noticed > 60.0 && noticed < 63.0, "other ground is noticed within 3 s, and not before");
+  check::near(noticed, 61.5, 1.5, "other ground is noticed within 3 s, and not before");
   check::near(last.pitch.stiffness.value, STIFFNESS[0] / 2, 1e-3 * STIFFNESS[0], "half the stiffness in pitch");
   check::near(last.roll.stiffness.value, STIFFNESS[1] / 2, 1e-3 * STIFFNESS[1], "half the stiffness in roll");
   check::that((last.flags & GROUND_CHANGED) == 0, "told for some seconds");

@@ -1,7 +1,7 @@
 // Whether the stiffness has jumped: from firm ground onto mats, or back.
 //
-// Each probe, some second of rows with an offset of its own, says how far the stiffness is from what was learnt. Its
-// usual scatter is followed, so that steps that differ anyway raise no alarm. Evidence for a change of a third is added up
+// Each probe, a part of a second of rows with an offset of its own, says how far the stiffness is from what was learnt. Its
+// usual scatter is followed, so that steps that differ anyway raise no alarm. Evidence for a large change is added up
 // for either direction, and taken off again by probes that speak against it (CUSUM; E. S. Page, Biometrika 41, 1954).
 #pragma once
 
@@ -12,9 +12,9 @@
 
 namespace plantar {
 
-constexpr double PROBE_TIME = 1.0;       // s of rows
+constexpr double PROBE_TIME = 0.75;      // s of rows: a usual stance
 constexpr int PROBE_ROWS = 12;           // fewer say nothing
-constexpr double CHANGE = 0.3;           // of the stiffness: what smaller changes are, the regression follows
+constexpr double CHANGE = 0.4;           // of the stiffness: half of it and less the regression follows by itself
 constexpr double SURE_OF_CHANGE = 15.0;  // log-likelihood: three million to one
 constexpr double MOST_OF_ONE = 7.5;      // of one probe: a single one may be a stumble
 constexpr double SHOWS = 0.15;           // deviation over stiffness, beyond which a probe shows nothing
