@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "online/running_quantile.hpp"
 
 namespace plantar {
 
 constexpr double SHAKING_BAND = 20.0;    // Hz: no robot that stands is loaded on purpose so fast
+constexpr double SHAKING_RATE = 0.06;    // of the sampling rate, that the band stays below: else nothing is above it
 constexpr double SHAKING_TIME = 0.05;    // s over which shaking is judged
 constexpr double SHAKING_SHARE = 0.02;   // of the weight, rms
 constexpr double SHAKING_NOISE = 7.0;    // times the calmest shaking, which is the sensor's noise
@@ -21,7 +23,7 @@ class Shaking {
 
   // force: (3) [N]; whether an impact is going on or was just now.
   bool step(const double* force, double dt) noexcept {
-    const double blend = 1.0 - std::exp(-2 * 3.14159265358979 * SHAKING_BAND * dt);
+    const double blend = 1.0 - std::exp(-2 * std::numbers::pi * std::min(SHAKING_BAND * dt, SHAKING_RATE));
     double quick = 0.0;
     for (int i = 0; i < 3; ++i) {
       // Two poles: what is slow passes without being late by much of itself.

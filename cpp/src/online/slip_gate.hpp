@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "online/running_quantile.hpp"
 
@@ -35,7 +36,7 @@ class SlipGate {
     const double x = right.x - left.x, y = right.y - left.y, yaw = right.heading - left.heading;
     const double turned = std::atan2(std::sin(yaw), std::cos(yaw));
     const std::array<double, 3> apart = {c * x + s * y, c * y - s * x, YAW_MOMENT_ARM * turned};
-    const double blend = 1.0 - std::exp(-2 * 3.14159265358979 * SLIP_CUTOFF * dt);
+    const double blend = 1.0 - std::exp(-2 * std::numbers::pi * SLIP_CUTOFF * dt);
     double square = 0.0;
     for (int i = 0; i < 3; ++i) {
       const double before = twice_[i];
