@@ -1,4 +1,4 @@
-"""What the estimator leaves out, causally: edges, impacts, slides; zeros from the air; the slide that a load compresses."""
+"""What the estimator leaves out: edges, impacts, slides; zeros from the air; the slide that a load compresses."""
 
 from __future__ import annotations
 
