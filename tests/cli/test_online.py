@@ -35,6 +35,17 @@ def test_a_log_is_replayed_and_told_as_tables(
     assert model.read_text().startswith("plantar.foot_estimator/1")
 
 
+def test_a_joint_that_the_log_lacks_is_noted(
+    campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    lines = [line.split(",") for line in (campaign / "first.csv").read_text().splitlines()]
+    kept = [place for place, name in enumerate(lines[0]) if name != "joint.neck.position"]
+    log = tmp_path / "short.csv"
+    log.write_text("\n".join(",".join(line[place] for place in kept) for line in lines) + "\n")
+    assert run("online", campaign / "robot.yaml", log, "--wrench-delay", 0) == 0
+    assert "neck" in capsys.readouterr().out
+
+
 def test_what_is_wrong_is_one_line(
     campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -9,7 +9,15 @@ from typing import Annotated
 import typer
 
 from plantar.cli.memory import Memory
-from plantar.cli.terminal import VERDICT_STYLE, console, end_progress, number, progress, table
+from plantar.cli.terminal import (
+    VERDICT_STYLE,
+    console,
+    end_progress,
+    number,
+    print_notes,
+    progress,
+    table,
+)
 from plantar.logs.readers import open_log
 from plantar.online.estimates import Flag
 from plantar.online.estimator import FootEstimator
@@ -62,6 +70,7 @@ def run(
         print(dump_json(content), end="")
     elif not quiet:
         _print(replay)
+        print_notes(console(), [*motion.notes, *motion.joint_notes(known)])
 
 
 def _print(replay: Replay) -> None:
