@@ -60,8 +60,13 @@ class EstimatorObject {
       return v ? std::span<const double>(v->data(), v->shape(0)) : std::span<const double>();
     };
     const auto* wrenches = reinterpret_cast<const std::array<double, 6>*>(wrench.data());
-    const auto found = estimator_.step({time, {position.data(), position.shape(0)}, some(velocity), some(attitude),
-                                        some(angular_velocity), some(acceleration), {wrenches, wrench.shape(0)}});
+    const auto found = estimator_.step({time,
+                                        {position.data(), position.shape(0)},
+                                        some(velocity),
+                                        some(attitude),
+                                        some(angular_velocity),
+                                        some(acceleration),
+                                        {wrenches, wrench.shape(0)}});
     for (std::size_t f = 0; f < found.size(); ++f) write(found[f], out.data() + f * FIELDS);
   }
 
@@ -81,12 +86,9 @@ class EstimatorObject {
     nb::gil_scoped_release release;
     for (std::size_t i = 0; i < n; ++i) {
       const auto* wrenches = reinterpret_cast<const std::array<double, 6>*>(wrench.data() + 6 * feet * i);
-      const Reading reading = {time.data()[i],
-                               {position.data() + i * position.shape(1), position.shape(1)},
-                               row(velocity, i),
-                               row(attitude, i),
-                               row(angular_velocity, i),
-                               row(acceleration, i),
+      const Reading reading = {time.data()[i],           {position.data() + i * position.shape(1), position.shape(1)},
+                               row(velocity, i),         row(attitude, i),
+                               row(angular_velocity, i), row(acceleration, i),
                                {wrenches, feet}};
       const auto begun = std::chrono::steady_clock::now();
       const auto found = estimator_.step(reading);

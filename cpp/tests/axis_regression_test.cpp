@@ -12,9 +12,7 @@ namespace {
 constexpr double ROW = 0.025;  // s
 constexpr double DAMPING_TRUTH = 20.0;
 
-RegressionPrior prior() {
-  return {{0.01, 0.1, 1.0, 600.0, 60.0}, {}, {6e4, 6e4, 600.0, 1e-9, 1e-9}, 0.0};
-}
+RegressionPrior prior() { return {{0.01, 0.1, 1.0, 600.0, 60.0}, {}, {6e4, 6e4, 600.0, 1e-9, 1e-9}, 0.0}; }
 
 struct Source {
   explicit Source(unsigned seed) : random(seed) {}
@@ -22,7 +20,9 @@ struct Source {
   RegressionRow row(double t, double stiffness, double angle_noise, double torque_noise) {
     const double angle = 0.01 * std::sin(2.0 * t), rate = 0.02 * std::cos(2.0 * t);
     const double torque = stiffness * angle + DAMPING_TRUTH * rate + 1.0 + torque_noise * normal(random);
-    return {1.0, {angle + angle_noise * normal(random), rate, 0.0, 0.0, 0.0}, torque,
+    return {1.0,
+            {angle + angle_noise * normal(random), rate, 0.0, 0.0, 0.0},
+            torque,
             {angle_noise * angle_noise, 0.0, 0.0}};
   }
 
@@ -70,14 +70,16 @@ void what_was_long_ago_fades_and_rest_forgets_nothing() {
   const AxisValues learnt = axis.values();
   // Twelve groups of 8 s hold somewhat less than two fillings each: 48 s are a quarter of what is remembered.
   check::near(after(axis, source, 400.0, 48.0, 880.0, 0.0, 0.05).value[STIFFNESS], 818.0, 2.0, "and not at once");
-  check::near(after(axis, source, 448.0, 352.0, 880.0, 0.0, 0.05).value[STIFFNESS], 880.0, 8.0, "a slow change is followed");
+  check::near(after(axis, source, 448.0, 352.0, 880.0, 0.0, 0.05).value[STIFFNESS], 880.0, 8.0,
+              "a slow change is followed");
 
   AxisRegression resting(prior());
   Source again(1);
   after(resting, again, 0.0, 400.0, 800.0, 0.0, 0.05);
   for (int i = 0; i < 40000; ++i) {  // a thousand seconds at rest, with noise
     const double noise = 1e-6 * again.normal(again.random);
-    resting.add({1.0, {noise, 10 * noise, 0.0, 0.0, 0.0}, 1.0 + 0.05 * again.normal(again.random), {1e-12, 0.0, 0.0}}, ROW);
+    resting.add({1.0, {noise, 10 * noise, 0.0, 0.0, 0.0}, 1.0 + 0.05 * again.normal(again.random), {1e-12, 0.0, 0.0}},
+                ROW);
     resting.work();
   }
   check::near(resting.values().value[STIFFNESS], learnt.value[STIFFNESS], 0.5, "rest leaves the value");

@@ -1,12 +1,11 @@
 // The estimator on a foot whose stiffness and damping are known, and on sensors that fail.
-#include "plantar/foot_estimator.hpp"
-
 #include <cmath>
 #include <limits>
 #include <sstream>
 #include <stdexcept>
 
 #include "check.hpp"
+#include "plantar/foot_estimator.hpp"
 
 using namespace plantar;
 
@@ -61,8 +60,9 @@ struct Sensors {
 
 bool finite(const FootEstimate& foot) {
   for (const AxisEstimate* a : {&foot.pitch, &foot.roll})
-    for (const double value : {a->deflection, a->rate, a->torque, a->stiffness.value, a->stiffness.std,
-                               a->stiffness.half_width, a->damping.value, a->damping.std, a->damping.half_width, a->offset})
+    for (const double value :
+         {a->deflection, a->rate, a->torque, a->stiffness.value, a->stiffness.std, a->stiffness.half_width,
+          a->damping.value, a->damping.std, a->damping.half_width, a->offset})
       if (!std::isfinite(value)) return false;
   return std::isfinite(foot.load) && std::isfinite(foot.centre_of_pressure[0]) &&
          std::isfinite(foot.centre_of_pressure[1]);
@@ -146,8 +146,9 @@ void a_foot_that_never_stands() {
 }
 
 void broken_models_are_refused() {
-  for (const char* text : {"", "something else\n", "plantar.foot_estimator/1\nweight heavy\n",
-                           "plantar.foot_estimator/1\nweight 600\nsurprise 1\n", "plantar.foot_estimator/1\nweight 600\n"}) {
+  for (const char* text :
+       {"", "something else\n", "plantar.foot_estimator/1\nweight heavy\n",
+        "plantar.foot_estimator/1\nweight 600\nsurprise 1\n", "plantar.foot_estimator/1\nweight 600\n"}) {
     bool refused = false;
     try {
       std::istringstream stream(text);

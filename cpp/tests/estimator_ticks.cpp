@@ -1,7 +1,7 @@
 // How long a tick takes and what it asks of the system: estimator_ticks MODEL TICKS [strict].
 //
-// Prints median, 99.9 % quantile and largest time [µs] and the allocations after construction, as JSON. `strict` lets the
-// kernel kill the process at its first system call: exit code 0 says that there was none.
+// Prints median, 99.9 % quantile and largest time [µs] and the allocations after construction, as JSON. `strict` lets
+// the kernel kill the process at its first system call: exit code 0 says that there was none.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -61,9 +61,11 @@ struct Robot {
     for (double& w : gyroscope) w = 0.05 * std::cos(2.0 * t) + 1e-3 * noise();
     const bool walks = std::fmod(t, 60.0) > 20.0;
     for (std::size_t f = 0; f < wrench.size(); ++f) {
-      const double share = walks ? std::clamp(0.5 + 1.5 * std::sin(3.1 * t + 3.14 * static_cast<double>(f)), 0.0, 1.0) : 0.5;
-      wrench[f] = {5.0 * noise(), 5.0 * noise(), share * weight + noise(), 10.0 * r + 0.1 * noise(), 10.0 * p + 0.1 * noise(),
-                   0.1 * noise()};
+      const double share =
+          walks ? std::clamp(0.5 + 1.5 * std::sin(3.1 * t + 3.14 * static_cast<double>(f)), 0.0, 1.0) : 0.5;
+      wrench[f] = {
+          5.0 * noise(), 5.0 * noise(), share * weight + noise(), 10.0 * r + 0.1 * noise(), 10.0 * p + 0.1 * noise(),
+          0.1 * noise()};
     }
   }
 
@@ -115,6 +117,7 @@ int main(int count, char** words) {
   const long asked = allocations - before;
   std::sort(times.begin(), times.end());
   const auto at = [&](double share) { return times[static_cast<std::size_t>(share * static_cast<double>(ticks - 1))]; };
-  std::printf("{\"median\": %.2f, \"p999\": %.2f, \"max\": %.2f, \"allocations\": %ld}\n", at(0.5), at(0.999), at(1.0), asked);
+  std::printf("{\"median\": %.2f, \"p999\": %.2f, \"max\": %.2f, \"allocations\": %ld}\n", at(0.5), at(0.999), at(1.0),
+              asked);
   return learnt > 0 ? 0 : 4;
 }

@@ -1,7 +1,6 @@
 // What a controller does with its feet: construct once, step every tick, use what may be trusted.
-#include <plantar/foot_estimator.hpp>
-
 #include <cstdio>
+#include <plantar/foot_estimator.hpp>
 #include <vector>
 
 int main(int, char** words) {

@@ -14,25 +14,25 @@ namespace plantar {
 
 // One joint on the way from the IMU to a foot; it turns about, or slides along, the z axis of its own frame.
 struct PathJoint {
-  int joint;     // its place in `Reading::position`
-  bool slides;   // prismatic, else revolute
-  double sign;   // -1 where it is passed from child to parent
-  Frame frame;   // before it moves, in the frame behind the joint before
+  int joint;    // its place in `Reading::position`
+  bool slides;  // prismatic, else revolute
+  double sign;  // -1 where it is passed from child to parent
+  Frame frame;  // before it moves, in the frame behind the joint before
 };
 
 struct FootModel {
   std::string name;
-  bool always = false;              // stands throughout: its force sensor was zeroed under load
+  bool always = false;  // stands throughout: its force sensor was zeroed under load
   std::vector<PathJoint> path;
-  Frame bush;                       // behind the last joint
-  Frame sole;                       // in the bush frame, undeflected
-  Frame sensor;                     // the force sensor in the bush frame
-  double sign = 1.0;                // -1 where it reads the robot's action on the ground
-  std::vector<std::array<double, 2>> polygon;    // the sole's corners in its plane, counter-clockwise [m]
-  std::array<double, 2> place_std = {0.0, 0.0};  // of the bush's centre, aside and above [m]
-  double compliance = 0.0;          // of the slide along the ankle's z [m/N]; 0: within `place_std`
-  std::array<double, 2> slip_angle = {0.0, 0.0}; // of a Jenkins element beside pitch and roll [rad]; 0: none
-  std::array<double, 2> slip_torque = {0.0, 0.0};      // of these, before any data [N·m], and its deviation; 0: not known
+  Frame bush;                                      // behind the last joint
+  Frame sole;                                      // in the bush frame, undeflected
+  Frame sensor;                                    // the force sensor in the bush frame
+  double sign = 1.0;                               // -1 where it reads the robot's action on the ground
+  std::vector<std::array<double, 2>> polygon;      // the sole's corners in its plane, counter-clockwise [m]
+  std::array<double, 2> place_std = {0.0, 0.0};    // of the bush's centre, aside and above [m]
+  double compliance = 0.0;                         // of the slide along the ankle's z [m/N]; 0: within `place_std`
+  std::array<double, 2> slip_angle = {0.0, 0.0};   // of a Jenkins element beside pitch and roll [rad]; 0: none
+  std::array<double, 2> slip_torque = {0.0, 0.0};  // of these, before any data [N·m], and its deviation; 0: not known
   std::array<double, 2> slip_torque_std = {0.0, 0.0};
 };
 

@@ -7,11 +7,11 @@ namespace plantar {
 
 namespace {
 
-constexpr double COLOUR = 8.0;  // rows in a cycle of the filter: so many say the same
-constexpr double LEAST_LEFT = 1e-3;  // share of what is known that must stay when one group is left out
-constexpr double MOST_NOISE = 0.9;   // of a square: beyond, nothing of it is known
-constexpr double SETTLED = 0.1;      // deviation over stiffness, from which jumps are looked for
-constexpr double FIRST_NOISE = 1e-3; // of the weight, as torque at 1 m, before any residual is known
+constexpr double COLOUR = 8.0;        // rows in a cycle of the filter: so many say the same
+constexpr double LEAST_LEFT = 1e-3;   // share of what is known that must stay when one group is left out
+constexpr double MOST_NOISE = 0.9;    // of a square: beyond, nothing of it is known
+constexpr double SETTLED = 0.1;       // deviation over stiffness, from which jumps are looked for
+constexpr double FIRST_NOISE = 1e-3;  // of the weight, as torque at 1 m, before any residual is known
 
 void squares_of(const RootTriangle<UNKNOWNS>& root, double (&a)[UNKNOWNS][UNKNOWNS]) noexcept {
   for (int i = 0; i < UNKNOWNS; ++i)
@@ -161,8 +161,10 @@ AxisRegression::Shared AxisRegression::completed(const Part& data) const noexcep
 // What one unit of a source's noise adds to the columns.
 std::array<double, UNKNOWNS> AxisRegression::direction(int source) const noexcept {
   std::array<double, UNKNOWNS> along = {};
-  if (source == OF_RATE) along[DAMPING] = 1.0 / prior_.scale[DAMPING];
-  else along[STIFFNESS] = 1.0 / prior_.scale[STIFFNESS];
+  if (source == OF_RATE)
+    along[DAMPING] = 1.0 / prior_.scale[DAMPING];
+  else
+    along[STIFFNESS] = 1.0 / prior_.scale[STIFFNESS];
   if (source == OF_ANGLE_AND_ELEMENT) along[SLIP_TORQUE] = prior_.element_slope / prior_.scale[SLIP_TORQUE];
   return along;
 }

@@ -4,8 +4,8 @@
 // eliminated. What is left joins one of some groups of consecutive data; leaving out one group after the other says how
 // far the values can be trusted, however the errors within a group hang together (delete-group jackknife).
 //
-// Noise of angles and rates adds to their squares but to no product with the torque, and so draws the values to zero: its
-// expected share is taken off again (W. A. Fuller, Measurement Error Models, Wiley 1987).
+// Noise of angles and rates adds to their squares but to no product with the torque, and so draws the values to zero:
+// its expected share is taken off again (W. A. Fuller, Measurement Error Models, Wiley 1987).
 #pragma once
 
 #include <array>
@@ -24,33 +24,33 @@ enum NoiseSource : int { OF_ANGLE, OF_RATE, OF_ANGLE_AND_ELEMENT };
 constexpr int NOISE_SOURCES = 3;
 
 constexpr int MOST_GROUPS = 12;
-constexpr int FEWEST_GROUPS = 3;          // that say how they differ
-constexpr double FIRST_GROUP = 1.0;       // s of rows in one group, in the beginning
-constexpr double LARGEST_GROUP = 8.0;     // s: errors hang together for less
-constexpr double MEMORY = 2.0;            // fillings of each group that are remembered
-constexpr double BLOCK = 2.5;             // groups with one offset, of a foot that stands: the attitude drifts more slowly
-constexpr double LONGEST_BLOCK = 10.0;    // s
-constexpr int FEWEST_ROWS = 8;            // of a block: with fewer its offset takes most of it
+constexpr int FEWEST_GROUPS = 3;       // that say how they differ
+constexpr double FIRST_GROUP = 1.0;    // s of rows in one group, in the beginning
+constexpr double LARGEST_GROUP = 8.0;  // s: errors hang together for less
+constexpr double MEMORY = 2.0;         // fillings of each group that are remembered
+constexpr double BLOCK = 2.5;          // groups with one offset, of a foot that stands: the attitude drifts more slowly
+constexpr double LONGEST_BLOCK = 10.0;  // s
+constexpr int FEWEST_ROWS = 8;          // of a block: with fewer its offset takes most of it
 
 struct RegressionRow {
-  double one;                             // what the filter has made of a constant
+  double one;  // what the filter has made of a constant
   double columns[UNKNOWNS];
   double torque;
-  double noise[NOISE_SOURCES];            // variance, of each source
+  double noise[NOISE_SOURCES];  // variance, of each source
 };
 
 struct RegressionPrior {
-  std::array<double, UNKNOWNS> scale;     // a usual size of each column
-  std::array<double, UNKNOWNS> mean;      // of each unknown, before any data, and how far it may be off
+  std::array<double, UNKNOWNS> scale;  // a usual size of each column
+  std::array<double, UNKNOWNS> mean;   // of each unknown, before any data, and how far it may be off
   std::array<double, UNKNOWNS> spread;
-  double element_slope;                   // of the element's state over the deflection, where it does not slip [1/rad]
+  double element_slope;  // of the element's state over the deflection, where it does not slip [1/rad]
 };
 
 struct AxisValues {
   std::array<double, UNKNOWNS> value = {};
   std::array<double, UNKNOWNS> std = {};  // of the rows' errors and of the prior
   double offset = 0.0;
-  double pace = 0.0;                      // squares of the rate over those of the deflection [1/s²]
+  double pace = 0.0;  // squares of the rate over those of the deflection [1/s²]
   int groups = 0;
 };
 
@@ -104,7 +104,7 @@ class AxisRegression {
   bool full_ = false;
   double group_time_ = FIRST_GROUP;
   Part total_;
-  double noise_ = 0.0;          // of a row, as much as rows that hang together leave [N·m]
+  double noise_ = 0.0;  // of a row, as much as rows that hang together leave [N·m]
   bool changed_ = false, unsure_ = false, fresh_ = false;
   bool jumped_ = false;
   ChangeWatch watch_;

@@ -41,7 +41,7 @@ class CausalFilter {
     for (int s = 0; s < 2; ++s) {
       const Biquad& q = sections_[s];
       for (int c = 0; c < CHANNELS; ++c) {
-        double(&m)[2] = memory_[s][c];
+        double (&m)[2] = memory_[s][c];
         const double x = q.b * values[c], y = x + m[0];
         m[0] = 2.0 * x - q.a1 * y + m[1];
         m[1] = x - q.a2 * y;

@@ -1,8 +1,9 @@
 // Whether the stiffness has jumped: from firm ground onto mats, or back.
 //
-// Each probe, a part of a second of rows with an offset of its own, says how far the stiffness is from what was learnt. Its
-// usual scatter is followed, so that steps that differ anyway raise no alarm. Evidence for a large change is added up
-// for either direction, and taken off again by probes that speak against it (CUSUM; E. S. Page, Biometrika 41, 1954).
+// Each probe, a part of a second of rows with an offset of its own, says how far the stiffness is from what was learnt.
+// Its usual scatter is followed, so that steps that differ anyway raise no alarm. Evidence for a large change is added
+// up for either direction, and taken off again by probes that speak against it (CUSUM; E. S. Page, Biometrika 41,
+// 1954).
 #pragma once
 
 #include <algorithm>

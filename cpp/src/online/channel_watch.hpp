@@ -6,10 +6,10 @@
 
 namespace plantar {
 
-constexpr double LARGEST = 1e12;      // in any unit: what no sensor reads
-constexpr double FROZEN_TIME = 0.1;   // s without any change: no device is read so rarely
-constexpr int FROZEN_SAMPLES = 8;     // and so many samples: a slow log repeats nothing that long
-constexpr double FROZEN_WAY = 0.01;   // rad or m that a joint's velocity says it moved while its position stood
+constexpr double LARGEST = 1e12;     // in any unit: what no sensor reads
+constexpr double FROZEN_TIME = 0.1;  // s without any change: no device is read so rarely
+constexpr int FROZEN_SAMPLES = 8;    // and so many samples: a slow log repeats nothing that long
+constexpr double FROZEN_WAY = 0.01;  // rad or m that a joint's velocity says it moved while its position stood
 
 inline bool all_finite(std::span<const double> values) noexcept {
   for (const double value : values)

@@ -9,16 +9,16 @@
 
 namespace plantar {
 
-constexpr double LANDING_SHARE = 0.10;   // of the weight: a foot that carries more stands
-constexpr double LIFTING_SHARE = 0.05;   // of the weight: a foot that carries less is in the air
-constexpr double FORCE_BAND = 40.0;      // Hz, of the force that decides: 4 ms late
-constexpr double SETTLING_TIME = 0.25;   // s behind a landing and before a lift, at most
-constexpr double SETTLING_SHARE = 0.1;   // of a usual stance, at most
-constexpr double FIRST_STANCE = 2.5;     // s: a usual stance before any was seen
-constexpr double NEWS = 0.3;             // by how much one stance changes what is usual
-constexpr double LIGHT = 0.2;            // of the weight: a foot that reads no more may be in the air
-constexpr double OTHERS_CARRY = 0.7;     // of the weight: then it is, whatever its zero
-constexpr double LIGHT_TIME = 0.1;       // s for which it must read so
+constexpr double LANDING_SHARE = 0.10;  // of the weight: a foot that carries more stands
+constexpr double LIFTING_SHARE = 0.05;  // of the weight: a foot that carries less is in the air
+constexpr double FORCE_BAND = 40.0;     // Hz, of the force that decides: 4 ms late
+constexpr double SETTLING_TIME = 0.25;  // s behind a landing and before a lift, at most
+constexpr double SETTLING_SHARE = 0.1;  // of a usual stance, at most
+constexpr double FIRST_STANCE = 2.5;    // s: a usual stance before any was seen
+constexpr double NEWS = 0.3;            // by how much one stance changes what is usual
+constexpr double LIGHT = 0.2;           // of the weight: a foot that reads no more may be in the air
+constexpr double OTHERS_CARRY = 0.7;    // of the weight: then it is, whatever its zero
+constexpr double LIGHT_TIME = 0.1;      // s for which it must read so
 
 class ContactGate {
  public:

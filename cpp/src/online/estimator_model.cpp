@@ -51,37 +51,50 @@ class Line {
 };
 
 void read_robot_line(EstimatorModel& model, Line& line) {
-  if (line.kind() == "robot") model.robot = line.next<std::string>();
-  else if (line.kind() == "weight") model.weight = line.next<double>();
-  else if (line.kind() == "cutoff") model.cutoff = line.next<double>();
-  else if (line.kind() == "wrench_delay") model.wrench_delay = line.next<double>(), model.wrench_delay_std = line.next<double>();
-  else if (line.kind() == "wrench_gain_std") model.wrench_gain_std = line.next<double>();
-  else if (line.kind() == "joint") model.joints.push_back(line.next<std::string>());
-  else line.fail("unknown word");
+  if (line.kind() == "robot")
+    model.robot = line.next<std::string>();
+  else if (line.kind() == "weight")
+    model.weight = line.next<double>();
+  else if (line.kind() == "cutoff")
+    model.cutoff = line.next<double>();
+  else if (line.kind() == "wrench_delay")
+    model.wrench_delay = line.next<double>(), model.wrench_delay_std = line.next<double>();
+  else if (line.kind() == "wrench_gain_std")
+    model.wrench_gain_std = line.next<double>();
+  else if (line.kind() == "joint")
+    model.joints.push_back(line.next<std::string>());
+  else
+    line.fail("unknown word");
 }
 
 void read_foot_line(FootModel& foot, Line& line) {
-  if (line.kind() == "contact") foot.always = line.next<std::string>() == "always";
+  if (line.kind() == "contact")
+    foot.always = line.next<std::string>() == "always";
   else if (line.kind() == "path") {
     const int joint = line.next<int>();
     const bool slides = line.next<int>() != 0;
     const double sign = line.next<double>();
     foot.path.push_back({joint, slides, sign, line.frame()});
-  } else if (line.kind() == "bush") foot.bush = line.frame();
-  else if (line.kind() == "sole") foot.sole = line.frame();
-  else if (line.kind() == "sensor") foot.sign = line.next<double>(), foot.sensor = line.frame();
+  } else if (line.kind() == "bush")
+    foot.bush = line.frame();
+  else if (line.kind() == "sole")
+    foot.sole = line.frame();
+  else if (line.kind() == "sensor")
+    foot.sign = line.next<double>(), foot.sensor = line.frame();
   else if (line.kind() == "corner") {
     const double x = line.next<double>(), y = line.next<double>();
     foot.polygon.push_back({x, y});
-  } else if (line.kind() == "place_std") foot.place_std[0] = line.next<double>(), foot.place_std[1] = line.next<double>();
-  else if (line.kind() == "compliance") foot.compliance = line.next<double>();
+  } else if (line.kind() == "place_std")
+    foot.place_std[0] = line.next<double>(), foot.place_std[1] = line.next<double>();
+  else if (line.kind() == "compliance")
+    foot.compliance = line.next<double>();
   else if (line.kind() == "element") {
     const int axis = line.next<int>();
     if (axis != 0 && axis != 1) line.fail("no axis (valid: 0 for pitch, 1 for roll)");
     foot.slip_angle[axis] = line.next<double>();
     foot.slip_torque[axis] = line.next<double>(), foot.slip_torque_std[axis] = line.next<double>();
-  }
-  else line.fail("unknown word");
+  } else
+    line.fail("unknown word");
 }
 
 }  // namespace

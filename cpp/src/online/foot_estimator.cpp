@@ -14,7 +14,7 @@ namespace plantar {
 
 namespace {
 
-constexpr double GAP = 0.1;           // s without a sample, at least: what was before is past
+constexpr double GAP = 0.1;  // s without a sample, at least: what was before is past
 constexpr double GAP_PERIODS = 5.0;
 constexpr int FIRST_TICKS = 10;       // until the period is known
 constexpr double PERIOD_NEWS = 0.05;  // by how much one tick changes the period
@@ -55,7 +55,10 @@ struct FootEstimator::State {
     for (const FootModel& foot : model.feet) {
       std::vector<ChainStep>& chain = steps.emplace_back();
       for (const PathJoint& joint : foot.path)
-        chain.push_back({joint.frame, joint.slides, joint.sign, {position.data() + TICKS * joint.joint, 1},
+        chain.push_back({joint.frame,
+                         joint.slides,
+                         joint.sign,
+                         {position.data() + TICKS * joint.joint, 1},
                          {velocity.data() + TICKS * joint.joint, 1}});
       feet.emplace_back(model, foot);
     }
@@ -93,9 +96,9 @@ struct FootEstimator::State {
   std::vector<bool> was_bad;
   std::vector<FootEstimate> estimates;
   double time = 0.0, dt = 0.0, period = 0.0;
-  int ticks = 0;         // since time last jumped
-  bool fresh = false;    // the last tick was read
-  bool known = false;    // whether a quaternion and positions of an earlier tick are kept
+  int ticks = 0;       // since time last jumped
+  bool fresh = false;  // the last tick was read
+  bool known = false;  // whether a quaternion and positions of an earlier tick are kept
   int next_work = 0;
 };
 
@@ -214,9 +217,9 @@ void FootEstimator::State::step(const Reading& reading) noexcept {
     for (FootEstimate& estimate : estimates) estimate.flags |= TIME_FAULT;
     return;
   }
-  const bool shaped = reading.position.size() == model.joints.size() && reading.wrench.size() == feet.size() &&
-                      (reading.attitude.size() == 4 ||
-                       (reading.angular_velocity.size() == 3 && reading.acceleration.size() == 3));
+  const bool shaped =
+      reading.position.size() == model.joints.size() && reading.wrench.size() == feet.size() &&
+      (reading.attitude.size() == 4 || (reading.angular_velocity.size() == 3 && reading.acceleration.size() == 3));
   if (!shaped || !all_finite(reading.attitude) || !all_finite(reading.angular_velocity) ||
       (reading.attitude.empty() && !all_finite(reading.acceleration)))
     return miss_all(INPUT_MISSING);
@@ -227,8 +230,10 @@ void FootEstimator::State::step(const Reading& reading) noexcept {
   double total = 0.0;
   for (std::size_t f = 0; f < feet.size(); ++f) {
     bad[f] = frozen ? FROZEN : 0u;
-    if (!all_finite(reading.wrench[f])) bad[f] |= INPUT_MISSING;
-    else if (wrench_watch[f].frozen(reading.wrench[f], dt)) bad[f] |= FROZEN;
+    if (!all_finite(reading.wrench[f]))
+      bad[f] |= INPUT_MISSING;
+    else if (wrench_watch[f].frozen(reading.wrench[f], dt))
+      bad[f] |= FROZEN;
     for (const PathJoint& joint : model.feet[f].path) bad[f] |= joint_bad[joint.joint];
     if (bad[f] & INPUT_MISSING) continue;
     kinematics(f);
@@ -238,8 +243,10 @@ void FootEstimator::State::step(const Reading& reading) noexcept {
   SlipGate::Verdict slips = SlipGate::Verdict::none;
   const bool both = feet.size() == 2 && !bad[0] && !bad[1] && feet[0].contact() == ContactState::stance &&
                     feet[1].contact() == ContactState::stance;
-  if (both) slips = slip.step(motion[0].place, motion[1].place, std::max(dt, 1e-9));
-  else slip.restart();
+  if (both)
+    slips = slip.step(motion[0].place, motion[1].place, std::max(dt, 1e-9));
+  else
+    slip.restart();
   for (std::size_t f = 0; f < feet.size(); ++f) {
     if (bad[f]) {
       feet[f].miss(bad[f]);

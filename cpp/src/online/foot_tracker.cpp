@@ -8,23 +8,23 @@ namespace plantar {
 
 namespace {
 
-constexpr double ROWS_PER_CYCLE = 8.0;     // of the cutoff: more say the same
-constexpr double LEAST_LOAD = 0.02;        // of the weight: a foot that carries less has no centre of pressure
-constexpr double EDGE_MARGIN = 0.005;      // m from the sole's border
-constexpr double ROLLING_SHARE = 0.1;      // of the sole's half width: a sole that lands may roll so near its outline
-constexpr double LONGEST_STANCE = 5.0;     // s: a foot that stands longer does not step now
-constexpr int STEPS = 3;                   // stances, from which a foot counts as one that steps
-constexpr double USUAL_ANGLE = 0.01;       // rad, rad/s: what columns are scaled by
+constexpr double ROWS_PER_CYCLE = 8.0;  // of the cutoff: more say the same
+constexpr double LEAST_LOAD = 0.02;     // of the weight: a foot that carries less has no centre of pressure
+constexpr double EDGE_MARGIN = 0.005;   // m from the sole's border
+constexpr double ROLLING_SHARE = 0.1;   // of the sole's half width: a sole that lands may roll so near its outline
+constexpr double LONGEST_STANCE = 5.0;  // s: a foot that stands longer does not step now
+constexpr int STEPS = 3;                // stances, from which a foot counts as one that steps
+constexpr double USUAL_ANGLE = 0.01;    // rad, rad/s: what columns are scaled by
 constexpr double USUAL_RATE = 0.1;
-constexpr double USUAL_SLOPE = 0.1;        // horizontal force over weight
-constexpr double STIFFEST = 100.0;         // m, times the weight: stiffness before any data
-constexpr double SLOWEST = 1.0;            // s: damping over stiffness before any data
-constexpr double NOISE_ABOVE = 4.0;        // cutoffs: from there on a signal counts as noise
-constexpr double NYQUIST_SHARE = 0.8;      // of the highest frequency, that this must stay below
-constexpr double NEWLY_KNOWN = 0.02;       // of an element's range: less changes no offset
-constexpr double HARDLY_SLIPS = 0.99;      // of an element's largest state: below it noise moves it as the deflection
-constexpr double TRUSTED = 0.1;            // half width over stiffness
-constexpr double CHANGE_TOLD = 5.0;        // s for which the flag of a change stands
+constexpr double USUAL_SLOPE = 0.1;    // horizontal force over weight
+constexpr double STIFFEST = 100.0;     // m, times the weight: stiffness before any data
+constexpr double SLOWEST = 1.0;        // s: damping over stiffness before any data
+constexpr double NOISE_ABOVE = 4.0;    // cutoffs: from there on a signal counts as noise
+constexpr double NYQUIST_SHARE = 0.8;  // of the highest frequency, that this must stay below
+constexpr double NEWLY_KNOWN = 0.02;   // of an element's range: less changes no offset
+constexpr double HARDLY_SLIPS = 0.99;  // of an element's largest state: below it noise moves it as the deflection
+constexpr double TRUSTED = 0.1;        // half width over stiffness
+constexpr double CHANGE_TOLD = 5.0;    // s for which the flag of a change stands
 constexpr double NORMAL = 1.96;
 // Student's t for 95 %, by degrees of freedom from 2.
 constexpr double QUANTILE[] = {4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201};
@@ -101,8 +101,8 @@ void FootTracker::learn(const FootKinematics& motion, double others, SlipGate::V
   const ContactState before = gate_.contact();
   const double inside = depth(foot_->polygon, estimate_.centre_of_pressure);
   const bool carries = estimate_.load > least_load_;
-  const ContactState contact = gate_.step(estimate_.load, others, carries && inside > ROLLING_SHARE * middle_depth_,
-                                     zero_.known(), dt);
+  const ContactState contact =
+      gate_.step(estimate_.load, others, carries && inside > ROLLING_SHARE * middle_depth_, zero_.known(), dt);
   const bool struck = shaking_.step(wrench_.data(), dt) && !foot_->always && gate_.standing_for() > LONGEST_STANCE;
   if (contact == ContactState::air) zero_.swing(raw_, estimate_.load, weight_, dt);
   if (before == ContactState::air && contact != ContactState::air) zero_.landed();
@@ -113,8 +113,10 @@ void FootTracker::learn(const FootKinematics& motion, double others, SlipGate::V
   }
   std::uint32_t flags = estimate_.flags & (NEVER_LOADED | PITCH_UNKNOWN | ROLL_UNKNOWN);
   const bool edge = contact == ContactState::stance && !foot_->always && inside < EDGE_MARGIN;
-  if (contact != ContactState::stance) flags |= NOT_STANDING;
-  else flags &= ~static_cast<std::uint32_t>(NEVER_LOADED);
+  if (contact != ContactState::stance)
+    flags |= NOT_STANDING;
+  else
+    flags &= ~static_cast<std::uint32_t>(NEVER_LOADED);
   if (edge) flags |= EDGE;
   if (slips == SlipGate::Verdict::sure) flags |= SLIP;
   if (struck) flags |= IMPACT;
@@ -148,7 +150,7 @@ void FootTracker::follow_noise(const FootKinematics& motion, double dt, double p
 
 // The tick's signals in the middle of its period, where differences are exact, each as late as the latest of them.
 void FootTracker::filter(const FootKinematics& motion, double time, double dt, double period) noexcept {
-  const std::array<double, 6> now = {estimate_.load,          wrench_[0], wrench_[1], estimate_.pitch.torque,
+  const std::array<double, 6> now = {estimate_.load,        wrench_[0], wrench_[1], estimate_.pitch.torque,
                                      estimate_.roll.torque, 0.0};
   std::array<double, 6> mean = {}, forces;
   for (int i = 0; i < 5; ++i) mean[i] = 0.5 * (now[i] + before_[i]);
@@ -168,8 +170,9 @@ void FootTracker::filter(const FootKinematics& motion, double time, double dt, d
     filter_.restart();
     running_ = true;
   }
-  double channels[CHANNELS] = {1.0,       forces[0], forces[1],   forces[2], angles[0],   angles[2],
-                               element_[0].state(), forces[3], angles[1], angles[3], element_[1].state(), forces[4]};
+  double channels[CHANNELS] = {1.0,       forces[0], forces[1],           forces[2],
+                               angles[0], angles[2], element_[0].state(), forces[3],
+                               angles[1], angles[3], element_[1].state(), forces[4]};
   filter_.pass(channels);
   row_time_ += dt;
   const int stride = std::max(1, static_cast<int>(1.0 / (ROWS_PER_CYCLE * cutoff_ * period)));
@@ -224,7 +227,8 @@ void FootTracker::commit(double before) noexcept {
 
 void FootTracker::give(const HeldRow& row) noexcept {
   const double* c = row.channels;
-  // A centre that is higher takes its share of the horizontal force: F_x off the pitch torque, F_y onto the roll torque.
+  // A centre that is higher takes its share of the horizontal force: F_x off the pitch torque, F_y onto the roll
+  // torque.
   double noise[2][NOISE_SOURCES];
   for (int a = 0; a < 2; ++a) {
     const bool follows = foot_->slip_angle[a] > 0.0 && std::abs(c[6 + 4 * a]) < HARDLY_SLIPS * c[0];
@@ -232,7 +236,7 @@ void FootTracker::give(const HeldRow& row) noexcept {
     noise[a][OF_RATE] = noise_[a][1];
     noise[a][OF_ANGLE_AND_ELEMENT] = follows ? noise_[a][0] : 0.0;
   }
-  const double(&p)[NOISE_SOURCES] = noise[0], (&r)[NOISE_SOURCES] = noise[1];
+  const double (&p)[NOISE_SOURCES] = noise[0], (&r)[NOISE_SOURCES] = noise[1];
   axes_[0].add({c[0], {c[4], c[5], c[6], c[1], c[2]}, c[7], {p[0], p[1], p[2]}}, row.dt);
   axes_[1].add({c[0], {c[8], c[9], c[10], c[1], -c[3]}, c[11], {r[0], r[1], r[2]}}, row.dt);
 }
@@ -246,13 +250,14 @@ void FootTracker::work(int axis) noexcept {
   const double quantile = QUANTILE[std::clamp(found.groups - 1, 2, 11) - 2];
   const auto parameter = [&](Unknown unknown, double systematic) {
     const double std = found.std[unknown];
-    return Parameter{found.value[unknown], std::hypot(std, systematic), std::hypot(quantile * std, NORMAL * systematic)};
+    return Parameter{found.value[unknown], std::hypot(std, systematic),
+                     std::hypot(quantile * std, NORMAL * systematic)};
   };
   // A wrench that is late by more than it was told to be takes K·delay off the damping and adds C·ω²·delay to K.
   out.stiffness = parameter(STIFFNESS, std::hypot(gain_std_ * k, delay_std_ * c * found.pace));
   out.damping = parameter(DAMPING, std::hypot(gain_std_ * c, delay_std_ * k));
-  out.slip_torque = foot_->slip_angle[axis] > 0.0 ? parameter(SLIP_TORQUE, gain_std_ * found.value[SLIP_TORQUE])
-                                                  : Parameter{};
+  out.slip_torque =
+      foot_->slip_angle[axis] > 0.0 ? parameter(SLIP_TORQUE, gain_std_ * found.value[SLIP_TORQUE]) : Parameter{};
   out.offset = found.offset;
   out.identified = found.groups >= FEWEST_GROUPS && k > 0.0 && out.stiffness.half_width < TRUSTED * k;
   const std::uint32_t unknown = axis == 0 ? PITCH_UNKNOWN : ROLL_UNKNOWN;

@@ -24,7 +24,7 @@ struct FootKinematics {
   double rate[2];        // [rad/s], of the tick, for the controller
   double mean_angle[2];  // half a period before: there the joints' differences are exact
   double mean_rate[2];
-  double rate_noise;     // variance of the gyroscope's white noise [rad²/s²]; negative: rates come from the attitude
+  double rate_noise;  // variance of the gyroscope's white noise [rad²/s²]; negative: rates come from the attitude
   SolePlace place;
 };
 
@@ -90,10 +90,10 @@ class FootTracker {
   double noise_[2][2] = {};  // variance of angle and rate of each axis, behind the filter
   ElementState element_[2];
   double last_angle_[2] = {};
-  bool swung_ = false;          // the foot was in the air since time last jumped: its elements begin there at rest
-  bool running_ = false;        // the filter has begun
-  double told_change_ = 0.0;    // s for which a change of ground is still told
-  double row_time_ = 0.0;       // since the last row
+  bool swung_ = false;        // the foot was in the air since time last jumped: its elements begin there at rest
+  bool running_ = false;      // the filter has begun
+  double told_change_ = 0.0;  // s for which a change of ground is still told
+  double row_time_ = 0.0;     // since the last row
   int row_ticks_ = 0;
   std::array<HeldRow, HELD> held_;
   int first_held_ = 0, held_count_ = 0;

@@ -1,4 +1,5 @@
-// Least squares in square-root form: an upper triangle R with its right-hand side, fed row by row with Givens rotations.
+// Least squares in square-root form: an upper triangle R with its right-hand side, fed row by row with Givens
+// rotations.
 #pragma once
 
 #include <algorithm>

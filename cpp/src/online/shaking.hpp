@@ -10,12 +10,12 @@
 
 namespace plantar {
 
-constexpr double SHAKING_BAND = 20.0;    // Hz: no robot that stands is loaded on purpose so fast
-constexpr double SHAKING_RATE = 0.06;    // of the sampling rate, that the band stays below: else nothing is above it
-constexpr double SHAKING_TIME = 0.05;    // s over which shaking is judged
-constexpr double SHAKING_SHARE = 0.02;   // of the weight, rms
-constexpr double SHAKING_NOISE = 7.0;    // times the calmest shaking, which is the sensor's noise
-constexpr double AFTER_IMPACT = 0.25;    // s left out behind it
+constexpr double SHAKING_BAND = 20.0;   // Hz: no robot that stands is loaded on purpose so fast
+constexpr double SHAKING_RATE = 0.06;   // of the sampling rate, that the band stays below: else nothing is above it
+constexpr double SHAKING_TIME = 0.05;   // s over which shaking is judged
+constexpr double SHAKING_SHARE = 0.02;  // of the weight, rms
+constexpr double SHAKING_NOISE = 7.0;   // times the calmest shaking, which is the sensor's noise
+constexpr double AFTER_IMPACT = 0.25;   // s left out behind it
 
 class Shaking {
  public:

@@ -10,19 +10,19 @@
 
 namespace plantar {
 
-constexpr double SLIP_CUTOFF = 10.0;     // Hz: motion of the soles above it is noise
-constexpr double LEAST_SPEED = 0.002;    // m/s
-constexpr double YAW_MOMENT_ARM = 0.1;   // m: of half a sole, for speeds about z
-constexpr double USUAL_SHARE = 0.8;      // of the time a speed is noise, however much slides
-constexpr double USUAL_SPEED = 1.794;    // that quantile of a plane vector's length, in deviations of its components
-constexpr double SURE = 5.0;             // deviations: no noise
-constexpr double POSSIBLE = 3.5;         // deviations: part of a slide
-constexpr double LEAST_PATH = 0.0009;    // m that a slide must cover
-constexpr double SLIP_PAUSE = 0.1;       // s: slides that are closer are one
+constexpr double SLIP_CUTOFF = 10.0;    // Hz: motion of the soles above it is noise
+constexpr double LEAST_SPEED = 0.002;   // m/s
+constexpr double YAW_MOMENT_ARM = 0.1;  // m: of half a sole, for speeds about z
+constexpr double USUAL_SHARE = 0.8;     // of the time a speed is noise, however much slides
+constexpr double USUAL_SPEED = 1.794;   // that quantile of a plane vector's length, in deviations of its components
+constexpr double SURE = 5.0;            // deviations: no noise
+constexpr double POSSIBLE = 3.5;        // deviations: part of a slide
+constexpr double LEAST_PATH = 0.0009;   // m that a slide must cover
+constexpr double SLIP_PAUSE = 0.1;      // s: slides that are closer are one
 
 struct SolePlace {
-  double x, y;      // from the IMU, world axes [m]
-  double heading;   // [rad]
+  double x, y;     // from the IMU, world axes [m]
+  double heading;  // [rad]
 };
 
 class SlipGate {
