@@ -183,6 +183,9 @@ def test_a_foot_that_never_stands_is_said_to(robot: RobotModel) -> None:
     assert last.flags & Flag.NEVER_LOADED
     assert not last.pitch.identified
     assert replay.estimate("right").contact is Contact.STANCE
+    said = {row.value for row in replay.parameters if row.foot == "left"}
+    assert said == {None}, "no number without any data"
+    assert all(row.verdict == "unidentifiable" for row in replay.parameters if row.foot == "left")
 
 
 def test_a_step_more_lands_and_lifts(robot: RobotModel) -> None:

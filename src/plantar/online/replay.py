@@ -12,6 +12,7 @@ from plantar.online.estimates import FIELDS, Estimated, FootEstimate, foot_estim
 from plantar.results.feet_rows import Parameter, Verdict
 
 USABLE = 0.1  # half width of the 95 % interval over the value, as for a batch result
+UNKNOWN = 10.0  # the same, from which on a value says nothing
 
 
 @dataclass(frozen=True)
@@ -61,10 +62,12 @@ class Replay:
 
 def _parameter(foot: str, axis: Axis, name: str, unit: str, found: Estimated) -> Parameter:
     value, half = found.value, found.half_width
-    if half >= abs(value):
-        reason = "not excited yet: its interval is as wide as its value"
+    if half >= UNKNOWN * abs(value):
+        reason = "nothing has excited it yet"
         return Parameter(foot, axis, name, unit, None, None, None, None, "unidentifiable", reason)
     verdict: Verdict = "usable" if half <= USABLE * abs(value) else "weak"
+    if half >= abs(value):
+        verdict = "unidentifiable"
     reason = "" if verdict == "usable" else f"± {100 * half / abs(value):.0f} % so far"
     return Parameter(
         foot, axis, name, unit, value, found.std, (value - half, value + half), None, verdict, reason
