@@ -60,13 +60,13 @@ clean:
 	find src tests -name __pycache__ -prune -exec rm -rf {} +
 
 # What runs plantar, without what tests it: less to fetch.
-$(RUNNING): pyproject.toml CMakeLists.txt $(wildcard cpp/*)
+$(RUNNING): pyproject.toml CMakeLists.txt $(wildcard cpp/* cpp/*/* cpp/*/*/*)
 	@$(PYTHON) -c '$(NEW_ENOUGH)' || { echo "plantar needs Python >= 3.11: make PYTHON=/path/to/python3" >&2; exit 1; }
 	test -x $(BIN)/python || $(PYTHON) -m venv .venv
 	test -e $(INSTALLED) || $(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[all]'
 	touch $@
 
-$(INSTALLED): pyproject.toml CMakeLists.txt $(wildcard cpp/*)
+$(INSTALLED): pyproject.toml CMakeLists.txt $(wildcard cpp/* cpp/*/* cpp/*/*/*)
 	@$(PYTHON) -c '$(NEW_ENOUGH)' || { echo "plantar needs Python >= 3.11: make PYTHON=/path/to/python3" >&2; exit 1; }
 	test -x $(BIN)/python || $(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'

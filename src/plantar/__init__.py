@@ -35,6 +35,7 @@ _HOMES = {
     "read_residuals": "results.residuals",
     "FeetSettings": "feet.settings",
     "DynamicsSettings": "whole_body.settings",
+    "FootEstimator": "online.estimator",
     "FeetResult": "results.feet",
     "DynamicsResult": "results.dynamics",
     "RobotModel": "robot.model",
@@ -68,6 +69,7 @@ if TYPE_CHECKING:
     from plantar.feet.validate import validate_feet as validate_feet
     from plantar.logs.motion_log import MotionLog as MotionLog
     from plantar.logs.readers import open_log as open_log
+    from plantar.online.estimator import FootEstimator as FootEstimator
     from plantar.report.figures.loop import plot_torque as plot_torque
     from plantar.results.dynamics import DynamicsResult as DynamicsResult
     from plantar.results.feet import FeetResult as FeetResult

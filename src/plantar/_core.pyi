@@ -79,6 +79,33 @@ def smooth_drift(
 def drift_variance(
     weight: Array, jump: Array, wander: float, period: float, first: tuple[float, float]
 ) -> Array: ...
+
+class FootEstimator:
+    def __init__(self, model: str) -> None: ...
+    def step(
+        self,
+        time: float,
+        position: Array,
+        velocity: Array | None,
+        attitude: Array | None,
+        angular_velocity: Array | None,
+        acceleration: Array | None,
+        wrench: Array,
+        out: Array,
+    ) -> None: ...
+    def replay(
+        self,
+        time: Array,
+        position: Array,
+        velocity: Array | None,
+        attitude: Array | None,
+        angular_velocity: Array | None,
+        acceleration: Array | None,
+        wrench: Array,
+        out: Array,
+        latency: Array,
+    ) -> None: ...
+
 def low_pass(values: Array, cutoff: float, padding: int) -> Array: ...
 def inverse_upper(upper: Array) -> Array: ...
 

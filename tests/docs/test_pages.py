@@ -48,6 +48,7 @@ RESULTS = (
     "docs/how_to/randomisation.md",
     "docs/how_to/stabiliser.md",
     "docs/how_to/observer.md",
+    "docs/how_to/online.md",
     "docs/how_to/openhrp.md",
     "docs/how_to/excitation.md",
     "docs/how_to/identifiability.md",

@@ -23,6 +23,7 @@ COMMANDS = {
     "export": ("export", "Write a result in the format of a simulator or controller."),
     "select": ("select", "Which of these logs are most informative about each parameter."),
     "diagnose": ("diagnose", "What limits each number of a result, and what to record next."),
+    "online": ("online", "Replay a log through the estimator of controllers, sample by sample."),
     "report": ("report", "Write the result's report.html again."),
     "convert": ("convert", "A log in another format."),
     "init": ("init", "A first robot file from a URDF and, if given, logs; every guess is marked."),

@@ -345,6 +345,6 @@ NB_MODULE(_core, m) {
       .def("parameters", &StreamObject::parameters, nb::arg("group"));
   m.def("stacked", &stacked, nb::arg("factors"), nb::arg("onto"), nb::arg("weights"), nb::arg("n"));
   m.def("inverse_upper", &inverse_upper, nb::arg("upper"));
-  bind_drift(m), bind_low_pass(m);
+  bind_drift(m), bind_estimator(m), bind_low_pass(m);
   bind_stepping(m);
 }

@@ -1,8 +1,9 @@
-// Python's views of drift.hpp, low_pass.hpp and stepping.hpp, which have files of their own.
+// Python's views of drift.hpp, the estimator, low_pass.hpp and stepping.hpp, which have files of their own.
 #pragma once
 
 #include <nanobind/nanobind.h>
 
 void bind_drift(nanobind::module_& m);
+void bind_estimator(nanobind::module_& m);
 void bind_low_pass(nanobind::module_& m);
 void bind_stepping(nanobind::module_& m);

@@ -59,7 +59,7 @@ PLANTAR_INLINE Lanes interleave_high(Lanes a, Lanes b) { return __builtin_shuffl
 PLANTAR_INLINE void sincos(Lanes x, Lanes& sine, Lanes& cosine) {
   const double magic = 6755399441055744.0;  // 1.5 * 2^52: adding it rounds to an integer
   const Lanes shifted = x * 0.63661977236758134308 + magic;
-  const Bits quadrant = reinterpret_cast<const Bits&>(shifted);
+  const Bits quadrant = __builtin_bit_cast(Bits, shifted);
   const Lanes k = shifted - magic;
   const Lanes r = ((x - k * 0x1.921fb54400000p+0) - k * 0x1.0b4611a600000p-34) - k * 0x1.3198a2e037073p-69;
   const Lanes u = r * r;

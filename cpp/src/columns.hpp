@@ -3,18 +3,14 @@
 
 #include <cstddef>
 
+#include "plantar/frame.hpp"
+
 namespace plantar {
 
 // One column of samples; consecutive samples stand `stride` doubles apart. A null column reads as zero.
 struct Column {
   const double* data = nullptr;
   std::ptrdiff_t stride = 0;
-};
-
-// A frame fixed in another: rotation (row-major) and origin.
-struct Frame {
-  double rotation[9];
-  double origin[3];
 };
 
 }  // namespace plantar

@@ -135,7 +135,7 @@ inline void project_strip(double* r, std::size_t r_stride, const double* b, std:
   }
   for (int c = 0; c < STRIP; ++c) {
     Lanes out[VECTORS] = {};
-    for (int i = 0; i < QR_PANEL; ++i)
+    for (std::size_t i = 0; i < QR_PANEL; ++i)
       for (int k = 0; k < VECTORS; ++k) out[k] += panel.w[c][i] * load(panel.t[i] + k * LANES);
     for (int k = 0; k < VECTORS; ++k) {
       double* at = r + c * r_stride + k * LANES;
@@ -153,7 +153,7 @@ inline void update_strip(double* b, std::size_t b_stride, const double* v, std::
       Lanes x[UPDATE_COLUMNS][UPDATE_ROWS];
       for (int c = 0; c < UPDATE_COLUMNS; ++c)
         for (int k = 0; k < UPDATE_ROWS; ++k) x[c][k] = load(b + (c0 + c) * b_stride + i + k * LANES);
-      for (int p = 0; p < QR_PANEL; ++p) {
+      for (std::size_t p = 0; p < QR_PANEL; ++p) {
         const double* column = v + p * b_stride + i;
         Lanes y[UPDATE_ROWS];
         for (int k = 0; k < UPDATE_ROWS; ++k) y[k] = load(column + k * LANES);

@@ -1,0 +1,131 @@
+"""The estimator of controllers on the twin: errors after a time, coverage of its intervals, deflection, time of a step.
+
+    python benchmarks/online.py --preset sensors --motions Tilt1 Tilt3 --seeds 20
+    python benchmarks/online.py --preset realistic --motions Walk12 Walk16 --seeds 20
+
+Motions of a seed are replayed one after the other by one estimator. The delay is told, and of rubber with hysteresis
+the element (as a batch result would), its torque wrong by a draw of 1 %. The robot file is exact, as the twin is.
+A number that the estimator does not call identified is not scored, but counted.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections import defaultdict
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from plantar.conventions import ROTATIONAL_AXES
+from plantar.online.estimator import FootEstimator
+from plantar.results.feet import FeetResult
+from plantar.results.feet_rows import Parameter
+from plantar.robot.uncertainty import EXACT
+from plantar.twin import PAPER, play_all
+from plantar.twin.presets import Preset, preset_named
+from plantar.twin.recording import TwinRecording
+from plantar.twin.robots import hrp2
+
+TORQUE_STD = 0.01  # of an element's torque, as a batch result knows it
+NAMES = {"stiffness": "K", "damping": "C"}
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--preset", default="sensors")
+    parser.add_argument("--motions", nargs="+", default=["Tilt1", "Tilt3"])
+    parser.add_argument("--seeds", type=int, default=20)
+    parser.add_argument(
+        "--after", type=float, default=60.0, help="s of logs, from which on numbers are scored"
+    )
+    told = parser.parse_args()
+    preset = preset_named(told.preset)
+    scores: dict[str, list[tuple[float, float]]] = defaultdict(list)
+    unknown: dict[str, int] = defaultdict(int)
+    deflections: dict[str, list[float]] = defaultdict(list)
+    latency: list[float] = []
+    everything = play_all(told.motions, None, PAPER, told.preset, range(told.seeds))
+    for seed, recordings in enumerate(everything):
+        _score(preset, seed, recordings, told.after, scores, unknown, deflections, latency)
+    print(f"{told.preset}, {', '.join(told.motions)}, {told.seeds} seeds, every 5 s from {told.after:g} s on")
+    for key in sorted({*scores, *unknown}):
+        error, half = np.array(scores[key]).reshape(-1, 2).T * 100
+        inside = np.abs(error) <= half
+        print(
+            f"  {key:16} {len(error)} scored, {unknown[key]} not identified: error rms {_rms(error):.2f} %, largest "
+            f"{np.abs(error).max(initial=0):.2f} %, half width {np.median(half) if len(half) else 0:.2f} %, "
+            f"covers {100 * inside.mean() if len(half) else 0:.0f} %"
+        )
+    for axis, values in deflections.items():
+        print(
+            f"  deflection {axis}: {np.mean(values):.3f} mrad rms about each recording's bias, worst {max(values):.3f}"
+        )
+    median, p999 = np.percentile(latency, [50, 99.9])
+    print(f"  a step: median {1e6 * median:.1f} µs, 99.9 % {1e6 * p999:.1f} µs")
+
+
+def _score(
+    preset: Preset,
+    seed: int,
+    recordings: Sequence[TwinRecording],
+    after: float,
+    scores: dict[str, list[tuple[float, float]]],
+    unknown: dict[str, int],
+    deflections: dict[str, list[float]],
+    latency: list[float],
+) -> None:
+    robot = replace(hrp2.robot(), uncertainty=EXACT)
+    estimator = FootEstimator(robot, _law(preset, seed), wrench_delay=preset.sensors.wrench_delay)
+    begun = 0.0
+    for one in recordings:
+        replay = estimator.replay(one.log)
+        latency += replay.latency.tolist()
+        for foot in replay.feet:
+            stands = replay.column(foot, "contact") == 2
+            for axis in ROTATIONAL_AXES:
+                truth = np.interp(replay.time, one.truth.time, one.truth.column(f"{foot}.deflection.{axis}"))
+                away = (replay.column(foot, f"{axis}.deflection") - truth)[stands]
+                if away.size:
+                    deflections[axis].append(1e3 * float(np.std(away)))
+                for sample in range(0, len(one.log), round(5.0 / one.log.period)):
+                    if begun + replay.time[sample] - replay.time[0] < after:
+                        continue
+                    found = getattr(replay.estimate(foot, sample), axis)
+                    for name, short in NAMES.items():
+                        right, key = getattr(PAPER[foot], f"{axis}_{name}"), f"{axis} {short}"
+                        value = getattr(found, name)
+                        if found.identified:
+                            scores[key].append((value.value / right - 1, value.half_width / right))
+                        else:
+                            unknown[key] += 1
+        begun += one.log.duration
+
+
+def _law(preset: Preset, seed: int) -> FeetResult | None:
+    """A batch result that knows the bushes' elements; None where they have none."""
+    rows, random = [], np.random.default_rng([seed, 7])
+    for foot, bush in preset.physics(PAPER).bushes.items():
+        for axis in ROTATIONAL_AXES:
+            torque, angle = getattr(bush, f"{axis}_slip_torque"), getattr(bush, f"{axis}_slip_angle")
+            if torque:
+                told = torque * (1 + TORQUE_STD * random.standard_normal())
+                rows += [
+                    _row(foot, axis, "slip_angle", angle, 0.0),
+                    _row(foot, axis, "slip_torque", told, TORQUE_STD * torque),
+                ]
+    return FeetResult("twin", (), {}, "elastoplastic", tuple(rows), (), (), (), ()) if rows else None
+
+
+def _row(foot: str, axis: str, name: str, value: float, std: float) -> Parameter:
+    return Parameter(foot, axis, name, "", value, std, None, None, "usable", "")
+
+
+def _rms(values: np.ndarray) -> float:
+    return float(np.sqrt(np.mean(values**2))) if values.size else 0.0
+
+
+if __name__ == "__main__":
+    main()

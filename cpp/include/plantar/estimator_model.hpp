@@ -1,0 +1,54 @@
+// What the estimator knows of a robot: the joints from its IMU to its feet, its bushes, soles and force sensors.
+//
+// `plantar.FootEstimator.write_model` writes it as a small text file, so that a controller needs neither URDF nor YAML.
+#pragma once
+
+#include <array>
+#include <istream>
+#include <string>
+#include <vector>
+
+#include "plantar/frame.hpp"
+
+namespace plantar {
+
+// One joint on the way from the IMU to a foot; it turns about, or slides along, the z axis of its own frame.
+struct PathJoint {
+  int joint;    // its place in `Reading::position`
+  bool slides;  // prismatic, else revolute
+  double sign;  // -1 where it is passed from child to parent
+  Frame frame;  // before it moves, in the frame behind the joint before
+};
+
+struct FootModel {
+  std::string name;
+  bool always = false;  // stands throughout: its force sensor was zeroed under load
+  std::vector<PathJoint> path;
+  Frame bush;                                      // behind the last joint
+  Frame sole;                                      // in the bush frame, undeflected
+  Frame sensor;                                    // the force sensor in the bush frame
+  double sign = 1.0;                               // -1 where it reads the robot's action on the ground
+  std::vector<std::array<double, 2>> polygon;      // the sole's corners in its plane, counter-clockwise [m]
+  std::array<double, 2> place_std = {0.0, 0.0};    // of the bush's centre, aside and above [m]
+  double compliance = 0.0;                         // of the slide along the ankle's z [m/N]; 0: within `place_std`
+  std::array<double, 2> slip_angle = {0.0, 0.0};   // of a Jenkins element beside pitch and roll [rad]; 0: none
+  std::array<double, 2> slip_torque = {0.0, 0.0};  // of these, before any data [N·m], and its deviation; 0: not known
+  std::array<double, 2> slip_torque_std = {0.0, 0.0};
+};
+
+struct EstimatorModel {
+  std::string robot;
+  double weight = 0.0;              // [N]
+  double cutoff = 5.0;              // of the filters in front of the regressions [Hz]
+  double wrench_delay = 0.0;        // force sensors behind the IMU [s]; negative: before it
+  double wrench_delay_std = 0.0;    // [s]
+  double wrench_gain_std = 0.0;     // share
+  std::vector<std::string> joints;  // what `Reading::position` holds, in this order
+  std::vector<FootModel> feet;
+};
+
+// Throws std::runtime_error with the line's number where the text is no such file.
+EstimatorModel read_model(std::istream& text);
+EstimatorModel load_model(const std::string& path);
+
+}  // namespace plantar

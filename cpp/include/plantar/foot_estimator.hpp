@@ -1,0 +1,91 @@
+// Where each foot stands, how its bush is bent and how fast, and what its stiffness and damping are now: every tick.
+//
+// Units are SI, angles in rad. A wrench is force then torque, of the environment on the robot: a standing robot reads
+// force.z > 0. Pitch and roll turn the sole against the ankle, R_ankle_sole = Ry(pitch) Rx(roll), and
+//     torque = stiffness·deflection + damping·rate + offset,
+// pitch from torque y, roll from torque x, at the bush's centre.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "plantar/estimator_model.hpp"
+
+namespace plantar {
+
+// One tick's readings. Spans may be empty where a robot lacks the sensor; what is there must have the size that is
+// said.
+struct Reading {
+  double time = 0.0;                 // [s]
+  std::span<const double> position;  // of the joints, as `EstimatorModel::joints` [rad or m]
+  std::span<const double> velocity;  // of the joints; empty: from the positions
+  std::span<const double> attitude;  // quaternion w x y z, IMU to world; empty: from gyroscope and accelerometer
+  std::span<const double> angular_velocity;  // 3, of the IMU in its own frame [rad/s]; empty: from the attitude
+  std::span<const double> acceleration;      // 3, proper, in the IMU's frame [m/s²]; read where there is no attitude
+  std::span<const std::array<double, 6>> wrench;  // of each foot's force sensor as it reads, in the order of the feet
+};
+
+enum class ContactState : std::uint8_t { air, landing, stance };
+
+// Why something of a foot's estimate may not be trusted; several may hold at once.
+enum Flag : std::uint32_t {
+  INPUT_MISSING = 1 << 0,  // a value that this foot needs is not finite: the last deflection is held
+  FROZEN = 1 << 1,         // a sensor repeats itself: nothing is learnt
+  TIME_FAULT = 1 << 2,     // time stood still, stepped back or jumped
+  NOT_STANDING = 1 << 3,   // the sole is not known to lie flat: the deflection is no bush's
+  EDGE = 1 << 4,           // the centre of pressure is at the sole's edge or beside it
+  SLIP = 1 << 5,           // the soles move against each other
+  IMPACT = 1 << 6,         // the force is shaken
+  NEVER_LOADED = 1 << 7,   // this foot has not stood yet
+  PITCH_UNKNOWN = 1 << 8,  // stiffness and damping of pitch are not identified yet
+  ROLL_UNKNOWN = 1 << 9,
+  GROUND_CHANGED = 1 << 10  // the stiffness jumped lately: it is learnt anew
+};
+
+// A parameter with its standard deviation and half of its 95 % interval (wider than 1.96 deviations while data are
+// few).
+struct Parameter {
+  double value = 0.0;
+  double std = 0.0;
+  double half_width = 0.0;
+};
+
+struct AxisEstimate {
+  double deflection = 0.0;  // [rad], of this tick: no filter, no delay
+  double rate = 0.0;        // [rad/s], of this tick
+  double torque = 0.0;      // [N·m], measured, about the bush's axis
+  Parameter stiffness;      // [N·m/rad]
+  Parameter damping;        // [N·m·s/rad]
+  Parameter slip_torque;    // [N·m], of a Jenkins element where the model has one
+  double offset = 0.0;      // [N·m], of this stance
+  bool identified = false;  // whether the deviations are known and small beside the values
+};
+
+struct FootEstimate {
+  ContactState contact = ContactState::air;
+  double load = 0.0;                                      // along the vertical [N]
+  std::array<double, 2> centre_of_pressure = {0.0, 0.0};  // in the sole's frame [m]; the last one known in the air
+  AxisEstimate pitch, roll;
+  std::uint32_t flags = 0;  // of `Flag`
+};
+
+class FootEstimator {
+ public:
+  // Throws std::invalid_argument where the model makes no sense. All memory is taken here.
+  explicit FootEstimator(const EstimatorModel& model);
+  ~FootEstimator();
+  FootEstimator(FootEstimator&&) noexcept;
+  FootEstimator& operator=(FootEstimator&&) noexcept;
+
+  // One tick. Allocates nothing, locks nothing, throws nothing and calls no system. Returns one estimate for each foot
+  // of the model, finite whatever was read, valid until the next step.
+  std::span<const FootEstimate> step(const Reading& reading) noexcept;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace plantar

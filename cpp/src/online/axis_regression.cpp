@@ -1,0 +1,247 @@
+#include "online/axis_regression.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace plantar {
+
+namespace {
+
+constexpr double COLOUR = 8.0;        // rows in a cycle of the filter: so many say the same
+constexpr double LEAST_LEFT = 1e-3;   // share of what is known that must stay when one group is left out
+constexpr double MOST_NOISE = 0.9;    // of a square: beyond, nothing of it is known
+constexpr double SETTLED = 0.1;       // deviation over stiffness, from which jumps are looked for
+constexpr double FIRST_NOISE = 1e-3;  // of the weight, as torque at 1 m, before any residual is known
+
+void squares_of(const RootTriangle<UNKNOWNS>& root, double (&a)[UNKNOWNS][UNKNOWNS]) noexcept {
+  for (int i = 0; i < UNKNOWNS; ++i)
+    for (int j = i; j < UNKNOWNS; ++j) {
+      a[i][j] = 0.0;
+      for (int k = 0; k <= i; ++k) a[i][j] += root.r[k][i] * root.r[k][j];
+      a[j][i] = a[i][j];
+    }
+}
+
+// m x = b by elimination; m is positive definite and used up, as b is.
+void solve_positive(double (&m)[UNKNOWNS][UNKNOWNS], double (&b)[UNKNOWNS], double (&x)[UNKNOWNS]) noexcept {
+  for (int p = 0; p < UNKNOWNS; ++p)
+    for (int i = p + 1; i < UNKNOWNS; ++i) {
+      const double k = m[i][p] / m[p][p];
+      for (int j = p; j < UNKNOWNS; ++j) m[i][j] -= k * m[p][j];
+      b[i] -= k * b[p];
+    }
+  for (int i = UNKNOWNS - 1; i >= 0; --i) {
+    x[i] = b[i];
+    for (int j = i + 1; j < UNKNOWNS; ++j) x[i] -= m[i][j] * x[j];
+    x[i] /= m[i][i];
+  }
+}
+
+}  // namespace
+
+AxisRegression::AxisRegression(const RegressionPrior& prior) noexcept : prior_(prior) { restart(); }
+
+void AxisRegression::Part::add(const Part& other) noexcept {
+  triangle.add(other.triangle);
+  for (int i = 0; i < NOISE_SOURCES; ++i) noise[i] += other.noise[i];
+  rows += other.rows;
+}
+
+void AxisRegression::restart() noexcept {
+  open_ = {}, open_rows_ = 0, open_time_ = 0.0;
+  std::fill(open_noise_, open_noise_ + NOISE_SOURCES, 0.0);
+  groups_ = {}, used_ = 1, current_ = 0, full_ = false, group_time_ = FIRST_GROUP;
+  total_ = {};
+  noise_ = FIRST_NOISE * prior_.scale[ASIDE];
+  changed_ = unsure_ = fresh_ = false;
+  watch_.restart();
+  values_ = {};
+  values_.value = prior_.mean, values_.std = prior_.spread;
+}
+
+// Rows are compared with what was learnt, once that is worth it; at a jump everything is learnt anew.
+void AxisRegression::watch(const RegressionRow& row, double dt) noexcept {
+  const double stiffness = values_.value[STIFFNESS];
+  if (values_.groups < FEWEST_GROUPS || !(values_.std[STIFFNESS] < SETTLED * stiffness)) return;
+  double left = row.torque;
+  for (int i = 0; i < UNKNOWNS; ++i) left -= row.columns[i] * values_.value[i];
+  watch_.add(row.one, row.columns[STIFFNESS], left, dt);
+  if (!watch_.full() || !watch_.judge(stiffness, noise_)) return;
+  restart();
+  jumped_ = true;
+}
+
+bool AxisRegression::jumped() noexcept {
+  const bool since = jumped_;
+  jumped_ = false;
+  return since;
+}
+
+void AxisRegression::add(const RegressionRow& row, double dt) noexcept {
+  watch(row, dt);
+  double line[UNKNOWNS + 2];
+  line[0] = row.one;
+  for (int i = 0; i < UNKNOWNS; ++i) line[1 + i] = row.columns[i] / prior_.scale[i];
+  line[UNKNOWNS + 1] = row.torque;
+  open_.add(line);
+  for (int i = 0; i < NOISE_SOURCES; ++i) open_noise_[i] += row.noise[i];
+  ++open_rows_, open_time_ += dt, fresh_ = true;
+  if (open_time_ >= std::min(BLOCK * group_time_, LONGEST_BLOCK)) close();
+}
+
+AxisRegression::Part AxisRegression::open_part() const noexcept {
+  Part part;
+  for (int i = 0; i <= UNKNOWNS; ++i)
+    for (int j = i; j <= UNKNOWNS; ++j) part.triangle.r[i][j] = open_.r[i + 1][j + 1];
+  for (int i = 0; i < NOISE_SOURCES; ++i) part.noise[i] = open_noise_[i];
+  part.rows = open_rows_ - 1;
+  return part;
+}
+
+void AxisRegression::close() noexcept {
+  watch_.drop();
+  if (open_rows_ >= FEWEST_ROWS) take(open_part());
+  open_ = {}, open_rows_ = 0, open_time_ = 0.0;
+  std::fill(open_noise_, open_noise_ + NOISE_SOURCES, 0.0);
+}
+
+void AxisRegression::take(const Part& part) noexcept {
+  if (groups_[current_].time >= group_time_) {
+    if (!full_ && used_ == MOST_GROUPS && group_time_ < LARGEST_GROUP) merge_pairs();
+    current_ = (current_ + 1) % MOST_GROUPS;
+    full_ = full_ || used_ == MOST_GROUPS;
+    used_ = std::min(used_ + 1, MOST_GROUPS);
+    groups_[current_].time = 0.0;
+  }
+  Group& group = groups_[current_];
+  if (full_) {
+    const double share = std::min(1.0, open_time_ / (MEMORY * group_time_));
+    for (int i = 0; i < UNKNOWNS; ++i) group.triangle.forget(part.triangle.r[i], share);
+    for (double& noise : group.noise) noise *= 1.0 - share;
+    group.rows *= 1.0 - share;
+  }
+  group.add(part);
+  group.time += open_time_;
+  changed_ = true;
+}
+
+void AxisRegression::merge_pairs() noexcept {
+  for (int g = 0; g < MOST_GROUPS / 2; ++g) {
+    Group pair = groups_[2 * g];
+    pair.add(groups_[2 * g + 1]);
+    pair.time += groups_[2 * g + 1].time;
+    groups_[g] = pair;
+  }
+  for (int g = MOST_GROUPS / 2; g < MOST_GROUPS; ++g) groups_[g] = {};
+  used_ = MOST_GROUPS / 2, current_ = used_ - 1, group_time_ *= 2.0;
+}
+
+void AxisRegression::sum_up() noexcept {
+  total_ = {};
+  for (int g = 0; g < used_; ++g) total_.add(groups_[g]);
+}
+
+AxisRegression::Shared AxisRegression::completed(const Part& data) const noexcept {
+  Shared whole = data.triangle;
+  for (int i = 0; i < UNKNOWNS; ++i) {
+    double line[UNKNOWNS + 1] = {};
+    line[i] = noise_ / (prior_.spread[i] * prior_.scale[i]);
+    line[UNKNOWNS] = line[i] * prior_.mean[i] * prior_.scale[i];
+    whole.add(line, i);
+  }
+  for (int source = 0; source < NOISE_SOURCES; ++source) {
+    double line[UNKNOWNS + 1] = {};
+    const std::array<double, UNKNOWNS> along = direction(source);
+    for (int i = 0; i < UNKNOWNS; ++i) line[i] = std::sqrt(data.noise[source]) * along[i];
+    whole.remove(line, MOST_NOISE);
+  }
+  return whole;
+}
+
+// What one unit of a source's noise adds to the columns.
+std::array<double, UNKNOWNS> AxisRegression::direction(int source) const noexcept {
+  std::array<double, UNKNOWNS> along = {};
+  if (source == OF_RATE)
+    along[DAMPING] = 1.0 / prior_.scale[DAMPING];
+  else
+    along[STIFFNESS] = 1.0 / prior_.scale[STIFFNESS];
+  if (source == OF_ANGLE_AND_ELEMENT) along[SLIP_TORQUE] = prior_.element_slope / prior_.scale[SLIP_TORQUE];
+  return along;
+}
+
+void AxisRegression::solve() noexcept {
+  Part data = total_;
+  if (open_rows_ >= FEWEST_ROWS) data.add(open_part());
+  const double angle = data.triangle.r[0][0] * prior_.scale[STIFFNESS];
+  const double rate = std::hypot(data.triangle.r[0][1], data.triangle.r[1][1]) * prior_.scale[DAMPING];
+  values_.pace = angle > 0.0 ? rate * rate / (angle * angle) : 0.0;
+  const double left = data.triangle.r[UNKNOWNS][UNKNOWNS];
+  if (data.rows > 2 * UNKNOWNS) noise_ = std::max(left * std::sqrt(COLOUR / (data.rows - UNKNOWNS)), 1e-12);
+  double x[UNKNOWNS];
+  completed(data).solve(x);
+  for (int i = 0; i < UNKNOWNS; ++i)
+    if (!std::isfinite(x[i])) return;
+  for (int i = 0; i < UNKNOWNS; ++i) values_.value[i] = x[i] / prior_.scale[i];
+  if (open_rows_ >= FEWEST_ROWS && open_.r[0][0] > 0.0) {
+    double mean = open_.r[0][UNKNOWNS + 1];
+    for (int i = 0; i < UNKNOWNS; ++i) mean -= open_.r[0][1 + i] * x[i];
+    values_.offset = mean / open_.r[0][0];
+  }
+}
+
+void AxisRegression::find_deviations() noexcept {
+  values_.groups = used_;
+  if (used_ < FEWEST_GROUPS) return;
+  const Shared whole = completed(total_);
+  double x[UNKNOWNS], normal[UNKNOWNS][UNKNOWNS], mean[UNKNOWNS] = {}, moved[MOST_GROUPS][UNKNOWNS];
+  whole.solve(x);
+  squares_of(whole, normal);
+  for (int g = 0; g < used_; ++g) {
+    // Without this group: x + (A - A_g)⁻¹ (A_g x - b_g).
+    const Shared& part = groups_[g].triangle;
+    double own[UNKNOWNS][UNKNOWNS], m[UNKNOWNS][UNKNOWNS], b[UNKNOWNS];
+    squares_of(part, own);
+    for (int source = 0; source < NOISE_SOURCES; ++source) {
+      const std::array<double, UNKNOWNS> along = direction(source);
+      for (int i = 0; i < UNKNOWNS; ++i)
+        for (int j = 0; j < UNKNOWNS; ++j) own[i][j] -= groups_[g].noise[source] * along[i] * along[j];
+    }
+    for (int i = 0; i < UNKNOWNS; ++i) {
+      b[i] = 0.0;
+      for (int j = 0; j <= i; ++j) b[i] -= part.r[j][i] * part.r[j][UNKNOWNS];
+      for (int j = 0; j < UNKNOWNS; ++j) b[i] += own[i][j] * x[j], m[i][j] = normal[i][j] - own[i][j];
+      m[i][i] = std::max(m[i][i], LEAST_LEFT * normal[i][i]);
+    }
+    solve_positive(m, b, moved[g]);
+    for (int i = 0; i < UNKNOWNS; ++i) mean[i] += moved[g][i] / used_;
+  }
+  for (int i = 0; i < UNKNOWNS; ++i) {
+    double squares = 0.0, m[UNKNOWNS][UNKNOWNS], unit[UNKNOWNS] = {}, row[UNKNOWNS];
+    for (int g = 0; g < used_; ++g) squares += (moved[g][i] - mean[i]) * (moved[g][i] - mean[i]);
+    squares *= (used_ - 1.0) / used_;
+    unit[i] = 1.0;
+    std::copy(&normal[0][0], &normal[0][0] + UNKNOWNS * UNKNOWNS, &m[0][0]);
+    solve_positive(m, unit, row);
+    for (int j = 0; j < UNKNOWNS; ++j) {  // what the prior may be off by
+      const double moves = row[j] * noise_ * noise_ / (prior_.spread[j] * prior_.scale[j]);
+      squares += moves * moves;
+    }
+    const double deviation = std::sqrt(squares) / prior_.scale[i];
+    values_.std[i] = std::isfinite(deviation) ? std::min(deviation, prior_.spread[i]) : prior_.spread[i];
+  }
+}
+
+void AxisRegression::work() noexcept {
+  if (changed_) {
+    sum_up();
+    changed_ = false, unsure_ = true;
+  } else if (unsure_) {
+    find_deviations();
+    unsure_ = false;
+  } else if (fresh_) {
+    solve();
+    fresh_ = false;
+  }
+}
+
+}  // namespace plantar

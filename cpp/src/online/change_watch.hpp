@@ -1,0 +1,63 @@
+// Whether the stiffness has jumped: from firm ground onto mats, or back.
+//
+// Each probe, a part of a second of rows with an offset of its own, says how far the stiffness is from what was learnt.
+// Its usual scatter is followed, so that steps that differ anyway raise no alarm. Evidence for a large change is added
+// up for either direction, and taken off again by probes that speak against it (CUSUM; E. S. Page, Biometrika 41,
+// 1954).
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "online/root_triangle.hpp"
+
+namespace plantar {
+
+constexpr double PROBE_TIME = 0.75;      // s of rows: a usual stance
+constexpr int PROBE_ROWS = 12;           // fewer say nothing
+constexpr double CHANGE = 0.4;           // of the stiffness: half of it and less the regression follows by itself
+constexpr double SURE_OF_CHANGE = 15.0;  // log-likelihood: three million to one
+constexpr double MOST_OF_ONE = 7.5;      // of one probe: a single one may be a stumble
+constexpr double SHOWS = 0.15;           // deviation over stiffness, beyond which a probe shows nothing
+constexpr double FIRST_SCATTER = 0.1;    // of the stiffness, before any probe
+constexpr double SCATTER_NEWS = 0.05;    // by how much one probe changes the usual scatter
+constexpr double ODD = 9.0;              // squares of the scatter: what is farther is no usual scatter
+
+class ChangeWatch {
+ public:
+  void restart() noexcept { *this = {}; }
+
+  // A row: what the filter has made of a constant, the deflection, and what the model leaves of the torque.
+  void add(double one, double deflection, double left, double dt) noexcept {
+    double row[3] = {one, deflection, left};
+    probe_.add(row);
+    ++rows_, time_ += dt;
+  }
+  bool full() const noexcept { return time_ >= PROBE_TIME; }
+  void drop() noexcept { probe_ = {}, rows_ = 0, time_ = 0.0; }
+
+  // Ends a probe; whether the stiffness has changed. noise: of a row [N·m].
+  bool judge(double stiffness, double noise) noexcept {
+    const double shown = probe_.r[1][1];
+    const bool enough = rows_ >= PROBE_ROWS && shown > 0.0 && stiffness > 0.0;
+    const double away = enough ? probe_.r[1][2] / shown / stiffness : 0.0;
+    const double own = enough ? noise / shown / stiffness : 1.0;
+    drop();
+    if (own > SHOWS) return false;
+    const double variance = std::max(scatter_, own * own);
+    const auto evidence = [&](double change) {
+      return std::clamp(change * (away - 0.5 * change) / variance, -MOST_OF_ONE, MOST_OF_ONE);
+    };
+    softer_ = std::max(0.0, softer_ + evidence(-CHANGE));
+    stiffer_ = std::max(0.0, stiffer_ + evidence(CHANGE));
+    scatter_ += SCATTER_NEWS * (std::min(away * away, ODD * scatter_) - scatter_);
+    return std::max(softer_, stiffer_) >= SURE_OF_CHANGE;
+  }
+
+ private:
+  RootTriangle<2> probe_;
+  int rows_ = 0;
+  double time_ = 0.0, softer_ = 0.0, stiffer_ = 0.0, scatter_ = FIRST_SCATTER * FIRST_SCATTER;
+};
+
+}  // namespace plantar

@@ -1,0 +1,281 @@
+#include "online/foot_tracker.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace plantar {
+
+namespace {
+
+constexpr double ROWS_PER_CYCLE = 8.0;  // of the cutoff: more say the same
+constexpr double LEAST_LOAD = 0.02;     // of the weight: a foot that carries less has no centre of pressure
+constexpr double EDGE_MARGIN = 0.005;   // m from the sole's border
+constexpr double ROLLING_SHARE = 0.1;   // of the sole's half width: a sole that lands may roll so near its outline
+constexpr double LONGEST_STANCE = 5.0;  // s: a foot that stands longer does not step now
+constexpr int STEPS = 3;                // stances, from which a foot counts as one that steps
+constexpr double USUAL_ANGLE = 0.01;    // rad, rad/s: what columns are scaled by
+constexpr double USUAL_RATE = 0.1;
+constexpr double USUAL_SLOPE = 0.1;    // horizontal force over weight
+constexpr double STIFFEST = 100.0;     // m, times the weight: stiffness before any data
+constexpr double SLOWEST = 1.0;        // s: damping over stiffness before any data
+constexpr double NOISE_ABOVE = 4.0;    // cutoffs: from there on a signal counts as noise
+constexpr double NYQUIST_SHARE = 0.8;  // of the highest frequency, that this must stay below
+constexpr double NEWLY_KNOWN = 0.02;   // of an element's range: less changes no offset
+constexpr double HARDLY_SLIPS = 0.99;  // of an element's largest state: below it noise moves it as the deflection
+constexpr double TRUSTED = 0.1;        // half width over stiffness
+constexpr double CHANGE_TOLD = 5.0;    // s for which the flag of a change stands
+constexpr double NORMAL = 1.96;
+// Student's t for 95 %, by degrees of freedom from 2.
+constexpr double QUANTILE[] = {4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201};
+
+double outline_middle_depth(const FootModel& foot) noexcept {
+  Point middle = {0.0, 0.0};
+  for (const Point& corner : foot.polygon)
+    for (int i = 0; i < 2; ++i) middle[i] += corner[i] / static_cast<double>(foot.polygon.size());
+  return depth(foot.polygon, middle);
+}
+
+RegressionPrior prior_of(const EstimatorModel& model, const FootModel& foot, int axis) noexcept {
+  const double w = model.weight, slip = foot.slip_angle[axis];
+  const double torque_std = slip > 0.0 && foot.slip_torque_std[axis] > 0.0 ? foot.slip_torque_std[axis] : w;
+  RegressionPrior prior;
+  prior.scale = {USUAL_ANGLE, USUAL_RATE, 1.0, w, USUAL_SLOPE * w};
+  prior.mean = {0.0, 0.0, slip > 0.0 ? foot.slip_torque[axis] : 0.0, 0.0, 0.0};
+  prior.spread = {STIFFEST * w, SLOWEST * STIFFEST * w, torque_std, std::max(foot.place_std[0], 1e-9),
+                  std::max(foot.place_std[1], 1e-9)};
+  prior.element_slope = slip > 0.0 ? 1.0 / slip : 0.0;
+  return prior;
+}
+
+}  // namespace
+
+FootTracker::FootTracker(const EstimatorModel& model, const FootModel& foot) noexcept
+    : foot_(&foot),
+      weight_(model.weight),
+      least_load_(LEAST_LOAD * model.weight),
+      middle_depth_(outline_middle_depth(foot)),
+      delay_(model.wrench_delay),
+      cutoff_(model.cutoff),
+      gain_std_(model.wrench_gain_std),
+      delay_std_(model.wrench_delay_std),
+      gate_(model.weight, foot.always),
+      shaking_(model.weight),
+      axes_{AxisRegression(prior_of(model, foot, 0)), AxisRegression(prior_of(model, foot, 1))} {
+  for (int axis = 0; axis < 2; ++axis) work(axis);
+  estimate_.flags = NOT_STANDING | NEVER_LOADED | PITCH_UNKNOWN | ROLL_UNKNOWN;
+}
+
+void FootTracker::read(const FootKinematics& motion, const std::array<double, 6>& raw) noexcept {
+  raw_ = raw;
+  std::array<double, 6> zeroed;
+  for (int i = 0; i < 6; ++i) zeroed[i] = raw[i] - zero_.value()[i];
+  wrench_ = moved_wrench(foot_->sensor, foot_->sign, zeroed.data());
+  const double pitch = motion.angle[0], roll = motion.angle[1];
+  estimate_.load = motion.up[0] * wrench_[0] + motion.up[1] * wrench_[1] + motion.up[2] * wrench_[2];
+  estimate_.pitch.deflection = pitch, estimate_.roll.deflection = roll;
+  estimate_.pitch.rate = motion.rate[0], estimate_.roll.rate = motion.rate[1];
+  // The loaded slide carries the bush's centre up by z. The roll axis turns with the pitch: Ry(pitch) e_x.
+  const double z = foot_->compliance * wrench_[2];
+  estimate_.pitch.torque = wrench_[4] - z * wrench_[0];
+  estimate_.roll.torque = std::cos(pitch) * (wrench_[3] + z * wrench_[1]) - std::sin(pitch) * wrench_[5];
+  Point centre;
+  if (centre_of_pressure(wrench_, pitch, roll, foot_->sole, least_load_, centre)) estimate_.centre_of_pressure = centre;
+}
+
+void FootTracker::restart_filter() noexcept {
+  running_ = false;
+  row_ticks_ = 0, row_time_ = 0.0;
+}
+
+void FootTracker::end_stance() noexcept {
+  for (AxisRegression& axis : axes_) axis.close();
+  held_count_ = 0;
+  if (gate_.stances() == STEPS)
+    for (AxisRegression& axis : axes_) axis.set_spread(ASIDE, STIFFEST);
+}
+
+void FootTracker::learn(const FootKinematics& motion, double others, SlipGate::Verdict slips, bool fresh, double time,
+                        double dt, double period) noexcept {
+  follow_noise(motion, dt, period);
+  const ContactState before = gate_.contact();
+  const double inside = depth(foot_->polygon, estimate_.centre_of_pressure);
+  const bool carries = estimate_.load > least_load_;
+  const ContactState contact =
+      gate_.step(estimate_.load, others, carries && inside > ROLLING_SHARE * middle_depth_, zero_.known(), dt);
+  const bool struck = shaking_.step(wrench_.data(), dt) && !foot_->always && gate_.standing_for() > LONGEST_STANCE;
+  if (contact == ContactState::air) zero_.swing(raw_, estimate_.load, weight_, dt);
+  if (before == ContactState::air && contact != ContactState::air) zero_.landed();
+  if (before == ContactState::stance && contact != ContactState::stance) {
+    commit(time - gate_.settling());
+    end_stance();
+    restart_filter();
+  }
+  std::uint32_t flags = estimate_.flags & (NEVER_LOADED | PITCH_UNKNOWN | ROLL_UNKNOWN);
+  const bool edge = contact == ContactState::stance && !foot_->always && inside < EDGE_MARGIN;
+  if (contact != ContactState::stance)
+    flags |= NOT_STANDING;
+  else
+    flags &= ~static_cast<std::uint32_t>(NEVER_LOADED);
+  if (edge) flags |= EDGE;
+  if (slips == SlipGate::Verdict::sure) flags |= SLIP;
+  if (struck) flags |= IMPACT;
+  if (told_change_ > 0.0) flags |= GROUND_CHANGED, told_change_ -= dt;
+  estimate_.flags = flags, estimate_.contact = contact;
+  if (!fresh) {
+    angles_.restart(), forces_.restart();
+    for (WhiteNoise& noise : angle_noise_) noise.restart();
+    restart_filter();
+  }
+  if (contact != ContactState::stance || edge || struck || slips == SlipGate::Verdict::sure) {
+    if (running_) held_count_ = 0;
+    restart_filter();
+  }
+  filter(motion, time, dt, fresh ? period : 0.0);
+  if (contact == ContactState::stance) commit(time - (foot_->always ? 0.0 : gate_.settling()));
+}
+
+// Variance of the white noise that is left behind the filter; none where the samples are too slow to show it.
+void FootTracker::follow_noise(const FootKinematics& motion, double dt, double period) noexcept {
+  const double band = 2.0 * cutoff_ * period;  // of all frequencies, those that pass
+  const bool shows = NOISE_ABOVE * band < NYQUIST_SHARE;
+  const double edge = 2.0 * std::numbers::pi * cutoff_;
+  for (int a = 0; a < 2; ++a) {
+    angle_noise_[a].see(motion.angle[a], dt);
+    const double white = shows ? angle_noise_[a].variance() * band : 0.0;
+    noise_[a][0] = white;
+    noise_[a][1] = motion.rate_noise >= 0.0 ? (shows ? motion.rate_noise * band : 0.0) : white * edge * edge / 3.0;
+  }
+}
+
+// The tick's signals in the middle of its period, where differences are exact, each as late as the latest of them.
+void FootTracker::filter(const FootKinematics& motion, double time, double dt, double period) noexcept {
+  const std::array<double, 6> now = {estimate_.load,        wrench_[0], wrench_[1], estimate_.pitch.torque,
+                                     estimate_.roll.torque, 0.0};
+  std::array<double, 6> mean = {}, forces;
+  for (int i = 0; i < 5; ++i) mean[i] = 0.5 * (now[i] + before_[i]);
+  before_ = now;
+  if (period <= 0.0) return;
+  std::array<double, 4> angles;
+  const bool reaches =
+      angles_.pass(time, {motion.mean_angle[0], motion.mean_angle[1], motion.mean_rate[0], motion.mean_rate[1]}, delay_,
+                   angles) &&
+      forces_.pass(time, mean, -delay_, forces);
+  if (!reaches) return;
+  follow_elements(angles.data(), time);
+  if (estimate_.contact != ContactState::stance) return;
+  if (estimate_.flags & (EDGE | SLIP | IMPACT)) return;
+  if (!running_) {
+    filter_.design(cutoff_, period);
+    filter_.restart();
+    running_ = true;
+  }
+  double channels[CHANNELS] = {1.0,       forces[0], forces[1],           forces[2],
+                               angles[0], angles[2], element_[0].state(), forces[3],
+                               angles[1], angles[3], element_[1].state(), forces[4]};
+  filter_.pass(channels);
+  row_time_ += dt;
+  const int stride = std::max(1, static_cast<int>(1.0 / (ROWS_PER_CYCLE * cutoff_ * period)));
+  if (++row_ticks_ < stride) return;
+  hold(time, row_time_, channels);
+  row_ticks_ = 0, row_time_ = 0.0;
+}
+
+// Elements from tick to tick. In the air one is at rest; at its first sample it is loaded from there. Of a foot that
+// stood when time began nobody knows: each time that less is unknown, the rows' offset changes.
+void FootTracker::follow_elements(const double* angles, double time) noexcept {
+  const bool air = estimate_.contact == ContactState::air;
+  swung_ = swung_ || air;
+  bool changed = false;
+  for (int a = 0; a < 2; ++a) {
+    const double slip = foot_->slip_angle[a], by = angles[a] - last_angle_[a];
+    last_angle_[a] = angles[a];
+    if (slip <= 0.0) continue;
+    ElementState& element = element_[a];
+    if (estimate_.contact == ContactState::stance) {
+      element.move(by / slip);
+      changed = changed || element.opened - element.gap() > NEWLY_KNOWN;
+    } else if (swung_) {
+      const double guess = std::clamp(angles[a] / slip, -1.0, 1.0);
+      element.begin(guess, guess);
+    } else {
+      element.begin(-1.0, 1.0);
+    }
+  }
+  if (!changed) return;
+  commit(time);
+  for (int a = 0; a < 2; ++a) axes_[a].close(), element_[a].opened = element_[a].gap();
+  restart_filter();
+}
+
+void FootTracker::hold(double time, double dt, const double* channels) noexcept {
+  if (held_count_ == HELD) {
+    give(held_[first_held_]);
+    first_held_ = (first_held_ + 1) % HELD, --held_count_;
+  }
+  HeldRow& row = held_[(first_held_ + held_count_++) % HELD];
+  row.time = time, row.dt = dt;
+  std::copy_n(channels, CHANNELS, row.channels);
+}
+
+void FootTracker::commit(double before) noexcept {
+  while (held_count_ > 0 && held_[first_held_].time <= before) {
+    give(held_[first_held_]);
+    first_held_ = (first_held_ + 1) % HELD, --held_count_;
+  }
+}
+
+void FootTracker::give(const HeldRow& row) noexcept {
+  const double* c = row.channels;
+  // A centre that is higher takes its share of the horizontal force: F_x off the pitch torque, F_y onto the roll
+  // torque.
+  double noise[2][NOISE_SOURCES];
+  for (int a = 0; a < 2; ++a) {
+    const bool follows = foot_->slip_angle[a] > 0.0 && std::abs(c[6 + 4 * a]) < HARDLY_SLIPS * c[0];
+    noise[a][OF_ANGLE] = follows ? 0.0 : noise_[a][0];
+    noise[a][OF_RATE] = noise_[a][1];
+    noise[a][OF_ANGLE_AND_ELEMENT] = follows ? noise_[a][0] : 0.0;
+  }
+  const double (&p)[NOISE_SOURCES] = noise[0], (&r)[NOISE_SOURCES] = noise[1];
+  axes_[0].add({c[0], {c[4], c[5], c[6], c[1], c[2]}, c[7], {p[0], p[1], p[2]}}, row.dt);
+  axes_[1].add({c[0], {c[8], c[9], c[10], c[1], -c[3]}, c[11], {r[0], r[1], r[2]}}, row.dt);
+}
+
+void FootTracker::work(int axis) noexcept {
+  axes_[axis].work();
+  if (axes_[axis].jumped()) told_change_ = CHANGE_TOLD;
+  const AxisValues& found = axes_[axis].values();
+  AxisEstimate& out = axis == 0 ? estimate_.pitch : estimate_.roll;
+  const double k = found.value[STIFFNESS], c = found.value[DAMPING];
+  const double quantile = QUANTILE[std::clamp(found.groups - 1, 2, 11) - 2];
+  const auto parameter = [&](Unknown unknown, double systematic) {
+    const double std = found.std[unknown];
+    return Parameter{found.value[unknown], std::hypot(std, systematic),
+                     std::hypot(quantile * std, NORMAL * systematic)};
+  };
+  // A wrench that is late by more than it was told to be takes K·delay off the damping and adds C·ω²·delay to K.
+  out.stiffness = parameter(STIFFNESS, std::hypot(gain_std_ * k, delay_std_ * c * found.pace));
+  out.damping = parameter(DAMPING, std::hypot(gain_std_ * c, delay_std_ * k));
+  out.slip_torque =
+      foot_->slip_angle[axis] > 0.0 ? parameter(SLIP_TORQUE, gain_std_ * found.value[SLIP_TORQUE]) : Parameter{};
+  out.offset = found.offset;
+  out.identified = found.groups >= FEWEST_GROUPS && k > 0.0 && out.stiffness.half_width < TRUSTED * k;
+  const std::uint32_t unknown = axis == 0 ? PITCH_UNKNOWN : ROLL_UNKNOWN;
+  estimate_.flags = out.identified ? estimate_.flags & ~unknown : estimate_.flags | unknown;
+}
+
+void FootTracker::miss(std::uint32_t reason) noexcept {
+  estimate_.flags = (estimate_.flags & (NEVER_LOADED | PITCH_UNKNOWN | ROLL_UNKNOWN)) | reason | NOT_STANDING;
+  estimate_.pitch.rate = estimate_.roll.rate = 0.0;
+  held_count_ = 0;
+  if (reason & TIME_FAULT)  // who knows what has passed: zeros and offsets may be others
+    for (AxisRegression& axis : axes_) axis.close();
+  if (reason & TIME_FAULT) swung_ = false;
+  gate_.restart();  // what is told of the contact stays, until readings say otherwise
+  shaking_.restart();
+  for (WhiteNoise& noise : angle_noise_) noise.restart();
+  angles_.restart(), forces_.restart();
+  restart_filter();
+}
+
+}  // namespace plantar

@@ -1,0 +1,103 @@
+// One foot from tick to tick: contact, what may be learnt from it, and both axes' regressions.
+#pragma once
+
+#include <algorithm>
+#include <array>
+
+#include "online/air_zero.hpp"
+#include "online/axis_regression.hpp"
+#include "online/causal_filter.hpp"
+#include "online/contact_gate.hpp"
+#include "online/delay_line.hpp"
+#include "online/shaking.hpp"
+#include "online/slip_gate.hpp"
+#include "online/sole.hpp"
+#include "online/white_noise.hpp"
+#include "plantar/foot_estimator.hpp"
+
+namespace plantar {
+
+// What the kinematics say of one foot at one tick.
+struct FootKinematics {
+  double up[3];          // the world's up in the bush frame
+  double angle[2];       // pitch, roll [rad]
+  double rate[2];        // [rad/s], of the tick, for the controller
+  double mean_angle[2];  // half a period before: there the joints' differences are exact
+  double mean_rate[2];
+  double rate_noise;  // variance of the gyroscope's white noise [rad²/s²]; negative: rates come from the attitude
+  SolePlace place;
+};
+
+// A Jenkins element whose state at the start may be unknown: the lowest and the highest that it can be.
+struct ElementState {
+  double low = 0.0, high = 0.0;
+  double opened = 0.0;  // how far apart these were when the offset of the rows began
+
+  double state() const noexcept { return 0.5 * (low + high); }
+  double gap() const noexcept { return high - low; }
+  void begin(double from, double to) noexcept { low = from, high = to, opened = to - from; }
+  void move(double by) noexcept { low = std::clamp(low + by, -1.0, 1.0), high = std::clamp(high + by, -1.0, 1.0); }
+};
+
+class FootTracker {
+ public:
+  FootTracker(const EstimatorModel& model, const FootModel& foot) noexcept;
+
+  // The wrench at the bush, the load and the centre of pressure of this tick.
+  void read(const FootKinematics& motion, const std::array<double, 6>& raw) noexcept;
+  // Contact, and what this tick teaches. others: load of the other feet; slips: of the soles; fresh: the tick before
+  // was read as well, `dt` earlier.
+  void learn(const FootKinematics& motion, double others, SlipGate::Verdict slips, bool fresh, double time, double dt,
+             double period) noexcept;
+  // A tick without readings that can be used, for `reason`.
+  void miss(std::uint32_t reason) noexcept;
+  // One piece of the regressions' work.
+  void work(int axis) noexcept;
+
+  double load() const noexcept { return estimate_.load; }
+  ContactState contact() const noexcept { return gate_.contact(); }
+  const FootEstimate& estimate() const noexcept { return estimate_; }
+
+ private:
+  static constexpr int CHANNELS = 12;  // 1, load, force x and y, then of each axis: angle, rate, element, torque
+  static constexpr int HELD = 32;      // rows that wait until the foot has not lifted behind them
+  struct HeldRow {
+    double time, dt;
+    double channels[CHANNELS];
+  };
+
+  void restart_filter() noexcept;
+  void filter(const FootKinematics& motion, double time, double dt, double period) noexcept;
+  void follow_elements(const double* angles, double time) noexcept;
+  void hold(double time, double dt, const double* channels) noexcept;
+  void commit(double before) noexcept;
+  void give(const HeldRow& row) noexcept;
+  void end_stance() noexcept;
+  void follow_noise(const FootKinematics& motion, double dt, double period) noexcept;
+
+  const FootModel* foot_;
+  double weight_, least_load_, middle_depth_, delay_, cutoff_;
+  double gain_std_, delay_std_;
+  ContactGate gate_;
+  AirZero zero_;
+  Shaking shaking_;
+  CausalFilter<CHANNELS> filter_;
+  DelayLine<4> angles_;
+  DelayLine<6> forces_;
+  std::array<AxisRegression, 2> axes_;
+  std::array<double, 6> raw_ = {}, wrench_ = {}, before_ = {};  // before_: load, force x, y, both torques, of last tick
+  std::array<WhiteNoise, 2> angle_noise_;
+  double noise_[2][2] = {};  // variance of angle and rate of each axis, behind the filter
+  ElementState element_[2];
+  double last_angle_[2] = {};
+  bool swung_ = false;        // the foot was in the air since time last jumped: its elements begin there at rest
+  bool running_ = false;      // the filter has begun
+  double told_change_ = 0.0;  // s for which a change of ground is still told
+  double row_time_ = 0.0;     // since the last row
+  int row_ticks_ = 0;
+  std::array<HeldRow, HELD> held_;
+  int first_held_ = 0, held_count_ = 0;
+  FootEstimate estimate_;
+};
+
+}  // namespace plantar

@@ -1,0 +1,192 @@
+// The estimator on a foot whose stiffness and damping are known, and on sensors that fail.
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+
+#include "check.hpp"
+#include "plantar/foot_estimator.hpp"
+
+using namespace plantar;
+
+namespace {
+
+constexpr double NAN_ = std::numeric_limits<double>::quiet_NaN();
+constexpr double STIFFNESS[2] = {900.0, 700.0}, DAMPING[2] = {20.0, 30.0}, OFFSET[2] = {1.5, -0.7};
+constexpr Frame HERE = {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
+
+// The IMU sits on the ankle of both feet: the attitude is the deflection, turned round.
+EstimatorModel two_feet(double delay = 0.0) {
+  EstimatorModel model;
+  model.weight = 600.0, model.wrench_delay = delay;
+  model.joints = {"free"};
+  for (const char* name : {"left", "right"}) {
+    FootModel foot;
+    foot.name = name;
+    foot.bush = foot.sole = foot.sensor = HERE;
+    foot.polygon = {{0.1, 0.06}, {-0.1, 0.06}, {-0.1, -0.06}, {0.1, -0.06}};
+    foot.place_std = {0.003, 0.003};
+    model.feet.push_back(foot);
+  }
+  return model;
+}
+
+double angle(int axis, double t) {
+  return axis == 0 ? 0.02 * std::sin(1.9 * t) + 0.01 * std::sin(5.1 * t) : 0.015 * std::sin(2.3 * t + 1.0);
+}
+double rate(int axis, double t) { return (angle(axis, t + 1e-6) - angle(axis, t - 1e-6)) / 2e-6; }
+
+struct Sensors {
+  double position = 0.0, attitude[4], gyroscope[3];
+  std::array<double, 6> wrench[2];
+
+  // Ry(pitch) Rx(roll) is the sole in the ankle, and the sole stands flat: its inverse is the ankle in the world.
+  explicit Sensors(double t, double delay = 0.0, double load = 300.0) {
+    const double p = angle(0, t) / 2, r = angle(1, t) / 2, noise = 1e-9 * std::sin(1e5 * t);
+    attitude[0] = std::cos(p) * std::cos(r), attitude[1] = -std::sin(r) * std::cos(p) + noise;
+    attitude[2] = -std::cos(r) * std::sin(p), attitude[3] = std::sin(r) * std::sin(p);
+    const double dp = rate(0, t), dr = rate(1, t);
+    // The ankle turns in the world as the sole turns in the ankle, the other way: -(dp e_y + dr Ry(pitch) e_x).
+    gyroscope[0] = -dr * std::cos(2 * p) + noise, gyroscope[1] = -dp, gyroscope[2] = dr * std::sin(2 * p);
+    double torque[2];
+    for (int a = 0; a < 2; ++a)
+      torque[a] = STIFFNESS[a] * angle(a, t - delay) + DAMPING[a] * rate(a, t - delay) + OFFSET[a];
+    const double pitch = angle(0, t - delay);
+    for (auto& w : wrench) w = {0.0, 0.0, load + 1e-6 * std::sin(1e5 * t), torque[1] / std::cos(pitch), torque[0], 0.0};
+  }
+
+  Reading reading(double t) const { return {t, {&position, 1}, {}, attitude, gyroscope, {}, wrench}; }
+};
+
+bool finite(const FootEstimate& foot) {
+  for (const AxisEstimate* a : {&foot.pitch, &foot.roll})
+    for (const double value :
+         {a->deflection, a->rate, a->torque, a->stiffness.value, a->stiffness.std, a->stiffness.half_width,
+          a->damping.value, a->damping.std, a->damping.half_width, a->offset})
+      if (!std::isfinite(value)) return false;
+  return std::isfinite(foot.load) && std::isfinite(foot.centre_of_pressure[0]) &&
+         std::isfinite(foot.centre_of_pressure[1]);
+}
+
+void learns(double rate_hz, double delay) {
+  FootEstimator estimator(two_feet(delay));
+  FootEstimate last;
+  for (int i = 0; i < static_cast<int>(60 * rate_hz); ++i) {
+    const double t = i / rate_hz;
+    const Sensors sensors(t, delay);
+    last = estimator.step(sensors.reading(t))[0];
+    check::near(last.pitch.deflection, angle(0, t), 1e-8, "pitch of this tick");
+    check::near(last.roll.deflection, angle(1, t), 1e-8, "roll of this tick");
+    if (i > 0) check::near(last.pitch.rate, rate(0, t), 1e-6, "rate of this tick");
+  }
+  const double coarse = rate_hz < 100 ? 5e-3 : 2e-4;  // between samples the delay line is straight
+  check::near(last.pitch.stiffness.value, STIFFNESS[0], coarse * STIFFNESS[0], "stiffness in pitch");
+  check::near(last.roll.stiffness.value, STIFFNESS[1], coarse * STIFFNESS[1], "stiffness in roll");
+  check::near(last.pitch.damping.value, DAMPING[0], 3 * coarse * DAMPING[0], "damping in pitch");
+  check::near(last.roll.damping.value, DAMPING[1], 3 * coarse * DAMPING[1], "damping in roll");
+  check::near(last.pitch.offset, OFFSET[0], 0.02, "offset in pitch");
+  check::that(last.pitch.identified && last.roll.identified, "identified");
+  check::that(last.contact == ContactState::stance && last.flags == 0, "stands, nothing to object");
+}
+
+// A fault from 20 s to 21 s: outputs stay finite, a flag says so, and all is well a second later.
+template <class Fault>
+void survives(Fault fault, std::uint32_t flag, const char* what) {
+  FootEstimator estimator(two_feet());
+  std::uint32_t seen = 0;
+  bool always_finite = true;
+  FootEstimate last;
+  for (int i = 0; i < 42000; ++i) {
+    double t = 1e-3 * i;
+    Sensors sensors(t);
+    if (t >= 20.0 && t < 21.0) fault(sensors, t);
+    const auto feet = estimator.step(sensors.reading(t));
+    last = feet[0];
+    if (i >= 20000 && i < 21000) seen |= last.flags;
+    for (const FootEstimate& foot : feet) always_finite = always_finite && finite(foot);
+    if (i == 22000) check::that((last.flags & ~(PITCH_UNKNOWN | ROLL_UNKNOWN)) == 0, what);
+  }
+  check::that((seen & flag) != 0, what);
+  check::that(always_finite, what);
+  check::near(last.pitch.stiffness.value, STIFFNESS[0], 1e-3 * STIFFNESS[0], what);
+  check::near(last.pitch.damping.value, DAMPING[0], 5e-3 * DAMPING[0], what);
+}
+
+// Onto mats with half the stiffness after 60 s: noticed within 3 s, and learnt anew.
+void notices_other_ground() {
+  FootEstimator estimator(two_feet());
+  double noticed = 0.0;
+  FootEstimate last;
+  for (int i = 0; i < 120000; ++i) {
+    const double t = 1e-3 * i;
+    Sensors sensors(t);
+    if (t >= 60.0)
+      for (auto& w : sensors.wrench)
+        w[4] -= 0.5 * STIFFNESS[0] * angle(0, t), w[3] -= 0.5 * STIFFNESS[1] * angle(1, t) / std::cos(angle(0, t));
+    last = estimator.step(sensors.reading(t))[0];
+    if ((last.flags & GROUND_CHANGED) && noticed == 0.0) noticed = t;
+  }
+  check::near(noticed, 61.5, 1.5, "other ground is noticed within 3 s, and not before");
+  check::near(last.pitch.stiffness.value, STIFFNESS[0] / 2, 1e-3 * STIFFNESS[0], "half the stiffness in pitch");
+  check::near(last.roll.stiffness.value, STIFFNESS[1] / 2, 1e-3 * STIFFNESS[1], "half the stiffness in roll");
+  check::that((last.flags & GROUND_CHANGED) == 0, "told for some seconds");
+}
+
+void a_foot_that_never_stands() {
+  FootEstimator estimator(two_feet());
+  FootEstimate last;
+  for (int i = 0; i < 5000; ++i) {
+    Sensors sensors(1e-3 * i);
+    sensors.wrench[1] = {0, 0, 1e-6 * std::sin(1.0 * i), 0, 0, 0}, sensors.wrench[0][2] = 600.0;
+    last = estimator.step(sensors.reading(1e-3 * i))[1];
+    check::that(finite(last), "finite in the air");
+  }
+  check::that((last.flags & NEVER_LOADED) && last.contact == ContactState::air, "never loaded, and said so");
+  check::that(!last.pitch.identified && !last.roll.identified, "nothing learnt in the air");
+}
+
+void broken_models_are_refused() {
+  for (const char* text :
+       {"", "something else\n", "plantar.foot_estimator/1\nweight heavy\n",
+        "plantar.foot_estimator/1\nweight 600\nsurprise 1\n", "plantar.foot_estimator/1\nweight 600\n"}) {
+    bool refused = false;
+    try {
+      std::istringstream stream(text);
+      read_model(stream);
+    } catch (const std::runtime_error&) {
+      refused = true;
+    }
+    check::that(refused, "a broken model file");
+  }
+  bool refused = false;
+  try {
+    EstimatorModel model = two_feet();
+    model.weight = 0.0;
+    const FootEstimator estimator(model);
+  } catch (const std::invalid_argument&) {
+    refused = true;
+  }
+  check::that(refused, "a robot without weight");
+}
+
+}  // namespace
+
+int main() {
+  learns(1000.0, 0.0);
+  learns(1000.0, 0.0075);
+  learns(1000.0, -0.004);
+  learns(200.0, 0.0);
+  learns(50.0, 0.0);
+  survives([](Sensors& s, double) { s.attitude[1] = NAN_; }, INPUT_MISSING, "no attitude");
+  survives([](Sensors& s, double) { s.wrench[0][4] = NAN_; }, INPUT_MISSING, "no wrench");
+  survives([](Sensors& s, double) { s.gyroscope[0] = 1e300; }, INPUT_MISSING, "an absurd rate");
+  survives([](Sensors& s, double) { s.wrench[0] = {1, 2, 300, 4, 5, 6}; }, FROZEN, "a frozen force sensor");
+  survives([](Sensors& s, double) { s.attitude[0] = 1, s.attitude[1] = s.attitude[2] = s.attitude[3] = 0; }, FROZEN,
+           "a frozen attitude");
+  survives([](Sensors&, double& t) { t -= 20.5; }, TIME_FAULT, "time that steps back");
+  survives([](Sensors&, double& t) { t = NAN_; }, TIME_FAULT, "no time");
+  notices_other_ground();
+  a_foot_that_never_stands();
+  broken_models_are_refused();
+  return check::result();
+}

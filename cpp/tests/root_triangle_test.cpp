@@ -1,0 +1,91 @@
+// Least squares in square-root form against sums of products.
+#include "online/root_triangle.hpp"
+
+#include <random>
+
+#include "check.hpp"
+
+using plantar::RootTriangle;
+
+namespace {
+
+constexpr int N = 3;
+using Rows = double[50][N + 1];
+
+void fill(Rows& rows) {
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  for (auto& row : rows) {
+    for (int i = 0; i < N; ++i) row[i] = normal(random);
+    row[N] = 2.0 * row[0] - 3.0 * row[1] + 0.5 * row[2] + 0.1 * normal(random);
+  }
+}
+
+RootTriangle<N> fed(const Rows& rows, int count) {
+  RootTriangle<N> root;
+  for (int r = 0; r < count; ++r) {
+    double row[N + 1];
+    std::copy(rows[r], rows[r] + N + 1, row);
+    root.add(row);
+  }
+  return root;
+}
+
+double product(const RootTriangle<N>& root, int i, int j) {
+  double sum = 0.0;
+  for (int k = 0; k <= N; ++k) sum += root.r[k][i] * root.r[k][j];
+  return sum;
+}
+
+double information(const RootTriangle<N>& root, const double* row) {
+  double sum = 0.0;
+  for (int i = 0; i < N; ++i)
+    for (int j = 0; j < N; ++j) sum += row[i] * product(root, i, j) * row[j];
+  return sum;
+}
+
+}  // namespace
+
+int main() {
+  Rows rows;
+  fill(rows);
+  const RootTriangle<N> all = fed(rows, 50);
+  for (int i = 0; i <= N; ++i)
+    for (int j = 0; j <= N; ++j) {
+      double sum = 0.0;
+      for (const auto& row : rows) sum += row[i] * row[j];
+      check::near(product(all, i, j), sum, 1e-10, "products of all rows");
+    }
+
+  RootTriangle<N> joined = fed(rows, 20), rest;
+  for (int r = 20; r < 50; ++r) rest.add(rows[r]);
+  joined.add(rest);
+  double x[N], y[N];
+  all.solve(x), joined.solve(y);
+  for (int i = 0; i < N; ++i) check::near(x[i], y[i], 1e-12, "two parts joined");
+  check::near(x[1], -3.0, 0.1, "the value behind the rows");
+
+  fill(rows);
+  RootTriangle<N> less = fed(rows, 50);
+  less.remove(rows[49], 0.99);
+  fill(rows);
+  const RootTriangle<N> wanted = fed(rows, 49);
+  for (int i = 0; i < N; ++i)
+    for (int j = 0; j <= N; ++j) check::near(product(less, i, j), product(wanted, i, j), 1e-9, "a row taken off");
+
+  // Forgetting takes a share along a strong row, and no more than a weak row brings.
+  const double strong[N] = {10.0, 0.0, 0.0}, weak[N] = {1e-3, 0.0, 0.0};
+  RootTriangle<N> faded = all;
+  faded.forget(strong, 0.5);
+  check::near(information(faded, strong), 0.5 * information(all, strong), 1e-6, "half of what was known is forgotten");
+  double kept[N];
+  faded.solve(kept);
+  for (int i = 0; i < N; ++i) check::near(kept[i], x[i], 1e-10, "forgetting moves no value");
+  for (int again = 0; again < 10000; ++again) {
+    faded.forget(weak, 0.5);
+    double row[N + 1] = {weak[0], 0.0, 0.0, weak[0] * 2.0};
+    faded.add(row);
+  }
+  check::that(information(faded, weak) > 0.49 * information(all, weak), "rows without excitation wind nothing up");
+  return check::result();
+}

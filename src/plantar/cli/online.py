@@ -1,0 +1,104 @@
+"""`plantar online`."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from plantar.cli.memory import Memory
+from plantar.cli.terminal import (
+    VERDICT_STYLE,
+    console,
+    end_progress,
+    number,
+    print_notes,
+    progress,
+    table,
+)
+from plantar.logs.readers import open_log
+from plantar.online.estimates import Flag
+from plantar.online.estimator import FootEstimator
+from plantar.online.replay import Replay
+from plantar.results.feet import FeetResult
+from plantar.results.io import dump_json
+from plantar.robot.model import load_robot
+
+RESULT_HELP = "A result of `identify feet`: its hysteresis, compliance, delay and cutoff are used."
+DELAY_HELP = "How late the force sensors are against the IMU, in s; of the result, or unknown, if left out."
+
+
+def run(
+    robot: Annotated[Path, typer.Argument(help="Robot file (YAML).", metavar="ROBOT.yaml")],
+    log: Annotated[Path, typer.Argument(help="Log to replay.", metavar="LOG")],
+    result: Annotated[Path | None, typer.Option(help=RESULT_HELP, metavar="RESULT.json")] = None,
+    wrench_delay: Annotated[float | None, typer.Option(help=DELAY_HELP)] = None,
+    cutoff: Annotated[
+        float | None, typer.Option(help="Of the filters before the regressions, in Hz; the result's, or 5.")
+    ] = None,
+    write_model: Annotated[
+        Path | None,
+        typer.Option(help="Also write the file that a controller in C++ constructs its estimator from."),
+    ] = None,
+    memory: Memory = None,
+    json: Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No table, no progress.")] = False,
+) -> None:
+    """Replay a log through the estimator of controllers, sample by sample, as if it happened now.
+
+    Example: plantar online robot.yaml walk.csv --wrench-delay 0.004
+    """
+    step = progress(quiet)
+    batch = None if result is None else FeetResult.load(result, residuals=False)
+    known = load_robot(robot)
+    estimator = FootEstimator(known, batch, wrench_delay=wrench_delay, cutoff=cutoff)
+    if write_model is not None:
+        estimator.write_model(write_model)
+    step(f"read {log.name}")
+    motion = open_log(log, known, memory=memory)
+    step(f"replay {log.name}")
+    replay = estimator.replay(motion)
+    end_progress(quiet)
+    if json:
+        content = {
+            "parameters": [asdict(row) for row in replay.parameters],
+            "latency_us": replay.latency_us,
+            "samples": len(motion),
+        }
+        print(dump_json(content), end="")
+    elif not quiet:
+        _print(replay)
+        print_notes(console(), [*motion.notes, *motion.joint_notes(known)])
+
+
+def _print(replay: Replay) -> None:
+    out, rows = console(), replay.parameters
+    heads = ("foot", "axis", "parameter", "value", "95 %", "unit", "verdict", "reason")
+    cells = [
+        (row.foot, row.axis, row.name, number(row.value), f"± {number(row.half_width, 2)}", row.unit, row.verdict,
+         row.reason)
+        for row in rows
+    ]  # fmt: skip
+    out.print(table("At the end of the log", heads, cells, [VERDICT_STYLE[row.verdict] for row in rows]))
+    through = (
+        "foot",
+        "stands %",
+        *(f"{axis} mrad rms" for axis in ("pitch", "roll")),
+        "flags, % of the samples",
+    )
+    out.print(table("Through the log", through, [_foot_row(replay, foot) for foot in replay.feet]))
+    time = replay.latency_us
+    out.print(
+        f"a step: median {time['median']:.1f} µs, 99.9 % {time['p999']:.1f} µs, longest {time['max']:.1f} µs"
+    )
+
+
+def _foot_row(replay: Replay, foot: str) -> tuple[str, ...]:
+    stands = replay.column(foot, "contact") == 2
+    flags = replay.column(foot, "flags").astype(int)
+    shares = ((flag, float((flags & flag > 0).mean())) for flag in Flag)
+    said = ", ".join(f"{flag.name} {100 * share:.1f}" for flag, share in shares if share and flag.name)
+    swings = (1e3 * replay.column(foot, f"{axis}.deflection")[stands] for axis in ("pitch", "roll"))
+    return foot, f"{100 * stands.mean():.1f}", *(f"{x.std():.2f}" if x.size else "–" for x in swings), said

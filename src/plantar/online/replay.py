@@ -1,0 +1,74 @@
+"""A log as the estimator saw it: estimates at each sample, and the parameters it ended with."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from plantar.conventions import DAMPING_UNIT, ROTATIONAL_AXES, STIFFNESS_UNIT, Array, Axis
+from plantar.online.estimates import FIELDS, Estimated, FootEstimate, foot_estimate
+from plantar.results.feet_rows import Parameter, Verdict
+
+USABLE = 0.1  # half width of the 95 % interval over the value, as for a batch result
+UNKNOWN = 10.0  # the same, from which on a value says nothing
+
+
+@dataclass(frozen=True)
+class Replay:
+    """A log of N samples that passed through the estimator.
+
+    time: (N,) [s]; feet: their names; rows: (N, feet, fields), see `column`; latency: of each step, (N,) [s].
+    """
+
+    time: Array = field(repr=False)
+    feet: tuple[str, ...]
+    rows: Array = field(repr=False)
+    latency: Array = field(repr=False)
+
+    def column(self, foot: str, name: str) -> Array:
+        """One of `plantar.online.estimates.FIELDS` through the log, (N,), such as `pitch.deflection` [rad]."""
+        return self.rows[:, self.feet.index(foot), FIELDS.index(name)]
+
+    def estimate(self, foot: str, sample: int = -1) -> FootEstimate:
+        """A foot's estimate at a sample; the last one if left out."""
+        return foot_estimate(self.rows[sample, self.feet.index(foot)])
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """Stiffness, damping and slip torque of each foot and axis at the end, as in `result.json`."""
+        return tuple(self._parameters())
+
+    @property
+    def latency_us(self) -> dict[str, float]:
+        """Median, 99.9 % quantile and largest time of a step [µs]."""
+        median, p999 = np.percentile(self.latency, [50, 99.9])
+        return {
+            "median": 1e6 * float(median),
+            "p999": 1e6 * float(p999),
+            "max": 1e6 * float(self.latency.max()),
+        }
+
+    def _parameters(self) -> Iterator[Parameter]:
+        for foot in self.feet:
+            last = self.estimate(foot)
+            for axis, found in zip(ROTATIONAL_AXES, (last.pitch, last.roll), strict=True):
+                yield _parameter(foot, axis, "stiffness", STIFFNESS_UNIT[axis], found.stiffness)
+                yield _parameter(foot, axis, "damping", DAMPING_UNIT[axis], found.damping)
+                if found.slip_torque.std:
+                    yield _parameter(foot, axis, "slip_torque", "N.m", found.slip_torque)
+
+
+def _parameter(foot: str, axis: Axis, name: str, unit: str, found: Estimated) -> Parameter:
+    value, half = found.value, found.half_width
+    if half >= UNKNOWN * abs(value):
+        reason = "nothing has excited it yet"
+        return Parameter(foot, axis, name, unit, None, None, None, None, "unidentifiable", reason)
+    verdict: Verdict = "usable" if half <= USABLE * abs(value) else "weak"
+    if half >= abs(value):
+        verdict = "unidentifiable"
+    reason = "" if verdict == "usable" else f"± {100 * half / abs(value):.0f} % so far"
+    return Parameter(
+        foot, axis, name, unit, value, found.std, (value - half, value + half), None, verdict, reason
+    )

@@ -1,0 +1,54 @@
+"""`plantar online` as a user calls it."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from command_line import refused, run
+
+
+def test_a_log_is_replayed_and_told_as_json(campaign: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert (
+        run("online", campaign / "robot.yaml", campaign / "first.csv", "--wrench-delay", 0, "--json", "-q")
+        == 0
+    )
+    found = json.loads(capsys.readouterr().out)
+    assert set(found) == {"parameters", "latency_us", "samples"}
+    assert set(found["latency_us"]) == {"median", "p999", "max"}
+    assert found["samples"] == 1201
+    assert 0 < found["latency_us"]["median"] < 1000
+    rows = {(row["foot"], row["axis"], row["name"]): row for row in found["parameters"]}
+    assert rows["left", "pitch", "stiffness"]["value"] == pytest.approx(420.0, rel=0.02)
+
+
+def test_a_log_is_replayed_and_told_as_tables(
+    campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    model = tmp_path / "biped.estimator"
+    assert run("online", campaign / "robot.yaml", campaign / "first.csv", "--write-model", model) == 0
+    out = capsys.readouterr().out
+    assert "At the end of the log" in out
+    assert "a step: median" in out
+    assert model.read_text().startswith("plantar.foot_estimator/1")
+
+
+def test_a_joint_that_the_log_lacks_is_noted(
+    campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    lines = [line.split(",") for line in (campaign / "first.csv").read_text().splitlines()]
+    kept = [place for place, name in enumerate(lines[0]) if name != "joint.neck.position"]
+    log = tmp_path / "short.csv"
+    log.write_text("\n".join(",".join(line[place] for place in kept) for line in lines) + "\n")
+    assert run("online", campaign / "robot.yaml", log, "--wrench-delay", 0) == 0
+    assert "neck" in capsys.readouterr().out
+
+
+def test_what_is_wrong_is_one_line(
+    campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert "does not exist" in refused(capsys, "online", campaign / "robot.yaml", tmp_path / "none.csv", "-q")
+    words = ("online", campaign / "robot.yaml", campaign / "first.csv", "--wrench-delay", 2, "-q")
+    assert "wrench_delay" in refused(capsys, *words)

@@ -1,0 +1,65 @@
+"""The file that an estimator is constructed from."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from biped_robot import write_robot
+from plantar import _core
+from plantar.online.estimator import FootEstimator
+from plantar.online.estimator_model import Element, estimator_model
+from plantar.robot.model import load_robot
+
+
+def model_of(folder: Path, **changes: object) -> str:
+    robot = load_robot(write_robot(folder, **changes))
+    elements = {("left", "roll"): Element(0.01, 2.0, 0.1)}
+    return estimator_model(robot, cutoff=5.0, wrench_delay=(0.004, 0.001), elements=elements, compliance={})
+
+
+def test_it_says_what_the_robot_file_says(tmp_path: Path) -> None:
+    lines = model_of(tmp_path).splitlines()
+    robot = load_robot(tmp_path / "robot.yaml")
+    assert lines[0] == "plantar.foot_estimator/1"
+    assert [line.split()[1] for line in lines if line.startswith("joint ")] == list(robot.joint_names)
+    assert "wrench_delay 0.004 0.001" in lines
+    assert sum(line.startswith("corner") for line in lines) == 8
+    assert [line for line in lines if line.startswith("element")] == ["element 1 0.01 2.0 0.1"]
+    weight = next(float(line.split()[1]) for line in lines if line.startswith("weight"))
+    assert weight == robot.mass * 9.80665
+
+
+def test_a_foot_zeroed_under_load_has_no_torque_that_grows_with_it(tmp_path: Path) -> None:
+    robot = load_robot(write_robot(tmp_path))
+    feet = {name: {"contact": "always"} for name in robot.feet}
+    assert feet
+    uncertainty = {"bush_position": 0.003}
+    text = model_of(tmp_path / "auto", uncertainty=uncertainty)
+    spread = [float(line.split()[1]) for line in text.splitlines() if line.startswith("place_std")]
+    assert spread == [pytest.approx(0.005)] * 2
+
+
+def test_the_written_file_makes_the_same_estimator(tmp_path: Path) -> None:
+    estimator = FootEstimator(tmp_path / "robot.yaml") if write_robot(tmp_path) else None
+    assert estimator is not None
+    path = estimator.write_model(tmp_path / "robot.estimator")
+    assert _core.FootEstimator(path.read_text())
+
+
+@pytest.mark.parametrize(
+    ("change", "complaint"),
+    [
+        (("weight ", "weigh "), "line 3"),
+        (("plantar.foot_estimator/1", "plantar.foot_estimator/9"), "not a model of this version"),
+        (("cutoff 5.0", "cutoff five"), "missing or no number"),
+        (("cutoff 5.0", "cutoff 5.0 6.0"), "more values"),
+        (("element 1", "element 2"), "no axis"),
+    ],
+)
+def test_a_broken_file_is_refused_with_its_line(
+    tmp_path: Path, change: tuple[str, str], complaint: str
+) -> None:
+    with pytest.raises(RuntimeError, match=complaint):
+        _core.FootEstimator(model_of(tmp_path).replace(*change))

@@ -1,0 +1,125 @@
+"""What the estimator leaves out: edges, impacts, slides; zeros from the air; the slide that a load compresses."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from biped import TRUTH, VERTICAL, record, sway
+from biped_robot import write_robot
+from plantar.logs.motion_log import MotionLog
+from plantar.online.estimates import Contact, Flag
+from plantar.online.estimator import FootEstimator
+from plantar.online.replay import Replay
+from plantar.results.feet import FeetResult
+from plantar.robot.model import RobotModel, load_robot
+
+DAMAGE = slice(2000, 2200)  # samples at 100 Hz
+
+
+@pytest.fixture
+def robot(tmp_path: Path) -> RobotModel:
+    return load_robot(write_robot(tmp_path))
+
+
+def spoilt(log: MotionLog, column: str, by: np.ndarray | float, samples: slice = DAMAGE) -> MotionLog:
+    values = log.columns[column].copy()
+    values[samples] += by
+    return MotionLog(log.name, log.time, {**log.columns, column: values})
+
+
+def replayed(robot: RobotModel, log: MotionLog) -> Replay:
+    return FootEstimator(robot, wrench_delay=0.0).replay(log)
+
+
+def told(replay: Replay, flag: Flag) -> np.ndarray:
+    return (replay.column("left", "flags").astype(int) & flag) > 0
+
+
+def expect_unharmed(replay: Replay) -> None:
+    found = replay.estimate("left").pitch
+    truth = TRUTH["left", "pitch"]
+    assert found.stiffness.value == pytest.approx(truth.stiffness, rel=3e-3)
+    assert found.damping.value == pytest.approx(truth.damping, rel=1e-2)
+
+
+def test_at_the_edge_nothing_is_learnt(robot: RobotModel) -> None:
+    push = 60.0  # N·m: more than half a sole's length times the load, and none of the bush's
+    replay = replayed(robot, spoilt(record(sway(duration=60.0)), "wrench.left.torque.y", push))
+    edge = told(replay, Flag.EDGE)
+    assert edge[DAMAGE].all()
+    assert edge.sum() == 200
+    expect_unharmed(replay)
+
+
+def test_an_impact_is_left_out(robot: RobotModel) -> None:
+    shaken = 40.0 * np.random.default_rng(0).normal(size=200)
+    replay = replayed(robot, spoilt(record(sway(duration=60.0)), "wrench.left.force.z", shaken))
+    impact = told(replay, Flag.IMPACT)
+    assert impact[2010:2200].mean() > 0.9
+    assert not impact[:1990].any()
+    assert not impact[2250:].any()
+    expect_unharmed(replay)
+
+
+def test_a_slide_is_left_out(robot: RobotModel) -> None:
+    log = record(sway(duration=60.0))
+    slid = 0.01 * (1 - np.cos(np.pi * np.arange(200) / 199)) / 2
+    values = log.columns["joint.left_leg_x.position"].copy()
+    values[DAMAGE] += slid
+    values[DAMAGE.stop :] += slid[-1]
+    moved = MotionLog(log.name, log.time, {**log.columns, "joint.left_leg_x.position": values})
+    slip = told(replayed(robot, moved), Flag.SLIP)
+    assert slip[2050:2150].all()
+    assert not slip[:2000].any()
+    assert not slip[2240:].any()
+
+
+def test_a_swing_shows_the_zero(robot: RobotModel) -> None:
+    lifts = tuple(("left", start, start + 3.0) for start in (10.0, 20.0, 30.0))
+    log = record(sway(duration=40.0, lifts=lifts))
+    zero = 25.0 + 0.1 * np.random.default_rng(0).normal(
+        size=len(log)
+    )  # N; without noise it would count as frozen
+    replay = replayed(robot, spoilt(log, "wrench.left.force.z", zero, slice(None)))
+    load, contact = replay.column("left", "load"), replay.column("left", "contact")
+    assert load[500] == pytest.approx(25.0 + 294.0, abs=60.0), "no zero is known before the first swing"
+    assert abs(load[2150]) < 3.0, "in the second swing the first one's zero is taken off"
+    assert (contact[2050:2250] == Contact.AIR).all()
+    assert (contact[2400:2950] == Contact.STANCE).all()
+
+
+def test_a_known_compliance_moves_the_bushs_centre(robot: RobotModel) -> None:
+    log = record(sway(duration=30.0))
+    result = FeetResult(
+        "biped",
+        (),
+        {},
+        "kelvin_voigt",
+        (),
+        (),
+        (),
+        (),
+        (),
+        compliance=dict.fromkeys(robot.feet, 1 / VERTICAL),
+    )
+    known, unknown = FootEstimator(robot, result).replay(log), FootEstimator(robot).replay(log)
+    moved = known.column("left", "pitch.torque") - unknown.column("left", "pitch.torque")
+    assert np.abs(moved).max() > 0.05
+    deflection = known.column("left", "pitch.deflection")
+    model = TRUTH["left", "pitch"].torque(deflection, np.gradient(deflection, log.period))
+    wrong, right = (np.std(one.column("left", "pitch.torque") - model) for one in (unknown, known))
+    assert right < 0.2 * wrong
+
+
+def test_a_foot_zeroed_under_load_stands_always(robot: RobotModel) -> None:
+    feet = {name: replace(foot, contact="always") for name, foot in robot.feet.items()}
+    log = record(sway(duration=30.0))
+    for foot in feet:
+        log = spoilt(log, f"wrench.{foot}.force.z", -290.0, slice(None))
+    replay = replayed(replace(robot, feet=feet), log)
+    assert (replay.column("left", "contact")[1:] == Contact.STANCE).all()
+    assert replay.estimate("left").pitch.identified
