@@ -134,7 +134,7 @@ def _move_bodies(body: ET.Element, sole: ET.Element, foot: FootBush, before: Com
         jointed = any(element.find(tag) is not None for tag in ("joint", "freejoint"))
         low = len(points) > 0 and reaches_sole(points, foot)
         below = foot.below(before.body_origin(name, foot.ankle))
-        if (below and not jointed) or (below and low):
+        if (low and not jointed) or (below and (low or not jointed)):
             body.remove(element)
             sole.append(element)
             moved.append(f"body {name}")
