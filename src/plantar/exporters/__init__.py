@@ -30,6 +30,7 @@ TARGETS: dict[str, tuple[str, str]] = {
     "openhrp": ("openhrp", "OpenHRP and hrpsys: configuration of the bush customizer"),
     "choreonoid": ("choreonoid", "Choreonoid: the YAML entry 'bush' of a body customizer"),
     "kinetics_observer": ("kinetics_observer", "Kinetics Observer: stiffness and damping of contacts"),
+    "randomization": ("randomization", "YAML of means, deviations and correlations, to train with"),
     "yaml": ("plain", "YAML with every number, its unit and its interval"),
 }
 
@@ -46,8 +47,8 @@ def export(
 
     Args:
         result: what `identify_feet` or `identify_inertia` found, or the path of its `result.json`.
-        target: mjcf, mujoco-contact, sdf, urdf, drake, usd, mc_rtc, openhrp, choreonoid, kinetics_observer or yaml;
-            for inertias urdf.
+        target: mjcf, mujoco-contact, sdf, urdf, drake, usd, mc_rtc, openhrp, choreonoid, kinetics_observer,
+            randomization or yaml; for inertias urdf.
         out: the file to write.
         model: an existing robot model of that format to extend (MJCF, SDFormat, URDF; a URDF works for MJCF and
             SDFormat too); the result's own URDF where left out.
