@@ -15,9 +15,8 @@ from plantar.exporters.contact.points import Point, PointFoot
 # foot stand at steps of up to this length; the bush's C/K is ten times longer.
 INERTIA_TIME: Final = 0.004  # s
 RADIUS: Final = 0.002  # m, of the sphere that is a point
-IMPRATIO: Final = (
-    100.0  # friction as much harder than the normal: else a soft sole creeps under a sideways force
-)
+# Friction as much harder than the normal: else a soft sole creeps under a sideways force, and a foot seems softer.
+IMPRATIO: Final = 100.0
 MARKED: Final = 0.25  # of the angle at which a point leaves the ground: where K and C are measured
 SETTLE: Final = 12.0  # times C/K until a foot stands still
 PERIODS: Final = 3  # of the swing that C is read from, after as many that are not read

@@ -30,7 +30,7 @@ SPREAD: Final = 4.0
 WIDEST: Final = 1.5
 # Of the robot's weight, what the edges carry before the middle touches: less lets them leave the ground at smaller
 # angles, more leaves a foot in double support, which carries about a half, without its vertical stiffness.
-EDGES: Final = 0.35
+EDGES: Final = 0.42
 HARD: Final = 0.001  # m: what a foot sinks under the robot's weight where its vertical stiffness is not known
 
 
