@@ -124,7 +124,7 @@ def test_a_page_works_on_small_made_logs(page: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.twin_pages
-@pytest.mark.parametrize("page", (*TWIN, *PLAYED))
+@pytest.mark.parametrize("page", [*TWIN, *PLAYED])
 def test_a_page_shows_what_the_twin_gives(page: str, tmp_path: Path) -> None:
     reader = Reader(tmp_path)
     reader.read(ROOT / page)
