@@ -83,7 +83,7 @@ def test_the_load_takes_its_height_off_the_stiffness(axis: Axis) -> None:
     foot = points_for(stiffness, damping, sole, depth, mass * GRAVITY)
     for load in (250.0, 600.0):
         seen = measured(foot, axis, load, 0.001)
-        assert seen.stiffness == pytest.approx(axes[axis][0] - load * depth, rel=2e-3)
+        assert seen.stiffness == pytest.approx(axes[axis][0] - load * depth, rel=5e-3)
         assert seen.damping == pytest.approx(axes[axis][1], rel=0.03)  # soles creep a little, which damps too
 
 
@@ -270,3 +270,26 @@ def test_a_richer_law_is_written_as_the_nearest_spring_and_damper(tmp_path: Path
     notes = export(made, "openhrp", tmp_path / "bush.conf")
     assert "LLEG_BUSH_PITCH,530,40" in (tmp_path / "bush.conf").read_text()
     assert any("slip_torque" in note.text for note in notes)
+
+
+def test_an_offset_turns_the_points(tmp_path: Path) -> None:
+    """Without a torque the sole, flat on the floor, stands at -offset/K to the ankle: the ankle leans by offset/K."""
+    urdf = write_urdf(tmp_path / "b.urdf", rigid_legs=True)
+    export(result(urdf), "mujoco-contact", tmp_path / "out.xml", with_offset=True)
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "out.xml"))
+    for geom in range(model.ngeom):
+        if model.geom(geom).name.startswith("left_contact_"):
+            model.geom_contype[geom] = model.geom_conaffinity[geom] = 0
+    load = 0.5 * float(model.body_mass.sum()) * GRAVITY
+    model.opt.gravity[:] = 0
+    model.dof_damping[3:6] = 60.0
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    ankle, pelvis = model.body("right_ankle").id, model.body("pelvis").id
+    for _ in range(6000):
+        at = data.xpos[ankle] + data.xmat[ankle].reshape(3, 3) @ CENTRE
+        data.xfrc_applied[pelvis, 2] = -load
+        data.xfrc_applied[pelvis, 3:] = np.cross(at - data.xipos[pelvis], [0, 0, -load])
+        mujoco.mj_step(model, data)
+    k, _, offset = TRUTH["right"]["pitch"]
+    assert 2 * data.qpos[5] == pytest.approx(offset / k, rel=0.05)
