@@ -20,7 +20,7 @@ ROOMS = (
     "results", "sensors", "feet", "whole_body",
     "online",
     "motions", "twin",
-    "inspection", "exporters", "robot_guess", "report", "campaign", "cli",
+    "inspection", "exporters", "robot_guess", "report", "campaign", "comparison", "cli",
 )  # fmt: skip
 # So does a folder or a file inside `feet`: from those before it.
 FEET = (

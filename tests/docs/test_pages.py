@@ -45,6 +45,7 @@ OWN: dict[str, Callable[[Path], object]] = {
 }
 # Pages that go on from a robot, logs and results: those of the examples in docstrings.
 RESULTS = (
+    "docs/how_to/mujoco_contact.md",
     "docs/how_to/randomisation.md",
     "docs/how_to/stabiliser.md",
     "docs/how_to/observer.md",
@@ -62,6 +63,8 @@ TWIN = (
     "docs/tutorials/mujoco.md",
     "docs/tutorials/choose_motions.md",
 )
+# Pages that play their logs in a simulator again, which small made logs are not made for.
+PLAYED = ("docs/how_to/compare_in_simulator.md",)
 # Whose snippets another test runs, or why they do not run.
 ELSEWHERE = {
     "docs/python.md": "tests/test_front_door.py",
@@ -82,7 +85,7 @@ def typed(page: Path) -> bool:
 
 def test_every_page_with_something_to_type_is_run() -> None:
     pages = {str(page.relative_to(ROOT)) for page in PAGES if typed(page)}
-    assert pages == {*OWN, *RESULTS, *TWIN, *ELSEWHERE}
+    assert pages == {*OWN, *RESULTS, *TWIN, *PLAYED, *ELSEWHERE}
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
@@ -122,7 +125,7 @@ def test_a_page_works_on_small_made_logs(page: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.twin_pages
-@pytest.mark.parametrize("page", TWIN)
+@pytest.mark.parametrize("page", [*TWIN, *PLAYED])
 def test_a_page_shows_what_the_twin_gives(page: str, tmp_path: Path) -> None:
     reader = Reader(tmp_path)
     reader.read(ROOT / page)

@@ -12,14 +12,14 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests" / "support"), str(ROOT / "tests" / "docs")]
 
-from test_pages import TWIN  # noqa: E402
+from test_pages import PLAYED, TWIN  # noqa: E402
 
 from page_blocks import with_outputs  # noqa: E402
 from page_runner import Reader  # noqa: E402
 
 
 def main() -> None:
-    for name in sys.argv[1:] or TWIN:
+    for name in sys.argv[1:] or (*TWIN, *PLAYED):
         page = (ROOT / name).resolve()
         with tempfile.TemporaryDirectory() as folder:
             reader = Reader(Path(folder))

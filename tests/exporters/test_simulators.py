@@ -157,7 +157,9 @@ def test_mujoco_keeps_the_robot_and_moves_the_ground_shapes(tmp_path: Path) -> N
     assert rest == pytest.approx(-5.66 / 480, rel=1e-6)
     # No traps from the user's classes.
     dof = after.joint("LLEG_BUSH_ROLL").dofadr[0]
-    assert (after.dof_damping[dof], after.dof_armature[dof], after.dof_frictionloss[dof]) == (28.15, 0, 0)
+    assert (after.dof_damping[dof], after.dof_frictionloss[dof]) == (28.15, 0)
+    # A sole that MuJoCo's contacts turn as far as they should: see `_add_joint`.
+    assert after.dof_armature[dof] == pytest.approx(after.opt.timestep * 28.15)
     assert not after.jnt_limited[after.joint("LLEG_BUSH_ROLL").id]
     data = mujoco.MjData(after)
     for pose in range(40):  # no contact inside a leg, however the feet deflect
@@ -169,6 +171,23 @@ def test_mujoco_keeps_the_robot_and_moves_the_ground_shapes(tmp_path: Path) -> N
         mujoco.mj_forward(after, data)
         pairs = {tuple(after.body(after.geom_bodyid[g]).name for g in c.geom) for c in data.contact}
         assert not [p for p in pairs if p[0].split("_")[0] == p[1].split("_")[0]], pairs
+
+
+def test_a_sole_that_is_a_body_of_its_own_goes_along_wherever_its_frame_stands(tmp_path: Path) -> None:
+    """Its frame in the bush centre: left at the ankle, it would carry the ground's force past the bush."""
+    mujoco = pytest.importorskip("mujoco")
+    source = write_mjcf(tmp_path / "robot.xml")
+    root = ET.parse(source).getroot()
+    ankle = next(body for body in root.iter("body") if body.get("name") == "left_ankle")
+    foot = next(geom for geom in ankle.findall("geom") if geom.get("name") == "left_foot")
+    ankle.remove(foot)
+    foot.set("pos", "0 0 -0.01")
+    sole = ET.SubElement(ankle, "body", name="left_plate", pos=" ".join(str(value) for value in CENTRE))
+    sole.append(foot)
+    source.write_text(ET.tostring(root, encoding="unicode"))
+    export(result(write_urdf(tmp_path / "b.urdf")), "mjcf", tmp_path / "out.xml", model=source)
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "out.xml"))
+    assert model.body(model.body("left_plate").parentid[0]).name == "left_bush_sole"
 
 
 def test_mujoco_export_onto_its_own_export_updates_the_values(tmp_path: Path) -> None:

@@ -21,16 +21,21 @@ COMMANDS = {
     "validate": ("validate", "Score a result on logs that it has not seen."),
     "simulate": ("simulate", "Logs from the twin, with the imperfections that you choose."),
     "export": ("export", "Write a result in the format of a simulator or controller."),
+    "compare": ("compare", "Play logs in MuJoCo on rigid and on exported feet, beside the record."),
     "select": ("select", "Which of these logs are most informative about each parameter."),
     "diagnose": ("diagnose", "What limits each number of a result, and what to record next."),
     "online": ("online", "Replay a log through the estimator of controllers, sample by sample."),
+    "show reference": ("show", "Foot stiffness that others published or configured, and yours among it."),
     "report": ("report", "Write the result's report.html again."),
     "convert": ("convert", "A log in another format."),
     "init": ("init", "A first robot file from a URDF and, if given, logs; every guess is marked."),
     "bug-report": ("bug_report", "What to send with a question: versions, settings, what inspect says."),
 }
 SEVERAL = "--validate"  # takes one log or more
-GROUPS = {"identify": "Identify feet, inertial parameters or joints from logs."}
+GROUPS = {
+    "identify": "Identify feet, inertial parameters or joints from logs.",
+    "show": "What is known elsewhere.",
+}
 
 EPILOG = "Example: plantar identify feet robot.yaml sway_*.csv --validate squat.csv --out out/feet"
 

@@ -21,6 +21,7 @@ from plantar.notes import Note, unique
 # Target -> (module of this package, what it writes).
 TARGETS: dict[str, tuple[str, str]] = {
     "mjcf": ("mjcf.target", "MuJoCo model (MJCF): bush joints and a light sole in each foot"),
+    "mujoco-contact": ("contact.target", "MuJoCo model (MJCF): points under each foot with fitted solref"),
     "sdf": ("sdf.target", "SDFormat model: prismatic and revolute joints with spring and damper"),
     "urdf": ("urdf.target", "URDF with Gazebo's spring tags, or the inertias of a plantar.inertia/1"),
     "drake": ("sdf.drake", "SDFormat for Drake: free bush joints under a drake:linear_bushing_rpy"),
@@ -29,6 +30,7 @@ TARGETS: dict[str, tuple[str, str]] = {
     "openhrp": ("openhrp", "OpenHRP and hrpsys: configuration of the bush customizer"),
     "choreonoid": ("choreonoid", "Choreonoid: the YAML entry 'bush' of a body customizer"),
     "kinetics_observer": ("kinetics_observer", "Kinetics Observer: stiffness and damping of contacts"),
+    "randomization": ("randomization", "YAML of means, deviations and correlations, to train with"),
     "yaml": ("plain", "YAML with every number, its unit and its interval"),
 }
 
@@ -45,7 +47,8 @@ def export(
 
     Args:
         result: what `identify_feet` or `identify_inertia` found, or the path of its `result.json`.
-        target: mjcf, sdf, urdf, drake, usd, mc_rtc, openhrp, choreonoid, kinetics_observer or yaml; for inertias urdf.
+        target: mjcf, mujoco-contact, sdf, urdf, drake, usd, mc_rtc, openhrp, choreonoid, kinetics_observer,
+            randomization or yaml; for inertias urdf.
         out: the file to write.
         model: an existing robot model of that format to extend (MJCF, SDFormat, URDF; a URDF works for MJCF and
             SDFormat too); the result's own URDF where left out.

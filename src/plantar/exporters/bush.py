@@ -176,6 +176,9 @@ def _spring(
     extra = [name for name in values if name not in KNOWN_TERMS]
     if extra:
         text = f"{where}: the target holds a linear spring and damper; left out: {', '.join(extra)}"
+        if (nearest := _linear_equivalent(result, foot, axis)) is not None:
+            stiffness, damping = nearest
+            text += "; K and C are those of the spring and damper nearest to the identified motions"
         notes.append(Note("export_terms", "warning", text))
     offsets = [
         _number(row.get("value"), f"{where} offset")
@@ -188,6 +191,17 @@ def _spring(
         text += f" from {min(offsets):.4g} to {max(offsets):.4g}"
         notes.append(Note("export_offset", "info", text))
     return Spring(axis, stiffness, damping, offset if with_offset else 0.0)
+
+
+def _linear_equivalent(result: Mapping[str, Any], foot: str, axis: Axis) -> tuple[float, float] | None:
+    """K and C of the spring and damper that fits the motions of a richer law best, where the result has usable ones."""
+    for row in result.get("laws", ()):
+        if (row.get("foot"), row.get("axis")) == (foot, axis):
+            nearest = row.get("linear_equivalent") or {}
+            stiffness, damping = (float(nearest.get(name) or math.nan) for name in ("stiffness", "damping"))
+            if 0 < stiffness < math.inf and 0 < damping < math.inf:
+                return stiffness, damping
+    return None
 
 
 def _number(value: object, what: str) -> float:

@@ -88,4 +88,5 @@ def _tables(result: FeetResult) -> list[Table]:
     made += tables.comparison_tables(result)
     made += [tables.offset_table(result.offsets)] if result.offsets else []
     made += [tables.used_table(result.phases)] if result.phases else []
+    made.append(tables.neighbour_table(result.parameters))
     return made

@@ -9,11 +9,12 @@ from typing import Any
 
 from plantar.contact.phases import Phase
 from plantar.conventions import NORMAL95
-from plantar.report.content import Cell, Column, Table
+from plantar.report.content import Cell, Column, Mark, Table
 from plantar.report.verdict import MARKS, symbol, why_of
 from plantar.results.dynamics import DynamicsScore, JointParameter
 from plantar.results.feet import Comparison, FeetResult, Input, Offset, Parameter, ValidationRow
 from plantar.results.numbers import MISSING, interval, number, percent, unit, with_uncertainty
+from plantar.results.reference import neighbours
 
 
 def parameter_table(parameters: Sequence[Parameter]) -> Table:
@@ -54,6 +55,28 @@ def parameter_table(parameters: Sequence[Parameter]) -> Table:
 
 def verdict_cell(row: Parameter | JointParameter) -> Cell:
     return Cell(row.verdict, MARKS[row.verdict], row.reason)
+
+
+def neighbour_table(parameters: Sequence[Parameter]) -> Table:
+    """The result's feet among published and configured ones, softest first."""
+    rows: list[list[Cell | str]] = []
+    for line in neighbours(parameters):
+        one = line.reference
+        given = [
+            MISSING if value is None else f"{value:.4g}"
+            for value in (one.pitch, one.roll, one.z, one.damping)
+        ]
+        mark: Mark = "good" if line.own else ""
+        rows.append([Cell(one.robot, mark), *given, one.origin, one.source])
+    columns = [
+        Column("robot", numeric=False),
+        Column("pitch", unit("N.m/rad")),
+        Column("roll", unit("N.m/rad")),
+    ]
+    columns += [Column("z", unit("N/m")), Column("C", unit("N.m.s/rad"))]
+    columns += [Column("", numeric=False), Column("source", numeric=False)]
+    remark = "Most were configured and never measured: they show a likely size, no more."
+    return Table.of("Foot stiffness elsewhere", columns, rows, remark=remark, folded=True)
 
 
 def offset_table(offsets: Sequence[Offset]) -> Table:

@@ -24,6 +24,7 @@ from plantar.twin.robots.from_robot import describe
 from plantar.twin.sensing.exact import exact_columns
 from plantar.twin.simulation.mjcf import SERVO_ANGLE
 from plantar.twin.simulation.physics import Physics
+from plantar.twin.simulation.rollout import Rollout
 
 SMOOTH: Final = 10.0  # Hz: encoder steps are no motion
 REFERENCE: Final = 1.0  # s at the start that zeros of force sensors are taken from, and that are not scored
@@ -98,23 +99,40 @@ def replay(
     lets the robot fall, that one is missing from the list. Raises DataError where a log holds no attitude.
     """
     plans = [plan_of(robot, log, (hands or {}).get(log.name)) for log in logs]
-    records = [_at(log, log.time[0] + plan.time) for log, plan in zip(logs, plans, strict=True)]
-    felt = [(_torques(robot, record), chest_attitude(robot, record)) for record in records]
+    records = [record_of(robot, log, plan) for log, plan in zip(logs, plans, strict=True)]
     pairs = [(place, feet) for feet in candidates for place in range(len(plans))]
     jobs = [
         (replace(plans[place], name=f"{plans[place].name} on {feet}"), Physics(bushes=candidates[feet]))
         for place, feet in pairs
     ]
-    cut, found = cut_feet(describe(robot), robot), []
-    for (place, feet), rollout in zip(pairs, roll_each(jobs, robot, progress), strict=True):
-        if isinstance(rollout, MotionError):
-            continue
-        plan, (torques, attitude) = plans[place], felt[place]
-        played = MotionLog(plan.name, plan.time, exact_columns(rollout, robot, cut))
-        chest = pitch_and_roll(moved_onto(attitude, chest_attitude(robot, played)))
-        mine, recorded = _torques(robot, played), pitch_and_roll(attitude[:, 2, :])
-        found.append(Replayed(plan.name, feet, plan.time, mine, torques, chest, recorded))
-    return found
+    rollouts = zip(pairs, roll_each(jobs, robot, progress), strict=True)
+    return [
+        beside(robot, plans[place], feet, rollout, records[place])
+        for (place, feet), rollout in rollouts
+        if not isinstance(rollout, MotionError)
+    ]
+
+
+@dataclass(frozen=True)
+class Record:
+    """What a log holds at a plan's times: `torque` as in `Replayed`, `attitude` (N, 3, 3) of the IMU, body to world."""
+
+    torque: Mapping[tuple[str, str], Array]
+    attitude: Array
+
+
+def record_of(robot: RobotModel, log: MotionLog, plan: Plan) -> Record:
+    """A log at the times of its plan. Raises DataError where it holds no attitude."""
+    record = _at(log, log.time[0] + plan.time)
+    return Record(_torques(robot, record), chest_attitude(robot, record))
+
+
+def beside(robot: RobotModel, plan: Plan, feet: str, rollout: Rollout, record: Record) -> Replayed:
+    """A rollout of a plan on some feet beside what was recorded."""
+    played = MotionLog(plan.name, plan.time, exact_columns(rollout, robot, cut_feet(describe(robot), robot)))
+    chest = pitch_and_roll(moved_onto(record.attitude, chest_attitude(robot, played)))
+    recorded = pitch_and_roll(record.attitude[:, 2, :])
+    return Replayed(plan.name, feet, plan.time, _torques(robot, played), record.torque, chest, recorded)
 
 
 def feet_of(result: FeetResult) -> Feet:

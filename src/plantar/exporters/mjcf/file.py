@@ -90,6 +90,7 @@ class Compiled:
             reason = " ".join(str(error).split())[:300]
             raise ExportError(located(f"MuJoCo refuses the model: {reason}", path=path)) from error
         self._mesh_type = mujoco.mjtGeom.mjGEOM_MESH
+        self._plane_type = int(mujoco.mjtGeom.mjGEOM_PLANE)
         self.degrees = bool(spec.compiler.degree)
         self.inertia_from_geoms = int(spec.compiler.inertiafromgeom) == int(
             mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_TRUE
@@ -142,6 +143,11 @@ class Compiled:
         world = points @ self.data.geom_xmat[geom].reshape(3, 3).T + self.data.geom_xpos[geom]
         return self._in_body(world, body)
 
+    def moved(self, point: Array, body: str, other: str) -> Array:
+        """A point (3,) of a body's frame in another body's frame, at the reference pose."""
+        index = self._id("BODY", body)
+        return self._in_body(self.data.xmat[index].reshape(3, 3) @ point + self.data.xpos[index], other)
+
     def _subtree(self, name: str) -> list[int]:
         inside = {self._id("BODY", name)}
         for body in range(self.model.nbody):
@@ -179,6 +185,21 @@ class Compiled:
         index, m = self._id("BODY", body), self.model
         return (float(m.body_mass[index]), np.array(m.body_ipos[index]), np.array(m.body_iquat[index]),
                 np.array(m.body_inertia[index]))  # fmt: skip
+
+    def inverse_mass(self, body: str) -> float:
+        """MuJoCo's inverse mass of a body at the reference pose, along any axis [1/kg]: what scales its contacts."""
+        return float(self.model.body_invweight0[self._id("BODY", body), 0])
+
+    def friction_on_floor(self, geom: int) -> Array:
+        """Friction (3,) of a geom on the model's floor: of the one of higher priority, else the larger."""
+        model = self.model
+        planes = [g for g in range(model.ngeom) if int(model.geom_type[g]) == self._plane_type]
+        own = np.array(model.geom_friction[geom])
+        if not planes:
+            return own
+        floor = np.array(model.geom_friction[planes[0]])
+        ahead = int(model.geom_priority[geom]) - int(model.geom_priority[planes[0]])
+        return own if ahead > 0 else floor if ahead < 0 else np.maximum(own, floor)
 
     def neighbours(self, body: str) -> list[str]:
         """Named bodies whose contacts with `body` MuJoCo filters: its weld group's parent and children."""

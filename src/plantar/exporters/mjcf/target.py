@@ -72,7 +72,7 @@ def _insert(root: ET.Element, foot: FootBush, before: Compiled, notes: list[Note
         )
     sole = ET.Element("body", name=foot.sole_link)
     for spring in foot.springs:
-        _add_joint(sole, foot, spring, before.degrees)
+        _add_joint(sole, foot, spring, before)
     shapes = _move_shapes(body, sole, foot, before)
     bodies = _move_bodies(body, sole, foot, before)
     sites = _move_sites(root, body, sole, foot, before)
@@ -97,14 +97,20 @@ def _insert(root: ET.Element, foot: FootBush, before: Compiled, notes: list[Note
     _exclude(root, foot, before)
 
 
-def _add_joint(sole: ET.Element, foot: FootBush, spring: Spring, degrees: bool) -> None:
+def _add_joint(sole: ET.Element, foot: FootBush, spring: Spring, before: Compiled) -> None:
+    """One axis of the bush; what a sole on the ground needs beside spring and damper is an inertia.
+
+    MuJoCo's implicit integrators take the joint's damping C into account, its contact solver does not: contacts turn a
+    sole of inertia I by I / (I + step·C) of what they should, and a light one bounces. An armature of step·C keeps that
+    above a half. Against the spring it weighs as one step against C/K.
+    """
     joint = ET.SubElement(
         sole, "joint", name=foot.joint(spring.axis), type="slide" if spring.axis == "z" else "hinge",
         pos=numbers(foot.centre), axis=numbers(foot.direction(spring.axis)), ref="0", limited="false",
-        armature="0", frictionloss="0", springdamper="0 0",
+        armature=numbers([float(before.model.opt.timestep) * spring.damping]), frictionloss="0", springdamper="0 0",
     )  # fmt: skip
     # Every attribute that a default class of the model could set is written out.
-    _set_spring(joint, spring, degrees)
+    _set_spring(joint, spring, before.degrees)
 
 
 def _set_spring(joint: ET.Element, spring: Spring, degrees: bool) -> None:
@@ -134,7 +140,7 @@ def _move_bodies(body: ET.Element, sole: ET.Element, foot: FootBush, before: Com
         jointed = any(element.find(tag) is not None for tag in ("joint", "freejoint"))
         low = len(points) > 0 and reaches_sole(points, foot)
         below = foot.below(before.body_origin(name, foot.ankle))
-        if (below and not jointed) or (below and low):
+        if (low and not jointed) or (below and (low or not jointed)):
             body.remove(element)
             sole.append(element)
             moved.append(f"body {name}")

@@ -1,0 +1,82 @@
+"""`plantar compare`."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from plantar.cli.memory import Memory
+from plantar.cli.terminal import console, end_progress, number, progress, table
+from plantar.errors import MissingExtra, PlantarError, located
+from plantar.files import refuse_file, write_text
+from plantar.logs.inputs import open_together
+from plantar.results.feet import FeetResult
+from plantar.results.io import dump_json
+from plantar.robot.model import load_robot
+
+if TYPE_CHECKING:
+    from plantar.comparison.compare import KindScore
+
+MILLI = 1e3
+
+
+def run(
+    result: Annotated[Path, typer.Argument(help="The result of `identify feet`.", metavar="RESULT.json")],
+    robot: Annotated[Path, typer.Argument(help="Robot file (YAML).", metavar="ROBOT.yaml")],
+    logs: Annotated[
+        list[Path], typer.Argument(help="Logs with joints, attitude and wrenches.", metavar="LOG...")
+    ],
+    simulator: Annotated[str, typer.Option("--simulator", help="Only mujoco so far.")] = "mujoco",
+    out: Annotated[
+        Path | None, typer.Option("--out", help="Folder for comparison.svg and comparison.json.")
+    ] = None,
+    memory: Memory = None,
+    json: Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No table, no progress.")] = False,
+) -> None:
+    """Play logs' joint motion in MuJoCo on rigid feet, on exported joints and on exported contact, beside the record.
+
+    Example: plantar compare out/feet/result.json robot.yaml squat.csv --out out/comparison
+    """
+    try:
+        from plantar.comparison.compare import SIMULATORS, compare, pooled
+        from plantar.comparison.picture import write_picture
+        from plantar.comparison.scenes import KINDS
+    except ImportError as error:
+        raise MissingExtra(error.name or "mujoco", "twin", "plantar compare") from error
+    if simulator not in SIMULATORS:
+        raise PlantarError(located("unknown simulator", value=simulator, valid=", ".join(SIMULATORS)))
+    if out is not None:
+        refuse_file(out)
+    step = progress(quiet)
+    found = FeetResult.load(result, residuals=False)
+    known = load_robot(robot)
+    scores, replayed = compare(found, known, open_together(logs, known, memory), step)
+    end_progress(quiet)
+    content = dump_json({"schema": "plantar.comparison/1", "scores": [asdict(row) for row in scores]})
+    if out is not None:
+        write_text(out / "comparison.json", content)
+        if replayed:
+            write_picture(out, replayed)
+    if json:
+        print(content, end="")
+    elif not quiet:
+        screen = console()
+        heads = ("motion", "feet", "chest pitch [mrad]", "chest roll [mrad]", "foot torque [N·m]")
+        screen.print(table("Error against the record", heads, [_cells(row) for row in scores]))
+        together = [(kind, pooled(scores, kind)) for kind in KINDS]
+        text = ", ".join(
+            f"{kind} {'falls' if error is None else f'{number(MILLI * error, 3)} mrad'}"
+            for kind, error in together
+        )
+        screen.print(f"chest, all motions: {text}", markup=False)
+
+
+def _cells(row: KindScore) -> tuple[str, ...]:
+    if row.chest_pitch is None or row.chest_roll is None:
+        return row.motion, row.feet, "falls", "falls", "falls"
+    chest = (number(MILLI * row.chest_pitch, 3), number(MILLI * row.chest_roll, 3))
+    return row.motion, row.feet, *chest, number(row.torque, 3)

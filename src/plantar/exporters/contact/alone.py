@@ -1,0 +1,132 @@
+"""A foot on points alone in MuJoCo, pressed on the floor and turned: what it really holds with, at which step."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+
+from plantar.conventions import Array, Axis
+from plantar.exporters.contact.points import Point, PointFoot
+
+# The contact's own inertia, as a time: an inertia of C times this stands beside the damper. It is what lets a light
+# foot stand at steps of up to this length; the bush's C/K is ten times longer.
+INERTIA_TIME: Final = 0.004  # s
+RADIUS: Final = 0.002  # m, of the sphere that is a point
+# Friction as much harder than the normal: else a soft sole creeps under a sideways force, and a foot seems softer.
+IMPRATIO: Final = 100.0
+MARKED: Final = 0.25  # of the angle at which a point leaves the ground: where K and C are measured
+SETTLE: Final = 12.0  # times C/K until a foot stands still
+PERIODS: Final = 3  # of the swing that C is read from, after as many that are not read
+HINGE: Final[Mapping[Axis, int]] = {"roll": 0, "pitch": 1}
+LIGHT: Final = (1.0, 5e-3)  # kg and kg·m² of the foot itself: light, the hardest case for a long step
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Stiffness [N·m/rad] and damping [N·m·s/rad] about the bush centre; NaN where the foot did not stand still."""
+
+    stiffness: float
+    damping: float
+
+
+def contact_attributes(point: Point, inverse_mass: float) -> dict[str, str]:
+    """MJCF attributes of the geom that is a point: `solref`, `solimp`, `margin`, `gap`.
+
+    A contact of constant impedance d pushes with (stiffness·r - damping·v) / ((1 - d) Â) and adds an inertia
+    m = d / ((1 - d) Â), where Â is MuJoCo's inverse mass of the two bodies at the model's reference pose: so
+    `solref` = -(k, c)(1 - d)Â with d = mÂ / (1 + mÂ) is a spring k and a damper c (MuJoCo, Computation, solver
+    parameters). Holds for elliptic cones.
+
+    Args:
+        point: of the foot. inverse_mass: `body_invweight0` of the foot's body, translational [1/kg].
+    """
+    inertia = max(INERTIA_TIME * point.damping, 0.5 * INERTIA_TIME**2 * point.stiffness)
+    impedance = inertia * inverse_mass / (1 + inertia * inverse_mass)
+    scale = (1 - impedance) * inverse_mass
+    return {
+        "solref": f"{-point.stiffness * scale:.9g} {-max(point.damping * scale, 1e-9):.9g}",
+        "solimp": f"{impedance:.9g} {impedance:.9g} 0.001 0.5 2",
+        "margin": "0",
+        "gap": "0",
+    }
+
+
+def measured(foot: PointFoot, axis: Axis, load: float, step: float, share: float = MARKED) -> Measured:
+    """Turn a foot about one axis under a load and read K from where it stands, C from how it follows a swing.
+
+    Args:
+        foot: on points. axis: pitch or roll. load: at the bush centre [N]. step: of the simulation [s].
+        share: how far it is turned, of the angle at which a point leaves the ground.
+    """
+    alone = _Alone(foot, step)
+    k, c = foot.turning(axis)
+    torque = share * foot.touching_angle(axis, load) * k
+    settle = max(SETTLE * c / k, 0.5)
+    ends = [alone.turned(axis, load, sign * torque, settle) for sign in (1.0, -1.0)]
+    if not np.isfinite(ends).all():
+        return Measured(np.nan, np.nan)
+    stiffness = 2 * torque / (ends[0] - ends[1])
+    rate = k / c if c > 0 else 10.0
+    response = alone.swung(axis, load, torque, rate, settle)
+    return Measured(float(stiffness), float((torque / response).imag / rate) if response else np.nan)
+
+
+class _Alone:
+    """One foot in MuJoCo, its frame in the bush centre, on a plane."""
+
+    def __init__(self, foot: PointFoot, step: float) -> None:
+        import mujoco
+
+        mass, inertia = LIGHT
+        points = "".join(
+            f'<geom type="sphere" size="{RADIUS}" mass="0" priority="1" condim="3" '
+            f'pos="{p.x} {p.y} {RADIUS - foot.depth - p.lower}" '
+            + " ".join(f'{key}="{value}"' for key, value in contact_attributes(p, 1 / mass).items())
+            + "/>"
+            for p in foot.points
+        )
+        self.model: Any = mujoco.MjModel.from_xml_string(
+            f'<mujoco><option timestep="{step}" cone="elliptic" impratio="{IMPRATIO}" gravity="0 0 0"/>'
+            f'<worldbody><geom type="plane" size="1 1 1"/><body pos="0 0 {foot.depth}"><freejoint/>'
+            f'<inertial pos="0 0 0" mass="{mass}" diaginertia="{inertia} {inertia} {inertia}"/>'
+            f"{points}</body></worldbody></mujoco>"
+        )
+        self.model.body_invweight0[1, 0] = 1 / mass
+        self.foot, self.step = foot, step
+
+    def turned(self, axis: Axis, load: float, torque: float, settle: float) -> float:
+        """Angle [rad] after standing under a constant torque [N·m]; NaN where it falls or does not stand still."""
+        track = self._track(axis, load, np.full(round(settle / self.step), torque))
+        tail = track[-max(10, len(track) // 10) :]
+        still = bool(np.ptp(tail) <= 0.01 * abs(tail[-1])) and abs(float(tail[-1])) < 0.5
+        return float(tail.mean()) if still else float("nan")
+
+    def swung(self, axis: Axis, load: float, torque: float, rate: float, settle: float) -> complex:
+        """Complex amplitude of the angle [rad] under torque·cos(rate·t)."""
+        period = 2 * np.pi / rate
+        times = np.arange(round((settle + PERIODS * period) / self.step)) * self.step
+        track = self._track(axis, load, torque * np.cos(rate * times))
+        last = times >= times[-1] - PERIODS * period
+        # The angle that a row of `_track` ends in belongs to the time after its step.
+        late = times[last] + self.step
+        basis = np.column_stack([np.cos(rate * late), -np.sin(rate * late), np.ones(late.size)])
+        real, imaginary, _ = np.linalg.lstsq(basis, track[last], rcond=None)[0]
+        return complex(real, imaginary)
+
+    def _track(self, axis: Axis, load: float, torques: Array) -> Array:
+        """Angle after each step [rad], one torque a step, from where the load alone has been put down."""
+        import mujoco
+
+        data = mujoco.MjData(self.model)
+        data.qpos[2] -= self.foot.sink(load)
+        data.xfrc_applied[1, 2] = -load
+        track = np.empty(len(torques))
+        place = HINGE[axis]
+        for sample, torque in enumerate(torques):
+            data.xfrc_applied[1, 3 + place] = torque
+            mujoco.mj_step(self.model, data)
+            track[sample] = 2 * data.qpos[4 + place]
+        return track

@@ -1,0 +1,183 @@
+"""MuJoCo contact: points under each foot whose `solref` and `solimp` turn like the bush. No joint is added.
+
+The shapes that stood on the ground stay, to be seen and weighed, but touch nothing any more.
+"""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from plantar.conventions import GRAVITY, rotation_from_rpy
+from plantar.errors import ExportError, MissingExtra, located
+from plantar.exporters.bush import FootBush
+from plantar.exporters.comment import head
+from plantar.exporters.contact.alone import IMPRATIO, RADIUS, contact_attributes
+from plantar.exporters.contact.fit import LOADS, STEPS, Check, Fitted, fitted
+from plantar.exporters.mjcf.file import Compiled, load_mjcf, relocate
+from plantar.exporters.mjcf.from_urdf import mjcf_from_urdf
+from plantar.exporters.shapes import reaches_sole
+from plantar.exporters.xml_file import numbers, to_text
+from plantar.notes import Note
+
+if TYPE_CHECKING:
+    from plantar.exporters.job import Job
+
+EXTENDS = True
+TOUCH: Final = ("contype", "conaffinity", "priority", "friction")
+FRICTION: Final = (1.0, 0.005, 0.0001)  # MuJoCo's own, where the model has no shape to take it from
+
+
+def write(job: Job) -> tuple[str, tuple[Note, ...]]:
+    """The model with its feet on points, as text; compiled by MuJoCo before and after.
+
+    Raises ExportError: MuJoCo refuses the model, an ankle body is not in it, or a foot cannot stand on points.
+    MissingExtra: no mujoco.
+    """
+    try:
+        import mujoco  # noqa: F401
+    except ImportError as error:
+        raise MissingExtra("mujoco", "twin", "export to MuJoCo's contact") from error
+    assert job.model is not None
+    notes: list[Note] = []
+    if job.model.suffix.lower() == ".urdf":
+        root = mjcf_from_urdf(job.model, job.feet, notes)
+    else:
+        root = load_mjcf(job.model, notes)
+    earlier = {foot.name: _taken_out(root, foot) for foot in job.feet}
+    model = Compiled(root, job.model)
+    weight = float(model.model.body_mass.sum()) * GRAVITY
+    for foot in job.feet:
+        found = fitted(foot, weight)
+        _insert(root, foot, found, model, earlier[foot.name], notes)
+        notes += _said(foot, found, float(model.model.opt.timestep))
+    _harden_friction(root, notes)
+    Compiled(root, job.model)  # MuJoCo must take what is written
+    relocate(root, job.out)
+    text = "solref holds for this model's masses: after changing them, or the foot's body, export again"
+    notes.append(Note("export_masses", "info", text))
+    remarks = (*job.remarks, *notes)
+    lines = head(job.result, job.feet, "MuJoCo's contact", remarks, with_offset=job.with_offset)
+    return to_text(root, lines), tuple(notes)
+
+
+def _named(foot: FootBush) -> str:
+    return f"{foot.name}_contact_"
+
+
+def _taken_out(root: ET.Element, foot: FootBush) -> tuple[ET.Element, dict[str, str]] | None:
+    """Take the points of an earlier export out: the body that held them and how they touched."""
+    found = None
+    for body in list(root.iter("body")):
+        for geom in body.findall("geom"):
+            if geom.get("name", "").startswith(_named(foot)):
+                body.remove(geom)
+                found = body, {key: geom.get(key, "") for key in TOUCH}
+    return found
+
+
+def _insert(
+    root: ET.Element,
+    foot: FootBush,
+    found: Fitted,
+    model: Compiled,
+    earlier: tuple[ET.Element, dict[str, str]] | None,
+    notes: list[Note],
+) -> None:
+    body = model.body_element(root, foot.ankle)
+    quiet, touch, holder = _silence(root, body, foot, model)
+    if earlier is not None:
+        holder, touch = earlier
+    if quiet:
+        text = f"{foot.name}: touches nothing any more, the points do: {', '.join(quiet)}"
+        notes.append(Note("export_silent", "info", text))
+    rest = [spring.rest if spring else 0.0 for spring in (foot.spring("roll"), foot.spring("pitch"))]
+    turn = rotation_from_rpy(np.array([rest[0], rest[1], 0.0]))  # R_ankle_sole = Ry(pitch) Rx(roll)
+    name = str(holder.get("name"))
+    inverse_mass = model.inverse_mass(name)
+    for place, point in enumerate(found.foot.points):
+        centre = turn @ np.array([point.x, point.y, RADIUS - found.foot.depth - point.lower])
+        # Every attribute that a default class of the model could set is written out.
+        place_in = model.moved(foot.rotation @ centre + foot.centre, foot.ankle, name)
+        shape = {"name": f"{_named(foot)}{place}", "type": "sphere", "size": numbers([RADIUS]), "mass": "0"}
+        shape |= {"pos": numbers(place_in), "condim": "3", "solmix": "1"}
+        ET.SubElement(holder, "geom", shape | touch | contact_attributes(point, inverse_mass))
+
+
+def _silence(
+    root: ET.Element, body: ET.Element, foot: FootBush, model: Compiled
+) -> tuple[list[str], dict[str, str], ET.Element]:
+    """Take contact from the shapes that stand on the ground: their names, how points touch, the body that carried them.
+
+    Points in that same body press through the same force sensors as the shapes did.
+    """
+    holder = body
+    quiet: list[str] = []
+    compiled = model.model
+    priority = str(1 + int(compiled.geom_priority.max(initial=-1)))
+    touch = {"contype": "1", "conaffinity": "1", "priority": priority, "friction": numbers(FRICTION)}
+    for inner in body.iter("body"):
+        name = inner.get("name")
+        if name is None:
+            message = f"a body below '{foot.ankle}' has no name"
+            raise ExportError(located(message, path=model.path, valid="named bodies"))
+        for element, geom in model.geom_elements(inner, name):
+            touches = bool(compiled.geom_contype[geom] or compiled.geom_conaffinity[geom])
+            low = reaches_sole(model.geom_points(geom, foot.ankle), foot)
+            if not touches or not low:
+                continue
+            if not quiet:
+                holder = inner
+                touch["contype"] = str(int(compiled.geom_contype[geom]))
+                touch["conaffinity"] = str(int(compiled.geom_conaffinity[geom]))
+                touch["friction"] = numbers(model.friction_on_floor(geom))
+            element.attrib |= {"contype": "0", "conaffinity": "0"}
+            quiet.append(f"geom {element.get('name') or element.get('mesh') or geom}")
+            for section in root.findall("contact"):
+                for pair in section.findall("pair"):
+                    if element.get("name") in (pair.get("geom1"), pair.get("geom2")):
+                        section.remove(pair)
+    return quiet, touch, holder
+
+
+def _harden_friction(root: ET.Element, notes: list[Note]) -> None:
+    """Elliptic cones, for which the formulas of the points hold, and friction harder than the soft normal."""
+    option = root.find("option")
+    option = ET.SubElement(root, "option") if option is None else option
+    impratio = max(IMPRATIO, float(option.get("impratio", "1")))
+    option.attrib |= {"cone": "elliptic", "impratio": numbers([impratio])}
+    text = f"the model's cone is elliptic and its impratio {impratio:g} now: soft feet creep sideways without"
+    notes.append(Note("export_friction", "info", text))
+
+
+def _said(foot: FootBush, found: Fitted, step: float) -> list[Note]:
+    """What the foot alone showed, and what the points cannot be."""
+    notes = []
+    for check in found.checks:
+        said = f"{foot.name} {check.axis}: alone in MuJoCo at {LOADS[0]:g} to {LOADS[-1]:g} of the weight "
+        said += f"K is right to {100 * check.stiffness_error:.2g} %, C to {100 * check.damping_error:.2g} %, "
+        said += f"at steps of {_steps(check)}; at {LOADS[0]:g} of the weight up to {check.angle:.3f} rad "
+        said += f"({check.torque:.0f} N·m), then points leave the ground and the foot is softer"
+        notes.append(Note("export_contact", "info", said))
+        fits = [one for one in check.steps if one >= step * (1 - 1e-9)]
+        if not fits:
+            text = f"{foot.name} {check.axis}: the model's step of {step:g} s was not seen to hold K and C; "
+            text += f"steps that do: {_steps(check)}"
+            notes.append(Note("export_timestep", "warning", text))
+    stiffness, damping = found.foot.vertical
+    text = f"{foot.name} z: {stiffness:.4g} N/m and {damping:.4g} N·s/m"
+    lower = max(point.lower for point in found.foot.points)
+    if lower > 0:
+        edges = sum(point.stiffness for point in found.foot.points if point.lower > 0)
+        text += f", once the load is more than {edges * lower:.3g} N; below that {edges:.4g} N/m, of the edges alone"
+        text += f", which stand {1e3 * lower:.1f} mm lower than the sole"
+    notes.append(Note("export_vertical", "info", text))
+    return notes
+
+
+def _steps(check: Check) -> str:
+    if not check.steps:
+        return f"none of {', '.join(f'{1e3 * step:g}' for step in STEPS)} ms"
+    return ", ".join(f"{1e3 * step:g}" for step in check.steps) + " ms"

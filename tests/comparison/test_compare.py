@@ -1,0 +1,146 @@
+"""Feet as the exporters write them, in MuJoCo beside a recording of the twin, whose feet are known."""
+
+from __future__ import annotations
+
+import json
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import pytest
+
+from command_line import run
+from plantar.comparison.compare import KindScore, compare, pooled
+from plantar.comparison.picture import write_picture
+from plantar.comparison.scenes import AS_IT_WAS, CONTACT, JOINTS, KINDS, scenes
+from plantar.logs.motion_log import MotionLog
+from plantar.logs.save import save_log
+from plantar.results.feet import FeetResult, Parameter
+from plantar.robot.model import load_robot
+from plantar.twin.bush import PAPER
+from plantar.twin.play import rolled
+from plantar.twin.replay import Replayed, plan_of
+from plantar.twin.robots import hrp2
+from plantar.twin.robots.foot import cut_feet
+from plantar.twin.robots.from_robot import describe
+from plantar.twin.sensing.exact import exact_columns
+from plantar.twin.simulation.physics import Physics
+from twin_samples import plan, short
+
+
+@pytest.fixture(scope="module")
+def log() -> MotionLog:
+    """Eight seconds from where the robot stands: it leans forward and comes back."""
+    robot = hrp2.robot()
+    rollout = rolled(short(plan("Tilt3"), 0.0, 8.0), robot, Physics())
+    return MotionLog("Tilt3", rollout.time, exact_columns(rollout, robot, cut_feet(describe(robot), robot)))
+
+
+@pytest.fixture(scope="module")
+def result(tmp_path_factory: pytest.TempPathFactory) -> FeetResult:
+    """What an identification without any error finds; the twin's robot file stands beside it."""
+    folder = tmp_path_factory.mktemp("result")
+    robot = load_robot(hrp2.write(folder))
+    rows = tuple(
+        Parameter(foot, axis, name, "", getattr(bush, f"{axis}_{name}"), 1.0, None, None, "usable", "")  # type: ignore[arg-type]
+        for foot, bush in PAPER.items()
+        for axis in ("pitch", "roll", "z")
+        for name in ("stiffness", "damping")
+    )
+    feet = {
+        name: {
+            "ankle": foot.ankle,
+            "bush": {"link": foot.ankle, "xyz": [0, 0, -0.085]},
+            "sole": {"link": foot.ankle, "xyz": [0, 0, -0.105], "polygon": foot.sole.polygon.tolist()},
+        }
+        for name, foot in robot.feet.items()
+    }
+    made = FeetResult(
+        robot="hrp2_like", inputs=(), settings={}, model="kelvin_voigt", parameters=rows, offsets=(), phases=(),
+        validation=(), notes=(), robot_model={"urdf": str(folder / "hrp2.urdf"), "feet": feet},
+    )  # fmt: skip
+    made.save(folder)
+    return made
+
+
+@pytest.fixture(scope="module")
+def compared(result: FeetResult, log: MotionLog) -> tuple[tuple[KindScore, ...], tuple[Replayed, ...]]:
+    return compare(result, hrp2.robot(), [log])
+
+
+@pytest.mark.slow
+def test_exported_feet_move_as_the_robot_did_and_rigid_ones_do_not(
+    compared: tuple[tuple[KindScore, ...], tuple[Replayed, ...]],
+) -> None:
+    scores = {one.feet: one for one in compared[0]}
+    assert tuple(scores) == KINDS
+    rigid, joints, contact = (scores[kind].chest for kind in KINDS)
+    assert rigid is not None
+    assert joints is not None
+    assert contact is not None
+    assert contact < 0.3 * rigid
+    assert joints < 0.1 * rigid
+    torques = [scores[kind].torque for kind in KINDS]
+    assert torques[1] < 0.2 * torques[0]  # type: ignore[operator]
+    assert torques[2] < 0.5 * torques[0]  # type: ignore[operator]
+
+
+@pytest.mark.slow
+def test_the_picture_and_the_numbers_go_to_a_folder(
+    compared: tuple[tuple[KindScore, ...], tuple[Replayed, ...]], tmp_path: Path
+) -> None:
+    pytest.importorskip("matplotlib")
+    (path,) = write_picture(tmp_path, compared[1])
+    text = path.read_text()
+    for words in (*KINDS, "recorded", "chest pitch", "Tilt3"):
+        assert words in text
+
+
+def test_the_scenes_are_what_the_exporters_write(result: FeetResult, log: MotionLog) -> None:
+    made = scenes(result, hrp2.robot(), plan_of(hrp2.robot(), log))
+    assert tuple(made) == KINDS
+    names = {kind: {e.get("name", "") for e in ET.fromstring(text).iter()} for kind, text in made.items()}
+    assert "LLEG_BUSH_PITCH" in names[JOINTS]
+    assert "left_contact_0" in names[CONTACT]
+    assert not {"LLEG_BUSH_PITCH", "left_contact_0"} & names[AS_IT_WAS]
+    assert "LLEG_BUSH_PITCH" not in names[CONTACT]
+
+
+def test_a_kind_that_falls_has_no_score_over_all_motions() -> None:
+    stood, fell = KindScore("a", CONTACT, 3e-3, 4e-3, 1.0), KindScore("b", CONTACT, None, None, None)
+    assert stood.chest == pytest.approx(5e-3)
+    assert pooled([stood, stood], CONTACT) == pytest.approx(5e-3)
+    assert pooled([stood, fell], CONTACT) is None
+    assert pooled([stood], JOINTS) is None
+
+
+def test_the_command_says_what_it_cannot_do(
+    result: FeetResult, log: MotionLog, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    result.save(tmp_path / "feet")
+    robot = hrp2.write(tmp_path)
+    bare = log.time, {name: values for name, values in log.columns.items() if "orientation" not in name}
+    file = tmp_path / "bare.parquet"
+    save_log(MotionLog("bare", *bare), file, hrp2.robot())
+    found = tmp_path / "feet" / "result.json"
+    assert run("compare", found, robot, file, "--simulator", "chrono") == 1
+    assert "valid: mujoco" in capsys.readouterr().err
+    assert run("compare", found, robot, file, "-q") == 1
+    assert "no attitude" in capsys.readouterr().err
+
+
+@pytest.mark.slow
+def test_the_command_prints_its_scores(
+    result: FeetResult, log: MotionLog, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    result.save(tmp_path / "feet")
+    robot, file = hrp2.write(tmp_path), tmp_path / "short.parquet"
+    rows = log.time < 2.0
+    save_log(
+        MotionLog("short", log.time[rows], {n: v[rows] for n, v in log.columns.items()}), file, hrp2.robot()
+    )
+    arguments = ("compare", tmp_path / "feet" / "result.json", robot, file, "--out", tmp_path / "out")
+    assert run(*arguments) == 0
+    assert "exported contact" in capsys.readouterr().out
+    stored = json.loads((tmp_path / "out" / "comparison.json").read_text())
+    assert [row["feet"] for row in stored["scores"]] == list(KINDS)
+    assert (tmp_path / "out" / "comparison.svg").is_file()

@@ -1,0 +1,101 @@
+"""Ranges to train with: the covariance that the causes give, and draws that have it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import yaml
+
+from export_robots import TRUTH, result, write_urdf
+from page_blocks import ROOT, blocks
+from plantar.exporters import export
+
+
+@pytest.fixture
+def feet(tmp_path: Path) -> dict[str, Any]:
+    """A result whose dampings share a late sensor, and whose numbers of one foot share its sensor's gain."""
+    made = result(write_urdf(tmp_path / "biped.urdf"))
+    made["latency"] = {"wrench_delay": 0.005, "std": 0.002}
+    made["diagnosis"] = [
+        {"foot": foot, "axis": axis, "name": name,
+         "variance_shares": {"sensor gain": 0.36, "noise": 0.64} if name == "stiffness"
+         else {"sensor gain": 0.09, "delay": 0.64, "noise": 0.27}}
+        for foot, axes in TRUTH.items() for axis in axes for name in ("stiffness", "damping")
+    ]  # fmt: skip
+    return made
+
+
+def ranges(feet: dict[str, Any], folder: Path) -> tuple[dict[str, Any], dict[str, int]]:
+    export(feet, "randomization", folder / "ranges.yaml")
+    made = yaml.safe_load((folder / "ranges.yaml").read_text())
+    return made, {row["name"]: place for place, row in enumerate(made["parameters"])}
+
+
+def test_numbers_that_share_a_cause_are_correlated(feet: dict[str, Any], tmp_path: Path) -> None:
+    made, place = ranges(feet, tmp_path)
+    matrix = np.array(made["correlation"])
+
+    def between(one: str, other: str) -> float:
+        return float(matrix[place[one], place[other]])
+
+    assert between("left.pitch.stiffness", "left.roll.stiffness") == pytest.approx(0.36)
+    assert between("left.pitch.stiffness", "left.roll.damping") == pytest.approx(0.6 * 0.3)
+    assert between("left.pitch.stiffness", "right.pitch.stiffness") == 0, "each foot has its own sensor"
+    assert between("left.pitch.damping", "right.roll.damping") == pytest.approx(0.64), "one clock for both"
+    assert between("left.pitch.damping", "left.roll.damping") == pytest.approx(0.64 + 0.09)
+    assert between("wrench.delay", "left.pitch.damping") == pytest.approx(0.8)
+    assert between("left.pitch.offset", "left.pitch.stiffness") == 0
+    assert (np.diag(matrix) == 1).all()
+    np.testing.assert_array_equal(matrix, matrix.T)
+    assert np.linalg.eigvalsh(matrix).min() > -1e-3  # to the four digits that are written
+
+
+def test_means_and_deviations_are_the_identified_ones(feet: dict[str, Any], tmp_path: Path) -> None:
+    made, place = ranges(feet, tmp_path)
+    rows = made["parameters"]
+    for foot, axes in TRUTH.items():
+        for axis, (k, c, o) in axes.items():
+            for name, value in (("stiffness", k), ("damping", c)):
+                row = rows[place[f"{foot}.{axis}.{name}"]]
+                assert (row["mean"], row["std"], row["above"]) == pytest.approx((value, 0.01 * value, 0))
+            zero = rows[place[f"{foot}.{axis}.offset"]]
+            assert (zero["mean"], zero["std"]) == pytest.approx((o, np.std([-0.5, 0.5], ddof=1)))
+    late = rows[place["wrench.delay"]]
+    assert (late["mean"], late["std"], late["unit"]) == (0.005, 0.002, "s")
+    assert made["independent"][0]["measured"] is False
+
+
+def test_a_thousand_draws_have_the_covariance(
+    feet: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By the lines of the page, typed as they stand there."""
+    made, _ = ranges(feet, tmp_path)
+    page = ROOT / "docs" / "how_to" / "randomisation.md"
+    lines = next(block for block in blocks(page) if "multivariate_normal" in block.text)
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, Any] = {}
+    exec(compile(lines.text, lines.where, "exec"), names)
+    draws = names["draws"]
+    assert draws.shape == (1000, len(made["parameters"]))
+    mean, std = (np.array([row[key] for row in made["parameters"]]) for key in ("mean", "std"))
+    # Of 1,000 draws: a mean is right to 3.2 % of its deviation, a deviation to 2.2 %, a correlation to 0.032.
+    np.testing.assert_allclose((draws.mean(axis=0) - mean) / std, 0, atol=0.13)
+    np.testing.assert_allclose(draws.std(axis=0) / std, 1, atol=0.1)
+    np.testing.assert_allclose(np.corrcoef(draws.T), made["correlation"], atol=0.13)
+
+
+def test_what_has_no_deviation_is_said(feet: dict[str, Any], tmp_path: Path) -> None:
+    for row in feet["parameters"]:
+        if (row["foot"], row["axis"], row["name"]) == ("left", "pitch", "stiffness"):
+            row["std"] = None
+        if (row["foot"], row["axis"], row["name"]) == ("right", "roll", "damping"):
+            row["std"] = row["interval95"] = None
+    notes = export(feet, "randomization", tmp_path / "r.yaml")
+    unknown = [note.text for note in notes if note.code == "export_spread"]
+    assert len(unknown) == 1
+    assert unknown[0].startswith("right.roll.damping")
+    made, place = ranges(feet, tmp_path)
+    assert made["parameters"][place["left.pitch.stiffness"]]["std"] == pytest.approx(480 * 0.04 / 3.92)

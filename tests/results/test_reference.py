@@ -1,0 +1,60 @@
+"""A result among published and configured feet."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from command_line import run
+from plantar.report.tables import neighbour_table
+from plantar.results.feet_rows import Parameter
+from plantar.results.reference import REFERENCES, neighbours
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def row(foot: str, axis: str, name: str, value: float | None) -> Parameter:
+    return Parameter(foot, axis, name, "", value, None, None, None, "usable", "")  # type: ignore[arg-type]
+
+
+OWN = (
+    row("left", "pitch", "stiffness", 800.0), row("left", "roll", "stiffness", 700.0),
+    row("left", "pitch", "damping", 30.0), row("left", "roll", "damping", 10.0), row("left", "z", "stiffness", None),
+    row("right", "pitch", "stiffness", 900.0),
+)  # fmt: skip
+
+
+def test_a_result_stands_among_its_neighbours_by_stiffness() -> None:
+    lines = neighbours(OWN)
+    assert len(lines) == len(REFERENCES) + 1, "a foot without roll has no place"
+    assert [line.reference.rotation for line in lines] == sorted(line.reference.rotation for line in lines)
+    place = next(place for place, line in enumerate(lines) if line.own)
+    own, softer, stiffer = (lines[at].reference for at in (place, place - 1, place + 1))
+    assert (own.robot, own.rotation, own.damping, own.z) == ("this result, left", 750.0, 20.0, None)
+    assert softer.rotation < 750 < stiffer.rotation
+    assert not any(line.own for line in neighbours())
+
+
+def test_every_reference_says_where_it_is_from_and_whether_it_was_measured() -> None:
+    assert all(one.source and one.origin in ("measured", "configured") for one in REFERENCES)
+    assert {one.origin for one in REFERENCES} == {"measured", "configured"}
+    page = (ROOT / "docs" / "how_to" / "typical_values.md").read_text()
+    for one in REFERENCES:
+        if one.rotation < 1e6:
+            assert f"{one.pitch:.0f}" in page, one
+
+
+def test_the_report_marks_the_result() -> None:
+    table = neighbour_table(OWN)
+    marked = [cells[0].text for cells in table.rows if cells[0].mark]
+    assert marked == ["this result, left"]
+    assert table.folded
+
+
+def test_the_command_lists_them(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run("show", "reference") == 0
+    out = capsys.readouterr().out
+    assert "JAXON" in out
+    assert "configured" in out
+    assert run("show", "nothing") == 2
