@@ -6,7 +6,7 @@ import io
 
 from rich.console import Console
 
-from plantar.cli.terminal import SCREENFUL, print_notes
+from plantar.cli.console.terminal import SCREENFUL, print_notes
 from plantar.notes import Note, joined
 
 LOGS = ["walk_1", "walk_2", "walk_3", "walk_4"]

@@ -13,7 +13,7 @@ from rich.markup import render
 from command_line import run
 from plantar import __version__
 from plantar.cli import COMMANDS
-from plantar.cli.terminal import console, table
+from plantar.cli.console.terminal import console, table
 
 
 def test_units_in_brackets_are_text_not_markup(capsys: pytest.CaptureFixture[str]) -> None:

@@ -18,8 +18,8 @@ from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
 from plantar.sensors import refined_delays
+from plantar.sensors.delays.sensor_delay import SensorDelay, estimate_wrench_delay, in_time
 from plantar.sensors.newton_euler import NewtonEulerResidual
-from plantar.sensors.sensor_delay import SensorDelay, estimate_wrench_delay, in_time
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.resampling import interpolate
 

@@ -16,7 +16,7 @@ from plantar.feet.validate import validate_feet
 from plantar.notes import Note
 from plantar.results.feet import DelayEstimate
 from plantar.robot.model import RobotModel
-from plantar.sensors.sensor_delay import SensorDelay
+from plantar.sensors.delays.sensor_delay import SensorDelay
 
 
 def test_a_saved_result_scores_unseen_logs_as_the_fit_did(robot: RobotModel, tmp_path: Path) -> None:

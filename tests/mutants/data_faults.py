@@ -171,12 +171,12 @@ DATA_FAULTS = (
         ("sensors/test_attitude_scale.py",),
     ),
     Mutant(
-        "sensors/delays_by_log.py", "logs never differ", "if not (apart >", "if True or not (apart >",
-        ("sensors/test_clock_drift.py", "sensors/test_sensor_delay.py"),
+        "sensors/delays/delays_by_log.py", "logs never differ", "if not (apart >", "if True or not (apart >",
+        ("sensors/delays/test_clock_drift.py", "sensors/delays/test_sensor_delay.py"),
     ),
     Mutant(
-        "sensors/sensor_delay.py", "encoders that seem late are let be", " and not found.suspect:", ":",
-        ("sensors/test_sensor_delay.py",),
+        "sensors/delays/sensor_delay.py", "encoders that seem late are let be", " and not found.suspect:", ":",
+        ("sensors/delays/test_sensor_delay.py",),
     ),
     Mutant(
         "feet/assess/zero_jumps.py", "a sole that tips keeps its zero",

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from plantar.cli.memory import Memory
-from plantar.cli.terminal import console, end_progress, number, progress, table
+from plantar.cli.console.memory import Memory
+from plantar.cli.console.terminal import console, end_progress, number, progress, table
 from plantar.errors import MissingExtra, PlantarError, located
 from plantar.files import refuse_file, write_text
 from plantar.logs.inputs import open_together

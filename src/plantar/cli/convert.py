@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from plantar.cli.memory import Memory
+from plantar.cli.console.memory import Memory
 from plantar.errors import PlantarError, located
 from plantar.logs.readers import motion_name, open_log
 from plantar.logs.save import ENDINGS, save_log

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 from rich.markup import escape
 
-from plantar.cli.terminal import VERDICT_STYLE, console, number, table
+from plantar.cli.console.terminal import VERDICT_STYLE, console, number, table
 from plantar.results.feet import FeetResult
 from plantar.results.io import dump_json
 from plantar.results.usage import used_shares

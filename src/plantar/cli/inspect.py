@@ -11,8 +11,16 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from plantar.cli.memory import Memory
-from plantar.cli.terminal import SEVERITY_STYLE, VERDICT_STYLE, console, end_progress, number, progress, table
+from plantar.cli.console.memory import Memory
+from plantar.cli.console.terminal import (
+    SEVERITY_STYLE,
+    VERDICT_STYLE,
+    console,
+    end_progress,
+    number,
+    progress,
+    table,
+)
 from plantar.inspection import LogSummary, inspect_log
 from plantar.logs.readers import open_log
 from plantar.notes import Note

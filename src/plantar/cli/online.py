@@ -8,8 +8,8 @@ from typing import Annotated
 
 import typer
 
-from plantar.cli.memory import Memory
-from plantar.cli.terminal import (
+from plantar.cli.console.memory import Memory
+from plantar.cli.console.terminal import (
     VERDICT_STYLE,
     console,
     end_progress,

@@ -8,8 +8,8 @@ from typing import Annotated, Any
 
 import typer
 
-from plantar.cli.memory import Memory
-from plantar.cli.terminal import console, end_progress, number, progress, table
+from plantar.cli.console.memory import Memory
+from plantar.cli.console.terminal import console, end_progress, number, progress, table
 from plantar.feet.select_motions import UNKNOWN, Choice, Selection, select_motions
 from plantar.logs.inputs import open_together
 from plantar.results.io import dump_json

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from plantar.cli.terminal import console, end_progress, number, progress, table
+from plantar.cli.console.terminal import console, end_progress, number, progress, table
 from plantar.errors import MissingExtra, PlantarError, located
 from plantar.files import refuse_file
 from plantar.robot.model import load_robot

@@ -8,9 +8,9 @@ from typing import Annotated
 
 import typer
 
+from plantar.cli.console.memory import Memory
+from plantar.cli.console.terminal import console, end_progress, progress
 from plantar.cli.identify.feet_tables import validation_table
-from plantar.cli.memory import Memory
-from plantar.cli.terminal import console, end_progress, progress
 from plantar.feet.validate import validate_feet
 from plantar.logs.inputs import open_together
 from plantar.results.feet import FeetResult

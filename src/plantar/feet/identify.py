@@ -24,7 +24,7 @@ from plantar.notes import Note, joined
 from plantar.results.feet import AxisModel, DelayEstimate, FeetResult, Input, Offset
 from plantar.results.feet_rows import Candidate, LinearEquivalent
 from plantar.robot.model import Foot, Placement, RobotModel
-from plantar.sensors.sensor_delay import SensorDelay
+from plantar.sensors.delays.sensor_delay import SensorDelay
 
 
 def identify_feet(

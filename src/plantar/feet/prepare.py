@@ -25,10 +25,10 @@ from plantar.robot.guesses import guess_notes, naming_notes
 from plantar.robot.model import RobotModel
 from plantar.sensors.attitude_scale import AttitudeScale, attitude_scale_notes
 from plantar.sensors.bandwidth import fading, fading_notes
+from plantar.sensors.delays.refined_delays import Each
+from plantar.sensors.delays.sensor_delay import SensorDelay, estimate_wrench_delay, in_time, known_delay
 from plantar.sensors.moment_balance import TorqueGain, torque_gain_notes, torque_gains
 from plantar.sensors.moment_fit import fit_moments
-from plantar.sensors.refined_delays import Each
-from plantar.sensors.sensor_delay import SensorDelay, estimate_wrench_delay, in_time, known_delay
 from plantar.sensors.sensor_turns import sensor_turn_notes
 from plantar.sensors.tilt_error import NO_TILT_ERROR, log_tilt_error
 

@@ -17,7 +17,7 @@ from plantar.logs.inputs import LogInputs, RobotInput, logs_of, robot_of
 from plantar.models import MODELS, KelvinVoigt
 from plantar.notes import Note
 from plantar.results.feet import DelayEstimate, FeetResult, ValidationRow
-from plantar.sensors.sensor_delay import SensorDelay
+from plantar.sensors.delays.sensor_delay import SensorDelay
 
 
 def validate_feet(

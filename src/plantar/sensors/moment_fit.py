@@ -16,9 +16,9 @@ from plantar.conventions import Array
 from plantar.estimation.intervals import cosine_covariance, pooled_freedom
 from plantar.estimation.quantiles import MOST_FREEDOM, fisher_quantile
 from plantar.robot.model import RobotModel
+from plantar.sensors.delays.refined_delays import Each
 from plantar.sensors.moment_errors import LOOSE, MomentErrors, moment_errors, prior_deviations
 from plantar.sensors.newton_euler import NewtonEulerResidual
-from plantar.sensors.refined_delays import Each
 
 STRAINED = 2.0  # deviations of its prior, beyond which a gain is looked for anew
 ANOTHER_UNIT = 10.0  # share: kgf.m for N.m

@@ -17,7 +17,7 @@ from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
-from plantar.sensors.sensor_delay import SensorDelay
+from plantar.sensors.delays.sensor_delay import SensorDelay
 
 
 def stiffening(hardening: float) -> list[Motion]:

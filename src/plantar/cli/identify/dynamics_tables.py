@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rich.console import Console
 
-from plantar.cli.terminal import VERDICT_STYLE, number, print_notes, table
+from plantar.cli.console.terminal import VERDICT_STYLE, number, print_notes, table
 from plantar.results.dynamics import DynamicsResult
 
 LINK_COLUMNS = ("m", "mx", "my", "mz")

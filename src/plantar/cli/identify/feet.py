@@ -9,10 +9,10 @@ from typing import Annotated
 import numpy as np
 import typer
 
+from plantar.cli.console.memory import Memory
+from plantar.cli.console.terminal import progress
 from plantar.cli.identify import identification
 from plantar.cli.identify.feet_tables import print_feet
-from plantar.cli.memory import Memory
-from plantar.cli.terminal import progress
 from plantar.feet.settings import AUTOMATIC, DEFAULT_CUTOFF, MODEL_CHOICES, FeetSettings, OffsetRule
 
 MODEL_HELP = (

@@ -5,7 +5,7 @@ from __future__ import annotations
 from rich.console import Console
 from rich.markup import escape
 
-from plantar.cli.terminal import VERDICT_STYLE, number, print_notes, table
+from plantar.cli.console.terminal import VERDICT_STYLE, number, print_notes, table
 from plantar.results.feet import FeetResult, Parameter, ValidationRow, Verdict
 
 

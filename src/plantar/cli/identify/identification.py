@@ -9,7 +9,7 @@ from typing import Annotated, Any, Protocol, TypeVar
 import typer
 from rich.console import Console
 
-from plantar.cli.terminal import console, end_progress, progress
+from plantar.cli.console.terminal import console, end_progress, progress
 from plantar.files import refuse_file
 from plantar.logs.inputs import open_together
 from plantar.logs.motion_log import MotionLog

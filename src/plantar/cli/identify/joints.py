@@ -6,10 +6,10 @@ from typing import Annotated
 
 import typer
 
+from plantar.cli.console.memory import Memory
+from plantar.cli.console.terminal import progress
 from plantar.cli.identify import identification
 from plantar.cli.identify.dynamics_tables import print_joints
-from plantar.cli.memory import Memory
-from plantar.cli.terminal import progress
 from plantar.report import write_dynamics_report
 from plantar.results.dynamics import URDF
 from plantar.whole_body.joints import Inertia, identify_joints

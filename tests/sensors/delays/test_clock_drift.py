@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from plantar.estimation.delay import Pair
-from plantar.sensors.clock_drift import clock_drift
-from plantar.sensors.delays_by_log import delays_by_log
+from plantar.sensors.delays.clock_drift import clock_drift
+from plantar.sensors.delays.delays_by_log import delays_by_log
 from plantar.signals.filters import differentiate, low_pass
 
 PERIOD, SAMPLES = 0.01, 4000

@@ -13,9 +13,9 @@ from plantar.feet.prepare_log import checked
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
 from plantar.robot.uncertainty import Uncertainty
-from plantar.sensors.lagged_log import STEP, lagged_log
-from plantar.sensors.refined_delays import refined_delays
-from plantar.sensors.sensor_delay import estimate_wrench_delay
+from plantar.sensors.delays.lagged_log import STEP, lagged_log
+from plantar.sensors.delays.refined_delays import refined_delays
+from plantar.sensors.delays.sensor_delay import estimate_wrench_delay
 from plantar.signals.resampling import shifted
 from plantar.twin import PAPER, play_all
 from plantar.twin.robots import hrp2
@@ -129,7 +129,7 @@ def test_encoders_that_seem_late_are_looked_for_on_the_grid(
     for suspect, encoders in ((True, 0.1), (False, 0.0)):
         first = replace(sure, suspect=suspect)
         monkeypatch.setattr(
-            "plantar.sensors.sensor_delay.refined_delays",
+            "plantar.sensors.delays.sensor_delay.refined_delays",
             lambda *given, first=first: refined_delays(*given) if np.any(given[-1]) else first,
         )
         assert estimate_wrench_delay(twin, [log]).encoders == pytest.approx(encoders, abs=1e-3)

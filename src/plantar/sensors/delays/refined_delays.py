@@ -17,8 +17,8 @@ from plantar.estimation.delay import LONGEST, estimate_delay
 from plantar.estimation.sensor_delays import estimate_delays
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
-from plantar.sensors.clock_drift import ClockDrift, clock_drift
-from plantar.sensors.delays_by_log import DelaysByLog, delays_by_log
+from plantar.sensors.delays.clock_drift import ClockDrift, clock_drift
+from plantar.sensors.delays.delays_by_log import DelaysByLog, delays_by_log
 from plantar.sensors.newton_euler import NewtonEulerResidual, newton_euler_residual
 from plantar.signals.resampling import shifted
 

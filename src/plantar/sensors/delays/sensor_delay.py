@@ -20,9 +20,8 @@ from plantar.estimation.lag_search import Lags, search_lags
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
-from plantar.sensors.lagged_log import SEARCHED, STEP, lagged_log
-from plantar.sensors.newton_euler import NewtonEulerResidual
-from plantar.sensors.refined_delays import (
+from plantar.sensors.delays.lagged_log import SEARCHED, STEP, lagged_log
+from plantar.sensors.delays.refined_delays import (
     LEAST_STD,
     WELL_KNOWN,
     Each,
@@ -30,6 +29,7 @@ from plantar.sensors.refined_delays import (
     read_in_time,
     refined_delays,
 )
+from plantar.sensors.newton_euler import NewtonEulerResidual
 
 KNOWN_STD = 0.001  # s: better known than this, the delay is corrected without a warning
 CLOCK = 0.06  # of a period: within it, nobody knows when a sample was taken
