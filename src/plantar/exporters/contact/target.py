@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from plantar.conventions import GRAVITY, rotation_from_rpy
-from plantar.errors import ExportError, MissingExtra, located
+from plantar.errors import ExportError, located
 from plantar.exporters.bush import FootBush
 from plantar.exporters.comment import head
 from plantar.exporters.contact.alone import IMPRATIO, RADIUS, contact_attributes
 from plantar.exporters.contact.fit import LOADS, STEPS, Check, Fitted, fitted
-from plantar.exporters.mjcf.file import Compiled, load_mjcf, relocate
-from plantar.exporters.mjcf.from_urdf import mjcf_from_urdf
+from plantar.exporters.mjcf.file import Compiled, relocate
+from plantar.exporters.mjcf.from_urdf import opened
 from plantar.exporters.shapes import reaches_sole
 from plantar.exporters.xml_file import numbers, to_text
 from plantar.notes import Note
@@ -36,16 +36,9 @@ def write(job: Job) -> tuple[str, tuple[Note, ...]]:
     Raises ExportError: MuJoCo refuses the model, an ankle body is not in it, or a foot cannot stand on points.
     MissingExtra: no mujoco.
     """
-    try:
-        import mujoco  # noqa: F401
-    except ImportError as error:
-        raise MissingExtra("mujoco", "twin", "export to MuJoCo's contact") from error
-    assert job.model is not None
     notes: list[Note] = []
-    if job.model.suffix.lower() == ".urdf":
-        root = mjcf_from_urdf(job.model, job.feet, notes)
-    else:
-        root = load_mjcf(job.model, notes)
+    root = opened(job, "export to MuJoCo's contact", notes)
+    assert job.model is not None
     earlier = {foot.name: _taken_out(root, foot) for foot in job.feet}
     model = Compiled(root, job.model)
     weight = float(model.model.body_mass.sum()) * GRAVITY

@@ -1,17 +1,36 @@
-"""A URDF as MJCF, by MuJoCo's own importer: what a newcomer has is a URDF."""
+"""The user's model as MJCF; a URDF by MuJoCo's own importer: what a newcomer has is a URDF."""
 
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from plantar.errors import ExportError, located
+from plantar.errors import ExportError, MissingExtra, located
 from plantar.exporters.bush import FootBush
+from plantar.exporters.mjcf.file import load_mjcf
 from plantar.exporters.urdf.tree import UrdfTree
 from plantar.notes import Note
 
+if TYPE_CHECKING:
+    from plantar.exporters.job import Job
+
 MESHES = {".stl", ".obj"}  # what MuJoCo's importer reads
+
+
+def opened(job: Job, purpose: str, notes: list[Note]) -> ET.Element:
+    """The job's model as MJCF, whether it is that or a URDF.
+
+    Raises ExportError when MuJoCo refuses it, MissingExtra, with the `purpose`, without mujoco.
+    """
+    try:
+        import mujoco  # noqa: F401
+    except ImportError as error:
+        raise MissingExtra("mujoco", "twin", purpose) from error
+    assert job.model is not None
+    if job.model.suffix.lower() == ".urdf":
+        return mjcf_from_urdf(job.model, job.feet, notes)
+    return load_mjcf(job.model, notes)
 
 
 def mjcf_from_urdf(path: Path, feet: tuple[FootBush, ...], notes: list[Note]) -> ET.Element:

@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from plantar.errors import ExportError, MissingExtra, located
+from plantar.errors import ExportError, located
 from plantar.exporters.bush import FootBush, Spring
 from plantar.exporters.comment import head, plate_note, updated_note
-from plantar.exporters.mjcf.file import Compiled, load_mjcf, relocate
-from plantar.exporters.mjcf.from_urdf import mjcf_from_urdf
+from plantar.exporters.mjcf.file import Compiled, relocate
+from plantar.exporters.mjcf.from_urdf import opened
 from plantar.exporters.shapes import SOLE_INERTIA, SOLE_MASS, plate, reaches_sole
 from plantar.exporters.xml_file import numbers, to_text
 from plantar.notes import Note
@@ -34,16 +34,9 @@ def write(job: Job) -> tuple[str, tuple[Note, ...]]:
 
     Raises ExportError: MuJoCo refuses the model, or an ankle body is not in it. MissingExtra: no mujoco.
     """
-    try:
-        import mujoco  # noqa: F401
-    except ImportError as error:
-        raise MissingExtra("mujoco", "twin", "export to MJCF") from error
-    assert job.model is not None
     notes: list[Note] = []
-    if job.model.suffix.lower() == ".urdf":
-        root = mjcf_from_urdf(job.model, job.feet, notes)
-    else:
-        root = load_mjcf(job.model, notes)
+    root = opened(job, "export to MJCF", notes)
+    assert job.model is not None
     before = Compiled(root, job.model)
     for foot in job.feet:
         _insert(root, foot, before, notes)
