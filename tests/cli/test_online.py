@@ -52,3 +52,37 @@ def test_what_is_wrong_is_one_line(
     assert "does not exist" in refused(capsys, "online", campaign / "robot.yaml", tmp_path / "none.csv", "-q")
     words = ("online", campaign / "robot.yaml", campaign / "first.csv", "--wrench-delay", 2, "-q")
     assert "wrench_delay" in refused(capsys, *words)
+
+
+def verdicts(out: str) -> dict[str, set[str]]:
+    """Of each axis' numbers, and the reasons."""
+    rows = json.loads(out)["parameters"]
+    return {"verdict": {row["verdict"] for row in rows}, "reason": {row["reason"] for row in rows}}
+
+
+def test_without_a_batch_result_nothing_is_called_usable(
+    campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Hysteresis cannot be told from a spring while small motions run."""
+    robot, log = campaign / "robot.yaml", campaign / "first.csv"
+    assert run("online", robot, log, "--wrench-delay", 0, "--json", "-q") == 0
+    alone = verdicts(capsys.readouterr().out)
+    assert "usable" not in alone["verdict"]
+    assert any("memory" in reason for reason in alone["reason"])
+    assert run("identify", "feet", robot, log, "--out", tmp_path / "feet", "-q") == 0
+    capsys.readouterr()
+    assert run("online", robot, log, "--result", tmp_path / "feet" / "result.json", "--json", "-q") == 0
+    assert "usable" in verdicts(capsys.readouterr().out)["verdict"]
+
+
+def test_a_log_with_a_fault_is_refused(
+    campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    robot, lines = campaign / "robot.yaml", (campaign / "first.csv").read_text().splitlines()
+    heads, rows = lines[0].split(","), [line.split(",") for line in lines[1:]]
+    rates = {place for place, name in enumerate(heads) if ".angular_velocity." in name}
+    assert rates
+    degrees = [[str(57.3 * float(x)) if place in rates else x for place, x in enumerate(row)] for row in rows]
+    log = tmp_path / "degrees.csv"
+    log.write_text("\n".join([lines[0], *(",".join(row) for row in degrees)]) + "\n")
+    assert "degrees" in refused(capsys, "online", robot, log, "--wrench-delay", 0, "-q")

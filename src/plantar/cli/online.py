@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
@@ -22,7 +23,8 @@ from plantar.logs.readers import open_log
 from plantar.online.estimates import Flag
 from plantar.online.estimator import FootEstimator
 from plantar.online.replay import Replay
-from plantar.results.feet import FeetResult
+from plantar.online.verdicts import judged, log_notes
+from plantar.results.feet import FeetResult, Parameter
 from plantar.results.io import dump_json
 from plantar.robot.model import load_robot
 
@@ -58,23 +60,25 @@ def run(
         estimator.write_model(write_model)
     step(f"read {log.name}")
     motion = open_log(log, known, memory=memory)
+    notes = [*log_notes(known, motion), *motion.notes, *motion.joint_notes(known)]
     step(f"replay {log.name}")
     replay = estimator.replay(motion)
+    rows = judged(replay.parameters, notes, identified=batch is not None)
     end_progress(quiet)
     if json:
         content = {
-            "parameters": [asdict(row) for row in replay.parameters],
+            "parameters": [asdict(row) for row in rows],
             "latency_us": replay.latency_us,
             "samples": len(motion),
         }
         print(dump_json(content), end="")
     elif not quiet:
-        _print(replay)
-        print_notes(console(), [*motion.notes, *motion.joint_notes(known)])
+        print_notes(console(), notes)
+        _print(replay, rows)
 
 
-def _print(replay: Replay) -> None:
-    out, rows = console(), replay.parameters
+def _print(replay: Replay, rows: Sequence[Parameter]) -> None:
+    out = console()
     heads = ("foot", "axis", "parameter", "value", "95 %", "unit", "verdict", "reason")
     cells = [
         (row.foot, row.axis, row.name, number(row.value), f"± {number(row.half_width, 2)}", row.unit, row.verdict,

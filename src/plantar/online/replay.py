@@ -11,7 +11,7 @@ from plantar.conventions import DAMPING_UNIT, ROTATIONAL_AXES, STIFFNESS_UNIT, A
 from plantar.online.estimates import FIELDS, Estimated, FootEstimate, foot_estimate
 from plantar.results.feet_rows import Parameter, Verdict
 
-USABLE = 0.1  # half width of the 95 % interval over the value, as for a batch result
+USABLE = 0.1  # half width of the 95 % interval over the value, narrower than a batch result's
 UNKNOWN = 10.0  # the same, from which on a value says nothing
 
 

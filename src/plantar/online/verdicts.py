@@ -1,0 +1,38 @@
+"""What may be used of a replayed log: the estimator sees no fault that only a whole log shows."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from plantar.checks.log_checks import check_log
+from plantar.errors import DataError, located
+from plantar.feet.assess.data_faults import UNMENDED, doubted
+from plantar.logs.motion_log import MotionLog
+from plantar.notes import Note
+from plantar.results.feet_rows import Parameter
+from plantar.robot.model import RobotModel
+
+UNTOLD = "rubber with a memory, and a robot file that is wrong, do not show here"
+IDENTIFY = "run identify feet on logs of this robot, and give its result"
+
+
+def log_notes(robot: RobotModel, log: MotionLog) -> tuple[Note, ...]:
+    """What the checks find in a log. Raises DataError where a sensor reads something impossible."""
+    findings = check_log(robot, log)
+    fatal = [finding for finding in findings if finding.fatal]
+    if fatal:
+        raise DataError(located(fatal[0].text, path=log.source))
+    return tuple(Note(found.code, found.severity, f"{log.name}: {found.text}") for found in findings)
+
+
+def judged(rows: Sequence[Parameter], notes: Sequence[Note], *, identified: bool) -> list[Parameter]:
+    """The rows, at most weak where the log has a fault, or no batch result has been `identified` for this robot."""
+    faults = [note for note in notes if note.severity == "warning" and note.code in UNMENDED]
+    found = doubted(rows, faults)
+    if identified:
+        return found
+    return [
+        replace(row, verdict="weak", reason=UNTOLD, advice=IDENTIFY) if row.verdict == "usable" else row
+        for row in found
+    ]

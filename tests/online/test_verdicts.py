@@ -1,0 +1,42 @@
+"""A replayed log's numbers are no surer than what its checks and a batch result let them be."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from biped import record, sway
+from plantar.errors import DataError
+from plantar.notes import Note
+from plantar.online.verdicts import IDENTIFY, judged, log_notes
+from plantar.results.feet_rows import Parameter
+from plantar.robot.model import RobotModel
+
+ROWS = [
+    Parameter("left", "pitch", "stiffness", "N.m/rad", 420.0, 1.0, (418.0, 422.0), None, "usable", ""),
+    Parameter("left", "roll", "stiffness", "N.m/rad", 300.0, 90.0, (120.0, 480.0), None, "weak", "± 60 %"),
+]
+
+
+def test_a_batch_result_leaves_the_verdicts_and_none_makes_them_weak() -> None:
+    assert judged(ROWS, [], identified=True) == ROWS
+    first, second = judged(ROWS, [], identified=False)
+    assert (first.verdict, first.advice) == ("weak", IDENTIFY)
+    assert second == ROWS[1]
+
+
+@pytest.mark.parametrize(("code", "severity", "verdict"), [
+    ("gyroscope_scale", "warning", "weak"), ("gyroscope_scale", "info", "usable"), ("gap", "warning", "usable"),
+])  # fmt: skip
+def test_a_fault_that_nobody_mends_takes_usable_away(code: str, severity: str, verdict: str) -> None:
+    note = Note(code, severity, "sway: the gyroscope")  # type: ignore[arg-type]
+    assert judged(ROWS, [note], identified=True)[0].verdict == verdict
+
+
+def test_a_log_is_checked_as_for_a_batch_fit(robot: RobotModel) -> None:
+    log = record(sway(duration=8.0))
+    assert log_notes(robot, log) == ()
+    columns = [f"imu.chest.angular_velocity.{axis}" for axis in "xyz"]
+    degrees = log.with_columns({column: np.degrees(log.column(column)) for column in columns})
+    with pytest.raises(DataError, match="degrees"):
+        log_notes(robot, degrees)
