@@ -17,7 +17,7 @@ from plantar.estimation.sensor_delays import estimate_delays
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
-from plantar.sensors import refined_delays
+from plantar.sensors.delays import refined_delays
 from plantar.sensors.delays.sensor_delay import SensorDelay, estimate_wrench_delay, in_time
 from plantar.sensors.newton_euler import NewtonEulerResidual
 from plantar.signals.filters import differentiate, low_pass

@@ -158,8 +158,8 @@ DATA_FAULTS = (
         ("feet/test_steps.py",),
     ),
     Mutant(
-        "sensors/attitude_scale.py", "a tilt too small is one too large", "share = -self.product / tilt",
-        "share = self.product / tilt", ("sensors/test_attitude_scale.py",),
+        "sensors/attitude_scale.py", "a tilt too small is one too large", "-found[0],", "found[0],",
+        ("sensors/test_attitude_scale.py",),
     ),
     Mutant(
         "feet/foot_fit.py", "a scaled attitude takes nothing away", "in (FILTERED, ATTITUDE_SCALE)", "in (FILTERED,)",
@@ -167,7 +167,7 @@ DATA_FAULTS = (
     ),
     Mutant(
         "sensors/attitude_scale.py", "each stance keeps its zero",
-        "part[edge:-edge] - part[edge:-edge].mean(axis=0) for", "part[edge:-edge] for",
+        "signals = signals - signals.mean(axis=0)", "signals = signals",
         ("sensors/test_attitude_scale.py",),
     ),
     Mutant(

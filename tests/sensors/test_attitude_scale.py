@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -80,14 +82,32 @@ def test_a_right_attitude_one_that_leans_and_one_without_accelerometer_say_nothi
     assert not told(identify_feet(robot, blind, settings=KNOWN))
 
 
+def test_an_imu_higher_than_the_file_says_is_no_scale(robot: RobotModel, logs: list[MotionLog]) -> None:
+    """By a tenth of its height, which leans by as much at 0.5 Hz."""
+    assert robot.imu is not None
+    placement = replace(robot.imu.placement, xyz=robot.imu.placement.xyz + np.array([0.0, 0.0, 0.1]))
+    higher = replace(robot, imu=replace(robot.imu, placement=placement))
+    assert not told(identify_feet(higher, logs, settings=KNOWN))
+    assert told(identify_feet(higher, [scaled(log, 0.9) for log in logs], settings=KNOWN))
+
+
+def made(share: float, height: float, rest: float) -> AttitudeScale:
+    """Two paces of sway, 40 s: a lean of `share` of the tilt, `height` times what a metre makes, and the `rest`."""
+    products = np.empty((2, 3, 3))
+    basis = np.array([[share, height, rest], [1.0, 0.0, 0.0], [0.6, 0.8, 0.0]])
+    products[:] = 10 * (basis @ np.diag([1.0, 1.0, 1.0]) @ basis.T)
+    return AttitudeScale(products, 40.0)
+
+
 def test_sums_of_logs_add_up_and_a_share_that_is_not_sure_is_not_told() -> None:
-    one = AttitudeScale(np.array([4.0, 1.0]), np.array([-0.5, 0.1]), np.array([10.0, 10.0]), 40.0)
+    one = made(-0.05, 0.0, 0.3)
     both = one + one
+    np.testing.assert_allclose(one.share[0], [0.05, 0.05])
     np.testing.assert_allclose(both.share[0], one.share[0])
     np.testing.assert_allclose(both.share[1], one.share[1] / np.sqrt(2))
-    np.testing.assert_allclose(one.share[0], [0.05, -0.01])
-    np.testing.assert_allclose(one.share[1], np.sqrt([(4.0 - 0.025) / 400, (1.0 - 0.001) / 400]))
+    np.testing.assert_allclose(one.share[1], 0.3 / 0.8 / np.sqrt(40))
     assert not attitude_scale_notes(one)
     assert not attitude_scale_notes(AttitudeScale())
-    sure = AttitudeScale(np.array([0.03, 1.0]), np.array([-0.5, 0.1]), np.array([10.0, 10.0]), 40.0)
-    assert "0.952 times" in attitude_scale_notes(sure)[0].text
+    (note,) = attitude_scale_notes(made(-0.05, 0.0, 0.01))
+    assert "0.952 times" in note.text
+    assert not attitude_scale_notes(made(0.6, 0.8, 0.01)), "the height explains it all"

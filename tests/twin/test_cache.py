@@ -99,7 +99,8 @@ def test_changed_source_is_another_key(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_other_native_steps_are_another_key(monkeypatch: pytest.MonkeyPatch) -> None:
-    sources = [Path(__file__).parents[2] / "cpp" / name for name in ("stepping.hpp", "bindings_stepping.cpp")]
+    names = ("src/stepping.hpp", "python/bindings_stepping.cpp")
+    sources = [Path(__file__).parents[2] / "cpp" / name for name in names]
     hashes = [hashlib.sha256(source.read_bytes()).hexdigest() for source in sources]
     assert "".join(hashes) == cache.STEPPING_SOURCE  # as built
     cache._code.cache_clear()

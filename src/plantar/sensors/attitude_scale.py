@@ -2,7 +2,8 @@
 
 Gyroscope and attitude of one IMU may share the fault, so they do not contradict each other. The accelerometer does:
 over a sole that stands it shows how far the believed vertical leans (see `tilt_error`), and a lean that goes with the
-tilt itself is a scale. A scale of the accelerometer, common to its axes, leaves it as it is.
+tilt itself is a scale. An IMU that sits higher than the robot file says leans as well, more the faster the tilt: that
+part is taken off. A scale of the accelerometer, common to its axes, leaves all as it is.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from plantar.conventions import Array, rotation_from_quaternion
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.robot.model import Imu
-from plantar.sensors.tilt_error import CORRECTED, stance_leans, unit_quaternions
+from plantar.sensors.tilt_error import CORRECTED, lean_of, stance_leans, unit_quaternions
 from plantar.signals.filters import low_pass
 
 ATTITUDE_SCALE = "attitude_scale"
@@ -26,38 +27,41 @@ SCALE_OFF = (
     0.03  # an accelerometer whose axes differ by 2 % shows as much, and so does a URDF with wrong lengths
 )
 SURE = 6.0  # deviations
+SINGULAR = 1e4  # condition beyond which one pace of sway does not tell scale and height apart
 EDGE = 1.0  # s, of each stance: the filter's
 RATE = 1.0  # 1/s, of samples of the lean that tell something new: it is slower than CORRECTED
 
 
 @dataclass(frozen=True)
 class AttitudeScale:
-    """Sums over stances, about the world's x and y (2,): of leans and tilts squared and of one times the other.
+    """Sums over stances, about the world's x and y: `products` (2, 3, 3) of the lean, the tilt, and the lean for each
+    metre by which the IMU is higher.
 
     `seconds`: of all stances. Logs of one IMU add up.
     """
 
-    lean: Array = field(default_factory=lambda: np.zeros(2))
-    product: Array = field(default_factory=lambda: np.zeros(2))
-    tilt: Array = field(default_factory=lambda: np.zeros(2))
+    products: Array = field(default_factory=lambda: np.zeros((2, 3, 3)))
     seconds: float = 0.0
 
     def __add__(self, other: AttitudeScale) -> AttitudeScale:
-        return AttitudeScale(
-            self.lean + other.lean,
-            self.product + other.product,
-            self.tilt + other.tilt,
-            self.seconds + other.seconds,
-        )
+        return AttitudeScale(self.products + other.products, self.seconds + other.seconds)
 
     @property
     def share(self) -> tuple[Array, Array]:
-        """By which share of each tilt the attitude is too small (2,), and its deviations; zero where nothing tilts."""
-        share, tilt = np.zeros(2), np.maximum(self.tilt, np.finfo(float).tiny)
-        if self.seconds > 0:
-            share = -self.product / tilt
-        left = np.maximum(self.lean - share**2 * self.tilt, 0.0)
-        return share, np.sqrt(left / tilt / max(RATE * self.seconds, 1.0))
+        """By which share of each tilt the attitude is too small (2,), and its deviations; zero where none shows."""
+        share, std = np.zeros(2), np.zeros(2)
+        for axis, sums in enumerate(self.products):
+            size = np.sqrt(np.diag(sums))
+            if not (size > 0).all() or np.linalg.cond(sums[1:, 1:] / np.outer(size[1:], size[1:])) > SINGULAR:
+                continue
+            inverse = np.linalg.inv(sums[1:, 1:])
+            found = inverse @ sums[1:, 0]
+            left = max(float(sums[0, 0] - found @ sums[1:, 0]), 0.0)
+            share[axis], std[axis] = (
+                -found[0],
+                np.sqrt(left * inverse[0, 0] / max(RATE * self.seconds, 1.0)),
+            )
+        return share, std
 
 
 def log_attitude_scale(
@@ -76,13 +80,13 @@ def log_attitude_scale(
     unit, acceleration, period = unit_quaternions(orientation), log.linear_acceleration(imu.name), log.period
     found, edge = AttitudeScale(), round(EDGE / period)
     horizontal = rotation_from_quaternion(unit)[:, :2, 2]
-    for run, lean in stance_leans(unit, acceleration, bushes, contacts, period):
+    for run, lean, height in stance_leans(unit, acceleration, bushes, contacts, period):
         tilt = low_pass(horizontal[run], period, CORRECTED)
-        one, other = (part[edge:-edge] - part[edge:-edge].mean(axis=0) for part in (lean, tilt))
-        squares, product, tilts = (
-            np.asarray(period * np.sum(a * b, axis=0)) for a, b in ((one, one), (one, other), (other, other))
-        )
-        found = found + AttitudeScale(squares, product, tilts, len(one) * period)
+        higher = lean_of(np.zeros_like(tilt), horizontal[run], height, period)
+        signals = np.stack([lean, tilt, higher], axis=2)[edge:-edge]  # (n, 2, 3)
+        signals = signals - signals.mean(axis=0)
+        products = period * np.einsum("nai,naj->aij", signals, signals)
+        found = found + AttitudeScale(products, len(signals) * period)
     return found
 
 

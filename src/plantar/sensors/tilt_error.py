@@ -151,7 +151,7 @@ def put_right(
     from scipy.spatial.transform import Rotation  # costs start-up
 
     lean = np.full((len(orientation), 2), np.nan)
-    for run, found in stance_leans(orientation, acceleration, bushes, contacts, period):
+    for run, found, _ in stance_leans(orientation, acceleration, bushes, contacts, period):
         lean[run] = found
     finite = np.isfinite(orientation).all(axis=1)
     known = np.isfinite(lean).all(axis=1)
@@ -173,8 +173,9 @@ def stance_leans(
     bushes: Mapping[str, BushState],
     contacts: Mapping[str, FootContact],
     period: float,
-) -> Iterator[tuple[slice, Array]]:
-    """Long stances on the same feet, and how far the believed vertical leans along the world's x and y, (n, 2) [rad].
+) -> Iterator[tuple[slice, Array, float]]:
+    """Long stances on the same feet, how far the believed vertical leans along the world's x and y, (n, 2) [rad], and
+    the IMU's height [m].
 
     Arguments as of `put_right`. Each stance has a zero of its own: the accelerometer's, the attitude's, the sole's.
     """
@@ -193,20 +194,21 @@ def stance_leans(
         for run in runs(np.asarray(finite & (pattern == which))):
             if (run.stop - run.start) * period >= SHORTEST_STANCE:
                 place = np.mean([bush.sole_position[run] for bush in feet], axis=0)
-                yield run, _lean(push[run], place, period)
+                height = -float(np.median(place[:, 2]))
+                yield run, lean_of(push[run], place[:, :2], height, period), height
 
 
-def _lean(push: Array, place: Array, period: float) -> Array:
+def lean_of(push: Array, place: Array, height: float, period: float) -> Array:
     """How far the believed vertical leans along x and y, (n, 2) [rad], over one stance.
 
-    push: horizontal acceleration of the IMU in the believed world, (n, 2); place: of the sole from the IMU, (n, 3).
+    push: horizontal acceleration of the IMU in the believed world; place: of the sole from the IMU, both (n, 2);
+    height: of the IMU [m].
     """
-    smooth = low_pass(np.column_stack([push, place[:, :2]]), period, DERIVED)
+    smooth = low_pass(np.column_stack([push, place]), period, DERIVED)
     left = smooth[:, :2] + differentiate(differentiate(smooth[:, 2:], period), period)
     padding = min(round(PADDING / period), len(left) - 1)
     mirrored = np.vstack([left[padding:0:-1], left, left[-2 : -padding - 2 : -1]])
     frequency = np.fft.rfftfreq(len(mirrored), period)
-    height = -float(np.median(place[:, 2]))
     gain = 1 / (GRAVITY + height * (2 * np.pi * frequency) ** 2) / (1 + (frequency / CORRECTED) ** 8)
     lean = np.fft.irfft(np.fft.rfft(mirrored, axis=0) * gain[:, None], len(mirrored), axis=0)
     return np.asarray(lean[padding : padding + len(left)])
