@@ -21,23 +21,12 @@ import numpy as np
 import pytest
 import yaml
 
-from export_robots import CENTRE, SOLE_Z, TRUTH, bush_rotation, result, write_sdf, write_urdf
+from export_robots import CENTRE, SOLE_Z, TRUTH, bush_rotation, result, write_sdf
 from plantar.cli import main
 from plantar.errors import ExportError
 from plantar.exporters import TARGETS, export
-from plantar.exporters.openhrp import read_customizer
 
 SIDES = {"left": "LLEG", "right": "RLEG"}
-
-
-@pytest.fixture
-def urdf(tmp_path: Path) -> Path:
-    return write_urdf(tmp_path / "biped.urdf")
-
-
-@pytest.fixture
-def feet(urdf: Path) -> dict[str, Any]:
-    return result(urdf)
 
 
 @pytest.mark.parametrize("target", TARGETS)
@@ -70,53 +59,6 @@ def test_mc_rtc_flexibilities_are_the_identified_numbers(feet: dict[str, Any], t
             assert (entry["K"], entry["C"], entry["O"]) == pytest.approx((k, c, o))
     export(feet, "mc_rtc", tmp_path / "b.json")
     assert all(e["O"] == 0 for e in json.loads((tmp_path / "b.json").read_text())["flexibilities"])
-
-
-def test_openhrp_lists_joint_spring_damping(feet: dict[str, Any], tmp_path: Path) -> None:
-    export(feet, "openhrp", tmp_path / "bush.conf")
-    lines = [line for line in (tmp_path / "bush.conf").read_text().splitlines() if not line.startswith("#")]
-    assert lines[0] == "robot_model_name: biped"
-    assert lines[1] == ("bush_config: LLEG_BUSH_Z,40000,400 LLEG_BUSH_ROLL,352,28.15 LLEG_BUSH_PITCH,480,24.27 "
-                        "RLEG_BUSH_ROLL,323,17.53 RLEG_BUSH_PITCH,434,15.89")  # fmt: skip
-
-
-def test_openhrp_reads_what_it_writes(feet: dict[str, Any], tmp_path: Path) -> None:
-    export(feet, "openhrp", tmp_path / "bush.conf")
-    read = read_customizer(tmp_path / "bush.conf")
-    assert read.robot == "biped"
-    wanted = {
-        f"{SIDES[foot]}_BUSH_{axis.upper()}": (k, c)
-        for foot, axes in TRUTH.items()
-        for axis, (k, c, _) in axes.items()
-    }
-    assert read.joints == wanted
-
-
-def test_openhrp_reads_a_file_of_another_hand(tmp_path: Path) -> None:
-    file = tmp_path / "own.conf"
-    file.write_text(
-        "# feet\n\nother: 1\nbush_config :  RLEG_BUSH_Z,1.1e6,1e3   RLEG_BUSH_PITCH,2500,2.5 # soft\n"
-    )
-    assert read_customizer(file).joints == {"RLEG_BUSH_Z": (1.1e6, 1e3), "RLEG_BUSH_PITCH": (2500.0, 2.5)}
-
-
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        ("robot_model_name: r\n", "bush_config"),
-        ("bush_config: A,1\n", "line 1: 'A,1'"),
-        ("\nbush_config: A,1,2,3\n", "line 2: 'A,1,2,3'"),
-        ("bush_config: A,stiff,2\n", "'A,stiff,2'"),
-        ("bush_config: A,-1,2\n", "'A,-1,2'"),
-        ("bush_config: A,1,inf\n", "'A,1,inf'"),
-        ("bush_config: A,1,2 A,1,2\n", "each joint once"),
-    ],
-)
-def test_openhrp_says_what_it_cannot_read(text: str, said: str, tmp_path: Path) -> None:
-    (tmp_path / "x.conf").write_text(text)
-    with pytest.raises(ExportError, match=re.escape(said)) as caught:
-        read_customizer(tmp_path / "x.conf")
-    assert "\n" not in str(caught.value)
 
 
 def test_choreonoid_takes_means(feet: dict[str, Any], tmp_path: Path) -> None:

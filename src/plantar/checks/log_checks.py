@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -18,8 +18,9 @@ from plantar.checks.load_signs import check_load_signs
 from plantar.checks.standing import check_balance
 from plantar.checks.stepping_joints import check_stepping_joints
 from plantar.conventions import GRAVITY
+from plantar.errors import DataError, located
 from plantar.logs.motion_log import MotionLog, wrench_columns
-from plantar.notes import Finding
+from plantar.notes import Finding, Note
 from plantar.robot.model import RobotModel
 from plantar.signals.resampling import sampling
 
@@ -46,6 +47,18 @@ def check_log(robot: RobotModel, log: MotionLog) -> list[Finding]:
     missing = check_path_joints(robot, log) if any(one.fatal for one in (*wrenches, *chain)) else ()
     bushes = [*check_bush_link(robot, log), *check_bush_axes(robot, log)]
     return [*names, *time, *_joints(robot, log), *imu, *missing, *bushes, *wrenches, *channels, *chain]
+
+
+def refuse_impossible(log: MotionLog, findings: Sequence[Finding]) -> None:
+    """Raise DataError with the first finding after which nothing can be said of the log."""
+    fatal = next((finding for finding in findings if finding.fatal), None)
+    if fatal is not None:
+        raise DataError(located(fatal.text, path=log.source))
+
+
+def finding_notes(log: MotionLog, findings: Sequence[Finding]) -> list[Note]:
+    """Findings as notes that name the log."""
+    return [Note(found.code, found.severity, f"{log.name}: {found.text}") for found in findings]
 
 
 def _time(log: MotionLog) -> Iterator[Finding]:

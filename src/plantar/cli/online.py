@@ -20,7 +20,7 @@ from plantar.cli.console.terminal import (
     table,
 )
 from plantar.logs.readers import open_log
-from plantar.online.estimates import Flag
+from plantar.online.estimates import Contact, Flag
 from plantar.online.estimator import FootEstimator
 from plantar.online.replay import Replay
 from plantar.online.verdicts import judged, log_notes
@@ -100,7 +100,7 @@ def _print(replay: Replay, rows: Sequence[Parameter]) -> None:
 
 
 def _foot_row(replay: Replay, foot: str) -> tuple[str, ...]:
-    stands = replay.column(foot, "contact") == 2
+    stands = replay.column(foot, "contact") == Contact.STANCE
     flags = replay.column(foot, "flags").astype(int)
     shares = ((flag, float((flags & flag > 0).mean())) for flag in Flag)
     said = ", ".join(f"{flag.name} {100 * share:.1f}" for flag, share in shares if share and flag.name)

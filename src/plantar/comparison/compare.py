@@ -50,7 +50,7 @@ def compare(
 
     Args:
         result: of `identify_feet`. robot: that the logs are of. logs: with an attitude of the IMU.
-        hands: by motion, of an operator who leads the robot. progress: is told each motion that is done.
+        progress: is told each motion that is done.
 
     Returns:
         A score for each motion and kind, and what was simulated beside what was recorded, where no robot fell.

@@ -6,14 +6,14 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from plantar.checks.log_checks import check_log
+from plantar.checks.log_checks import check_log, finding_notes, refuse_impossible
 from plantar.contact.deflection import BushState, bush_states
 from plantar.contact.imu_turn import imu_turn_effects
 from plantar.contact.phases import FootContact, carried_weight, detect_contact, shaken
 from plantar.contact.reasons import Reason
 from plantar.contact.stances import Stances, stances_of, without_rolling
 from plantar.conventions import FORCE, GRAVITY, Array
-from plantar.errors import DataError, RobotError, located
+from plantar.errors import RobotError, located
 from plantar.feet.recording import Recording, Role
 from plantar.feet.settings import DEFAULT_CUTOFF
 from plantar.logs.motion_log import MotionLog
@@ -45,10 +45,8 @@ def checked(robot: RobotModel, log: MotionLog, findings: Sequence[Finding] | Non
     """
     _require(robot)
     findings = check_log(robot, log) if findings is None else findings
-    problems = [finding for finding in findings if finding.fatal]
-    if problems:
-        raise DataError(located(problems[0].text, path=log.source))
-    odd = [Note(found.code, found.severity, f"{log.name}: {found.text}") for found in findings]
+    refuse_impossible(log, findings)
+    odd = finding_notes(log, findings)
     even = without_spikes(without_holes(without_held(without_dropouts(evenly_sampled(log)))))
     return even.with_columns({}, *log.joint_notes(robot), *odd)
 

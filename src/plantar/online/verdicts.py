@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from plantar.checks.log_checks import check_log
-from plantar.errors import DataError, located
+from plantar.checks.log_checks import check_log, finding_notes, refuse_impossible
 from plantar.feet.assess.data_faults import UNMENDED, doubted
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
@@ -20,10 +19,8 @@ IDENTIFY = "run identify feet on logs of this robot, and give its result"
 def log_notes(robot: RobotModel, log: MotionLog) -> tuple[Note, ...]:
     """What the checks find in a log. Raises DataError where a sensor reads something impossible."""
     findings = check_log(robot, log)
-    fatal = [finding for finding in findings if finding.fatal]
-    if fatal:
-        raise DataError(located(fatal[0].text, path=log.source))
-    return tuple(Note(found.code, found.severity, f"{log.name}: {found.text}") for found in findings)
+    refuse_impossible(log, findings)
+    return tuple(finding_notes(log, findings))
 
 
 def judged(rows: Sequence[Parameter], notes: Sequence[Note], *, identified: bool) -> list[Parameter]:

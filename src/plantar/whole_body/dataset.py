@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
-from plantar.checks.log_checks import check_log
+from plantar.checks.log_checks import check_log, refuse_impossible
 from plantar.conventions import GRAVITY, Array, Mask
 from plantar.dynamics import BaseParameters, Equation, Motion, base_parameters, model_parameters
 from plantar.dynamics.base_motion import relative_motion, root_motion, root_motion_from_sole
@@ -71,9 +71,7 @@ def prepare_whole(body: Body, log: MotionLog, settings: DynamicsSettings) -> Who
     few samples are left.
     """
     robot, tree = body.robot, body.equation.tree
-    problems = [finding for finding in check_log(robot, log) if finding.fatal]
-    if problems:
-        raise DataError(located(problems[0].text, path=log.source))
+    refuse_impossible(log, check_log(robot, log))
     even = evenly_sampled(log)
     notes = [*even.notes, *log.joint_notes(robot)]
     names = tree.names
