@@ -194,4 +194,13 @@ DATA_FAULTS = (
         "feet/fit/bush_place.py", "a shape may turn negative", "shape * np.exp(np.clip(by / shape, -1.0, 1.0))",
         "shape + by", ("feet/fit/test_bush_place.py",),
     ),
+    Mutant(
+        "feet/assess/contradiction.py", "drift contradicts the fit",
+        "[beside_drift(row, fitted, by_name[row.motion], predictions) for row in scores]", "scores",
+        ("feet/assess/test_contradiction.py",),
+    ),
+    Mutant(
+        "feet/assess/contradiction.py", "what is quicker than drift passes for drift", "DRIFT_PERIOD = 20.0",
+        "DRIFT_PERIOD = 5.0", ("feet/assess/test_contradiction.py",),
+    ),
 )  # fmt: skip

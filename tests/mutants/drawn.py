@@ -147,8 +147,8 @@ FIT = (
 
 ASSESSMENT = (
     Mutant(
-        "feet/assess/verdicts.py", "motions that hardly load an axis contradict it",
-        "row.zero_mean_abs > LOADED * largest.zero_mean_abs", "row.zero_mean_abs > 0",
+        "feet/assess/contradiction.py", "motions that hardly load an axis contradict it",
+        "row.zero_mean_abs > least", "row.zero_mean_abs > 0",
     ),
     Mutant(
         "feet/assess/parameter_rows.py", "damping counts as negative when it may be",

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from plantar.contact.reasons import Reason
 from plantar.conventions import ROTATIONAL_AXES, Axis, Mask
+from plantar.feet.assess.contradiction import contradiction
 from plantar.feet.assess.data_faults import data_faults, doubted
 from plantar.feet.assess.diagnosis import advised, diagnose_axis, mend_first
 from plantar.feet.assess.parameter_rows import axis_rows, missing_rows, unseen_rows
@@ -112,7 +113,8 @@ def _with_axis(
     causes += robot_causes(fit, thin.fitted, ready.robot.uncertainty, shared)
     wide = inflated(fit, causes)
     scores, predictions = score_axis(ready.recordings, wide)
-    rows = axis_rows(wide, ready.fitted, predictions, scores)
+    contradicted = contradiction(scores, wide, ready.recordings, predictions)
+    rows = axis_rows(wide, ready.fitted, predictions, contradicted)
     limits = diagnose_axis(fit, wide, causes, rows)
     gain = {foot: error for foot, error in ready.gain_errors.items() if foot == fit.foot}
     play = play_notes(thin.fitted, fit, shared)

@@ -9,7 +9,7 @@ import pytest
 
 from biped import record, sines, sway
 from biped_robot import FEET, make_robot, robot_entry
-from plantar.feet.assess.verdicts import SIGNS, Evidence, contradiction, judge
+from plantar.feet.assess.verdicts import SIGNS, Evidence, judge
 from plantar.feet.identify import identify_feet
 from plantar.feet.settings import FeetSettings
 from plantar.logs.readers import open_log
@@ -127,22 +127,10 @@ def test_still_axes_are_not_judged_by_moving_ones(tmp_path: Path) -> None:
         assert found.parameter(foot, "roll", "stiffness").verdict == "unidentifiable"
 
 
-def scored(motion: str, error: float, constant: float) -> ValidationRow:
-    return ValidationRow("direct", motion, "left", "pitch", error, error, 4 * constant, 1.0, constant, 1000)
-
-
-def test_a_motion_that_contradicts_the_others_is_named() -> None:
-    lively, quiet = scored("sway", 0.3, 17.0), scored("squat", 1.0, 1.1)
-    assert contradiction([lively, quiet, scored("tilt", 0.2, 2.4)]) is None  # the squat hardly loads the axis
-    worst = scored("tilt", 4.1, 2.3)
-    assert contradiction([lively, quiet, worst]) is worst
-    assert (
-        contradiction([scored("sway", 9.0, 17.0), worst]) is None
-    )  # where nothing holds, nothing contradicts
-    assert contradiction([]) is None
-    verdict, reason, advice = judge(
-        "left", "pitch", "stiffness", 480.0, (475.0, 485.0), Evidence(60.0, 0.02, 0.97, contradicted=worst)
-    )
+def test_a_motion_that_contradicts_the_others_makes_numbers_weak() -> None:
+    missed = ValidationRow("direct", "tilt", "left", "pitch", 4.1, 4.1, 9.2, 1.0, 2.3, 1000)
+    evidence = Evidence(60.0, 0.02, 0.97, contradicted=missed)
+    verdict, reason, advice = judge("left", "pitch", "stiffness", 480.0, (475.0, 485.0), evidence)
     assert verdict == "weak"
     assert "tilt" in reason
     assert advice is not None

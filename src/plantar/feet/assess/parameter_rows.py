@@ -11,7 +11,7 @@ from plantar.contact.reasons import TIPPING
 from plantar.conventions import ROTATIONAL_AXES, Axis
 from plantar.estimation import interval95, relative_std_percent
 from plantar.feet.assess.residual_table import Predictions
-from plantar.feet.assess.verdicts import Evidence, contradiction, judge, judge_term
+from plantar.feet.assess.verdicts import Evidence, judge, judge_term
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.recording import Recording
 from plantar.models import KelvinVoigt
@@ -19,10 +19,16 @@ from plantar.results.feet import Parameter, ValidationRow
 
 
 def axis_rows(
-    fit: AxisFit, recordings: Sequence[Recording], predictions: Predictions, scores: Sequence[ValidationRow]
+    fit: AxisFit,
+    recordings: Sequence[Recording],
+    predictions: Predictions,
+    contradicted: ValidationRow | None,
 ) -> list[Parameter]:
-    """Every parameter of one axis; `predictions` are those of the fit's own recordings, `scores` of all."""
-    evidence = replace(_evidence(fit, recordings, predictions), contradicted=contradiction(scores))
+    """Every parameter of one axis; `predictions` are those of the fit's own recordings.
+
+    contradicted: the score of a motion, seen or not, that the model misses although it holds in others.
+    """
+    evidence = replace(_evidence(fit, recordings, predictions), contradicted=contradicted)
     rows = []
     for place, term in enumerate(fit.names):
         value, std = float(fit.numbers[place]), float(fit.std[place])
