@@ -196,11 +196,19 @@ DATA_FAULTS = (
     ),
     Mutant(
         "feet/assess/contradiction.py", "drift contradicts the fit",
-        "[beside_drift(row, fitted, by_name[row.motion], predictions) for row in scores]", "scores",
+        "[beside_drift(row, fitted, by_name[row.motion], predictions, mount) for row in scores]", "scores",
         ("feet/assess/test_contradiction.py",),
     ),
     Mutant(
         "feet/assess/contradiction.py", "what is quicker than drift passes for drift", "DRIFT_PERIOD = 20.0",
         "DRIFT_PERIOD = 5.0", ("feet/assess/test_contradiction.py",),
+    ),
+    Mutant(
+        "feet/assess/contradiction.py", "any turn of the IMU is allowed", "np.abs(turned).max() < TURNED * mount",
+        "True", ("feet/assess/test_contradiction.py",),
+    ),
+    Mutant(
+        "feet/assess/contradiction.py", "no turn of the IMU is allowed", "np.abs(turned).max() < TURNED * mount",
+        "False", ("feet/assess/test_contradiction.py",),
     ),
 )  # fmt: skip

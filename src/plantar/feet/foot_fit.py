@@ -113,7 +113,9 @@ def _with_axis(
     causes += robot_causes(fit, thin.fitted, ready.robot.uncertainty, shared)
     wide = inflated(fit, causes)
     scores, predictions = score_axis(ready.recordings, wide)
-    contradicted = contradiction(scores, wide, ready.recordings, predictions)
+    contradicted = contradiction(
+        scores, wide, ready.recordings, predictions, ready.robot.uncertainty.imu_mount
+    )
     rows = axis_rows(wide, ready.fitted, predictions, contradicted)
     limits = diagnose_axis(fit, wide, causes, rows)
     gain = {foot: error for foot, error in ready.gain_errors.items() if foot == fit.foot}

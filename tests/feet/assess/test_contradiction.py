@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -10,11 +12,11 @@ from made_recording import FOOT, PERIOD, made_recording, swayed
 from plantar.conventions import Array
 from plantar.feet.assess.contradiction import DRIFT_PERIOD, contradiction, missed_motions
 from plantar.feet.assess.scores import score_axis
-from plantar.feet.fit.axis import FittedModel
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.results.feet import ValidationRow
 
 STIFFNESS, COUNT = 400.0, 6000
+MOUNT = 0.01  # rad
 TIME = PERIOD * np.arange(COUNT)
 
 
@@ -33,17 +35,22 @@ def test_motions_that_are_missed_although_the_liveliest_is_not() -> None:
     assert missed_motions([]) == []
 
 
-def found(error: Array) -> ValidationRow | None:
-    """What contradicts a fit of a lively motion: a quieter, unseen one whose torque is off by `error` (n,) [N·m]."""
+def found(error: Array, waist: Array | None = None, turned: float = 0.0) -> ValidationRow | None:
+    """What contradicts a fit of a lively motion: a quieter, unseen one whose torque is off by `error` (n,) [N·m], and
+    whose deflection is read by an IMU that is `turned` [rad] while a `waist` (n,) [rad] turns it against the foot."""
     lively, quiet = swayed(COUNT), swayed(COUNT, 0.006, seed=1)
     seen = made_recording("sway", lively, STIFFNESS * lively)
-    unseen = made_recording("Myrand5", quiet, STIFFNESS * quiet + error, role="validate")
+    waist = np.zeros(COUNT) if waist is None else waist
+    unseen = made_recording("Myrand5", quiet + turned * waist, STIFFNESS * quiet + error, role="validate")
+    turns = np.zeros((COUNT, 2, 3))
+    turns[:, 0, 0] = -waist  # a turn about x shows in pitch; it is taken off what is read
+    seen, unseen = replace(seen, imu_turns={FOOT: 0 * turns}), replace(unseen, imu_turns={FOOT: turns})
     fit = fit_axis([seen], FOOT, "pitch", LINEAR)
     assert fit is not None
-    fitted: FittedModel = fit
-    scores, predictions = score_axis([seen, unseen], fitted)
-    assert error.any() == bool(missed_motions(scores))  # as it is, each of these errors is missed
-    return contradiction(scores, fitted, [seen, unseen], predictions)
+    scores, predictions = score_axis([seen, unseen], fit)
+    # As it is, each of these errors is missed.
+    assert (error.any() or turned > 0) == bool(missed_motions(scores))
+    return contradiction(scores, fit, [seen, unseen], predictions, MOUNT)
 
 
 def test_a_motion_that_fits_contradicts_nothing() -> None:
@@ -65,3 +72,16 @@ def test_what_is_quicker_than_drift_is_named_with_what_is_missed_beside_it(frequ
     assert row.motion == "Myrand5"
     assert row.mean_abs_error == pytest.approx(np.mean(np.abs(swing)), rel=0.1)
     assert row.zero_mean_abs > 0.5 * row.mean_abs_error
+
+
+def test_a_mount_that_the_robot_file_allows_is_no_contradiction() -> None:
+    """No fitted motion moves the waist; one that does reads two deviations of the mount as deflection."""
+    assert found(np.zeros(COUNT), 0.5 * np.sin(2 * np.pi * 0.2 * TIME), 2 * MOUNT) is None
+    row = found(np.zeros(COUNT), 0.5 * np.sin(2 * np.pi * 0.2 * TIME), 5 * MOUNT)
+    assert row is not None
+    assert row.mean_abs_error == pytest.approx(STIFFNESS * 0.5 * 5 * MOUNT * 2 / np.pi, rel=0.1)
+
+
+def test_a_mount_explains_nothing_while_no_joint_turns_it() -> None:
+    swing = 5.0 * np.sin(2 * np.pi * 0.2 * TIME)
+    assert found(swing, 0.5 * np.sin(2 * np.pi * 0.5 * TIME)) is not None

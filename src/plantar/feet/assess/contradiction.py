@@ -1,8 +1,8 @@
-"""The motion that an axis' model misses although it holds where most moves; what drifts does not count as missed."""
+"""The motion that an axis' model misses although it holds where most moves, beside drift and the IMU's mount."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy as np
 from plantar.conventions import ROTATIONAL_AXES, Array
 from plantar.feet.assess.residual_table import Predictions
 from plantar.feet.fit.axis import FittedModel
+from plantar.feet.fit.prediction import predict
 from plantar.feet.recording import Recording
 from plantar.results.feet import ValidationRow
 from plantar.results.scores import error_measures
@@ -17,6 +18,8 @@ from plantar.results.scores import error_measures
 HOLDS = 0.3  # mean error over that of a constant, of the liveliest motion: the model holds
 MISSED = 0.5  # likewise, of a motion that contradicts it
 LOADED = 0.1  # of the liveliest motion's torque: others hardly load the axis
+TURNED = 3.0  # deviations of a mount: one that is turned by more is a fault, and to be named
+ROUNDS = 2  # of Gauss and Newton: a bush with a memory is not linear in its deflection
 DRIFT_PERIOD = 20.0  # s: attitudes wander more slowly, motions that were asked for are twice as quick or more
 
 
@@ -25,17 +28,21 @@ def contradiction(
     fitted: FittedModel,
     recordings: Sequence[Recording],
     predictions: Predictions,
+    mount: float,
 ) -> ValidationRow | None:
     """Of `scores` of one axis, the motion that contradicts the others, as it is missed beside drift; None where none.
 
-    A score holds the attitude's drift since the offset was found, up to the whole torque of a quiet motion. That says
-    nothing against the stiffness, so a motion contradicts only if it is missed with its slow part and without.
+    A score holds the attitude's drift since the offset was found, and where a joint turns the IMU against the foot,
+    the IMU's mount (standard deviation `mount` [rad]): together up to the whole torque of a quiet motion. That says
+    nothing against the stiffness, so a motion contradicts only if it is missed with both and beside both.
     """
     missed = missed_motions(scores)
     if not missed:
         return None
     by_name = {recording.name: recording for recording in recordings}
-    steady = missed_motions([beside_drift(row, fitted, by_name[row.motion], predictions) for row in scores])
+    steady = missed_motions(
+        [beside_drift(row, fitted, by_name[row.motion], predictions, mount) for row in scores]
+    )
     both = [row for row in steady if row.motion in {other.motion for other in missed}]
     return max(both, key=_share, default=None)
 
@@ -54,21 +61,49 @@ def missed_motions(rows: Sequence[ValidationRow]) -> list[ValidationRow]:
 
 
 def beside_drift(
-    row: ValidationRow, fitted: FittedModel, recording: Recording, predictions: Predictions
+    row: ValidationRow, fitted: FittedModel, recording: Recording, predictions: Predictions, mount: float
 ) -> ValidationRow:
-    """The score without what is slower than `DRIFT_PERIOD`, in the error and in the torque alike.
+    """The score without what is slower than `DRIFT_PERIOD`, in the error and in the torque alike, nor what a turn of
+    the IMU by less than `TURNED` times `mount` [rad] explains of the error.
 
     A foot that steps is scored with an offset of its own in each stance, which follows any drift.
     """
     if recording.stances[fitted.foot] is not None:
         return row
     prediction = predictions[recording.name, fitted.foot, fitted.axis]
-    scored = prediction.scored
-    measured = recording.bushes[fitted.foot].torque[scored, ROTATIONAL_AXES.index(fitted.axis)]
-    both = np.column_stack([measured, measured - prediction.torque[scored]])
-    slow = _slow(recording.time[scored])
-    quick = both - slow @ np.linalg.lstsq(slow, both, rcond=None)[0]
-    return replace(row, **error_measures(quick[:, 0], quick[:, 0] - quick[:, 1], 0.0))
+    torque = recording.bushes[fitted.foot].torque[prediction.scored, ROTATIONAL_AXES.index(fitted.axis)]
+    slow = _slow(recording.time[prediction.scored])
+
+    def quick(values: Array) -> Array:
+        return np.asarray(values - slow @ np.linalg.lstsq(slow, values, rcond=None)[0])
+
+    def left(turned: Array) -> Array:
+        """What is missed with an IMU that is turned by `turned` (3,) [rad] beside the robot file's mount."""
+        x, y, z = turned.tolist()
+        found = predict(recording, replace(fitted, imu_turned=(x, y, z)))
+        return torque if found is None else quick(torque - found.torque[prediction.scored])
+
+    as_fitted = np.array(fitted.imu_turned)
+    missed = left(as_fitted)
+    if recording.imu_turns[fitted.foot].any() and mount:
+        turned = _mount_that_fits(left, as_fitted, mount, float(np.ptp(recording.time[prediction.scored])))
+        missed = left(turned) if np.abs(turned).max() < TURNED * mount else missed
+    return replace(row, **error_measures(quick(torque), quick(torque) - missed, 0.0))
+
+
+def _mount_that_fits(left: Callable[[Array], Array], start: Array, mount: float, seconds: float) -> Array:
+    """The IMU's turn (3,) [rad] that makes what is `left` (n,) small, drawn to none by its deviation `mount`.
+
+    What is left about a second apart is taken as independent.
+    """
+    turned = start
+    for _ in range(ROUNDS):
+        now = left(turned)
+        slopes = np.column_stack([left(turned + step) - now for step in mount * np.eye(3)])
+        weight = np.sqrt(seconds / len(now) / np.mean(now**2))
+        rows = np.vstack([weight * slopes, np.eye(3)])
+        turned = turned - mount * np.linalg.lstsq(rows, np.append(weight * now, turned / mount))[0]
+    return turned
 
 
 def _slow(time: Array) -> Array:
