@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from plantar.estimation.random_effects import share_between
+from plantar.estimation.random_effects import Differences, share_between
 
 
 def found(true: float, own: float, groups: int = 3, draws: int = 150) -> np.ndarray:
@@ -16,7 +16,7 @@ def found(true: float, own: float, groups: int = 3, draws: int = 150) -> np.ndar
     spreads = []
     for _ in range(draws):
         shares = random.normal(0, np.hypot(true, own), groups)
-        spreads.append(share_between(shares[1:] - shares[0], covariance, own))
+        spreads.append(share_between([Differences(shares[1:] - shares[0], covariance)], own))
     return np.array(spreads)
 
 
@@ -28,7 +28,7 @@ def test_intervals_of_the_mean_hold(true: float) -> None:
     for _ in range(200):
         shares = random.normal(0, np.hypot(true, own), groups)
         covariance = own**2 * (np.eye(groups - 1) + 1.0)
-        spread = share_between(shares[1:] - shares[0], covariance, own)
+        spread = share_between([Differences(shares[1:] - shares[0], covariance)], own)
         held += abs(shares.mean()) < stats.t.ppf(0.975, groups - 1) * np.hypot(spread, own) / np.sqrt(groups)
     assert held >= 0.92 * 200
 
@@ -36,3 +36,13 @@ def test_intervals_of_the_mean_hold(true: float) -> None:
 def test_groups_that_are_alike_widen_little() -> None:
     assert np.median(found(0.0, 0.001)) < 0.0025
     assert np.median(found(0.02, 0.001)) > 0.01
+
+
+def test_sets_together_show_what_one_alone_hides() -> None:
+    """Two groups that happen to be alike are alike; four such pairs among others that differ are not."""
+    covariance = np.array([[0.005**2]])
+    alike, differing = Differences(np.array([0.001]), covariance), Differences(np.array([0.03]), covariance)
+    alone = share_between([alike], 0.001)
+    together = share_between([alike, differing, differing, differing], 0.001)
+    assert alone < 0.003 < 0.01 < together < share_between([differing] * 4, 0.001)
+    assert share_between([alike] * 4, 0.001) <= alone

@@ -13,7 +13,7 @@ import plantar
 from biped import record, sway
 from biped_robot import make_robot
 from feet_trials import PUNCTUAL, noisy
-from plantar.feet.foot_fit import fit_foot
+from plantar.feet.foot_fit import assess_foot, between_all, fit_foot
 from plantar.feet.identify import identify_feet
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
@@ -24,10 +24,11 @@ DEEPEST_OF_STEPS = 12  # of a foot that steps: its reduced sums are kept, which 
 SOURCE = str(Path(plantar.__file__).parent)
 SOLVERS = {"qr", "lstsq", "solve", "pinv", "svd", "svdvals", "eigh", "inv", "cholesky", "solve_triangular"}
 Path_ = tuple[str, ...]
+FROM = {each.__code__ for each in (fit_foot, between_all, assess_foot)}
 
 
 def path_to(frame: FrameType) -> Path_:
-    """The package's functions from `fit_foot`, or the first of the thread, to a frame, both counted.
+    """The package's functions from a step of `FROM`, or the first of the thread, to a frame, both counted.
 
     Comprehensions and lambdas are no functions that a reader jumps to; one that calls itself counts each time.
     """
@@ -37,7 +38,7 @@ def path_to(frame: FrameType) -> Path_:
         code = step.f_code
         if code.co_filename.startswith(SOURCE) and not code.co_name.startswith("<"):
             found.append(f"{code.co_filename[len(SOURCE) + 1 :]}:{code.co_name}")
-        if code is fit_foot.__code__:
+        if code in FROM:
             break
         step = step.f_back
     return tuple(reversed(found))

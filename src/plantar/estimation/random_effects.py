@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import NamedTuple
+
 import numpy as np
 
 from plantar.conventions import Array
@@ -10,21 +13,30 @@ TRIED = np.geomspace(1e-5, 0.2, 200)  # shares by which groups may differ
 HEAVY = 3.0  # degrees of freedom of the prior's tail: groups that differ by far more than it are believed
 
 
-def share_between(differences: Array, covariance: Array, usual: float) -> float:
-    """Deviation of shares of which `differences` (n,) from the first one are known with a covariance (n, n).
+class Differences(NamedTuple):
+    """Shares of groups beside the first one's, `shares` (n,), and their `covariance` (n, n)."""
+
+    shares: Array
+    covariance: Array
+
+
+def share_between(sets: Sequence[Differences], usual: float) -> float:
+    """By which share (standard deviation) groups differ, where all sets of differences are of groups of one kind.
 
     Random effects: the root of the mean square over what their likelihood and a half-Student prior of size `usual`
     leave (A. Gelman, Bayesian Analysis 1, 2006). So few differences may be small by chance, which a moment estimate
     takes for none at all.
     """
-    together = np.eye(len(differences)) + 1.0
     weights = []
     for share in TRIED:
-        spread = covariance + share**2 * together
-        likelihood = -0.5 * (
-            np.linalg.slogdet(spread)[1] + differences @ np.linalg.solve(spread, differences)
-        )
         prior = -0.5 * (HEAVY + 1) * np.log1p((share / usual) ** 2 / HEAVY)
-        weights.append(likelihood + prior + np.log(share))  # tried in even steps of the logarithm
+        # Tried in even steps of the logarithm.
+        weights.append(prior + np.log(share) + sum(_likelihood(each, share) for each in sets))
     weight = np.exp(np.array(weights) - max(weights))
     return float(np.sqrt(np.sum(weight * TRIED**2) / np.sum(weight)))
+
+
+def _likelihood(found: Differences, share: float) -> float:
+    """Logarithm of the density of differences from a first group that differs by `share` like all others."""
+    spread = found.covariance + share**2 * (np.eye(len(found.shares)) + 1.0)
+    return float(-0.5 * (np.linalg.slogdet(spread)[1] + found.shares @ np.linalg.solve(spread, found.shares)))

@@ -19,6 +19,12 @@ from plantar.feet.assess.zero_jumps import zero_jumps
 from plantar.feet.exclusion.outliers import outlier_masks
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.axis_fit import fit_axis
+from plantar.feet.fit.between_recordings import (
+    Apart,
+    AxisDifferences,
+    axis_differences,
+    recordings_apart,
+)
 from plantar.feet.fit.bush_place import PlaceSpread, turned_bush_note
 from plantar.feet.fit.force_gain import force_gain_causes, force_gain_notes, torque_gain_causes
 from plantar.feet.fit.robot_causes import robot_causes
@@ -52,9 +58,22 @@ class FootFit:
     notes: tuple[Note, ...] = ()
 
 
+@dataclass(frozen=True)
+class FittedFoot:
+    """Both axes of one foot as fitted: `fits` by axis, `given_up` with the reasons; the logs without outliers, `ready`,
+    and `thin`, with no more samples than the fit needs; warnings of `jumps` of a zero, about either axis."""
+
+    foot: str
+    fits: Mapping[Axis, AxisFit]
+    given_up: dict[Axis, str]
+    ready: PreparedLogs
+    thin: PreparedLogs
+    jumps: Sequence[Note]
+
+
 def fit_foot(
     ready: PreparedLogs, foot: str, place: PlaceSpread, progress: Callable[[str], None]
-) -> tuple[FootFit, PreparedLogs]:
+) -> FittedFoot:
     """Pitch and roll of one foot, and the logs without the samples that leave either model by far.
 
     What is left out is decided for both axes before either is scored. Clean recordings are fitted once; others again
@@ -82,16 +101,32 @@ def fit_foot(
     for axis, fit in fits.items():
         with gives_up(axis, given_up):
             jumps.extend(zero_jumps(thin.fitted, fit, shared))
-    found = FootFit(notes=tuple(jumps))
+    return FittedFoot(foot, fits, given_up, ready, thin, jumps)
+
+
+def between_all(feet: Sequence[FittedFoot]) -> Apart:
+    """By how much recordings differ, as all axes of all feet show it together."""
+    told = list[AxisDifferences]()
+    for one in feet:
+        for axis, fit in one.fits.items():
+            with gives_up(axis, one.given_up):
+                own = axis_differences(fit, one.thin.fitted, one.ready.settings.offset == "shared")
+                told += [] if own is None else [own]
+    return recordings_apart(told, max(one.ready.robot.uncertainty.between_recordings for one in feet))
+
+
+def assess_foot(fitted: FittedFoot, apart: Apart) -> FootFit:
+    """Each axis of a fitted foot widened, scored, judged and diagnosed, or why it is given up."""
+    found = FootFit(notes=tuple(fitted.jumps))
     for axis in ROTATIONAL_AXES:
-        if axis in fits and axis not in given_up:
-            with gives_up(axis, given_up):
-                found = _with_axis(found, ready, thin, fits[axis], jumps)
-        if axis in given_up:
-            found.parameters.extend(missing_rows(foot, axis, given_up[axis]))
-        elif axis not in fits:
-            found.parameters.extend(unseen_rows(foot, axis))
-    return replace(found, notes=(*found.notes, *internal_errors(foot, given_up))), ready
+        if axis in fitted.fits and axis not in fitted.given_up:
+            with gives_up(axis, fitted.given_up):
+                found = _with_axis(found, fitted, fitted.fits[axis], apart)
+        if axis in fitted.given_up:
+            found.parameters.extend(missing_rows(fitted.foot, axis, fitted.given_up[axis]))
+        elif axis not in fitted.fits:
+            found.parameters.extend(unseen_rows(fitted.foot, axis))
+    return replace(found, notes=(*found.notes, *internal_errors(fitted.foot, fitted.given_up)))
 
 
 def _thin(ready: PreparedLogs, foot: str) -> PreparedLogs:
@@ -99,18 +134,14 @@ def _thin(ready: PreparedLogs, foot: str) -> PreparedLogs:
     return replace(ready, fitted=tuple(recording.decimated(foot) for recording in ready.fitted))
 
 
-def _with_axis(
-    found: FootFit, ready: PreparedLogs, thin: PreparedLogs, fit: AxisFit, jumps: Sequence[Note]
-) -> FootFit:
-    """What was found, and one axis: its fit widened, scored, judged and diagnosed.
-
-    jumps: of the zeros of both axes; an encoder that slips about one tilts the other as well.
-    """
+def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit, apart: Apart) -> FootFit:
+    """What was found, and one axis: its fit widened, scored, judged and diagnosed."""
+    ready, thin = fitted.ready, fitted.thin
     shared = ready.settings.offset == "shared"
     causes = systematic_causes(fit, thin.fitted, ready.sensor_delay, ready.vertical, shared)
     causes += force_gain_causes(fit, ready.gain_errors)
     causes += torque_gain_causes(fit, ready.torque_gains)
-    causes += robot_causes(fit, thin.fitted, ready.robot.uncertainty, shared)
+    causes += robot_causes(fit, thin.fitted, ready.robot.uncertainty, apart, shared)
     wide = inflated(fit, causes)
     scores, predictions = score_axis(ready.recordings, wide)
     contradicted = contradiction(
@@ -122,7 +153,7 @@ def _with_axis(
     play = play_notes(thin.fitted, fit, shared)
     faults = [
         *data_faults(ready.fitted, fit),
-        *jumps,
+        *fitted.jumps,  # of both axes: an encoder that slips about one tilts the other as well
         *play,
         *force_gain_notes(ready.robot, gain),
         # Torque channels that are wrong about one axis are trusted about neither.

@@ -14,7 +14,7 @@ from plantar.errors import DataError
 from plantar.feet.assess.residual_table import residual_table
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.bush_place import PlaceSpread
-from plantar.feet.foot_fit import FootFit, fit_foot
+from plantar.feet.foot_fit import FittedFoot, assess_foot, between_all, fit_foot
 from plantar.feet.prepare import PreparedLogs, over_logs, prepare_all
 from plantar.feet.recording import Recording
 from plantar.feet.settings import FeetSettings
@@ -80,9 +80,10 @@ def fit_prepared(
         names = ", ".join(log.name for log in logs)
         valid = "a standing robot; were the sensors zeroed under load, 'contact: always' for these feet"
         raise DataError(f"{names}: no foot carries load in any log (valid: {valid})")
-    both = _fitted_feet(ready, progress)
-    found = [fit for fit, _ in both.values()]
-    ready = _merged(ready, {foot: own for foot, (_, own) in both.items()})
+    fitted = _fitted_feet(ready, progress)
+    between = between_all(list(fitted.values()))
+    found = [assess_foot(one, between) for one in fitted.values()]
+    ready = _merged(ready, {foot: one.ready for foot, one in fitted.items()})
     fits = [fit for each in found for fit in each.fits]
     parameters = [row for each in found for row in each.parameters]
     rows = [row for each in found for row in each.validation]
@@ -122,19 +123,17 @@ def fit_prepared(
     )
 
 
-def _fitted_feet(
-    ready: PreparedLogs, progress: Callable[[str], None]
-) -> dict[str, tuple[FootFit, PreparedLogs]]:
+def _fitted_feet(ready: PreparedLogs, progress: Callable[[str], None]) -> dict[str, FittedFoot]:
     """Every foot, those once more whose robot file another foot's motions put in doubt."""
     places = {foot: PlaceSpread.of(ready.robot, foot) for foot in ready.robot.feet}
 
-    def fit_all(places: Mapping[str, PlaceSpread]) -> dict[str, tuple[FootFit, PreparedLogs]]:
+    def fit_all(places: Mapping[str, PlaceSpread]) -> dict[str, FittedFoot]:
         with over_logs([recording.log for recording in ready.recordings]) as each:
             found = each(lambda foot: fit_foot(ready, foot, places[foot], progress), places)
             return dict(zip(places, found, strict=True))
 
     found = fit_all(places)
-    fits = {foot: fit.fits for foot, (fit, _) in found.items()}
+    fits = {foot: [*one.fits.values()] for foot, one in found.items()}
     wider = {
         foot: place.doubted_by([fit for other in fits if other != foot for fit in fits[other]], fits[foot])
         for foot, place in places.items()

@@ -9,8 +9,14 @@ import pytest
 
 from biped import TRUTH, record, sway
 from feet_trials import PUNCTUAL, noisy
+from plantar.estimation.random_effects import Differences
 from plantar.feet.fit.axis_fit import fit_axis
-from plantar.feet.fit.between_recordings import between_recordings
+from plantar.feet.fit.between_recordings import (
+    AxisDifferences,
+    axis_differences,
+    between_recordings,
+    recordings_apart,
+)
 from plantar.feet.prepare import prepare_all
 from plantar.robot.model import RobotModel
 
@@ -26,7 +32,9 @@ def share(robot: RobotModel, shares: list[float], prior: float = 0.0) -> float:
     ready = prepare_all(robot, logs, [], LINEAR, lambda _: None)
     fit = fit_axis(ready.fitted, "left", "pitch", LINEAR)
     assert fit is not None
-    (cause,) = between_recordings(fit, ready.fitted, prior, False)
+    told = axis_differences(fit, ready.fitted, False)
+    apart = recordings_apart([told] if told else [], prior)
+    (cause,) = between_recordings(fit, ready.fitted, apart, False)
     return float(cause.share[0] / fit.values[0])
 
 
@@ -38,3 +46,16 @@ def test_few_that_differ(robot: RobotModel, shares: list[float]) -> None:
 def test_few_that_are_alike(robot: RobotModel) -> None:
     assert share(robot, [0.0, 0.0, 0.0]) < 0.002
     assert share(robot, [0.0, 0.0, 0.0], prior=0.03) == pytest.approx(0.03 / np.sqrt(3), rel=0.1)
+
+
+def test_an_axis_that_shows_no_difference_takes_what_others_show() -> None:
+    one = np.array([[0.004**2]])
+    names = frozenset({"a", "b"})
+    alike = AxisDifferences(Differences(np.array([0.0]), one), 0.001, names)
+    apart = AxisDifferences(Differences(np.array([0.04]), one), 0.001, names | {"c"})
+    assert recordings_apart([alike], 0.0).share < 0.003
+    pooled = recordings_apart([alike, apart, apart], 0.0)
+    assert pooled.share > 0.01
+    assert pooled.others == 2
+    assert recordings_apart([alike, apart, apart], 0.1).share == 0.1
+    assert recordings_apart([], 0.02).share == 0.02

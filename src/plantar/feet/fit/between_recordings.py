@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.estimation import effect_of, fit_blocks
+from plantar.estimation import Block, effect_of, fit_blocks
 from plantar.estimation.least_squares import values_without_each
-from plantar.estimation.random_effects import share_between
+from plantar.estimation.random_effects import Differences, share_between
 from plantar.estimation.stance_least_squares import FEWEST_RECORDINGS, jackknife
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.regression_data import beside, tangent_blocks
@@ -19,35 +20,81 @@ from plantar.feet.recording import Recording
 NAME = "between recordings"
 
 
+class Apart(NamedTuple):
+    """By which share recordings differ (standard deviation), known from `others` recordings beside the first."""
+
+    share: float
+    others: int
+
+
+class AxisDifferences(NamedTuple):
+    """By how much the `recordings` (names) of one axis differ, beside `usual`, the deviation of its stiffness."""
+
+    differences: Differences
+    usual: float
+    recordings: frozenset[str]
+
+
+def recordings_apart(axes: Sequence[AxisDifferences], prior: float) -> Apart:
+    """By which share of spring and damper recordings differ, at least `prior`, as all axes of all feet show it.
+
+    An axis that few motions move shows hardly any of it by itself; rubber that warms up is warmer in all of them.
+    """
+    if not axes:
+        return Apart(prior, 1)
+    share = share_between([each.differences for each in axes], float(np.mean([each.usual for each in axes])))
+    names = frozenset().union(*(each.recordings for each in axes))
+    return Apart(max(prior, share), len(names) - 1)
+
+
+def axis_differences(fit: AxisFit, recordings: Sequence[Recording], shared: bool) -> AxisDifferences | None:
+    """Shares by which spring and damper of each recording are beside the first one's: what all share is K's own.
+
+    None of a foot that steps, and where there is nothing to compare.
+    """
+    blocks = _blocks(fit, recordings, shared)
+    if not blocks:
+        return None
+    torques, others = _torques(fit, blocks), range(1, len(blocks))
+    columns = [np.column_stack(each) for each in zip(*(_alone(torques, own) for own in others), strict=True)]
+    found = fit_blocks([beside(block, own) for block, own in zip(blocks, columns, strict=True)])
+    size = blocks[0].regressor.shape[1]
+    ends = slice(size, size + len(others))
+    usual = float(fit_blocks(blocks).std[0]) / max(abs(float(fit.values[0])), 1e-300)
+    differences = Differences(found.values[ends], found.covariance[ends, ends])
+    return AxisDifferences(differences, usual, frozenset(block.label for block in blocks))
+
+
 def between_recordings(
-    fit: AxisFit, recordings: Sequence[Recording], prior: float, shared: bool
+    fit: AxisFit, recordings: Sequence[Recording], apart: Apart, shared: bool
 ) -> list[Cause]:
     """By how much recordings move the fit beyond their own deviations; of feet that step `systematic` knows it.
 
     From FEWEST_RECORDINGS on refits without one of them each (jackknife) say it, whatever it is that differs. Fewer are
-    taken to differ by a share of spring and damper, at least the robot file's `prior`.
+    taken to differ by the share that all axes show.
     """
-    blocks = tangent_blocks(recordings, fit, drift=not shared)
-    if blocks[0].stances is not None or shared or len(blocks) < 2:
+    blocks = _blocks(fit, recordings, shared)
+    if not blocks:
         return []
-    whole = fit_blocks(blocks)
     if len(blocks) >= FEWEST_RECORDINGS:
         covariance, freedom = jackknife(values_without_each(blocks))
-        beyond = np.diag(covariance) - whole.std**2
+        beyond = np.diag(covariance) - fit_blocks(blocks).std ** 2
         return [Cause(NAME, np.sqrt(np.maximum(beyond, 0.0)), 1.0, float(freedom[0]))]
-    torques = [block.regressor[:, :2] @ fit.values[:2] for block in blocks]
+    torques = _torques(fit, blocks)
+    effects = np.array([effect_of(blocks, _alone(torques, own)) for own in range(len(blocks))])
+    return [Cause(NAME, np.sqrt(np.sum(effects**2, axis=0)), apart.share, float(apart.others))]
 
-    def alone(own: int) -> list[Array]:
-        return [torque * float(place == own) for place, torque in enumerate(torques)]
 
-    # Against the first: a share that all have in common is the spring's own.
-    columns = [
-        np.column_stack(each) for each in zip(*(alone(own) for own in range(1, len(blocks))), strict=True)
-    ]
-    found = fit_blocks([beside(block, own) for block, own in zip(blocks, columns, strict=True)])
-    size = blocks[0].regressor.shape[1]
-    ends = slice(size, size + len(blocks) - 1)
-    own = float(whole.std[0]) / max(abs(float(fit.values[0])), 1e-300)
-    spread = max(prior, share_between(found.values[ends], found.covariance[ends, ends], own))
-    effects = np.array([effect_of(blocks, alone(own)) for own in range(len(blocks))])
-    return [Cause(NAME, np.sqrt(np.sum(effects**2, axis=0)), spread, len(blocks) - 1.0)]
+def _blocks(fit: AxisFit, recordings: Sequence[Recording], shared: bool) -> list[Block]:
+    """The recordings of an axis that can be told apart: of a standing foot, several, each with its own offset."""
+    blocks = tangent_blocks(recordings, fit, drift=not shared)
+    return [] if blocks[0].stances is not None or shared or len(blocks) < 2 else blocks
+
+
+def _torques(fit: AxisFit, blocks: Sequence[Block]) -> list[Array]:
+    return [block.regressor[:, :2] @ fit.values[:2] for block in blocks]
+
+
+def _alone(torques: Sequence[Array], own: int) -> list[Array]:
+    """The torque of one recording, none in the others."""
+    return [torque * float(place == own) for place, torque in enumerate(torques)]
