@@ -13,7 +13,7 @@ import plantar
 from biped import record, sway
 from biped_robot import make_robot
 from feet_trials import PUNCTUAL, noisy
-from plantar.feet.foot_fit import assess_foot, between_all, fit_foot
+from plantar.feet.foot_fit import assess_foot, between_all, fit_foot, without_needless
 from plantar.feet.identify import identify_feet
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
@@ -24,7 +24,7 @@ DEEPEST_OF_STEPS = 12  # of a foot that steps: its reduced sums are kept, which 
 SOURCE = str(Path(plantar.__file__).parent)
 SOLVERS = {"qr", "lstsq", "solve", "pinv", "svd", "svdvals", "eigh", "inv", "cholesky", "solve_triangular"}
 Path_ = tuple[str, ...]
-FROM = {each.__code__ for each in (fit_foot, between_all, assess_foot)}
+FROM = {each.__code__ for each in (fit_foot, between_all, without_needless, assess_foot)}
 
 
 def path_to(frame: FrameType) -> Path_:

@@ -29,10 +29,11 @@ from plantar.feet.fit.bush_place import PlaceSpread, turned_bush_note
 from plantar.feet.fit.force_gain import force_gain_causes, force_gain_notes, torque_gain_causes
 from plantar.feet.fit.robot_causes import robot_causes
 from plantar.feet.fit.systematic import inflated, systematic_causes
+from plantar.feet.fit.worth import hardly_matters, in_place_of
 from plantar.feet.internal_error import gives_up, internal_errors
 from plantar.feet.prepare import PreparedLogs
 from plantar.feet.recording import Recording
-from plantar.models import BushModel
+from plantar.models import BushModel, KelvinVoigt
 from plantar.notes import Note
 from plantar.results.feet import Diagnosis, Parameter, ValidationRow
 from plantar.results.walk_rows import StanceStiffness, WalkStiffness
@@ -60,10 +61,11 @@ class FootFit:
 
 @dataclass(frozen=True)
 class FittedFoot:
-    """Both axes of one foot as fitted: `fits` by axis, `given_up` with the reasons; the logs without outliers, `ready`,
-    and `thin`, with no more samples than the fit needs; warnings of `jumps` of a zero, about either axis."""
+    """Both axes of one foot as fitted about its `place`: `fits` by axis, `given_up` with the reasons; the logs without
+    outliers, `ready`, and `thin`, with no more samples than the fit needs; warnings of `jumps` of a zero."""
 
     foot: str
+    place: PlaceSpread
     fits: Mapping[Axis, AxisFit]
     given_up: dict[Axis, str]
     ready: PreparedLogs
@@ -101,7 +103,7 @@ def fit_foot(
     for axis, fit in fits.items():
         with gives_up(axis, given_up):
             jumps.extend(zero_jumps(thin.fitted, fit, shared))
-    return FittedFoot(foot, fits, given_up, ready, thin, jumps)
+    return FittedFoot(foot, place, fits, given_up, ready, thin, jumps)
 
 
 def between_all(feet: Sequence[FittedFoot]) -> Apart:
@@ -113,6 +115,22 @@ def between_all(feet: Sequence[FittedFoot]) -> Apart:
                 own = axis_differences(fit, one.thin.fitted, one.ready.settings.offset == "shared")
                 told += [] if own is None else [own]
     return recordings_apart(told, max(one.ready.robot.uncertainty.between_recordings for one in feet))
+
+
+def without_needless(fitted: FittedFoot, apart: Apart) -> FittedFoot:
+    """The foot with spring and damper alone where a richer model hardly matters."""
+    ready, recordings = fitted.ready, fitted.thin.fitted
+    shared, fits = ready.settings.offset == "shared", dict(fitted.fits)
+    for axis, fit in fitted.fits.items():
+        if fit.choice is None or isinstance(fit.model, KelvinVoigt) or axis in fitted.given_up:
+            continue
+        with gives_up(axis, fitted.given_up):
+            causes = systematic_causes(fit, recordings, ready.sensor_delay, ready.vertical, shared)
+            causes += robot_causes(fit, recordings, ready.robot.uncertainty, apart, shared)
+            spring = fit_axis(recordings, fit.foot, axis, ready.settings, KelvinVoigt(), fitted.place)
+            if spring is not None and hardly_matters(inflated(fit, causes), spring):
+                fits[axis] = in_place_of(fit, spring)
+    return replace(fitted, fits=fits)
 
 
 def assess_foot(fitted: FittedFoot, apart: Apart) -> FootFit:
@@ -138,10 +156,11 @@ def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit, apart: Apart) -
     """What was found, and one axis: its fit widened, scored, judged and diagnosed."""
     ready, thin = fitted.ready, fitted.thin
     shared = ready.settings.offset == "shared"
+
     causes = systematic_causes(fit, thin.fitted, ready.sensor_delay, ready.vertical, shared)
+    causes += robot_causes(fit, thin.fitted, ready.robot.uncertainty, apart, shared)
     causes += force_gain_causes(fit, ready.gain_errors)
     causes += torque_gain_causes(fit, ready.torque_gains)
-    causes += robot_causes(fit, thin.fitted, ready.robot.uncertainty, apart, shared)
     wide = inflated(fit, causes)
     scores, predictions = score_axis(ready.recordings, wide)
     contradicted = contradiction(

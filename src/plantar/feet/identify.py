@@ -14,7 +14,7 @@ from plantar.errors import DataError
 from plantar.feet.assess.residual_table import residual_table
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.bush_place import PlaceSpread
-from plantar.feet.foot_fit import FittedFoot, assess_foot, between_all, fit_foot
+from plantar.feet.foot_fit import FittedFoot, assess_foot, between_all, fit_foot, without_needless
 from plantar.feet.prepare import PreparedLogs, over_logs, prepare_all
 from plantar.feet.recording import Recording
 from plantar.feet.settings import FeetSettings
@@ -82,6 +82,7 @@ def fit_prepared(
         raise DataError(f"{names}: no foot carries load in any log (valid: {valid})")
     fitted = _fitted_feet(ready, progress)
     between = between_all(list(fitted.values()))
+    fitted = {foot: without_needless(one, between) for foot, one in fitted.items()}
     found = [assess_foot(one, between) for one in fitted.values()]
     ready = _merged(ready, {foot: one.ready for foot, one in fitted.items()})
     fits = [fit for each in found for fit in each.fits]

@@ -1,0 +1,48 @@
+"""Whether a richer model is worth having: one that changes neither stiffness nor damping by more than they are unsure.
+
+A spring that differs from recording to recording, or an attitude that wanders, leaves what a richer model takes up a
+little of. It then predicts unseen motions better, and its terms mean nothing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from plantar.estimation import interval95
+from plantar.feet.fit.axis import AxisFit
+from plantar.models import KelvinVoigt
+
+
+def hardly_matters(fit: AxisFit, spring: AxisFit) -> bool:
+    """Whether `spring`, spring and damper alone, has its stiffness and damping inside a richer model's intervals.
+
+    fit: with the deviations of all that is unsure about robot and sensors.
+    """
+    ends = [
+        interval95(float(fit.numbers[place]), float(fit.std[place]), float(fit.freedom[place]))
+        for place in range(2)
+    ]
+    return all(low < alone < high for (low, high), alone in zip(ends, spring.numbers, strict=True))
+
+
+def in_place_of(fit: AxisFit, spring: AxisFit) -> AxisFit:
+    """The fit of spring and damper in place of a richer model that hardly matters, with what was tried and why."""
+    changes = 100 * np.abs(fit.numbers[:2] / spring.numbers - 1)
+    reason = (
+        f"{fit.model.name} changes stiffness by {changes[0]:.2g} % and damping by {changes[1]:.2g} % only, "
+        "less than they are unsure"
+    )
+    choice = fit.choice and replace(
+        fit.choice,
+        ranking=tuple(
+            replace(
+                score,
+                chosen=isinstance(score.model, KelvinVoigt),
+                refused="hardly matters" if score.chosen else score.refused,
+            )
+            for score in fit.choice.ranking
+        ),
+    )
+    return replace(spring, choice=choice, reason=reason)

@@ -1,0 +1,62 @@
+"""A richer model has to change stiffness or damping by more than they are unsure."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from biped import SLIPPING, record, sway
+from feet_trials import PUNCTUAL, noisy
+from plantar.feet.fit.axis import AxisFit
+from plantar.feet.fit.worth import hardly_matters, in_place_of
+from plantar.feet.identify import identify_feet
+from plantar.models import Elastoplastic, KelvinVoigt
+from plantar.robot.model import RobotModel
+
+
+def rich(stiffness: float, damping: float) -> AxisFit:
+    """An elastoplastic fit whose stiffness is known to ± 4 and whose damping to ± 2."""
+    return AxisFit(
+        foot="left", axis="pitch", model=Elastoplastic(), values=np.array([stiffness, damping, 3.0]),
+        shape=np.array([0.02]), covariance=np.diag([4.0, 1.0, 1.0, 1e-6]), freedom=np.full(4, 1e6),
+        white_std=np.ones(4), offset_std={}, equivalent=(400.0, 20.0), choice=None, reason="",
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "damping", "needless"),
+    [
+        (400.0, 20.0, True),
+        (396.5, 21.5, True),
+        (394.0, 20.0, False),
+        (404.5, 20.0, False),
+        (400.0, 17.0, False),
+    ],
+)
+def test_both_numbers_have_to_agree(stiffness: float, damping: float, needless: bool) -> None:
+    spring = replace(
+        rich(400.0, 20.0), model=KelvinVoigt(), values=np.array([400.0, 20.0]), shape=np.zeros(0)
+    )
+    assert hardly_matters(rich(stiffness, damping), spring) == needless
+    reason = in_place_of(rich(stiffness, damping), spring).reason
+    assert f"stiffness by {100 * abs(stiffness / 400 - 1):.2g} %" in reason
+
+
+def models(robot: RobotModel, gain: float) -> dict[tuple[str, str], tuple[str, str]]:
+    """By foot and axis, the model and the reason, of rubber that slips inside, beside force sensors known to `gain`."""
+    logs = [noisy(record(sway(f"sway_{seed}", seed, truth=SLIPPING)), seed) for seed in (3, 4)]
+    unsure = replace(robot, uncertainty=robot.uncertainty.model_copy(update={"wrench_gain": gain}))
+    result = identify_feet(unsure, logs, settings=PUNCTUAL)
+    for row in result.models:
+        assert [tried.model for tried in row.ranking if tried.chosen] == [row.model]
+    return {(row.foot, row.axis): (row.model, row.reason) for row in result.models}
+
+
+def test_a_memory_that_changes_the_numbers_stays_and_one_that_hardly_does_goes(robot: RobotModel) -> None:
+    sure, unsure = models(robot, 0.0), models(robot, 3.0)
+    assert {model for model, _ in sure.values()} == {"elastoplastic"}
+    for model, reason in unsure.values():
+        assert model == "kelvin_voigt"
+        assert "elastoplastic changes stiffness by" in reason
