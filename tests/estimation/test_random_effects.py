@@ -16,7 +16,7 @@ def found(true: float, own: float, groups: int = 3, draws: int = 150) -> np.ndar
     spreads = []
     for _ in range(draws):
         shares = random.normal(0, np.hypot(true, own), groups)
-        spreads.append(share_between([Differences(shares[1:] - shares[0], covariance)], own))
+        spreads.append(share_between([Differences(shares[1:] - shares[0], covariance)], own).share)
     return np.array(spreads)
 
 
@@ -28,7 +28,7 @@ def test_intervals_of_the_mean_hold(true: float) -> None:
     for _ in range(200):
         shares = random.normal(0, np.hypot(true, own), groups)
         covariance = own**2 * (np.eye(groups - 1) + 1.0)
-        spread = share_between([Differences(shares[1:] - shares[0], covariance)], own)
+        spread = share_between([Differences(shares[1:] - shares[0], covariance)], own).share
         held += abs(shares.mean()) < stats.t.ppf(0.975, groups - 1) * np.hypot(spread, own) / np.sqrt(groups)
     assert held >= 0.92 * 200
 
@@ -44,5 +44,18 @@ def test_sets_together_show_what_one_alone_hides() -> None:
     alike, differing = Differences(np.array([0.001]), covariance), Differences(np.array([0.03]), covariance)
     alone = share_between([alike], 0.001)
     together = share_between([alike, differing, differing, differing], 0.001)
-    assert alone < 0.003 < 0.01 < together < share_between([differing] * 4, 0.001)
-    assert share_between([alike] * 4, 0.001) <= alone
+    all_differ = share_between([differing] * 4, 0.001)
+    assert alone.share < 0.003 < 0.01 < together.share < all_differ.share
+    assert share_between([alike] * 4, 0.001).share <= alone.share
+    assert alone.low < 0.0005  # may as well be none
+    assert 0.005 < together.low < together.share < together.high
+
+
+def test_the_interval_of_the_share_holds() -> None:
+    random = np.random.default_rng(2)
+    true, own, held = 0.02, 0.002, 0
+    for _ in range(200):
+        shares = random.normal(0, np.hypot(true, own), 6)
+        found = share_between([Differences(shares[1:] - shares[0], own**2 * (np.eye(5) + 1.0))], 0.01)
+        held += found.low < true < found.high
+    assert held >= 0.9 * 200

@@ -20,8 +20,16 @@ class Differences(NamedTuple):
     covariance: Array
 
 
-def share_between(sets: Sequence[Differences], usual: float) -> float:
-    """By which share (standard deviation) groups differ, where all sets of differences are of groups of one kind.
+class ShareBetween(NamedTuple):
+    """By which share (standard deviation) groups differ, and the ends of its 95 % interval."""
+
+    share: float
+    low: float
+    high: float
+
+
+def share_between(sets: Sequence[Differences], usual: float) -> ShareBetween:
+    """By which share groups differ, where all sets of differences are of groups of one kind.
 
     Random effects: the root of the mean square over what their likelihood and a half-Student prior of size `usual`
     leave (A. Gelman, Bayesian Analysis 1, 2006). So few differences may be small by chance, which a moment estimate
@@ -33,7 +41,9 @@ def share_between(sets: Sequence[Differences], usual: float) -> float:
         # Tried in even steps of the logarithm.
         weights.append(prior + np.log(share) + sum(_likelihood(each, share) for each in sets))
     weight = np.exp(np.array(weights) - max(weights))
-    return float(np.sqrt(np.sum(weight * TRIED**2) / np.sum(weight)))
+    below = np.cumsum(weight) / np.sum(weight)
+    low, high = np.interp([0.025, 0.975], below, TRIED)
+    return ShareBetween(float(np.sqrt(np.sum(weight * TRIED**2) / np.sum(weight))), float(low), float(high))
 
 
 def _likelihood(found: Differences, share: float) -> float:

@@ -13,6 +13,7 @@ from plantar.conventions import OFFSET_UNIT
 from plantar.errors import DataError
 from plantar.feet.assess.residual_table import residual_table
 from plantar.feet.fit.axis import AxisFit
+from plantar.feet.fit.between_recordings import apart_notes
 from plantar.feet.fit.bush_place import PlaceSpread
 from plantar.feet.foot_fit import FittedFoot, assess_foot, between_all, fit_foot, without_needless
 from plantar.feet.prepare import PreparedLogs, over_logs, prepare_all
@@ -108,6 +109,7 @@ def fit_prepared(
                 *ready.notes,
                 *_feet_notes(robot, ready.fitted),
                 *_model_notes(fits),
+                *apart_notes(between),
                 *(note for each in found for note in each.notes),
             ],
             [recording.name for recording in ready.recordings],

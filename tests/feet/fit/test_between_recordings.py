@@ -13,6 +13,7 @@ from plantar.estimation.random_effects import Differences
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.fit.between_recordings import (
     AxisDifferences,
+    apart_notes,
     axis_differences,
     between_recordings,
     recordings_apart,
@@ -59,3 +60,15 @@ def test_an_axis_that_shows_no_difference_takes_what_others_show() -> None:
     assert pooled.others == 2
     assert recordings_apart([alike, apart, apart], 0.1).share == 0.1
     assert recordings_apart([], 0.02).share == 0.02
+
+
+def test_recordings_that_differ_are_a_result(robot: RobotModel) -> None:
+    names, known = frozenset("abc"), 0.002**2 * (np.eye(2) + 1.0)
+    told, alike = (
+        recordings_apart([AxisDifferences(Differences(np.array(found), known), 0.001, names)], 0.0)
+        for found in ([0.04, -0.03], [0.001, 0.002])
+    )
+    (note,) = apart_notes(told)
+    assert (note.code, note.severity) == ("between_recordings", "info")
+    assert "3 recordings" in note.text
+    assert apart_notes(alike) == []

@@ -16,15 +16,20 @@ from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.regression_data import beside, tangent_blocks
 from plantar.feet.fit.systematic import Cause
 from plantar.feet.recording import Recording
+from plantar.notes import Note
 
 NAME = "between recordings"
 
 
 class Apart(NamedTuple):
-    """By which share recordings differ (standard deviation), known from `others` recordings beside the first."""
+    """By which share recordings differ (standard deviation), known from `others` recordings beside the first.
+
+    shown: the 95 % interval of what the logs themselves show; None where they may as well be alike.
+    """
 
     share: float
     others: int
+    shown: tuple[float, float] | None = None
 
 
 class AxisDifferences(NamedTuple):
@@ -42,9 +47,25 @@ def recordings_apart(axes: Sequence[AxisDifferences], prior: float) -> Apart:
     """
     if not axes:
         return Apart(prior, 1)
-    share = share_between([each.differences for each in axes], float(np.mean([each.usual for each in axes])))
+    usual = float(np.mean([each.usual for each in axes]))
+    found = share_between([each.differences for each in axes], usual)
     names = frozenset().union(*(each.recordings for each in axes))
-    return Apart(max(prior, share), len(names) - 1)
+    return Apart(
+        max(prior, found.share), len(names) - 1, (found.low, found.high) if found.low > usual else None
+    )
+
+
+def apart_notes(apart: Apart) -> list[Note]:
+    """What recordings differ by, where they do: a result, not a fault, unless it is much."""
+    if apart.shown is None:
+        return []
+    low, high = (100 * end for end in apart.shown)
+    text = (
+        f"stiffness and damping differ by {low:.2g} to {high:.2g} % (standard deviation, 95 %) from recording to "
+        f"recording, as {apart.others + 1} recordings show: it is in the intervals. Rubber that warms up or that stood "
+        "under load before does that; so does a joint between IMU and foot that is read wrongly in some of them"
+    )
+    return [Note("between_recordings", "info", text)]
 
 
 def axis_differences(fit: AxisFit, recordings: Sequence[Recording], shared: bool) -> AxisDifferences | None:
