@@ -69,6 +69,9 @@ def test_contact_transfer_is_the_transposed_jacobian(urdf: object, floating: boo
         for i in range(len(q)):
             jacobian = pin.computeFrameJacobian(model, data, q[i], frame, pin.ReferenceFrame.LOCAL)
             np.testing.assert_allclose(found[i], jacobian.T, rtol=1e-10, atol=1e-10)
+        if floating:
+            base = equation.base_transfer(equation.tree.joint_positions(q), Contact(joint - 1, placement))
+            np.testing.assert_allclose(base, found[:, :6], rtol=1e-10, atol=1e-10)
 
 
 def test_contacts_carry_part_of_the_inverse_dynamics() -> None:

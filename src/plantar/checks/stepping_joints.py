@@ -27,6 +27,8 @@ def check_stepping_joints(robot: RobotModel, log: MotionLog) -> Iterator[Finding
     every = legs(robot)
     for foot, own in every.items():
         changes = footfalls(log, robot.feet[foot].wrench.name)
+        if len(changes) < FEWEST:
+            continue
         others = [leg for name, leg in every.items() if name != foot and len(leg) == len(own)]
         for place, joint in enumerate(own):
             position = log.joint(joint, "position")
@@ -48,7 +50,8 @@ def check_stepping_joints(robot: RobotModel, log: MotionLog) -> Iterator[Finding
 def _longest_step(position: Array, changes: NDArray[np.intp]) -> slice | None:
     """The longest run of samples at one position in which the foot lands or leaves often enough."""
     still = [slice(run.start, run.stop + 1) for run in runs(np.diff(position) == 0)]
-    steps = [run for run in still if np.sum((changes >= run.start) & (changes < run.stop)) >= FEWEST]
+    ends = np.searchsorted(changes, [(run.start, run.stop) for run in still]).reshape(-1, 2)
+    steps = [run for run, (begun, over) in zip(still, ends, strict=True) if over - begun >= FEWEST]
     return max(steps, key=lambda run: run.stop - run.start, default=None)
 
 

@@ -123,6 +123,16 @@ class Equation:
             columns.append(self.inverse_dynamics(motion, None, [contact], [unit], threads).T)
         return np.stack(columns, axis=2)
 
+    def base_transfer(self, positions: Array, contact: Contact) -> Array:
+        """K_B of one contact of a floating base alone, (N, 6, 6): the first rows of `contact_transfer`."""
+        rotation, place = self.tree.pose(contact.link - 1, positions)
+        place = place + rotation @ contact.placement.translation
+        rotation = rotation @ contact.placement.rotation
+        transfer = np.zeros((len(positions), BASE_ROWS, BASE_ROWS))
+        transfer[:, :3, :3] = transfer[:, 3:, 3:] = rotation
+        transfer[:, 3:, :3] = np.cross(place[:, None], rotation, axisb=1, axisc=1)
+        return transfer
+
 
 def link_names(model: pin.Model) -> tuple[str, ...]:
     """The link that each of a model's joints moves: its name in the URDF, else the joint's."""

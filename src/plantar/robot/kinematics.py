@@ -121,6 +121,18 @@ class KinematicTree:
             rotations[1 + joint] = rotation
         return rotations, places
 
+    def pose(self, joint: int, positions: Array) -> tuple[Array, Array]:
+        """Rotation (N, 3, 3) and place (N, 3) [m] of one joint's frame in the root link; of that link itself: -1."""
+        rotation, place = np.tile(np.eye(3), (len(positions), 1, 1)), np.zeros((len(positions), 3))
+        for each in reversed(self.ancestors[joint]) if joint >= 0 else ():
+            place = place + rotation @ self.translations[each]
+            rotation = rotation @ self.rotations[each]
+            if self.slides[each]:
+                place = place + rotation @ self.axes[each] * positions[:, each, None]
+            else:
+                rotation = rotation @ rotations_about(self.axes[each], positions[:, each])
+        return rotation, place
+
     def path(self, start: int, end: int) -> list[tuple[int, int]]:
         """Joints passed on the way from link `start` to link `end` (-1: the root link) as (joint, sign).
 

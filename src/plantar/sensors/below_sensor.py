@@ -56,7 +56,7 @@ def below_sensors(
         aloft = motion.select(swings)
         masks = [ALL_PARAMETERS * (link == contact.link) for link in range(len(equation.links))]
         inertia = equation.regressor(aloft, masks)[:BASE_ROWS].transpose(2, 0, 1)
-        carried = equation.contact_transfer(aloft.positions, contact)[:, :BASE_ROWS]
+        carried = equation.base_transfer(aloft.positions, contact)
         read = (carried @ own[swings][:, :, None])[..., 0]
         radius = np.sqrt(np.trace(body.matrix()[TORQUE, TORQUE]) / (2 * body.mass))
         sizes = body.mass * radius ** np.repeat([0, 1, 2], [1, 3, 6])

@@ -113,7 +113,7 @@ def _reading_columns(robot: RobotModel, residual: NewtonEulerResidual) -> list[A
     for place, foot in enumerate(robot.feet.values()):
         wrench = residual.readings[:, 6 * place : 6 * place + 6]
         contact = Contact(*robot.frame(foot.wrench.placement))
-        transfer = equation.contact_transfer(positions, contact)[:, BASE_ROWS]
+        transfer = equation.base_transfer(positions, contact)
         alone = np.zeros((2, 6, 6))
         alone[:, 3:, 3:] = [np.outer(along, along) for along in _directions(foot)]
         wrong = np.concatenate([alone, matrices]) @ wrench.T

@@ -44,10 +44,8 @@ def lagged_log(robot: RobotModel, log: MotionLog) -> LagGrid | None:
     late = np.stack([readings[:, inner.start + step : inner.stop + step] for step in steps], axis=1)
     predicted, measured = [], []
     for motion in (whole.select(inner) for whole in motions):
-        transfer = [equation.contact_transfer(motion.positions, one)[:, BASE_ROWS] for one in contacts]
-        carried = np.stack(
-            [np.einsum("nij,bnj->bni", one, own) for one, own in zip(transfer, late, strict=True)]
-        )
+        transfer = [equation.base_transfer(motion.positions, one) for one in contacts]
+        carried = np.stack([(one @ own[..., None])[..., 0] for one, own in zip(transfer, late, strict=True)])
         measured.append(_moving(carried, thin.period))
         predicted.append(_moving(equation.inverse_dynamics(motion, parameters)[BASE_ROWS].T, thin.period))
     together = measured[len(lags) // 2][:, len(lags) // 2, :, FORCE].sum(axis=0)
