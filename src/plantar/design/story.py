@@ -1,0 +1,174 @@
+"""`plantar design`: from a robot and a guess of its stiffness to a motion that was rehearsed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Final
+
+import numpy as np
+
+from plantar.choices import number_in, one_of
+from plantar.conventions import Array
+from plantar.design.family import Lines
+from plantar.design.information import CRITERIA, Criterion
+from plantar.design.legs import Legs
+from plantar.design.linear import LinearRobot
+from plantar.design.reach import Reach, margin_kept
+from plantar.design.rehearsal import Rehearsal, rehearse
+from plantar.design.search import best_motion
+from plantar.design.soft_feet import CARRIED, Softness
+from plantar.design.trajectory import Trajectory
+from plantar.errors import MotionError, located
+from plantar.robot.model import RobotModel
+from plantar.twin.play import postures_of
+
+SOFTEST, STIFFEST = 0.5, 2.0  # times the stiffness told, over which a motion holds
+STIFFNESSES: Final = 4  # between those, that the search looks at
+SMALLER: Final = 0.85  # a motion that does not hold is tried again so much smaller
+ROUNDS: Final = 8
+FRICTION: Final = 0.3  # of horizontal to vertical force at most: dry rubber on any floor holds more
+EFFORT: Final = 0.9  # of a joint's torque limit
+SHORTEST, LONGEST = 20.0, 600.0  # s
+
+
+@dataclass(frozen=True)
+class DesignSettings:
+    """What a user tells `design_motion`.
+
+    Args:
+        stiffness: of each foot in pitch and roll, as far as it is known [N·m/rad]; the motion holds for half of it
+            to twice it, where the feet can carry the robot.
+        damping: [N·m·s/rad], for the prediction only; None takes 0.04 s times the stiffness.
+        duration: of the motion [s], 20 to 600.
+        criterion: what is made small: the "widest" relative interval, the volume of all ("D"), their mean square ("A").
+        seed: draws frequencies and the search; the same seed gives the same motion.
+
+    Raises:
+        SettingsError: a value that is not one of the choices or out of its range.
+    """
+
+    stiffness: float
+    damping: float | None = None
+    duration: float = 60.0
+    criterion: Criterion = "widest"
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        number_in("stiffness", self.stiffness, 1.0, 1e6, "N·m/rad")
+        number_in("damping", self.damping, 0.0, 1e6, "N·m·s/rad", optional="0.04 s times the stiffness")
+        number_in("duration", self.duration, SHORTEST, LONGEST, "s")
+        one_of("criterion", self.criterion, CRITERIA)
+
+
+@dataclass(frozen=True)
+class Design:
+    """A motion and what it promises. `told`: the bush it was made for; `factors`: the range of stiffness it holds for;
+    `rehearsals`: by factor, the told stiffness among them; `margin` [m]: kept from each sole's border."""
+
+    settings: DesignSettings
+    robot: RobotModel
+    told: Softness
+    factors: tuple[float, float]
+    least_stiffness: float
+    margin: float
+    trajectory: Trajectory
+    limits_used: tuple[float, float]
+    rehearsals: tuple[Rehearsal, ...] = field(repr=False)
+
+    @property
+    def nominal(self) -> Rehearsal:
+        """The rehearsal at the stiffness that was told."""
+        return next(one for one in self.rehearsals if one.factor == 1.0)
+
+
+def design_motion(
+    robot: RobotModel, settings: DesignSettings, progress: Callable[[str], None] = lambda _: None
+) -> Design:
+    """A motion that shows stiffness and damping of both feet in pitch and roll, from standing still to standing still.
+
+    Args:
+        robot: with a left and a right foot and an IMU.
+        settings: the stiffness as far as it is known, and more.
+        progress: called with a line for each step.
+
+    Returns:
+        The motion of every joint, with the intervals, margins and limits of its rehearsals.
+
+    Raises:
+        MotionError: feet of this stiffness cannot carry the robot, or its legs cannot move.
+
+    Example:
+        >>> import plantar
+        >>> from plantar.design.story import DesignSettings, design_motion
+        >>> found = design_motion(plantar.load_robot("robot.yaml"), DesignSettings(stiffness=500))  # doctest: +SKIP
+    """
+    progress("stand")
+    legs = Legs.of(robot, postures_of(robot).standing)
+    linear = LinearRobot.of(legs)
+    pendulum = linear.pendulum
+    pendulum.check_carried(settings.stiffness, robot.name)
+    least = CARRIED * pendulum.least_stiffness
+    soft = max(SOFTEST, least / settings.stiffness)
+    told = Softness.told(robot, settings.stiffness, settings.damping)
+    random = np.random.default_rng(settings.seed)
+    lines = Lines.drawn(settings.duration, random)
+    range_of = [told.times(factor) for factor in np.geomspace(soft, STIFFEST, STIFFNESSES)]
+    reach = Reach(legs, linear, lines, range_of)
+    coefficients, _ = best_motion(reach, settings.criterion, random, progress)
+    margin = min(margin_kept(foot.sole.polygon) for foot in robot.feet.values())
+    trajectory, rehearsals = _rehearsed(
+        robot, legs, lines, coefficients, told, tuple(sorted({soft, 1.0, STIFFEST})), margin, progress
+    )
+    return Design(
+        settings,
+        robot,
+        told,
+        (soft, STIFFEST),
+        least,
+        margin,
+        trajectory,
+        trajectory.limits_used(),
+        tuple(rehearsals),
+    )
+
+
+def _rehearsed(
+    robot: RobotModel,
+    legs: Legs,
+    lines: Lines,
+    coefficients: Array,
+    told: Softness,
+    factors: tuple[float, ...],
+    margin: float,
+    progress: Callable[[str], None],
+) -> tuple[Trajectory, list[Rehearsal]]:
+    """The motion, smaller until it holds at every stiffness. Raises MotionError where none does."""
+    reason = ""
+    for _ in range(ROUNDS):
+        try:
+            trajectory = Trajectory.of("design", legs, lines, coefficients)
+        except MotionError as error:
+            reason, coefficients = str(error), SMALLER * coefficients
+            continue
+        rehearsals = rehearse(robot, trajectory.plan(), told, factors, progress)
+        reason = next((why for one in rehearsals if (why := _broken(one, margin))), "")
+        if not reason:
+            return trajectory, rehearsals
+        progress(f"smaller: {reason}")
+        coefficients = SMALLER * coefficients
+    raise MotionError(located(f"no motion holds over the range of stiffness: {reason}", path=robot.name))
+
+
+def _broken(one: Rehearsal, margin: float) -> str:
+    """Why a rehearsal does not hold, or nothing."""
+    at = f"at {one.factor:.3g} times the stiffness"
+    if one.fell is not None:
+        return f"{at}: {one.fell}"
+    if one.sole_margin < margin / 2:
+        return f"{at} a centre of pressure comes within {1e3 * one.sole_margin:.1f} mm of a sole's border"
+    if one.friction > FRICTION:
+        return f"{at} a foot needs a friction of {one.friction:.2f}"
+    if one.effort > EFFORT:
+        return f"{at} a joint needs {100 * one.effort:.0f} % of its torque limit"
+    return ""
