@@ -63,10 +63,10 @@ def run(
     Motions: Tilt1 to Tilt6, Manual_right_roll, Manual_right_pitch, Manual_left_roll, Manual_left_pitch,
     Manual_both_pitch, Myrand4, Myrand5, Squat. Walks: Walk8, Walk12, Walk16, Walk20 or any other step in cm (1 s a
     step), WalkSlow12 (4 s), WalkQuick12 (0.8 s), WalkTurn, WalkInPlace; Walk12_1, Walk12_2 are trials that land a
-    little otherwise. A table of your own, such as `plantar design` writes, holds `time` and
-    `joint.NAME.position`; its first row stands on level feet. Each log MOTION.parquet has its truth in MOTION.truth.parquet
-    (bush angles, contact forces) and MOTION.truth.json (what was put in). A motion that loses its balance or cannot be
-    reached is refused before it is played; one that falls on its bushes, as soon as it does.
+    little otherwise. A table of your own, such as `plantar design` writes, holds `time` and `joint.NAME.position`;
+    its first row stands on level feet. Each log MOTION.parquet has its truth in MOTION.truth.parquet (bush angles,
+    contact forces) and MOTION.truth.json (what was put in). A motion that loses its balance or cannot be reached is
+    refused before it is played; one that falls on its bushes, as soon as it does.
 
     Example: plantar simulate Tilt3,Squat --out out/twin --preset sensors --seed 3
     """

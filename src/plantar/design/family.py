@@ -1,9 +1,11 @@
-"""What a designed motion is made of: displacements of the body and the feet, each a sum of sines in a window."""
+"""What a designed motion is made of: displacements of the body and the feet, sums of sines in two windows.
+
+In the first half one foot carries more and is shown, in the second half the other: there everything is mirrored.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -17,14 +19,22 @@ CHANNELS: Final = (
     "centre.x", "centre.y", "centre.z", "trunk.roll", "trunk.pitch", "arms",
     "left.roll", "left.pitch", "right.roll", "right.pitch",
 )  # fmt: skip
+# Of the mirror image: which channel stands in a channel's place, and its sign.
+MIRRORED: Final = {
+    "centre.x": ("centre.x", 1.0), "centre.y": ("centre.y", -1.0), "centre.z": ("centre.z", 1.0),
+    "trunk.roll": ("trunk.roll", -1.0), "trunk.pitch": ("trunk.pitch", 1.0), "arms": ("arms", 1.0),
+    "left.roll": ("right.roll", -1.0), "left.pitch": ("right.pitch", 1.0),
+    "right.roll": ("left.roll", -1.0), "right.pitch": ("left.pitch", 1.0),
+}  # fmt: skip
 REST: Final = 2.0  # s of standing still before and after
-RAMP: Final = 4.0  # s in which the motion swells and dies away
-LINES: Final = 3  # sines of each channel
+RAMP: Final = 4.0  # s in which each half swells and dies away
+LINES: Final = 2  # sines of each channel
+SHAPES: Final = 1 + 2 * LINES  # of each channel: a place to be at, and the sine and cosine of each line
 # Hz, lowest and highest line of a channel. A foot is told its damping by what is quick, its stiffness by what is large;
 # above 1.2 Hz joints and servos of large robots follow badly, and `identify feet` listens up to 5 Hz. The load is led
 # from foot to foot slowly. Arms and trunk swing at 0.3 to 1 Hz: from that the delay of the sensors shows.
 BANDS: Final = {
-    "centre.x": (0.08, 0.5), "centre.y": (0.05, 0.5), "centre.z": (0.1, 0.6), "trunk.roll": (0.3, 1.0),
+    "centre.x": (0.1, 0.6), "centre.y": (0.1, 0.6), "centre.z": (0.1, 0.6), "trunk.roll": (0.3, 1.0),
     "trunk.pitch": (0.3, 1.0), "arms": (0.3, 1.0), "left.roll": (0.1, 1.2), "left.pitch": (0.1, 1.2),
     "right.roll": (0.1, 1.2), "right.pitch": (0.1, 1.2),
 }  # fmt: skip
@@ -43,7 +53,7 @@ class Lines:
 
         Sines of different frequencies, whole periods each, are orthogonal: no channel hides behind another.
         """
-        step = 1.0 / (duration - 2 * REST - RAMP)
+        step = 1.0 / (duration / 2 - REST)
         taken: set[int] = set()
         rows = []
         for channel in CHANNELS:
@@ -59,22 +69,35 @@ class Lines:
             rows.append(row)
         return cls(duration, np.array(rows))
 
+    @property
+    def size(self) -> int:
+        """How many coefficients a motion has."""
+        return len(CHANNELS) * SHAPES
+
     def time(self, rate: float) -> Array:
         """Times (N,) [s] from 0 to the end, `rate` [Hz]."""
         return np.arange(round(self.duration * rate) + 1) / rate
 
-    def shapes(self, time: Array) -> Array:
-        """Sine and cosine of every line in the window, (channels, 2·LINES, N)."""
-        eased = window(time, REST, self.duration - REST, RAMP)
-        angle = 2 * np.pi * self.frequencies[:, :, None] * (time - REST)
-        return np.concatenate([np.sin(angle), np.cos(angle)], axis=1) * eased
+    def basis(self, time: Array) -> Array:
+        """What one unit of each coefficient moves, (size, channels, N)."""
+        middle = self.duration / 2
+        halves = [
+            self._shapes(time, REST, middle + RAMP / 2),
+            self._shapes(time, middle - RAMP / 2, self.duration - REST),
+        ]
+        moved = np.zeros((len(CHANNELS), SHAPES, len(CHANNELS), time.size))
+        for row, channel in enumerate(CHANNELS):
+            image, sign = MIRRORED[channel]
+            moved[row, :, row] += halves[0][row]
+            moved[row, :, CHANNELS.index(image)] += sign * halves[1][row]
+        return moved.reshape(self.size, len(CHANNELS), time.size)
 
-    @cached_property
-    def size(self) -> int:
-        """How many coefficients a motion has."""
-        return len(CHANNELS) * 2 * LINES
+    def _shapes(self, time: Array, begin: float, end: float) -> Array:
+        """Place, sines and cosines of every channel in one window, (channels, SHAPES, N)."""
+        angle = 2 * np.pi * self.frequencies[:, :, None] * (time - begin)
+        still = np.ones((len(CHANNELS), 1, time.size))
+        return np.concatenate([still, np.sin(angle), np.cos(angle)], axis=1) * window(time, begin, end, RAMP)
 
     def displacements(self, coefficients: Array, time: Array) -> Array:
         """The channels (channels, N) of a motion with coefficients (size,)."""
-        table = coefficients.reshape(len(CHANNELS), 2 * LINES)
-        return np.asarray(np.einsum("cl,cln->cn", table, self.shapes(time)))
+        return np.asarray(np.tensordot(coefficients, self.basis(time), 1))

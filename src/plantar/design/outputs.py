@@ -9,7 +9,7 @@ from typing import Any
 from plantar.choices import number_in
 from plantar.conventions import ROTATIONAL_AXES
 from plantar.design.rehearsal import Rehearsal
-from plantar.design.story import EFFORT, FRICTION, Design
+from plantar.design.story import EFFORT, FRICTION, KEPT, Design
 from plantar.files import write_text
 from plantar.logs.save import save_log
 from plantar.models import KelvinVoigt
@@ -55,7 +55,7 @@ def content_of(found: Design, path: Path, rate: float) -> dict[str, Any]:
         "rehearsals": [_rehearsal(one) for one in found.rehearsals],
         "limits": [
             {"limit": "distance of each foot's centre of pressure from its sole's border", "unit": "m",
-             "kept": found.margin / 2, "reached": min(one.sole_margin for one in found.rehearsals)},
+             "kept": KEPT, "reached": min(one.sole_margin for one in found.rehearsals)},
             {"limit": "friction, horizontal to vertical force of a foot", "unit": "", "kept": FRICTION,
              "reached": max(one.friction for one in found.rehearsals)},
             {"limit": "joint torque, share of its limit", "unit": "", "kept": EFFORT,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -13,92 +12,86 @@ from plantar.conventions import GRAVITY, Array
 from plantar.design.family import CHANNELS, Lines
 from plantar.design.legs import Legs
 from plantar.design.linear import LinearRobot
-from plantar.design.soft_feet import Response, Softness, respond
+from plantar.design.soft_feet import Softness, respond
 
 RATE: Final = 20.0  # Hz: sixteen samples in the quickest sine
 EDGE: Final = 0.010  # m, of the centre of pressure from each sole's border; `identify feet` drops 5 mm
-SMALLER_EDGE: Final = 0.3  # of a sole's half width at most: small feet need some room to be excited
-LIFT: Final = 0.3  # of its load at rest that every foot keeps at least
+SMALLER_EDGE: Final = 0.2  # of a sole's half width at most: small feet need some room to be excited
+LIFT: Final = 0.35  # of its load at rest that every foot keeps at least
 BEND: Final = 0.1  # rad of the bush: less than the paper's largest, where rubber may harden
-# Of each kind of channel: share of the centre of mass' height, rad, swings. Far enough for the bushes, near enough to
-# standing for what is linear here.
-LARGEST: Final = {"centre": 0.02, "trunk": 0.08, "arms": 1.0, "left": 0.1, "right": 0.1}
+# Of each channel: share of the centre of mass' height, rad, swings. Far enough for the bushes, near enough to standing
+# for what is linear here.
+LARGEST: Final = {
+    "centre.x": 0.03, "centre.y": 0.07, "centre.z": 0.02, "trunk.roll": 0.08, "trunk.pitch": 0.08, "arms": 1.0,
+    "left.roll": 0.1, "left.pitch": 0.1, "right.roll": 0.1, "right.pitch": 0.1,
+}  # fmt: skip
 ROOM: Final = 0.8  # of the way to a joint's limit, and of its speed
 
 
-@dataclass(frozen=True)
-class Shares:
-    """What one unit of each coefficient does, at one stiffness: arrays (size, N) each.
+class Reach:
+    """Limits of one robot, for motions on `lines`, over bushes from soft to stiff.
 
-    `torque`, `rate`, `deflection` (size, 2, N) in pitch and roll, `load` (size, N), by foot.
+    What one unit of each coefficient does: `deflection` and `rate` (size, S, feet, 2, N) in pitch and roll [rad, rad/s],
+    `load` (size, S, feet, N) [N], for S bushes.
     """
 
-    softness: Softness
-    response: Response
-
-
-class Reach:
-    """Limits of one robot, for motions on `lines`, over bushes from soft to stiff."""
-
-    def __init__(self, legs: Legs, robot: LinearRobot, lines: Lines, range_of: Sequence[Softness]) -> None:
-        self.lines, self.time = lines, lines.time(RATE)
-        shapes = lines.shapes(self.time)
-        count = 2 * shapes.shape[1] // 2
-        basis = np.zeros((lines.size, len(CHANNELS), self.time.size))
-        for channel in range(len(CHANNELS)):
-            basis[channel * count : (channel + 1) * count, channel] = shapes[channel]
-        quick = np.gradient(basis, 1 / RATE, axis=-1)
-        wrench = robot.wrench(basis, np.gradient(quick, 1 / RATE, axis=-1))[:, [2, 3, 4]]
+    def __init__(self, legs: Legs, robot: LinearRobot, lines: Lines, bushes: Sequence[Softness]) -> None:
+        self.lines, self.time, self.bushes, self.feet = (
+            lines,
+            lines.time(RATE),
+            tuple(bushes),
+            tuple(legs.bushes),
+        )
+        self._basis = lines.basis(self.time)
+        self._quick = np.gradient(self._basis, 1 / RATE, axis=-1)
+        wrench = robot.wrench(self._basis, np.gradient(self._quick, 1 / RATE, axis=-1))[:, [2, 3, 4]]
         tilts = {
-            foot: basis[:, [CHANNELS.index(f"{foot}.roll"), CHANNELS.index(f"{foot}.pitch")]]
-            for foot in legs.bushes
+            foot: self._basis[:, [CHANNELS.index(f"{foot}.roll"), CHANNELS.index(f"{foot}.pitch")]]
+            for foot in self.feet
         }
-        self.shares = [
-            Shares(bush, respond(robot.pendulum, bush, wrench, tilts, 1 / RATE)) for bush in range_of
-        ]
-        self.weight = robot.pendulum.mass * GRAVITY / len(tilts)
+        found = [respond(robot.pendulum, bush, wrench, tilts, 1 / RATE) for bush in bushes]
+        self.deflection, self.rate, self.load = (
+            np.moveaxis(np.array([[getattr(one, part)[foot] for foot in self.feet] for one in found]), 2, 0)
+            for part in ("deflection", "rate", "load")
+        )
+        self.stiffness = np.array([bush.stiffness for bush in bushes])
+        self.damping = np.array([bush.damping for bush in bushes])
+        self.weight = robot.pendulum.mass * GRAVITY / len(self.feet)
+        self._edges = [_edges(legs, foot) for foot in self.feet]
         height = robot.pendulum.height
         self._largest = np.array(
-            [
-                LARGEST[kind] * (height if kind == "centre" else 1.0)
-                for kind in (c.split(".")[0] for c in CHANNELS)
-            ]
+            [LARGEST[channel] * (height if channel.startswith("centre") else 1.0) for channel in CHANNELS]
         )
-        self._edges = {foot: _edges(legs, foot) for foot in tilts}
-        self._joints(legs, robot, shapes)
+        self._joints(legs, robot)
 
-    def _joints(self, legs: Legs, robot: LinearRobot, shapes: Array) -> None:
+    def _joints(self, legs: Legs, robot: LinearRobot) -> None:
         """How far each joint may go and how fast, about standing."""
         model, rest = legs.model, legs.rest[0]
-        self._moving, room, speed = [], [], []
+        moving, room, speed = [], [], []
         for joint in model.joints[2:]:
             if joint.nv != 1 or not np.abs(robot.joints[:, joint.idx_v]).max() > 1e-9:
                 continue
             low, high = model.lowerPositionLimit[joint.idx_q], model.upperPositionLimit[joint.idx_q]
             bounded = joint.nq == 1 and low < high
-            self._moving.append(joint.idx_v)
-            room.append(
-                [ROOM * (rest[joint.idx_q] - low), ROOM * (high - rest[joint.idx_q])]
-                if bounded
-                else [np.inf] * 2
-            )
+            moving.append(joint.idx_v)
+            room.append([rest[joint.idx_q] - low, high - rest[joint.idx_q]] if bounded else [np.inf, np.inf])
             fastest = float(model.upperVelocityLimit[joint.idx_v])
-            speed.append(ROOM * fastest if 0 < fastest < np.inf else np.inf)
-        self._room, self._speed = np.maximum(np.array(room), 1e-6), np.array(speed)
-        self._shapes, self._quick = shapes, np.gradient(shapes, 1 / RATE, axis=-1)
-        self._gain = robot.joints[:, self._moving]
+            speed.append(fastest if 0 < fastest < np.inf else np.inf)
+        self._room = np.maximum(ROOM * np.array(room), 1e-6)
+        self._speed = ROOM * np.array(speed)
+        self._gain = robot.joints[:, moving]
 
-    def nearest(self, coefficients: Array) -> float:
+    def of(self, part: Array, coefficients: Array) -> Array:
+        """A part (size, ...) of a motion's response."""
+        return np.asarray((coefficients @ part.reshape(coefficients.size, -1)).reshape(part.shape[1:]))
+
+    def used(self, coefficients: Array) -> float:
         """How much of the tightest limit a motion takes up: it may be larger by the inverse of this."""
-        return max(
-            self._joints_used(coefficients), *(self._feet_used(share, coefficients) for share in self.shares)
-        )
+        return max(self._joints_used(coefficients), self._feet_used(coefficients))
 
     def _joints_used(self, coefficients: Array) -> float:
-        table = coefficients.reshape(len(CHANNELS), -1)
-        channels = np.einsum("cl,cln->cn", table, self._shapes)
-        moved = self._gain.T @ channels
-        fast = self._gain.T @ np.einsum("cl,cln->cn", table, self._quick)
+        channels, quick = self.of(self._basis, coefficients), self.of(self._quick, coefficients)
+        moved, fast = self._gain.T @ channels, self._gain.T @ quick
         return max(
             float((np.abs(channels).max(axis=1) / self._largest).max()),
             float((-moved.min(axis=1) / self._room[:, 0]).max()),
@@ -106,20 +99,16 @@ class Reach:
             float((np.abs(fast).max(axis=1) / self._speed).max()),
         )
 
-    def _feet_used(self, share: Shares, coefficients: Array) -> float:
-        used = 0.0
-        for foot, (normals, room) in self._edges.items():
-            torque = np.tensordot(coefficients, share.response.torque[foot], 1)
-            load = coefficients @ share.response.load[foot]
-            bend = np.abs(np.tensordot(coefficients, share.response.deflection[foot], 1)).max()
+    def _feet_used(self, coefficients: Array) -> float:
+        bent, load = self.of(self.deflection, coefficients), self.of(self.load, coefficients)
+        rate = self.of(self.rate, coefficients)
+        torque = self.stiffness[:, None, None, None] * bent + self.damping[:, None, None, None] * rate
+        used = max(float(np.abs(bent).max()) / BEND, -float(load.min()) / ((1 - LIFT) * self.weight))
+        for place, (normals, room) in enumerate(self._edges):
             # The centre of pressure is (-torque pitch, torque roll)/load from below the bush.
-            out = normals[:, :1] * -torque[0] + normals[:, 1:] * torque[1] + room[:, None] * load
-            used = max(
-                used,
-                float((-out.min(axis=1) / (room * self.weight)).max()),
-                float(-load.min() / ((1 - LIFT) * self.weight)),
-                float(bend / BEND),
-            )
+            out = np.einsum("ek,skn->sen", normals, torque[:, place] * [[-1.0], [1.0]])
+            out += room[:, None] * load[:, place, None]
+            used = max(used, float((-out.min(axis=(0, 2)) / (room * self.weight)).max()))
         return used
 
 
@@ -130,7 +119,7 @@ def margin_kept(polygon: Array) -> float:
 
 def _edges(legs: Legs, foot: str) -> tuple[Array, Array]:
     """Inward normals (n, 2) of a sole's edges in the world's axes, and the room (n,) [m] of a centre of pressure
-    below the bush to each, less the margin. Raises MotionError where there is none."""
+    below the bush to each, less the margin."""
     entry = legs.body.robot.feet[foot]
     sole = legs.start.soles[foot]
     bush = legs.rest[2][foot].translation

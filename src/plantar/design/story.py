@@ -14,7 +14,7 @@ from plantar.design.family import Lines
 from plantar.design.information import CRITERIA, Criterion
 from plantar.design.legs import Legs
 from plantar.design.linear import LinearRobot
-from plantar.design.reach import Reach, margin_kept
+from plantar.design.reach import Reach
 from plantar.design.rehearsal import Rehearsal, rehearse
 from plantar.design.search import best_motion
 from plantar.design.soft_feet import CARRIED, Softness
@@ -25,6 +25,9 @@ from plantar.twin.play import postures_of
 
 SOFTEST, STIFFEST = 0.5, 2.0  # times the stiffness told, over which a motion holds
 STIFFNESSES: Final = 4  # between those, that the search looks at
+KEPT: Final = (
+    0.0055  # m of every centre of pressure to its sole's border in rehearsals: `identify feet` drops 5 mm
+)
 SMALLER: Final = 0.85  # a motion that does not hold is tried again so much smaller
 ROUNDS: Final = 8
 FRICTION: Final = 0.3  # of horizontal to vertical force at most: dry rubber on any floor holds more
@@ -64,14 +67,13 @@ class DesignSettings:
 @dataclass(frozen=True)
 class Design:
     """A motion and what it promises. `told`: the bush it was made for; `factors`: the range of stiffness it holds for;
-    `rehearsals`: by factor, the told stiffness among them; `margin` [m]: kept from each sole's border."""
+    `rehearsals`: by factor, the told stiffness among them."""
 
     settings: DesignSettings
     robot: RobotModel
     told: Softness
     factors: tuple[float, float]
     least_stiffness: float
-    margin: float
     trajectory: Trajectory
     limits_used: tuple[float, float]
     rehearsals: tuple[Rehearsal, ...] = field(repr=False)
@@ -115,10 +117,9 @@ def design_motion(
     lines = Lines.drawn(settings.duration, random)
     range_of = [told.times(factor) for factor in np.geomspace(soft, STIFFEST, STIFFNESSES)]
     reach = Reach(legs, linear, lines, range_of)
-    coefficients, _ = best_motion(reach, settings.criterion, random, progress)
-    margin = min(margin_kept(foot.sole.polygon) for foot in robot.feet.values())
+    coefficients = best_motion(reach, settings.criterion, random, progress)
     trajectory, rehearsals = _rehearsed(
-        robot, legs, lines, coefficients, told, tuple(sorted({soft, 1.0, STIFFEST})), margin, progress
+        robot, legs, lines, coefficients, told, tuple(sorted({soft, 1.0, STIFFEST})), progress
     )
     return Design(
         settings,
@@ -126,7 +127,6 @@ def design_motion(
         told,
         (soft, STIFFEST),
         least,
-        margin,
         trajectory,
         trajectory.limits_used(),
         tuple(rehearsals),
@@ -140,7 +140,6 @@ def _rehearsed(
     coefficients: Array,
     told: Softness,
     factors: tuple[float, ...],
-    margin: float,
     progress: Callable[[str], None],
 ) -> tuple[Trajectory, list[Rehearsal]]:
     """The motion, smaller until it holds at every stiffness. Raises MotionError where none does."""
@@ -152,7 +151,7 @@ def _rehearsed(
             reason, coefficients = str(error), SMALLER * coefficients
             continue
         rehearsals = rehearse(robot, trajectory.plan(), told, factors, progress)
-        reason = next((why for one in rehearsals if (why := _broken(one, margin))), "")
+        reason = next((why for one in rehearsals if (why := _broken(one))), "")
         if not reason:
             return trajectory, rehearsals
         progress(f"smaller: {reason}")
@@ -160,12 +159,12 @@ def _rehearsed(
     raise MotionError(located(f"no motion holds over the range of stiffness: {reason}", path=robot.name))
 
 
-def _broken(one: Rehearsal, margin: float) -> str:
+def _broken(one: Rehearsal) -> str:
     """Why a rehearsal does not hold, or nothing."""
     at = f"at {one.factor:.3g} times the stiffness"
     if one.fell is not None:
         return f"{at}: {one.fell}"
-    if one.sole_margin < margin / 2:
+    if one.sole_margin < KEPT:
         return f"{at} a centre of pressure comes within {1e3 * one.sole_margin:.1f} mm of a sole's border"
     if one.friction > FRICTION:
         return f"{at} a foot needs a friction of {one.friction:.2f}"
