@@ -8,17 +8,12 @@ import numpy as np
 
 from plantar.conventions import NORMAL95, Array
 from plantar.design.reach import RATE, Reach
-from plantar.models.elastoplastic import jenkins_states
-from plantar.models.hysteresis import Branches
+from plantar.design.rubber import NEARBY, SLIP_ANGLE, remembered
 
 Criterion = Literal["widest", "D", "A"]
 CRITERIA: Final = get_args(Criterion)
 # N·m that a model of real rubber misses by, per independent sample of 0.1 s: sensors of a careful lab are better.
 MISSED: Final = 0.1
-# Rubber remembers: beside the spring may stand an element that slips after this angle, as strong as the spring is there.
-# Motions that bend the bush no farther cannot tell the two apart. The angle itself is unknown, too.
-SLIP_ANGLE: Final = 0.01  # rad
-NEARBY: Final = 1.05  # times: another angle, whose difference shows what the angle changes
 
 
 def information(reach: Reach, coefficients: Array) -> Array:
@@ -28,28 +23,21 @@ def information(reach: Reach, coefficients: Array) -> Array:
     """
     bent, rate = reach.of(reach.deflection, coefficients), reach.of(reach.rate, coefficients)
     size = bent.shape[-1]
-    element = remembered(bent.reshape(-1, size)).reshape(*bent.shape[:-1], 2, size)
+    element = remembered(bent.reshape(-1, size), (SLIP_ANGLE, NEARBY * SLIP_ANGLE)).reshape(
+        *bent.shape[:-1], 2, size
+    )
+    element[..., 1, :] = (element[..., 1, :] - element[..., 0, :]) / np.log(NEARBY)
     columns = np.concatenate([bent[..., None, :], rate[..., None, :], element], axis=-2)
     line = np.linalg.qr(np.column_stack([np.ones(size), np.linspace(-1.0, 1.0, size)]))[0]
     free = columns - (columns @ line) @ line.T
     whole = 10.0 / RATE / MISSED**2 * free @ np.swapaxes(free, -1, -2)
-    # What is known before of the element: it is no stronger than the spring, its angle no more than half as large again.
-    known = np.stack([np.ones(2) * [1.0, 0.5 * SLIP_ANGLE / SLIP_ANGLE] * k for k in reach.stiffness])
+    # What is known of the element before: it is about as strong as the spring, its angle within a half.
+    known = np.outer(reach.stiffness, [1.0, 0.5])
     whole[..., [2, 3], [2, 3]] += 1.0 / known[:, None, None] ** 2
     across = whole[..., :2, 2:]
     return np.asarray(
         whole[..., :2, :2] - across @ np.linalg.solve(whole[..., 2:, 2:], np.swapaxes(across, -1, -2))
     )
-
-
-def remembered(deflections: Array) -> Array:
-    """The stretch of an element that slips, (R, 2, N) [rad], beside deflections (R, N), and how it goes with the logarithm
-    of the slip angle."""
-    angles = np.array([SLIP_ANGLE, NEARBY * SLIP_ANGLE])
-    branches = Branches.of(list(deflections))
-    states = jenkins_states(branches, angles, np.zeros((len(deflections), 2))) * angles
-    stretch = np.moveaxis(states, 0, -1)  # runs, angles, samples
-    return np.stack([stretch[:, 0], (stretch[:, 1] - stretch[:, 0]) / np.log(NEARBY)], axis=1)
 
 
 def half_widths(reach: Reach, coefficients: Array) -> Array:

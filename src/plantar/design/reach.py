@@ -12,6 +12,7 @@ from plantar.conventions import GRAVITY, Array
 from plantar.design.family import CHANNELS, Lines
 from plantar.design.legs import Legs
 from plantar.design.linear import LinearRobot
+from plantar.design.rubber import SHARE, SLIP_ANGLE, remembered
 from plantar.design.soft_feet import Softness, respond
 
 RATE: Final = 20.0  # Hz: sixteen samples in the quickest sine
@@ -22,7 +23,7 @@ BEND: Final = 0.1  # rad of the bush: less than the paper's largest, where rubbe
 # Of each channel: share of the centre of mass' height, rad, swings. Far enough for the bushes, near enough to standing
 # for what is linear here.
 LARGEST: Final = {
-    "centre.x": 0.03, "centre.y": 0.07, "centre.z": 0.02, "trunk.roll": 0.08, "trunk.pitch": 0.08, "arms": 1.0,
+    "centre.x": 0.07, "centre.y": 0.07, "centre.z": 0.02, "trunk.roll": 0.08, "trunk.pitch": 0.08, "arms": 1.0,
     "left.roll": 0.1, "left.pitch": 0.1, "right.roll": 0.1, "right.pitch": 0.1,
 }  # fmt: skip
 ROOM: Final = 0.8  # of the way to a joint's limit, and of its speed
@@ -31,11 +32,13 @@ ROOM: Final = 0.8  # of the way to a joint's limit, and of its speed
 class Reach:
     """Limits of one robot, for motions on `lines`, over bushes from soft to stiff.
 
-    What one unit of each coefficient does: `deflection` and `rate` (size, S, feet, 2, N) in pitch and roll [rad, rad/s],
-    `load` (size, S, feet, N) [N], for S bushes.
+    What one unit of each coefficient does: `deflection` [rad] and `rate` [rad/s] (size, S, feet, 2, N) in pitch and
+    roll, `load` (size, S, feet, N) [N], for S bushes.
     """
 
-    def __init__(self, legs: Legs, robot: LinearRobot, lines: Lines, bushes: Sequence[Softness]) -> None:
+    def __init__(
+        self, legs: Legs, robot: LinearRobot, lines: Lines, told: Softness, bushes: Sequence[Softness]
+    ) -> None:
         self.lines, self.time, self.bushes, self.feet = (
             lines,
             lines.time(RATE),
@@ -56,6 +59,7 @@ class Reach:
         )
         self.stiffness = np.array([bush.stiffness for bush in bushes])
         self.damping = np.array([bush.damping for bush in bushes])
+        self.element = told.stiffness * np.array(SHARE)  # of what slips beside every spring, by axis
         self.weight = robot.pendulum.mass * GRAVITY / len(self.feet)
         self._edges = [_edges(legs, foot) for foot in self.feet]
         height = robot.pendulum.height
@@ -102,7 +106,9 @@ class Reach:
     def _feet_used(self, coefficients: Array) -> float:
         bent, load = self.of(self.deflection, coefficients), self.of(self.load, coefficients)
         rate = self.of(self.rate, coefficients)
+        element = remembered(bent.reshape(-1, bent.shape[-1]), [SLIP_ANGLE]).reshape(bent.shape)
         torque = self.stiffness[:, None, None, None] * bent + self.damping[:, None, None, None] * rate
+        torque += self.element[:, None] * element
         used = max(float(np.abs(bent).max()) / BEND, -float(load.min()) / ((1 - LIFT) * self.weight))
         for place, (normals, room) in enumerate(self._edges):
             # The centre of pressure is (-torque pitch, torque roll)/load from below the bush.

@@ -116,7 +116,7 @@ def design_motion(
     random = np.random.default_rng(settings.seed)
     lines = Lines.drawn(settings.duration, random)
     range_of = [told.times(factor) for factor in np.geomspace(soft, STIFFEST, STIFFNESSES)]
-    reach = Reach(legs, linear, lines, range_of)
+    reach = Reach(legs, linear, lines, told, range_of)
     coefficients = best_motion(reach, settings.criterion, random, progress)
     trajectory, rehearsals = _rehearsed(
         robot, legs, lines, coefficients, told, tuple(sorted({soft, 1.0, STIFFEST})), progress
