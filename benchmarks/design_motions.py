@@ -16,8 +16,9 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-import biped_twins
 import numpy as np
+
+import biped_twins
 import talos
 from plantar.robot.model import RobotModel, load_robot
 from plantar.twin.robots import hrp2

@@ -9,18 +9,23 @@ import typer
 
 from plantar.cli.console.terminal import console, end_progress, number, progress, table
 from plantar.errors import MissingExtra, PlantarError, located
+from plantar.results.feet import FeetResult
 from plantar.results.io import dump_json
 from plantar.robot.model import load_robot
 
 
 def run(
     robot: Annotated[Path, typer.Argument(help="Robot file (YAML) of a biped.", metavar="ROBOT.yaml")],
-    stiffness: Annotated[
-        float, typer.Option(help="Of each foot in pitch and roll, as far as you know it, in N·m/rad.")
-    ],
     out: Annotated[
-        Path, typer.Option(help="CSV of the motion; a JSON with what it promises goes beside it.")
+        Path, typer.Option(help="CSV of the motion; a JSON with what it promises and a page go beside it.")
     ],
+    stiffness: Annotated[
+        float | None, typer.Option(help="Of each foot in pitch and roll, as far as you know it, in N·m/rad.")
+    ] = None,
+    after: Annotated[
+        Path | None,
+        typer.Option(help="An earlier result: its stiffness, and what is weak in it.", metavar="RESULT.json"),
+    ] = None,
     damping: Annotated[
         float | None,
         typer.Option(help="In N·m·s/rad, for the prediction; 0.04 s times the stiffness if left out."),
@@ -31,30 +36,44 @@ def run(
         str, typer.Option(help="What is made small: the 'widest' relative interval, or D, A of all.")
     ] = "widest",
     seed: Annotated[int, typer.Option(help="Draws frequencies and the search.", min=0)] = 0,
+    to: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Also for a controller: ros (JointTrajectory as YAML), mcap (in a bag), openhrp (.pos)."
+        ),
+    ] = None,
+    approach: Annotated[
+        bool,
+        typer.Option("--approach", help="Also versions of 25 and 50 % of the amplitude, to approach with."),
+    ] = False,
     json: Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")] = False,
 ) -> None:
     """Make a motion that shows the feet as well as balance and limits allow, for half to twice the stiffness told.
 
     MOTION.csv holds `time` and the position of every joint of the URDF, from standing still to standing still.
-    MOTION.json holds the half widths it predicts, the balance margins and the limits it kept.
+    MOTION.json holds the half widths it predicts, the balance margins and the limits it kept; MOTION.md says the same
+    on a page for those who stand beside the robot.
 
     Example: plantar design robot.yaml --stiffness 500 --out motion.csv
     """
     try:
-        from plantar.design.outputs import content_of, write_design
+        from plantar.design.outputs import check_outputs, write_design
         from plantar.design.story import DesignSettings, design_motion
     except ImportError as error:
         raise MissingExtra(error.name or "mujoco", "twin", "plantar design") from error
     if out.suffix.lower() != ".csv":
         raise PlantarError(located("has an unknown ending", path=out, valid=".csv"))
+    check_outputs(rate, to or ())
     settings = DesignSettings(stiffness, damping, duration, criterion, seed)  # type: ignore[arg-type]
     step = progress(quiet)
-    found = design_motion(load_robot(robot), settings, step)
+    if stiffness is None and after is None:
+        raise typer.BadParameter("tell --stiffness, or an earlier result with --after")
+    earlier = None if after is None else FeetResult.load(after, residuals=False)
+    found = design_motion(load_robot(robot), settings, earlier, step)
     step("write")
-    write_design(found, out, rate)
+    content = write_design(found, out, rate, to or (), approach)
     end_progress(quiet)
-    content = content_of(found, out, rate)
     if json:
         print(dump_json(content), end="")
         return
@@ -81,4 +100,5 @@ def run(
         "bend [rad]",
     )
     screen.print(table("\nRehearsed", heads, rows))
-    screen.print(f"\n{out}\n{out.with_suffix('.json')}", markup=False)
+    for ending in (".csv", ".json", ".md"):
+        screen.print(str(out.with_suffix(ending)), markup=False)

@@ -14,6 +14,7 @@ Criterion = Literal["widest", "D", "A"]
 CRITERIA: Final = get_args(Criterion)
 # N·m that a model of real rubber misses by, per independent sample of 0.1 s: sensors of a careful lab are better.
 MISSED: Final = 0.1
+TOLD_APART: Final = 2 * SLIP_ANGLE  # rad that a bush bends to either side
 
 
 def information(reach: Reach, coefficients: Array) -> Array:
@@ -40,9 +41,15 @@ def information(reach: Reach, coefficients: Array) -> Array:
     )
 
 
-def half_widths(reach: Reach, coefficients: Array) -> Array:
-    """95 % half widths [share of the value] of stiffness and damping, (S, feet, 2, 2)."""
-    found = information(reach, coefficients)
+def half_widths(reach: Reach, coefficients: Array, known: Array | float = 0.0) -> Array:
+    """95 % half widths [share of the value] of stiffness and damping, (S, feet, 2, 2).
+
+    `known`: information (feet, 2, 2, 2) from before. Where a bush bends less than TOLD_APART, `identify feet` may take
+    a spring that slips for a part of the stiffness: the motion's own widths grow with the square of what is missing.
+    """
+    bend = np.ptp(reach.of(reach.deflection, coefficients), axis=-1) / 2
+    missing = np.maximum(TOLD_APART / np.maximum(bend, 1e-6), 1.0)[..., None, None]
+    found = information(reach, coefficients) / missing**4 + known
     scale = np.sqrt(np.maximum(np.einsum("...ii->...i", found), 1e-12))
     scaled = found / (scale[..., :, None] * scale[..., None, :]) + 1e-9 * np.eye(2)
     deviations = np.sqrt(np.einsum("...ii->...i", np.linalg.inv(scaled))) / scale
@@ -50,10 +57,10 @@ def half_widths(reach: Reach, coefficients: Array) -> Array:
     return np.asarray(NORMAL95 * deviations / values)
 
 
-def badness(reach: Reach, coefficients: Array, criterion: Criterion) -> float:
+def badness(reach: Reach, coefficients: Array, criterion: Criterion, known: Array | float = 0.0) -> float:
     """What is minimised, the mean over the range of stiffness: the logarithm of the widest relative interval, of the
     volume of all (D) or of their mean square (A)."""
-    widths = half_widths(reach, coefficients).reshape(len(reach.bushes), -1)
+    widths = half_widths(reach, coefficients, known).reshape(len(reach.bushes), -1)
     if criterion == "widest":
         return float(np.log(widths.max(axis=1)).mean())
     if criterion == "D":

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
-from plantar.choices import number_in
+from plantar.choices import number_in, one_of
 from plantar.conventions import ROTATIONAL_AXES
+from plantar.design.controllers import TARGETS
 from plantar.design.rehearsal import Rehearsal
+from plantar.design.sheet import sheet
 from plantar.design.story import EFFORT, FRICTION, KEPT, Design
 from plantar.files import write_text
 from plantar.logs.save import save_log
@@ -17,13 +20,36 @@ from plantar.results.io import dump_json
 
 SCHEMA = "plantar.design/1"
 SLOWEST, FASTEST = 20.0, 2000.0  # Hz
+APPROACH: Final = (0.25, 0.5)  # of the amplitude, to be played before the whole
 
 
-def write_design(found: Design, path: Path, rate: float) -> None:
-    """Write the motion as CSV and, beside it, the JSON. Raises SettingsError for a rate that no controller has."""
+def check_outputs(rate: float, targets: Sequence[str]) -> None:
+    """Raise SettingsError for a rate that no controller has, or a target that is unknown."""
     number_in("rate", rate, SLOWEST, FASTEST, "Hz")
-    save_log(found.trajectory.log(rate), path)
-    write_text(path.with_suffix(".json"), dump_json(content_of(found, path, rate)))
+    for target in targets:
+        one_of("--to", target, TARGETS)
+
+
+def write_design(
+    found: Design, path: Path, rate: float, targets: Sequence[str] = (), approach: bool = False
+) -> dict[str, Any]:
+    """Write the motion as CSV, beside it the JSON, which is returned, and the sheet; and files for the controllers in
+    `targets`, and gentler versions of all where `approach`.
+
+    Raises SettingsError for a rate that no controller has, or a target that is unknown.
+    """
+    check_outputs(rate, targets)
+    content = content_of(found, path, rate)
+    for share in (1.0, *(APPROACH if approach else ())):
+        motion = path if share == 1.0 else path.with_stem(f"{path.stem}_{round(100 * share)}")
+        log = found.trajectory(share).log(rate)
+        save_log(log, motion)
+        for target in targets:
+            ending, write = TARGETS[target]
+            write(log, motion.with_suffix(ending))
+    write_text(path.with_suffix(".json"), dump_json(content))
+    write_text(path.with_suffix(".md"), sheet(content, approach))
+    return content
 
 
 def content_of(found: Design, path: Path, rate: float) -> dict[str, Any]:
@@ -43,12 +69,12 @@ def content_of(found: Design, path: Path, rate: float) -> dict[str, Any]:
         for axis in ROTATIONAL_AXES
         for name in model.terms
     ]  # fmt: skip
-    way, speed = found.limits_used
+    way, speed = found.trajectory().limits_used()
     return {
         "schema": SCHEMA,
         "robot": found.robot.name,
         "motion": path.name,
-        "settings": asdict(found.settings) | {"rate": rate},
+        "settings": asdict(found.settings) | {"stiffness": told.stiffness, "damping": told.damping, "rate": rate},
         "stiffness_range": [factor * told.stiffness for factor in found.factors],
         "least_stiffness": found.least_stiffness,
         "parameters": parameters,

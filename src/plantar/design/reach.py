@@ -54,7 +54,9 @@ class Reach:
         }
         found = [respond(robot.pendulum, bush, wrench, tilts, 1 / RATE) for bush in bushes]
         self.deflection, self.rate, self.load = (
-            np.moveaxis(np.array([[getattr(one, part)[foot] for foot in self.feet] for one in found]), 2, 0)
+            np.stack(
+                [np.stack([getattr(one, part)[foot] for foot in self.feet], axis=1) for one in found], axis=1
+            )
             for part in ("deflection", "rate", "load")
         )
         self.stiffness = np.array([bush.stiffness for bush in bushes])

@@ -12,6 +12,7 @@ from plantar.choices import number_in, one_of
 from plantar.conventions import Array
 from plantar.design.family import Lines
 from plantar.design.information import CRITERIA, Criterion
+from plantar.design.known import Known
 from plantar.design.legs import Legs
 from plantar.design.linear import LinearRobot
 from plantar.design.reach import Reach
@@ -19,7 +20,8 @@ from plantar.design.rehearsal import Rehearsal, rehearse
 from plantar.design.search import best_motion
 from plantar.design.soft_feet import CARRIED, Softness
 from plantar.design.trajectory import Trajectory
-from plantar.errors import MotionError, located
+from plantar.errors import MotionError, SettingsError, located
+from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
 from plantar.twin.play import postures_of
 
@@ -41,7 +43,7 @@ class DesignSettings:
 
     Args:
         stiffness: of each foot in pitch and roll, as far as it is known [N·m/rad]; the motion holds for half of it
-            to twice it, where the feet can carry the robot.
+            to twice it, where the feet can carry the robot. None takes an earlier result's, and its range.
         damping: [N·m·s/rad], for the prediction only; None takes 0.04 s times the stiffness.
         duration: of the motion [s], 20 to 600.
         criterion: what is made small: the "widest" relative interval, the volume of all ("D"), their mean square ("A").
@@ -51,14 +53,14 @@ class DesignSettings:
         SettingsError: a value that is not one of the choices or out of its range.
     """
 
-    stiffness: float
+    stiffness: float | None = None
     damping: float | None = None
     duration: float = 60.0
     criterion: Criterion = "widest"
     seed: int = 0
 
     def __post_init__(self) -> None:
-        number_in("stiffness", self.stiffness, 1.0, 1e6, "N·m/rad")
+        number_in("stiffness", self.stiffness, 1.0, 1e6, "N·m/rad", optional="the earlier result's")
         number_in("damping", self.damping, 0.0, 1e6, "N·m·s/rad", optional="0.04 s times the stiffness")
         number_in("duration", self.duration, SHORTEST, LONGEST, "s")
         one_of("criterion", self.criterion, CRITERIA)
@@ -74,9 +76,14 @@ class Design:
     told: Softness
     factors: tuple[float, float]
     least_stiffness: float
-    trajectory: Trajectory
-    limits_used: tuple[float, float]
+    legs: Legs = field(repr=False)
+    lines: Lines = field(repr=False)
+    coefficients: Array = field(repr=False)
     rehearsals: tuple[Rehearsal, ...] = field(repr=False)
+
+    def trajectory(self, share: float = 1.0) -> Trajectory:
+        """The motion with a share of its amplitude."""
+        return Trajectory.of("design", self.legs, self.lines, share * self.coefficients)
 
     @property
     def nominal(self) -> Rehearsal:
@@ -85,13 +92,18 @@ class Design:
 
 
 def design_motion(
-    robot: RobotModel, settings: DesignSettings, progress: Callable[[str], None] = lambda _: None
+    robot: RobotModel,
+    settings: DesignSettings,
+    after: FeetResult | None = None,
+    progress: Callable[[str], None] = lambda _: None,
 ) -> Design:
     """A motion that shows stiffness and damping of both feet in pitch and roll, from standing still to standing still.
 
     Args:
         robot: with a left and a right foot and an IMU.
         settings: the stiffness as far as it is known, and more.
+        after: what is known from an earlier motion: it gives the stiffness, its range and the damping where the
+            settings have none, and what is weak in it comes first.
         progress: called with a line for each step.
 
     Returns:
@@ -105,32 +117,36 @@ def design_motion(
         >>> from plantar.design.story import DesignSettings, design_motion
         >>> found = design_motion(plantar.load_robot("robot.yaml"), DesignSettings(stiffness=500))  # doctest: +SKIP
     """
+    known = None if after is None else Known.of(after)
+    if settings.stiffness is None and known is None:
+        raise SettingsError("the stiffness is not told (valid: a stiffness, or an earlier result)")
     progress("stand")
     legs = Legs.of(robot, postures_of(robot).standing)
     linear = LinearRobot.of(legs)
-    pendulum = linear.pendulum
-    pendulum.check_carried(settings.stiffness, robot.name)
-    least = CARRIED * pendulum.least_stiffness
-    soft = max(SOFTEST, least / settings.stiffness)
-    told = Softness.told(robot, settings.stiffness, settings.damping)
+    stiffness, low, high = _range(settings, known)
+    linear.pendulum.check_carried(stiffness, robot.name)
+    least = CARRIED * linear.pendulum.least_stiffness
+    factors = (max(low, least) / stiffness, high / stiffness)
+    damping = settings.damping if settings.damping is not None or known is None else known.damping
+    told = Softness.told(robot, stiffness, damping)
     random = np.random.default_rng(settings.seed)
     lines = Lines.drawn(settings.duration, random)
-    range_of = [told.times(factor) for factor in np.geomspace(soft, STIFFEST, STIFFNESSES)]
-    reach = Reach(legs, linear, lines, told, range_of)
-    coefficients = best_motion(reach, settings.criterion, random, progress)
-    trajectory, rehearsals = _rehearsed(
-        robot, legs, lines, coefficients, told, tuple(sorted({soft, 1.0, STIFFEST})), progress
+    bushes = [told.times(factor) for factor in np.geomspace(*factors, STIFFNESSES)]
+    reach = Reach(legs, linear, lines, told, bushes)
+    before = 0.0 if known is None else known.precision(reach.feet)
+    coefficients = best_motion(reach, settings.criterion, random, before, progress)
+    coefficients, rehearsals = _rehearsed(
+        robot, legs, lines, coefficients, told, tuple(sorted({1.0, *factors})), progress
     )
-    return Design(
-        settings,
-        robot,
-        told,
-        (soft, STIFFEST),
-        least,
-        trajectory,
-        trajectory.limits_used(),
-        tuple(rehearsals),
-    )
+    return Design(settings, robot, told, factors, least, legs, lines, coefficients, tuple(rehearsals))
+
+
+def _range(settings: DesignSettings, known: Known | None) -> tuple[float, float, float]:
+    """The stiffness that is designed for, and the range over which the motion must hold [N·m/rad]."""
+    if settings.stiffness is not None:
+        return settings.stiffness, SOFTEST * settings.stiffness, STIFFEST * settings.stiffness
+    assert known is not None, "one of the two is told"
+    return known.stiffness, known.low, known.high
 
 
 def _rehearsed(
@@ -141,7 +157,7 @@ def _rehearsed(
     told: Softness,
     factors: tuple[float, ...],
     progress: Callable[[str], None],
-) -> tuple[Trajectory, list[Rehearsal]]:
+) -> tuple[Array, list[Rehearsal]]:
     """The motion, smaller until it holds at every stiffness. Raises MotionError where none does."""
     reason = ""
     for _ in range(ROUNDS):
@@ -153,7 +169,7 @@ def _rehearsed(
         rehearsals = rehearse(robot, trajectory.plan(), told, factors, progress)
         reason = next((why for one in rehearsals if (why := _broken(one))), "")
         if not reason:
-            return trajectory, rehearsals
+            return coefficients, rehearsals
         progress(f"smaller: {reason}")
         coefficients = SMALLER * coefficients
     raise MotionError(located(f"no motion holds over the range of stiffness: {reason}", path=robot.name))
