@@ -14,6 +14,9 @@ Criterion = Literal["widest", "D", "A"]
 CRITERIA: Final = get_args(Criterion)
 # N·m that a model of real rubber misses by, per independent sample of 0.1 s: sensors of a careful lab are better.
 MISSED: Final = 0.1
+STEEP: Final = (
+    4  # with this power of what is missing widths grow: at two thirds, K came out half as large again
+)
 TOLD_APART: Final = 2 * SLIP_ANGLE  # rad that a bush bends to either side
 
 
@@ -22,7 +25,7 @@ def information(reach: Reach, coefficients: Array) -> Array:
 
     An offset, a drift and an element with hysteresis are eliminated, as `identify feet` does.
     """
-    bent, rate = reach.of(reach.deflection, coefficients), reach.of(reach.rate, coefficients)
+    bent, rate = reach.of(reach.firm_deflection, coefficients), reach.of(reach.firm_rate, coefficients)
     size = bent.shape[-1]
     element = remembered(bent.reshape(-1, size), (SLIP_ANGLE, NEARBY * SLIP_ANGLE)).reshape(
         *bent.shape[:-1], 2, size
@@ -45,11 +48,11 @@ def half_widths(reach: Reach, coefficients: Array, known: Array | float = 0.0) -
     """95 % half widths [share of the value] of stiffness and damping, (S, feet, 2, 2).
 
     `known`: information (feet, 2, 2, 2) from before. Where a bush bends less than TOLD_APART, `identify feet` may take
-    a spring that slips for a part of the stiffness: the motion's own widths grow with the square of what is missing.
+    a spring that slips for a part of the stiffness: the motion's own widths grow steeply.
     """
-    bend = np.ptp(reach.of(reach.deflection, coefficients), axis=-1) / 2
+    bend = np.ptp(reach.of(reach.firm_deflection, coefficients), axis=-1) / 2
     missing = np.maximum(TOLD_APART / np.maximum(bend, 1e-6), 1.0)[..., None, None]
-    found = information(reach, coefficients) / missing**4 + known
+    found = information(reach, coefficients) / missing ** (2 * STEEP) + known
     scale = np.sqrt(np.maximum(np.einsum("...ii->...i", found), 1e-12))
     scaled = found / (scale[..., :, None] * scale[..., None, :]) + 1e-9 * np.eye(2)
     deviations = np.sqrt(np.einsum("...ii->...i", np.linalg.inv(scaled))) / scale

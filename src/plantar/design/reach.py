@@ -12,7 +12,7 @@ from plantar.conventions import GRAVITY, Array
 from plantar.design.family import CHANNELS, Lines
 from plantar.design.legs import Legs
 from plantar.design.linear import LinearRobot
-from plantar.design.rubber import SHARE, SLIP_ANGLE, remembered
+from plantar.design.rubber import SECANT, SHARE, SLIP_ANGLE, remembered
 from plantar.design.soft_feet import Softness, respond
 
 RATE: Final = 20.0  # Hz: sixteen samples in the quickest sine
@@ -33,7 +33,8 @@ class Reach:
     """Limits of one robot, for motions on `lines`, over bushes from soft to stiff.
 
     What one unit of each coefficient does: `deflection` [rad] and `rate` [rad/s] (size, S, feet, 2, N) in pitch and
-    roll, `load` (size, S, feet, N) [N], for S bushes.
+    roll, `load` (size, S, feet, N) [N], for S bushes; `firm_deflection` and `firm_rate` where rubber that slips stands
+    beside the springs. Limits hold for the former, which is larger, intervals come from the latter.
     """
 
     def __init__(
@@ -52,16 +53,23 @@ class Reach:
             foot: self._basis[:, [CHANNELS.index(f"{foot}.roll"), CHANNELS.index(f"{foot}.pitch")]]
             for foot in self.feet
         }
-        found = [respond(robot.pendulum, bush, wrench, tilts, 1 / RATE) for bush in bushes]
-        self.deflection, self.rate, self.load = (
-            np.stack(
-                [np.stack([getattr(one, part)[foot] for foot in self.feet], axis=1) for one in found], axis=1
-            )
-            for part in ("deflection", "rate", "load")
-        )
+        self.element = told.stiffness * np.array(SHARE)  # of what slips beside every spring, by axis
+
+        def parts(beside: Array, *names: str) -> list[Array]:
+            pitch, roll = (float(value) for value in beside)
+            found = [respond(robot.pendulum, bush, wrench, tilts, 1 / RATE, (pitch, roll)) for bush in bushes]
+            return [
+                np.stack(
+                    [np.stack([getattr(one, name)[foot] for foot in self.feet], axis=1) for one in found],
+                    axis=1,
+                )
+                for name in names
+            ]
+
+        self.deflection, self.rate, self.load = parts(0 * self.element, "deflection", "rate", "load")
+        self.firm_deflection, self.firm_rate = parts(SECANT * self.element, "deflection", "rate")
         self.stiffness = np.array([bush.stiffness for bush in bushes])
         self.damping = np.array([bush.damping for bush in bushes])
-        self.element = told.stiffness * np.array(SHARE)  # of what slips beside every spring, by axis
         self.weight = robot.pendulum.mass * GRAVITY / len(self.feet)
         self._edges = [_edges(legs, foot) for foot in self.feet]
         height = robot.pendulum.height

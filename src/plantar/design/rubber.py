@@ -17,6 +17,7 @@ SHARE: Final = (1.0, 0.5)
 # It slips after this angle. Motions that bend the bush no farther
 # cannot tell the two apart. The angle itself is unknown, too.
 SLIP_ANGLE: Final = 0.01  # rad
+SECANT: Final = 0.6  # of its stiffness that is left in sways of twice that angle, on the whole
 NEARBY: Final = 1.05  # times: another angle, whose difference shows what the angle changes
 
 

@@ -86,13 +86,19 @@ class Response:
 
 
 def respond(
-    pendulum: Pendulum, bush: Softness, wrench: Array, tilts: Mapping[str, Array], period: float
+    pendulum: Pendulum,
+    bush: Softness,
+    wrench: Array,
+    tilts: Mapping[str, Array],
+    period: float,
+    beside: tuple[float, float] = (0.0, 0.0),
 ) -> Response:
     """Motions on soft feet, linear and exact for constant inertia, by the Fourier transform.
 
     `wrench` (..., 3, N): vertical force [N] and moments about x and y at the middle of the bushes [N·m] that the
     motion asks of the ground, less those at rest. `tilts`: by foot, roll and pitch of the ankle against the floor,
-    (..., 2, N) [rad]. `period` [s]. All begin and end at rest.
+    (..., 2, N) [rad]. `period` [s]. `beside`: stiffness of what stands beside the springs of pitch and roll [N·m/rad],
+    no part of the torque. All begin and end at rest.
     """
     count = wrench.shape[-1]
     size = count + round(SILENCE / period)
@@ -110,9 +116,9 @@ def respond(
     for foot, (x, y) in pendulum.places.items():
         arm = np.array([1.0, y, -x])  # how high the body's freedoms lift this foot
         matrix += press[:, None, None] * np.outer(arm, arm)
-        matrix[:, 1, 1] += spring
-        matrix[:, 2, 2] += spring
-        missing[..., 1:, :] -= spring * turned[foot]
+        for freedom, more in ((1, beside[1]), (2, beside[0])):  # roll, pitch
+            matrix[:, freedom, freedom] += spring + more
+            missing[..., freedom, :] -= (spring + more) * turned[foot][..., freedom - 1, :]
     moved = np.einsum("fij,...jf->...if", np.linalg.inv(matrix), missing)
 
     def back(values: Array) -> Array:
