@@ -13,8 +13,8 @@ from rosbags.typesys import Stores, get_typestore
 
 import command_line
 import design_samples
-from plantar.design.outputs import write_design
 from plantar.design.story import FRICTION, KEPT, DesignSettings, design_motion
+from plantar.design.writing.outputs import write_design
 from plantar.errors import MotionError, SettingsError
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import open_log

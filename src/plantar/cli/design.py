@@ -58,8 +58,8 @@ def run(
     Example: plantar design robot.yaml --stiffness 500 --out motion.csv
     """
     try:
-        from plantar.design.outputs import check_outputs, write_design
         from plantar.design.story import DesignSettings, design_motion
+        from plantar.design.writing.outputs import check_outputs, write_design
     except ImportError as error:
         raise MissingExtra(error.name or "mujoco", "twin", "plantar design") from error
     if out.suffix.lower() != ".csv":

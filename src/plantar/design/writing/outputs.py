@@ -9,10 +9,10 @@ from typing import Any, Final
 
 from plantar.choices import number_in, one_of
 from plantar.conventions import ROTATIONAL_AXES
-from plantar.design.controllers import TARGETS
 from plantar.design.rehearsal import Rehearsal
-from plantar.design.sheet import sheet
 from plantar.design.story import EFFORT, FRICTION, KEPT, Design
+from plantar.design.writing.controllers import TARGETS
+from plantar.design.writing.sheet import sheet
 from plantar.files import write_text
 from plantar.logs.save import save_log
 from plantar.models import KelvinVoigt
