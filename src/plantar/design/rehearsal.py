@@ -2,24 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
 
 from plantar.contact.polygon import inside_distance
-from plantar.conventions import GRAVITY, Array
+from plantar.conventions import GRAVITY
 from plantar.design.soft_feet import Softness
 from plantar.errors import MotionError, PlantarError
 from plantar.feet.identify import identify_feet
+from plantar.logs.motion_log import MotionLog
 from plantar.motions.plan import Plan
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
 from plantar.twin.bush import Bush
 from plantar.twin.play import roll_each
 from plantar.twin.presets import DEFAULT, preset_named
-from plantar.twin.recording import record
+from plantar.twin.recording import TwinRecording, record
 from plantar.twin.robots.from_robot import describe
 from plantar.twin.simulation.rollout import Rollout
 
@@ -33,7 +34,7 @@ class Rehearsal:
     `sole_margin`: least distance of a foot's centre of pressure from the border of its sole [m]; `least_load`: of a
     foot, as a share of its load at rest; `friction`: largest share of horizontal to vertical force of a foot;
     `effort`: largest share of a joint's torque limit; `bend`: largest deflection [rad]. `fell`: why it could not be
-    played; then the others are 0. `result`: what `identify feet` finds in the recording.
+    played; then the others are 0. `log`: what the robot recorded; `result`: what `identify feet` finds in it.
     """
 
     factor: float
@@ -43,7 +44,17 @@ class Rehearsal:
     effort: float = 0.0
     bend: float = 0.0
     fell: str | None = None
-    result: FeetResult | None = None
+    log: MotionLog | None = field(default=None, repr=False)
+    result: FeetResult | None = field(default=None, repr=False)
+
+    def identified(self, robot: RobotModel) -> Rehearsal:
+        """The same with the feet identified from its recording, as far as they can be."""
+        if self.log is None:
+            return self
+        try:
+            return replace(self, result=identify_feet(robot, [self.log]))
+        except PlantarError:
+            return self
 
     def percent(self, foot: str, axis: str, name: str) -> float | None:
         """95 % half width of a parameter [% of its value]; None where it is not identified."""
@@ -62,7 +73,7 @@ def rehearse(
     progress: Callable[[str], None] = lambda _: None,
 ) -> list[Rehearsal]:
     """Play a plan on feet of `factors` times the stiffness told, on all cores, with the imperfections of the default
-    preset, and identify the feet from each recording."""
+    preset."""
     preset = preset_named(DEFAULT)
     worlds = [preset.physics(dict.fromkeys(robot.feet, bush_of(told.times(factor)))) for factor in factors]
     progress(f"rehearse at {', '.join(f'{factor:.2g}' for factor in factors)} times the stiffness")
@@ -72,13 +83,8 @@ def rehearse(
         if isinstance(rollout, MotionError):
             found.append(Rehearsal(factor, fell=str(rollout)))
             continue
-        progress(f"identify at {factor:.2g} times the stiffness")
         recording = record(rollout, robot, world, preset, SEED)
-        try:
-            result = identify_feet(robot, [recording.log])
-        except PlantarError:
-            result = None
-        found.append(_measured(factor, robot, rollout, recording.truth.columns, result))
+        found.append(_measured(factor, robot, rollout, recording))
     return found
 
 
@@ -88,9 +94,8 @@ def bush_of(softness: Softness) -> Bush:
     return Bush(k, c, k, c, softness.vertical, softness.vertical_damping)
 
 
-def _measured(
-    factor: float, robot: RobotModel, rollout: Rollout, truth: Mapping[str, Array], result: FeetResult | None
-) -> Rehearsal:
+def _measured(factor: float, robot: RobotModel, rollout: Rollout, recording: TwinRecording) -> Rehearsal:
+    truth = recording.truth.columns
     margin, load, friction, bend = np.inf, np.inf, 0.0, 0.0
     weight = robot.mass * GRAVITY / len(robot.feet)
     for name, foot in robot.feet.items():
@@ -110,4 +115,4 @@ def _measured(
         float(np.abs(rollout.efforts[:, place]).max()) / limits[joint]
         for place, joint in enumerate(rollout.joints)
     )
-    return Rehearsal(factor, margin, load, friction, effort, bend, result=result)
+    return Rehearsal(factor, margin, load, friction, effort, bend, log=recording.log)

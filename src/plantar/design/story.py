@@ -10,6 +10,7 @@ import numpy as np
 
 from plantar.choices import number_in, one_of
 from plantar.conventions import Array
+from plantar.design.collision import self_collision
 from plantar.design.family import Lines
 from plantar.design.information import CRITERIA, Criterion
 from plantar.design.known import Known
@@ -69,7 +70,8 @@ class DesignSettings:
 @dataclass(frozen=True)
 class Design:
     """A motion and what it promises. `told`: the bush it was made for; `factors`: the range of stiffness it holds for;
-    `rehearsals`: by factor, the told stiffness among them."""
+    `rehearsals`: by factor, the told stiffness among them; `pairs`: of
+    links that were watched for touching, 0 where the URDF brings no geometry."""
 
     settings: DesignSettings
     robot: RobotModel
@@ -80,6 +82,7 @@ class Design:
     lines: Lines = field(repr=False)
     coefficients: Array = field(repr=False)
     rehearsals: tuple[Rehearsal, ...] = field(repr=False)
+    pairs: int
 
     def trajectory(self, share: float = 1.0) -> Trajectory:
         """The motion with a share of its amplitude."""
@@ -135,10 +138,10 @@ def design_motion(
     reach = Reach(legs, linear, lines, told, bushes)
     before = 0.0 if known is None else known.precision(reach.feet)
     coefficients = best_motion(reach, settings.criterion, random, before, progress)
-    coefficients, rehearsals = _rehearsed(
+    coefficients, rehearsals, pairs = _rehearsed(
         robot, legs, lines, coefficients, told, tuple(sorted({1.0, *factors})), progress
     )
-    return Design(settings, robot, told, factors, least, legs, lines, coefficients, tuple(rehearsals))
+    return Design(settings, robot, told, factors, least, legs, lines, coefficients, tuple(rehearsals), pairs)
 
 
 def _range(settings: DesignSettings, known: Known | None) -> tuple[float, float, float]:
@@ -157,7 +160,7 @@ def _rehearsed(
     told: Softness,
     factors: tuple[float, ...],
     progress: Callable[[str], None],
-) -> tuple[Array, list[Rehearsal]]:
+) -> tuple[Array, list[Rehearsal], int]:
     """The motion, smaller until it holds at every stiffness. Raises MotionError where none does."""
     reason = ""
     for _ in range(ROUNDS):
@@ -166,10 +169,18 @@ def _rehearsed(
         except MotionError as error:
             reason, coefficients = str(error), SMALLER * coefficients
             continue
+        watched = self_collision(robot, trajectory.configurations)
+        if watched.touching is not None:
+            first, second, row = watched.touching
+            reason = f"'{first}' touches '{second}' at {trajectory.knots[row]:.1f} s"
+            progress(f"smaller: {reason}")
+            coefficients = SMALLER * coefficients
+            continue
         rehearsals = rehearse(robot, trajectory.plan(), told, factors, progress)
         reason = next((why for one in rehearsals if (why := _broken(one))), "")
         if not reason:
-            return coefficients, rehearsals
+            progress("identify the feet from the rehearsals")
+            return coefficients, [one.identified(robot) for one in rehearsals], watched.pairs
         progress(f"smaller: {reason}")
         coefficients = SMALLER * coefficients
     raise MotionError(located(f"no motion holds over the range of stiffness: {reason}", path=robot.name))

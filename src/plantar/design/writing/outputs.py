@@ -79,6 +79,7 @@ def content_of(found: Design, path: Path, rate: float) -> dict[str, Any]:
         "least_stiffness": found.least_stiffness,
         "parameters": parameters,
         "rehearsals": [_rehearsal(one) for one in found.rehearsals],
+        "self_collision": {"checked": found.pairs > 0, "pairs": found.pairs},
         "limits": [
             {"limit": "distance of each foot's centre of pressure from its sole's border", "unit": "m",
              "kept": KEPT, "reached": min(one.sole_margin for one in found.rehearsals)},

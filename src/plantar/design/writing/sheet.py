@@ -18,6 +18,12 @@ def sheet(content: Mapping[str, Any], approach: bool) -> str:
         if approach
         else "Make gentler versions with `--approach` and play those first."
     )
+    touch = content["self_collision"]
+    watched = (
+        f"No links touched: {touch['pairs']} pairs were watched, by the URDF's collision geometry."
+        if touch["checked"]
+        else "**The URDF's collision geometry was not found: nobody checked whether arms and trunk touch.**"
+    )
     rows = [
         f"| {one['foot']} | {one['axis']} | {one['name']} | {_number(one['half_width_percent'])} |"
         for one in content["parameters"]
@@ -60,6 +66,8 @@ def sheet(content: Mapping[str, Any], approach: bool) -> str:
             "| limit | allowed | reached |",
             "|---|---|---|",
             *limits,
+            "",
+            watched,
             "",
             "## What it promises",
             "",
