@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,7 @@ from rosbags.typesys import Stores, get_typestore
 import command_line
 import design_samples
 from plantar.design.story import FRICTION, KEPT, DesignSettings, design_motion
-from plantar.design.writing.outputs import write_design
+from plantar.design.writing.outputs import content_of, write_design
 from plantar.errors import MotionError, SettingsError
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import open_log
@@ -64,6 +65,19 @@ def test_it_says_what_it_promises_and_what_it_kept(written: Path) -> None:
     page = written.with_suffix(".md").read_text()
     assert "holds from 250 to 1000 N·m/rad" in page
     assert "25 % and 50 %" in page
+
+
+def test_a_number_that_rehearsals_do_not_find_is_said(written: Path) -> None:
+    found = design_samples.designed()
+    blind = replace(found, rehearsals=tuple(replace(one, result=None) for one in found.rehearsals))
+    content = content_of(blind, written, 100.0)
+    assert len(content["notes"]) == 8
+    assert "left pitch stiffness is not found at 0.5, 1, 2 times the stiffness told" in " ".join(
+        content["notes"]
+    )
+    for row in content_of(found, written, 100.0)["parameters"]:
+        for one in row["at"]:
+            assert (one["half_width_percent"] is None) == (one["error_percent"] is None)
 
 
 def test_controllers_files_hold_the_same_motion(written: Path) -> None:

@@ -3,15 +3,24 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from plantar.cli.console.terminal import console, end_progress, number, progress, table
+from plantar.choices import one_of
+from plantar.cli.console.terminal import console, end_progress, number, print_notes, progress, table
 from plantar.errors import MissingExtra, PlantarError, located
+from plantar.files import write_text
+from plantar.logs.save import save_log
+from plantar.notes import Note
 from plantar.results.feet import FeetResult
 from plantar.results.io import dump_json
 from plantar.robot.model import load_robot
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from plantar.robot.model import RobotModel
 
 
 def run(
@@ -46,6 +55,9 @@ def run(
         bool,
         typer.Option("--approach", help="Also versions of 25 and 50 % of the amplitude, to approach with."),
     ] = False,
+    like: Annotated[
+        str | None, typer.Option(help="'campaign': for comparison, the best of the paper's fourteen motions.")
+    ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")] = False,
 ) -> None:
@@ -67,9 +79,14 @@ def run(
     check_outputs(rate, to or ())
     settings = DesignSettings(stiffness, damping, duration, criterion, seed)  # type: ignore[arg-type]
     step = progress(quiet)
-    if stiffness is None and after is None:
+    if stiffness is None and (after is None or like is not None):
         raise typer.BadParameter("tell --stiffness, or an earlier result with --after")
     earlier = None if after is None else FeetResult.load(after, residuals=False)
+    if like is not None:
+        one_of("--like", like, ("campaign",))
+        _of_the_paper(load_robot(robot), stiffness, damping, out, rate, json, step)
+        end_progress(quiet)
+        return
     found = design_motion(load_robot(robot), settings, earlier, step)
     step("write")
     content = write_design(found, out, rate, to or (), approach)
@@ -100,5 +117,53 @@ def run(
         "bend [rad]",
     )
     screen.print(table("\nRehearsed", heads, rows))
+    print_notes(screen, [Note("rehearsal", "warning", text) for text in content["notes"]])
     for ending in (".csv", ".json", ".md"):
         screen.print(str(out.with_suffix(ending)), markup=False)
+
+
+def _of_the_paper(
+    robot: RobotModel,
+    stiffness: float | None,
+    damping: float | None,
+    out: Path,
+    rate: float,
+    json: bool,
+    step: Callable[[str], None],
+) -> None:
+    """`--like campaign`."""
+    from plantar.design.paper_motions import paper_motions
+    from plantar.design.soft_feet import Softness
+
+    assert stiffness is not None, "asked for above"
+    found = paper_motions(robot, Softness.told(robot, stiffness, damping), step)
+    best_set = found.selection.best[-1].motions
+    content = {
+        "schema": "plantar.design/1",
+        "robot": robot.name,
+        "motion": out.name,
+        "like": "campaign",
+        "best": found.best.name,
+        "best_set": best_set,
+        "parameters": found.half_widths(),
+        "refused": found.refused,
+    }
+    save_log(found.log(rate), out)
+    write_text(out.with_suffix(".json"), dump_json(content))
+    if json:
+        print(dump_json(content), end="")
+        return
+    rows = [
+        (
+            str(row["foot"]),
+            str(row["axis"]),
+            str(row["name"]),
+            f"{row['percent']:.3g}",
+            f"{row['best_set_percent']:.3g}",
+        )
+        for row in found.half_widths()
+    ]
+    screen = console()
+    title = "95 % half widths as `plantar select` gives them [% of the value]: one motion, and the best set"
+    screen.print(table(title, ("foot", "axis", "parameter", found.best.name, "best set"), rows))
+    screen.print(f"The best set: {', '.join(best_set)}.\n{out}\n{out.with_suffix('.json')}", markup=False)

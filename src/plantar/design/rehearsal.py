@@ -15,7 +15,7 @@ from plantar.errors import MotionError, PlantarError
 from plantar.feet.identify import identify_feet
 from plantar.logs.motion_log import MotionLog
 from plantar.motions.plan import Plan
-from plantar.results.feet import FeetResult
+from plantar.results.feet import FeetResult, Parameter
 from plantar.robot.model import RobotModel
 from plantar.twin.bush import Bush
 from plantar.twin.play import roll_each
@@ -58,11 +58,19 @@ class Rehearsal:
 
     def percent(self, foot: str, axis: str, name: str) -> float | None:
         """95 % half width of a parameter [% of its value]; None where it is not identified."""
-        rows = [] if self.result is None else self.result.parameters
-        for row in rows:
-            if (row.foot, row.axis, row.name) == (foot, axis, name) and row.interval95 and row.value:
-                return 50 * (row.interval95[1] - row.interval95[0]) / abs(row.value)
-        return None
+        row = self._row(foot, axis, name)
+        if row is None or row.interval95 is None or not row.value:
+            return None
+        return 50 * (row.interval95[1] - row.interval95[0]) / abs(row.value)
+
+    def error(self, foot: str, axis: str, name: str, truth: float) -> float | None:
+        """By how much a parameter came out too large [% of the `truth` at the stiffness told]."""
+        row = self._row(foot, axis, name)
+        return None if row is None or row.value is None else 100 * (row.value / (self.factor * truth) - 1)
+
+    def _row(self, foot: str, axis: str, name: str) -> Parameter | None:
+        rows = () if self.result is None else self.result.parameters
+        return next((row for row in rows if (row.foot, row.axis, row.name) == (foot, axis, name)), None)
 
 
 def rehearse(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Final
@@ -20,6 +20,7 @@ from plantar.results.io import dump_json
 
 SCHEMA = "plantar.design/1"
 SLOWEST, FASTEST = 20.0, 2000.0  # Hz
+FAR: Final = 1.5  # times its half width: a number that is so far off is wrong
 APPROACH: Final = (0.25, 0.5)  # of the amplitude, to be played before the whole
 
 
@@ -61,7 +62,8 @@ def content_of(found: Design, path: Path, rate: float) -> dict[str, Any]:
             "foot": foot, "axis": axis, "name": name, "unit": model.unit(name, axis), "value": values[name],
             "half_width_percent": found.nominal.percent(foot, axis, name),
             "at": [
-                {"factor": one.factor, "half_width_percent": one.percent(foot, axis, name)}
+                {"factor": one.factor, "half_width_percent": one.percent(foot, axis, name),
+                 "error_percent": one.error(foot, axis, name, values[name])}
                 for one in found.rehearsals
             ],
         }
@@ -79,6 +81,7 @@ def content_of(found: Design, path: Path, rate: float) -> dict[str, Any]:
         "least_stiffness": found.least_stiffness,
         "parameters": parameters,
         "rehearsals": [_rehearsal(one) for one in found.rehearsals],
+        "notes": _notes(parameters),
         "self_collision": {"checked": found.pairs > 0, "pairs": found.pairs},
         "limits": [
             {"limit": "distance of each foot's centre of pressure from its sole's border", "unit": "m",
@@ -99,3 +102,24 @@ def _rehearsal(one: Rehearsal) -> dict[str, Any]:
         "factor": one.factor, "sole_margin": one.sole_margin, "least_load": one.least_load, "friction": one.friction,
         "effort": one.effort, "bend": one.bend,
     }  # fmt: skip
+
+
+def _notes(parameters: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Numbers that came out wrong in rehearsals, where the truth is known."""
+    notes = []
+    for row in parameters:
+        wrong = [
+            one
+            for one in row["at"]
+            if one["half_width_percent"] is None
+            or abs(one["error_percent"]) > FAR * one["half_width_percent"]
+        ]
+        if wrong:
+            at = ", ".join(f"{one['factor']:.3g}" for one in wrong)
+            where = f"{row['foot']} {row['axis']} {row['name']}"
+            worst = max((abs(one["error_percent"] or 0.0) for one in wrong), default=0.0)
+            notes.append(
+                f"{where} is not found at {at} times the stiffness told (off by {worst:.0f} %): the rehearsal's rubber has "
+                "hysteresis, and this motion bends it too little to tell that apart"
+            )
+    return notes

@@ -75,6 +75,8 @@ def sheet(content: Mapping[str, Any], approach: bool) -> str:
             "|---|---|---|---|",
             *rows,
             "",
+            *(f"- {note}." for note in content["notes"]),
+            "",
         ]
     )
 
