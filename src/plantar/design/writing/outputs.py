@@ -119,7 +119,7 @@ def _notes(parameters: Sequence[Mapping[str, Any]]) -> list[str]:
             where = f"{row['foot']} {row['axis']} {row['name']}"
             worst = max((abs(one["error_percent"] or 0.0) for one in wrong), default=0.0)
             notes.append(
-                f"{where} is not found at {at} times the stiffness told (off by {worst:.0f} %): the rehearsal's rubber has "
-                "hysteresis, and this motion bends it too little to tell that apart"
+                f"{where} is not found at {at} times the stiffness told (off by {worst:.0f} %): the rehearsal's rubber "
+                "has hysteresis, and this motion bends it too little to tell that apart"
             )
     return notes
