@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from pathlib import Path
+from unittest.mock import patch
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from rosbags.typesys import Stores, get_typestore
 
 import command_line
 import design_samples
+from plantar.design import story
 from plantar.design.story import FRICTION, KEPT, DesignSettings, design_motion
 from plantar.design.writing.outputs import content_of, write_design
 from plantar.errors import MotionError, SettingsError
@@ -155,6 +157,29 @@ def test_the_command_refuses_before_it_works(tmp_path: Path, capsys: pytest.Capt
     assert command_line.run("design", robot, "--out", out) == 2
     assert "--after" in capsys.readouterr().err
     assert not out.exists()
+
+
+def test_the_command_writes_and_says_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    robot, out = hrp2.write(tmp_path), tmp_path / "motion.csv"
+    with patch.object(story, "design_motion", lambda *_: design_samples.designed()):
+        assert (
+            command_line.run(
+                "design", robot, "--stiffness", 500, "--out", out, "--rate", 50, "--to", "openhrp"
+            )
+            == 0
+        )
+        said = capsys.readouterr()
+        assert "Rehearsed" in said.out
+        assert "write" in said.err
+        assert (
+            command_line.run("design", robot, "--stiffness", 500, "--out", out, "--rate", 50, "--json", "-q")
+            == 0
+        )
+    content = capsys.readouterr()
+    assert json.loads(content.out) == json.loads(out.with_suffix(".json").read_text())
+    assert content.err == ""
+    assert len(out.read_text().splitlines()) == 1002
+    assert out.with_suffix(".pos").exists()
 
 
 def test_tables_that_are_no_motion_are_refused(tmp_path: Path) -> None:
