@@ -19,7 +19,7 @@ ROOMS = (
     "dynamics", "models", "estimation", "model_selection",
     "results", "sensors", "feet", "whole_body",
     "online",
-    "motions", "twin",
+    "motions", "twin", "design",
     "inspection", "exporters", "robot_guess", "report", "campaign", "comparison", "cli",
 )  # fmt: skip
 # So does a folder or a file inside `feet`: from those before it.

@@ -69,6 +69,7 @@ PLAYED = ("docs/how_to/compare_in_simulator.md",)
 ELSEWHERE = {
     "docs/python.md": "tests/test_front_door.py",
     "docs/report.md": "tests/test_front_door.py",
+    "docs/how_to/design.md": "tests/design/test_story.py",
     "docs/campaign.md": "the whole campaign takes minutes of the twin",
 }
 

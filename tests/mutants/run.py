@@ -25,6 +25,7 @@ from queue import SimpleQueue
 from typing import TypeVar
 
 from data_faults import DATA_FAULTS
+from designed_motions import DESIGNED_MOTIONS
 from drawn import DRAWN
 from made_cheaper import MADE_CHEAPER
 from mutant import Mutant, StaleMutant
@@ -40,6 +41,7 @@ LISTS = {
     "once_unnoticed": ONCE_UNNOTICED,
     "made_cheaper": MADE_CHEAPER,
     "data_faults": DATA_FAULTS,
+    "designed_motions": DESIGNED_MOTIONS,
 }
 LEAST_CAUGHT = 0.85
 PATIENCE, LEAST_PATIENCE = 20.0, 300.0  # usual seconds of the tests, and seconds: beyond, a mutant hangs

@@ -21,6 +21,7 @@ COMMANDS = {
     "validate": ("validate", "Score a result on logs that it has not seen."),
     "simulate": ("simulate", "Logs from the twin, with the imperfections that you choose."),
     "export": ("export", "Write a result in the format of a simulator or controller."),
+    "design": ("design", "A motion made to show the feet, within balance and limits."),
     "compare": ("compare", "Play logs in MuJoCo on rigid and on exported feet, beside the record."),
     "select": ("select", "Which of these logs are most informative about each parameter."),
     "diagnose": ("diagnose", "What limits each number of a result, and what to record next."),

@@ -28,7 +28,11 @@ PRESET_HELP = (
 
 def run(
     motion: Annotated[
-        str, typer.Argument(help="A motion's name, several separated by commas, 'demo' or 'campaign'.")
+        str,
+        typer.Argument(
+            help="A motion's name, or a table of joint positions of your own (CSV, Parquet); several separated by "
+            "commas; 'demo' or 'campaign'."
+        ),
     ],
     out: Annotated[Path, typer.Option(help="Folder for the robot file, the logs and the truth beside them.")],
     preset: Annotated[str, typer.Option(help=PRESET_HELP)] = "realistic",
@@ -59,15 +63,18 @@ def run(
     Motions: Tilt1 to Tilt6, Manual_right_roll, Manual_right_pitch, Manual_left_roll, Manual_left_pitch,
     Manual_both_pitch, Myrand4, Myrand5, Squat. Walks: Walk8, Walk12, Walk16, Walk20 or any other step in cm (1 s a
     step), WalkSlow12 (4 s), WalkQuick12 (0.8 s), WalkTurn, WalkInPlace; Walk12_1, Walk12_2 are trials that land a
-    little otherwise. Each log MOTION.parquet has its truth in MOTION.truth.parquet
-    (bush angles, contact forces) and MOTION.truth.json (what was put in). A motion that loses its balance or cannot be
-    reached is refused before it is played; one that falls on its bushes, as soon as it does.
+    little otherwise. A table of your own, such as `plantar design` writes, holds `time` and `joint.NAME.position`;
+    its first row stands on level feet. Each log MOTION.parquet has its truth in MOTION.truth.parquet (bush angles,
+    contact forces) and MOTION.truth.json (what was put in). A motion that loses its balance or cannot be reached is
+    refused before it is played; one that falls on its bushes, as soon as it does.
 
     Example: plantar simulate Tilt3,Squat --out out/twin --preset sensors --seed 3
     """
     try:
         from plantar.motions import CAMPAIGN, DEMO
         from plantar.twin import PAPER, play_all, write_campaign
+        from plantar.twin.own_motion import own_plan
+        from plantar.twin.robots import hrp2
     except ImportError as error:
         raise MissingExtra(error.name or "mujoco", "twin", "plantar simulate") from error
     refuse_file(out)
@@ -81,8 +88,18 @@ def run(
         message = f"'{model.name}' stands on unknown bushes"
         raise PlantarError(located(message, valid="--bush K_pitch,C_pitch,K_roll,C_roll"))
     report = _reporter(len(names), progress(quiet))
+    motions = [own_plan(name, model or hrp2.robot()) if Path(name).suffix else name for name in names]
     (recordings,) = play_all(
-        names, model, bushes, preset, [seed], report, sway=sway, vertical=vertical, apart=apart, period=period
+        motions,
+        model,
+        bushes,
+        preset,
+        [seed],
+        report,
+        sway=sway,
+        vertical=vertical,
+        apart=apart,
+        period=period,
     )
     end_progress(quiet)
     robot_file = write_campaign(out, recordings, model, preset)

@@ -1,0 +1,169 @@
+"""`plantar design`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from plantar.choices import one_of
+from plantar.cli.console.terminal import console, end_progress, number, print_notes, progress, table
+from plantar.errors import MissingExtra, PlantarError, located
+from plantar.files import write_text
+from plantar.logs.save import save_log
+from plantar.notes import Note
+from plantar.results.feet import FeetResult
+from plantar.results.io import dump_json
+from plantar.robot.model import load_robot
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from plantar.robot.model import RobotModel
+
+
+def run(
+    robot: Annotated[Path, typer.Argument(help="Robot file (YAML) of a biped.", metavar="ROBOT.yaml")],
+    out: Annotated[
+        Path, typer.Option(help="CSV of the motion; a JSON with what it promises and a page go beside it.")
+    ],
+    stiffness: Annotated[
+        float | None, typer.Option(help="Of each foot in pitch and roll, as far as you know it, in N·m/rad.")
+    ] = None,
+    after: Annotated[
+        Path | None,
+        typer.Option(help="An earlier result: its stiffness, and what is weak in it.", metavar="RESULT.json"),
+    ] = None,
+    damping: Annotated[
+        float | None,
+        typer.Option(help="In N·m·s/rad, for the prediction; 0.04 s times the stiffness if left out."),
+    ] = None,
+    duration: Annotated[float, typer.Option(help="Of the motion, in s.")] = 60.0,
+    rate: Annotated[float, typer.Option(help="Rows a second, in Hz.")] = 200.0,
+    criterion: Annotated[
+        str, typer.Option(help="What is made small: the 'widest' relative interval, or D, A of all.")
+    ] = "widest",
+    seed: Annotated[int, typer.Option(help="Draws frequencies and the search.", min=0)] = 0,
+    to: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Also for a controller: ros (JointTrajectory as YAML), mcap (in a bag), openhrp (.pos)."
+        ),
+    ] = None,
+    approach: Annotated[
+        bool,
+        typer.Option("--approach", help="Also versions of 25 and 50 % of the amplitude, to approach with."),
+    ] = False,
+    like: Annotated[
+        str | None, typer.Option(help="'campaign': for comparison, the best of the paper's fourteen motions.")
+    ] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")] = False,
+) -> None:
+    """Make a motion that shows the feet as well as balance and limits allow, for half to twice the stiffness told.
+
+    MOTION.csv holds `time` and the position of every joint of the URDF, from standing still to standing still.
+    MOTION.json holds the half widths it predicts, the balance margins and the limits it kept; MOTION.md says the same
+    on a page for those who stand beside the robot.
+
+    Example: plantar design robot.yaml --stiffness 500 --out motion.csv
+    """
+    try:
+        from plantar.design.story import DesignSettings, design_motion
+        from plantar.design.writing.outputs import check_outputs, write_design
+    except ImportError as error:
+        raise MissingExtra(error.name or "mujoco", "twin", "plantar design") from error
+    if out.suffix.lower() != ".csv":
+        raise PlantarError(located("has an unknown ending", path=out, valid=".csv"))
+    check_outputs(rate, to or ())
+    settings = DesignSettings(stiffness, damping, duration, criterion, seed)  # type: ignore[arg-type]
+    step = progress(quiet)
+    if stiffness is None and (after is None or like is not None):
+        raise typer.BadParameter("tell --stiffness, or an earlier result with --after")
+    earlier = None if after is None else FeetResult.load(after, residuals=False)
+    if like is not None:
+        one_of("--like", like, ("campaign",))
+        _of_the_paper(load_robot(robot), stiffness, damping, out, rate, json, step)
+        end_progress(quiet)
+        return
+    found = design_motion(load_robot(robot), settings, earlier, step)
+    step("write")
+    content = write_design(found, out, rate, to or (), approach)
+    end_progress(quiet)
+    if json:
+        print(dump_json(content), end="")
+        return
+    screen = console()
+    rows = [
+        (row["foot"], row["axis"], row["name"], number(row["half_width_percent"], 3),
+         *(number(one["half_width_percent"], 3) for one in row["at"]))
+        for row in content["parameters"]
+    ]  # fmt: skip
+    factors = [f"x{one['factor']:.3g}" for one in content["rehearsals"]]
+    screen.print(table("95 % half widths that it predicts [% of the value]",
+                       ("foot", "axis", "parameter", "predicted", *factors), rows))  # fmt: skip
+    rows = [
+        (f"x{one['factor']:.3g}", number(1e3 * one["sole_margin"], 3), number(100 * one["least_load"], 3),
+         number(one["friction"], 2), number(100 * one["effort"], 3), number(one["bend"], 2))
+        for one in content["rehearsals"]
+    ]  # fmt: skip
+    heads = (
+        "stiffness",
+        "margin on the soles [mm]",
+        "least load [%]",
+        "friction",
+        "torque [% of limit]",
+        "bend [rad]",
+    )
+    screen.print(table("\nRehearsed", heads, rows))
+    print_notes(screen, [Note("rehearsal", "warning", text) for text in content["notes"]])
+    for ending in (".csv", ".json", ".md"):
+        screen.print(str(out.with_suffix(ending)), markup=False)
+
+
+def _of_the_paper(
+    robot: RobotModel,
+    stiffness: float | None,
+    damping: float | None,
+    out: Path,
+    rate: float,
+    json: bool,
+    step: Callable[[str], None],
+) -> None:
+    """`--like campaign`."""
+    from plantar.design.paper_motions import paper_motions
+    from plantar.design.soft_feet import Softness
+
+    assert stiffness is not None, "asked for above"
+    found = paper_motions(robot, Softness.told(robot, stiffness, damping), step)
+    best_set = found.selection.best[-1].motions
+    content = {
+        "schema": "plantar.design/1",
+        "robot": robot.name,
+        "motion": out.name,
+        "like": "campaign",
+        "best": found.best.name,
+        "best_set": best_set,
+        "parameters": found.half_widths(),
+        "refused": found.refused,
+    }
+    save_log(found.log(rate), out)
+    write_text(out.with_suffix(".json"), dump_json(content))
+    if json:
+        print(dump_json(content), end="")
+        return
+    rows = [
+        (
+            str(row["foot"]),
+            str(row["axis"]),
+            str(row["name"]),
+            f"{row['percent']:.3g}",
+            f"{row['best_set_percent']:.3g}",
+        )
+        for row in found.half_widths()
+    ]
+    screen = console()
+    title = "95 % half widths as `plantar select` gives them [% of the value]: one motion, and the best set"
+    screen.print(table(title, ("foot", "axis", "parameter", found.best.name, "best set"), rows))
+    screen.print(f"The best set: {', '.join(best_set)}.\n{out}\n{out.with_suffix('.json')}", markup=False)

@@ -1,0 +1,126 @@
+"""A motion played on the twin, at the stiffness that is told and at the ends of the range: what comes of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Final
+
+import numpy as np
+
+from plantar.contact.polygon import inside_distance
+from plantar.conventions import GRAVITY
+from plantar.design.soft_feet import Softness
+from plantar.errors import MotionError, PlantarError
+from plantar.feet.identify import identify_feet
+from plantar.logs.motion_log import MotionLog
+from plantar.motions.plan import Plan
+from plantar.results.feet import FeetResult, Parameter
+from plantar.robot.model import RobotModel
+from plantar.twin.bush import Bush
+from plantar.twin.play import roll_each
+from plantar.twin.presets import DEFAULT, preset_named
+from plantar.twin.recording import TwinRecording, record
+from plantar.twin.robots.from_robot import describe
+from plantar.twin.simulation.rollout import Rollout
+
+SEED: Final = 0  # of the sensors' noise
+
+
+@dataclass(frozen=True)
+class Rehearsal:
+    """One rehearsal at `factor` times the stiffness that was told.
+
+    `sole_margin`: least distance of a foot's centre of pressure from the border of its sole [m]; `least_load`: of a
+    foot, as a share of its load at rest; `friction`: largest share of horizontal to vertical force of a foot;
+    `effort`: largest share of a joint's torque limit; `bend`: largest deflection [rad]. `fell`: why it could not be
+    played; then the others are 0. `log`: what the robot recorded; `result`: what `identify feet` finds in it.
+    """
+
+    factor: float
+    sole_margin: float = 0.0
+    least_load: float = 0.0
+    friction: float = 0.0
+    effort: float = 0.0
+    bend: float = 0.0
+    fell: str | None = None
+    log: MotionLog | None = field(default=None, repr=False)
+    result: FeetResult | None = field(default=None, repr=False)
+
+    def identified(self, robot: RobotModel) -> Rehearsal:
+        """The same with the feet identified from its recording, as far as they can be."""
+        if self.log is None:
+            return self
+        try:
+            return replace(self, result=identify_feet(robot, [self.log]))
+        except PlantarError:
+            return self
+
+    def percent(self, foot: str, axis: str, name: str) -> float | None:
+        """95 % half width of a parameter [% of its value]; None where it is not identified."""
+        row = self._row(foot, axis, name)
+        if row is None or row.interval95 is None or not row.value:
+            return None
+        return 50 * (row.interval95[1] - row.interval95[0]) / abs(row.value)
+
+    def error(self, foot: str, axis: str, name: str, truth: float) -> float | None:
+        """By how much a parameter came out too large [% of the `truth` at the stiffness told]."""
+        row = self._row(foot, axis, name)
+        return None if row is None or row.value is None else 100 * (row.value / (self.factor * truth) - 1)
+
+    def _row(self, foot: str, axis: str, name: str) -> Parameter | None:
+        rows = () if self.result is None else self.result.parameters
+        return next((row for row in rows if (row.foot, row.axis, row.name) == (foot, axis, name)), None)
+
+
+def rehearse(
+    robot: RobotModel,
+    plan: Plan,
+    told: Softness,
+    factors: Sequence[float],
+    progress: Callable[[str], None] = lambda _: None,
+) -> list[Rehearsal]:
+    """Play a plan on feet of `factors` times the stiffness told, on all cores, with the imperfections of the default
+    preset."""
+    preset = preset_named(DEFAULT)
+    worlds = [preset.physics(dict.fromkeys(robot.feet, bush_of(told.times(factor)))) for factor in factors]
+    progress(f"rehearse at {', '.join(f'{factor:.2g}' for factor in factors)} times the stiffness")
+    rollouts = roll_each([(plan, world) for world in worlds], robot)
+    found = []
+    for factor, world, rollout in zip(factors, worlds, rollouts, strict=True):
+        if isinstance(rollout, MotionError):
+            found.append(Rehearsal(factor, fell=str(rollout)))
+            continue
+        recording = record(rollout, robot, world, preset, SEED)
+        found.append(_measured(factor, robot, rollout, recording))
+    return found
+
+
+def bush_of(softness: Softness) -> Bush:
+    """The twin's bush of a softness."""
+    k, c = softness.stiffness, softness.damping
+    return Bush(k, c, k, c, softness.vertical, softness.vertical_damping)
+
+
+def _measured(factor: float, robot: RobotModel, rollout: Rollout, recording: TwinRecording) -> Rehearsal:
+    truth = recording.truth.columns
+    margin, load, friction, bend = np.inf, np.inf, 0.0, 0.0
+    weight = robot.mass * GRAVITY / len(robot.feet)
+    for name, foot in robot.feet.items():
+        pressure = np.column_stack([truth[f"{name}.contact.cop.{axis}"] for axis in "xy"])
+        force = np.column_stack([truth[f"{name}.contact.force.{axis}"] for axis in "xyz"])
+        carried = np.isfinite(pressure).all(axis=1)
+        inside = inside_distance(pressure[carried], foot.sole.polygon)
+        margin = min(margin, float(inside.min()) if carried.all() else -1.0)
+        load = min(load, float(force[:, 2].min()) / weight)
+        sideways = np.linalg.norm(force[:, :2], axis=1) / np.maximum(force[:, 2], 1e-3)
+        friction = max(friction, float(sideways.max()))
+        bend = max(
+            bend, *(float(np.abs(truth[f"{name}.deflection.{axis}"]).max()) for axis in ("pitch", "roll"))
+        )
+    limits = {body.joint: body.effort for body in describe(robot).bodies[1:]}
+    effort = max(
+        float(np.abs(rollout.efforts[:, place]).max()) / limits[joint]
+        for place, joint in enumerate(rollout.joints)
+    )
+    return Rehearsal(factor, margin, load, friction, effort, bend, log=recording.log)

@@ -1,0 +1,28 @@
+"""What rubber remembers: beside the spring stands an element that slips."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+
+from plantar.conventions import Array
+from plantar.models.elastoplastic import jenkins_states
+from plantar.models.hysteresis import Branches
+
+# Until it slips the element is a spring of this share of the bush's own, in pitch and roll: the hysteresis of HRP-2's
+# feet is 7 to 10 % of their largest torques.
+SHARE: Final = (1.0, 0.5)
+# It slips after this angle. Motions that bend the bush no farther
+# cannot tell the two apart. The angle itself is unknown, too.
+SLIP_ANGLE: Final = 0.01  # rad
+SECANT: Final = 0.6  # of its stiffness that is left in sways of twice that angle, on the whole
+NEARBY: Final = 1.05  # times: another angle, whose difference shows what the angle changes
+
+
+def remembered(deflections: Array, slip_angles: Sequence[float]) -> Array:
+    """The stretch [rad] of elements with slip angles (a,) [rad] beside deflections (R, N), from rest, (R, a, N)."""
+    angles = np.array(slip_angles)
+    states = jenkins_states(Branches.of(list(deflections)), angles, np.zeros((len(deflections), angles.size)))
+    return np.moveaxis(states * angles, 0, -1)

@@ -1,0 +1,200 @@
+"""`plantar design`: from a robot and a guess of its stiffness to a motion that was rehearsed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Final
+
+import numpy as np
+
+from plantar.choices import number_in, one_of
+from plantar.conventions import Array
+from plantar.design.collision import self_collision
+from plantar.design.family import Lines
+from plantar.design.information import CRITERIA, Criterion
+from plantar.design.known import Known
+from plantar.design.legs import Legs
+from plantar.design.linear import LinearRobot
+from plantar.design.reach import Reach
+from plantar.design.rehearsal import Rehearsal, rehearse
+from plantar.design.search import best_motion
+from plantar.design.soft_feet import CARRIED, Softness
+from plantar.design.trajectory import Trajectory
+from plantar.errors import MotionError, SettingsError, located
+from plantar.results.feet import FeetResult
+from plantar.robot.model import RobotModel
+from plantar.twin.play import postures_of
+
+SOFTEST, STIFFEST = 0.5, 2.0  # times the stiffness told, over which a motion holds
+STIFFNESSES: Final = 4  # between those, that the search looks at
+KEPT: Final = (
+    0.0055  # m of every centre of pressure to its sole's border in rehearsals: `identify feet` drops 5 mm
+)
+SMALLER: Final = 0.85  # a motion that does not hold is tried again so much smaller
+ROUNDS: Final = 8
+FRICTION: Final = 0.3  # of horizontal to vertical force at most: dry rubber on any floor holds more
+EFFORT: Final = 0.9  # of a joint's torque limit
+SHORTEST, LONGEST = 20.0, 600.0  # s
+
+
+@dataclass(frozen=True)
+class DesignSettings:
+    """What a user tells `design_motion`.
+
+    Args:
+        stiffness: of each foot in pitch and roll, as far as it is known [N·m/rad]; the motion holds for half of it
+            to twice it, where the feet can carry the robot. None takes an earlier result's, and its range.
+        damping: [N·m·s/rad], for the prediction only; None takes 0.04 s times the stiffness.
+        duration: of the motion [s], 20 to 600.
+        criterion: what is made small: the "widest" relative interval, the volume of all ("D"), their mean square ("A").
+        seed: draws frequencies and the search; the same seed gives the same motion.
+
+    Raises:
+        SettingsError: a value that is not one of the choices or out of its range.
+    """
+
+    stiffness: float | None = None
+    damping: float | None = None
+    duration: float = 60.0
+    criterion: Criterion = "widest"
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        number_in("stiffness", self.stiffness, 1.0, 1e6, "N·m/rad", optional="the earlier result's")
+        number_in("damping", self.damping, 0.0, 1e6, "N·m·s/rad", optional="0.04 s times the stiffness")
+        number_in("duration", self.duration, SHORTEST, LONGEST, "s")
+        one_of("criterion", self.criterion, CRITERIA)
+
+
+@dataclass(frozen=True)
+class Design:
+    """A motion and what it promises. `told`: the bush it was made for; `factors`: the range of stiffness it holds for;
+    `rehearsals`: by factor, the told stiffness among them; `pairs`: of
+    links that were watched for touching, 0 where the URDF brings no geometry."""
+
+    settings: DesignSettings
+    robot: RobotModel
+    told: Softness
+    factors: tuple[float, float]
+    least_stiffness: float
+    legs: Legs = field(repr=False)
+    lines: Lines = field(repr=False)
+    coefficients: Array = field(repr=False)
+    rehearsals: tuple[Rehearsal, ...] = field(repr=False)
+    pairs: int
+
+    def trajectory(self, share: float = 1.0) -> Trajectory:
+        """The motion with a share of its amplitude."""
+        return Trajectory.of("design", self.legs, self.lines, share * self.coefficients)
+
+    @property
+    def nominal(self) -> Rehearsal:
+        """The rehearsal at the stiffness that was told."""
+        return next(one for one in self.rehearsals if one.factor == 1.0)
+
+
+def design_motion(
+    robot: RobotModel,
+    settings: DesignSettings,
+    after: FeetResult | None = None,
+    progress: Callable[[str], None] = lambda _: None,
+) -> Design:
+    """A motion that shows stiffness and damping of both feet in pitch and roll, from standing still to standing still.
+
+    Args:
+        robot: with a left and a right foot and an IMU.
+        settings: the stiffness as far as it is known, and more.
+        after: what is known from an earlier motion: it gives the stiffness, its range and the damping where the
+            settings have none, and what is weak in it comes first.
+        progress: called with a line for each step.
+
+    Returns:
+        The motion of every joint, with the intervals, margins and limits of its rehearsals.
+
+    Raises:
+        MotionError: feet of this stiffness cannot carry the robot, or its legs cannot move.
+
+    Example:
+        >>> import plantar
+        >>> from plantar.design.story import DesignSettings, design_motion
+        >>> found = design_motion(plantar.load_robot("robot.yaml"), DesignSettings(stiffness=500))  # doctest: +SKIP
+    """
+    known = None if after is None else Known.of(after)
+    if settings.stiffness is None and known is None:
+        raise SettingsError("the stiffness is not told (valid: a stiffness, or an earlier result)")
+    progress("stand")
+    legs = Legs.of(robot, postures_of(robot).standing)
+    linear = LinearRobot.of(legs)
+    stiffness, low, high = _range(settings, known)
+    linear.pendulum.check_carried(stiffness, robot.name)
+    least = CARRIED * linear.pendulum.least_stiffness
+    factors = (max(low, least) / stiffness, high / stiffness)
+    damping = settings.damping if settings.damping is not None or known is None else known.damping
+    told = Softness.told(robot, stiffness, damping)
+    random = np.random.default_rng(settings.seed)
+    lines = Lines.drawn(settings.duration, random)
+    bushes = [told.times(factor) for factor in np.geomspace(*factors, STIFFNESSES)]
+    reach = Reach(legs, linear, lines, told, bushes)
+    before = 0.0 if known is None else known.precision(reach.feet)
+    coefficients = best_motion(reach, settings.criterion, random, before, progress)
+    coefficients, rehearsals, pairs = _rehearsed(
+        robot, legs, lines, coefficients, told, tuple(sorted({1.0, *factors})), progress
+    )
+    return Design(settings, robot, told, factors, least, legs, lines, coefficients, tuple(rehearsals), pairs)
+
+
+def _range(settings: DesignSettings, known: Known | None) -> tuple[float, float, float]:
+    """The stiffness that is designed for, and the range over which the motion must hold [N·m/rad]."""
+    if settings.stiffness is not None:
+        return settings.stiffness, SOFTEST * settings.stiffness, STIFFEST * settings.stiffness
+    assert known is not None, "one of the two is told"
+    return known.stiffness, known.low, known.high
+
+
+def _rehearsed(
+    robot: RobotModel,
+    legs: Legs,
+    lines: Lines,
+    coefficients: Array,
+    told: Softness,
+    factors: tuple[float, ...],
+    progress: Callable[[str], None],
+) -> tuple[Array, list[Rehearsal], int]:
+    """The motion, smaller until it holds at every stiffness. Raises MotionError where none does."""
+    reason = ""
+    for _ in range(ROUNDS):
+        try:
+            trajectory = Trajectory.of("design", legs, lines, coefficients)
+        except MotionError as error:
+            reason, coefficients = str(error), SMALLER * coefficients
+            continue
+        watched = self_collision(robot, trajectory.configurations)
+        if watched.touching is not None:
+            first, second, row = watched.touching
+            reason = f"'{first}' touches '{second}' at {trajectory.knots[row]:.1f} s"
+            progress(f"smaller: {reason}")
+            coefficients = SMALLER * coefficients
+            continue
+        rehearsals = rehearse(robot, trajectory.plan(), told, factors, progress)
+        reason = next((why for one in rehearsals if (why := _broken(one))), "")
+        if not reason:
+            progress("identify the feet from the rehearsals")
+            return coefficients, [one.identified(robot) for one in rehearsals], watched.pairs
+        progress(f"smaller: {reason}")
+        coefficients = SMALLER * coefficients
+    raise MotionError(located(f"no motion holds over the range of stiffness: {reason}", path=robot.name))
+
+
+def _broken(one: Rehearsal) -> str:
+    """Why a rehearsal does not hold, or nothing."""
+    at = f"at {one.factor:.3g} times the stiffness"
+    if one.fell is not None:
+        return f"{at}: {one.fell}"
+    if one.sole_margin < KEPT:
+        return f"{at} a centre of pressure comes within {1e3 * one.sole_margin:.1f} mm of a sole's border"
+    if one.friction > FRICTION:
+        return f"{at} a foot needs a friction of {one.friction:.2f}"
+    if one.effort > EFFORT:
+        return f"{at} a joint needs {100 * one.effort:.0f} % of its torque limit"
+    return ""

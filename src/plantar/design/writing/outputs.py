@@ -1,0 +1,125 @@
+"""What a design leaves on disk: the motion for any controller, and what it promises."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any, Final
+
+from plantar.choices import number_in, one_of
+from plantar.conventions import ROTATIONAL_AXES
+from plantar.design.rehearsal import Rehearsal
+from plantar.design.story import EFFORT, FRICTION, KEPT, Design
+from plantar.design.writing.controllers import TARGETS
+from plantar.design.writing.sheet import sheet
+from plantar.files import write_text
+from plantar.logs.save import save_log
+from plantar.models import KelvinVoigt
+from plantar.results.io import dump_json
+
+SCHEMA = "plantar.design/1"
+SLOWEST, FASTEST = 20.0, 2000.0  # Hz
+FAR: Final = 1.5  # times its half width: a number that is so far off is wrong
+APPROACH: Final = (0.25, 0.5)  # of the amplitude, to be played before the whole
+
+
+def check_outputs(rate: float, targets: Sequence[str]) -> None:
+    """Raise SettingsError for a rate that no controller has, or a target that is unknown."""
+    number_in("rate", rate, SLOWEST, FASTEST, "Hz")
+    for target in targets:
+        one_of("--to", target, TARGETS)
+
+
+def write_design(
+    found: Design, path: Path, rate: float, targets: Sequence[str] = (), approach: bool = False
+) -> dict[str, Any]:
+    """Write the motion as CSV, beside it the JSON, which is returned, and the sheet; and files for the controllers in
+    `targets`, and gentler versions of all where `approach`.
+
+    Raises SettingsError for a rate that no controller has, or a target that is unknown.
+    """
+    check_outputs(rate, targets)
+    content = content_of(found, path, rate)
+    for share in (1.0, *(APPROACH if approach else ())):
+        motion = path if share == 1.0 else path.with_stem(f"{path.stem}_{round(100 * share)}")
+        log = found.trajectory(share).log(rate)
+        save_log(log, motion)
+        for target in targets:
+            ending, write = TARGETS[target]
+            write(log, motion.with_suffix(ending))
+    write_text(path.with_suffix(".json"), dump_json(content))
+    write_text(path.with_suffix(".md"), sheet(content, approach))
+    return content
+
+
+def content_of(found: Design, path: Path, rate: float) -> dict[str, Any]:
+    """MOTION.json: `plantar.design/1`."""
+    model, told = KelvinVoigt(), found.told
+    values = {"stiffness": told.stiffness, "damping": told.damping}
+    parameters = [
+        {
+            "foot": foot, "axis": axis, "name": name, "unit": model.unit(name, axis), "value": values[name],
+            "half_width_percent": found.nominal.percent(foot, axis, name),
+            "at": [
+                {"factor": one.factor, "half_width_percent": one.percent(foot, axis, name),
+                 "error_percent": one.error(foot, axis, name, values[name])}
+                for one in found.rehearsals
+            ],
+        }
+        for foot in found.robot.feet
+        for axis in ROTATIONAL_AXES
+        for name in model.terms
+    ]  # fmt: skip
+    way, speed = found.trajectory().limits_used()
+    return {
+        "schema": SCHEMA,
+        "robot": found.robot.name,
+        "motion": path.name,
+        "settings": asdict(found.settings) | {"stiffness": told.stiffness, "damping": told.damping, "rate": rate},
+        "stiffness_range": [factor * told.stiffness for factor in found.factors],
+        "least_stiffness": found.least_stiffness,
+        "parameters": parameters,
+        "rehearsals": [_rehearsal(one) for one in found.rehearsals],
+        "notes": _notes(parameters),
+        "self_collision": {"checked": found.pairs > 0, "pairs": found.pairs},
+        "limits": [
+            {"limit": "distance of each foot's centre of pressure from its sole's border", "unit": "m",
+             "kept": KEPT, "reached": min(one.sole_margin for one in found.rehearsals)},
+            {"limit": "friction, horizontal to vertical force of a foot", "unit": "", "kept": FRICTION,
+             "reached": max(one.friction for one in found.rehearsals)},
+            {"limit": "joint torque, share of its limit", "unit": "", "kept": EFFORT,
+             "reached": max(one.effort for one in found.rehearsals)},
+            {"limit": "joint position, share of the way from standing to its limit", "unit": "",
+             "kept": 1.0, "reached": way},
+            {"limit": "joint speed, share of its limit", "unit": "", "kept": 1.0, "reached": speed},
+        ],
+    }  # fmt: skip
+
+
+def _rehearsal(one: Rehearsal) -> dict[str, Any]:
+    return {
+        "factor": one.factor, "sole_margin": one.sole_margin, "least_load": one.least_load, "friction": one.friction,
+        "effort": one.effort, "bend": one.bend,
+    }  # fmt: skip
+
+
+def _notes(parameters: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Numbers that came out wrong in rehearsals, where the truth is known."""
+    notes = []
+    for row in parameters:
+        wrong = [
+            one
+            for one in row["at"]
+            if one["half_width_percent"] is None
+            or abs(one["error_percent"]) > FAR * one["half_width_percent"]
+        ]
+        if wrong:
+            at = ", ".join(f"{one['factor']:.3g}" for one in wrong)
+            where = f"{row['foot']} {row['axis']} {row['name']}"
+            worst = max((abs(one["error_percent"] or 0.0) for one in wrong), default=0.0)
+            notes.append(
+                f"{where} is not found at {at} times the stiffness told (off by {worst:.0f} %): the rehearsal's rubber "
+                "has hysteresis, and this motion bends it too little to tell that apart"
+            )
+    return notes

@@ -1,0 +1,48 @@
+"""A planned motion out: one `trajectory_msgs/JointTrajectory` in a ROS 2 bag (MCAP)."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+
+from plantar.conventions import Array
+from plantar.errors import MissingExtra
+from plantar.files import atomic_write
+
+TOPIC = "/joint_trajectory"
+KIND = "trajectory_msgs/msg/JointTrajectory"
+
+
+def save_trajectory(
+    path: Path, joints: Sequence[str], time: Array, positions: Array, velocities: Array
+) -> None:
+    """Positions and velocities (N, n) [rad, rad/s] of `joints` at `time` (N,) [s from the start].
+
+    Raises MissingExtra without rosbags.
+    """
+    try:
+        from rosbags.rosbag2 import StoragePlugin, Writer
+        from rosbags.typesys import Stores, get_typestore
+    except ImportError as error:
+        raise MissingExtra("rosbags", "logs", "writing MCAP") from error
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    types = store.types
+    moment, duration = types["builtin_interfaces/msg/Time"], types["builtin_interfaces/msg/Duration"]
+    header = types["std_msgs/msg/Header"](stamp=moment(sec=0, nanosec=0), frame_id="")
+    point = types["trajectory_msgs/msg/JointTrajectoryPoint"]
+    none = positions[0, :0]
+    points = [
+        point(positions=q, velocities=v, accelerations=none, effort=none,
+              time_from_start=duration(*divmod(round(t * 1e9), 10**9)))
+        for t, q, v in zip(time.tolist(), positions, velocities, strict=True)
+    ]  # fmt: skip
+    message = types[KIND](header=header, joint_names=list(joints), points=points)
+    with tempfile.TemporaryDirectory() as folder:
+        bag = Path(folder) / "bag"
+        with Writer(bag, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
+            writer.write(
+                writer.add_connection(TOPIC, KIND, typestore=store), 0, store.serialize_cdr(message, KIND)
+            )
+        with atomic_write(path) as handle:
+            handle.write(next(bag.glob("*.mcap")).read_bytes())

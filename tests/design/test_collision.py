@@ -1,0 +1,48 @@
+"""Links that touch, on a robot of boxes whose places are known."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+from plantar.design.collision import EVERY, self_collision
+from plantar.twin.robots import hrp2
+
+BOX = '<collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision>'
+INERTIA = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+
+
+def boxes() -> str:
+    """Three boxes on a rail, each 0.2 m from the one before; the last slides back over the first."""
+    links = "".join(f'<link name="{name}">{INERTIA}{BOX}</link>' for name in ("first", "second", "third"))
+    slide = (
+        '<joint name="{0}" type="prismatic"><parent link="{1}"/><child link="{2}"/><origin xyz="0.2 0 0"/>'
+    )
+    slide += '<axis xyz="1 0 0"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint>'
+    joints = slide.format("near", "first", "second") + slide.format("far", "second", "third")
+    return f'<robot name="boxes">{links}{joints}</robot>'
+
+
+@pytest.mark.parametrize(("reach", "touches"), [(0.25, False), (0.35, True)])
+def test_boxes_that_meet_are_named(reach: float, touches: bool) -> None:
+    robot = replace(hrp2.robot(), urdf=boxes())
+    model = robot.floating_model
+    way = np.tile(pin.neutral(model), (20 * EVERY + 1, 1))
+    way[:, -1] = -np.linspace(0.0, reach, len(way))
+    found = self_collision(robot, way)
+    assert found.pairs == 1  # neighbours are not watched
+    if touches:
+        assert found.touching is not None
+        first, second, row = found.touching
+        assert {first, second} == {"first_0", "third_0"}
+        assert way[row, -1] == pytest.approx(-0.3, abs=2 * reach / 20)
+    else:
+        assert found.touching is None
+
+
+def test_a_robot_without_geometry_is_not_watched() -> None:
+    robot = hrp2.robot()
+    assert self_collision(robot, pin.neutral(robot.floating_model)[None]).pairs == 0

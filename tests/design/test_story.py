@@ -1,0 +1,196 @@
+"""A design from end to end, short: what it writes, what it promises, what it refuses."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from unittest.mock import patch
+
+import numpy as np
+import pytest
+import yaml
+from rosbags.highlevel import AnyReader
+from rosbags.typesys import Stores, get_typestore
+
+import command_line
+import design_samples
+from plantar.design import story
+from plantar.design.story import FRICTION, KEPT, DesignSettings, design_motion
+from plantar.design.writing.outputs import content_of, write_design
+from plantar.errors import MotionError, SettingsError
+from plantar.logs.motion_log import MotionLog
+from plantar.logs.readers import open_log
+from plantar.robot.model import load_robot
+from plantar.twin.own_motion import own_plan
+from plantar.twin.robots import hrp2
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("design") / "motion.csv"
+    write_design(design_samples.designed(), path, 100.0, ("ros", "openhrp", "mcap"), approach=True)
+    return path
+
+
+def positions(path: Path) -> np.ndarray:
+    return open_log(path).positions(hrp2.robot())
+
+
+def test_the_table_holds_every_joint_from_rest_to_rest(written: Path) -> None:
+    log = open_log(written)
+    assert log.time == pytest.approx(np.arange(2001) / 100)
+    assert list(log.columns) == [f"joint.{name}.position" for name in hrp2.robot().joint_names]
+    q = log.positions(hrp2.robot())
+    for rows in (slice(0, 150), slice(-150, None)):
+        assert np.ptp(q[rows], axis=0).max() < 1e-6
+    assert q[0] == pytest.approx(q[-1], abs=1e-5)
+    assert np.ptp(q, axis=0).max() > 0.02
+    model = hrp2.robot().model
+    assert (q > model.lowerPositionLimit).all()
+    assert (q < model.upperPositionLimit).all()
+    assert (np.abs(np.diff(q, axis=0)) * 100 < model.velocityLimit).all()
+
+
+def test_it_says_what_it_promises_and_what_it_kept(written: Path) -> None:
+    content = json.loads(written.with_suffix(".json").read_text())
+    assert content["schema"] == "plantar.design/1"
+    rows = {
+        (row["foot"], row["axis"], row["name"]): row["half_width_percent"] for row in content["parameters"]
+    }
+    assert len(rows) == 8
+    assert content["stiffness_range"] == pytest.approx([250.0, 1000.0])
+    assert {one["factor"] for one in content["rehearsals"]} == {0.5, 1.0, 2.0}
+    for one in content["rehearsals"]:
+        assert one["sole_margin"] > KEPT
+        assert one["friction"] < FRICTION
+    page = written.with_suffix(".md").read_text()
+    assert "holds from 250 to 1000 N·m/rad" in page
+    assert "25 % and 50 %" in page
+
+
+def test_a_number_that_rehearsals_do_not_find_is_said(written: Path) -> None:
+    found = design_samples.designed()
+    blind = replace(found, rehearsals=tuple(replace(one, result=None) for one in found.rehearsals))
+    content = content_of(blind, written, 100.0)
+    assert len(content["notes"]) == 8
+    assert "left pitch stiffness is not found at 0.5, 1, 2 times the stiffness told" in " ".join(
+        content["notes"]
+    )
+    for row in content_of(found, written, 100.0)["parameters"]:
+        for one in row["at"]:
+            assert (one["half_width_percent"] is None) == (one["error_percent"] is None)
+
+
+def test_controllers_files_hold_the_same_motion(written: Path) -> None:
+    q, joints = positions(written), list(hrp2.robot().joint_names)
+    pos = np.loadtxt(written.with_suffix(".pos"))
+    assert pos[:, 0] == pytest.approx(np.arange(2001) / 100)
+    assert pos[:, 1:] == pytest.approx(q, abs=1e-6)
+    ros = yaml.load(written.with_suffix(".yaml").read_text(), yaml.CSafeLoader)
+    assert ros["joint_names"] == joints
+    point = ros["points"][1234]
+    assert point["time_from_start"] == {"sec": 12, "nanosec": 340000000}
+    assert point["positions"] == pytest.approx(q[1234].tolist(), abs=1e-6)
+    assert point["velocities"] == pytest.approx((q[1235] - q[1233]) / 0.02, abs=2e-3)
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    with AnyReader([written.with_suffix(".mcap")]) as reader:
+        ((connection, _, raw),) = list(reader.messages())
+        message = store.deserialize_cdr(raw, connection.msgtype)
+    assert message.joint_names == joints
+    assert message.points[1234].positions == pytest.approx(q[1234])
+
+
+def test_a_gentle_version_is_a_share_of_the_whole(written: Path) -> None:
+    whole, quarter = (positions(path) for path in (written, written.with_stem("motion_25")))
+    swing, less = whole - whole[0], quarter - quarter[0]
+    assert quarter[0] == pytest.approx(whole[0], abs=1e-6)
+    assert np.abs(less - 0.25 * swing).max() < 0.1 * np.abs(swing).max()
+    assert np.abs(less).max() == pytest.approx(0.25 * np.abs(swing).max(), rel=0.15)
+
+
+def test_the_same_seed_gives_the_same_table(written: Path, tmp_path: Path) -> None:
+    write_design(design_samples.designed_again(), tmp_path / "again.csv", 100.0)
+    assert (tmp_path / "again.csv").read_bytes() == written.read_bytes()
+
+
+def test_the_twin_plays_a_table_from_where_its_first_row_stands(written: Path) -> None:
+    plan = own_plan(written, hrp2.robot())
+    own = design_samples.designed().trajectory().plan()
+    assert plan.time == pytest.approx(own.time)
+    assert plan.positions == pytest.approx(own.positions, abs=1e-4)
+    assert plan.base[0][2] == pytest.approx(own.base[0][2], abs=1e-5)
+    assert plan.standing == {"left", "right"}
+
+
+def test_feet_that_are_too_soft_are_refused_with_what_is_needed() -> None:
+    with pytest.raises(
+        MotionError, match=r"feet of 150 N·m/rad cannot hold the robot upright \(valid: at least 23"
+    ):
+        design_motion(hrp2.robot(), DesignSettings(150.0))
+
+
+@pytest.mark.parametrize(
+    ("settings", "line"),
+    [
+        ({"stiffness": -1.0}, "stiffness is not valid"),
+        ({"stiffness": 500.0, "duration": 3.0}, "duration is not valid"),
+        ({"stiffness": 500.0, "criterion": "E"}, "criterion is not a choice"),
+    ],
+)
+def test_settings_out_of_range_are_refused(settings: dict[str, float], line: str) -> None:
+    with pytest.raises(SettingsError, match=line):
+        DesignSettings(**settings)  # type: ignore[arg-type]
+
+
+def test_the_command_refuses_before_it_works(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    robot = hrp2.write(tmp_path)
+    out = tmp_path / "motion.csv"
+    line = command_line.refused(capsys, "design", robot, "--stiffness", 500, "--out", tmp_path / "motion.txt")
+    assert "has an unknown ending (valid: .csv)" in line
+    line = command_line.refused(capsys, "design", robot, "--stiffness", 500, "--rate", 1e6, "--out", out)
+    assert "rate is not valid" in line
+    line = command_line.refused(capsys, "design", robot, "--stiffness", 500, "--to", "abb", "--out", out)
+    assert "valid: ros, mcap, openhrp" in line
+    line = command_line.refused(capsys, "design", robot, "--stiffness", 100, "--out", out)
+    assert "feet of 100 N·m/rad cannot hold the robot upright" in line
+    assert command_line.run("design", robot, "--out", out) == 2
+    assert "--after" in capsys.readouterr().err
+    assert not out.exists()
+
+
+def test_the_command_writes_and_says_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    robot, out = hrp2.write(tmp_path), tmp_path / "motion.csv"
+    with patch.object(story, "design_motion", lambda *_: design_samples.designed()):
+        assert (
+            command_line.run(
+                "design", robot, "--stiffness", 500, "--out", out, "--rate", 50, "--to", "openhrp"
+            )
+            == 0
+        )
+        said = capsys.readouterr()
+        assert "Rehearsed" in said.out
+        assert "write" in said.err
+        assert (
+            command_line.run("design", robot, "--stiffness", 500, "--out", out, "--rate", 50, "--json", "-q")
+            == 0
+        )
+    content = capsys.readouterr()
+    assert json.loads(content.out) == json.loads(out.with_suffix(".json").read_text())
+    assert content.err == ""
+    assert len(out.read_text().splitlines()) == 1002
+    assert out.with_suffix(".pos").exists()
+
+
+def test_tables_that_are_no_motion_are_refused(tmp_path: Path) -> None:
+    robot = load_robot(hrp2.write(tmp_path))
+    time = np.arange(300) / 100
+    other = command_line.write_csv(
+        MotionLog("other", time, {"joint.knee.position": 0 * time}), tmp_path / "other.csv"
+    )
+    with pytest.raises(Exception, match="holds no position of a joint of this robot"):
+        own_plan(other, robot)
+    lifted = {"joint.LLEG_JOINT3.position": 0.3 + 0 * time}
+    uneven = command_line.write_csv(MotionLog("uneven", time, lifted), tmp_path / "uneven.csv")
+    with pytest.raises(MotionError, match="the first row has one foot"):
+        own_plan(uneven, robot)

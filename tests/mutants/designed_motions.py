@@ -1,0 +1,35 @@
+"""Careless changes of how motions are designed: a robot would fall, or promise what it cannot keep."""
+
+from __future__ import annotations
+
+from mutant import Mutant
+
+QUICK = ("design/test_soft_feet.py", "design/test_information.py", "design/test_family.py")
+
+DESIGNED_MOTIONS = (
+    Mutant(
+        "design/soft_feet.py", "gravity holds the robot upright",
+        "- (weight if axis else 0.0)", "+ (weight if axis else 0.0)", QUICK,
+    ),
+    Mutant(
+        "design/soft_feet.py", "a sway to the left loads the right foot",
+        "np.array([1.0, y, -x]), moved", "np.array([1.0, -y, -x]), moved", QUICK,
+    ),
+    Mutant(
+        "design/soft_feet.py", "damping without the rate", "bush.stiffness + bush.damping * s", "bush.stiffness", QUICK,
+    ),
+    Mutant(
+        "design/soft_feet.py", "one foot of two is asked for", "self.height / len(self.places)", "self.height", QUICK,
+    ),
+    Mutant(
+        "design/reach.py", "centres of pressure to the other side in pitch",
+        "[[-1.0], [1.0]]", "[[-1.0], [0.0]]", QUICK,
+    ),
+    Mutant(
+        "design/information.py", "an unknown element costs nothing",
+        "whole[..., :2, :2] - across", "whole[..., :2, :2] - 0 * across", QUICK,
+    ),
+    Mutant(
+        "design/family.py", "the mirror image keeps the sign", "+= sign * halves[1][row]", "+= halves[1][row]", QUICK,
+    ),
+)  # fmt: skip

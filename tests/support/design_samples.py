@@ -1,0 +1,84 @@
+"""A designed motion that took seconds: few tries, twenty seconds, the built-in twin's robot."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import cache
+from unittest.mock import patch
+
+import numpy as np
+
+from plantar.design import search, story
+from plantar.design.family import Lines
+from plantar.design.legs import Legs
+from plantar.design.linear import LinearRobot
+from plantar.design.reach import Reach
+from plantar.design.rehearsal import Rehearsal, rehearse
+from plantar.design.search import best_motion
+from plantar.design.soft_feet import Softness
+from plantar.design.story import Design, DesignSettings, design_motion
+from plantar.motions.plan import Plan
+from plantar.robot.model import RobotModel
+from plantar.twin.robots import hrp2
+
+STIFFNESS = 500.0
+TRIES = 20
+
+
+@cache
+def legs() -> Legs:
+    return Legs.of(hrp2.robot(), hrp2.postures().standing)
+
+
+@cache
+def linear() -> LinearRobot:
+    return LinearRobot.of(legs())
+
+
+@cache
+def told() -> Softness:
+    return Softness.told(hrp2.robot(), STIFFNESS, None)
+
+
+@cache
+def reach() -> Reach:
+    lines = Lines.drawn(20.0, np.random.default_rng(1))
+    return Reach(legs(), linear(), lines, told(), [told().times(0.6), told(), told().times(1.5)])
+
+
+@cache
+def coefficients() -> np.ndarray:
+    """Of a motion within the limits of `reach`."""
+    with patch.object(search, "TRIES", TRIES):
+        return best_motion(reach(), "widest", np.random.default_rng(2))
+
+
+def gentle_motion(*told: object) -> np.ndarray:
+    """Well within its limits, so that the first rehearsal holds."""
+    with patch.object(search, "TRIES", TRIES):
+        return 0.4 * best_motion(*told)  # type: ignore[arg-type]
+
+
+def rehearsed_once(
+    robot: RobotModel, plan: Plan, told: Softness, factors: Sequence[float], *_: object
+) -> list[Rehearsal]:
+    """On the stiffness told; the ends of the range are taken to be like it."""
+    (one,) = rehearse(robot, plan, told, [1.0])
+    return [replace(one, factor=factor) for factor in factors]
+
+
+@cache
+def designed() -> Design:
+    """Rehearsed on the twin, too."""
+    with patch.object(story, "best_motion", gentle_motion), patch.object(story, "rehearse", rehearsed_once):
+        return design_motion(hrp2.robot(), DesignSettings(STIFFNESS, duration=20.0, seed=1))
+
+
+def designed_again() -> Design:
+    """The same, with the rehearsals of the first."""
+    with (
+        patch.object(story, "best_motion", gentle_motion),
+        patch.object(story, "rehearse", lambda *_: list(designed().rehearsals)),
+    ):
+        return design_motion(hrp2.robot(), DesignSettings(STIFFNESS, duration=20.0, seed=1))
