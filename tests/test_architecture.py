@@ -20,7 +20,7 @@ ROOMS = (
     "results", "sensors", "feet", "whole_body",
     "online",
     "motions", "twin",
-    "inspection", "exporters", "robot_guess", "report", "campaign", "comparison", "cli",
+    "inspection", "exporters", "robot_guess", "fleet", "report", "campaign", "comparison", "cli",
 )  # fmt: skip
 # So does a folder or a file inside `feet`: from those before it.
 FEET = (
@@ -55,6 +55,9 @@ KEEPERS = {
     "matplotlib": {"report"},
     "viser": {"report"},
     "jinja2": {"report"},
+    "dask": {"fleet"},
+    "distributed": {"fleet"},
+    "fsspec": {"fleet"},
     "typer": {"cli"},
     "rich": {"cli"},
     "pickle": set(),

@@ -1,0 +1,167 @@
+"""A fleet from its manifest to its tables: nothing lost, nothing twice, broken logs told."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pyarrow.parquet as pa_parquet
+import pytest
+
+from biped import TRUTH
+from command_line import run
+from fleet_samples import broken_logs, make_logs, small_fleet, write_manifest
+from plantar.feet.identify import identify_feet
+from plantar.feet.settings import FeetSettings
+from plantar.fleet.cluster import connected
+from plantar.fleet.manifest import read_manifest
+from plantar.fleet.places import PlaceError, Store
+from plantar.fleet.run import Outcome, run_fleet
+
+SETTINGS = FeetSettings(model="kelvin_voigt", wrench_delay=0.0)
+
+
+@pytest.fixture(scope="module")
+def client() -> Iterator[Any]:
+    with connected(1, None, None) as found:
+        yield found
+
+
+def done(client: Any, manifest: Path, out: Path, settings: FeetSettings = SETTINGS) -> Outcome:
+    return run_fleet(read_manifest(manifest), Store(str(out)), settings, client)
+
+
+def test_a_fleet_finds_what_identify_feet_finds(client: Any, tmp_path: Path) -> None:
+    manifest = small_fleet(tmp_path, 3)
+    outcome = done(client, manifest, tmp_path / "out")
+    assert (outcome.groups, outcome.reused, outcome.written.finished, outcome.written.failed) == (3, 0, 3, 0)
+    rows = pa_parquet.read_table(tmp_path / "out" / "results.parquet").to_pylist()
+    alone = identify_feet(tmp_path / "robot.yaml", tmp_path / "log_1.parquet", settings=SETTINGS)
+    own = {(row["foot"], row["axis"], row["name"]): row for row in rows if row["group"] == "g1"}
+    assert len(own) == len(alone.parameters)
+    for parameter in alone.parameters:
+        row = own[parameter.foot, parameter.axis, parameter.name]
+        assert (row["value"], row["std"], row["verdict"]) == (
+            parameter.value,
+            parameter.std,
+            parameter.verdict,
+        )
+        assert (row["low"], row["high"]) == (parameter.interval95 or (None, None))
+        assert (row["unit_of_value"], row["unit"]) == (parameter.unit, "unit 1")
+    pitch = own["left", "pitch", "stiffness"]
+    assert pitch["value"] == pytest.approx(TRUTH["left", "pitch"].stiffness, rel=0.02)
+    assert pitch["time"].isoformat() == "2026-03-02T10:00:00+00:00"
+
+
+def test_the_next_run_computes_only_what_is_new(client: Any, tmp_path: Path) -> None:
+    manifest, out = small_fleet(tmp_path, 3), tmp_path / "out"
+    done(client, manifest, out)
+    first = (out / "results.parquet").read_bytes()
+    units = {path: path.stat().st_mtime_ns for path in (out / "units").rglob("*.json")}
+    again = done(client, manifest, out)
+    assert again.reused == 3
+    assert (out / "results.parquet").read_bytes() == first
+    more = small_fleet(tmp_path, 4)
+    assert done(client, more, out).reused == 3
+    assert {path: path.stat().st_mtime_ns for path in units} == units
+    assert len(list((out / "units").rglob("*.json"))) == 4
+
+
+def test_content_counts_not_the_place_or_the_date(client: Any, tmp_path: Path) -> None:
+    """A log that moved or was touched is not fitted again; other content, settings or another robot file are."""
+    manifest, out = small_fleet(tmp_path, 1), tmp_path / "out"
+    done(client, manifest, out)
+    log = tmp_path / "log_0.parquet"
+    os.utime(log, (1, 1))
+    assert done(client, manifest, out).reused == 1
+    (tmp_path / "elsewhere").mkdir()
+    log.rename(tmp_path / "elsewhere" / log.name)
+    moved = write_manifest(tmp_path / "moved.csv", [("m", "robot.yaml", f"elsewhere/{log.name}", "", "", "")])
+    assert done(client, moved, out).reused == 1
+    assert done(client, moved, out, FeetSettings(model="kelvin_voigt", wrench_delay=0.001)).reused == 0
+    robot = tmp_path / "robot.yaml"
+    robot.write_text(robot.read_text() + "\n# measured again\n")
+    assert done(client, moved, out).reused == 0
+
+
+def test_broken_logs_of_ten_kinds_are_told_and_do_no_harm(client: Any, tmp_path: Path) -> None:
+    (good,) = make_logs(tmp_path, 1)
+    broken = broken_logs(tmp_path)
+    assert len(broken) == 10
+    rows = [(name, "robot.yaml", name, "", "", "") for name in (*broken, good)]
+    outcome = done(client, write_manifest(tmp_path / "fleet.csv", rows), tmp_path / "out")
+    assert (outcome.written.finished, outcome.written.failed) == (1, 10)
+    results = pa_parquet.read_table(tmp_path / "out" / "results.parquet")
+    assert set(results["group"].to_pylist()) == {good}
+    failures = pa_parquet.read_table(tmp_path / "out" / "failures.parquet").to_pylist()
+    assert [row["group"] for row in failures] == list(broken)
+    for row in failures:
+        assert row["log"] == str(tmp_path / row["group"])
+        assert broken[row["group"]] in row["error"]
+        assert "\n" not in row["error"]
+        assert "internal error" not in row["error"]
+
+
+def test_a_broken_log_is_left_out_of_its_group(client: Any, tmp_path: Path) -> None:
+    names = make_logs(tmp_path, 2)
+    broken_logs(tmp_path)
+    rows = [("g", "robot.yaml", name, "", "", "") for name in (*names, "cut.parquet", "short.parquet")]
+    outcome = done(client, write_manifest(tmp_path / "fleet.csv", rows), tmp_path / "out")
+    assert (outcome.written.finished, outcome.written.failures) == (1, 2)
+    alone = identify_feet(tmp_path / "robot.yaml", [tmp_path / name for name in names], settings=SETTINGS)
+    found = pa_parquet.read_table(tmp_path / "out" / "results.parquet")["value"].to_pylist()
+    assert found == [row.value for row in alone.parameters]
+
+
+def test_a_robot_file_that_is_wrong_fails_its_groups_only(client: Any, tmp_path: Path) -> None:
+    good, other = make_logs(tmp_path, 2)
+    rows = [("a", "robot.yaml", good, "", "", ""), ("b", "nowhere.yaml", other, "", "", "")]
+    outcome = done(client, write_manifest(tmp_path / "fleet.csv", rows), tmp_path / "out")
+    assert (outcome.written.finished, outcome.written.failed) == (1, 1)
+    (row,) = pa_parquet.read_table(tmp_path / "out" / "failures.parquet").to_pylist()
+    assert row["group"] == "b"
+    assert "nowhere.yaml" in row["error"]
+
+
+def test_a_damaged_unit_is_made_again(client: Any, tmp_path: Path) -> None:
+    manifest, out = small_fleet(tmp_path, 1), tmp_path / "out"
+    done(client, manifest, out)
+    first = (out / "results.parquet").read_bytes()
+    (unit,) = (out / "units").rglob("*.json")
+    unit.write_bytes(unit.read_bytes()[:100])
+    assert done(client, manifest, out).reused == 0
+    assert (out / "results.parquet").read_bytes() == first
+
+
+def test_a_store_that_cannot_be_written_stops_the_run(client: Any, tmp_path: Path) -> None:
+    manifest, out = small_fleet(tmp_path, 1), tmp_path / "out"
+    out.write_text("")
+    with pytest.raises(PlaceError, match="cannot be"):
+        done(client, manifest, out)
+
+
+def test_the_command_ends_with_the_counts(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (name,) = make_logs(tmp_path, 1)
+    rows = [("good", "robot.yaml", name, "", "", ""), ("bad", "robot.yaml", "gone.parquet", "", "", "")]
+    manifest = write_manifest(tmp_path / "fleet.csv", rows)
+    command = [
+        "fleet",
+        "run",
+        manifest,
+        "--out",
+        tmp_path / "out",
+        "--workers",
+        "1",
+        "--model",
+        "kelvin_voigt",
+    ]
+    assert run(*command) == 0
+    last = capsys.readouterr().out.splitlines()[-1]
+    assert last == "2 groups: 1 with results, 0 were there already, 1 failed, 1 failures in failures.parquet"
+    assert run(*command, "--json") == 0
+    counts = json.loads(capsys.readouterr().out)
+    assert (counts["groups"], counts["reused"], counts["written"]["failures"]) == (2, 1, 1)
+    assert run(*command, "--scheduler", "tcp://127.0.0.1:1") == 2
