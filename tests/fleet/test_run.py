@@ -12,7 +12,7 @@ import pyarrow.parquet as pa_parquet
 import pytest
 
 from biped import TRUTH
-from command_line import run
+from command_line import refused, run
 from fleet_samples import broken_logs, make_logs, small_fleet, write_manifest
 from plantar.feet.identify import identify_feet
 from plantar.feet.settings import FeetSettings
@@ -161,7 +161,13 @@ def test_the_command_ends_with_the_counts(tmp_path: Path, capsys: pytest.Capture
     assert run(*command) == 0
     last = capsys.readouterr().out.splitlines()[-1]
     assert last == "2 groups: 1 with results, 0 were there already, 1 failed, 1 failures in failures.parquet"
+    page = (tmp_path / "out" / "fleet.html").read_text()
+    assert "1 groups" in page or "2 groups of" in page
+    assert "does not exist" in page
     assert run(*command, "--json") == 0
     counts = json.loads(capsys.readouterr().out)
     assert (counts["groups"], counts["reused"], counts["written"]["failures"]) == (2, 1, 1)
+    assert run("fleet", "report", tmp_path / "out") == 0
+    assert capsys.readouterr().out.strip() == str(tmp_path / "out" / "fleet.html")
     assert run(*command, "--scheduler", "tcp://127.0.0.1:1") == 2
+    assert "results.parquet: does not exist" in refused(capsys, "fleet", "report", tmp_path)

@@ -27,6 +27,7 @@ COMMANDS = {
     "online": ("online", "Replay a log through the estimator of controllers, sample by sample."),
     "show reference": ("show", "Foot stiffness that others published or configured, and yours among it."),
     "fleet run": ("fleet.run", "Identify the feet of every group of a manifest, on a Dask cluster."),
+    "fleet report": ("fleet.report", "Alarms, robots over time and failures of a fleet, on one page."),
     "report": ("report", "Write the result's report.html again."),
     "convert": ("convert", "A log in another format."),
     "init": ("init", "A first robot file from a URDF and, if given, logs; every guess is marked."),

@@ -37,11 +37,12 @@ class Progress:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a run came to; `reused` groups were finished before it. `seconds`: of the whole run; `worked`: of the
-    workers, all together."""
+    """What a run came to; `reused` groups were finished before it, `done` by it. `seconds`: of the whole run; `worked`:
+    of the workers, all together."""
 
     groups: int
     reused: int
+    done: int
     written: Written
     seconds: float
     worked: float
@@ -90,7 +91,7 @@ def run_fleet(
     unfinished = _unfinished(groups, store, settings, state, memory)
     _work(client, unfinished, state, progress)
     written = write_tables(store, groups, state.keys, state.lost)
-    return Outcome(len(groups), state.reused, written, time.monotonic() - begun, state.worked)
+    return Outcome(len(groups), state.reused, state.done, written, time.monotonic() - begun, state.worked)
 
 
 def _unfinished(

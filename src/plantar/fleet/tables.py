@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
+from datetime import datetime
 from typing import Any, Final
 
 import pyarrow as pa
@@ -17,6 +18,7 @@ from plantar.fleet.unit import Failure, Unit, read_unit, unit_file
 
 RESULTS: Final = "results.parquet"
 FAILURES: Final = "failures.parquet"
+GROUPS: Final = "groups.parquet"  # which finished unit is whose
 AT_ONCE: Final = 1000  # groups in memory
 
 _TEXT: Final = pa.string()
@@ -27,6 +29,20 @@ RESULTS_SCHEMA: Final = pa.schema(
     + [("verdict", _TEXT), ("model", _TEXT)]
 )
 FAILURES_SCHEMA: Final = pa.schema([("group", _TEXT), ("log", _TEXT), ("error", _TEXT)])
+
+GROUPS_SCHEMA: Final = pa.schema(
+    [("group", _TEXT), ("unit", _TEXT), ("time", pa.timestamp("us", tz="UTC")), ("key", _TEXT)]
+)
+
+
+@dataclass(frozen=True)
+class GroupRow:
+    """A group with results, and the key of its unit: `groups/KEY/result.json` holds them all."""
+
+    group: str
+    unit: str
+    time: datetime | None
+    key: str
 
 
 @dataclass(frozen=True)
@@ -41,28 +57,34 @@ class Written:
 def write_tables(
     store: Store, groups: Sequence[Group], keys: Mapping[str, str], lost: Mapping[str, Sequence[Failure]]
 ) -> Written:
-    """Both tables of a store, in the manifest's order, so that the same work gives the same bytes.
+    """The tables of a store, in the manifest's order, so that the same work gives the same bytes.
 
     keys: of the finished units, by group. lost: by group, what failed without a unit.
     """
     finished = failed = failures = 0
-    results, broken = _Table(RESULTS_SCHEMA), _Table(FAILURES_SCHEMA)
+    results, broken, finished_groups = (
+        _Table(schema) for schema in (RESULTS_SCHEMA, FAILURES_SCHEMA, GROUPS_SCHEMA)
+    )
     for start in range(0, len(groups), AT_ONCE):
         rows: list[dict[str, Any]] = []
         errors: list[dict[str, Any]] = []
+        named: list[dict[str, Any]] = []
         for group, unit in _units(store, groups[start : start + AT_ONCE], keys):
             head = {"group": group.name, "unit": group.unit, "time": group.time}
             own = () if unit is None else unit.rows
             rows += [head | asdict(row) for row in own]
             failing = [*lost.get(group.name, ()), *(() if unit is None else unit.failures)]
             errors += [{"group": group.name, **asdict(failure)} for failure in failing]
+            named += [head | {"key": keys[group.name]}] if own else []
             finished += bool(own)
             failed += not own
         results.add(rows)
         broken.add(errors)
+        finished_groups.add(named)
         failures += len(errors)
-    store.write(RESULTS, results.content())
     store.write(FAILURES, broken.content())
+    store.write(GROUPS, finished_groups.content())
+    store.write(RESULTS, results.content())
     return Written(finished, failed, failures)
 
 
@@ -74,6 +96,11 @@ def read_results(store: Store) -> pa.Table:
 def read_failures(store: Store) -> pa.Table:
     """The rows of `failures.parquet`. PlantarError where it is not there or not such a table."""
     return _read(store, FAILURES, FAILURES_SCHEMA)
+
+
+def read_groups(store: Store) -> list[GroupRow]:
+    """The rows of `groups.parquet`. PlantarError where it is not there or not such a table."""
+    return [GroupRow(**row) for row in _read(store, GROUPS, GROUPS_SCHEMA).to_pylist()]
 
 
 def _units(

@@ -13,6 +13,7 @@ import typer
 
 from plantar.cli.console.memory import size_in_bytes
 from plantar.cli.console.terminal import end_progress, progress
+from plantar.cli.fleet.report import RUN_FILE, RUN_SCHEMA, write_report
 from plantar.cli.identify.feet import DELAY_HELP, MODEL_HELP, OFFSET_HELP
 from plantar.feet.settings import AUTOMATIC, MODEL_CHOICES, FeetSettings, OffsetRule
 from plantar.files import refuse_file
@@ -70,9 +71,13 @@ def run(
         if (page := dashboard(client)) is not None:
             step(f"Dask's dashboard: {page}")
         outcome = run_fleet(groups, store, settings, client, _reporter(step), room)
+    step("look at the results together")
+    said = dump_json({"schema": RUN_SCHEMA, **asdict(outcome)})
+    store.write(RUN_FILE, said.encode())
+    write_report(store)
     end_progress(quiet)
     if json:
-        print(dump_json({"schema": "plantar.fleet.run/1", **asdict(outcome)}), end="")
+        print(said, end="")
     elif not quiet:
         print(counts(outcome))
 
