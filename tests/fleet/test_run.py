@@ -169,5 +169,5 @@ def test_the_command_ends_with_the_counts(tmp_path: Path, capsys: pytest.Capture
     assert (counts["groups"], counts["reused"], counts["written"]["failures"]) == (2, 1, 1)
     assert run("fleet", "report", tmp_path / "out") == 0
     assert capsys.readouterr().out.strip() == str(tmp_path / "out" / "fleet.html")
-    assert run(*command, "--scheduler", "tcp://127.0.0.1:1") == 2
     assert "results.parquet: does not exist" in refused(capsys, "fleet", "report", tmp_path)
+    assert run(*command, "--scheduler", "tcp://127.0.0.1:1") == 2

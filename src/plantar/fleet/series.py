@@ -28,7 +28,7 @@ class SeriesKey:
 
 @dataclass(frozen=True)
 class Series:
-    """The usable values of one parameter of one unit, in time's order.
+    """The usable values of one parameter of one unit, in time's order, those without a time last.
 
     `times` (N,) [days since 1970-01-01 UTC], NaN where the manifest has none; `values` (N,) are logarithms, so that
     differences are shares; `stds` (N,) are shares as well: as reported, what all recordings of a robot share included.
@@ -94,7 +94,7 @@ def by_day(series: Series) -> Days:
 
 
 def _series(unit: str, key: SeriesKey, entries: list[tuple[float, str, float, float]]) -> Series:
-    ordered = sorted(entries, key=lambda entry: entry[0])  # stable: NaN last, the manifest's order kept
+    ordered = sorted(entries, key=lambda entry: (np.isnan(entry[0]), entry[0]))
     times, groups, values, stds = zip(*ordered, strict=True)
     return Series(unit, key, groups, np.array(times), np.array(values), np.array(stds))
 
