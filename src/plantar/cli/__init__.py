@@ -26,6 +26,7 @@ COMMANDS = {
     "diagnose": ("diagnose", "What limits each number of a result, and what to record next."),
     "online": ("online", "Replay a log through the estimator of controllers, sample by sample."),
     "show reference": ("show", "Foot stiffness that others published or configured, and yours among it."),
+    "fleet plan": ("fleet.plan", "A manifest from files: a group for each robot and day."),
     "fleet run": ("fleet.run", "Identify the feet of every group of a manifest, on a Dask cluster."),
     "fleet report": ("fleet.report", "Alarms, robots over time and failures of a fleet, on one page."),
     "report": ("report", "Write the result's report.html again."),

@@ -7,6 +7,7 @@ import os
 import posixpath
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from pathlib import Path, PurePosixPath
 from typing import Any, Final
 
@@ -63,6 +64,27 @@ def stamp_of(place: str) -> Stamp:
         stats = [part.stat() for part in sorted(Path(place).rglob("*")) if part.is_file()]
         return Stamp(sum(s.st_size for s in stats), _digest(str(s.st_mtime_ns) for s in stats))
     except OSError as error:
+        raise _unreadable(place, error) from error
+
+
+def found_at(pattern: str) -> list[str]:
+    """The URLs that a URL with wildcards names, in order. PlantarError where its store cannot be listed."""
+    system, path = _system(pattern)
+    try:
+        return [str(system.unstrip_protocol(found)) for found in sorted(system.glob(path))]
+    except (OSError, ValueError) as error:
+        raise _unreadable(pattern, error) from error
+
+
+def time_of(place: str) -> datetime:
+    """When a file was last changed, UTC. PlantarError where it is not there, or its store does not tell."""
+    try:
+        if not is_remote(place):
+            return datetime.fromtimestamp(int(Path(place).stat().st_mtime), UTC)
+        system, path = _system(place)
+        changed: datetime = system.modified(path)
+        return changed.astimezone(UTC).replace(microsecond=0)
+    except (OSError, ValueError, NotImplementedError) as error:
         raise _unreadable(place, error) from error
 
 
