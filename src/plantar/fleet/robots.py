@@ -9,7 +9,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from plantar.errors import PlantarError, located
-from plantar.fleet.places import brought, is_remote, joined_place
+from plantar.fleet.places import brought, is_remote
 from plantar.robot.model import RobotModel, load_robot
 from plantar.robot.schema import read_robot_file
 
@@ -29,26 +29,24 @@ def robot_at(place: str) -> FleetRobot:
 
     Raises RobotError where it or its URDF is wrong, PlantarError where one is not there.
     """
-    robot = _loaded(place)
-    digest = hashlib.sha256(robot.path.read_bytes())
-    digest.update(hashlib.sha256(robot.urdf.encode()).digest())
-    return FleetRobot(place, digest.hexdigest())
+    return _loaded(place)[0]
 
 
 @lru_cache(KEPT)
 def robot_model(robot: FleetRobot) -> RobotModel:
     """The robot, read once a process. Raises PlantarError where its file is not the one that was asked for any more."""
-    if robot_at(robot.place) != robot:
+    found, model = _loaded(robot.place)
+    if found != robot:
         raise PlantarError(
             located("changed while the fleet was running", path=robot.place, valid="a new run")
         )
-    return _loaded(robot.place)
+    return model
 
 
-def _loaded(place: str) -> RobotModel:
+def _loaded(place: str) -> tuple[FleetRobot, RobotModel]:
     if not is_remote(place):
-        return load_robot(place)
-    with tempfile.TemporaryDirectory() as name:
+        return _hashed(place, load_robot(place))
+    with tempfile.TemporaryDirectory(prefix="plantar-") as name:
         folder = Path(name)
         path = brought(place, folder)
         entry, _ = read_robot_file(path)
@@ -59,9 +57,12 @@ def _loaded(place: str) -> RobotModel:
                 located("names a URDF outside its folder", path=place, column="urdf", valid=valid)
             )
         urdf.parent.mkdir(parents=True, exist_ok=True)
-        brought(_beside(place, entry.urdf), urdf.parent)
-        return load_robot(path)
+        brought(f"{place.rsplit('/', 1)[0]}/{entry.urdf}", urdf.parent)
+        return _hashed(place, load_robot(path))
 
 
-def _beside(place: str, name: str) -> str:
-    return place.rsplit("/", 1)[0] + "/" + name if is_remote(place) else joined_place(Path(place), name)
+def _hashed(place: str, model: RobotModel) -> tuple[FleetRobot, RobotModel]:
+    """The robot with the hash of its file and of its URDF."""
+    digest = hashlib.sha256(model.path.read_bytes())
+    digest.update(hashlib.sha256(model.urdf.encode()).digest())
+    return FleetRobot(place, digest.hexdigest()), model
