@@ -46,19 +46,25 @@ def robot_model(robot: FleetRobot) -> RobotModel:
 def _loaded(place: str) -> tuple[FleetRobot, RobotModel]:
     if not is_remote(place):
         return _hashed(place, load_robot(place))
-    with tempfile.TemporaryDirectory(prefix="plantar-") as name:
-        folder = Path(name)
-        path = brought(place, folder)
-        entry, _ = read_robot_file(path)
-        urdf = folder / entry.urdf
-        if not urdf.resolve().is_relative_to(folder.resolve()):
-            valid = "a URDF beside or below the robot file"
-            raise PlantarError(
-                located("names a URDF outside its folder", path=place, column="urdf", valid=valid)
-            )
-        urdf.parent.mkdir(parents=True, exist_ok=True)
-        brought(f"{place.rsplit('/', 1)[0]}/{entry.urdf}", urdf.parent)
-        return _hashed(place, load_robot(path))
+    beside = place.rsplit("/", 1)[0]
+    with tempfile.TemporaryDirectory(prefix="plantar-") as folder:
+        try:
+            return _hashed(place, _copied(place, beside, Path(folder)))
+        except PlantarError as error:
+            raise PlantarError(str(error).replace(folder, beside)) from error
+
+
+def _copied(place: str, beside: str, folder: Path) -> RobotModel:
+    """A remote robot file through copies of it and its URDF in a folder."""
+    path = brought(place, folder)
+    entry, _ = read_robot_file(path)
+    urdf = folder / entry.urdf
+    if not urdf.resolve().is_relative_to(folder.resolve()):
+        valid = "a URDF beside or below the robot file"
+        raise PlantarError(located("names a URDF outside its folder", path=place, column="urdf", valid=valid))
+    urdf.parent.mkdir(parents=True, exist_ok=True)
+    brought(f"{beside}/{entry.urdf}", urdf.parent)
+    return load_robot(path)
 
 
 def _hashed(place: str, model: RobotModel) -> tuple[FleetRobot, RobotModel]:
