@@ -143,6 +143,17 @@ def test_a_store_that_cannot_be_written_stops_the_run(client: Any, tmp_path: Pat
         done(client, manifest, out)
 
 
+def test_a_running_cluster_does_the_work(
+    client: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    manifest, address = small_fleet(tmp_path, 2), client.scheduler.address
+    command = ["fleet", "run", manifest, "--out", tmp_path / "out", "--model", "kelvin_voigt", "--quiet"]
+    assert run(*command, "--scheduler", address) == 0
+    assert len(pa_parquet.read_table(tmp_path / "out" / "groups.parquet")) == 2
+    line = refused(capsys, *command, "--scheduler", "nowhere")
+    assert "value 'nowhere': no scheduler answers" in line
+
+
 def test_the_command_ends_with_the_counts(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (name,) = make_logs(tmp_path, 1)
     rows = [("good", "robot.yaml", name, "", "", ""), ("bad", "robot.yaml", "gone.parquet", "", "", "")]
@@ -168,6 +179,6 @@ def test_the_command_ends_with_the_counts(tmp_path: Path, capsys: pytest.Capture
     counts = json.loads(capsys.readouterr().out)
     assert (counts["groups"], counts["reused"], counts["written"]["failures"]) == (2, 1, 1)
     assert run("fleet", "report", tmp_path / "out") == 0
-    assert capsys.readouterr().out.strip() == str(tmp_path / "out" / "fleet.html")
+    assert capsys.readouterr().out.splitlines()[-1] == str(tmp_path / "out" / "fleet.html")
     assert "results.parquet: does not exist" in refused(capsys, "fleet", "report", tmp_path)
     assert run(*command, "--scheduler", "tcp://127.0.0.1:1") == 2

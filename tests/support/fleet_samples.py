@@ -44,6 +44,7 @@ def write_manifest(path: Path, rows: Sequence[Sequence[str]]) -> Path:
 
 def small_fleet(folder: Path, count: int) -> Path:
     """A manifest of `count` groups of one log each, two units in turn, a day apart."""
+    folder.mkdir(parents=True, exist_ok=True)
     names = make_logs(folder, count)
     rows = [
         (f"g{k}", "robot.yaml", name, "fit", f"2026-03-{k + 1:02d}T10:00:00Z", f"unit {k % 2}")

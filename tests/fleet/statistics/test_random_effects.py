@@ -84,6 +84,8 @@ def test_what_nothing_shows_is_said_to_be_unknown() -> None:
 
 
 def test_a_weight_is_one_over_the_variance() -> None:
-    value, variance = pooled(np.array([1.0, 3.0]), np.array([1.0, 3.0]), 0.0)
+    values, variances, one = np.array([1.0, 3.0]), np.array([1.0, 3.0]), np.zeros(2, dtype=int)
+    (value,), (variance,) = pooled(values, variances, 0.0, one)
     assert (value, variance) == pytest.approx((1.5, 0.75))
-    assert mean_of(np.array([1.0, 3.0]), np.array([1.0, 3.0]), 1e9).value == pytest.approx(2.0)
+    assert pooled(values, variances, 0.0, np.array([0, 1]))[0] == pytest.approx(values)
+    assert mean_of(values, variances, 1e9).value == pytest.approx(2.0)

@@ -6,7 +6,9 @@ import json as json_format
 from typing import Annotated, Any, Final
 
 import typer
+from rich.markup import escape
 
+from plantar.cli.console.terminal import SCREENFUL, console
 from plantar.fleet.places import Store
 from plantar.fleet.summary import FALSE_ALARMS, FleetSummary, summary_of
 from plantar.fleet.tables import read_failures, read_groups, read_results
@@ -37,6 +39,7 @@ def run(
     if json:
         print(dump_json(summary.to_dict()), end="")
     elif not quiet:
+        print_alarms(summary)
         print(store.path(PAGE))
 
 
@@ -46,6 +49,16 @@ def write_report(store: Store, false_alarms: float = FALSE_ALARMS) -> FleetSumma
     store.write(SUMMARY, dump_json(summary.to_dict()).encode())
     store.write(PAGE, fleet_page(summary, read_groups(store), _last_run(store)).encode())
     return summary
+
+
+def print_alarms(summary: FleetSummary) -> None:
+    """The alarms on the terminal, the latest first: at most SCREENFUL of them."""
+    screen = console()
+    for alarm in summary.alarms[:SCREENFUL]:
+        style = "dim" if alarm.kind == "outlier" else "yellow"
+        screen.print(f"[{style}]{alarm.kind}: {escape(alarm.text)}[/]")
+    if len(summary.alarms) > SCREENFUL:
+        screen.print(f"[dim]and {len(summary.alarms) - SCREENFUL} more alarms: see {PAGE}[/]")
 
 
 def _last_run(store: Store) -> dict[str, Any]:

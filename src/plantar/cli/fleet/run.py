@@ -13,7 +13,7 @@ import typer
 
 from plantar.cli.console.memory import size_in_bytes
 from plantar.cli.console.terminal import end_progress, progress
-from plantar.cli.fleet.report import RUN_FILE, RUN_SCHEMA, write_report
+from plantar.cli.fleet.report import PAGE, RUN_FILE, RUN_SCHEMA, print_alarms, write_report
 from plantar.cli.identify.feet import DELAY_HELP, MODEL_HELP, OFFSET_HELP
 from plantar.feet.settings import AUTOMATIC, MODEL_CHOICES, FeetSettings, OffsetRule
 from plantar.files import refuse_file
@@ -74,11 +74,13 @@ def run(
     step("look at the results together")
     said = dump_json({"schema": RUN_SCHEMA, **asdict(outcome)})
     store.write(RUN_FILE, said.encode())
-    write_report(store)
+    summary = write_report(store)
     end_progress(quiet)
     if json:
         print(said, end="")
     elif not quiet:
+        print_alarms(summary)
+        print(store.path(PAGE))
         print(counts(outcome))
 
 

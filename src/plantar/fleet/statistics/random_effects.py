@@ -10,13 +10,15 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from scipy.optimize import brentq
 from scipy.stats import t as student
 
 from plantar.conventions import Array
+
+Labels = np.ndarray[tuple[int], np.dtype[np.intp]]
 
 LEVEL: Final = 0.95
 LEAST: Final = 1e-12  # of the mean square, so that values without any deviation of their own can be weighed
@@ -64,33 +66,39 @@ def nested_means(
         (1.6, 2, 1.1)
     """
     squares = np.maximum(stds**2, LEAST * float(np.mean(values**2)))
-    by_day = _positions(list(zip(units, days, strict=True)))
-    recordings = _between([(values[own], squares[own]) for own in by_day.values()])
-    of_days = {key: pooled(values[own], squares[own], recordings or 0.0) for key, own in by_day.items()}
-    by_unit: dict[Hashable, list[tuple[float, float]]] = {}
-    for (unit, _), summary in of_days.items():
-        by_unit.setdefault(unit, []).append(summary)
-    day_sets = [(np.array([y for y, _ in own]), np.array([v for _, v in own])) for own in by_unit.values()]
-    day_variance = _between(day_sets)
-    summaries = [pooled(y, v, day_variance or 0.0) for y, v in day_sets]
-    unit_set = (np.array([y for y, _ in summaries]), np.array([v for _, v in summaries]))
-    unit_variance = _between([unit_set])
-    means = {unit: mean_of(y, v, day_variance or 0.0) for unit, (y, v) in zip(by_unit, day_sets, strict=True)}
-    fleet = mean_of(*unit_set, unit_variance or 0.0)
+    names = list(dict.fromkeys(units))
+    day_of, of_days = _labelled(list(zip(units, days, strict=True)))
+    recordings = _between(values, squares, day_of)
+    day_values, day_squares = pooled(values, squares, recordings or 0.0, day_of)
+    place = {unit: number for number, unit in enumerate(names)}
+    unit_of = np.array([place[unit] for unit, _ in of_days])
+    day_variance = _between(day_values, day_squares, unit_of)
+    unit_values, unit_squares = pooled(day_values, day_squares, day_variance or 0.0, unit_of)
+    unit_variance = _between(unit_values, unit_squares, np.zeros(len(names), dtype=int))
+    own = [unit_of == number for number in range(len(names))]
+    means = {
+        unit: mean_of(day_values[of], day_squares[of], day_variance or 0.0)
+        for unit, of in zip(names, own, strict=True)
+    }
+    fleet = mean_of(unit_values, unit_squares, unit_variance or 0.0)
     if len(means) == 1:
-        fleet = next(iter(means.values()))
+        fleet = means[names[0]]
     return NestedMeans(fleet, means, _root(recordings), _root(day_variance), _root(unit_variance))
 
 
-def pooled(values: Array, variances: Array, between: float) -> tuple[float, float]:
-    """The weighted mean of values (n,) and its variance, where they differ by a variance `between` beyond their own."""
+def pooled(values: Array, variances: Array, between: float, group: Labels) -> tuple[Array, Array]:
+    """The weighted mean of each group (g,) and its variance, where values (n,) of a group differ by a variance
+    `between` beyond their own; `group` (n,) counts from 0."""
     weights = 1 / (variances + between)
-    return float(weights @ values / weights.sum()), float(1 / weights.sum())
+    total = np.bincount(group, weights)
+    return np.bincount(group, weights * values) / total, 1 / total
 
 
 def mean_of(values: Array, variances: Array, between: float) -> Mean:
     """The mean of values (n,) with Hartung and Knapp's interval; of one value, from its own variance."""
-    value, variance = pooled(values, variances, between)
+    (value,), (variance,) = (
+        part.tolist() for part in pooled(values, variances, between, np.zeros(len(values), int))
+    )
     freedom = float(len(values) - 1)
     if freedom > 0:
         weights = 1 / (variances + between)
@@ -100,34 +108,29 @@ def mean_of(values: Array, variances: Array, between: float) -> Mean:
     return Mean(value, std, freedom if freedom > 0 else np.inf, value - wide, value + wide, len(values))
 
 
-def _between(groups: Sequence[tuple[Array, Array]]) -> float | None:
+def _between(values: Array, variances: Array, group: Labels) -> float | None:
     """The variance by which the members of each group differ, the same in all: Paule and Mandel's equation summed up.
 
     None where no group has two members.
     """
-    groups = [(y, v) for y, v in groups if len(y) > 1]
-    freedom = sum(len(y) - 1 for y, _ in groups)
+    freedom = len(values) - len(np.unique(group))
     if not freedom:
         return None
 
     def excess(between: float) -> float:
-        total = 0.0
-        for y, v in groups:
-            mean, _ = pooled(y, v, between)
-            total += float(np.sum((y - mean) ** 2 / (v + between)))
-        return total - freedom
+        means, _ = pooled(values, variances, between, group)
+        return float(np.sum((values - means[group]) ** 2 / (variances + between))) - freedom
 
     if excess(0.0) <= 0:
         return 0.0
-    high = sum(float(np.sum((y - y.mean()) ** 2)) for y, _ in groups)
-    return float(brentq(excess, 0.0, high))
+    plain, _ = pooled(values, np.ones(len(values)), 0.0, group)
+    return float(brentq(excess, 0.0, float(np.sum((values - plain[group]) ** 2))))
 
 
-def _positions(labels: Sequence[tuple[Hashable, Hashable]]) -> dict[tuple[Hashable, Hashable], list[int]]:
-    found: dict[tuple[Hashable, Hashable], list[int]] = {}
-    for place, label in enumerate(labels):
-        found.setdefault(label, []).append(place)
-    return found
+def _labelled(labels: Sequence[Hashable]) -> tuple[Labels, list[Any]]:
+    """Labels as numbers from 0 in the order of first appearance, and the labels."""
+    known = {label: number for number, label in enumerate(dict.fromkeys(labels))}
+    return np.array([known[label] for label in labels]), list(known)
 
 
 def _root(variance: float | None) -> float | None:
