@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import os
+import sys
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,12 +16,15 @@ import pytest
 from biped import TRUTH
 from command_line import refused, run
 from fleet_samples import broken_logs, make_logs, small_fleet, write_manifest
+from plantar.errors import PlantarError
 from plantar.feet.identify import identify_feet
 from plantar.feet.settings import FeetSettings
 from plantar.fleet.cluster import connected
 from plantar.fleet.manifest import read_manifest
 from plantar.fleet.places import PlaceError, Store
+from plantar.fleet.robots import robot_at
 from plantar.fleet.run import Outcome, run_fleet
+from plantar.fleet.work import Task, compute
 
 SETTINGS = FeetSettings(model="kelvin_voigt", wrench_delay=0.0)
 
@@ -116,6 +121,20 @@ def test_a_broken_log_is_left_out_of_its_group(client: Any, tmp_path: Path) -> N
     assert found == [row.value for row in alone.parameters]
 
 
+def test_a_failure_names_the_log_where_it_is_now(client: Any, tmp_path: Path) -> None:
+    make_logs(tmp_path, 0)
+    broken_logs(tmp_path)
+    out = tmp_path / "out"
+    done(client, write_manifest(tmp_path / "a.csv", [("g", "robot.yaml", "cut.parquet", "", "", "")]), out)
+    (tmp_path / "moved").mkdir()
+    (tmp_path / "cut.parquet").rename(tmp_path / "moved" / "cut.parquet")
+    moved = write_manifest(tmp_path / "b.csv", [("g", "robot.yaml", "moved/cut.parquet", "", "", "")])
+    assert done(client, moved, out).reused == 1
+    (row,) = pa_parquet.read_table(out / "failures.parquet").to_pylist()
+    assert row["log"] == str(tmp_path / "moved" / "cut.parquet")
+    assert row["error"].startswith(row["log"])
+
+
 def test_a_robot_file_that_is_wrong_fails_its_groups_only(client: Any, tmp_path: Path) -> None:
     good, other = make_logs(tmp_path, 2)
     rows = [("a", "robot.yaml", good, "", "", ""), ("b", "nowhere.yaml", other, "", "", "")]
@@ -182,3 +201,33 @@ def test_the_command_ends_with_the_counts(tmp_path: Path, capsys: pytest.Capture
     assert capsys.readouterr().out.splitlines()[-1] == str(tmp_path / "out" / "fleet.html")
     assert "results.parquet: does not exist" in refused(capsys, "fleet", "report", tmp_path)
     assert run(*command, "--scheduler", "tcp://127.0.0.1:1") == 2
+
+
+def test_what_another_machine_could_do_is_tried_again(tmp_path: Path) -> None:
+    """No memory for a log, a package that is missing: failures of this run, not of the log."""
+    group = read_manifest(small_fleet(tmp_path, 1))[0]
+    task = Task(robot_at(group.robot), group.logs, SETTINGS, Store(str(tmp_path / "out")), memory=1000)
+    poor = compute(task)
+    assert (poor.key, poor.failed) == (None, True)
+    assert poor.failures[0].log == group.logs[0].place
+    assert "--memory" in poor.failures[0].error
+    rich = compute(replace(task, memory=None))
+    assert (rich.reused, rich.failed) == (False, False)
+    assert compute(task).reused
+
+
+def test_a_robot_file_that_changes_meanwhile_is_told(tmp_path: Path) -> None:
+    group = read_manifest(small_fleet(tmp_path, 1))[0]
+    task = Task(
+        replace(robot_at(group.robot), sha256="0"), group.logs, SETTINGS, Store(str(tmp_path / "out"))
+    )
+    with pytest.raises(PlantarError, match="changed while the fleet was running"):
+        compute(task)
+
+
+def test_without_dask_the_extra_is_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    line = refused(capsys, "fleet", "run", small_fleet(tmp_path, 1), "--out", tmp_path / "out", "--quiet")
+    assert "pip install 'plantar[fleet]'" in line

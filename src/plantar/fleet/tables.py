@@ -73,7 +73,7 @@ def write_tables(
             head = {"group": group.name, "unit": group.unit, "time": group.time}
             own = () if unit is None else unit.rows
             rows += [head | asdict(row) for row in own]
-            failing = [*lost.get(group.name, ()), *(() if unit is None else unit.failures)]
+            failing = [*lost.get(group.name, ()), *(() if unit is None else _failures(group, unit))]
             errors += [{"group": group.name, **asdict(failure)} for failure in failing]
             named += [head | {"key": keys[group.name]}] if own else []
             finished += bool(own)
@@ -112,6 +112,16 @@ def _units(
     for group in groups:
         content = units.get(group.name)
         yield group, None if content is None else read_unit(content, unit_file(keys[group.name]))
+
+
+def _failures(group: Group, unit: Unit) -> Iterator[Failure]:
+    """A unit's failures with the places that the manifest has now: the logs may have lain elsewhere before."""
+    now = {entry.place: log.place for entry, log in zip(unit.inputs, group.logs, strict=True)}
+    for failure in unit.failures:
+        text = failure.error
+        for before, place in now.items():
+            text = text.replace(before, place)
+        yield Failure(now.get(failure.log, failure.log), text)
 
 
 def _read(store: Store, name: str, schema: pa.Schema) -> pa.Table:

@@ -12,7 +12,7 @@ from typing import Final
 
 import pyarrow as pa
 
-from plantar.errors import PlantarError
+from plantar.errors import MissingExtra, NoRoom, PlantarError
 from plantar.feet.identify import identify_feet
 from plantar.feet.settings import FeetSettings
 from plantar.fleet.manifest import Log
@@ -35,6 +35,10 @@ from plantar.results.feet import FeetResult
 from plantar.results.io import dump_json
 from plantar.robot.model import RobotModel
 
+Passing: Final = (
+    MissingExtra,
+    NoRoom,
+)  # errors of the machine, not of the logs: another run may not have them
 ONE_THREAD: Final = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 
@@ -82,7 +86,10 @@ def compute(task: Task) -> Done:
         found = kept(task.store, key)
         if found is not None:
             return Done(key, True, (), not found.rows, time.monotonic() - begun)
-        rows, failures = _fitted(task, key, fetched)
+        try:
+            rows, failures = _fitted(task, key, fetched)
+        except Passing as error:
+            return Done(None, False, (_failure(fetched, error),), True, time.monotonic() - begun)
     unit = Unit(key, tuple(one.entry for one in fetched), rows, tuple(failures), time.monotonic() - begun)
     task.store.write(unit_file(key), unit.dump())
     return Done(key, False, (), not rows, unit.seconds)
@@ -133,7 +140,10 @@ def _fetched(task: Task, folder: Path) -> tuple[list[_Fetched], list[Failure]]:
 
 
 def _fitted(task: Task, key: str, fetched: Sequence[_Fetched]) -> tuple[tuple[UnitRow, ...], list[Failure]]:
-    """The group's parameters and the logs that could not be used; a result is kept before its unit says that it is."""
+    """The group's parameters and the logs that could not be used; a result is kept before its unit says that it is.
+
+    Raises `Passing` errors.
+    """
     robot = robot_model(task.robot)
     logs, failures = _opened(robot, fetched, task.memory)
     result = None
@@ -151,15 +161,17 @@ def _fitted(task: Task, key: str, fetched: Sequence[_Fetched]) -> tuple[tuple[Un
 def _opened(
     robot: RobotModel, fetched: Sequence[_Fetched], memory: int | None
 ) -> tuple[list[tuple[_Fetched, MotionLog]], list[Failure]]:
-    """Every log that can be read beside those before it."""
+    """Every log that can be read beside those before it. Raises `Passing` errors."""
     logs: list[tuple[_Fetched, MotionLog]] = []
     failures: list[Failure] = []
     for one in fetched:
         left = None if memory is None else memory - sum(log.size for _, log in logs)
         try:
             logs += [(one, log) for log in open_together([one.path], robot, left)]
+        except Passing:
+            raise
         except PlantarError as error:
-            failures.append(_failure(one, error))
+            failures.append(_failure([one], error))
     return logs, failures
 
 
@@ -175,22 +187,18 @@ def _identified(
         try:
             return identify_feet(robot, fit, validate, settings)
         except PlantarError as error:
-            blamed = [one for one, _ in logs if str(one.path) in str(error)]
-            if len(blamed) != 1:
-                failures.append(_group_failure(logs, error))
+            failures.append(_failure([one for one, _ in logs], error))
+            blamed = failures[-1].log
+            if not blamed:
                 return None
-            failures.append(_failure(blamed[0], error))
-            logs = [(one, log) for one, log in logs if one is not blamed[0]]
+            logs = [(one, log) for one, log in logs if one.log.place != blamed]
     return None
 
 
-def _failure(one: _Fetched, error: PlantarError) -> Failure:
-    return Failure(one.log.place, str(error).replace(str(one.path), one.log.place))
-
-
-def _group_failure(logs: Sequence[tuple[_Fetched, MotionLog]], error: PlantarError) -> Failure:
-    """An error about several logs, or about the only one without its path."""
+def _failure(fetched: Sequence[_Fetched], error: PlantarError) -> Failure:
+    """An error with the places of the logs that it names; of the one log that it is about, where it is about one."""
     text = str(error)
-    for one, _ in logs:
+    named = [one.log.place for one in fetched if str(one.path) in text or len(fetched) == 1]
+    for one in fetched:
         text = text.replace(str(one.path), one.log.place)
-    return Failure(logs[0][0].log.place if len(logs) == 1 else "", text)
+    return Failure(named[0] if len(named) == 1 else "", text)
