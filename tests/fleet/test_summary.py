@@ -67,6 +67,19 @@ def test_the_changes_that_are_there_are_the_alarms(summary: FleetSummary) -> Non
     assert "both feet go the same way" in trend.advice
 
 
+def test_forty_steady_robots_give_forty_alarms_a_year() -> None:
+    """The rate is a robot's, over all its feet and axes; a log a week."""
+    random = np.random.default_rng(11)
+    places = [(foot, axis) for foot in ("left", "right") for axis in ("pitch", "roll")]
+    rows = [
+        row(f"u{unit}", 7 * week, foot, axis, 400 * np.exp(0.01 * random.normal()))
+        for unit in range(40)
+        for week in range(52)
+        for foot, axis in places
+    ]
+    assert 0.5 < len(summary_of(results(rows), failures(), 1.0).alarms) / 40 < 1.5
+
+
 def test_the_level_is_that_since_the_step(summary: FleetSummary) -> None:
     level = next(
         one for one in summary.levels if (one.unit, one.foot, one.axis) == ("new sole", "left", "roll")

@@ -26,6 +26,7 @@ from typing import TypeVar
 
 from data_faults import DATA_FAULTS
 from drawn import DRAWN
+from fleet_statistics import FLEET
 from made_cheaper import MADE_CHEAPER
 from mutant import Mutant, StaleMutant
 from once_unnoticed import ONCE_UNNOTICED
@@ -40,6 +41,7 @@ LISTS = {
     "once_unnoticed": ONCE_UNNOTICED,
     "made_cheaper": MADE_CHEAPER,
     "data_faults": DATA_FAULTS,
+    "fleet": FLEET,
 }
 LEAST_CAUGHT = 0.85
 PATIENCE, LEAST_PATIENCE = 20.0, 300.0  # usual seconds of the tests, and seconds: beyond, a mutant hangs

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from data_faults import DATA_FAULTS
 from drawn import DRAWN
+from fleet_statistics import FLEET
 from made_cheaper import MADE_CHEAPER
 from mutant import Mutant
 from once_unnoticed import ONCE_UNNOTICED
@@ -16,7 +17,7 @@ SOURCE = TESTS.parent / "src" / "plantar"
 
 
 @pytest.mark.parametrize(
-    "mutant", [*DRAWN, *MADE_CHEAPER, *ONCE_UNNOTICED, *DATA_FAULTS], ids=lambda each: each.name
+    "mutant", [*DRAWN, *MADE_CHEAPER, *ONCE_UNNOTICED, *DATA_FAULTS, *FLEET], ids=lambda each: each.name
 )
 def test_no_mutant_is_stale(mutant: Mutant) -> None:
     assert mutant.changed((SOURCE / mutant.file).read_text())

@@ -28,6 +28,7 @@ COMMANDS = {
     "show reference": ("show", "Foot stiffness that others published or configured, and yours among it."),
     "fleet plan": ("fleet.plan", "A manifest from files: a group for each robot and day."),
     "fleet run": ("fleet.run", "Identify the feet of every group of a manifest, on a Dask cluster."),
+    "fleet inertia": ("fleet.inertia", "Inertial parameters from all logs of a manifest (eq. 2)."),
     "fleet report": ("fleet.report", "Alarms, robots over time and failures of a fleet, on one page."),
     "report": ("report", "Write the result's report.html again."),
     "convert": ("convert", "A log in another format."),
