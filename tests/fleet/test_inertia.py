@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -13,19 +12,12 @@ import small_biped
 from command_line import refused, run
 from fleet_samples import write_manifest
 from plantar.errors import DataError, RobotError
-from plantar.fleet.cluster import connected
 from plantar.fleet.inertia import inertia_over
 from plantar.logs.save import save_log
 from plantar.results.dynamics import DynamicsResult
 from plantar.whole_body.inertia import identify_inertia
 
 LOGS = 9  # more than one branch of the tree
-
-
-@pytest.fixture(scope="module")
-def client() -> Iterator[Any]:
-    with connected(1, None, None) as found:
-        yield found
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import sys
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -19,7 +18,6 @@ from fleet_samples import broken_logs, make_logs, small_fleet, write_manifest
 from plantar.errors import PlantarError
 from plantar.feet.identify import identify_feet
 from plantar.feet.settings import FeetSettings
-from plantar.fleet.cluster import connected
 from plantar.fleet.manifest import read_manifest
 from plantar.fleet.places import PlaceError, Store
 from plantar.fleet.robots import robot_at
@@ -27,12 +25,6 @@ from plantar.fleet.run import Outcome, run_fleet
 from plantar.fleet.work import Task, compute
 
 SETTINGS = FeetSettings(model="kelvin_voigt", wrench_delay=0.0)
-
-
-@pytest.fixture(scope="module")
-def client() -> Iterator[Any]:
-    with connected(1, None, None) as found:
-        yield found
 
 
 def done(client: Any, manifest: Path, out: Path, settings: FeetSettings = SETTINGS) -> Outcome:

@@ -51,6 +51,7 @@ def store() -> Iterator[Any]:
 
 @pytest.fixture(scope="module")
 def client(store: Any) -> Iterator[Any]:
+    """A worker that finds the store."""
     with connected(1, None, None) as found:
         yield found
 
