@@ -125,7 +125,7 @@ def test_only_usable_positive_values_count() -> None:
         row("u", 6, "left", "pitch", 420.0),
         row("u", 6, "left", "pitch", 440.0),
     ]
-    (series,) = series_of(results(rows).to_pylist())
+    (series,) = series_of(results(rows))
     assert np.exp(series.values) == pytest.approx([400, 420, 440, 410])
     days = by_day(series)
     assert list(days.counts) == [1, 2]

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable
 from dataclasses import dataclass
-from datetime import UTC, date, datetime, timedelta
-from typing import Any, Final
+from datetime import date, timedelta
+from typing import Final
 
 import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
 
 from plantar.conventions import Array
 
-SECONDS: Final = 86400.0
+MICROSECONDS: Final = 86400e6  # of a day
 EPOCH: Final = date(1970, 1, 1)
 USED: Final = ("stiffness", "damping")
+KEY: Final = ("unit", "foot", "axis", "name", "unit_of_value")
 
 
 @dataclass(frozen=True)
@@ -68,17 +71,36 @@ class Days:
         return EPOCH + timedelta(days=int(self.day[place]))
 
 
-def series_of(rows: Sequence[dict[str, Any]]) -> list[Series]:
-    """The series in rows of `results.parquet`; values that are not usable or not positive are left out."""
-    found: dict[tuple[str, SeriesKey], list[tuple[float, str, float, float]]] = {}
-    for row in rows:
-        value, std = row["value"], row["std"]
-        if row["name"] not in USED or row["verdict"] != "usable" or not value or value <= 0:
-            continue
-        key = SeriesKey(row["foot"], row["axis"], row["name"], row["unit_of_value"])
-        entry = (_days_since(row["time"]), row["group"], float(np.log(value)), (std or 0.0) / value)
-        found.setdefault((row["unit"], key), []).append(entry)
-    return [_series(unit, key, entries) for (unit, key), entries in sorted(found.items(), key=_order)]
+def series_of(results: pa.Table) -> list[Series]:
+    """The series in `results.parquet`; values that are not usable or not positive are left out."""
+    used = pc.is_in(results["name"], value_set=pa.array(USED, pa.string()))
+    used = pc.and_(used, pc.equal(results["verdict"], "usable"))
+    table = results.filter(pc.and_(used, pc.fill_null(pc.greater(results["value"], 0.0), False)))
+    if not len(table):
+        return []
+    codes, names = zip(*(_coded(table[name]) for name in KEY), strict=True)
+    times = (
+        np.asarray(table["time"].cast(pa.int64()).cast(pa.float64(), safe=False).to_numpy()) / MICROSECONDS
+    )
+    values = table["value"].to_numpy()
+    stds = pc.fill_null(table["std"], 0.0).to_numpy() / values
+    group, group_names = _coded(table["group"])
+    found, which = np.unique(np.column_stack(codes), axis=0, return_inverse=True)
+    order = np.lexsort((times, which))  # NaN stands last
+    parts = np.split(order, np.cumsum(np.bincount(which))[:-1])
+    series = []
+    for code, rows in zip(found, parts, strict=True):
+        unit, foot, axis, name, unit_of_value = (texts[k] for texts, k in zip(names, code, strict=True))
+        key = SeriesKey(foot, axis, name, unit_of_value)
+        of = tuple(group_names[k] for k in group[rows])
+        series.append(Series(unit, key, of, times[rows], np.log(values[rows]), stds[rows]))
+    return sorted(series, key=_order)
+
+
+def _coded(column: pa.ChunkedArray) -> tuple[np.ndarray[tuple[int], np.dtype[np.intp]], list[str]]:
+    """A text column as numbers, and the texts: a fleet has few texts and many rows."""
+    coded = column.combine_chunks().dictionary_encode()
+    return np.asarray(coded.indices, dtype=np.intp), coded.dictionary.to_pylist()
 
 
 def by_day(series: Series) -> Days:
@@ -93,16 +115,6 @@ def by_day(series: Series) -> Days:
     return Days(days, values, counts, tuple(map(tuple, groups)))
 
 
-def _series(unit: str, key: SeriesKey, entries: list[tuple[float, str, float, float]]) -> Series:
-    ordered = sorted(entries, key=lambda entry: (np.isnan(entry[0]), entry[0]))
-    times, groups, values, stds = zip(*ordered, strict=True)
-    return Series(unit, key, groups, np.array(times), np.array(values), np.array(stds))
-
-
-def _days_since(time: datetime | None) -> float:
-    return np.nan if time is None else time.astimezone(UTC).timestamp() / SECONDS
-
-
-def _order(entry: tuple[tuple[str, SeriesKey], Any]) -> tuple[str, ...]:
-    unit, key = entry[0]
-    return unit, key.foot, key.axis, key.name[::-1]  # stiffness before damping
+def _order(series: Series) -> tuple[str, ...]:
+    key = series.key
+    return series.unit, key.foot, key.axis, key.name[::-1]  # stiffness before damping

@@ -11,6 +11,7 @@ from typing import Any, Final
 
 import numpy as np
 import pyarrow as pa
+import pyarrow.compute as pc
 
 from plantar import __version__
 from plantar.choices import number_in
@@ -111,7 +112,7 @@ def summary_of(results: pa.Table, failures: pa.Table, false_alarms: float = FALS
     Raises SettingsError for a rate that is not between 0.001 and 100.
     """
     number_in("false alarms", false_alarms, 1e-3, 100.0, "a robot and year")
-    series = series_of(results.to_pylist())
+    series = series_of(results)
     days = [by_day(one) for one in series]
     of_unit = Counter(one.unit for one in series if one.key.name == WATCHED)
     scatter = {key: _nested(own) for key, own in _by_key(series).items()}
@@ -131,7 +132,9 @@ def summary_of(results: pa.Table, failures: pa.Table, false_alarms: float = FALS
         if one.key.name == WATCHED
         for change in history.changes
     ]
-    groups = len({*results["group"].to_pylist(), *failures["group"].to_pylist()})
+    groups = len(
+        pc.unique(pa.chunked_array([*results["group"].chunks, *failures["group"].chunks], pa.string()))
+    )
     return FleetSummary(
         groups, false_alarms, effects, levels, _advised(alarms), reasons_of(failures), tuple(series), tuple(days)
     )  # fmt: skip
