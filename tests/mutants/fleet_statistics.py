@@ -43,8 +43,8 @@ FLEET = (
         "    if not of_line < of_levels", "    if of_line < of_levels",
     ),
     Mutant(
-        "fleet/series.py", "days without a time stand anywhere",
-        "key=lambda entry: (np.isnan(entry[0]), entry[0])", "key=lambda entry: entry[0]",
+        "fleet/series.py", "values are not in time's order",
+        "np.lexsort((times, which))", "np.lexsort((values, which))",
     ),
     Mutant(
         "fleet/unit.py", "settings do not count for the key", '"settings": settings.to_dict(),', '"settings": {},',
