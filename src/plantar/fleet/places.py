@@ -55,7 +55,7 @@ def stamp_of(place: str) -> Stamp:
                 parts = sorted(system.find(path, detail=True).values(), key=lambda part: str(part["name"]))
                 return Stamp(sum(part["size"] or 0 for part in parts), _digest(map(_change, parts)))
             return Stamp(int(known["size"] or 0), _change(known))
-        except (OSError, ValueError) as error:
+        except Exception as error:
             raise _unreadable(place, error) from error
     try:
         own = Path(place).stat()
@@ -72,7 +72,7 @@ def found_at(pattern: str) -> list[str]:
     system, path = _system(pattern)
     try:
         return [str(system.unstrip_protocol(found)) for found in sorted(system.glob(path))]
-    except (OSError, ValueError) as error:
+    except Exception as error:
         raise _unreadable(pattern, error) from error
 
 
@@ -84,7 +84,7 @@ def time_of(place: str) -> datetime:
         system, path = _system(place)
         changed: datetime = system.modified(path)
         return changed.astimezone(UTC).replace(microsecond=0)
-    except (OSError, ValueError, NotImplementedError) as error:
+    except Exception as error:
         raise _unreadable(place, error) from error
 
 
@@ -98,7 +98,7 @@ def brought(place: str, folder: Path) -> Path:
     target = folder / name_of(place)
     try:
         system.get(path, str(target), recursive=bool(system.isdir(path)))
-    except (OSError, ValueError) as error:
+    except Exception as error:
         raise _unreadable(place, error) from error
     return target
 
@@ -147,7 +147,7 @@ class Store:
             part = f"{path}.{os.getpid()}.part"
             system.pipe_file(part, content)
             system.mv(part, path)
-        except (OSError, PlantarError) as error:
+        except Exception as error:
             raise self._unusable("cannot be written", name, error) from error
 
     def read(self, name: str) -> bytes | None:
@@ -172,15 +172,18 @@ class Store:
             return sorted(posixpath.relpath(found, root) for found in system.find(path))
         except FileNotFoundError:
             return []
-        except OSError as error:
+        except Exception as error:
             raise self._unusable("cannot be listed", folder, error) from error
 
     def _batch(self, names: Sequence[str]) -> list[bytes | None]:
         if not is_remote(self.place):
             return [self._local(name) for name in names]
-        system, root = _system(self.place)
-        paths = [posixpath.join(root, name) for name in names]
-        found = system.cat(paths, on_error="return") if paths else {}
+        try:
+            system, root = _system(self.place)
+            paths = [posixpath.join(root, name) for name in names]
+            found = system.cat(paths, on_error="return") if paths else {}
+        except Exception as error:
+            raise self._unusable("cannot be read", names[0], error) from error
         contents: list[bytes | None] = []
         for name, path in zip(names, paths, strict=True):
             content = found[path]
@@ -214,7 +217,7 @@ def _system(place: str) -> tuple[Any, str]:
         system, path = fsspec.core.url_to_fs(place)
     except ImportError as error:
         raise PlantarError(located(f"needs a package: {error}", path=place)) from error
-    except (ValueError, OSError) as error:
+    except Exception as error:  # each store's package has errors of its own
         raise _unreadable(place, error) from error
     return system, str(path)
 
@@ -235,6 +238,8 @@ def _digest(texts: Iterator[str]) -> str:
 
 
 def _unreadable(place: str, error: Exception) -> PlantarError:
+    if isinstance(error, PlantarError):
+        return error
     if isinstance(error, FileNotFoundError):
         return PlantarError(located("does not exist", path=place))
     reason = getattr(error, "strerror", None) or str(error) or type(error).__name__
