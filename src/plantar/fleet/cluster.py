@@ -14,6 +14,14 @@ from plantar.errors import MissingExtra, PlantarError, located
 CONNECT: Final = 30  # s to wait for a scheduler
 SHARE: Final = 0.25  # of a worker's memory for the numbers of a group's logs, as for a machine's elsewhere
 
+SMALL: Final = {
+    "distributed.worker.profile.enabled": False,  # a call tree a second, kept for an hour
+    "distributed.admin.log-length": 100,
+    "distributed.admin.low-level-log-length": 100,
+    "distributed.admin.system-monitor.gil.enabled": False,
+}
+"""Settings of Dask without which workers and driver grow with the time that they run."""
+
 
 @contextmanager
 def connected(workers: int | None, scheduler: str | None, memory: int | None) -> Iterator[Any]:
@@ -32,8 +40,8 @@ def connected(workers: int | None, scheduler: str | None, memory: int | None) ->
         from distributed import Client, LocalCluster
     except ImportError as error:
         raise MissingExtra(error.name or "distributed", "fleet", "plantar fleet run") from error
-    quiet = {"distributed.admin.system-monitor.gil.enabled": False}
-    with dask.config.set(quiet):
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what matters of it is said in one line
+    with dask.config.set(SMALL):
         if scheduler is not None:
             try:
                 client = Client(scheduler, timeout=CONNECT, set_as_default=False)
