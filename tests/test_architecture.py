@@ -35,7 +35,7 @@ FULLEST_FOLDER = 16  # Python files
 # Rooms that decide numbers: each of their modules is imported by a test of its own room.
 TESTED = (
     "signals", "contact", "checks", "estimation", "model_selection", "sensors", "feet", "whole_body", "results",
-    "online",
+    "online", "fleet",
 )  # fmt: skip
 # The one place that catches what nobody thought of: an axis is given up, the result says so.
 CATCHES_ALL = "src/plantar/feet/internal_error.py"
