@@ -62,3 +62,11 @@ def test_limits_grow_with_the_time_between_false_alarms() -> None:
     assert few.outlier == pytest.approx(3.89, abs=0.01)
     assert few.outlier > many.outlier
     assert few.step > many.step
+
+
+def test_one_bad_day_does_not_hide_a_step_behind_it() -> None:
+    values = np.random.default_rng(10).normal(0, 1, 60) + 5.0 * (np.arange(60) >= 45)
+    values[30] = 40.0
+    ((first, seen),) = watch(values, np.ones(60), limits_of(1 / 4380, 1 / 4380)).steps
+    assert abs(first - 45) <= 1
+    assert seen < 50

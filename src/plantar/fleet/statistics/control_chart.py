@@ -91,7 +91,10 @@ def _until_step(
             upward = max(0.0, upward + counted - ALLOWANCE)
             downward = max(0.0, downward - counted - ALLOWANCE)
             if max(upward, downward) > limits.step:
-                return alone, (_change_point(values, weights, start, place), place)
+                calm = np.setdiff1d(np.arange(start, place), alone)
+                # An outlier with usual days behind it is none of the step's own days.
+                aside = [day for day in alone if np.sum(calm > day) >= BASELINE]
+                return alone, (_change_point(values, weights, aside, start, place), place)
             if abs(number) > limits.outlier:
                 alone.append(place)
                 continue
@@ -103,9 +106,14 @@ def _until_step(
     return alone, None
 
 
-def _change_point(values: Array, weights: Array, start: int, seen: int) -> int:
-    """The first day behind a step that is seen on the day `seen`: two levels parted there miss least."""
-    y, w = values[start : seen + 1], weights[start : seen + 1]
+def _change_point(values: Array, weights: Array, aside: list[int], start: int, seen: int) -> int:
+    """The first day behind a step that is seen on the day `seen`: two levels parted there miss least.
+
+    aside: outliers from before, which count for neither level.
+    """
+    counted = weights.copy()
+    counted[aside] = 0.0
+    y, w = values[start : seen + 1], counted[start : seen + 1]
     before, total = np.cumsum(w)[:-1], float(w.sum())
     part = np.cumsum(w * y)[:-1]
     behind = total - before
