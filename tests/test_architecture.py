@@ -20,7 +20,7 @@ ROOMS = (
     "results", "sensors", "feet", "whole_body",
     "online",
     "motions", "twin", "design",
-    "inspection", "exporters", "robot_guess", "report", "campaign", "comparison", "cli",
+    "inspection", "exporters", "robot_guess", "fleet", "report", "campaign", "comparison", "cli",
 )  # fmt: skip
 # So does a folder or a file inside `feet`: from those before it.
 FEET = (
@@ -35,7 +35,7 @@ FULLEST_FOLDER = 16  # Python files
 # Rooms that decide numbers: each of their modules is imported by a test of its own room.
 TESTED = (
     "signals", "contact", "checks", "estimation", "model_selection", "sensors", "feet", "whole_body", "results",
-    "online",
+    "online", "fleet",
 )  # fmt: skip
 # The one place that catches what nobody thought of: an axis is given up, the result says so.
 CATCHES_ALL = "src/plantar/feet/internal_error.py"
@@ -55,6 +55,9 @@ KEEPERS = {
     "matplotlib": {"report"},
     "viser": {"report"},
     "jinja2": {"report"},
+    "dask": {"fleet"},
+    "distributed": {"fleet"},
+    "fsspec": {"fleet"},
     "typer": {"cli"},
     "rich": {"cli"},
     "pickle": set(),

@@ -30,6 +30,10 @@ class LogError(PlantarError):
     """A log cannot be read or does not hold what is needed."""
 
 
+class NoRoom(LogError):
+    """A log does not fit in the memory that it may take: another machine, or another `memory`, would read it."""
+
+
 class DataError(PlantarError):
     """The logs are readable, but what is asked cannot be computed from them."""
 

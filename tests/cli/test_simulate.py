@@ -9,6 +9,7 @@ import pytest
 import yaml
 
 import command_line
+from plantar.fleet.manifest import read_manifest
 from plantar.logs.readers import open_log
 from plantar.robot.model import load_robot
 from plantar.twin.robots.hrp2 import write
@@ -16,6 +17,14 @@ from plantar.twin.robots.hrp2 import write
 
 def run(*arguments: str) -> int:
     return command_line.run("simulate", *arguments)
+
+
+def test_a_fleet_has_a_manifest(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run("fleet", "--robots", "2", "--days", "1", "--out", str(tmp_path), "--quiet") == 0
+    assert [group.unit for group in read_manifest(tmp_path / "fleet.csv")] == ["robot_01", "robot_02"]
+    assert "2 logs of 2 robots on 1 days" in capsys.readouterr().out
+    assert run("fleet", "--preset", "imperfect", "--out", str(tmp_path), "--quiet") == 1
+    assert "valid: sensors, realistic" in capsys.readouterr().err
 
 
 def test_logs_truth_and_robot_file_appear(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -38,6 +38,7 @@ OWN: dict[str, Callable[[Path], object]] = {
     "docs/walking.md": with_robot_file,
     "docs/walks.md": with_robot_file,
     "docs/how_to/install.md": nothing,
+    "docs/how_to/fleet.md": with_robot_file,
     "docs/how_to/other_names.md": other_names,
     "docs/how_to/try_on_twin.md": own_logs,
     "docs/how_to/solref.md": nothing,
@@ -62,6 +63,7 @@ TWIN = (
     "docs/tutorials/walking.md",
     "docs/tutorials/mujoco.md",
     "docs/tutorials/choose_motions.md",
+    "docs/tutorials/fleet.md",
 )
 # Pages that play their logs in a simulator again, which small made logs are not made for.
 PLAYED = ("docs/how_to/compare_in_simulator.md",)

@@ -8,6 +8,7 @@ import pytest
 from data_faults import DATA_FAULTS
 from designed_motions import DESIGNED_MOTIONS
 from drawn import DRAWN
+from fleet_statistics import FLEET
 from made_cheaper import MADE_CHEAPER
 from mutant import Mutant
 from once_unnoticed import ONCE_UNNOTICED
@@ -18,7 +19,7 @@ SOURCE = TESTS.parent / "src" / "plantar"
 
 @pytest.mark.parametrize(
     "mutant",
-    [*DRAWN, *MADE_CHEAPER, *ONCE_UNNOTICED, *DATA_FAULTS, *DESIGNED_MOTIONS],
+    [*DRAWN, *MADE_CHEAPER, *ONCE_UNNOTICED, *DATA_FAULTS, *DESIGNED_MOTIONS, *FLEET],
     ids=lambda each: each.name,
 )
 def test_no_mutant_is_stale(mutant: Mutant) -> None:

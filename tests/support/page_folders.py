@@ -12,6 +12,7 @@ import numpy as np
 
 from biped import TRUTH, record, sway
 from biped_robot import FEET, URDF, Frame, Mounting, make_robot, write_robot
+from fleet_samples import small_fleet
 from page_blocks import ROOT, blocks
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.save import save_log
@@ -112,8 +113,13 @@ def stand_in(words: list[str]) -> None:
     for option in ("--seed", "--sway", "--vertical", "--apart", "--period"):
         asked.add_argument(option, type=float)
     asked.add_argument("-q", "--quiet", action="store_true")
+    for option in ("--robots", "--days"):
+        asked.add_argument(option, type=int)
     given = asked.parse_args(words)
     assert given.robot is None or given.robot.is_file()
+    if given.motion == "fleet":
+        small_fleet(given.out, 2)
+        return
     names = {"campaign": CAMPAIGN, "demo": DEMO}.get(given.motion, tuple(given.motion.split(",")))
     write_robot(given.out, MOUNTING)
     (given.out / "hrp2.urdf").write_text(URDF.replace('"torso"', '"CHEST_LINK1"'))

@@ -39,7 +39,7 @@ def samples(robot: RobotModel, log: MotionLog) -> Samples:
 @pytest.fixture(scope="module")
 def fit(robot: RobotModel, samples: Samples) -> RegularisedFit:
     body = Body.of(robot, floating=True)
-    return RegularisedProblem(body.equation, body.base, body.prior, [samples]).solve()
+    return RegularisedProblem.of(body.equation, body.base, body.prior, [samples]).solve()
 
 
 @pytest.mark.parametrize("unit", [1e-3, 20.0])

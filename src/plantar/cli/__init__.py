@@ -27,6 +27,10 @@ COMMANDS = {
     "diagnose": ("diagnose", "What limits each number of a result, and what to record next."),
     "online": ("online", "Replay a log through the estimator of controllers, sample by sample."),
     "show reference": ("show", "Foot stiffness that others published or configured, and yours among it."),
+    "fleet plan": ("fleet.plan", "A manifest from files: a group for each robot and day."),
+    "fleet run": ("fleet.run", "Identify the feet of every group of a manifest, on a Dask cluster."),
+    "fleet inertia": ("fleet.inertia", "Inertial parameters from all logs of a manifest (eq. 2)."),
+    "fleet report": ("fleet.report", "Alarms, robots over time and failures of a fleet, on one page."),
     "report": ("report", "Write the result's report.html again."),
     "convert": ("convert", "A log in another format."),
     "init": ("init", "A first robot file from a URDF and, if given, logs; every guess is marked."),
@@ -36,6 +40,7 @@ SEVERAL = "--validate"  # takes one log or more
 GROUPS = {
     "identify": "Identify feet, inertial parameters or joints from logs.",
     "show": "What is known elsewhere.",
+    "fleet": "Many logs of many robots: plan, run, report.",
 }
 
 EPILOG = "Example: plantar identify feet robot.yaml sway_*.csv --validate squat.csv --out out/feet"

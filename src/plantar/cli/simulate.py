@@ -17,12 +17,14 @@ from plantar.robot.model import load_robot
 if TYPE_CHECKING:
     from plantar.twin.bush import Feet
 
+FLEET, FLEET_MOTION, FLEET_PRESET = "fleet", "Tilt3", "sensors"
 LONGEST = 10.0  # m: no motion is larger
 BUSH_HELP = "Bush of every foot as K_pitch,C_pitch,K_roll,C_roll[,K_z,C_z]; the paper's table 1 if left out."
 PRESET_HELP = (
     "Imperfections: ideal, sensors, realistic or harsh; plain_log, what public logs of walking robots hold: 50 Hz, "
     "the root link's attitude, no gyroscope, devices on clocks of their own, force sensors not zeroed; or imperfect: "
-    "for each seed a robot that differs from its robot file in masses, mounts, bushes, gains and delays."
+    "for each seed a robot that differs from its robot file in masses, mounts, bushes, gains and delays. "
+    "realistic if left out."
 )
 
 
@@ -31,11 +33,11 @@ def run(
         str,
         typer.Argument(
             help="A motion's name, or a table of joint positions of your own (CSV, Parquet); several separated by "
-            "commas; 'demo' or 'campaign'."
+            "commas; 'demo', 'campaign' or 'fleet'."
         ),
     ],
     out: Annotated[Path, typer.Option(help="Folder for the robot file, the logs and the truth beside them.")],
-    preset: Annotated[str, typer.Option(help=PRESET_HELP)] = "realistic",
+    preset: Annotated[str | None, typer.Option(help=PRESET_HELP)] = None,
     seed: Annotated[int, typer.Option(help="Draws the sensors' noise, biases and zeros.", min=0)] = 0,
     robot: Annotated[
         Path | None, typer.Option(help="Robot file of a biped; the HRP-2-like one if left out.")
@@ -56,6 +58,8 @@ def run(
     period: Annotated[
         float | None, typer.Option(help="Of one step of a walk, 0.6 to 6 s; as its name says if left out.")
     ] = None,
+    robots: Annotated[int, typer.Option(help="Of 'fleet'.", min=1)] = 20,
+    days: Annotated[int, typer.Option(help="Of 'fleet': a log a robot and day.", min=1)] = 60,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")] = False,
 ) -> None:
     """Play motions on the twin, a robot in MuJoCo whose feet are known, and write what it records.
@@ -68,19 +72,28 @@ def run(
     contact forces) and MOTION.truth.json (what was put in). A motion that loses its balance or cannot be reached is
     refused before it is played; one that falls on its bushes, as soon as it does.
 
+    'fleet' writes logs of many robots and days with a manifest for `plantar fleet run`: Tilt3 is played once, each log
+    has rubber of its own stiffness and sensors drawn anew (preset 'sensors' if none is given). The first robot's
+    rubber ages, the second gets a new sole, a sensor of the third drifts; truth.csv has what was put in.
+
     Example: plantar simulate Tilt3,Squat --out out/twin --preset sensors --seed 3
     """
     try:
         from plantar.motions import CAMPAIGN, DEMO
         from plantar.twin import PAPER, play_all, write_campaign
         from plantar.twin.own_motion import own_plan
+        from plantar.twin.presets import DEFAULT
         from plantar.twin.robots import hrp2
     except ImportError as error:
         raise MissingExtra(error.name or "mujoco", "twin", "plantar simulate") from error
     refuse_file(out)
+    if motion == FLEET:
+        _fleet(out, robots, days, preset, seed, quiet)
+        return
     for option, size in (("--sway", sway), ("--vertical", vertical), ("--apart", apart)):
         if size is not None and not 0 < size < LONGEST:
             raise PlantarError(located(f"{option} is no length", value=size, valid=f"0 to {LONGEST:g} m"))
+    chosen = DEFAULT if preset is None else preset
     names = list({"campaign": CAMPAIGN, "demo": DEMO}.get(motion, tuple(motion.split(","))))
     bushes = PAPER if bush is None else _bushes(bush)
     model = None if robot is None else load_robot(robot)
@@ -93,7 +106,7 @@ def run(
         motions,
         model,
         bushes,
-        preset,
+        chosen,
         [seed],
         report,
         sway=sway,
@@ -102,7 +115,7 @@ def run(
         period=period,
     )
     end_progress(quiet)
-    robot_file = write_campaign(out, recordings, model, preset)
+    robot_file = write_campaign(out, recordings, model, chosen)
     rows = [
         (
             recording.name,
@@ -113,7 +126,19 @@ def run(
         for recording in recordings
     ]
     console().print(
-        table(f"{preset}, seed {seed}; robot file {robot_file}", ("motion", "s", "samples", "log"), rows)
+        table(f"{chosen}, seed {seed}; robot file {robot_file}", ("motion", "s", "samples", "log"), rows)
+    )
+
+
+def _fleet(out: Path, robots: int, days: int, preset: str | None, seed: int, quiet: bool) -> None:
+    from plantar.twin.fleet import write_fleet
+
+    chosen = FLEET_PRESET if preset is None else preset
+    step = progress(quiet)
+    manifest = write_fleet(out, robots, days, motion=FLEET_MOTION, preset=chosen, seed=seed, progress=step)
+    end_progress(quiet)
+    console().print(
+        f"{robots * days} logs of {robots} robots on {days} days; manifest {manifest}", markup=False
     )
 
 

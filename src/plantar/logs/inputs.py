@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from threading import Lock
 
-from plantar.errors import DataError, LogError, RobotError, located
+from plantar.errors import DataError, LogError, NoRoom, RobotError, located
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import open_log
 from plantar.logs.readers.read_limit import shown, usual_memory
@@ -55,7 +55,7 @@ def open_together(paths: Sequence[Path], robot: RobotModel, memory: int | None =
             if left < 0:
                 message = f"does not fit beside the other logs: {shown(-left)} too much"
                 valid = "fewer logs at a time, or more with --memory (memory= in Python)"
-                raise LogError(located(message, path=path, valid=valid))
+                raise NoRoom(located(message, path=path, valid=valid))
         return log
 
     if all(path.suffix.lower() == ".csv" for path in paths):  # each is parsed on all cores

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,10 +29,22 @@ class Uncertainty:
 
 
 def uncertainty(fit: RegularisedFit, recordings: Sequence[Samples]) -> Uncertainty:
+    """`uncertainty_from` recordings that are all in memory."""
+    return uncertainty_from(fit, [score_covariance(fit, samples) for samples in recordings])
+
+
+def score_covariance(fit: RegularisedFit, samples: Samples) -> tuple[Array, float]:
+    """Covariance (n, n) of the sum of one recording's scores, and on how many cosines it rests."""
+    return cosine_covariance(_scores(fit, samples), len(samples.time) * samples.period)
+
+
+def uncertainty_from(fit: RegularisedFit, scored: Iterable[tuple[Array, float]]) -> Uncertainty:
     """Sandwich H⁻¹ (S + s² t² 1) H⁻¹ in the prior's units: S from the coloured scores, s the regularisation weight.
 
     The second part is the bias of the regularisation: t² is how far the CAD is from the robot, judged by how far the
     fit moved in the directions that the data decide.
+
+    scored: of each recording, as `score_covariance` gives it.
     """
     n_base, size = len(fit.base), len(fit.prior.cad)
     regressor = np.hstack([fit.triangle[:, :n_base] @ fit.base.grouping, fit.triangle[:, n_base:-1]])
@@ -52,8 +64,7 @@ def uncertainty(fit: RegularisedFit, recordings: Sequence[Samples]) -> Uncertain
     error = 0.0 if given else regularisation**2 * float(moved @ moved) / decided
     meat = np.diag(np.concatenate([np.full(size, error), np.zeros(len(normal.scale))]))
     freedom = 0.0
-    for samples in recordings:
-        covariance, cosines = cosine_covariance(_scores(fit, samples), len(samples.time) * samples.period)
+    for covariance, cosines in scored:
         meat += onto.T @ covariance @ onto
         freedom += cosines
     spread = onto @ inverse @ meat @ inverse @ onto.T

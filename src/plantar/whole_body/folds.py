@@ -44,26 +44,41 @@ class Samples:
 
 
 class Folds:
-    """The folds' factors. Solutions x are the inertial parameters (10 n_links,), then the extras row by row."""
+    """The folds' factors. Solutions x are the inertial parameters (10 n_links,), then the extras row by row.
 
-    def __init__(self, equation: Equation, base: BaseParameters, recordings: Sequence[Samples]) -> None:
+    positive: places among the extras whose coefficients may not be negative.
+    """
+
+    def __init__(
+        self,
+        base: BaseParameters,
+        factors: Sequence[Mapping[int, RowFactor]],
+        positive: tuple[int, ...] = (),
+    ) -> None:
         self.base = base
-        self.rows = tuple(recordings[0].measured)
-        self.counts = {row: len(recordings[0].extras.get(row, ())) for row in self.rows}
+        self.factors = list(factors)
+        self.rows = tuple(self.factors[0])
+        self.counts = {row: self.factors[0][row].extras for row in self.rows}
+        self.positive = positive
+
+    @classmethod
+    def of(cls, equation: Equation, base: BaseParameters, recordings: Sequence[Samples]) -> Folds:
+        """Recordings cut in time, so that there are about `FOLDS` of them, and one or more of each recording."""
+        first = recordings[0]
+        rows = tuple(first.measured)
         flags = [
-            flag for row in self.rows for flag in recordings[0].positive.get(row, (False,) * self.counts[row])
+            flag
+            for row in rows
+            for flag in first.positive.get(row, (False,) * len(first.extras.get(row, ())))
         ]
-        self.positive = tuple(place for place, flag in enumerate(flags) if flag)
-        self.factors: list[dict[int, RowFactor]] = []
         each = max(1, -(-FOLDS // len(recordings)))
-        for samples in recordings:
-            bounds = np.linspace(0, len(samples.time), each + 1).astype(int)
-            for start, stop in pairwise(bounds):
-                if stop > start:
-                    stream = EquationStream(equation, base, self.rows, self.counts)
-                    part = samples.select(slice(start, stop))
-                    stream.add(part.motion, part.measured, part.extras)
-                    self.factors.append(stream.factors())
+        factors = [
+            factors_of(equation, base, samples.select(slice(start, stop)))
+            for samples in recordings
+            for start, stop in pairwise(np.linspace(0, len(samples.time), each + 1).astype(int))
+            if stop > start
+        ]
+        return cls(base, factors, tuple(place for place, flag in enumerate(flags) if flag))
 
     def __len__(self) -> int:
         return len(self.factors)
@@ -79,7 +94,7 @@ class Folds:
 
     def triangle(self, chosen: Sequence[int], weights: Mapping[int, float]) -> Array:
         """R of the chosen folds, each row times its weight: base parameters, extras, measured."""
-        parts = [_pooled([self.factors[k][row] for k in chosen]) for row in self.rows]
+        parts = [pooled([self.factors[k][row] for k in chosen]) for row in self.rows]
         return stacked(parts, len(self.base), [weights[row] for row in self.rows])
 
     def error(self, chosen: Sequence[int], row: int, x: Array) -> float:
@@ -108,7 +123,7 @@ class Folds:
         count = self.counts[row]
         if count == 0:
             return np.zeros(0)
-        factor = _pooled([self.factors[k][row] for k in chosen])
+        factor = pooled([self.factors[k][row] for k in chosen])
         own = len(factor.columns)
         target = factor.upper[:, -1] - factor.upper[:, :own] @ base[factor.columns]
         first = self._places()[row][0]
@@ -123,7 +138,15 @@ class Folds:
         return places
 
 
-def _pooled(factors: Sequence[RowFactor]) -> RowFactor:
+def factors_of(equation: Equation, base: BaseParameters, samples: Samples) -> dict[int, RowFactor]:
+    """The R factor of every measured row of one recording."""
+    rows = tuple(samples.measured)
+    stream = EquationStream(equation, base, rows, {row: len(samples.extras.get(row, ())) for row in rows})
+    stream.add(samples.motion, samples.measured, samples.extras)
+    return stream.factors()
+
+
+def pooled(factors: Sequence[RowFactor]) -> RowFactor:
     """One row's factors over several folds as one."""
     first = factors[0]
     size = len(first.columns) + first.extras + 1

@@ -60,7 +60,7 @@ def identify_inertia(
         [inertial_samples(body, whole, made.calibration) for whole in wholes]
         for wholes in (made.fitted, made.unseen)
     )
-    fit = RegularisedProblem(body.equation, body.base, body.prior, fitted).solve(progress)
+    fit = RegularisedProblem.of(body.equation, body.base, body.prior, fitted).solve(progress)
     progress("deviations")
     trust = uncertainty(fit, fitted)
     said = {**settings.to_dict(), "weights": [float(weight) for weight in fit.weights.values()]}

@@ -118,7 +118,7 @@ def _given(made: WholeLogs, inertia: Inertia, progress: Progress) -> tuple[Array
         text = f"inertias taken from the URDF as known: {UNCOUNTED}"
         return body.prior.cad, [Note("inertia_known", "info", text)]
     recordings = [inertial_samples(body, whole, made.calibration) for whole in made.fitted]
-    fit = RegularisedProblem(body.equation, body.base, body.prior, recordings).solve(progress)
+    fit = RegularisedProblem.of(body.equation, body.base, body.prior, recordings).solve(progress)
     text = f"inertias identified first, from the base rows (eq. 2): {UNCOUNTED}"
     return fit.inertial, [Note("inertia_first", "info", text), *fit_notes(fit)]
 
@@ -134,7 +134,7 @@ def _chosen(
     for default in (FRICTION, SPRUNG):
         terms = {name: described[name].terms if name in described else default for name in measured}
         recordings = [joint_samples(body, whole, made.calibration, terms) for whole in made.fitted]
-        problem = RegularisedProblem(body.equation, body.base, body.prior, recordings)
+        problem = RegularisedProblem.of(body.equation, body.base, body.prior, recordings)
         fits.append((terms, problem.solve(progress) if inertial is None else problem.with_known(inertial)))
         if all(name in described for name in measured):
             return terms, fits[0][1], []

@@ -59,12 +59,16 @@ class RegularisedFit:
 class RegularisedProblem:
     """The folds of all recordings, and the CAD that fits to them are regularised towards."""
 
-    def __init__(
-        self, equation: Equation, base: BaseParameters, prior: Prior, recordings: Sequence[Samples]
-    ) -> None:
-        self.equation, self.base, self.prior = equation, base, prior
-        self.folds = Folds(equation, base, recordings)
-        self.every = range(len(self.folds))
+    def __init__(self, equation: Equation, prior: Prior, folds: Folds) -> None:
+        self.equation, self.base, self.prior, self.folds = equation, folds.base, prior, folds
+        self.every = range(len(folds))
+
+    @classmethod
+    def of(
+        cls, equation: Equation, base: BaseParameters, prior: Prior, recordings: Sequence[Samples]
+    ) -> RegularisedProblem:
+        """The problem of recordings that are all in memory."""
+        return cls(equation, prior, Folds.of(equation, base, recordings))
 
     def solve(self, progress: Callable[[str], None] = lambda _: None) -> RegularisedFit:
         """Weights from the data, then the regularisation weight, then the fit to everything."""

@@ -11,7 +11,7 @@ import os
 from collections.abc import Iterable
 from pathlib import Path
 
-from plantar.errors import LogError, located
+from plantar.errors import LogError, NoRoom, located
 
 SHARE = 0.25  # of the machine's memory: what is done with a log needs several times its numbers
 SMALL = 2**28  # bytes that any file may unpack to: the numbers of ten minutes at 1 kHz in 55 columns
@@ -80,7 +80,7 @@ class ReadLimit:
             valid = (
                 f"at most {shown(self.memory)}, or more with --memory (memory= in Python), or a shorter log"
             )
-            raise LogError(located(message, path=self.path, valid=valid))
+            raise NoRoom(located(message, path=self.path, valid=valid))
 
 
 def usual_memory() -> int:

@@ -1,0 +1,1 @@
+"""`plantar fleet`: many logs of many robots."""

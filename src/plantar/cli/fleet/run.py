@@ -1,0 +1,121 @@
+"""`plantar fleet run`."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated, Final
+
+import typer
+
+from plantar.cli.console.memory import size_in_bytes
+from plantar.cli.console.terminal import end_progress, progress
+from plantar.cli.fleet.report import PAGE, RUN_FILE, RUN_SCHEMA, print_alarms, write_report
+from plantar.cli.identify.feet import DELAY_HELP, MODEL_HELP, OFFSET_HELP
+from plantar.feet.settings import AUTOMATIC, MODEL_CHOICES, FeetSettings, OffsetRule
+from plantar.files import refuse_file
+from plantar.fleet.cluster import SHARE, connected, dashboard
+from plantar.fleet.manifest import read_manifest
+from plantar.fleet.places import Store, is_remote
+from plantar.fleet.run import Outcome, Progress, run_fleet
+from plantar.results.io import dump_json
+
+OUT_HELP = "Folder, or fsspec URL such as s3://bucket/fleet, for what is finished, the tables and fleet.html."
+MEMORY_HELP = "Memory of each worker of our own, such as 2GB; a worker that takes more is started again."
+EVERY: Final = 5.0  # s between lines of progress where stderr is no terminal
+
+
+def run(
+    manifest: Annotated[
+        Path, typer.Argument(help="CSV file: group, robot, log[, role, time, unit].", metavar="MANIFEST.csv")
+    ],
+    out: Annotated[str, typer.Option("--out", help=OUT_HELP)],
+    workers: Annotated[
+        int | None, typer.Option(help="Processes on this machine; one a core if left out.", min=1)
+    ] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(help="Address of a running Dask cluster.", metavar="ADDRESS")
+    ] = None,
+    memory: Annotated[
+        int | None, typer.Option("--memory", parser=size_in_bytes, metavar="SIZE", help=MEMORY_HELP)
+    ] = None,
+    offset: Annotated[OffsetRule, typer.Option(help=OFFSET_HELP)] = "per-motion",
+    model: Annotated[str, typer.Option(help=MODEL_HELP, metavar="MODEL")] = AUTOMATIC,
+    wrench_delay: Annotated[float | None, typer.Option(help=DELAY_HELP)] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print the counts as JSON.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no counts.")] = False,
+) -> None:
+    """`identify feet` for every group of a manifest, on all cores or on a Dask cluster; finished groups are kept.
+
+    The same command again goes on where the last one was stopped, and computes only what is new.
+
+    Example: plantar fleet run fleet.csv --out out/fleet
+    """
+    if model not in MODEL_CHOICES:
+        raise typer.BadParameter(f"'{model}' is not one of {', '.join(MODEL_CHOICES)}", param_hint="--model")
+    if workers is not None and scheduler is not None:
+        raise typer.BadParameter("a running cluster has workers of its own", param_hint="--workers")
+    late = None if wrench_delay is None else 1e-3 * wrench_delay
+    settings = FeetSettings(offset, model, wrench_delay=late)
+    groups = read_manifest(manifest)
+    if not is_remote(out):
+        refuse_file(Path(out))
+    store = Store(out)
+    step = progress(quiet)
+    step(f"{len(groups)} groups; start the workers")
+    room = None if memory is None else int(SHARE * memory)
+    with connected(workers, scheduler, memory) as client:
+        if (page := dashboard(client)) is not None:
+            step(f"Dask's dashboard: {page}")
+        outcome = run_fleet(groups, store, settings, client, _reporter(step), room)
+    step("look at the results together")
+    said = dump_json({"schema": RUN_SCHEMA, **asdict(outcome)})
+    store.write(RUN_FILE, said.encode())
+    summary = write_report(store)
+    end_progress(quiet)
+    if json:
+        print(said, end="")
+    elif not quiet:
+        print_alarms(summary)
+        print(store.path(PAGE))
+        print(counts(outcome))
+
+
+def counts(outcome: Outcome) -> str:
+    """The last line: how many groups have results, how many were there, what failed."""
+    written = outcome.written
+    parts = [
+        f"{outcome.groups} groups: {written.finished} with results",
+        f"{outcome.reused} were there already",
+        f"{written.failed} failed",
+        f"{written.failures} failures in failures.parquet",
+    ]
+    return ", ".join(parts)
+
+
+def _reporter(step: Callable[[str], None]) -> Callable[[Progress], None]:
+    """Shows the counts: on a terminal after each group, elsewhere now and then."""
+    shown = 0.0
+
+    def report(now: Progress) -> None:
+        nonlocal shown
+        finished = now.reused + now.done + now.failed >= now.total
+        if not sys.stderr.isatty() and time.monotonic() - shown < EVERY and not finished:
+            return
+        shown = time.monotonic()
+        left = "" if now.seconds_left is None else f", {_duration(now.seconds_left)} left"
+        step(
+            f"{now.reused + now.done} of {now.total} groups done, {now.reused} of them there already, "
+            f"{now.failed} failed{left}"
+        )
+
+    return report
+
+
+def _duration(seconds: float) -> str:
+    if seconds < 90:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"

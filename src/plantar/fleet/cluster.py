@@ -1,0 +1,77 @@
+"""Where the work is done: workers on this machine, or a Dask cluster that runs already."""
+
+from __future__ import annotations
+
+import logging
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from importlib.util import find_spec
+from typing import Any, Final
+
+from plantar.errors import MissingExtra, PlantarError, located
+
+CONNECT: Final = 30  # s to wait for a scheduler
+SHARE: Final = 0.25  # of a worker's memory for the numbers of a group's logs, as for a machine's elsewhere
+
+SMALL: Final = {
+    "distributed.worker.profile.enabled": False,  # a call tree a second, kept for an hour
+    "distributed.admin.log-length": 100,
+    "distributed.admin.low-level-log-length": 100,
+    "distributed.admin.system-monitor.gil.enabled": False,
+}
+"""Settings of Dask without which workers and driver grow with the time that they run."""
+
+
+@contextmanager
+def connected(workers: int | None, scheduler: str | None, memory: int | None) -> Iterator[Any]:
+    """A `distributed.Client`, closed with the block.
+
+    Args:
+        workers: processes on this machine, one thread each; as many as there are cores where None.
+        scheduler: the address of a running cluster, such as tcp://10.0.0.1:8786, instead of workers of our own.
+        memory: bytes that a worker of our own may take before it is started again.
+
+    Raises:
+        MissingExtra: Dask is not installed. PlantarError: the scheduler does not answer.
+    """
+    try:
+        import dask
+        from distributed import Client, LocalCluster
+    except ImportError as error:
+        raise MissingExtra(error.name or "distributed", "fleet", "plantar fleet run") from error
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what matters of it is said in one line
+    with dask.config.set(SMALL):
+        if scheduler is not None:
+            try:
+                client = Client(scheduler, timeout=CONNECT, set_as_default=False)
+            except (OSError, ValueError) as error:
+                valid = "the address that `dask scheduler` prints, such as tcp://10.0.0.1:8786"
+                raise PlantarError(located("no scheduler answers", value=scheduler, valid=valid)) from error
+            with client:
+                yield client
+            return
+        with (
+            LocalCluster(
+                n_workers=workers or os.cpu_count() or 1,
+                threads_per_worker=1,
+                processes=True,
+                memory_limit="auto" if memory is None else memory,
+                dashboard_address="127.0.0.1:0",
+                silence_logs=logging.CRITICAL,
+            ) as cluster,
+            Client(cluster, set_as_default=False) as client,
+        ):
+            yield client
+
+
+def worker_count(client: Any) -> int:
+    """How many groups the cluster works on at a time now."""
+    threads: dict[str, int] = client.nthreads()
+    return max(1, sum(threads.values()))
+
+
+def dashboard(client: Any) -> str | None:
+    """Where Dask shows what it does; None where its pages are not installed."""
+    link: str | None = client.dashboard_link
+    return link if link and find_spec("bokeh") else None

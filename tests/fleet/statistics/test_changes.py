@@ -1,0 +1,85 @@
+"""Steps, trends and outliers: found in time, told apart, and not seen where there are none."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import numpy as np
+import pytest
+
+from plantar.fleet.statistics.changes import Change, history_of
+from plantar.fleet.statistics.trend import MONTH
+
+DAYS = np.arange(365.0)
+NOISE = 0.01  # of a day
+RATE = 0.25  # false alarms a year: one a robot with four series
+
+
+def lasting(changes: tuple[Change, ...], since: int) -> list[Change]:
+    return [change for change in changes if change.kind != "outlier" and change.seen >= since]
+
+
+@pytest.mark.parametrize("every", [1, 7])
+def test_fifty_robots_give_the_alarms_asked_for(every: int) -> None:
+    random, time = np.random.default_rng(1), DAYS[::every]
+    counts: Counter[str] = Counter()
+    for _ in range(4 * 50 * 3):
+        values = random.normal(0, NOISE, len(time))
+        counts.update(change.kind for change in history_of(time, values, np.ones(len(time)), RATE).changes)
+    assert 0.75 < counts.total() / (50 * 3) < 1.25
+    assert set(counts) == {"step", "trend", "outlier"}
+
+
+@pytest.mark.parametrize("share", [0.05, -0.05])
+def test_a_step_of_five_percent_is_found_within_five_logs(share: float) -> None:
+    random, found, held = np.random.default_rng(2), 0, 0
+    for _ in range(50):
+        values = random.normal(0, NOISE, 365) + share * (DAYS >= 150)
+        after = lasting(history_of(DAYS, values, np.ones(365), RATE).changes, 150)
+        first = after[0]
+        found += first.kind == "step" and first.seen < 155 and abs(first.first - 150) <= 1
+        held += first.low < share < first.high
+    assert found >= 49
+    assert held >= 45
+
+
+@pytest.mark.parametrize("slope", [0.01, -0.01])
+def test_one_percent_a_month_is_found_within_three_months_and_called_a_trend(slope: float) -> None:
+    random, in_time, named = np.random.default_rng(3), 0, 0
+    for _ in range(50):
+        values = random.normal(0, NOISE, 365) + slope * np.maximum(DAYS - 100, 0) / MONTH
+        after = lasting(history_of(DAYS, values, np.ones(365), RATE).changes, 100)
+        in_time += bool(after) and after[0].seen - 100 < 3 * MONTH
+        named += {change.kind for change in after} == {"trend"}
+    assert in_time >= 49
+    assert named >= 45
+
+
+def test_a_slow_drift_that_the_chart_calls_steps_is_one_trend_of_its_size() -> None:
+    values = np.random.default_rng(4).normal(0, 0.003, 365) + 0.02 * DAYS / MONTH
+    (change,) = history_of(DAYS, values, np.ones(365), RATE).changes
+    assert change.kind == "trend"
+    assert change.size == pytest.approx(0.02, rel=0.1)
+
+
+def test_the_trend_is_of_the_days_behind_the_step() -> None:
+    values = np.random.default_rng(5).normal(0, 0.005, 365) + 0.2 * (DAYS >= 200)
+    history = history_of(DAYS, values, np.ones(365), RATE)
+    assert history.start == 200
+    assert history.trend is not None
+    assert history.trend.low < 0 < history.trend.high
+
+
+def test_one_bad_day_is_an_outlier_with_its_size() -> None:
+    values = np.random.default_rng(6).normal(0, NOISE, 100)
+    values[60] = 0.2
+    (change,) = history_of(np.arange(100.0), values, np.ones(100), RATE).changes
+    assert (change.kind, change.first) == ("outlier", 60)
+    assert change.size == pytest.approx(0.2, abs=0.01)
+
+
+def test_few_days_say_nothing() -> None:
+    assert history_of(np.arange(3.0), np.zeros(3), np.ones(3), RATE).changes == ()
+    assert history_of(np.zeros(0), np.zeros(0), np.zeros(0), RATE).trend is None
+    same = history_of(np.arange(30.0), np.ones(30), np.ones(30), RATE)
+    assert same.changes == ()

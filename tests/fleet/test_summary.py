@@ -1,0 +1,148 @@
+"""A fleet's tables looked at together: alarms with words, effects, failures by reason, and the page."""
+
+from __future__ import annotations
+
+import json
+from datetime import UTC, datetime, timedelta
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pytest
+
+from plantar.errors import SettingsError
+from plantar.fleet.series import by_day, series_of
+from plantar.fleet.summary import FleetSummary, reasons_of, summary_of
+from plantar.fleet.tables import FAILURES_SCHEMA, RESULTS_SCHEMA, GroupRow
+from plantar.report.fleet import fleet_page
+
+START = datetime(2026, 1, 1, 9, tzinfo=UTC)
+STEP_DAY = 60
+
+
+def row(unit: str, day: int, foot: str, axis: str, value: float, **changes: Any) -> dict[str, Any]:
+    return {
+        "group": f"{unit}-{day}", "unit": unit, "time": START + timedelta(days=day), "foot": foot, "axis": axis,
+        "name": "stiffness", "unit_of_value": "N.m/rad", "value": value, "std": 0.01 * value, "low": 0.98 * value,
+        "high": 1.02 * value, "verdict": "usable", "model": "kelvin_voigt",
+    } | changes  # fmt: skip
+
+
+def results(rows: list[dict[str, Any]]) -> pa.Table:
+    return pa.Table.from_pylist(rows, schema=RESULTS_SCHEMA)
+
+
+def failures(*rows: tuple[str, str, str]) -> pa.Table:
+    content = [{"group": group, "log": log, "error": error} for group, log, error in rows]
+    return pa.Table.from_pylist(content, schema=FAILURES_SCHEMA)
+
+
+@pytest.fixture(scope="module")
+def summary() -> FleetSummary:
+    """Three robots over 120 days: one whose left foot got a new sole, one whose rubber ages."""
+    random, rows = np.random.default_rng(0), []
+    for unit in ("steady", "new sole", "ageing"):
+        for day in range(120):
+            for foot in ("left", "right"):
+                for axis in ("pitch", "roll"):
+                    share = 0.005 * random.normal()
+                    share += 0.06 if unit == "new sole" and foot == "left" and day >= STEP_DAY else 0.0
+                    share += 0.02 * day / 30 if unit == "ageing" else 0.0
+                    rows.append(row(unit, day, foot, axis, 400 * np.exp(share)))
+    return summary_of(results(rows), failures(("x", "/a.csv", "/a.csv: t = 3.5 s: bad")), 0.1)
+
+
+def test_the_changes_that_are_there_are_the_alarms(summary: FleetSummary) -> None:
+    kinds = {(alarm.unit, alarm.foot, alarm.axis, alarm.kind) for alarm in summary.alarms}
+    expected = {("new sole", "left", axis, "step") for axis in ("pitch", "roll")}
+    expected |= {("ageing", foot, axis, "trend") for foot in ("left", "right") for axis in ("pitch", "roll")}
+    assert kinds == expected
+    step = next(alarm for alarm in summary.alarms if alarm.kind == "step")
+    assert abs((step.since - (START + timedelta(days=STEP_DAY)).date()).days) <= 1
+    assert step.percent == pytest.approx(6.2, abs=0.5)
+    assert "new sole" in step.text
+    assert "all of this foot changed" in step.advice
+    trend = next(alarm for alarm in summary.alarms if alarm.kind == "trend")
+    assert trend.percent == pytest.approx(2.0, abs=0.3)
+    assert "both feet go the same way" in trend.advice
+
+
+def test_forty_steady_robots_give_forty_alarms_a_year() -> None:
+    """The rate is a robot's, over all its feet and axes; a log a week."""
+    random = np.random.default_rng(11)
+    places = [(foot, axis) for foot in ("left", "right") for axis in ("pitch", "roll")]
+    rows = [
+        row(f"u{unit}", 7 * week, foot, axis, 400 * np.exp(0.01 * random.normal()))
+        for unit in range(40)
+        for week in range(52)
+        for foot, axis in places
+    ]
+    assert 0.5 < len(summary_of(results(rows), failures(), 1.0).alarms) / 40 < 1.5
+
+
+def test_the_level_is_that_since_the_step(summary: FleetSummary) -> None:
+    level = next(
+        one for one in summary.levels if (one.unit, one.foot, one.axis) == ("new sole", "left", "roll")
+    )
+    assert level.value == pytest.approx(400 * np.exp(0.06), rel=0.005)
+    assert level.recordings in range(58, 63)
+    assert level.sure_low < level.low < level.value < level.high < level.sure_high
+    assert level.sure_high / level.value == pytest.approx(1.02, abs=0.002)
+
+
+def test_plain_data_say_the_same(summary: FleetSummary) -> None:
+    content = json.loads(json.dumps(summary.to_dict()))
+    assert content["schema"] == "plantar.fleet/1"
+    assert len(content["levels"]) == 12
+    assert {alarm["seen"][:4] for alarm in content["alarms"]} == {"2026"}
+    assert content["effects"][0]["units"] == 3
+
+
+def test_the_page_shows_alarms_first_and_escapes_names(summary: FleetSummary) -> None:
+    odd = [GroupRow("<b>g</b>", "<script>u</script>", START, "ab" * 32)]
+    page = fleet_page(summary, odd, {"done": 12, "seconds": 6.0, "reused": 2})
+    assert page.index("goes up by") < page.index("Stiffness of each robot") < page.index("Failures by reason")
+    assert "<script>u" not in page
+    assert "<b>g" not in page
+    assert 'http-equiv="Content-Security-Policy"' in page
+    assert "7200 groups an hour" in page or "7.2e+03 groups an hour" in page
+    assert "src=" not in page.replace("img-src", "").replace("script-src", "").replace("style-src", "")
+
+
+def test_a_page_of_nothing_is_a_page() -> None:
+    empty = summary_of(results([]), failures())
+    assert "None." in fleet_page(empty)
+
+
+def test_only_usable_positive_values_count() -> None:
+    rows = [
+        row("u", 0, "left", "pitch", 400.0),
+        row("u", 1, "left", "pitch", 400.0, verdict="weak"),
+        row("u", 2, "left", "pitch", -3.0),
+        row("u", 3, "left", "pitch", 400.0) | {"value": None, "std": None},
+        row("u", 4, "left", "pitch", 400.0, name="slip_angle"),
+        row("u", 5, "left", "pitch", 410.0, time=None),
+        row("u", 6, "left", "pitch", 420.0),
+        row("u", 6, "left", "pitch", 440.0),
+    ]
+    (series,) = series_of(results(rows))
+    assert np.exp(series.values) == pytest.approx([400, 420, 440, 410])
+    days = by_day(series)
+    assert list(days.counts) == [1, 2]
+    assert np.exp(days.values[1]) == pytest.approx(np.sqrt(420 * 440))
+    assert days.groups == (("u-0",), ("u-6", "u-6"))
+    assert series.days[-1] == "u-5"
+
+
+def test_failures_are_counted_by_what_they_say() -> None:
+    alike = [
+        (name, f"/{name}.csv", f"/{name}.csv: t = {time} s: bad") for name, time in (("a", 3.5), ("b", 9))
+    ]
+    found = reasons_of(failures(*alike, ("c", "", "no memory")))
+    assert [(one.reason, one.count) for one in found] == [("t = # s: bad", 2), ("no memory", 1)]
+    assert found[0].example == "/a.csv: t = 3.5 s: bad"
+
+
+def test_a_rate_that_cannot_be_is_refused() -> None:
+    with pytest.raises(SettingsError, match="false alarms"):
+        summary_of(results([]), failures(), 0.0)

@@ -1,0 +1,46 @@
+"""A finished unit: read back as it was, and a key that follows content and nothing else."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from plantar.errors import PlantarError
+from plantar.feet.settings import FeetSettings
+from plantar.fleet.places import Stamp
+from plantar.fleet.unit import Failure, Unit, UnitInput, UnitRow, contents_of, read_unit, unit_file, unit_key
+
+LOG = UnitInput("s3://b/x.csv", "x.csv", "fit", "ab" * 32, Stamp(12, "today"))
+ROW = UnitRow("left", "pitch", "stiffness", "N.m/rad", 0.1 + 0.2, 1.0, None, 5.0, "usable", "kelvin_voigt")
+UNIT = Unit("c" * 64, (LOG,), (ROW,), (Failure("", "why"),), 1.5)
+INPUTS = [("fit", "x.csv", "ab")]
+
+
+def test_a_unit_is_read_back_to_the_bit() -> None:
+    assert read_unit(UNIT.dump(), "u") == UNIT
+    assert contents_of(UNIT) == {("s3://b/x.csv", Stamp(12, "today")): "ab" * 32}
+    assert unit_file(UNIT.key).startswith("units/cc/")
+    assert math.isclose(read_unit(UNIT.dump(), "u").rows[0].value or 0, 0.30000000000000004, rel_tol=0)
+
+
+@pytest.mark.parametrize(
+    "content", [b"", b"{", b"[]", b'{"schema": "other"}', UNIT.dump().replace(b"rows", b"row")]
+)
+def test_anything_else_is_refused(content: bytes) -> None:
+    with pytest.raises(PlantarError, match=r"^u"):
+        read_unit(content, "u")
+
+
+def test_the_key_is_of_content_names_order_and_settings() -> None:
+    usual = unit_key("robot", INPUTS, FeetSettings())
+    others = [
+        unit_key("other", INPUTS, FeetSettings()),
+        unit_key("robot", [("validate", "x.csv", "ab")], FeetSettings()),
+        unit_key("robot", [("fit", "y.csv", "ab")], FeetSettings()),
+        unit_key("robot", [("fit", "x.csv", "cd")], FeetSettings()),
+        unit_key("robot", [*INPUTS, ("fit", "z.csv", "ef")], FeetSettings()),
+        unit_key("robot", INPUTS, FeetSettings(cutoff=4.0)),
+    ]
+    assert usual == unit_key("robot", list(INPUTS), FeetSettings())
+    assert len({usual, *others}) == 7
