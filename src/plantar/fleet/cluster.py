@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import logging
 import os
 from collections.abc import Iterator
@@ -44,11 +45,12 @@ def connected(workers: int | None, scheduler: str | None, memory: int | None) ->
     with dask.config.set(SMALL):
         if scheduler is not None:
             try:
-                client = Client(scheduler, timeout=CONNECT, set_as_default=False)
+                # A client that finds nobody is never closed: thrown away later, it may stop a new one's start.
+                asyncio.run(_answer(scheduler))
             except (OSError, ValueError) as error:
                 valid = "the address that `dask scheduler` prints, such as tcp://10.0.0.1:8786"
                 raise PlantarError(located("no scheduler answers", value=scheduler, valid=valid)) from error
-            with client:
+            with Client(scheduler, timeout=CONNECT, set_as_default=False) as client:
                 yield client
             return
         with (
@@ -63,6 +65,14 @@ def connected(workers: int | None, scheduler: str | None, memory: int | None) ->
             Client(cluster, set_as_default=False) as client,
         ):
             yield client
+
+
+async def _answer(scheduler: str) -> None:
+    """Open and close a connection. Raises OSError or ValueError where nobody is at that address."""
+    from distributed.comm import connect
+
+    connection = await connect(scheduler, timeout=CONNECT)
+    await connection.close()
 
 
 def worker_count(client: Any) -> int:
