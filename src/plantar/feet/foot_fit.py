@@ -117,7 +117,7 @@ def between_all(feet: Sequence[FittedFoot]) -> Apart:
     return recordings_apart(told, max(one.ready.robot.uncertainty.between_recordings for one in feet))
 
 
-def without_needless(fitted: FittedFoot, apart: Apart) -> FittedFoot:
+def without_needless(fitted: FittedFoot) -> FittedFoot:
     """The foot with spring and damper alone where a richer model hardly matters."""
     ready, recordings = fitted.ready, fitted.thin.fitted
     shared, fits = ready.settings.offset == "shared", dict(fitted.fits)
@@ -126,20 +126,20 @@ def without_needless(fitted: FittedFoot, apart: Apart) -> FittedFoot:
             continue
         with gives_up(axis, fitted.given_up):
             causes = systematic_causes(fit, recordings, ready.sensor_delay, ready.vertical, shared)
-            causes += robot_causes(fit, recordings, ready.robot.uncertainty, apart, shared)
+            causes += robot_causes(fit, recordings, ready.robot.uncertainty, shared)
             spring = fit_axis(recordings, fit.foot, axis, ready.settings, KelvinVoigt(), fitted.place)
             if spring is not None and hardly_matters(inflated(fit, causes), spring):
                 fits[axis] = in_place_of(fit, spring)
     return replace(fitted, fits=fits)
 
 
-def assess_foot(fitted: FittedFoot, apart: Apart) -> FootFit:
+def assess_foot(fitted: FittedFoot) -> FootFit:
     """Each axis of a fitted foot widened, scored, judged and diagnosed, or why it is given up."""
     found = FootFit(notes=tuple(fitted.jumps))
     for axis in ROTATIONAL_AXES:
         if axis in fitted.fits and axis not in fitted.given_up:
             with gives_up(axis, fitted.given_up):
-                found = _with_axis(found, fitted, fitted.fits[axis], apart)
+                found = _with_axis(found, fitted, fitted.fits[axis])
         if axis in fitted.given_up:
             found.parameters.extend(missing_rows(fitted.foot, axis, fitted.given_up[axis]))
         elif axis not in fitted.fits:
@@ -152,13 +152,13 @@ def _thin(ready: PreparedLogs, foot: str) -> PreparedLogs:
     return replace(ready, fitted=tuple(recording.decimated(foot) for recording in ready.fitted))
 
 
-def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit, apart: Apart) -> FootFit:
+def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit) -> FootFit:
     """What was found, and one axis: its fit widened, scored, judged and diagnosed."""
     ready, thin = fitted.ready, fitted.thin
     shared = ready.settings.offset == "shared"
 
     causes = systematic_causes(fit, thin.fitted, ready.sensor_delay, ready.vertical, shared)
-    causes += robot_causes(fit, thin.fitted, ready.robot.uncertainty, apart, shared)
+    causes += robot_causes(fit, thin.fitted, ready.robot.uncertainty, shared)
     causes += force_gain_causes(fit, ready.gain_errors)
     causes += torque_gain_causes(fit, ready.torque_gains)
     wide = inflated(fit, causes)

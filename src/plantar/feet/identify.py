@@ -83,8 +83,8 @@ def fit_prepared(
         raise DataError(f"{names}: no foot carries load in any log (valid: {valid})")
     fitted = _fitted_feet(ready, progress)
     between = between_all(list(fitted.values()))
-    fitted = {foot: without_needless(one, between) for foot, one in fitted.items()}
-    found = [assess_foot(one, between) for one in fitted.values()]
+    fitted = {foot: without_needless(one) for foot, one in fitted.items()}
+    found = [assess_foot(one) for one in fitted.values()]
     ready = _merged(ready, {foot: one.ready for foot, one in fitted.items()})
     fits = [fit for each in found for fit in each.fits]
     parameters = [row for each in found for row in each.parameters]

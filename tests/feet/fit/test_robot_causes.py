@@ -10,7 +10,6 @@ import pytest
 from biped import TRUTH, record, sway
 from feet_trials import LINEAR, noisy
 from plantar.feet.fit.axis_fit import fit_axis
-from plantar.feet.fit.between_recordings import Apart
 from plantar.feet.fit.robot_causes import robot_causes
 from plantar.feet.identify import identify_feet
 from plantar.feet.prepare import prepare_all
@@ -72,9 +71,7 @@ def test_a_turned_sensor_reads_less_by_its_cosine(robot: RobotModel) -> None:
     ready = prepare_all(robot, logs, [], LINEAR, lambda _: None)
     fit = fit_axis(ready.fitted, "left", "pitch", LINEAR)
     assert fit is not None
-    assert [cause.name for cause in robot_causes(fit, ready.fitted, NOTHING, Apart(0.01, 1), False)] == [
-        "between recordings"
-    ]
-    cause, _ = robot_causes(replace(fit, turned=0.2), ready.fitted, NOTHING, Apart(0.01, 1), False)
+    assert [cause.name for cause in robot_causes(fit, ready.fitted, NOTHING, False)] == ["between recordings"]
+    cause, _ = robot_causes(replace(fit, turned=0.2), ready.fitted, NOTHING, False)
     assert cause.std == pytest.approx(1 - np.cos(0.2))
     np.testing.assert_array_equal(cause.effect, fit.values)

@@ -18,7 +18,7 @@ from plantar.robot.model import load_robot
 
 UNIT_HELP = (
     "The robot's serial number: a name for all logs, or a regular expression in which one group in parentheses finds "
-    "it in each log's path, such as 'logs/([^/]+)/'. The robot file's name if left out."
+    "it in each log's path, such as `logs/([^/]+)/`. The robot file's name if left out."
 )
 
 

@@ -41,10 +41,7 @@ class AxisDifferences(NamedTuple):
 
 
 def recordings_apart(axes: Sequence[AxisDifferences], prior: float) -> Apart:
-    """By which share of spring and damper recordings differ, at least `prior`, as all axes of all feet show it.
-
-    An axis that few motions move shows hardly any of it by itself; rubber that warms up is warmer in all of them.
-    """
+    """By which share of spring and damper recordings differ, at least `prior`, as these axes together show it."""
     if not axes:
         return Apart(prior, 1)
     usual = float(np.mean([each.usual for each in axes]))
@@ -87,12 +84,12 @@ def axis_differences(fit: AxisFit, recordings: Sequence[Recording], shared: bool
 
 
 def between_recordings(
-    fit: AxisFit, recordings: Sequence[Recording], apart: Apart, shared: bool
+    fit: AxisFit, recordings: Sequence[Recording], prior: float, shared: bool
 ) -> list[Cause]:
     """By how much recordings move the fit beyond their own deviations; of feet that step `systematic` knows it.
 
     From FEWEST_RECORDINGS on refits without one of them each (jackknife) say it, whatever it is that differs. Fewer are
-    taken to differ by the share that all axes show.
+    taken to differ by a share of spring and damper, as this axis shows it, at least the robot file's `prior`.
     """
     blocks = _blocks(fit, recordings, shared)
     if not blocks:
@@ -101,6 +98,8 @@ def between_recordings(
         covariance, freedom = jackknife(values_without_each(blocks))
         beyond = np.diag(covariance) - fit_blocks(blocks).std ** 2
         return [Cause(NAME, np.sqrt(np.maximum(beyond, 0.0)), 1.0, float(freedom[0]))]
+    own = axis_differences(fit, recordings, shared)
+    apart = recordings_apart([] if own is None else [own], prior)
     torques = _torques(fit, blocks)
     effects = np.array([effect_of(blocks, _alone(torques, own)) for own in range(len(blocks))])
     return [Cause(NAME, np.sqrt(np.sum(effects**2, axis=0)), apart.share, float(apart.others))]

@@ -7,19 +7,19 @@ from collections.abc import Sequence
 import numpy as np
 
 from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.between_recordings import Apart, between_recordings
+from plantar.feet.fit.between_recordings import between_recordings
 from plantar.feet.fit.systematic import Cause
 from plantar.feet.recording import Recording
 from plantar.robot.uncertainty import Uncertainty
 
 
 def robot_causes(
-    fit: AxisFit, recordings: Sequence[Recording], uncertainty: Uncertainty, apart: Apart, shared: bool
+    fit: AxisFit, recordings: Sequence[Recording], uncertainty: Uncertainty, shared: bool
 ) -> list[Cause]:
-    """The force sensors' gain, a turned sensor, and recordings that differ: all axes together show how far `apart`."""
+    """The force sensors' gain, a turned sensor, and recordings that differ."""
     # A torque that reads too large by a share makes every number of the bush too large by it. A sensor turned by ψ
     # reads cos ψ of the torque; where it is the IMU that is turned, all of it, and only moving joints tell them apart.
     turned = 1 - float(np.cos(fit.turned))
     gain = float(np.hypot(uncertainty.wrench_gain, turned))
     causes = [Cause("sensor gain", fit.values, gain)] if gain else []
-    return [*causes, *between_recordings(fit, recordings, apart, shared)]
+    return [*causes, *between_recordings(fit, recordings, uncertainty.between_recordings, shared)]
