@@ -112,26 +112,25 @@ class KinematicTree:
         rotations = np.tile(np.eye(3), (1 + len(self), len(positions), 1, 1))
         places = np.zeros((1 + len(self), len(positions), 3))
         for joint, parent in enumerate(self.parents):
-            rotation = rotations[1 + parent] @ self.rotations[joint]
-            places[1 + joint] = places[1 + parent] + rotations[1 + parent] @ self.translations[joint]
-            if self.slides[joint]:
-                places[1 + joint] += rotation @ self.axes[joint] * positions[:, joint, None]
-            else:
-                rotation = rotation @ rotations_about(self.axes[joint], positions[:, joint])
-            rotations[1 + joint] = rotation
+            rotations[1 + joint], places[1 + joint] = self._frame(
+                joint, rotations[1 + parent], places[1 + parent], positions
+            )
         return rotations, places
 
     def pose(self, joint: int, positions: Array) -> tuple[Array, Array]:
         """Rotation (N, 3, 3) and place (N, 3) [m] of one joint's frame in the root link; of that link itself: -1."""
         rotation, place = np.tile(np.eye(3), (len(positions), 1, 1)), np.zeros((len(positions), 3))
         for each in reversed(self.ancestors[joint]) if joint >= 0 else ():
-            place = place + rotation @ self.translations[each]
-            rotation = rotation @ self.rotations[each]
-            if self.slides[each]:
-                place = place + rotation @ self.axes[each] * positions[:, each, None]
-            else:
-                rotation = rotation @ rotations_about(self.axes[each], positions[:, each])
+            rotation, place = self._frame(each, rotation, place, positions)
         return rotation, place
+
+    def _frame(self, joint: int, rotation: Array, place: Array, positions: Array) -> tuple[Array, Array]:
+        """A joint's frame, given its parent's: rotation (N, 3, 3) and place (N, 3) in the root link."""
+        place = place + rotation @ self.translations[joint]
+        rotation = rotation @ self.rotations[joint]
+        if self.slides[joint]:
+            return rotation, place + rotation @ self.axes[joint] * positions[:, joint, None]
+        return rotation @ rotations_about(self.axes[joint], positions[:, joint]), place
 
     def path(self, start: int, end: int) -> list[tuple[int, int]]:
         """Joints passed on the way from link `start` to link `end` (-1: the root link) as (joint, sign).
