@@ -21,6 +21,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+import psutil
 import pyarrow as pa
 import pyarrow.parquet as pa_parquet
 
@@ -47,16 +48,10 @@ def command(manifest: Path, out: Path, workers: int, *options: str) -> list[str]
 
 def children(parent: int) -> list[int]:
     """The processes below a process."""
-    found = []
-    for entry in Path("/proc").iterdir():
-        if entry.name.isdigit():
-            try:
-                status = (entry / "stat").read_text()
-            except OSError:
-                continue
-            if int(status.rpartition(")")[2].split()[1]) == parent:
-                found += [int(entry.name), *children(int(entry.name))]
-    return found
+    try:
+        return [child.pid for child in psutil.Process(parent).children(recursive=True)]
+    except psutil.NoSuchProcess:
+        return []
 
 
 def peak(process: int) -> int:

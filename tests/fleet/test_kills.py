@@ -10,6 +10,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+import psutil
 import pytest
 
 from command_line import run
@@ -33,16 +34,10 @@ def units(folder: Path) -> dict[Path, int]:
 
 def children(parent: int) -> list[int]:
     """The processes that a process started, and theirs: the workers and what watches over them."""
-    found = []
-    for entry in Path("/proc").iterdir():
-        if entry.name.isdigit():
-            try:
-                status = (entry / "stat").read_text()
-            except OSError:
-                continue
-            if int(status.rpartition(")")[2].split()[1]) == parent:
-                found += [int(entry.name), *children(int(entry.name))]
-    return found
+    try:
+        return [child.pid for child in psutil.Process(parent).children(recursive=True)]
+    except psutil.NoSuchProcess:
+        return []
 
 
 def wait_until(ready: Callable[[], bool]) -> None:

@@ -156,7 +156,6 @@ def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit) -> FootFit:
     """What was found, and one axis: its fit widened, scored, judged and diagnosed."""
     ready, thin = fitted.ready, fitted.thin
     shared = ready.settings.offset == "shared"
-
     causes = systematic_causes(fit, thin.fitted, ready.sensor_delay, ready.vertical, shared)
     causes += robot_causes(fit, thin.fitted, ready.robot.uncertainty, shared)
     causes += force_gain_causes(fit, ready.gain_errors)

@@ -59,8 +59,9 @@ def apart_notes(apart: Apart) -> list[Note]:
     low, high = (100 * end for end in apart.shown)
     text = (
         f"stiffness and damping differ by {low:.2g} to {high:.2g} % (standard deviation, 95 %) from recording to "
-        f"recording, as {apart.others + 1} recordings show: it is in the intervals. Rubber that warms up or that stood "
-        "under load before does that; so does a joint between IMU and foot that is read wrongly in some of them"
+        f"recording, as all axes of {apart.others + 1} recordings show; each interval holds what its own axis shows of "
+        "it. Rubber that warms up or that stood under load before does that; so does a joint between IMU and foot that "
+        "is read wrongly in some of them"
     )
     return [Note("between_recordings", "info", text)]
 
@@ -71,16 +72,7 @@ def axis_differences(fit: AxisFit, recordings: Sequence[Recording], shared: bool
     None of a foot that steps, and where there is nothing to compare.
     """
     blocks = _blocks(fit, recordings, shared)
-    if not blocks:
-        return None
-    torques, others = _torques(fit, blocks), range(1, len(blocks))
-    columns = [np.column_stack(each) for each in zip(*(_alone(torques, own) for own in others), strict=True)]
-    found = fit_blocks([beside(block, own) for block, own in zip(blocks, columns, strict=True)])
-    size = blocks[0].regressor.shape[1]
-    ends = slice(size, size + len(others))
-    usual = float(fit_blocks(blocks).std[0]) / max(abs(float(fit.values[0])), 1e-300)
-    differences = Differences(found.values[ends], found.covariance[ends, ends])
-    return AxisDifferences(differences, usual, frozenset(block.label for block in blocks))
+    return _differences(fit, blocks) if blocks else None
 
 
 def between_recordings(
@@ -98,8 +90,7 @@ def between_recordings(
         covariance, freedom = jackknife(values_without_each(blocks))
         beyond = np.diag(covariance) - fit_blocks(blocks).std ** 2
         return [Cause(NAME, np.sqrt(np.maximum(beyond, 0.0)), 1.0, float(freedom[0]))]
-    own = axis_differences(fit, recordings, shared)
-    apart = recordings_apart([] if own is None else [own], prior)
+    apart = recordings_apart([_differences(fit, blocks)], prior)
     torques = _torques(fit, blocks)
     effects = np.array([effect_of(blocks, _alone(torques, own)) for own in range(len(blocks))])
     return [Cause(NAME, np.sqrt(np.sum(effects**2, axis=0)), apart.share, float(apart.others))]
@@ -109,6 +100,17 @@ def _blocks(fit: AxisFit, recordings: Sequence[Recording], shared: bool) -> list
     """The recordings of an axis that can be told apart: of a standing foot, several, each with its own offset."""
     blocks = tangent_blocks(recordings, fit, drift=not shared)
     return [] if blocks[0].stances is not None or shared or len(blocks) < 2 else blocks
+
+
+def _differences(fit: AxisFit, blocks: Sequence[Block]) -> AxisDifferences:
+    torques, others = _torques(fit, blocks), range(1, len(blocks))
+    columns = [np.column_stack(each) for each in zip(*(_alone(torques, own) for own in others), strict=True)]
+    found = fit_blocks([beside(block, own) for block, own in zip(blocks, columns, strict=True)])
+    size = blocks[0].regressor.shape[1]
+    ends = slice(size, size + len(others))
+    usual = float(fit_blocks(blocks).std[0]) / max(abs(float(fit.values[0])), 1e-300)
+    differences = Differences(found.values[ends], found.covariance[ends, ends])
+    return AxisDifferences(differences, usual, frozenset(block.label for block in blocks))
 
 
 def _torques(fit: AxisFit, blocks: Sequence[Block]) -> list[Array]:
