@@ -105,7 +105,7 @@ def test_whole_recordings_are_held_out_where_they_can_stand_for_one_another() ->
 
 def test_a_gain_that_is_real_but_small_keeps_the_simpler_law() -> None:
     """A weak cubic term is well told from nothing, yet predicts held-out motion hardly better."""
-    data_sets = campaign(1, Rubber(hardening=300.0))
+    data_sets = campaign(1, Rubber(hardening=200.0))
     choice = choose_model(data_sets, [KelvinVoigt(), Hardening()])
     hardening = next(score for score in choice.ranking if score.model.name == "hardening")
     assert hardening.refused is None

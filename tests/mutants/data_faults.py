@@ -200,7 +200,7 @@ DATA_FAULTS = (
         ("feet/assess/test_contradiction.py",),
     ),
     Mutant(
-        "feet/assess/contradiction.py", "what is quicker than drift passes for drift", "DRIFT_PERIOD = 20.0",
+        "signals/slow_drift.py", "what is quicker than drift passes for drift", "DRIFT_PERIOD = 20.0",
         "DRIFT_PERIOD = 5.0", ("feet/assess/test_contradiction.py",),
     ),
     Mutant(

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from plantar.conventions import Array, Mask
 from plantar.models import BushModel, BushMotion
 from plantar.signals.filters import SHORTEST_RUN, low_pass
+from plantar.signals.slow_drift import drift_beside
 
 SAMPLES_PER_CYCLE = 7  # of the filter's cutoff, that thinning keeps
 THIN_BAND = 4.0  # cutoffs, that survive thinning
@@ -95,8 +96,8 @@ class FilteredDataSet:
     state down at every turn (dither makes a Bouc-Wen element's memory fade), which the rubber itself does not feel.
     Where the foot steps, turns are too quick for that: the state follows the wide-band `path`.
 
-    With `drift`, response and columns come without their line in time: the IMU's attitude drifts slowly, differently in
-    each recording, which is the same as fitting such a line beside the offset. Where the foot steps, it is what `steps`
+    With `drift`, response and columns come without what drifts slowly, as the IMU's attitude does, differently in each
+    recording, which is the same as fitting such columns beside the offset. Where the foot steps, it is what `steps`
     holds that is taken off instead.
     """
 
@@ -132,10 +133,15 @@ class FilteredDataSet:
 
     def without_nuisance(self, rows: Array) -> Array:
         """Samples that are used, (n, ...), without what is their recording's own; their means stay."""
-        if self.steps is None:
-            return self._without_drift(rows)
-        flat = self.steps.centred(rows.reshape(len(rows), -1), self._stance)
-        own = self._nuisance
+        if not len(rows):
+            return rows
+        flat = rows.reshape(len(rows), -1)
+        if self.steps is not None:
+            flat, own = self.steps.centred(flat, self._stance), self._nuisance
+        elif self.drift:
+            own = self._slow
+        else:
+            return rows
         return np.asarray(flat - own @ (own.T @ flat)).reshape(rows.shape)
 
     @cached_property
@@ -143,9 +149,7 @@ class FilteredDataSet:
         """Orthonormal columns (n, m) of what is the recording's own, about their means; of a foot that steps."""
         assert self.steps is not None, "asked only where the foot steps"
         nuisance = self.steps.centred(self.steps.nuisance[self.used], self._stance)
-        nuisance = nuisance - nuisance.mean(axis=0)
-        left, size, _ = np.linalg.svd(nuisance, full_matrices=False)
-        return np.asarray(left[:, size > RANK_TOLERANCE * max(float(size.max(initial=0.0)), 1e-300)])
+        return orthonormal(nuisance - nuisance.mean(axis=0))
 
     @cached_property
     def _stance(self) -> NDArray[np.intp]:
@@ -153,15 +157,11 @@ class FilteredDataSet:
         assert self.steps is not None, "asked only where the foot steps"
         return np.asarray(np.unique(self.steps.stance[self.used], return_inverse=True)[1])
 
-    def _without_drift(self, rows: Array) -> Array:
-        """Used samples without their line in time."""
-        time = np.flatnonzero(self.used).astype(np.float64)
-        time -= time.mean() if time.size else 0.0
-        power = float(time @ time)
-        if not self.drift or power == 0:
-            return rows
-        flat = rows.reshape(len(rows), -1)
-        return np.asarray(flat - np.outer(time, time @ flat / power)).reshape(rows.shape)
+    @cached_property
+    def _slow(self) -> Array:
+        """Orthonormal columns (n, m) of drift at the used samples."""
+        time = np.flatnonzero(self.used).astype(np.float64) * self.motion.period
+        return orthonormal(drift_beside(self.motion.deflection[self.used], time))
 
     @cached_property
     def base(self) -> Array:
@@ -175,6 +175,12 @@ class FilteredDataSet:
         for place, run in enumerate(self.motion.runs):
             number[run] = place
         return number[self.used]
+
+
+def orthonormal(columns: Array) -> Array:
+    """A basis (n, r) of what columns (n, m) span."""
+    left, size, _ = np.linalg.svd(columns, full_matrices=False)
+    return np.asarray(left[:, size > RANK_TOLERANCE * max(float(size.max(initial=0.0)), 1e-300)])
 
 
 def prepare_data_sets(

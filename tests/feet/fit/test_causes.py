@@ -15,6 +15,7 @@ from feet_trials import AXES, LINEAR, codes, noisy
 from plantar.feet.identify import identify_feet
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
+from plantar.signals.slow_drift import drift_columns
 
 Torque = Callable[[np.ndarray, np.ndarray], np.ndarray]  # of pitch (N,) and of the force at the bush (N, 3)
 
@@ -49,16 +50,16 @@ def added(result: FeetResult, foot: str, axis: str, name: str, cause: str) -> fl
 def effects(axis: str, foot: str, torque: Torque) -> list[np.ndarray]:
     """How far K and C of both motions together move, (2,), when one motion's torque changes so: one for each motion.
 
-    Dense least squares, a line in time for each motion beside deflection and rate.
+    Dense least squares, each motion's own offset and slow drift beside deflection and rate.
     """
     designs, changes = [], []
     for place, motion in enumerate(MOTIONS):
         t = times(motion)
         t = t[(t > 0.3) & (t < motion.duration - 0.3)]
         both = (deflection(motion, AS_USUAL, foot, t), deflection_rate(motion, AS_USUAL, foot, t))
-        own = np.zeros((len(t), 2 * len(MOTIONS)))
-        own[:, 2 * place] = 1.0
-        own[:, 2 * place + 1] = t
+        slow = np.column_stack([np.ones(len(t)), drift_columns(t)])
+        own = np.zeros((len(t), slow.shape[1] * len(MOTIONS)))
+        own[:, place * slow.shape[1] : (place + 1) * slow.shape[1]] = slow
         designs.append(np.column_stack([*(one[:, AXES.index(axis)] for one in both), own]))
         changes.append(torque(both[0][:, 0], bush_force(motion, AS_USUAL, foot, t)))
     found = []

@@ -14,13 +14,13 @@ from plantar.feet.fit.prediction import predict
 from plantar.feet.recording import Recording
 from plantar.results.feet import ValidationRow
 from plantar.results.scores import error_measures
+from plantar.signals.slow_drift import drift_columns
 
 HOLDS = 0.3  # mean error over that of a constant, of the liveliest motion: the model holds
 MISSED = 0.5  # likewise, of a motion that contradicts it
 LOADED = 0.1  # of the liveliest motion's torque: others hardly load the axis
 TURNED = 3.0  # deviations of a mount: one that is turned by more is a fault, and to be named
 ROUNDS = 2  # of Gauss and Newton: a bush with a memory is not linear in its deflection
-DRIFT_PERIOD = 20.0  # s: attitudes wander more slowly, motions that were asked for are twice as quick or more
 
 
 def contradiction(
@@ -63,8 +63,8 @@ def missed_motions(rows: Sequence[ValidationRow]) -> list[ValidationRow]:
 def beside_drift(
     row: ValidationRow, fitted: FittedModel, recording: Recording, predictions: Predictions, mount: float
 ) -> ValidationRow:
-    """The score without what is slower than `DRIFT_PERIOD`, in the error and in the torque alike, nor what a turn of
-    the IMU by less than `TURNED` times `mount` [rad] explains of the error.
+    """The score without what drifts slowly (`signals.slow_drift`), in error and torque alike, nor what a turn of the
+    IMU by less than `TURNED` times `mount` [rad] explains of the error.
 
     A foot that steps is scored with an offset of its own in each stance, which follows any drift.
     """
@@ -72,7 +72,8 @@ def beside_drift(
         return row
     prediction = predictions[recording.name, fitted.foot, fitted.axis]
     torque = recording.bushes[fitted.foot].torque[prediction.scored, ROTATIONAL_AXES.index(fitted.axis)]
-    slow = _slow(recording.time[prediction.scored])
+    columns = drift_columns(recording.time[prediction.scored])
+    slow = np.column_stack([np.ones(len(columns)), columns])
 
     def quick(values: Array) -> Array:
         return np.asarray(values - slow @ np.linalg.lstsq(slow, values, rcond=None)[0])
@@ -104,14 +105,6 @@ def _mount_that_fits(left: Callable[[Array], Array], start: Array, mount: float,
         rows = np.vstack([weight * slopes, np.eye(3)])
         turned = turned - mount * np.linalg.lstsq(rows, np.append(weight * now, turned / mount))[0]
     return turned
-
-
-def _slow(time: Array) -> Array:
-    """A line and cosines down to DRIFT_PERIOD, (n, m), over the times (n,) [s] of samples."""
-    length = max(time[-1] - time[0], 1e-9)
-    share = (time - time[0]) / length
-    orders = np.arange(int(2 * length / DRIFT_PERIOD) + 1)
-    return np.column_stack([np.cos(np.pi * np.outer(share, orders)), share])
 
 
 def _share(row: ValidationRow) -> float:

@@ -16,6 +16,7 @@ from plantar.feet.recording import SHORTEST_STANCE_RUN, Recording
 from plantar.model_selection.data_sets import DataSet, StepColumns
 from plantar.models import BushMotion, KelvinVoigt
 from plantar.signals.filters import SHORTEST_RUN, differentiate, low_pass
+from plantar.signals.slow_drift import drift_beside
 
 PATH_BAND = 4.0  # times the fit's cutoff, of the path that a memory follows through short stances
 # m, before any data, of the centre's place: aside anything (the torque of the load is its own), in height some
@@ -37,7 +38,7 @@ def blocks_of(
 ) -> list[Block]:
     """Eq. 6 for each recording in which the foot has enough used samples, in the columns of a fit's model.
 
-    `drift` adds a line in time to each recording's offset: the IMU's attitude drifts slowly. A model whose shape
+    `drift` adds slow columns to each recording's offset: the IMU's attitude drifts. A model whose shape
     depends on the deflection's zero gets the square of the deflection too, which is what an error of that zero adds to
     a cube. Where the foot steps in any of the recordings, rows have stances, and the torque that grows with the load
     alone, of a bush or a sensor beside its place, is a nuisance of all; of a foot that stands, the torque is without
@@ -114,12 +115,12 @@ def _nuisance(recording: Recording, foot: str, column: int, fit: AxisFit | None)
     if recording.stances[foot] is not None:
         return None
     used = recording.rows(foot)
-    time = recording.time[used]
-    line = (time - time.mean())[:, None]
+    deflection = recording.bushes[foot].deflection[used, column]
+    drift = drift_beside(deflection, recording.time[used])
     if fit is None or not fit.model.zero_matters:
-        return np.asarray(line)
-    square = recording.bushes[foot].deflection[used, column] ** 2
-    return np.column_stack([line, square - square.mean()])
+        return drift
+    square = deflection**2
+    return np.column_stack([drift, square - square.mean()])
 
 
 def _stance_rows(recording: Recording, foot: str) -> StanceRows:
