@@ -12,8 +12,8 @@ from plantar.checks.quaternions import misread, readings, turns_between
 from plantar.conventions import GRAVITY, Array, Mask, rotation_from_quaternion
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding
-from plantar.signals.filters import differentiate, low_pass
-from plantar.signals.segments import longest_run
+from plantar.signals.gyroscope_delay import USUAL, gyroscope_delay
+from plantar.signals.orientation import rates_from
 
 WINDOW = 0.5  # s over which the orientation's turn is compared with the gyroscope's integral
 OVERLAP = 5  # windows begin in each window's time
@@ -26,8 +26,7 @@ SCALE_OFF, TURNED = 0.05, 0.1  # share, rad: of a gyroscope, damping is off by a
 SURE = 6.0  # deviations
 FOLLOWED = 0.25  # share of the difference's square that turning one side may leave
 PLANAR = 0.05  # second over first singular value: turns about one axis do not show how the other two lie
-LATE, EXPLAINED = 0.005, 0.1  # s, share: of a delay between gyroscope and orientation
-BAND = 8.0  # Hz, in which it is looked for
+EXPLAINED = 0.1  # share of the difference of both rates, by a delay between gyroscope and orientation
 MEDIAN = 0.6745  # of absolute values over the deviation, of a normal distribution
 REVERSED = -0.9  # correlation, and slope within a factor of two, of an axis that reads the opposite
 
@@ -187,25 +186,13 @@ def _turned_onto(one: Array, other: Array) -> Array:
 
 def _late(name: str, log: MotionLog, orientation: Array) -> Iterator[Finding]:
     """Whether orientation and gyroscope tell of the same turn at different times: rates and angles then disagree."""
-    period, edge = log.period, round(0.5 / log.period)
-    rates = log.angular_velocity(name)
-    whole: Mask = np.asarray(np.isfinite(np.column_stack([orientation, rates])).all(axis=1))
-    whole[1:] &= np.diff(log.time) < 1.5 * period
-    run = longest_run(whole)
-    if run.stop - run.start < 10 * edge:
+    turning = rates_from(orientation, log.period)
+    turning[np.append(False, np.diff(log.time) > 1.5 * log.period)] = np.nan
+    found = gyroscope_delay(log.angular_velocity(name), turning, log.period)
+    if found is None or found.explained < EXPLAINED:
         return
-    turned = turns_between(orientation[run][:-1], orientation[run][1:]) / period
-    measured = (rates[run][1:] + rates[run][:-1]) / 2
-    apart = low_pass(measured - turned, period, BAND)[edge:-edge]
-    change = differentiate(low_pass(measured, period, BAND), period)[edge:-edge]
-    apart = apart - apart.mean(axis=0)
-    power, total = float(np.sum(change**2)), float(np.sum(apart**2))
-    if power == 0 or total == 0:
-        return
-    late = -float(np.sum(apart * change)) / power
-    left = float(np.sum((apart + late * change) ** 2))
-    deviation = np.sqrt(left / power / (6 * BAND * period * len(apart)))
-    if abs(late) > max(LATE, SURE * deviation) and left < (1 - EXPLAINED) * total:
+    late = found.late
+    if abs(late) > max(USUAL, SURE * found.std):
         later, other = ("gyroscope", "orientation") if late > 0 else ("orientation", "gyroscope")
         text = f"columns 'imu.{name}.*': the {later} is {1e3 * abs(late):.0f} ms behind the {other} in this motion"
         cause = "late, or filtered towards the accelerometer; damping is less sure"

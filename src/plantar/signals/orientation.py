@@ -22,7 +22,7 @@ def attitude(log: MotionLog, imu: Imu, notes: list[Note]) -> tuple[Array, Array]
             return orientation, log.angular_velocity(name)
         text = f"{log.name}: no angular velocity; rates come from differentiated orientation, damping is less sure"
         notes.append(Note("gyroscope_missing", "warning", text))
-        return orientation, _rates_from(orientation, log.period)
+        return orientation, rates_from(orientation, log.period)
     rates, acceleration = log.angular_velocity(name), log.linear_acceleration(name)
     whole = np.isfinite(np.column_stack([rates, acceleration])).all(axis=1)
     if not whole.any():
@@ -43,10 +43,10 @@ def attitude(log: MotionLog, imu: Imu, notes: list[Note]) -> tuple[Array, Array]
     return orientation, rates
 
 
-def _rates_from(orientation: Array, period: float) -> Array:
+def rates_from(orientation: Array, period: float) -> Array:
     """Angular velocity in the body frame, (N, 3), from quaternions w x y z by central differences."""
     norm = np.linalg.norm(orientation, axis=1, keepdims=True)
-    unit = orientation / norm
+    unit = orientation / np.where(norm > 0, norm, np.nan)
     flips = np.where(np.sum(unit[1:] * unit[:-1], axis=1) < 0, -1.0, 1.0)
     unit = unit * np.concatenate([[1.0], np.cumprod(flips)])[:, None]
     slope = differentiate(unit, period)

@@ -97,7 +97,7 @@ def test_the_zero_of_the_yaw_torque_widens_roll_by_what_it_moves(found: FeetResu
     expected = np.sqrt(np.mean(np.square(zeros))) * np.linalg.norm(each, axis=0)
     for place, name in enumerate(("stiffness", "damping")):
         size = added(found, foot, "roll", name, "yaw torque zero")
-        assert size == pytest.approx(expected[place], rel=0.06, abs=1e-4)
+        assert size == pytest.approx(expected[place], rel=0.08, abs=1e-4)
         assert "yaw torque zero" not in limits(found)[foot, "pitch", name]["variance_shares"]
 
 

@@ -1,0 +1,72 @@
+"""A gyroscope that its own filter delays is told from the orientation beside it, and read on time."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from plantar.conventions import Array
+from plantar.logs.motion_log import MotionLog, imu_columns
+from plantar.signals.gyroscope_delay import USUAL, with_gyroscope_on_time
+from plantar.signals.orientation import rates_from
+
+PERIOD = 0.005
+TIME = PERIOD * np.arange(6000)
+RATES = imu_columns("chest", "angular_velocity")
+
+
+def log_with(late: float, noise: float = 1e-4) -> MotionLog:
+    """A body that rolls and pitches, 0.3 to 1.5 Hz, its gyroscope late by `late` [s]; an angle's `noise` [rad]."""
+
+    def angles(time: Array) -> Array:
+        roll = 0.05 * np.sin(2 * np.pi * 0.5 * time) + 0.02 * np.sin(2 * np.pi * 1.5 * time)
+        return np.column_stack([roll, 0.06 * np.sin(2 * np.pi * 0.3 * time + 1), 0.3 + 0 * time])
+
+    random = np.random.default_rng(5)
+    read = angles(TIME) + noise * random.standard_normal((len(TIME), 3))
+    x, y, z, w = Rotation.from_euler("xyz", read).as_quat().T
+    exact = Rotation.from_euler("xyz", angles(TIME)).as_quat()[:, [3, 0, 1, 2]]
+    rates = rates_from(exact, PERIOD)
+    delayed = np.column_stack([np.interp(TIME - late, TIME, column) for column in rates.T])
+    delayed += 0.001 * random.standard_normal(delayed.shape) + 0.01
+    columns = dict(zip(imu_columns("chest", "orientation"), (w, x, y, z), strict=True))
+    return MotionLog("sway", TIME, columns | dict(zip(RATES, delayed.T, strict=True)))
+
+
+@pytest.mark.parametrize("late", [0.003, -0.002])
+def test_rates_come_at_the_moments_of_the_orientation(late: float) -> None:
+    log = log_with(late)
+    found = with_gyroscope_on_time(log, "chest")
+    on_time, inner = log_with(0.0), slice(200, -200)
+    before, after = (
+        np.abs(one.angular_velocity("chest") - on_time.angular_velocity("chest"))[inner].mean()
+        for one in (log, found)
+    )
+    assert after < 0.6 * before
+    assert [note.code for note in found.notes] == ["gyroscope_delay"]
+    shown = float(found.notes[0].text.split("gyroscope ")[1].split(" ms")[0])
+    assert shown == pytest.approx(1e3 * abs(late), abs=0.3)
+    assert ("ahead of" if late < 0 else "behind") in found.notes[0].text
+
+
+@pytest.mark.parametrize("late", [0.0, 1.6 * USUAL])
+def test_none_and_a_fault_are_left_as_they_are(late: float) -> None:
+    log = log_with(late)
+    assert with_gyroscope_on_time(log, "chest") is log
+
+
+def test_noise_that_hides_a_delay_shifts_nothing() -> None:
+    log = log_with(0.0005, noise=0.02)
+    assert with_gyroscope_on_time(log, "chest") is log
+
+
+def test_a_log_without_orientation_or_with_gaps() -> None:
+    log = log_with(0.003)
+    alone = MotionLog("sway", TIME, {name: log.column(name) for name in RATES})
+    assert with_gyroscope_on_time(alone, "chest") is alone
+    holes = log.angular_velocity("chest").copy()
+    holes[3000:3010] = np.nan
+    found = with_gyroscope_on_time(log.with_columns(dict(zip(RATES, holes.T, strict=True))), "chest")
+    assert found.notes
+    assert np.isnan(found.angular_velocity("chest")).sum() < 45
