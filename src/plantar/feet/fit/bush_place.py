@@ -16,6 +16,7 @@ import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES, Array, Axis, Mask
 from plantar.estimation import Block, effect_of, fit_blocks
+from plantar.estimation.errors_in_variables import NOISE_DOUBT, attenuation
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.load_torque import place_columns
 from plantar.feet.fit.place_notes import (
@@ -121,16 +122,17 @@ def about_its_place(
     spreads = np.where(_seen(blocks, columns, spread.expected), spread.expected, 0.0)
     size, tried = blocks[0].regressor.shape[1], np.flatnonzero(spreads)
     before = np.array([*fit.moment_arms, fit.turned, *fit.imu_turned])
-    found = fit_blocks(
-        [beside(block, own[:, tried]) for block, own in zip(blocks, columns, strict=True)],
-        shared_offset=shared,
-    )
+    wider = [beside(block, own[:, tried]) for block, own in zip(blocks, columns, strict=True)]
+    found = fit_blocks(wider, shared_offset=shared)
+    # A push bends the foot and turns about the place alike: what noise takes off the one, the other takes up.
+    noisy = attenuation(wider, found.values, shared_offset=shared)
     place, unsure = np.zeros(len(spreads)), np.diag(spreads**2)
     place[1] = spread.height
-    if found.condition_number <= SINGULAR:
-        own = slice(size, size + len(tried))
-        seen = before[tried] + found.values[own] - place[tried]
-        drawn, left = _drawn(seen, found.covariance[own, own], spreads[tried])
+    if found.condition_number <= SINGULAR and noisy is not None:
+        own, doubt = slice(size, size + len(tried)), NOISE_DOUBT * noisy[size:]
+        seen = before[tried] + (found.values + noisy)[own] - place[tried]
+        unknown = found.covariance[own, own] + np.outer(doubt, doubt)
+        drawn, left = _drawn(seen, unknown, spreads[tried])
         place[tried] += drawn
         unsure[np.ix_(tried, tried)] = left
     follows = np.column_stack(
