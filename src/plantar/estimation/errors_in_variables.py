@@ -19,7 +19,6 @@ from plantar.signals.filters import gain, low_pass
 ABOVE = 4.0  # cutoffs: from there on a signal counts as noise
 NORMAL = 1.4826  # standard deviation over median absolute value, of normal noise
 FEWEST = 50  # samples
-NOISE_DOUBT = 0.3  # of what noise takes off: it may not be white
 MOST = 0.5  # share of a direction's square that may be noise: beyond, nothing of it is known
 
 

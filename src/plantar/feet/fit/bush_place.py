@@ -14,9 +14,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from plantar.conventions import ROTATIONAL_AXES, Array, Axis, Mask
-from plantar.estimation import Block, effect_of, fit_blocks
-from plantar.estimation.errors_in_variables import NOISE_DOUBT, attenuation
+from plantar.conventions import ROTATIONAL_AXES, UNIFORM, Array, Axis, Mask
+from plantar.estimation import Block, LinearFit, effect_of, fit_blocks
+from plantar.estimation.errors_in_variables import attenuation
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.load_torque import place_columns
 from plantar.feet.fit.place_notes import (
@@ -125,11 +125,11 @@ def about_its_place(
     wider = [beside(block, own[:, tried]) for block, own in zip(blocks, columns, strict=True)]
     found = fit_blocks(wider, shared_offset=shared)
     # A push bends the foot and turns about the place alike: what noise takes off the one, the other takes up.
-    noisy = attenuation(wider, found.values, shared_offset=shared)
+    noisy = attenuation(_with_noise(wider, found), found.values, shared_offset=shared)
     place, unsure = np.zeros(len(spreads)), np.diag(spreads**2)
     place[1] = spread.height
     if found.condition_number <= SINGULAR and noisy is not None:
-        own, doubt = slice(size, size + len(tried)), NOISE_DOUBT * noisy[size:]
+        own, doubt = slice(size, size + len(tried)), UNIFORM * noisy[size:]
         seen = before[tried] + (found.values + noisy)[own] - place[tried]
         unknown = found.covariance[own, own] + np.outer(doubt, doubt)
         drawn, left = _drawn(seen, unknown, spreads[tried])
@@ -161,6 +161,20 @@ def about_its_place(
         imu_turned=(float(place[3]), float(place[4]), float(place[5])),
         notes=(*fit.notes, *place_notes(fit, place, np.sqrt(np.diag(unsure)), spread.deviations)),
     )
+
+
+def _with_noise(blocks: Sequence[Block], fit: LinearFit) -> list[Block]:
+    """The blocks with half of what their fit leaves as noise of the angle: somewhere from none to all of it is.
+
+    An attitude that wanders is more of it than the white noise which the blocks know of.
+    """
+    spring = abs(float(fit.values[0])) or 1.0
+    noisy = []
+    for block in blocks:
+        noise = np.zeros(block.regressor.shape[1]) if block.noise is None else block.noise.copy()
+        noise[0] += 0.5 * float(np.mean(fit.residuals[block.label] ** 2)) / spring**2
+        noisy.append(replace(block, noise=noise))
+    return noisy
 
 
 def turned_bush_note(

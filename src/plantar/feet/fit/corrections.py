@@ -8,13 +8,14 @@ from dataclasses import replace
 import numpy as np
 
 from plantar.estimation import fit_blocks
-from plantar.estimation.errors_in_variables import NOISE_DOUBT, attenuation, offsets_moved
+from plantar.estimation.errors_in_variables import attenuation, offsets_moved
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.regression_data import blocks_of
 from plantar.feet.recording import Recording
 from plantar.models import KelvinVoigt
 from plantar.notes import Note
 
+NOISE_DOUBT = 0.3  # of what noise takes off: it may not be white
 NEGLIGIBLE, TINY = 0.1, 1e-3  # of a deviation and of a value: a smaller bias is not worth a correction
 
 

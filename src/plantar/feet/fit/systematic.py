@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from plantar.conventions import NORMAL95, ROTATIONAL_AXES, Array, Mask
+from plantar.conventions import NORMAL95, ROTATIONAL_AXES, UNIFORM, Array, Mask
 from plantar.estimation import Block, effect_of, fit_blocks
 from plantar.estimation.intervals import pooled_freedom
 from plantar.estimation.stance_least_squares import FEWEST_RECORDINGS
@@ -28,9 +28,6 @@ SLOPE_UNSURE = (
     0.02  # of the slope of an element found in short stances: what its share of the spring is unsure by
 )
 FEWEST_STANDS = 2  # stances of a foot in one recording, for their zeros to differ
-BOUND = 1 / np.sqrt(
-    3
-)  # deviation of what lies somewhere within its bounds (GUM, type B), as a share of these
 SINGULAR = 1e6  # condition of the fit beyond which nothing moves enough to tell
 KNOWN = 0.2  # of the stiffness: less sure beside such a term, the motions cannot tell one from the other
 
@@ -140,7 +137,7 @@ def _ends_of_stances(blocks: Sequence[Block]) -> Cause:
     # Fewer samples move a fit by chance too, by what deviations differ (J. A. Hausman, Econometrica 46, 1978).
     chance = np.maximum(less.std**2 - whole.std**2, 0.0)
     effect = np.sign(moved) * np.sqrt(np.maximum(moved**2 - chance, 0.0))
-    return Cause("ends of stances", effect, BOUND)
+    return Cause("ends of stances", effect, UNIFORM)
 
 
 def _between_walks(fit: AxisFit, recordings: int) -> list[Cause]:
@@ -182,7 +179,7 @@ def _zeros_of_stances(
         kept = [] if block.nuisance is None else [block.nuisance]
         freed.append(replace(block, nuisance=np.column_stack([*kept, own - own.mean(axis=0)])))
     effect = fit_blocks(freed).values - fit_blocks(blocks).values
-    return [Cause("zeros of stances", effect, BOUND)]
+    return [Cause("zeros of stances", effect, UNIFORM)]
 
 
 def _suspected_hardening(fit: AxisFit, blocks: Sequence[Block], shared: bool) -> list[Cause]:
