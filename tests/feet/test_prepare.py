@@ -12,7 +12,7 @@ from feet_trials import PUNCTUAL
 from plantar.errors import DataError
 from plantar.feet.prepare import PreparedLogs, prepare_all, prepare_unseen
 from plantar.feet.settings import FeetSettings
-from plantar.logs.motion_log import MotionLog
+from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.robot.model import RobotModel
 
 
@@ -70,3 +70,19 @@ def test_torques_stand_about_the_centre_where_the_load_has_moved_it(
 def test_two_logs_of_one_name_are_refused_fitted_or_not(robot: RobotModel, logs: list[MotionLog]) -> None:
     with pytest.raises(DataError, match="two logs are called 'first'"):
         prepared(robot, [logs[0], logs[1], logs[0]])
+
+
+def test_a_gyroscope_behind_its_orientation_is_read_on_time(robot: RobotModel, logs: list[MotionLog]) -> None:
+    assert robot.imu is not None
+    columns = imu_columns(robot.imu.name, "angular_velocity")
+    log, rates = logs[0], logs[0].angular_velocity(robot.imu.name)
+    late = np.column_stack([np.interp(log.time - 0.004, log.time, column) for column in rates.T])
+    delayed = log.with_columns(dict(zip(columns, late.T, strict=True)))
+    exact, found = (
+        prepare_all(robot, [one], [], PUNCTUAL, lambda _: None).recordings[0] for one in (log, delayed)
+    )
+    assert [note.code for note in found.notes if note.code == "gyroscope_delay"] == ["gyroscope_delay"]
+    assert not [note for note in exact.notes if note.code == "gyroscope_delay"]
+    inner = slice(100, -100)
+    apart = np.abs(found.bushes["left"].rate - exact.bushes["left"].rate)[inner]
+    assert np.nanmean(apart) < 0.05 * np.nanmean(np.abs(exact.bushes["left"].rate[inner]))

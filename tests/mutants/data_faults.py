@@ -195,6 +195,26 @@ DATA_FAULTS = (
         "shape + by", ("feet/fit/test_bush_place.py",),
     ),
     Mutant(
+        "feet/fit/bush_place.py", "a wandering angle makes another place", "0.5 * float(np.mean(fit.residuals",
+        "0.0 * float(np.mean(fit.residuals", ("feet/fit/test_bush_place.py",),
+    ),
+    Mutant(
+        "feet/fit/regression_data.py", "drift is a line", "drift = drift_beside(deflection, recording.time[used])",
+        "drift = drift_beside(deflection, recording.time[used])[:, :1]", ("feet/fit/test_regression_data.py",),
+    ),
+    Mutant(
+        "signals/slow_drift.py", "drift takes a slow motion", "< (1 - QUICK) * beside_line", "< 2 * beside_line",
+        ("signals/test_slow_drift.py",),
+    ),
+    Mutant(
+        "signals/gyroscope_delay.py", "the gyroscope is read later still", "log.period, found.late)",
+        "log.period, -found.late)", ("signals/test_gyroscope_delay.py",),
+    ),
+    Mutant(
+        "feet/prepare_log.py", "the gyroscope stays late", "with_gyroscope_on_time(even, imu.name)", "even",
+        ("feet/test_prepare.py",),
+    ),
+    Mutant(
         "feet/assess/contradiction.py", "drift contradicts the fit",
         "[beside_drift(row, fitted, by_name[row.motion], predictions, mount) for row in scores]", "scores",
         ("feet/assess/test_contradiction.py",),

@@ -11,16 +11,21 @@ import pytest
 from biped import SLIPPING, TRUTH, record, sines, sway
 from biped_robot import FEET, Frame, Mounting
 from feet_trials import AXES, LINEAR, PUNCTUAL, codes, noisy
+from made_recording import FOOT, PERIOD, made_recording, swayed
 from plantar.conventions import Axis
 from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.bush_place import PlaceSpread, shape_moved
+from plantar.feet.fit.axis_fit import fit_axis
+from plantar.feet.fit.bush_place import PlaceSpread, about_its_place, shape_moved
 from plantar.feet.identify import identify_feet
+from plantar.feet.recording import Recording
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.results.feet import FeetResult
 from plantar.robot.guesses import Guess
 from plantar.robot.model import RobotModel
 from plantar.robot.uncertainty import Uncertainty
+
+STIFFNESS, PUSHED = 400.0, 0.8  # N.m/rad; m: how far above the bush a hand pushes
 
 
 @pytest.fixture(scope="module")
@@ -239,3 +244,30 @@ def test_a_shape_moves_in_its_logarithm_and_stays_positive() -> None:
     found = shape_moved(shape, np.array([1e-6, -40.0, 800.0]))
     assert found[0] == pytest.approx(2e-3 + 1e-6, rel=1e-6)
     assert found[1:] == pytest.approx([2.0 / np.e, np.e])
+
+
+def pushed(seed: int, wander: float) -> Recording:
+    """A foot that a push at one height bends: the horizontal force goes with the angle, which is read with `wander`
+    [rad] of a slow random walk and white noise."""
+    random, bend = np.random.default_rng(seed), swayed(seed=seed)
+    walk = np.cumsum(random.standard_normal(len(bend))) * wander / np.sqrt(len(bend))
+    read = bend + walk + 0.1 * wander * random.standard_normal(len(bend))
+    one = made_recording(f"push_{seed}", read, STIFFNESS * bend, rate=np.gradient(bend, PERIOD))
+    state = one.bushes[FOOT]
+    wrench = state.wrench.copy()
+    wrench[:, 0] = STIFFNESS / PUSHED * bend + 0.3 * swayed(seed=seed + 50) / 0.03
+    own = {FOOT: replace(state, wrench=wrench)}
+    noise = {FOOT: np.array([[0.1 * wander] * 2, [0.0] * 2]) ** 2}
+    return replace(one, raw=own, bushes=own, noise=noise, imu_turns={FOOT: np.zeros((len(bend), 2, 3))})
+
+
+@pytest.mark.parametrize("wander", [1e-3, 3e-4])
+def test_a_push_does_not_turn_noise_of_the_angle_into_another_place(wander: float) -> None:
+    """The noise takes 0.05 % off the spring by itself, and 1 % where a place beside it takes up the rest."""
+    recordings = [pushed(seed, wander) for seed in range(4)]
+    fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
+    assert fit is not None
+    placed = about_its_place(fit, recordings, PlaceSpread(0.003, 0.003, 0.0), shared=False)
+    assert placed.values[0] == pytest.approx(STIFFNESS, rel=0.002)
+    assert abs(placed.moment_arms[1]) < 0.001
+    assert placed.std[0] < 0.005 * STIFFNESS
