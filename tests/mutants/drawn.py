@@ -78,8 +78,8 @@ MODEL_SELECTION = (
         "value > (1 - AT_LIMIT) * high", "value > high",
     ),
     Mutant(
-        "model_selection/data_sets.py", "drift about the first sample, so that means change",
-        "time.mean() if time.size else 0.0", "0.0",
+        "signals/slow_drift.py", "drift about the first sample, so that means change",
+        "columns - columns.mean(axis=0)", "columns - columns[0]",
     ),
     Mutant(
         "model_selection/partialled_out.py", "offsets' influence with the wrong sign",

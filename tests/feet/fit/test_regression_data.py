@@ -15,7 +15,7 @@ TIME = PERIOD * np.arange(COUNT)
 
 
 def test_an_attitude_that_wanders_draws_no_stiffness_to_zero() -> None:
-    """A bow of 5 mrad beside a sway of 10 mrad: with a line alone the stiffness would be far too small."""
+    """A bow of 5 mrad beside a sway of 10 mrad: with a line alone the stiffness would be 19 % too small."""
     bend = swayed(COUNT, amplitude=0.01)
     wander = 0.005 * np.cos(2 * np.pi * TIME / TIME[-1])
     fit = fit_axis([made_recording("sway", bend + wander, STIFFNESS * bend)], FOOT, "pitch", LINEAR)
