@@ -42,8 +42,8 @@ def told(replay: Replay, flag: Flag) -> np.ndarray:
 def expect_unharmed(replay: Replay) -> None:
     found = replay.estimate("left").pitch
     truth = TRUTH["left", "pitch"]
-    assert found.stiffness.value == pytest.approx(truth.stiffness, rel=3e-3)
-    assert found.damping.value == pytest.approx(truth.damping, rel=1e-2)
+    assert found.stiffness.value == pytest.approx(truth.stiffness, rel=1e-3)
+    assert found.damping.value == pytest.approx(truth.damping, rel=3e-3)
 
 
 def test_at_the_edge_nothing_is_learnt(robot: RobotModel) -> None:

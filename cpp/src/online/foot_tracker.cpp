@@ -19,6 +19,10 @@ constexpr double USUAL_RATE = 0.1;
 constexpr double USUAL_SLOPE = 0.1;    // horizontal force over weight
 constexpr double STIFFEST = 100.0;     // m, times the weight: stiffness before any data
 constexpr double SLOWEST = 1.0;        // s: damping over stiffness before any data
+// Of a period: how far apart the readings of one tick are, and how far a sample is from what it stands for: motors
+// that are told something new at each tick shake the joints in step with the samples.
+constexpr double SKEW = 0.03;
+constexpr double TWIST_ZERO = 2e-3;    // m, times the weight: zero of a yaw torque
 constexpr double NOISE_ABOVE = 4.0;    // cutoffs: from there on a signal counts as noise
 constexpr double NYQUIST_SHARE = 0.8;  // of the highest frequency, that this must stay below
 constexpr double NEWLY_KNOWN = 0.02;   // of an element's range: less changes no offset
@@ -40,11 +44,15 @@ RegressionPrior prior_of(const EstimatorModel& model, const FootModel& foot, int
   const double w = model.weight, slip = foot.slip_angle[axis];
   const double torque_std = slip > 0.0 && foot.slip_torque_std[axis] > 0.0 ? foot.slip_torque_std[axis] : w;
   RegressionPrior prior;
-  prior.scale = {USUAL_ANGLE, USUAL_RATE, 1.0, w, USUAL_SLOPE * w};
-  prior.mean = {0.0, 0.0, slip > 0.0 ? foot.slip_torque[axis] : 0.0, 0.0, 0.0};
+  prior.scale = {USUAL_ANGLE, USUAL_RATE, 1.0, w, USUAL_SLOPE * w, USUAL_SLOPE * w * w};
+  prior.mean = {};
+  if (slip > 0.0) prior.mean[SLIP_TORQUE] = foot.slip_torque[axis];
   prior.spread = {STIFFEST * w, SLOWEST * STIFFEST * w, torque_std, std::max(foot.place_std[0], 1e-9),
-                  std::max(foot.place_std[1], 1e-9)};
+                  std::max(foot.place_std[1], 1e-9), std::max(foot.compliance_std, 1e-9 / w)};
+  prior.twist = axis == 1 ? TWIST_ZERO * w : 0.0;
   prior.element_slope = slip > 0.0 ? 1.0 / slip : 0.0;
+  prior.load_arm = axis == 0 ? -foot.sensor.origin[0] : foot.sensor.origin[1];
+  prior.horizontal_arm = foot.sensor.origin[2];
   return prior;
 }
 
@@ -97,6 +105,7 @@ void FootTracker::end_stance() noexcept {
 
 void FootTracker::learn(const FootKinematics& motion, double others, SlipGate::Verdict slips, bool fresh, double time,
                         double dt, double period) noexcept {
+  period_ = period;
   follow_noise(motion, dt, period);
   const ContactState before = gate_.contact();
   const double inside = depth(foot_->polygon, estimate_.centre_of_pressure);
@@ -124,7 +133,7 @@ void FootTracker::learn(const FootKinematics& motion, double others, SlipGate::V
   estimate_.flags = flags, estimate_.contact = contact;
   if (!fresh) {
     angles_.restart(), forces_.restart();
-    for (WhiteNoise& noise : angle_noise_) noise.restart();
+    restart_noise();
     restart_filter();
   }
   if (contact != ContactState::stance || edge || struck || slips == SlipGate::Verdict::sure) {
@@ -143,9 +152,21 @@ void FootTracker::follow_noise(const FootKinematics& motion, double dt, double p
   for (int a = 0; a < 2; ++a) {
     angle_noise_[a].see(motion.angle[a], dt);
     const double white = shows ? angle_noise_[a].variance() * band : 0.0;
+    rate_noise_[a].see(motion.turning[a], dt);
     noise_[a][0] = white;
-    noise_[a][1] = motion.rate_noise >= 0.0 ? (shows ? motion.rate_noise * band : 0.0) : white * edge * edge / 3.0;
+    noise_[a][1] = !motion.gyroscope ? white * edge * edge / 3.0 : shows ? rate_noise_[a].variance() * band : 0.0;
   }
+  const double forces[3] = {estimate_.load, wrench_[0], wrench_[1]};
+  for (int i = 0; i < 3; ++i) {
+    force_noise_[i].see(forces[i], dt);
+    force_variance_[i] = shows ? force_noise_[i].variance() * band : 0.0;
+  }
+}
+
+void FootTracker::restart_noise() noexcept {
+  for (WhiteNoise& noise : angle_noise_) noise.restart();
+  for (WhiteNoise& noise : rate_noise_) noise.restart();
+  for (WhiteNoise& noise : force_noise_) noise.restart();
 }
 
 // The tick's signals in the middle of its period, where differences are exact, each as late as the latest of them.
@@ -164,15 +185,22 @@ void FootTracker::filter(const FootKinematics& motion, double time, double dt, d
   if (!reaches) return;
   follow_elements(angles.data(), time);
   if (estimate_.contact != ContactState::stance) return;
-  if (estimate_.flags & (EDGE | SLIP | IMPACT)) return;
+  if (estimate_.flags & (EDGE | SLIP | IMPACT)) {
+    left_out_ = time;
+    return;
+  }
+  // The delay lines and the mean over a period still hold what was left out.
+  if (time - left_out_ < std::abs(delay_) + 1.5 * dt) return;
   if (!running_) {
     filter_.design(cutoff_, period);
     filter_.restart();
-    running_ = true;
+    running_ = true, begun_ = time;
   }
-  double channels[CHANNELS] = {1.0,       forces[0], forces[1],           forces[2],
-                               angles[0], angles[2], element_[0].state(), forces[3],
-                               angles[1], angles[3], element_[1].state(), forces[4]};
+  const double load = forces[0], x = forces[1], y = forces[2];
+  double channels[CHANNELS] = {1.0,       time - begun_, load,                x,         y,         load * x,
+                               load * y,  -std::sin(angles[0]),
+                               angles[0], angles[2],     element_[0].state(), forces[3],
+                               angles[1], angles[3],     element_[1].state(), forces[4]};
   filter_.pass(channels);
   row_time_ += dt;
   const int stride = std::max(1, static_cast<int>(1.0 / (ROWS_PER_CYCLE * cutoff_ * period)));
@@ -227,18 +255,19 @@ void FootTracker::commit(double before) noexcept {
 
 void FootTracker::give(const HeldRow& row) noexcept {
   const double* c = row.channels;
-  // A centre that is higher takes its share of the horizontal force: F_x off the pitch torque, F_y onto the roll
-  // torque.
-  double noise[2][NOISE_SOURCES];
   for (int a = 0; a < 2; ++a) {
-    const bool follows = foot_->slip_angle[a] > 0.0 && std::abs(c[6 + 4 * a]) < HARDLY_SLIPS * c[0];
-    noise[a][OF_ANGLE] = follows ? 0.0 : noise_[a][0];
-    noise[a][OF_RATE] = noise_[a][1];
-    noise[a][OF_ANGLE_AND_ELEMENT] = follows ? noise_[a][0] : 0.0;
+    const double* own = c + FIRST_AXIS + AXIS_CHANNELS * a;
+    // A centre that is higher takes its share of the horizontal force: F_x off the pitch torque, F_y onto the roll
+    // torque.
+    const double across = a == 0 ? c[FORCE_X] : -c[FORCE_Y], loaded = a == 0 ? c[LOAD_X] : -c[LOAD_Y];
+    const bool follows = foot_->slip_angle[a] > 0.0 && std::abs(own[ELEMENT]) < HARDLY_SLIPS * c[ONE];
+    const double angle = noise_[a][0], rate = noise_[a][1];
+    axes_[a].add({{c[ONE], c[TIME], a == 1 ? c[TURN] : 0.0},
+                  {own[ANGLE], own[ANGLE_RATE], own[ELEMENT], c[LOAD], across, loaded},
+                  own[TORQUE],
+                  {follows ? 0.0 : angle, rate, follows ? angle : 0.0, force_variance_[0], force_variance_[1 + a]}},
+                 row.dt);
   }
-  const double (&p)[NOISE_SOURCES] = noise[0], (&r)[NOISE_SOURCES] = noise[1];
-  axes_[0].add({c[0], {c[4], c[5], c[6], c[1], c[2]}, c[7], {p[0], p[1], p[2]}}, row.dt);
-  axes_[1].add({c[0], {c[8], c[9], c[10], c[1], -c[3]}, c[11], {r[0], r[1], r[2]}}, row.dt);
 }
 
 void FootTracker::work(int axis) noexcept {
@@ -254,8 +283,9 @@ void FootTracker::work(int axis) noexcept {
                      std::hypot(quantile * std, NORMAL * systematic)};
   };
   // A wrench that is late by more than it was told to be takes K·delay off the damping and adds C·ω²·delay to K.
-  out.stiffness = parameter(STIFFNESS, std::hypot(gain_std_ * k, delay_std_ * c * found.pace));
-  out.damping = parameter(DAMPING, std::hypot(gain_std_ * c, delay_std_ * k));
+  const double late = std::hypot(delay_std_, SKEW * period_);
+  out.stiffness = parameter(STIFFNESS, std::hypot(gain_std_ * k, late * c * found.pace));
+  out.damping = parameter(DAMPING, std::hypot(gain_std_ * c, late * k));
   out.slip_torque =
       foot_->slip_angle[axis] > 0.0 ? parameter(SLIP_TORQUE, gain_std_ * found.value[SLIP_TORQUE]) : Parameter{};
   out.offset = found.offset;
@@ -273,7 +303,7 @@ void FootTracker::miss(std::uint32_t reason) noexcept {
   if (reason & TIME_FAULT) swung_ = false;
   gate_.restart();  // what is told of the contact stays, until readings say otherwise
   shaking_.restart();
-  for (WhiteNoise& noise : angle_noise_) noise.restart();
+  restart_noise();
   angles_.restart(), forces_.restart();
   restart_filter();
 }

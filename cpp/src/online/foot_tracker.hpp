@@ -24,7 +24,8 @@ struct FootKinematics {
   double rate[2];        // [rad/s], of the tick, for the controller
   double mean_angle[2];  // half a period before: there the joints' differences are exact
   double mean_rate[2];
-  double rate_noise;  // variance of the gyroscope's white noise [rad²/s²]; negative: rates come from the attitude
+  double turning[2];     // what the gyroscope alone adds to the rates [rad/s]
+  bool gyroscope;        // else rates come from the attitude
   SolePlace place;
 };
 
@@ -59,8 +60,12 @@ class FootTracker {
   const FootEstimate& estimate() const noexcept { return estimate_; }
 
  private:
-  static constexpr int CHANNELS = 12;  // 1, load, force x and y, then of each axis: angle, rate, element, torque
+  static constexpr int CHANNELS = 16;
   static constexpr int HELD = 32;      // rows that wait until the foot has not lifted behind them
+  // What the filter passes: constant, time, load, horizontal forces, the load times each, what turns with the pitch;
+  // then of each axis.
+  enum Channel : int { ONE, TIME, LOAD, FORCE_X, FORCE_Y, LOAD_X, LOAD_Y, TURN, FIRST_AXIS };
+  enum AxisChannel : int { ANGLE, ANGLE_RATE, ELEMENT, TORQUE, AXIS_CHANNELS };
   struct HeldRow {
     double time, dt;
     double channels[CHANNELS];
@@ -74,10 +79,12 @@ class FootTracker {
   void give(const HeldRow& row) noexcept;
   void end_stance() noexcept;
   void follow_noise(const FootKinematics& motion, double dt, double period) noexcept;
+  void restart_noise() noexcept;
 
   const FootModel* foot_;
   double weight_, least_load_, middle_depth_, delay_, cutoff_;
   double gain_std_, delay_std_;
+  double period_ = 0.0;
   ContactGate gate_;
   AirZero zero_;
   Shaking shaking_;
@@ -86,12 +93,16 @@ class FootTracker {
   DelayLine<6> forces_;
   std::array<AxisRegression, 2> axes_;
   std::array<double, 6> raw_ = {}, wrench_ = {}, before_ = {};  // before_: load, force x, y, both torques, of last tick
-  std::array<WhiteNoise, 2> angle_noise_;
-  double noise_[2][2] = {};  // variance of angle and rate of each axis, behind the filter
+  std::array<WhiteNoise, 2> angle_noise_, rate_noise_;
+  std::array<WhiteNoise, 3> force_noise_;  // load, force x, y
+  double noise_[2][2] = {};                // variance of angle and rate of each axis, behind the filter
+  double force_variance_[3] = {};          // the same
   ElementState element_[2];
   double last_angle_[2] = {};
   bool swung_ = false;        // the foot was in the air since time last jumped: its elements begin there at rest
   bool running_ = false;      // the filter has begun
+  double begun_ = 0.0;        // at this time
+  double left_out_ = 0.0;     // when a tick was left out last
   double told_change_ = 0.0;  // s for which a change of ground is still told
   double row_time_ = 0.0;     // since the last row
   int row_ticks_ = 0;
