@@ -81,7 +81,7 @@ def _score(
     latency: list[float],
 ) -> None:
     robot = replace(hrp2.robot(), uncertainty=EXACT)
-    estimator = FootEstimator(robot, _law(preset, seed), wrench_delay=preset.sensors.wrench_delay)
+    estimator = FootEstimator(robot, law(preset, seed), wrench_delay=preset.sensors.wrench_delay)
     begun = 0.0
     for one in recordings:
         replay = estimator.replay(one.log)
@@ -107,7 +107,7 @@ def _score(
         begun += one.log.duration
 
 
-def _law(preset: Preset, seed: int) -> FeetResult | None:
+def law(preset: Preset, seed: int) -> FeetResult | None:
     """A batch result that knows the bushes' elements; None where they have none."""
     rows, random = [], np.random.default_rng([seed, 7])
     for foot, bush in preset.physics(PAPER).bushes.items():

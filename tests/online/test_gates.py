@@ -55,6 +55,16 @@ def test_at_the_edge_nothing_is_learnt(robot: RobotModel) -> None:
     expect_unharmed(replay)
 
 
+def test_behind_an_edge_a_log_whose_time_begins_anew_teaches_at_once(robot: RobotModel) -> None:
+    estimator = FootEstimator(robot, wrench_delay=0.0)
+    log = record(sway(duration=60.0))
+    estimator.replay(spoilt(log, "wrench.left.torque.y", 60.0, slice(5000, 5200)))
+    again = estimator.replay(spoilt(log, "wrench.left.torque.y", 2.0, slice(None)))
+    assert again.estimate("left", 1000).pitch.offset == pytest.approx(
+        TRUTH["left", "pitch"].offset + 2.0, abs=0.1
+    )
+
+
 def test_an_impact_is_left_out(robot: RobotModel) -> None:
     shaken = 40.0 * np.random.default_rng(0).normal(size=200)
     replay = replayed(robot, spoilt(record(sway(duration=60.0)), "wrench.left.force.z", shaken))

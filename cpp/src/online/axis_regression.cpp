@@ -68,7 +68,11 @@ void AxisRegression::watch(const RegressionRow& row, double dt) noexcept {
   double left = row.torque;
   for (int i = 0; i < UNKNOWNS; ++i) left -= row.columns[i] * values_.value[i];
   watch_.add(row.own[OFFSET], row.columns[STIFFNESS], left, dt);
-  if (!watch_.full() || !watch_.judge(stiffness, noise_)) return;
+  if (watch_.full()) end_probe();
+}
+
+void AxisRegression::end_probe() noexcept {
+  if (!watch_.judge(values_.value[STIFFNESS], noise_)) return;
   restart();
   jumped_ = true;
 }
@@ -116,7 +120,7 @@ AxisRegression::Part AxisRegression::open_part() const noexcept {
 }
 
 void AxisRegression::close() noexcept {
-  watch_.drop();
+  end_probe();  // of a short stance
   if (open_rows_ >= FEWEST_ROWS) take(open_part());
   open_ = {}, open_rows_ = 0, open_time_ = 0.0;
   std::fill(open_noise_, open_noise_ + NOISE_SOURCES, 0.0);

@@ -106,6 +106,7 @@ class AxisRegression {
   void solve() noexcept;
   void find_deviations() noexcept;
   void watch(const RegressionRow& row, double dt) noexcept;
+  void end_probe() noexcept;
 
   RegressionPrior prior_;
   RootTriangle<BLOCK_UNKNOWNS> open_;  // its own first

@@ -186,11 +186,14 @@ void FootTracker::filter(const FootKinematics& motion, double time, double dt, d
   follow_elements(angles.data(), time);
   if (estimate_.contact != ContactState::stance) return;
   if (estimate_.flags & (EDGE | SLIP | IMPACT)) {
-    left_out_ = time;
+    pause_ = std::abs(delay_) + dt;
     return;
   }
   // The delay lines and the mean over a period still hold what was left out.
-  if (time - left_out_ < std::abs(delay_) + 1.5 * dt) return;
+  if (pause_ > 0.0) {
+    pause_ -= dt;
+    return;
+  }
   if (!running_) {
     filter_.design(cutoff_, period);
     filter_.restart();

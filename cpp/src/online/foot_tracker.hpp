@@ -102,7 +102,7 @@ class FootTracker {
   bool swung_ = false;        // the foot was in the air since time last jumped: its elements begin there at rest
   bool running_ = false;      // the filter has begun
   double begun_ = 0.0;        // at this time
-  double left_out_ = 0.0;     // when a tick was left out last
+  double pause_ = 0.0;        // s for which the lines still hold ticks that were left out
   double told_change_ = 0.0;  // s for which a change of ground is still told
   double row_time_ = 0.0;     // since the last row
   int row_ticks_ = 0;
