@@ -72,7 +72,7 @@ void AxisRegression::watch(const RegressionRow& row, double dt) noexcept {
 }
 
 void AxisRegression::end_probe() noexcept {
-  if (!watch_.judge(values_.value[STIFFNESS], noise_)) return;
+  if (!watch_.judge(values_.value[STIFFNESS], values_.std[STIFFNESS], noise_)) return;
   restart();
   jumped_ = true;
 }

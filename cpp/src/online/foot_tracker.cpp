@@ -110,8 +110,8 @@ void FootTracker::learn(const FootKinematics& motion, double others, SlipGate::V
   const ContactState before = gate_.contact();
   const double inside = depth(foot_->polygon, estimate_.centre_of_pressure);
   const bool carries = estimate_.load > least_load_;
-  const ContactState contact =
-      gate_.step(estimate_.load, others, carries && inside > ROLLING_SHARE * middle_depth_, zero_.known(), dt);
+  flat_ = carries && inside > ROLLING_SHARE * middle_depth_;
+  const ContactState contact = gate_.step(estimate_.load, others, flat_, zero_.known(), dt);
   const bool struck = shaking_.step(wrench_.data(), dt) && !foot_->always && gate_.standing_for() > LONGEST_STANCE;
   if (contact == ContactState::air) zero_.swing(raw_, estimate_.load, weight_, dt);
   if (before == ContactState::air && contact != ContactState::air) zero_.landed();
@@ -212,7 +212,7 @@ void FootTracker::filter(const FootKinematics& motion, double time, double dt, d
   row_ticks_ = 0, row_time_ = 0.0;
 }
 
-// Elements from tick to tick. In the air one is at rest; at its first sample it is loaded from there. Of a foot that
+// Elements from tick to tick. In the air one is at rest; it is loaded from there until the sole lies flat. Of a foot that
 // stood when time began nobody knows: each time that less is unknown, the rows' offset changes.
 void FootTracker::follow_elements(const double* angles, double time) noexcept {
   const bool air = estimate_.contact == ContactState::air;
@@ -223,7 +223,7 @@ void FootTracker::follow_elements(const double* angles, double time) noexcept {
     last_angle_[a] = angles[a];
     if (slip <= 0.0) continue;
     ElementState& element = element_[a];
-    if (estimate_.contact == ContactState::stance) {
+    if (estimate_.contact == ContactState::stance || (swung_ && !air && flat_)) {
       element.move(by / slip);
       changed = changed || element.opened - element.gap() > NEWLY_KNOWN;
     } else if (swung_) {

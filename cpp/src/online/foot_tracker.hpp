@@ -99,6 +99,7 @@ class FootTracker {
   double force_variance_[3] = {};          // the same
   ElementState element_[2];
   double last_angle_[2] = {};
+  bool flat_ = false;         // the centre of pressure is inside the sole
   bool swung_ = false;        // the foot was in the air since time last jumped: its elements begin there at rest
   bool running_ = false;      // the filter has begun
   double begun_ = 0.0;        // at this time
