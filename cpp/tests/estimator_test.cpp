@@ -1,4 +1,5 @@
 // The estimator on a foot whose stiffness and damping are known, and on sensors that fail.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -132,6 +133,23 @@ void notices_other_ground() {
   check::that((last.flags & GROUND_CHANGED) == 0, "told for some seconds");
 }
 
+// Rubber with a Jenkins element of which the model knows nothing, beside pitch alone.
+void notices_a_memory() {
+  FootEstimator estimator(two_feet());
+  constexpr double SLIP_ANGLE = 0.01, SLIP_TORQUE = 3.0;
+  double state = 0.0, last_angle = angle(0, 0.0);
+  FootEstimate last;
+  for (int i = 0; i < 60000; ++i) {
+    const double t = 1e-3 * i;
+    Sensors sensors(t);
+    state = std::clamp(state + (angle(0, t) - last_angle) / SLIP_ANGLE, -1.0, 1.0), last_angle = angle(0, t);
+    for (auto& w : sensors.wrench) w[4] += SLIP_TORQUE * state;
+    last = estimator.step(sensors.reading(t))[0];
+  }
+  check::that((last.flags & PITCH_MEMORY) && !(last.flags & ROLL_MEMORY), "a memory is told of the axis that has it");
+  check::that(!last.pitch.identified && last.roll.identified, "what other motions change is not called identified");
+}
+
 void a_foot_that_never_stands() {
   FootEstimator estimator(two_feet());
   FootEstimate last;
@@ -186,6 +204,7 @@ int main() {
   survives([](Sensors&, double& t) { t -= 20.5; }, TIME_FAULT, "time that steps back");
   survives([](Sensors&, double& t) { t = NAN_; }, TIME_FAULT, "no time");
   notices_other_ground();
+  notices_a_memory();
   a_foot_that_never_stands();
   broken_models_are_refused();
   return check::result();

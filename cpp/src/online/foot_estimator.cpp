@@ -253,8 +253,8 @@ void FootEstimator::State::step(const Reading& reading) noexcept {
     was_bad[f] = bad[f] != 0;
   }
   known = true;
-  feet[next_work / 2].work(next_work % 2);
-  next_work = (next_work + 1) % static_cast<int>(2 * feet.size());
+  feet[next_work / FootTracker::PIECES].work(next_work % FootTracker::PIECES);
+  next_work = (next_work + 1) % (FootTracker::PIECES * static_cast<int>(feet.size()));
   for (std::size_t f = 0; f < feet.size(); ++f) estimates[f] = feet[f].estimate();
 }
 

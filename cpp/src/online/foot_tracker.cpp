@@ -29,6 +29,8 @@ constexpr double NEWLY_KNOWN = 0.02;   // of an element's range: less changes no
 constexpr double HARDLY_SLIPS = 0.99;  // of an element's largest state: below it noise moves it as the deflection
 constexpr double TRUSTED = 0.1;        // half width over stiffness
 constexpr double CHANGE_TOLD = 5.0;    // s for which the flag of a change stands
+constexpr std::uint32_t OF_LEARNING =
+    NEVER_LOADED | PITCH_UNKNOWN | ROLL_UNKNOWN | PITCH_MEMORY | ROLL_MEMORY;  // they outlast a tick
 constexpr double NORMAL = 1.96;
 // Student's t for 95 %, by degrees of freedom from 2.
 constexpr double QUANTILE[] = {4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201};
@@ -40,13 +42,16 @@ double outline_middle_depth(const FootModel& foot) noexcept {
   return depth(foot.polygon, middle);
 }
 
-RegressionPrior prior_of(const EstimatorModel& model, const FootModel& foot, int axis) noexcept {
-  const double w = model.weight, slip = foot.slip_angle[axis];
-  const double torque_std = slip > 0.0 && foot.slip_torque_std[axis] > 0.0 ? foot.slip_torque_std[axis] : w;
+bool has_element(const FootModel& foot, int axis) noexcept { return foot.slip_angle[axis] > 0.0; }
+
+RegressionPrior prior_of(const EstimatorModel& model, const FootModel& foot, int axis, double slip) noexcept {
+  const double w = model.weight;
+  const bool known = has_element(foot, axis);
+  const double torque_std = known && foot.slip_torque_std[axis] > 0.0 ? foot.slip_torque_std[axis] : w;
   RegressionPrior prior;
   prior.scale = {USUAL_ANGLE, USUAL_RATE, 1.0, w, USUAL_SLOPE * w, USUAL_SLOPE * w * w};
   prior.mean = {};
-  if (slip > 0.0) prior.mean[SLIP_TORQUE] = foot.slip_torque[axis];
+  if (known) prior.mean[SLIP_TORQUE] = foot.slip_torque[axis];
   prior.spread = {STIFFEST * w, SLOWEST * STIFFEST * w, torque_std, std::max(foot.place_std[0], 1e-9),
                   std::max(foot.place_std[1], 1e-9), std::max(foot.compliance_std, 1e-9 / w)};
   prior.twist = axis == 1 ? TWIST_ZERO * w : 0.0;
@@ -69,8 +74,14 @@ FootTracker::FootTracker(const EstimatorModel& model, const FootModel& foot) noe
       delay_std_(model.wrench_delay_std),
       gate_(model.weight, foot.always),
       shaking_(model.weight),
-      axes_{AxisRegression(prior_of(model, foot, 0)), AxisRegression(prior_of(model, foot, 1))} {
-  for (int axis = 0; axis < 2; ++axis) work(axis);
+      axes_{AxisRegression(prior_of(model, foot, 0, foot.slip_angle[0])),
+            AxisRegression(prior_of(model, foot, 1, foot.slip_angle[1]))},
+      memories_{MemoryWatch(prior_of(model, foot, 0, SUSPECTED_ANGLE)),
+                MemoryWatch(prior_of(model, foot, 1, SUSPECTED_ANGLE))} {
+  for (int axis = 0; axis < 2; ++axis) {
+    slip_angle_[axis] = has_element(foot, axis) ? foot.slip_angle[axis] : SUSPECTED_ANGLE;
+    publish(axis);
+  }
   estimate_.flags = NOT_STANDING | NEVER_LOADED | PITCH_UNKNOWN | ROLL_UNKNOWN;
 }
 
@@ -96,11 +107,17 @@ void FootTracker::restart_filter() noexcept {
   row_ticks_ = 0, row_time_ = 0.0;
 }
 
-void FootTracker::end_stance() noexcept {
+void FootTracker::close_blocks() noexcept {
   for (AxisRegression& axis : axes_) axis.close();
+  for (MemoryWatch& memory : memories_) memory.close();
+}
+
+void FootTracker::end_stance() noexcept {
+  close_blocks();
   held_count_ = 0;
-  if (gate_.stances() == STEPS)
-    for (AxisRegression& axis : axes_) axis.set_spread(ASIDE, STIFFEST);
+  if (gate_.stances() != STEPS) return;
+  for (AxisRegression& axis : axes_) axis.set_spread(ASIDE, STIFFEST);
+  for (MemoryWatch& memory : memories_) memory.set_spread(ASIDE, STIFFEST);
 }
 
 void FootTracker::learn(const FootKinematics& motion, double others, SlipGate::Verdict slips, bool fresh, double time,
@@ -120,7 +137,7 @@ void FootTracker::learn(const FootKinematics& motion, double others, SlipGate::V
     end_stance();
     restart_filter();
   }
-  std::uint32_t flags = estimate_.flags & (NEVER_LOADED | PITCH_UNKNOWN | ROLL_UNKNOWN);
+  std::uint32_t flags = estimate_.flags & OF_LEARNING;
   const bool edge = contact == ContactState::stance && !foot_->always && inside < EDGE_MARGIN;
   if (contact != ContactState::stance)
     flags |= NOT_STANDING;
@@ -212,20 +229,19 @@ void FootTracker::filter(const FootKinematics& motion, double time, double dt, d
   row_ticks_ = 0, row_time_ = 0.0;
 }
 
-// Elements from tick to tick. In the air one is at rest; it is loaded from there until the sole lies flat. Of a foot that
-// stood when time began nobody knows: each time that less is unknown, the rows' offset changes.
+// Elements from tick to tick. In the air one is at rest; it is loaded from there until the sole lies flat. Of a foot
+// that stood when time began nobody knows: each time that less is unknown, the rows' offset changes.
 void FootTracker::follow_elements(const double* angles, double time) noexcept {
   const bool air = estimate_.contact == ContactState::air;
   swung_ = swung_ || air;
-  bool changed = false;
+  bool known = false, suspected = false;
   for (int a = 0; a < 2; ++a) {
-    const double slip = foot_->slip_angle[a], by = angles[a] - last_angle_[a];
+    const double slip = slip_angle_[a], by = angles[a] - last_angle_[a];
     last_angle_[a] = angles[a];
-    if (slip <= 0.0) continue;
     ElementState& element = element_[a];
     if (estimate_.contact == ContactState::stance || (swung_ && !air && flat_)) {
       element.move(by / slip);
-      changed = changed || element.opened - element.gap() > NEWLY_KNOWN;
+      if (element.opened - element.gap() > NEWLY_KNOWN) (has_element(*foot_, a) ? known : suspected) = true;
     } else if (swung_) {
       const double guess = std::clamp(angles[a] / slip, -1.0, 1.0);
       element.begin(guess, guess);
@@ -233,9 +249,12 @@ void FootTracker::follow_elements(const double* angles, double time) noexcept {
       element.begin(-1.0, 1.0);
     }
   }
-  if (!changed) return;
+  if (!known && !suspected) return;
   commit(time);
-  for (int a = 0; a < 2; ++a) axes_[a].close(), element_[a].opened = element_[a].gap();
+  for (ElementState& element : element_) element.opened = element.gap();
+  for (MemoryWatch& memory : memories_) memory.close();
+  if (!known) return;
+  for (AxisRegression& axis : axes_) axis.close();
   restart_filter();
 }
 
@@ -263,19 +282,35 @@ void FootTracker::give(const HeldRow& row) noexcept {
     // A centre that is higher takes its share of the horizontal force: F_x off the pitch torque, F_y onto the roll
     // torque.
     const double across = a == 0 ? c[FORCE_X] : -c[FORCE_Y], loaded = a == 0 ? c[LOAD_X] : -c[LOAD_Y];
-    const bool follows = foot_->slip_angle[a] > 0.0 && std::abs(own[ELEMENT]) < HARDLY_SLIPS * c[ONE];
-    const double angle = noise_[a][0], rate = noise_[a][1];
-    axes_[a].add({{c[ONE], c[TIME], a == 1 ? c[TURN] : 0.0},
-                  {own[ANGLE], own[ANGLE_RATE], own[ELEMENT], c[LOAD], across, loaded},
-                  own[TORQUE],
-                  {follows ? 0.0 : angle, rate, follows ? angle : 0.0, force_variance_[0], force_variance_[1 + a]}},
-                 row.dt);
+    const bool known = has_element(*foot_, a), sticks = std::abs(own[ELEMENT]) < HARDLY_SLIPS * c[ONE];
+    RegressionRow line = {{c[ONE], c[TIME], a == 1 ? c[TURN] : 0.0},
+                          {own[ANGLE], own[ANGLE_RATE], own[ELEMENT], c[LOAD], across, loaded},
+                          own[TORQUE],
+                          {0.0, noise_[a][1], 0.0, force_variance_[0], force_variance_[1 + a]}};
+    line.noise[sticks ? OF_ANGLE_AND_ELEMENT : OF_ANGLE] = noise_[a][0];
+    if (!known) {
+      memories_[a].add(line, row.dt);
+      line.columns[SLIP_TORQUE] = line.noise[OF_ANGLE_AND_ELEMENT] = 0.0, line.noise[OF_ANGLE] = noise_[a][0];
+    }
+    axes_[a].add(line, row.dt);
   }
 }
 
-void FootTracker::work(int axis) noexcept {
+void FootTracker::work(int piece) noexcept {
+  const int axis = piece % 2;
+  if (piece >= 2) {
+    if (!has_element(*foot_, axis)) memories_[axis].work();
+    return;
+  }
   axes_[axis].work();
-  if (axes_[axis].jumped()) told_change_ = CHANGE_TOLD;
+  if (axes_[axis].jumped()) {
+    told_change_ = CHANGE_TOLD;
+    memories_[axis].restart();
+  }
+  publish(axis);
+}
+
+void FootTracker::publish(int axis) noexcept {
   const AxisValues& found = axes_[axis].values();
   AxisEstimate& out = axis == 0 ? estimate_.pitch : estimate_.roll;
   const double k = found.value[STIFFNESS], c = found.value[DAMPING];
@@ -290,19 +325,23 @@ void FootTracker::work(int axis) noexcept {
   out.stiffness = parameter(STIFFNESS, std::hypot(gain_std_ * k, late * c * found.pace));
   out.damping = parameter(DAMPING, std::hypot(gain_std_ * c, late * k));
   out.slip_torque =
-      foot_->slip_angle[axis] > 0.0 ? parameter(SLIP_TORQUE, gain_std_ * found.value[SLIP_TORQUE]) : Parameter{};
+      has_element(*foot_, axis) ? parameter(SLIP_TORQUE, gain_std_ * found.value[SLIP_TORQUE]) : Parameter{};
   out.offset = found.offset;
-  out.identified = found.groups >= FEWEST_GROUPS && k > 0.0 && out.stiffness.half_width < TRUSTED * k;
-  const std::uint32_t unknown = axis == 0 ? PITCH_UNKNOWN : ROLL_UNKNOWN;
-  estimate_.flags = out.identified ? estimate_.flags & ~unknown : estimate_.flags | unknown;
+  const bool sure = found.groups >= FEWEST_GROUPS && k > 0.0 && out.stiffness.half_width < TRUSTED * k;
+  out.identified = sure && !memories_[axis].seen();
+  const auto tell = [this](std::uint32_t flag, bool holds) {
+    estimate_.flags = holds ? estimate_.flags | flag : estimate_.flags & ~flag;
+  };
+  tell(axis == 0 ? PITCH_UNKNOWN : ROLL_UNKNOWN, !sure);
+  tell(axis == 0 ? PITCH_MEMORY : ROLL_MEMORY, memories_[axis].seen());
 }
 
 void FootTracker::miss(std::uint32_t reason) noexcept {
-  estimate_.flags = (estimate_.flags & (NEVER_LOADED | PITCH_UNKNOWN | ROLL_UNKNOWN)) | reason | NOT_STANDING;
+  estimate_.flags = (estimate_.flags & OF_LEARNING) | reason | NOT_STANDING;
   estimate_.pitch.rate = estimate_.roll.rate = 0.0;
   held_count_ = 0;
   if (reason & TIME_FAULT)  // who knows what has passed: zeros and offsets may be others
-    for (AxisRegression& axis : axes_) axis.close();
+    close_blocks();
   if (reason & TIME_FAULT) swung_ = false;
   gate_.restart();  // what is told of the contact stays, until readings say otherwise
   shaking_.restart();

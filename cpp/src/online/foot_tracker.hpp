@@ -9,6 +9,7 @@
 #include "online/causal_filter.hpp"
 #include "online/contact_gate.hpp"
 #include "online/delay_line.hpp"
+#include "online/memory_watch.hpp"
 #include "online/shaking.hpp"
 #include "online/slip_gate.hpp"
 #include "online/sole.hpp"
@@ -52,8 +53,9 @@ class FootTracker {
              double period) noexcept;
   // A tick without readings that can be used, for `reason`.
   void miss(std::uint32_t reason) noexcept;
-  // One piece of the regressions' work.
-  void work(int axis) noexcept;
+  // One piece of the regressions' work, of PIECES.
+  static constexpr int PIECES = 4;
+  void work(int piece) noexcept;
 
   double load() const noexcept { return estimate_.load; }
   ContactState contact() const noexcept { return gate_.contact(); }
@@ -78,6 +80,8 @@ class FootTracker {
   void commit(double before) noexcept;
   void give(const HeldRow& row) noexcept;
   void end_stance() noexcept;
+  void close_blocks() noexcept;
+  void publish(int axis) noexcept;
   void follow_noise(const FootKinematics& motion, double dt, double period) noexcept;
   void restart_noise() noexcept;
 
@@ -92,6 +96,8 @@ class FootTracker {
   DelayLine<4> angles_;
   DelayLine<6> forces_;
   std::array<AxisRegression, 2> axes_;
+  std::array<MemoryWatch, 2> memories_;  // of axes whose model has no element
+  double slip_angle_[2];                 // of the model's element, or of the one that a memory is looked for with
   std::array<double, 6> raw_ = {}, wrench_ = {}, before_ = {};  // before_: load, force x, y, both torques, of last tick
   std::array<WhiteNoise, 2> angle_noise_, rate_noise_;
   std::array<WhiteNoise, 3> force_noise_;  // load, force x, y

@@ -31,6 +31,8 @@ class Flag(IntFlag):
     PITCH_UNKNOWN = 256
     ROLL_UNKNOWN = 512
     GROUND_CHANGED = 1024
+    PITCH_MEMORY = 2048
+    ROLL_MEMORY = 4096
 
 
 @dataclass(frozen=True)
