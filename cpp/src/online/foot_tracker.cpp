@@ -23,8 +23,6 @@ constexpr double SLOWEST = 1.0;        // s: damping over stiffness before any d
 // that are told something new at each tick shake the joints in step with the samples.
 constexpr double SKEW = 0.03;
 constexpr double TWIST_ZERO = 2e-3;    // m, times the weight: zero of a yaw torque
-constexpr double NOISE_ABOVE = 4.0;    // cutoffs: from there on a signal counts as noise
-constexpr double NYQUIST_SHARE = 0.8;  // of the highest frequency, that this must stay below
 constexpr double NEWLY_KNOWN = 0.02;   // of an element's range: less changes no offset
 constexpr double HARDLY_SLIPS = 0.99;  // of an element's largest state: below it noise moves it as the deflection
 constexpr double TRUSTED = 0.1;        // half width over stiffness
@@ -70,6 +68,7 @@ FootTracker::FootTracker(const EstimatorModel& model, const FootModel& foot) noe
       middle_depth_(outline_middle_depth(foot)),
       delay_(model.wrench_delay),
       cutoff_(model.cutoff),
+      noise_(model.cutoff),
       gain_std_(model.wrench_gain_std),
       delay_std_(model.wrench_delay_std),
       gate_(model.weight, foot.always),
@@ -123,7 +122,11 @@ void FootTracker::end_stance() noexcept {
 void FootTracker::learn(const FootKinematics& motion, double others, SlipGate::Verdict slips, bool fresh, double time,
                         double dt, double period) noexcept {
   period_ = period;
-  follow_noise(motion, dt, period);
+  noise_.follow({{motion.angle[0], motion.angle[1]},
+                 {motion.turning[0], motion.turning[1]},
+                 {estimate_.load, wrench_[0], wrench_[1]},
+                 motion.gyroscope},
+                dt, period);
   const ContactState before = gate_.contact();
   const double inside = depth(foot_->polygon, estimate_.centre_of_pressure);
   const bool carries = estimate_.load > least_load_;
@@ -150,7 +153,7 @@ void FootTracker::learn(const FootKinematics& motion, double others, SlipGate::V
   estimate_.flags = flags, estimate_.contact = contact;
   if (!fresh) {
     angles_.restart(), forces_.restart();
-    restart_noise();
+    noise_.restart();
     restart_filter();
   }
   if (contact != ContactState::stance || edge || struck || slips == SlipGate::Verdict::sure) {
@@ -159,31 +162,6 @@ void FootTracker::learn(const FootKinematics& motion, double others, SlipGate::V
   }
   filter(motion, time, dt, fresh ? period : 0.0);
   if (contact == ContactState::stance) commit(time - (foot_->always ? 0.0 : gate_.settling()));
-}
-
-// Variance of the white noise that is left behind the filter; none where the samples are too slow to show it.
-void FootTracker::follow_noise(const FootKinematics& motion, double dt, double period) noexcept {
-  const double band = 2.0 * cutoff_ * period;  // of all frequencies, those that pass
-  const bool shows = NOISE_ABOVE * band < NYQUIST_SHARE;
-  const double edge = 2.0 * std::numbers::pi * cutoff_;
-  for (int a = 0; a < 2; ++a) {
-    angle_noise_[a].see(motion.angle[a], dt);
-    const double white = shows ? angle_noise_[a].variance() * band : 0.0;
-    rate_noise_[a].see(motion.turning[a], dt);
-    noise_[a][0] = white;
-    noise_[a][1] = !motion.gyroscope ? white * edge * edge / 3.0 : shows ? rate_noise_[a].variance() * band : 0.0;
-  }
-  const double forces[3] = {estimate_.load, wrench_[0], wrench_[1]};
-  for (int i = 0; i < 3; ++i) {
-    force_noise_[i].see(forces[i], dt);
-    force_variance_[i] = shows ? force_noise_[i].variance() * band : 0.0;
-  }
-}
-
-void FootTracker::restart_noise() noexcept {
-  for (WhiteNoise& noise : angle_noise_) noise.restart();
-  for (WhiteNoise& noise : rate_noise_) noise.restart();
-  for (WhiteNoise& noise : force_noise_) noise.restart();
 }
 
 // The tick's signals in the middle of its period, where differences are exact, each as late as the latest of them.
@@ -286,11 +264,11 @@ void FootTracker::give(const HeldRow& row) noexcept {
     RegressionRow line = {{c[ONE], c[TIME], a == 1 ? c[TURN] : 0.0},
                           {own[ANGLE], own[ANGLE_RATE], own[ELEMENT], c[LOAD], across, loaded},
                           own[TORQUE],
-                          {0.0, noise_[a][1], 0.0, force_variance_[0], force_variance_[1 + a]}};
-    line.noise[sticks ? OF_ANGLE_AND_ELEMENT : OF_ANGLE] = noise_[a][0];
+                          {0.0, noise_.of_rate[a], 0.0, noise_.of_force[0], noise_.of_force[1 + a]}};
+    line.noise[sticks ? OF_ANGLE_AND_ELEMENT : OF_ANGLE] = noise_.of_angle[a];
     if (!known) {
       memories_[a].add(line, row.dt);
-      line.columns[SLIP_TORQUE] = line.noise[OF_ANGLE_AND_ELEMENT] = 0.0, line.noise[OF_ANGLE] = noise_[a][0];
+      line.columns[SLIP_TORQUE] = line.noise[OF_ANGLE_AND_ELEMENT] = 0.0, line.noise[OF_ANGLE] = noise_.of_angle[a];
     }
     axes_[a].add(line, row.dt);
   }
@@ -345,7 +323,7 @@ void FootTracker::miss(std::uint32_t reason) noexcept {
   if (reason & TIME_FAULT) swung_ = false;
   gate_.restart();  // what is told of the contact stays, until readings say otherwise
   shaking_.restart();
-  restart_noise();
+  noise_.restart();
   angles_.restart(), forces_.restart();
   restart_filter();
 }

@@ -9,11 +9,11 @@
 #include "online/causal_filter.hpp"
 #include "online/contact_gate.hpp"
 #include "online/delay_line.hpp"
+#include "online/foot_noise.hpp"
 #include "online/memory_watch.hpp"
 #include "online/shaking.hpp"
 #include "online/slip_gate.hpp"
 #include "online/sole.hpp"
-#include "online/white_noise.hpp"
 #include "plantar/foot_estimator.hpp"
 
 namespace plantar {
@@ -82,11 +82,10 @@ class FootTracker {
   void end_stance() noexcept;
   void close_blocks() noexcept;
   void publish(int axis) noexcept;
-  void follow_noise(const FootKinematics& motion, double dt, double period) noexcept;
-  void restart_noise() noexcept;
 
   const FootModel* foot_;
   double weight_, least_load_, middle_depth_, delay_, cutoff_;
+  FootNoise noise_;
   double gain_std_, delay_std_;
   double period_ = 0.0;
   ContactGate gate_;
@@ -99,10 +98,6 @@ class FootTracker {
   std::array<MemoryWatch, 2> memories_;  // of axes whose model has no element
   double slip_angle_[2];                 // of the model's element, or of the one that a memory is looked for with
   std::array<double, 6> raw_ = {}, wrench_ = {}, before_ = {};  // before_: load, force x, y, both torques, of last tick
-  std::array<WhiteNoise, 2> angle_noise_, rate_noise_;
-  std::array<WhiteNoise, 3> force_noise_;  // load, force x, y
-  double noise_[2][2] = {};                // variance of angle and rate of each axis, behind the filter
-  double force_variance_[3] = {};          // the same
   ElementState element_[2];
   double last_angle_[2] = {};
   bool flat_ = false;         // the centre of pressure is inside the sole
