@@ -125,6 +125,14 @@ def test_a_known_compliance_moves_the_bushs_centre(robot: RobotModel) -> None:
     assert right < 0.2 * wrong
 
 
+def test_a_compliance_that_nobody_told_is_learnt(robot: RobotModel) -> None:
+    replay = replayed(robot, record(sway(duration=60.0)))
+    for foot in replay.feet:
+        found = replay.estimate(foot)
+        assert found.compliance.value == pytest.approx(1 / VERTICAL, rel=0.01)
+        assert found.compression == pytest.approx(found.load / VERTICAL, rel=0.06)
+
+
 def test_a_foot_zeroed_under_load_stands_always(robot: RobotModel) -> None:
     feet = {name: replace(foot, contact="always") for name, foot in robot.feet.items()}
     log = record(sway(duration=30.0))

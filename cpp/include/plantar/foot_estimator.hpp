@@ -69,6 +69,10 @@ struct FootEstimate {
   ContactState contact = ContactState::air;
   double load = 0.0;                                      // along the vertical [N]
   std::array<double, 2> centre_of_pressure = {0.0, 0.0};  // in the sole's frame [m]; the last one known in the air
+  // Of the slide along the ankle's z: how far the load lifts the bush's centre [m], and by how much a newton does [m/N]. It
+  // is seen where horizontal forces come and go under a load; else its deviation is that of the model.
+  double compression = 0.0;
+  Parameter compliance;
   AxisEstimate pitch, roll;
   std::uint32_t flags = 0;  // of `Flag`
 };

@@ -95,6 +95,7 @@ void FootTracker::read(const FootKinematics& motion, const std::array<double, 6>
   estimate_.pitch.rate = motion.rate[0], estimate_.roll.rate = motion.rate[1];
   // The loaded slide carries the bush's centre up by z. The roll axis turns with the pitch: Ry(pitch) e_x.
   const double z = foot_->compliance * wrench_[2];
+  estimate_.compression = estimate_.compliance.value * wrench_[2];
   estimate_.pitch.torque = wrench_[4] - z * wrench_[0];
   estimate_.roll.torque = std::cos(pitch) * (wrench_[3] + z * wrench_[1]) - std::sin(pitch) * wrench_[5];
   Point centre;
@@ -305,6 +306,8 @@ void FootTracker::publish(int axis) noexcept {
   out.slip_torque =
       has_element(*foot_, axis) ? parameter(SLIP_TORQUE, gain_std_ * found.value[SLIP_TORQUE]) : Parameter{};
   out.offset = found.offset;
+  learnt_compliance_[axis] = parameter(COMPLIANCE, 0.0);
+  publish_compliance();
   const bool sure = found.groups >= FEWEST_GROUPS && k > 0.0 && out.stiffness.half_width < TRUSTED * k;
   out.identified = sure && !memories_[axis].seen();
   const auto tell = [this](std::uint32_t flag, bool holds) {
@@ -312,6 +315,15 @@ void FootTracker::publish(int axis) noexcept {
   };
   tell(axis == 0 ? PITCH_UNKNOWN : ROLL_UNKNOWN, !sure);
   tell(axis == 0 ? PITCH_MEMORY : ROLL_MEMORY, memories_[axis].seen());
+}
+
+// Both axes have learnt it, each with a prior of its own, from torques of the same load.
+void FootTracker::publish_compliance() noexcept {
+  const Parameter &p = learnt_compliance_[0], &r = learnt_compliance_[1];
+  const double share = r.std > 0.0 ? r.std * r.std / (p.std * p.std + r.std * r.std) : 0.0;
+  const auto mean = [share](double pitch, double roll) { return share * pitch + (1.0 - share) * roll; };
+  estimate_.compliance = {foot_->compliance + mean(p.value, r.value), std::min(p.std, r.std),
+                          std::min(p.half_width, r.half_width)};
 }
 
 void FootTracker::miss(std::uint32_t reason) noexcept {

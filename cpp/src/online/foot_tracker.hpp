@@ -82,6 +82,7 @@ class FootTracker {
   void end_stance() noexcept;
   void close_blocks() noexcept;
   void publish(int axis) noexcept;
+  void publish_compliance() noexcept;
 
   const FootModel* foot_;
   double weight_, least_load_, middle_depth_, delay_, cutoff_;
@@ -96,6 +97,7 @@ class FootTracker {
   DelayLine<6> forces_;
   std::array<AxisRegression, 2> axes_;
   std::array<MemoryWatch, 2> memories_;  // of axes whose model has no element
+  Parameter learnt_compliance_[2];       // of the slide beside the model's, as each axis has it
   double slip_angle_[2];                 // of the model's element, or of the one that a memory is looked for with
   std::array<double, 6> raw_ = {}, wrench_ = {}, before_ = {};  // before_: load, force x, y, both torques, of last tick
   ElementState element_[2];
