@@ -180,16 +180,15 @@ void FootTracker::filter(const FootKinematics& motion, double time, double dt, d
       forces_.pass(time, mean, -delay_, forces);
   if (!reaches) return;
   follow_elements(angles.data(), time);
+  const bool paused = pause_ > 0.0;
+  pause_ -= std::min(pause_, dt);
   if (estimate_.contact != ContactState::stance) return;
   if (estimate_.flags & (EDGE | SLIP | IMPACT)) {
-    pause_ = std::abs(delay_) + dt;
+    pause_ = std::abs(delay_) + 0.5 * dt;  // one tick, and the delay
     return;
   }
   // The delay lines and the mean over a period still hold what was left out.
-  if (pause_ > 0.0) {
-    pause_ -= dt;
-    return;
-  }
+  if (paused) return;
   if (!running_) {
     filter_.design(cutoff_, period);
     filter_.restart();
