@@ -196,6 +196,7 @@ int main() {
   learns(200.0, 0.0);
   learns(50.0, 0.0);
   survives([](Sensors& s, double) { s.attitude[1] = NAN_; }, INPUT_MISSING, "no attitude");
+  survives([](Sensors& s, double) { s.attitude[1] = 1e200; }, INPUT_MISSING, "an absurd attitude");
   survives([](Sensors& s, double) { s.wrench[0][4] = NAN_; }, INPUT_MISSING, "no wrench");
   survives([](Sensors& s, double) { s.gyroscope[0] = 1e300; }, INPUT_MISSING, "an absurd rate");
   survives([](Sensors& s, double) { s.wrench[0] = {1, 2, 300, 4, 5, 6}; }, FROZEN, "a frozen force sensor");
@@ -203,6 +204,8 @@ int main() {
            "a frozen attitude");
   survives([](Sensors&, double& t) { t -= 20.5; }, TIME_FAULT, "time that steps back");
   survives([](Sensors&, double& t) { t = NAN_; }, TIME_FAULT, "no time");
+  survives([](Sensors&, double& t) { t += 7.0; }, TIME_FAULT, "time that jumps ahead and back");
+  survives([](Sensors&, double& t) { t = 20.0; }, TIME_FAULT, "time that stands still");
   notices_other_ground();
   notices_a_memory();
   a_foot_that_never_stands();
