@@ -39,6 +39,9 @@ def main() -> None:
     parser.add_argument("--motions", nargs="+", default=["Tilt1", "Tilt3"])
     parser.add_argument("--seeds", type=int, default=20)
     parser.add_argument(
+        "--first", type=int, default=100, help="seed; those below 100 were used to choose thresholds"
+    )
+    parser.add_argument(
         "--after", type=float, default=60.0, help="s of logs, from which on numbers are scored"
     )
     told = parser.parse_args()
@@ -47,8 +50,8 @@ def main() -> None:
     unknown: dict[str, int] = defaultdict(int)
     deflections: dict[str, list[float]] = defaultdict(list)
     latency: list[float] = []
-    everything = play_all(told.motions, None, PAPER, told.preset, range(told.seeds))
-    for seed, recordings in enumerate(everything):
+    everything = play_all(told.motions, None, PAPER, told.preset, range(told.first, told.first + told.seeds))
+    for seed, recordings in enumerate(everything, told.first):
         _score(preset, seed, recordings, told.after, scores, unknown, deflections, latency)
     print(f"{told.preset}, {', '.join(told.motions)}, {told.seeds} seeds, every 5 s from {told.after:g} s on")
     for key in sorted({*scores, *unknown}):
@@ -78,7 +81,7 @@ def _score(
     latency: list[float],
 ) -> None:
     robot = replace(hrp2.robot(), uncertainty=EXACT)
-    estimator = FootEstimator(robot, _law(preset, seed), wrench_delay=preset.sensors.wrench_delay)
+    estimator = FootEstimator(robot, law(preset, seed), wrench_delay=preset.sensors.wrench_delay)
     begun = 0.0
     for one in recordings:
         replay = estimator.replay(one.log)
@@ -104,7 +107,7 @@ def _score(
         begun += one.log.duration
 
 
-def _law(preset: Preset, seed: int) -> FeetResult | None:
+def law(preset: Preset, seed: int) -> FeetResult | None:
     """A batch result that knows the bushes' elements; None where they have none."""
     rows, random = [], np.random.default_rng([seed, 7])
     for foot, bush in preset.physics(PAPER).bushes.items():

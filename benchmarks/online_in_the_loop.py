@@ -1,15 +1,17 @@
 """The twin walks with what its stabiliser believes of its feet: rigid, half, double, true stiffness, or learnt online.
 
-    python benchmarks/online_in_the_loop.py [MOTION]
+    python benchmarks/online_in_the_loop.py [MOTION | Sway]
 
-The physics is the same; only the compliance differs by which the stabiliser turns a wanted torque into an angle. Prints
-the rms of the root's lean away from its plan, from 12 s on. "online" begins with double the stiffness and takes each
-foot's numbers from the estimator once they are identified; its sensors are the stabiliser's own, exact at 200 Hz.
+The physics is the same; only the compliance differs by which the stabiliser turns a wanted torque into an angle. `Sway`
+stands and moves its weight. Prints how far chest attitude and zero-moment point are from their plans, from 12 s on.
+"online" begins with double the stiffness and takes each foot's numbers from the estimator once they are identified; its
+sensors are the stabiliser's own, exact at 200 Hz.
 """
 
 from __future__ import annotations
 
 import sys
+from collections.abc import Mapping
 from dataclasses import replace
 from unittest.mock import patch
 
@@ -17,9 +19,14 @@ import mujoco
 import numpy as np
 import pinocchio as pin
 
-from plantar.conventions import ROTATIONAL_AXES, Array
+from plantar.conventions import ROTATIONAL_AXES, Array, rotation_from_quaternion
 from plantar.errors import MotionError
+from plantar.motions import walk
+from plantar.motions.body import Body
+from plantar.motions.footsteps import Footsteps, footsteps
+from plantar.motions.gait import Gait
 from plantar.motions.plan import RATE, Plan
+from plantar.motions.stance import stand
 from plantar.online.estimator import FootEstimator
 from plantar.robot.model import RobotModel
 from plantar.robot.uncertainty import EXACT
@@ -27,12 +34,16 @@ from plantar.twin import PAPER
 from plantar.twin.play import planned
 from plantar.twin.presets import preset_named
 from plantar.twin.robots import hrp2
+from plantar.twin.robots.foot import cut_feet
+from plantar.twin.robots.from_robot import describe
+from plantar.twin.sensing.exact import truth_columns
 from plantar.twin.simulation import rollout
 from plantar.twin.simulation.mjcf import SERVO_ANGLE
 from plantar.twin.simulation.physics import Physics
 from plantar.twin.walking.control import WalkingControl
 
-SETTLED = 12.0  # s of a walk, before which nothing is scored
+SETTLED = 12.0  # s of a motion, before which nothing is scored
+ALONG, ACROSS = 0.02, 0.06  # m: half of how far the ZMP of `Sway` moves
 CASES = ("rigid", "half", "double", "true", "online")
 
 
@@ -101,19 +112,64 @@ class Believing(WalkingControl):
         return np.concatenate([-turn @ self.sensor(data, f"{foot}.{kind}") for kind in ("force", "torque")])
 
 
-def lean(plan: Plan, played: rollout.Rollout) -> float:
-    """Rms of the root's roll and pitch away from its plan [rad]."""
-    late, squares = plan.time >= SETTLED, []
-    for pose, measured in zip(plan.base[late], played.base[late], strict=True):
-        w, x, y, z = measured[3:7]
-        up = np.array([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)])
-        squares.append(np.arccos(min(1.0, float(pose[2, :3] @ up))) ** 2)
+def sway() -> Plan:
+    """Standing: the ZMP moves between the feet and along them, and no foot lifts."""
+    robot = hrp2.robot()
+    body = Body(robot)
+    start = stand(body, hrp2.postures().standing, {"right": (0.0, 0.0)}, None)
+
+    def waypoints(gait: Gait, soles: Mapping[str, pin.SE3], middles: Mapping[str, Array]) -> Footsteps:
+        found = footsteps(gait, soles, middles)
+        middle, time = found.waypoints[0, 1:], np.arange(0.0, 36.1, 1.0)
+        size = np.where((time > 1.5) & (time < 34.0), 1.0, 0.0)
+        moved = size[:, None] * np.column_stack(
+            [ALONG * np.sin(2 * np.pi * time / 5), ACROSS * np.sin(2 * np.pi * time / 7)]
+        )
+        return Footsteps(found.start, (), np.column_stack([time, middle + moved]))
+
+    with patch.object(walk, "footsteps", waypoints):
+        return walk.walk_plan(body, "Sway", start, Gait(0.0, 1.0, 0.0, 1, 0))
+
+
+def chest_lean(robot: RobotModel, plan: Plan, played: rollout.Rollout) -> float:
+    """Rms of the IMU's roll and pitch away from its plan [rad]."""
+    assert robot.imu is not None
+    model, (joint, pose) = robot.floating_model, robot.frame(robot.imu.placement)
+    carrier = int(model.getJointId(robot.model.names[joint])) if joint else 1
+    data, squares = model.createData(), []
+    places = [model.joints[model.getJointId(name)].idx_q for name in plan.joints]
+    for sample in np.flatnonzero(plan.time >= SETTLED)[::5]:
+        q = pin.neutral(model)
+        q[:7], q[places] = pin.SE3ToXYZQUAT(pin.SE3(plan.base[sample])), plan.positions[sample]
+        pin.forwardKinematics(model, data, q)
+        wanted = (data.oMi[carrier] * pose).rotation[2]
+        measured = rotation_from_quaternion(played.sensors["imu.orientation"][sample][None])[0, 2]
+        squares.append(np.arccos(min(1.0, float(wanted @ measured))) ** 2)
     return float(np.sqrt(np.mean(squares)))
+
+
+def zmp_error(robot: RobotModel, plan: Plan, played: rollout.Rollout) -> float:
+    """Rms of the zero-moment point away from its plan, the feet believed to stand where they should [m]."""
+    assert plan.walk is not None
+    truth = truth_columns(played, cut_feet(describe(robot), robot))
+    total, moment = np.zeros(plan.time.size), np.zeros((plan.time.size, 2))
+    for foot in robot.feet:
+        load = truth[f"{foot}.contact.force.z"]
+        pressure = np.column_stack([truth[f"{foot}.contact.cop.{axis}"] for axis in "xy"])
+        sole = plan.walk.soles[foot]
+        place = sole[:, :2, 3] + np.einsum("nij,nj->ni", sole[:, :2, :2], pressure)
+        loaded = np.isfinite(pressure).all(axis=1)
+        total += np.where(loaded, load, 0.0)
+        moment += np.where(loaded[:, None], load[:, None] * place, 0.0)
+    late = (plan.time >= SETTLED) & (total > 0.0)
+    away = moment[late] / total[late, None] - plan.walk.zmp[late]
+    return float(np.sqrt(np.mean(np.sum(away**2, axis=1))))
 
 
 def main(motion: str = "Walk12") -> None:
     robot = hrp2.robot()
-    plan, physics = planned(motion, robot), preset_named("sensors").physics(PAPER)
+    physics = preset_named("sensors").physics(PAPER)
+    plan = sway() if motion == "Sway" else planned(motion, robot)
     xml = rollout.scene_xml(robot, plan, physics)
     for case in CASES:
         Believing.case = case
@@ -121,9 +177,10 @@ def main(motion: str = "Walk12") -> None:
             try:
                 played = rollout.roll_out(robot, plan, physics, xml)
             except MotionError as error:
-                print(f"{case:7} {error}")
+                print(f"{case:7} {error}", flush=True)
                 continue
-        print(f"{case:7} leans {1e3 * lean(plan, played):.2f} mrad rms", flush=True)
+        lean, away = chest_lean(robot, plan, played), zmp_error(robot, plan, played)
+        print(f"{case:7} chest {1e3 * lean:.2f} mrad rms, ZMP {1e3 * away:.1f} mm rms", flush=True)
 
 
 if __name__ == "__main__":

@@ -25,7 +25,7 @@ using Out = nb::ndarray<double, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
 using Series = nb::ndarray<double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
 // Of one foot, in the order of `plantar.online.estimator.FIELDS`.
-constexpr std::size_t AXIS_FIELDS = 14, FIELDS = 5 + 2 * AXIS_FIELDS;
+constexpr std::size_t AXIS_FIELDS = 14, FIELDS = 9 + 2 * AXIS_FIELDS;
 
 void write(const FootEstimate& foot, double* to) {
   *to++ = static_cast<double>(foot.contact);
@@ -33,6 +33,10 @@ void write(const FootEstimate& foot, double* to) {
   *to++ = foot.centre_of_pressure[0];
   *to++ = foot.centre_of_pressure[1];
   *to++ = static_cast<double>(foot.flags);
+  *to++ = foot.compression;
+  *to++ = foot.compliance.value;
+  *to++ = foot.compliance.std;
+  *to++ = foot.compliance.half_width;
   for (const AxisEstimate* axis : {&foot.pitch, &foot.roll}) {
     *to++ = axis->deflection;
     *to++ = axis->rate;

@@ -12,7 +12,9 @@ namespace {
 constexpr double ROW = 0.025;  // s
 constexpr double DAMPING_TRUTH = 20.0;
 
-RegressionPrior prior() { return {{0.01, 0.1, 1.0, 600.0, 60.0}, {}, {6e4, 6e4, 600.0, 1e-9, 1e-9}, 0.0}; }
+RegressionPrior prior() {
+  return {{0.01, 0.1, 1.0, 600.0, 60.0, 4e4}, {}, {6e4, 6e4, 600.0, 1e-9, 1e-9, 1e-12}, 0.0, 0.0, 0.0, 0.0};
+}
 
 struct Source {
   explicit Source(unsigned seed) : random(seed) {}
@@ -20,8 +22,8 @@ struct Source {
   RegressionRow row(double t, double stiffness, double angle_noise, double torque_noise) {
     const double angle = 0.01 * std::sin(2.0 * t), rate = 0.02 * std::cos(2.0 * t);
     const double torque = stiffness * angle + DAMPING_TRUTH * rate + 1.0 + torque_noise * normal(random);
-    return {1.0,
-            {angle + angle_noise * normal(random), rate, 0.0, 0.0, 0.0},
+    return {{1.0, t, 0.0},
+            {angle + angle_noise * normal(random), rate},
             torque,
             {angle_noise * angle_noise, 0.0, 0.0}};
   }
@@ -78,7 +80,7 @@ void what_was_long_ago_fades_and_rest_forgets_nothing() {
   after(resting, again, 0.0, 400.0, 800.0, 0.0, 0.05);
   for (int i = 0; i < 40000; ++i) {  // a thousand seconds at rest, with noise
     const double noise = 1e-6 * again.normal(again.random);
-    resting.add({1.0, {noise, 10 * noise, 0.0, 0.0, 0.0}, 1.0 + 0.05 * again.normal(again.random), {1e-12, 0.0, 0.0}},
+    resting.add({{1.0, ROW * i, 0.0}, {noise, 10 * noise}, 1.0 + 0.05 * again.normal(again.random), {1e-12, 0.0, 0.0}},
                 ROW);
     resting.work();
   }
@@ -104,9 +106,77 @@ void offsets_are_each_stances_own() {
   check::near(axis.values().value[DAMPING], DAMPING_TRUTH, 1e-3, "damping beside offsets that differ");
 }
 
+// Another drift and another zero of the yaw torque in each recording, as large as the regression allows for, beside a
+// motion as slow as a block is long.
+void what_differs_between_blocks_moves_nothing() {
+  RegressionPrior known = prior();
+  known.twist = 1.0;
+  AxisRegression axis(known);
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 4800; ++i) {
+    const double t = ROW * i, sign = i < 2400 ? 1.0 : -1.0;
+    const double angle = 0.004 * std::sin(0.5 * t), rate = 0.002 * std::cos(0.5 * t);
+    const double pitch = 0.02 * (std::sin(0.5 * t) + std::sin(1.3 * t));
+    const double torque = 800.0 * angle + DAMPING_TRUTH * rate + sign * (0.02 * t + 0.8 * pitch);
+    if (i == 2400) axis.close();
+    axis.add({{1.0, t, pitch}, {angle, rate}, torque + 0.01 * normal(random), {}}, ROW);
+    axis.work();
+  }
+  for (int i = 0; i < 4; ++i) axis.work();
+  check::near(axis.values().value[STIFFNESS], 800.0, 1.0, "stiffness beside drift and twist");
+  check::near(axis.values().value[DAMPING], DAMPING_TRUTH, 2.0, "damping beside drift and twist");
+}
+
+// The force's noise is in the columns of the bush's place, and through the sensor's place in the torque.
+void noise_of_forces_moves_nothing() {
+  double mean = 0.0;
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    RegressionPrior known = prior();
+    known.spread[ABOVE] = 0.01, known.horizontal_arm = 0.05;
+    AxisRegression axis(known);
+    Source source(seed);
+    for (int i = 0; i < 4000; ++i) {
+      const double t = ROW * i, noise = 2.0 * source.normal(source.random);
+      RegressionRow row = source.row(t, 800.0, 0.0, 0.0);
+      const double force = 3.0 * std::sin(2.0 * t + 0.5) + std::sin(3.1 * t);  // goes with the motion
+      row.torque += 0.003 * force + 0.05 * noise;
+      row.columns[ABOVE] = force + noise;
+      row.noise[OF_HORIZONTAL] = 4.0;
+      axis.add(row, ROW);
+      axis.work();
+    }
+    for (int i = 0; i < 4; ++i) axis.work();
+    mean += axis.values().value[STIFFNESS] / 10;
+  }
+  check::near(mean, 800.0, 3.0, "stiffness beside a force with noise, which alone would take 11 off");
+}
+
+// A slide that the load compresses moves the centre with it.
+void the_compliance_is_learnt() {
+  RegressionPrior known = prior();
+  known.spread[COMPLIANCE] = 1e-5;
+  AxisRegression axis(known);
+  Source source(4);
+  for (int i = 0; i < 4000; ++i) {
+    const double t = ROW * i, load = 300.0 + 200.0 * std::sin(0.7 * t), force = 30.0 * std::sin(3.1 * t);
+    RegressionRow row = source.row(t, 800.0, 0.0, 0.02);
+    row.columns[COMPLIANCE] = load * force;
+    row.torque += 4e-6 * load * force;
+    axis.add(row, ROW);
+    axis.work();
+  }
+  for (int i = 0; i < 4; ++i) axis.work();
+  check::near(axis.values().value[COMPLIANCE], 4e-6, 1e-7, "compliance of the slide");
+  check::near(axis.values().value[STIFFNESS], 800.0, 0.5, "stiffness beside it");
+}
+
 }  // namespace
 
 int main() {
+  what_differs_between_blocks_moves_nothing();
+  noise_of_forces_moves_nothing();
+  the_compliance_is_learnt();
   noise_of_the_angle_draws_nothing_to_zero();
   deviations_hold();
   what_was_long_ago_fades_and_rest_forgets_nothing();

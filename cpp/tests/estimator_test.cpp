@@ -1,4 +1,5 @@
 // The estimator on a foot whose stiffness and damping are known, and on sensors that fail.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -132,6 +133,23 @@ void notices_other_ground() {
   check::that((last.flags & GROUND_CHANGED) == 0, "told for some seconds");
 }
 
+// Rubber with a Jenkins element of which the model knows nothing, beside pitch alone.
+void notices_a_memory() {
+  FootEstimator estimator(two_feet());
+  constexpr double SLIP_ANGLE = 0.01, SLIP_TORQUE = 3.0;
+  double state = 0.0, last_angle = angle(0, 0.0);
+  FootEstimate last;
+  for (int i = 0; i < 60000; ++i) {
+    const double t = 1e-3 * i;
+    Sensors sensors(t);
+    state = std::clamp(state + (angle(0, t) - last_angle) / SLIP_ANGLE, -1.0, 1.0), last_angle = angle(0, t);
+    for (auto& w : sensors.wrench) w[4] += SLIP_TORQUE * state;
+    last = estimator.step(sensors.reading(t))[0];
+  }
+  check::that((last.flags & PITCH_MEMORY) && !(last.flags & ROLL_MEMORY), "a memory is told of the axis that has it");
+  check::that(!last.pitch.identified && last.roll.identified, "what other motions change is not called identified");
+}
+
 void a_foot_that_never_stands() {
   FootEstimator estimator(two_feet());
   FootEstimate last;
@@ -178,6 +196,7 @@ int main() {
   learns(200.0, 0.0);
   learns(50.0, 0.0);
   survives([](Sensors& s, double) { s.attitude[1] = NAN_; }, INPUT_MISSING, "no attitude");
+  survives([](Sensors& s, double) { s.attitude[1] = 1e200; }, INPUT_MISSING, "an absurd attitude");
   survives([](Sensors& s, double) { s.wrench[0][4] = NAN_; }, INPUT_MISSING, "no wrench");
   survives([](Sensors& s, double) { s.gyroscope[0] = 1e300; }, INPUT_MISSING, "an absurd rate");
   survives([](Sensors& s, double) { s.wrench[0] = {1, 2, 300, 4, 5, 6}; }, FROZEN, "a frozen force sensor");
@@ -185,7 +204,10 @@ int main() {
            "a frozen attitude");
   survives([](Sensors&, double& t) { t -= 20.5; }, TIME_FAULT, "time that steps back");
   survives([](Sensors&, double& t) { t = NAN_; }, TIME_FAULT, "no time");
+  survives([](Sensors&, double& t) { t += 7.0; }, TIME_FAULT, "time that jumps ahead and back");
+  survives([](Sensors&, double& t) { t = 20.0; }, TIME_FAULT, "time that stands still");
   notices_other_ground();
+  notices_a_memory();
   a_foot_that_never_stands();
   broken_models_are_refused();
   return check::result();

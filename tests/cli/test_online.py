@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from command_line import refused, run
+from plantar.report import live
 
 
 def test_a_log_is_replayed_and_told_as_json(campaign: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -86,3 +87,28 @@ def test_a_log_with_a_fault_is_refused(
     log = tmp_path / "degrees.csv"
     log.write_text("\n".join([lines[0], *(",".join(row) for row in degrees)]) + "\n")
     assert "degrees" in refused(capsys, "online", robot, log, "--wrench-delay", 0, "-q")
+
+
+def test_the_command_plays_the_log_once_somebody_reads(
+    campaign: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    shown = list[float]()
+    monkeypatch.setattr(live.LiveView, "wait_for_reader", lambda view, longest: True)
+    monkeypatch.setattr(live.LiveView, "show", lambda view, now, found: shown.append(now))
+    monkeypatch.setattr(live.time, "sleep", lambda seconds: None)
+    words = ("--wrench-delay", 0, "--live", "--port", 8491, "--json", "-q")
+    assert run("online", campaign / "robot.yaml", campaign / "first.csv", *words) == 0
+    told = capsys.readouterr()
+    assert told.out.startswith("{"), "nothing but JSON on stdout"
+    assert "open http://127.0.0.1:" in told.err
+    assert len(shown) == 240
+    assert shown == sorted(shown)
+
+
+def test_a_page_that_nobody_opens_ends(
+    campaign: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("plantar.cli.online.LONGEST_WAIT", 0.0)
+    words = ("--wrench-delay", 0, "--live", "--port", 8495, "-q")
+    assert run("online", campaign / "robot.yaml", campaign / "first.csv", *words) == 0
+    assert "nobody has opened the page" in capsys.readouterr().err

@@ -133,6 +133,12 @@ def test_a_batch_results_hysteresis_and_delay_are_used(robot: RobotModel) -> Non
     assert len(slip) == 4
     plain = FootEstimator(robot, wrench_delay=0.0).replay(log)
     assert plain.estimate("left").pitch.stiffness.value > 1.05 * TRUTH["left", "pitch"].stiffness
+    assert plain.estimate("left").flags & Flag.PITCH_MEMORY, "and what is not told is seen"
+    assert not plain.estimate("left").pitch.identified
+    said = [row for row in plain.parameters if (row.foot, row.axis) == ("left", "pitch")]
+    assert {row.verdict for row in said} == {"weak"}
+    assert all("memory" in row.reason for row in said)
+    assert not replay.estimate("left").flags & Flag.PITCH_MEMORY
 
 
 def test_what_does_not_move_is_not_known(robot: RobotModel) -> None:

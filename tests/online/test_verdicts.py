@@ -8,7 +8,8 @@ import pytest
 from biped import record, sway
 from plantar.errors import DataError
 from plantar.notes import Note
-from plantar.online.verdicts import IDENTIFY, judged, log_notes
+from plantar.online.replay import IDENTIFY
+from plantar.online.verdicts import judged, log_notes
 from plantar.results.feet_rows import Parameter
 from plantar.robot.model import RobotModel
 

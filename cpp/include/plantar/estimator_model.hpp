@@ -30,7 +30,8 @@ struct FootModel {
   double sign = 1.0;                               // -1 where it reads the robot's action on the ground
   std::vector<std::array<double, 2>> polygon;      // the sole's corners in its plane, counter-clockwise [m]
   std::array<double, 2> place_std = {0.0, 0.0};    // of the bush's centre, aside and above [m]
-  double compliance = 0.0;                         // of the slide along the ankle's z [m/N]; 0: within `place_std`
+  double compliance = 0.0;                         // of the slide along the ankle's z [m/N], and its deviation
+  double compliance_std = 0.0;
   std::array<double, 2> slip_angle = {0.0, 0.0};   // of a Jenkins element beside pitch and roll [rad]; 0: none
   std::array<double, 2> slip_torque = {0.0, 0.0};  // of these, before any data [N·m], and its deviation; 0: not known
   std::array<double, 2> slip_torque_std = {0.0, 0.0};

@@ -41,7 +41,9 @@ enum Flag : std::uint32_t {
   NEVER_LOADED = 1 << 7,   // this foot has not stood yet
   PITCH_UNKNOWN = 1 << 8,  // stiffness and damping of pitch are not identified yet
   ROLL_UNKNOWN = 1 << 9,
-  GROUND_CHANGED = 1 << 10  // the stiffness jumped lately: it is learnt anew
+  GROUND_CHANGED = 1 << 10,  // the stiffness jumped lately: it is learnt anew
+  PITCH_MEMORY = 1 << 11,  // the rubber has a memory that the model lacks: other motions have another stiffness
+  ROLL_MEMORY = 1 << 12
 };
 
 // A parameter with its standard deviation and half of its 95 % interval (wider than 1.96 deviations while data are
@@ -60,13 +62,17 @@ struct AxisEstimate {
   Parameter damping;        // [N·m·s/rad]
   Parameter slip_torque;    // [N·m], of a Jenkins element where the model has one
   double offset = 0.0;      // [N·m], of this stance
-  bool identified = false;  // whether the deviations are known and small beside the values
+  bool identified = false;  // whether the deviations are known and small beside the values, and no memory is seen
 };
 
 struct FootEstimate {
   ContactState contact = ContactState::air;
   double load = 0.0;                                      // along the vertical [N]
   std::array<double, 2> centre_of_pressure = {0.0, 0.0};  // in the sole's frame [m]; the last one known in the air
+  // Of the slide along the ankle's z: how far the load lifts the bush's centre [m], and by how much a newton does [m/N]. It
+  // is seen where horizontal forces come and go under a load; else its deviation is that of the model.
+  double compression = 0.0;
+  Parameter compliance;
   AxisEstimate pitch, roll;
   std::uint32_t flags = 0;  // of `Flag`
 };

@@ -11,6 +11,8 @@ constexpr double COLOUR = 8.0;        // rows in a cycle of the filter: so many 
 constexpr double LEAST_LEFT = 1e-3;   // share of what is known that must stay when one group is left out
 constexpr double MOST_NOISE = 0.9;    // of a square: beyond, nothing of it is known
 constexpr double SETTLED = 0.1;       // deviation over stiffness, from which jumps are looked for
+constexpr double USUAL_LOAD = 0.5;    // of the weight, on one foot
+constexpr double DRIFT = 3e-5;        // rad/s, of the attitude: a tenth of a degree in a minute
 constexpr double FIRST_NOISE = 1e-3;  // of the weight, as torque at 1 m, before any residual is known
 
 void squares_of(const RootTriangle<UNKNOWNS>& root, double (&a)[UNKNOWNS][UNKNOWNS]) noexcept {
@@ -65,8 +67,12 @@ void AxisRegression::watch(const RegressionRow& row, double dt) noexcept {
   if (values_.groups < FEWEST_GROUPS || !(values_.std[STIFFNESS] < SETTLED * stiffness)) return;
   double left = row.torque;
   for (int i = 0; i < UNKNOWNS; ++i) left -= row.columns[i] * values_.value[i];
-  watch_.add(row.one, row.columns[STIFFNESS], left, dt);
-  if (!watch_.full() || !watch_.judge(stiffness, noise_)) return;
+  watch_.add(row.own[OFFSET], row.columns[STIFFNESS], left, dt);
+  if (watch_.full()) end_probe();
+}
+
+void AxisRegression::end_probe() noexcept {
+  if (!watch_.judge(values_.value[STIFFNESS], values_.std[STIFFNESS], noise_)) return;
   restart();
   jumped_ = true;
 }
@@ -79,27 +85,42 @@ bool AxisRegression::jumped() noexcept {
 
 void AxisRegression::add(const RegressionRow& row, double dt) noexcept {
   watch(row, dt);
-  double line[UNKNOWNS + 2];
-  line[0] = row.one;
-  for (int i = 0; i < UNKNOWNS; ++i) line[1 + i] = row.columns[i] / prior_.scale[i];
-  line[UNKNOWNS + 1] = row.torque;
+  double line[BLOCK_UNKNOWNS + 1];
+  std::copy_n(row.own, OWN, line);
+  for (int i = 0; i < UNKNOWNS; ++i) line[OWN + i] = row.columns[i] / prior_.scale[i];
+  line[BLOCK_UNKNOWNS] = row.torque;
+  last_time_ = row.own[SLOPE];
   open_.add(line);
   for (int i = 0; i < NOISE_SOURCES; ++i) open_noise_[i] += row.noise[i];
   ++open_rows_, open_time_ += dt, fresh_ = true;
   if (open_time_ >= std::min(BLOCK * group_time_, LONGEST_BLOCK)) close();
 }
 
+// The open block with what is known of drift and twist: they are small. A short block cannot tell them from a motion.
+RootTriangle<BLOCK_UNKNOWNS> AxisRegression::pinned() const noexcept {
+  RootTriangle<BLOCK_UNKNOWNS> block = open_;
+  const double stiffness = values_.value[STIFFNESS] > 0.0 ? values_.value[STIFFNESS] : prior_.scale[ASIDE];
+  for (const Own own : {SLOPE, TWIST}) {
+    const double spread = own == SLOPE ? DRIFT * stiffness : prior_.twist;
+    double line[BLOCK_UNKNOWNS + 1] = {};
+    if (spread > 0.0) line[own] = noise_ / spread;
+    block.add(line, own);
+  }
+  return block;
+}
+
 AxisRegression::Part AxisRegression::open_part() const noexcept {
   Part part;
+  const auto block = pinned();
   for (int i = 0; i <= UNKNOWNS; ++i)
-    for (int j = i; j <= UNKNOWNS; ++j) part.triangle.r[i][j] = open_.r[i + 1][j + 1];
+    for (int j = i; j <= UNKNOWNS; ++j) part.triangle.r[i][j] = block.r[OWN + i][OWN + j];
   for (int i = 0; i < NOISE_SOURCES; ++i) part.noise[i] = open_noise_[i];
   part.rows = open_rows_ - 1;
   return part;
 }
 
 void AxisRegression::close() noexcept {
-  watch_.drop();
+  end_probe();  // of a short stance
   if (open_rows_ >= FEWEST_ROWS) take(open_part());
   open_ = {}, open_rows_ = 0, open_time_ = 0.0;
   std::fill(open_noise_, open_noise_ + NOISE_SOURCES, 0.0);
@@ -151,21 +172,33 @@ AxisRegression::Shared AxisRegression::completed(const Part& data) const noexcep
   }
   for (int source = 0; source < NOISE_SOURCES; ++source) {
     double line[UNKNOWNS + 1] = {};
-    const std::array<double, UNKNOWNS> along = direction(source);
-    for (int i = 0; i < UNKNOWNS; ++i) line[i] = std::sqrt(data.noise[source]) * along[i];
+    const auto along = direction(source);
+    for (int i = 0; i <= UNKNOWNS; ++i) line[i] = std::sqrt(data.noise[source]) * along[i];
     whole.remove(line, MOST_NOISE);
   }
   return whole;
 }
 
-// What one unit of a source's noise adds to the columns.
-std::array<double, UNKNOWNS> AxisRegression::direction(int source) const noexcept {
-  std::array<double, UNKNOWNS> along = {};
-  if (source == OF_RATE)
-    along[DAMPING] = 1.0 / prior_.scale[DAMPING];
-  else
-    along[STIFFNESS] = 1.0 / prior_.scale[STIFFNESS];
-  if (source == OF_ANGLE_AND_ELEMENT) along[SLIP_TORQUE] = prior_.element_slope / prior_.scale[SLIP_TORQUE];
+// What one unit of a source's noise adds to the columns, and to the torque.
+std::array<double, UNKNOWNS + 1> AxisRegression::direction(int source) const noexcept {
+  std::array<double, UNKNOWNS + 1> along = {};
+  switch (source) {
+    case OF_ANGLE_AND_ELEMENT:
+      along[SLIP_TORQUE] = prior_.element_slope;
+      [[fallthrough]];
+    case OF_ANGLE:
+      along[STIFFNESS] = 1.0;
+      break;
+    case OF_RATE:
+      along[DAMPING] = 1.0;
+      break;
+    case OF_LOAD:
+      along[ASIDE] = 1.0, along[UNKNOWNS] = prior_.load_arm;
+      break;
+    default:
+      along[ABOVE] = 1.0, along[COMPLIANCE] = USUAL_LOAD * prior_.scale[ASIDE], along[UNKNOWNS] = prior_.horizontal_arm;
+  }
+  for (int i = 0; i < UNKNOWNS; ++i) along[i] /= prior_.scale[i];
   return along;
 }
 
@@ -183,9 +216,15 @@ void AxisRegression::solve() noexcept {
     if (!std::isfinite(x[i])) return;
   for (int i = 0; i < UNKNOWNS; ++i) values_.value[i] = x[i] / prior_.scale[i];
   if (open_rows_ >= FEWEST_ROWS && open_.r[0][0] > 0.0) {
-    double mean = open_.r[0][UNKNOWNS + 1];
-    for (int i = 0; i < UNKNOWNS; ++i) mean -= open_.r[0][1 + i] * x[i];
-    values_.offset = mean / open_.r[0][0];
+    const auto block = pinned();
+    double own[OWN];
+    for (int e = OWN - 1; e >= 0; --e) {
+      double left = block.r[e][BLOCK_UNKNOWNS];
+      for (int i = 0; i < UNKNOWNS; ++i) left -= block.r[e][OWN + i] * x[i];
+      for (int i = e + 1; i < OWN; ++i) left -= block.r[e][i] * own[i];
+      own[e] = block.r[e][e] > 0.0 ? left / block.r[e][e] : 0.0;
+    }
+    values_.offset = own[OFFSET] + own[SLOPE] * last_time_;
   }
 }
 
@@ -199,15 +238,16 @@ void AxisRegression::find_deviations() noexcept {
   for (int g = 0; g < used_; ++g) {
     // Without this group: x + (A - A_g)⁻¹ (A_g x - b_g).
     const Shared& part = groups_[g].triangle;
-    double own[UNKNOWNS][UNKNOWNS], m[UNKNOWNS][UNKNOWNS], b[UNKNOWNS];
+    double own[UNKNOWNS][UNKNOWNS], m[UNKNOWNS][UNKNOWNS], b[UNKNOWNS] = {};
     squares_of(part, own);
     for (int source = 0; source < NOISE_SOURCES; ++source) {
-      const std::array<double, UNKNOWNS> along = direction(source);
-      for (int i = 0; i < UNKNOWNS; ++i)
+      const auto along = direction(source);
+      for (int i = 0; i < UNKNOWNS; ++i) {
         for (int j = 0; j < UNKNOWNS; ++j) own[i][j] -= groups_[g].noise[source] * along[i] * along[j];
+        b[i] += groups_[g].noise[source] * along[i] * along[UNKNOWNS];
+      }
     }
     for (int i = 0; i < UNKNOWNS; ++i) {
-      b[i] = 0.0;
       for (int j = 0; j <= i; ++j) b[i] -= part.r[j][i] * part.r[j][UNKNOWNS];
       for (int j = 0; j < UNKNOWNS; ++j) b[i] += own[i][j] * x[j], m[i][j] = normal[i][j] - own[i][j];
       m[i][i] = std::max(m[i][i], LEAST_LEFT * normal[i][i]);

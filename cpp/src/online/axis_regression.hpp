@@ -1,11 +1,13 @@
 // Stiffness and damping of one axis: least squares in square-root form over stances, each with an offset of its own.
 //
-// Rows of one stance (of some seconds of it, where the robot stands) are gathered with an offset, which is then
-// eliminated. What is left joins one of some groups of consecutive data; leaving out one group after the other says how
-// far the values can be trusted, however the errors within a group hang together (delete-group jackknife).
+// Rows of one stance (of some seconds of it, where the robot stands) are gathered with an offset and a drift of its
+// own, which are then eliminated. What is left joins one of some groups of consecutive data; leaving out one group
+// after the other says how far the values can be trusted, however the errors within a group hang together
+// (delete-group jackknife).
 //
-// Noise of angles and rates adds to their squares but to no product with the torque, and so draws the values to zero:
-// its expected share is taken off again (W. A. Fuller, Measurement Error Models, Wiley 1987).
+// Noise of angles and rates adds to their squares but to no product with the torque, and so draws the values to zero;
+// noise of forces also adds to their products with the torque about a bush that is not at the sensor. Both are
+// measured, and their expected share is taken off again (W. A. Fuller, Measurement Error Models, Wiley 1987).
 #pragma once
 
 #include <array>
@@ -15,25 +17,31 @@
 
 namespace plantar {
 
-// Columns of a row beside the offset's: what each unknown multiplies.
-enum Unknown : int { STIFFNESS, DAMPING, SLIP_TORQUE, ASIDE, ABOVE };
-constexpr int UNKNOWNS = 5;
+// Columns of a row beside the offset's: what each unknown multiplies. The bush's centre is ASIDE of and ABOVE its
+// place, and higher the more it is loaded (COMPLIANCE).
+enum Unknown : int { STIFFNESS, DAMPING, SLIP_TORQUE, ASIDE, ABOVE, COMPLIANCE };
+constexpr int UNKNOWNS = 6;
+// What each block has of its own: an offset, its drift, and the zero of the yaw torque, which pitch turns into roll.
+enum Own : int { OFFSET, SLOPE, TWIST };
+constexpr int OWN = 3;
+constexpr int BLOCK_UNKNOWNS = OWN + UNKNOWNS;
 
-// Where noise enters: the deflection alone, the rate, or the deflection and with it an element that does not slip.
-enum NoiseSource : int { OF_ANGLE, OF_RATE, OF_ANGLE_AND_ELEMENT };
-constexpr int NOISE_SOURCES = 3;
+// Where noise enters: the deflection alone, the rate, the deflection and with it an element that does not slip, the
+// load, or the horizontal force.
+enum NoiseSource : int { OF_ANGLE, OF_RATE, OF_ANGLE_AND_ELEMENT, OF_LOAD, OF_HORIZONTAL };
+constexpr int NOISE_SOURCES = 5;
 
 constexpr int MOST_GROUPS = 12;
 constexpr int FEWEST_GROUPS = 3;       // that say how they differ
 constexpr double FIRST_GROUP = 1.0;    // s of rows in one group, in the beginning
 constexpr double LARGEST_GROUP = 8.0;  // s: errors hang together for less
 constexpr double MEMORY = 2.0;         // fillings of each group that are remembered
-constexpr double BLOCK = 2.5;          // groups with one offset, of a foot that stands: the attitude drifts more slowly
+constexpr double BLOCK = 2.5;          // groups with one offset, of a foot that stands
 constexpr double LONGEST_BLOCK = 10.0;  // s
 constexpr int FEWEST_ROWS = 8;          // of a block: with fewer its offset takes most of it
 
 struct RegressionRow {
-  double one;  // what the filter has made of a constant
+  double own[OWN];  // what the filter has made of a constant, of the time, of what turns with the pitch
   double columns[UNKNOWNS];
   double torque;
   double noise[NOISE_SOURCES];  // variance, of each source
@@ -44,6 +52,9 @@ struct RegressionPrior {
   std::array<double, UNKNOWNS> mean;   // of each unknown, before any data, and how far it may be off
   std::array<double, UNKNOWNS> spread;
   double element_slope;  // of the element's state over the deflection, where it does not slip [1/rad]
+  double load_arm;       // torque that the sensor's load and horizontal force bring with them to the bush [m]
+  double horizontal_arm;
+  double twist;  // how far the yaw torque's zero may be off [N·m]; 0: of no account about this axis
 };
 
 struct AxisValues {
@@ -84,21 +95,23 @@ class AxisRegression {
     double time = 0.0;
   };
 
+  RootTriangle<BLOCK_UNKNOWNS> pinned() const noexcept;
   Part open_part() const noexcept;
   void take(const Part& part) noexcept;
   void merge_pairs() noexcept;
   void sum_up() noexcept;
   // With the prior, without the noise: the triangle that the values are solved from.
   Shared completed(const Part& data) const noexcept;
-  std::array<double, UNKNOWNS> direction(int source) const noexcept;
+  std::array<double, UNKNOWNS + 1> direction(int source) const noexcept;
   void solve() noexcept;
   void find_deviations() noexcept;
   void watch(const RegressionRow& row, double dt) noexcept;
+  void end_probe() noexcept;
 
   RegressionPrior prior_;
-  RootTriangle<UNKNOWNS + 1> open_;  // the offset first
+  RootTriangle<BLOCK_UNKNOWNS> open_;  // its own first
   int open_rows_ = 0;
-  double open_time_ = 0.0, open_noise_[NOISE_SOURCES] = {};
+  double open_time_ = 0.0, open_noise_[NOISE_SOURCES] = {}, last_time_ = 0.0;
   std::array<Group, MOST_GROUPS> groups_;
   int used_ = 0, current_ = 0;
   bool full_ = false;

@@ -36,15 +36,16 @@ class ChangeWatch {
   bool full() const noexcept { return time_ >= PROBE_TIME; }
   void drop() noexcept { probe_ = {}, rows_ = 0, time_ = 0.0; }
 
-  // Ends a probe; whether the stiffness has changed. noise: of a row [N·m].
-  bool judge(double stiffness, double noise) noexcept {
+  // Ends a probe; whether the stiffness has changed from what was learnt, with its deviation. noise: of a row [N·m].
+  bool judge(double stiffness, double deviation, double noise) noexcept {
     const double shown = probe_.r[1][1];
     const bool enough = rows_ >= PROBE_ROWS && shown > 0.0 && stiffness > 0.0;
     const double away = enough ? probe_.r[1][2] / shown / stiffness : 0.0;
     const double own = enough ? noise / shown / stiffness : 1.0;
     drop();
     if (own > SHOWS) return false;
-    const double variance = std::max(scatter_, own * own);
+    const double known = deviation / stiffness;
+    const double variance = std::max(scatter_, own * own) + known * known;
     const auto evidence = [&](double change) {
       return std::clamp(change * (away - 0.5 * change) / variance, -MOST_OF_ONE, MOST_OF_ONE);
     };

@@ -87,7 +87,7 @@ void read_foot_line(FootModel& foot, Line& line) {
   } else if (line.kind() == "place_std")
     foot.place_std[0] = line.next<double>(), foot.place_std[1] = line.next<double>();
   else if (line.kind() == "compliance")
-    foot.compliance = line.next<double>();
+    foot.compliance = line.next<double>(), foot.compliance_std = line.next<double>();
   else if (line.kind() == "element") {
     const int axis = line.next<int>();
     if (axis != 0 && axis != 1) line.fail("no axis (valid: 0 for pitch, 1 for roll)");

@@ -19,7 +19,7 @@ constexpr double GAP_PERIODS = 5.0;
 constexpr int FIRST_TICKS = 10;       // until the period is known
 constexpr double PERIOD_NEWS = 0.05;  // by how much one tick changes the period
 constexpr double UNREAD = LARGEST;    // stands for a position that the last tick did not have
-constexpr int TICKS = 2;              // columns of the kinematics: this tick, and half a period before
+constexpr int TICKS = 3;  // columns of the kinematics: this tick, half a period before, and the gyroscope alone
 
 double checked_weight(const EstimatorModel& model) {
   const auto bad = [](const char* what) { throw std::invalid_argument(std::string("model: ") + what); };
@@ -86,8 +86,7 @@ struct FootEstimator::State {
   DeviceWatch<3> gyroscope_watch;
   AttitudeFilter filter;
   SlipGate slip;
-  WhiteNoise gyroscope_noise[3];
-  double rate_noise = -1.0;
+  bool gyroscope = false;
   double quaternion[4][TICKS] = {}, angular_velocity[3][TICKS] = {};
   double last_quaternion[4] = {1.0, 0.0, 0.0, 0.0}, last_rate[3] = {};
   double out[CHAIN_OUTPUTS][TICKS] = {};
@@ -120,7 +119,7 @@ FootEstimator::State::Time FootEstimator::State::keep_time(double now) noexcept 
 }
 
 bool FootEstimator::State::imu(const Reading& reading) noexcept {
-  const bool gyroscope = reading.angular_velocity.size() == 3;
+  gyroscope = reading.angular_velocity.size() == 3;
   double q[4], w[3] = {0.0, 0.0, 0.0};
   if (gyroscope) std::copy_n(reading.angular_velocity.data(), 3, w);
   if (reading.attitude.size() == 4) {
@@ -139,6 +138,7 @@ bool FootEstimator::State::imu(const Reading& reading) noexcept {
   for (int i = 0; i < 4; ++i) {
     quaternion[i][0] = q[i];
     quaternion[i][1] = known ? q[i] + same * last_quaternion[i] : q[i];
+    quaternion[i][2] = q[i];
   }
   if (!gyroscope && known) {  // the turn since the last tick, over its time
     const double* p = last_quaternion;
@@ -148,15 +148,9 @@ bool FootEstimator::State::imu(const Reading& reading) noexcept {
     for (int i = 0; i < 3; ++i) w[i] = 2.0 * same * turn[i] / dt;
   }
   for (int i = 0; i < 3; ++i) {
-    angular_velocity[i][0] = w[i];
+    angular_velocity[i][0] = angular_velocity[i][2] = w[i];
     angular_velocity[i][1] = gyroscope && known ? 0.5 * (w[i] + last_rate[i]) : w[i];
     last_rate[i] = w[i];
-  }
-  rate_noise = gyroscope ? 0.0 : -1.0;
-  for (int i = 0; gyroscope && i < 3; ++i) {
-    if (!known) gyroscope_noise[i].restart();
-    gyroscope_noise[i].see(w[i], dt);
-    rate_noise += gyroscope_noise[i].variance() / 3.0;
   }
   std::copy_n(q, 4, last_quaternion);
   return true;
@@ -176,7 +170,8 @@ void FootEstimator::State::joints(const Reading& reading) noexcept {
     if (given && joint_watch[j].frozen(q, v, dt)) joint_bad[j] = FROZEN;
     const bool read = known && last_position[j] != UNREAD;
     const double difference = read ? (q - last_position[j]) / dt : 0.0;
-    position[TICKS * j] = q, position[TICKS * j + 1] = read ? 0.5 * (q + last_position[j]) : q;
+    position[TICKS * j] = position[TICKS * j + 2] = q;
+    position[TICKS * j + 1] = read ? 0.5 * (q + last_position[j]) : q;
     velocity[TICKS * j] = given ? v : difference, velocity[TICKS * j + 1] = difference;
     last_position[j] = q;
   }
@@ -195,8 +190,9 @@ void FootEstimator::State::kinematics(std::size_t foot) noexcept {
   for (int i = 0; i < 2; ++i) {
     to.angle[i] = out[DEFLECTION + i][0], to.mean_angle[i] = out[DEFLECTION + i][1];
     to.rate[i] = out[RATE + i][0], to.mean_rate[i] = out[RATE + i][1];
+    to.turning[i] = out[RATE + i][2];
   }
-  to.rate_noise = rate_noise;
+  to.gyroscope = gyroscope;
   to.place = {out[SOLE_POSITION][0], out[SOLE_POSITION + 1][0], out[HEADING][0]};
 }
 
@@ -257,8 +253,8 @@ void FootEstimator::State::step(const Reading& reading) noexcept {
     was_bad[f] = bad[f] != 0;
   }
   known = true;
-  feet[next_work / 2].work(next_work % 2);
-  next_work = (next_work + 1) % static_cast<int>(2 * feet.size());
+  feet[next_work / FootTracker::PIECES].work(next_work % FootTracker::PIECES);
+  next_work = (next_work + 1) % (FootTracker::PIECES * static_cast<int>(feet.size()));
   for (std::size_t f = 0; f < feet.size(); ++f) estimates[f] = feet[f].estimate();
 }
 

@@ -19,12 +19,16 @@ constexpr double USUAL_RATE = 0.1;
 constexpr double USUAL_SLOPE = 0.1;    // horizontal force over weight
 constexpr double STIFFEST = 100.0;     // m, times the weight: stiffness before any data
 constexpr double SLOWEST = 1.0;        // s: damping over stiffness before any data
-constexpr double NOISE_ABOVE = 4.0;    // cutoffs: from there on a signal counts as noise
-constexpr double NYQUIST_SHARE = 0.8;  // of the highest frequency, that this must stay below
+// Of a period: how far apart the readings of one tick are, and how far a sample is from what it stands for: motors
+// that are told something new at each tick shake the joints in step with the samples.
+constexpr double SKEW = 0.03;
+constexpr double TWIST_ZERO = 2e-3;    // m, times the weight: zero of a yaw torque
 constexpr double NEWLY_KNOWN = 0.02;   // of an element's range: less changes no offset
 constexpr double HARDLY_SLIPS = 0.99;  // of an element's largest state: below it noise moves it as the deflection
 constexpr double TRUSTED = 0.1;        // half width over stiffness
 constexpr double CHANGE_TOLD = 5.0;    // s for which the flag of a change stands
+constexpr std::uint32_t OF_LEARNING =
+    NEVER_LOADED | PITCH_UNKNOWN | ROLL_UNKNOWN | PITCH_MEMORY | ROLL_MEMORY;  // they outlast a tick
 constexpr double NORMAL = 1.96;
 // Student's t for 95 %, by degrees of freedom from 2.
 constexpr double QUANTILE[] = {4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201};
@@ -36,15 +40,22 @@ double outline_middle_depth(const FootModel& foot) noexcept {
   return depth(foot.polygon, middle);
 }
 
-RegressionPrior prior_of(const EstimatorModel& model, const FootModel& foot, int axis) noexcept {
-  const double w = model.weight, slip = foot.slip_angle[axis];
-  const double torque_std = slip > 0.0 && foot.slip_torque_std[axis] > 0.0 ? foot.slip_torque_std[axis] : w;
+bool has_element(const FootModel& foot, int axis) noexcept { return foot.slip_angle[axis] > 0.0; }
+
+RegressionPrior prior_of(const EstimatorModel& model, const FootModel& foot, int axis, double slip) noexcept {
+  const double w = model.weight;
+  const bool known = has_element(foot, axis);
+  const double torque_std = known && foot.slip_torque_std[axis] > 0.0 ? foot.slip_torque_std[axis] : w;
   RegressionPrior prior;
-  prior.scale = {USUAL_ANGLE, USUAL_RATE, 1.0, w, USUAL_SLOPE * w};
-  prior.mean = {0.0, 0.0, slip > 0.0 ? foot.slip_torque[axis] : 0.0, 0.0, 0.0};
+  prior.scale = {USUAL_ANGLE, USUAL_RATE, 1.0, w, USUAL_SLOPE * w, USUAL_SLOPE * w * w};
+  prior.mean = {};
+  if (known) prior.mean[SLIP_TORQUE] = foot.slip_torque[axis];
   prior.spread = {STIFFEST * w, SLOWEST * STIFFEST * w, torque_std, std::max(foot.place_std[0], 1e-9),
-                  std::max(foot.place_std[1], 1e-9)};
+                  std::max(foot.place_std[1], 1e-9), std::max(foot.compliance_std, 1e-9 / w)};
+  prior.twist = axis == 1 ? TWIST_ZERO * w : 0.0;
   prior.element_slope = slip > 0.0 ? 1.0 / slip : 0.0;
+  prior.load_arm = axis == 0 ? -foot.sensor.origin[0] : foot.sensor.origin[1];
+  prior.horizontal_arm = foot.sensor.origin[2];
   return prior;
 }
 
@@ -57,12 +68,19 @@ FootTracker::FootTracker(const EstimatorModel& model, const FootModel& foot) noe
       middle_depth_(outline_middle_depth(foot)),
       delay_(model.wrench_delay),
       cutoff_(model.cutoff),
+      noise_(model.cutoff),
       gain_std_(model.wrench_gain_std),
       delay_std_(model.wrench_delay_std),
       gate_(model.weight, foot.always),
       shaking_(model.weight),
-      axes_{AxisRegression(prior_of(model, foot, 0)), AxisRegression(prior_of(model, foot, 1))} {
-  for (int axis = 0; axis < 2; ++axis) work(axis);
+      axes_{AxisRegression(prior_of(model, foot, 0, foot.slip_angle[0])),
+            AxisRegression(prior_of(model, foot, 1, foot.slip_angle[1]))},
+      memories_{MemoryWatch(prior_of(model, foot, 0, SUSPECTED_ANGLE)),
+                MemoryWatch(prior_of(model, foot, 1, SUSPECTED_ANGLE))} {
+  for (int axis = 0; axis < 2; ++axis) {
+    slip_angle_[axis] = has_element(foot, axis) ? foot.slip_angle[axis] : SUSPECTED_ANGLE;
+    publish(axis);
+  }
   estimate_.flags = NOT_STANDING | NEVER_LOADED | PITCH_UNKNOWN | ROLL_UNKNOWN;
 }
 
@@ -77,6 +95,7 @@ void FootTracker::read(const FootKinematics& motion, const std::array<double, 6>
   estimate_.pitch.rate = motion.rate[0], estimate_.roll.rate = motion.rate[1];
   // The loaded slide carries the bush's centre up by z. The roll axis turns with the pitch: Ry(pitch) e_x.
   const double z = foot_->compliance * wrench_[2];
+  estimate_.compression = estimate_.compliance.value * wrench_[2];
   estimate_.pitch.torque = wrench_[4] - z * wrench_[0];
   estimate_.roll.torque = std::cos(pitch) * (wrench_[3] + z * wrench_[1]) - std::sin(pitch) * wrench_[5];
   Point centre;
@@ -88,21 +107,32 @@ void FootTracker::restart_filter() noexcept {
   row_ticks_ = 0, row_time_ = 0.0;
 }
 
-void FootTracker::end_stance() noexcept {
+void FootTracker::close_blocks() noexcept {
   for (AxisRegression& axis : axes_) axis.close();
+  for (MemoryWatch& memory : memories_) memory.close();
+}
+
+void FootTracker::end_stance() noexcept {
+  close_blocks();
   held_count_ = 0;
-  if (gate_.stances() == STEPS)
-    for (AxisRegression& axis : axes_) axis.set_spread(ASIDE, STIFFEST);
+  if (gate_.stances() != STEPS) return;
+  for (AxisRegression& axis : axes_) axis.set_spread(ASIDE, STIFFEST);
+  for (MemoryWatch& memory : memories_) memory.set_spread(ASIDE, STIFFEST);
 }
 
 void FootTracker::learn(const FootKinematics& motion, double others, SlipGate::Verdict slips, bool fresh, double time,
                         double dt, double period) noexcept {
-  follow_noise(motion, dt, period);
+  period_ = period;
+  noise_.follow({{motion.angle[0], motion.angle[1]},
+                 {motion.turning[0], motion.turning[1]},
+                 {estimate_.load, wrench_[0], wrench_[1]},
+                 motion.gyroscope},
+                dt, period);
   const ContactState before = gate_.contact();
   const double inside = depth(foot_->polygon, estimate_.centre_of_pressure);
   const bool carries = estimate_.load > least_load_;
-  const ContactState contact =
-      gate_.step(estimate_.load, others, carries && inside > ROLLING_SHARE * middle_depth_, zero_.known(), dt);
+  flat_ = carries && inside > ROLLING_SHARE * middle_depth_;
+  const ContactState contact = gate_.step(estimate_.load, others, flat_, zero_.known(), dt);
   const bool struck = shaking_.step(wrench_.data(), dt) && !foot_->always && gate_.standing_for() > LONGEST_STANCE;
   if (contact == ContactState::air) zero_.swing(raw_, estimate_.load, weight_, dt);
   if (before == ContactState::air && contact != ContactState::air) zero_.landed();
@@ -111,7 +141,7 @@ void FootTracker::learn(const FootKinematics& motion, double others, SlipGate::V
     end_stance();
     restart_filter();
   }
-  std::uint32_t flags = estimate_.flags & (NEVER_LOADED | PITCH_UNKNOWN | ROLL_UNKNOWN);
+  std::uint32_t flags = estimate_.flags & OF_LEARNING;
   const bool edge = contact == ContactState::stance && !foot_->always && inside < EDGE_MARGIN;
   if (contact != ContactState::stance)
     flags |= NOT_STANDING;
@@ -124,7 +154,7 @@ void FootTracker::learn(const FootKinematics& motion, double others, SlipGate::V
   estimate_.flags = flags, estimate_.contact = contact;
   if (!fresh) {
     angles_.restart(), forces_.restart();
-    for (WhiteNoise& noise : angle_noise_) noise.restart();
+    noise_.restart();
     restart_filter();
   }
   if (contact != ContactState::stance || edge || struck || slips == SlipGate::Verdict::sure) {
@@ -133,19 +163,6 @@ void FootTracker::learn(const FootKinematics& motion, double others, SlipGate::V
   }
   filter(motion, time, dt, fresh ? period : 0.0);
   if (contact == ContactState::stance) commit(time - (foot_->always ? 0.0 : gate_.settling()));
-}
-
-// Variance of the white noise that is left behind the filter; none where the samples are too slow to show it.
-void FootTracker::follow_noise(const FootKinematics& motion, double dt, double period) noexcept {
-  const double band = 2.0 * cutoff_ * period;  // of all frequencies, those that pass
-  const bool shows = NOISE_ABOVE * band < NYQUIST_SHARE;
-  const double edge = 2.0 * std::numbers::pi * cutoff_;
-  for (int a = 0; a < 2; ++a) {
-    angle_noise_[a].see(motion.angle[a], dt);
-    const double white = shows ? angle_noise_[a].variance() * band : 0.0;
-    noise_[a][0] = white;
-    noise_[a][1] = motion.rate_noise >= 0.0 ? (shows ? motion.rate_noise * band : 0.0) : white * edge * edge / 3.0;
-  }
 }
 
 // The tick's signals in the middle of its period, where differences are exact, each as late as the latest of them.
@@ -163,16 +180,25 @@ void FootTracker::filter(const FootKinematics& motion, double time, double dt, d
       forces_.pass(time, mean, -delay_, forces);
   if (!reaches) return;
   follow_elements(angles.data(), time);
+  const bool paused = pause_ > 0.0;
+  pause_ -= std::min(pause_, dt);
   if (estimate_.contact != ContactState::stance) return;
-  if (estimate_.flags & (EDGE | SLIP | IMPACT)) return;
+  if (estimate_.flags & (EDGE | SLIP | IMPACT)) {
+    pause_ = std::abs(delay_) + 0.5 * dt;  // one tick, and the delay
+    return;
+  }
+  // The delay lines and the mean over a period still hold what was left out.
+  if (paused) return;
   if (!running_) {
     filter_.design(cutoff_, period);
     filter_.restart();
-    running_ = true;
+    running_ = true, begun_ = time;
   }
-  double channels[CHANNELS] = {1.0,       forces[0], forces[1],           forces[2],
-                               angles[0], angles[2], element_[0].state(), forces[3],
-                               angles[1], angles[3], element_[1].state(), forces[4]};
+  const double load = forces[0], x = forces[1], y = forces[2];
+  double channels[CHANNELS] = {1.0,       time - begun_, load,                x,         y,         load * x,
+                               load * y,  -std::sin(angles[0]),
+                               angles[0], angles[2],     element_[0].state(), forces[3],
+                               angles[1], angles[3],     element_[1].state(), forces[4]};
   filter_.pass(channels);
   row_time_ += dt;
   const int stride = std::max(1, static_cast<int>(1.0 / (ROWS_PER_CYCLE * cutoff_ * period)));
@@ -181,20 +207,19 @@ void FootTracker::filter(const FootKinematics& motion, double time, double dt, d
   row_ticks_ = 0, row_time_ = 0.0;
 }
 
-// Elements from tick to tick. In the air one is at rest; at its first sample it is loaded from there. Of a foot that
-// stood when time began nobody knows: each time that less is unknown, the rows' offset changes.
+// Elements from tick to tick. In the air one is at rest; it is loaded from there until the sole lies flat. Of a foot
+// that stood when time began nobody knows: each time that less is unknown, the rows' offset changes.
 void FootTracker::follow_elements(const double* angles, double time) noexcept {
   const bool air = estimate_.contact == ContactState::air;
   swung_ = swung_ || air;
-  bool changed = false;
+  bool known = false, suspected = false;
   for (int a = 0; a < 2; ++a) {
-    const double slip = foot_->slip_angle[a], by = angles[a] - last_angle_[a];
+    const double slip = slip_angle_[a], by = angles[a] - last_angle_[a];
     last_angle_[a] = angles[a];
-    if (slip <= 0.0) continue;
     ElementState& element = element_[a];
-    if (estimate_.contact == ContactState::stance) {
+    if (estimate_.contact == ContactState::stance || (swung_ && !air && flat_)) {
       element.move(by / slip);
-      changed = changed || element.opened - element.gap() > NEWLY_KNOWN;
+      if (element.opened - element.gap() > NEWLY_KNOWN) (has_element(*foot_, a) ? known : suspected) = true;
     } else if (swung_) {
       const double guess = std::clamp(angles[a] / slip, -1.0, 1.0);
       element.begin(guess, guess);
@@ -202,9 +227,12 @@ void FootTracker::follow_elements(const double* angles, double time) noexcept {
       element.begin(-1.0, 1.0);
     }
   }
-  if (!changed) return;
+  if (!known && !suspected) return;
   commit(time);
-  for (int a = 0; a < 2; ++a) axes_[a].close(), element_[a].opened = element_[a].gap();
+  for (ElementState& element : element_) element.opened = element.gap();
+  for (MemoryWatch& memory : memories_) memory.close();
+  if (!known) return;
+  for (AxisRegression& axis : axes_) axis.close();
   restart_filter();
 }
 
@@ -227,23 +255,40 @@ void FootTracker::commit(double before) noexcept {
 
 void FootTracker::give(const HeldRow& row) noexcept {
   const double* c = row.channels;
-  // A centre that is higher takes its share of the horizontal force: F_x off the pitch torque, F_y onto the roll
-  // torque.
-  double noise[2][NOISE_SOURCES];
   for (int a = 0; a < 2; ++a) {
-    const bool follows = foot_->slip_angle[a] > 0.0 && std::abs(c[6 + 4 * a]) < HARDLY_SLIPS * c[0];
-    noise[a][OF_ANGLE] = follows ? 0.0 : noise_[a][0];
-    noise[a][OF_RATE] = noise_[a][1];
-    noise[a][OF_ANGLE_AND_ELEMENT] = follows ? noise_[a][0] : 0.0;
+    const double* own = c + FIRST_AXIS + AXIS_CHANNELS * a;
+    // A centre that is higher takes its share of the horizontal force: F_x off the pitch torque, F_y onto the roll
+    // torque.
+    const double across = a == 0 ? c[FORCE_X] : -c[FORCE_Y], loaded = a == 0 ? c[LOAD_X] : -c[LOAD_Y];
+    const bool known = has_element(*foot_, a), sticks = std::abs(own[ELEMENT]) < HARDLY_SLIPS * c[ONE];
+    RegressionRow line = {{c[ONE], c[TIME], a == 1 ? c[TURN] : 0.0},
+                          {own[ANGLE], own[ANGLE_RATE], own[ELEMENT], c[LOAD], across, loaded},
+                          own[TORQUE],
+                          {0.0, noise_.of_rate[a], 0.0, noise_.of_force[0], noise_.of_force[1 + a]}};
+    line.noise[sticks ? OF_ANGLE_AND_ELEMENT : OF_ANGLE] = noise_.of_angle[a];
+    if (!known) {
+      memories_[a].add(line, row.dt);
+      line.columns[SLIP_TORQUE] = line.noise[OF_ANGLE_AND_ELEMENT] = 0.0, line.noise[OF_ANGLE] = noise_.of_angle[a];
+    }
+    axes_[a].add(line, row.dt);
   }
-  const double (&p)[NOISE_SOURCES] = noise[0], (&r)[NOISE_SOURCES] = noise[1];
-  axes_[0].add({c[0], {c[4], c[5], c[6], c[1], c[2]}, c[7], {p[0], p[1], p[2]}}, row.dt);
-  axes_[1].add({c[0], {c[8], c[9], c[10], c[1], -c[3]}, c[11], {r[0], r[1], r[2]}}, row.dt);
 }
 
-void FootTracker::work(int axis) noexcept {
+void FootTracker::work(int piece) noexcept {
+  const int axis = piece % 2;
+  if (piece >= 2) {
+    if (!has_element(*foot_, axis)) memories_[axis].work();
+    return;
+  }
   axes_[axis].work();
-  if (axes_[axis].jumped()) told_change_ = CHANGE_TOLD;
+  if (axes_[axis].jumped()) {
+    told_change_ = CHANGE_TOLD;
+    memories_[axis].restart();
+  }
+  publish(axis);
+}
+
+void FootTracker::publish(int axis) noexcept {
   const AxisValues& found = axes_[axis].values();
   AxisEstimate& out = axis == 0 ? estimate_.pitch : estimate_.roll;
   const double k = found.value[STIFFNESS], c = found.value[DAMPING];
@@ -254,26 +299,42 @@ void FootTracker::work(int axis) noexcept {
                      std::hypot(quantile * std, NORMAL * systematic)};
   };
   // A wrench that is late by more than it was told to be takes K·delay off the damping and adds C·ω²·delay to K.
-  out.stiffness = parameter(STIFFNESS, std::hypot(gain_std_ * k, delay_std_ * c * found.pace));
-  out.damping = parameter(DAMPING, std::hypot(gain_std_ * c, delay_std_ * k));
+  const double late = std::hypot(delay_std_, SKEW * period_);
+  out.stiffness = parameter(STIFFNESS, std::hypot(gain_std_ * k, late * c * found.pace));
+  out.damping = parameter(DAMPING, std::hypot(gain_std_ * c, late * k));
   out.slip_torque =
-      foot_->slip_angle[axis] > 0.0 ? parameter(SLIP_TORQUE, gain_std_ * found.value[SLIP_TORQUE]) : Parameter{};
+      has_element(*foot_, axis) ? parameter(SLIP_TORQUE, gain_std_ * found.value[SLIP_TORQUE]) : Parameter{};
   out.offset = found.offset;
-  out.identified = found.groups >= FEWEST_GROUPS && k > 0.0 && out.stiffness.half_width < TRUSTED * k;
-  const std::uint32_t unknown = axis == 0 ? PITCH_UNKNOWN : ROLL_UNKNOWN;
-  estimate_.flags = out.identified ? estimate_.flags & ~unknown : estimate_.flags | unknown;
+  learnt_compliance_[axis] = parameter(COMPLIANCE, 0.0);
+  publish_compliance();
+  const bool sure = found.groups >= FEWEST_GROUPS && k > 0.0 && out.stiffness.half_width < TRUSTED * k;
+  out.identified = sure && !memories_[axis].seen();
+  const auto tell = [this](std::uint32_t flag, bool holds) {
+    estimate_.flags = holds ? estimate_.flags | flag : estimate_.flags & ~flag;
+  };
+  tell(axis == 0 ? PITCH_UNKNOWN : ROLL_UNKNOWN, !sure);
+  tell(axis == 0 ? PITCH_MEMORY : ROLL_MEMORY, memories_[axis].seen());
+}
+
+// Both axes have learnt it, each with a prior of its own, from torques of the same load.
+void FootTracker::publish_compliance() noexcept {
+  const Parameter &p = learnt_compliance_[0], &r = learnt_compliance_[1];
+  const double share = r.std > 0.0 ? r.std * r.std / (p.std * p.std + r.std * r.std) : 0.0;
+  const auto mean = [share](double pitch, double roll) { return share * pitch + (1.0 - share) * roll; };
+  estimate_.compliance = {foot_->compliance + mean(p.value, r.value), std::min(p.std, r.std),
+                          std::min(p.half_width, r.half_width)};
 }
 
 void FootTracker::miss(std::uint32_t reason) noexcept {
-  estimate_.flags = (estimate_.flags & (NEVER_LOADED | PITCH_UNKNOWN | ROLL_UNKNOWN)) | reason | NOT_STANDING;
+  estimate_.flags = (estimate_.flags & OF_LEARNING) | reason | NOT_STANDING;
   estimate_.pitch.rate = estimate_.roll.rate = 0.0;
   held_count_ = 0;
   if (reason & TIME_FAULT)  // who knows what has passed: zeros and offsets may be others
-    for (AxisRegression& axis : axes_) axis.close();
+    close_blocks();
   if (reason & TIME_FAULT) swung_ = false;
   gate_.restart();  // what is told of the contact stays, until readings say otherwise
   shaking_.restart();
-  for (WhiteNoise& noise : angle_noise_) noise.restart();
+  noise_.restart();
   angles_.restart(), forces_.restart();
   restart_filter();
 }

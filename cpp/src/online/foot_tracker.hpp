@@ -9,10 +9,11 @@
 #include "online/causal_filter.hpp"
 #include "online/contact_gate.hpp"
 #include "online/delay_line.hpp"
+#include "online/foot_noise.hpp"
+#include "online/memory_watch.hpp"
 #include "online/shaking.hpp"
 #include "online/slip_gate.hpp"
 #include "online/sole.hpp"
-#include "online/white_noise.hpp"
 #include "plantar/foot_estimator.hpp"
 
 namespace plantar {
@@ -24,7 +25,8 @@ struct FootKinematics {
   double rate[2];        // [rad/s], of the tick, for the controller
   double mean_angle[2];  // half a period before: there the joints' differences are exact
   double mean_rate[2];
-  double rate_noise;  // variance of the gyroscope's white noise [rad²/s²]; negative: rates come from the attitude
+  double turning[2];     // what the gyroscope alone adds to the rates [rad/s]
+  bool gyroscope;        // else rates come from the attitude
   SolePlace place;
 };
 
@@ -51,16 +53,21 @@ class FootTracker {
              double period) noexcept;
   // A tick without readings that can be used, for `reason`.
   void miss(std::uint32_t reason) noexcept;
-  // One piece of the regressions' work.
-  void work(int axis) noexcept;
+  // One piece of the regressions' work, of PIECES.
+  static constexpr int PIECES = 4;
+  void work(int piece) noexcept;
 
   double load() const noexcept { return estimate_.load; }
   ContactState contact() const noexcept { return gate_.contact(); }
   const FootEstimate& estimate() const noexcept { return estimate_; }
 
  private:
-  static constexpr int CHANNELS = 12;  // 1, load, force x and y, then of each axis: angle, rate, element, torque
+  static constexpr int CHANNELS = 16;
   static constexpr int HELD = 32;      // rows that wait until the foot has not lifted behind them
+  // What the filter passes: constant, time, load, horizontal forces, the load times each, what turns with the pitch;
+  // then of each axis.
+  enum Channel : int { ONE, TIME, LOAD, FORCE_X, FORCE_Y, LOAD_X, LOAD_Y, TURN, FIRST_AXIS };
+  enum AxisChannel : int { ANGLE, ANGLE_RATE, ELEMENT, TORQUE, AXIS_CHANNELS };
   struct HeldRow {
     double time, dt;
     double channels[CHANNELS];
@@ -73,11 +80,15 @@ class FootTracker {
   void commit(double before) noexcept;
   void give(const HeldRow& row) noexcept;
   void end_stance() noexcept;
-  void follow_noise(const FootKinematics& motion, double dt, double period) noexcept;
+  void close_blocks() noexcept;
+  void publish(int axis) noexcept;
+  void publish_compliance() noexcept;
 
   const FootModel* foot_;
   double weight_, least_load_, middle_depth_, delay_, cutoff_;
+  FootNoise noise_;
   double gain_std_, delay_std_;
+  double period_ = 0.0;
   ContactGate gate_;
   AirZero zero_;
   Shaking shaking_;
@@ -85,13 +96,17 @@ class FootTracker {
   DelayLine<4> angles_;
   DelayLine<6> forces_;
   std::array<AxisRegression, 2> axes_;
+  std::array<MemoryWatch, 2> memories_;  // of axes whose model has no element
+  Parameter learnt_compliance_[2];       // of the slide beside the model's, as each axis has it
+  double slip_angle_[2];                 // of the model's element, or of the one that a memory is looked for with
   std::array<double, 6> raw_ = {}, wrench_ = {}, before_ = {};  // before_: load, force x, y, both torques, of last tick
-  std::array<WhiteNoise, 2> angle_noise_;
-  double noise_[2][2] = {};  // variance of angle and rate of each axis, behind the filter
   ElementState element_[2];
   double last_angle_[2] = {};
+  bool flat_ = false;         // the centre of pressure is inside the sole
   bool swung_ = false;        // the foot was in the air since time last jumped: its elements begin there at rest
   bool running_ = false;      // the filter has begun
+  double begun_ = 0.0;        // at this time
+  double pause_ = 0.0;        // s for which the lines still hold ticks that were left out
   double told_change_ = 0.0;  // s for which a change of ground is still told
   double row_time_ = 0.0;     // since the last row
   int row_ticks_ = 0;

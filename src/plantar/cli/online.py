@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -26,8 +27,9 @@ from plantar.online.replay import Replay
 from plantar.online.verdicts import judged, log_notes
 from plantar.results.feet import FeetResult, Parameter
 from plantar.results.io import dump_json
-from plantar.robot.model import load_robot
+from plantar.robot.model import RobotModel, load_robot
 
+LONGEST_WAIT = 120.0  # s for a browser to open the page
 RESULT_HELP = "A result of `identify feet`: its hysteresis, compliance, delay and cutoff are used."
 DELAY_HELP = "How late the force sensors are against the IMU, in s; of the result, or unknown, if left out."
 
@@ -44,6 +46,10 @@ def run(
         Path | None,
         typer.Option(help="Also write the file that a controller in C++ constructs its estimator from."),
     ] = None,
+    live: Annotated[
+        bool, typer.Option("--live", help="Also show it in a browser, at the pace at which it was recorded.")
+    ] = False,
+    port: Annotated[int, typer.Option(min=0, max=65535, help="Of the page, on this machine alone.")] = 8080,
     memory: Memory = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No table, no progress.")] = False,
@@ -65,6 +71,8 @@ def run(
     replay = estimator.replay(motion)
     rows = judged(replay.parameters, notes, identified=batch is not None)
     end_progress(quiet)
+    if live:
+        _show(known, replay, port)
     if json:
         content = {
             "parameters": [asdict(row) for row in rows],
@@ -75,6 +83,19 @@ def run(
     elif not quiet:
         print_notes(console(), notes)
         _print(replay, rows)
+
+
+def _show(robot: RobotModel, replay: Replay, port: int) -> None:
+    from plantar.report.live import LiveView, play
+
+    with LiveView(robot, port) as view:
+        print(
+            f"open {view.url} in a browser: the log begins when the page is read", file=sys.stderr, flush=True
+        )
+        if view.wait_for_reader(LONGEST_WAIT):
+            play(view, replay)
+        else:
+            print(f"nobody has opened the page in {LONGEST_WAIT:.0f} s", file=sys.stderr, flush=True)
 
 
 def _print(replay: Replay, rows: Sequence[Parameter]) -> None:

@@ -31,6 +31,8 @@ class Flag(IntFlag):
     PITCH_UNKNOWN = 256
     ROLL_UNKNOWN = 512
     GROUND_CHANGED = 1024
+    PITCH_MEMORY = 2048
+    ROLL_MEMORY = 4096
 
 
 @dataclass(frozen=True)
@@ -63,12 +65,18 @@ class AxisEstimate:
 
 @dataclass(frozen=True)
 class FootEstimate:
-    """One foot: load along the vertical [N], centre of pressure in the sole's frame [m], both axes, and `flags`."""
+    """One foot.
+
+    load along the vertical [N], centre of pressure in the sole's frame [m], `flags`; compression of the slide along the
+    ankle's z [m] by its compliance [m/N]; both axes.
+    """
 
     contact: Contact
     load: float
     centre_of_pressure: tuple[float, float]
     flags: Flag
+    compression: float
+    compliance: Estimated
     pitch: AxisEstimate
     roll: AxisEstimate
 
@@ -82,6 +90,7 @@ AXIS_FIELDS = (
 # One row of the core, in its order.
 FIELDS = (
     "contact", "load", "centre_of_pressure.x", "centre_of_pressure.y", "flags",
+    "compression", "compliance", "compliance.std", "compliance.half_width",
     *(f"{axis}.{name}" for axis in ("pitch", "roll") for name in AXIS_FIELDS),
 )  # fmt: skip
 
@@ -94,6 +103,8 @@ def foot_estimate(row: Array) -> FootEstimate:
         load=values["load"],
         centre_of_pressure=(values["centre_of_pressure.x"], values["centre_of_pressure.y"]),
         flags=Flag(int(values["flags"])),
+        compression=values["compression"],
+        compliance=Estimated(*(values[f"compliance{part}"] for part in ("", ".std", ".half_width"))),
         pitch=_axis(values, "pitch"),
         roll=_axis(values, "roll"),
     )

@@ -92,8 +92,9 @@ def _place_lines(robot: RobotModel, name: str, compliance: float) -> Iterator[st
     spread = float(np.hypot(known.bush_position, known.wrench_crosstalk))
     # Zeroed under load, a force sensor does not know the load, nor shows a torque that grows with it.
     aside = 0.0 if robot.feet[name].contact == "always" else spread
-    yield _line("compliance", [compliance])
-    yield _line("place_std", [aside, spread if compliance else float(np.hypot(spread, SLIDE))])
+    weight = robot.mass * GRAVITY
+    yield _line("compliance", [compliance, 0.0 if compliance else SLIDE / weight])
+    yield _line("place_std", [aside, spread])
 
 
 def _path_lines(path: FootPath) -> Iterator[str]:

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from plantar.conventions import DAMPING_UNIT, ROTATIONAL_AXES, STIFFNESS_UNIT, Array, Axis
-from plantar.online.estimates import FIELDS, Estimated, FootEstimate, foot_estimate
+from plantar.online.estimates import FIELDS, Estimated, Flag, FootEstimate, foot_estimate
 from plantar.results.feet_rows import Parameter, Verdict
 
 USABLE = 0.1  # half width of the 95 % interval over the value, narrower than a batch result's
 UNKNOWN = 10.0  # the same, from which on a value says nothing
+MEMORY = (Flag.PITCH_MEMORY, Flag.ROLL_MEMORY)
+REMEMBERS = "the rubber has a memory: motions of another size have another stiffness"
+IDENTIFY = "run identify feet on logs of this robot, and give its result"
 
 
 @dataclass(frozen=True)
@@ -53,11 +56,17 @@ class Replay:
     def _parameters(self) -> Iterator[Parameter]:
         for foot in self.feet:
             last = self.estimate(foot)
-            for axis, found in zip(ROTATIONAL_AXES, (last.pitch, last.roll), strict=True):
-                yield _parameter(foot, axis, "stiffness", STIFFNESS_UNIT[axis], found.stiffness)
-                yield _parameter(foot, axis, "damping", DAMPING_UNIT[axis], found.damping)
+            for axis, found, flag in zip(ROTATIONAL_AXES, (last.pitch, last.roll), MEMORY, strict=True):
+                stiffness = _parameter(foot, axis, "stiffness", STIFFNESS_UNIT[axis], found.stiffness)
+                damping = _parameter(foot, axis, "damping", DAMPING_UNIT[axis], found.damping)
+                yield from (_of_memory(row) if last.flags & flag else row for row in (stiffness, damping))
                 if found.slip_torque.std:
                     yield _parameter(foot, axis, "slip_torque", "N.m", found.slip_torque)
+
+
+def _of_memory(row: Parameter) -> Parameter:
+    verdict: Verdict = "weak" if row.verdict == "usable" else row.verdict
+    return replace(row, verdict=verdict, reason=REMEMBERS, advice=IDENTIFY)
 
 
 def _parameter(foot: str, axis: Axis, name: str, unit: str, found: Estimated) -> Parameter:

@@ -9,11 +9,11 @@ from plantar.checks.log_checks import check_log, finding_notes, refuse_impossibl
 from plantar.feet.assess.data_faults import UNMENDED, doubted
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
+from plantar.online.replay import IDENTIFY
 from plantar.results.feet_rows import Parameter
 from plantar.robot.model import RobotModel
 
-UNTOLD = "rubber with a memory, and a robot file that is wrong, do not show here"
-IDENTIFY = "run identify feet on logs of this robot, and give its result"
+UNTOLD = "a robot file that is wrong does not show here, rubber with a memory in large motions only"
 
 
 def log_notes(robot: RobotModel, log: MotionLog) -> tuple[Note, ...]:

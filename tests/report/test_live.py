@@ -1,0 +1,66 @@
+"""The live view: what a browser shows of the estimates."""
+
+from __future__ import annotations
+
+import urllib.request
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from biped import record, sway
+from biped_robot import write_robot
+from plantar.online.estimator import FootEstimator
+from plantar.online.replay import Replay
+from plantar.report import live
+from plantar.robot.model import RobotModel, load_robot
+from report_visit import launched
+
+pytest.importorskip("viser")
+
+
+@pytest.fixture(scope="module")
+def robot(tmp_path_factory: pytest.TempPathFactory) -> RobotModel:
+    return load_robot(write_robot(tmp_path_factory.mktemp("live")))
+
+
+@pytest.fixture(scope="module")
+def replay(robot: RobotModel) -> Replay:
+    return FootEstimator(robot, wrench_delay=0.0).replay(record(sway(duration=20.0)))
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    yield from launched()
+
+
+def show(view: live.LiveView, replay: Replay, step: int = 10) -> None:
+    for sample in range(0, len(replay.time), step):
+        view.show(replay.time[sample], {foot: replay.estimate(foot, sample) for foot in replay.feet})
+
+
+def test_it_is_served_here_alone_and_says_nothing_on_stdout(
+    robot: RobotModel, replay: Replay, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with live.LiveView(robot, port=8471) as view:
+        assert view.url.startswith("http://127.0.0.1:")
+        assert urllib.request.urlopen(view.url).status == 200
+        assert not view.wait_for_reader(0.0)
+        show(view, replay)
+    assert capsys.readouterr().out == ""
+
+
+def test_a_browser_draws_it(robot: RobotModel, replay: Replay, browser: Any) -> None:
+    with live.LiveView(robot, port=8481) as view:
+        page, errors = browser.new_page(), list[str]()
+        page.on("pageerror", lambda error: errors.append(str(error)))
+        page.goto(view.url)
+        assert view.wait_for_reader(20.0)
+        show(view, replay)
+        page.wait_for_function("document.body.innerText.includes('stance, ')", timeout=20_000)
+        page.wait_for_function("document.querySelectorAll('.uplot').length == 12", timeout=20_000)
+        text = page.inner_text("body")
+        page.close()
+    assert errors == []
+    assert "not to be trusted: nothing" in text
+    assert "pitch: K, N·m/rad" in text
