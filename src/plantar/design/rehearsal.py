@@ -31,7 +31,8 @@ SEED: Final = 0  # of the sensors' noise
 class Rehearsal:
     """One rehearsal at `factor` times the stiffness that was told.
 
-    `sole_margin`: least distance of a foot's centre of pressure from the border of its sole [m]; `least_load`: of a
+    `sole_margin`: least distance of a foot's centre of pressure from the border of its sole [m], and
+    `standing_margin` before it moves; `least_load`: of a
     foot, as a share of its load at rest; `friction`: largest share of horizontal to vertical force of a foot;
     `effort`: largest share of a joint's torque limit; `bend`: largest deflection [rad]. `fell`: why it could not be
     played; then the others are 0. `log`: what the robot recorded; `result`: what `identify feet` finds in it.
@@ -39,6 +40,7 @@ class Rehearsal:
 
     factor: float
     sole_margin: float = 0.0
+    standing_margin: float = 0.0
     least_load: float = 0.0
     friction: float = 0.0
     effort: float = 0.0
@@ -83,7 +85,9 @@ def rehearse(
     """Play a plan on feet of `factors` times the stiffness told, on all cores, with the imperfections of the default
     preset."""
     preset = preset_named(DEFAULT)
-    worlds = [preset.physics(dict.fromkeys(robot.feet, bush_of(told.times(factor)))) for factor in factors]
+    worlds = [
+        preset.physics(dict.fromkeys(robot.feet, bush_of(told.times(factor))), robot) for factor in factors
+    ]
     progress(f"rehearse at {', '.join(f'{factor:.2g}' for factor in factors)} times the stiffness")
     rollouts = roll_each([(plan, world) for world in worlds], robot)
     found = []
@@ -104,7 +108,7 @@ def bush_of(softness: Softness) -> Bush:
 
 def _measured(factor: float, robot: RobotModel, rollout: Rollout, recording: TwinRecording) -> Rehearsal:
     truth = recording.truth.columns
-    margin, load, friction, bend = np.inf, np.inf, 0.0, 0.0
+    margin, standing, load, friction, bend = np.inf, np.inf, np.inf, 0.0, 0.0
     weight = robot.mass * GRAVITY / len(robot.feet)
     for name, foot in robot.feet.items():
         pressure = np.column_stack([truth[f"{name}.contact.cop.{axis}"] for axis in "xy"])
@@ -112,6 +116,7 @@ def _measured(factor: float, robot: RobotModel, rollout: Rollout, recording: Twi
         carried = np.isfinite(pressure).all(axis=1)
         inside = inside_distance(pressure[carried], foot.sole.polygon)
         margin = min(margin, float(inside.min()) if carried.all() else -1.0)
+        standing = min(standing, float(inside[0]) if carried.all() else 0.0)
         load = min(load, float(force[:, 2].min()) / weight)
         sideways = np.linalg.norm(force[:, :2], axis=1) / np.maximum(force[:, 2], 1e-3)
         friction = max(friction, float(sideways.max()))
@@ -123,4 +128,4 @@ def _measured(factor: float, robot: RobotModel, rollout: Rollout, recording: Twi
         float(np.abs(rollout.efforts[:, place]).max()) / limits[joint]
         for place, joint in enumerate(rollout.joints)
     )
-    return Rehearsal(factor, margin, load, friction, effort, bend, log=recording.log)
+    return Rehearsal(factor, margin, standing, load, friction, effort, bend, log=recording.log)
