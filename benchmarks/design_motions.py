@@ -14,12 +14,12 @@ operator pushes) on the same feet, for its half widths.
 from __future__ import annotations
 
 import argparse
+import io
 import json
-import subprocess
-import sys
 import time
 from collections import Counter, defaultdict
 from collections.abc import Iterator
+from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +27,7 @@ import numpy as np
 
 import biped_twins
 import talos
+from plantar.cli import main as command_line
 from plantar.conventions import GRAVITY
 from plantar.motions.campaign import FIT
 from plantar.robot.model import RobotModel, load_robot
@@ -53,12 +54,14 @@ def robot_file(name: str, folder: Path) -> RobotModel:
 
 
 def plantar(*arguments: object) -> float:
-    """Run a command; the seconds it took."""
-    begin = time.monotonic()
-    command = [sys.executable, "-m", "plantar", *map(str, arguments), "-q"]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    if done.returncode:
-        raise RuntimeError(done.stderr.strip().splitlines()[-1])
+    """Run a command, in this process; the seconds it took. Raises RuntimeError with its last line where it fails."""
+    begin, said = time.monotonic(), io.StringIO()
+    try:
+        with redirect_stdout(io.StringIO()), redirect_stderr(said):
+            command_line([*map(str, arguments), "-q"])
+    except SystemExit as done:
+        if done.code:
+            raise RuntimeError(said.getvalue().strip().splitlines()[-1]) from None
     return time.monotonic() - begin
 
 

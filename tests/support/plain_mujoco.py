@@ -68,7 +68,9 @@ def play_plainly(robot: RobotModel, table: MotionLog, feet: Mapping[str, Springs
             continue
         mujoco.mj_forward(model, data)  # positions, velocities and forces of one moment
         rows.append({"time": (step - settling) * TIMESTEP, **_readings(robot, data, names)})
-        soles.append(np.array([[*data.body(f"{f}.sole").xpos, *data.body(f"{f}.sole").xmat[6:8]] for f in feet]))
+        soles.append(
+            np.array([[*data.body(f"{f}.sole").xpos, *data.body(f"{f}.sole").xmat[6:8]] for f in feet])
+        )
         mujoco.mj_step(model, data)
     path = np.array(soles)
     columns_of = {name: np.array([row[name] for row in rows]) for name in rows[0]}
@@ -102,7 +104,9 @@ def _model(robot: RobotModel, feet: Mapping[str, Springs]) -> mujoco.MjModel:
         spec.add_sensor(
             name=kind, type=getattr(mujoco.mjtSensor, f"mjSENS_{kind}"), objtype=mujoco.mjtObj.mjOBJ_SITE, objname="imu"
         )  # fmt: skip
-    floor = spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_PLANE, size=[5, 5, 0.1], friction=[0.9, 0.005, 0.0001])
+    floor = spec.worldbody.add_geom(
+        type=mujoco.mjtGeom.mjGEOM_PLANE, size=[5, 5, 0.1], friction=[0.9, 0.005, 0.0001]
+    )
     floor.solref, floor.solimp[:2], floor.priority = [-2e5, -1e3], [0.95, 0.95], 1
     return spec.compile()
 
@@ -145,10 +149,15 @@ def _readings(robot: RobotModel, data: mujoco.MjData, joints: list[str]) -> dict
         values = data.sensor(sensor).data
         found |= {f"{imu}.{quantity}.{axis}": float(value) for axis, value in zip(axes, values, strict=True)}
     for name, foot in robot.feet.items():
-        ankle, sole = (Rotation.from_matrix(data.body(one).xmat.reshape(3, 3)) for one in (foot.ankle, f"{name}.sole"))
+        ankle, sole = (
+            Rotation.from_matrix(data.body(one).xmat.reshape(3, 3)) for one in (foot.ankle, f"{name}.sole")
+        )
         # The sensor reads what the ankle does to the sole; the environment does the opposite to the robot.
-        force, torque = (-(ankle.inv() * sole).apply(data.sensor(f"{name}.{kind}").data) for kind in ("FORCE", "TORQUE"))
+        turned = ankle.inv() * sole
+        force, torque = (-turned.apply(data.sensor(f"{name}.{kind}").data) for kind in ("FORCE", "TORQUE"))
         torque = torque + np.cross(foot.bush.xyz - foot.wrench.placement.xyz, force)
         for kind, values in (("force", force), ("torque", torque)):
-            found |= {f"wrench.{foot.wrench.name}.{kind}.{a}": float(v) for a, v in zip("xyz", values, strict=True)}
+            found |= {
+                f"wrench.{foot.wrench.name}.{kind}.{a}": float(v) for a, v in zip("xyz", values, strict=True)
+            }
     return found

@@ -34,7 +34,8 @@ class Reach:
 
     What one unit of each coefficient does: `deflection` [rad] and `rate` [rad/s] (size, S, feet, 2, N) in pitch and
     roll, `load` (size, S, feet, N) [N], for S bushes; `firm_deflection` and `firm_rate` where rubber that slips stands
-    beside the springs. Limits hold for the former, which is larger, intervals come from the latter.
+    beside the springs; `moment_rates` (size, 2, N) of the moments about x and y that it asks of the ground [N·m/s].
+    Limits hold for the plain springs, which bend more, intervals come from the others.
     """
 
     def __init__(
@@ -70,6 +71,8 @@ class Reach:
         self.firm_deflection, self.firm_rate = parts(SECANT * self.element, "deflection", "rate")
         self.stiffness = np.array([bush.stiffness for bush in bushes])
         self.damping = np.array([bush.damping for bush in bushes])
+        self.moment_rates = np.gradient(wrench[:, 1:], 1 / RATE, axis=-1)
+        self.vertical = told.vertical
         self.weight = robot.pendulum.mass * GRAVITY / len(self.feet)
         self._edges = [_edges(legs, foot) for foot in self.feet]
         height = robot.pendulum.height

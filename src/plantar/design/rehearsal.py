@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from plantar.contact.polygon import inside_distance
-from plantar.conventions import GRAVITY
+from plantar.conventions import GRAVITY, NORMAL95
 from plantar.design.soft_feet import Softness
 from plantar.errors import MotionError, PlantarError
 from plantar.feet.identify import identify_feet
@@ -69,6 +69,24 @@ class Rehearsal:
         """By how much a parameter came out too large [% of the `truth` at the stiffness told]."""
         row = self._row(foot, axis, name)
         return None if row is None or row.value is None else 100 * (row.value / (self.factor * truth) - 1)
+
+    def delay(self) -> tuple[float, float] | None:
+        """Half width of the force sensors' delay and its error [s]; None where the recording does not show it."""
+        found = None if self.result is None else self.result.sensor_delay
+        if found is None or not found.measured:
+            return None
+        return NORMAL95 * found.std, found.wrench_delay - preset_named(DEFAULT).sensors.wrench_delay
+
+    def vertical(self, truth: float) -> tuple[float, float] | None:
+        """Half width and error [%] of the sum of both feet's vertical compliances, each 1/`truth` [N/m]; None where the
+        recording does not show it."""
+        rows = [self._row(foot, "z", "stiffness") for foot in ("left", "right")]
+        known = [row for row in rows if row is not None and row.value and row.interval95 is not None]
+        if len(known) < len(rows):
+            return None
+        total = sum(1 / row.value for row in known if row.value)
+        low, high = (sum(1 / row.interval95[end] for row in known if row.interval95) for end in (1, 0))
+        return 50 * (high - low) / total, 100 * (total * truth / len(known) - 1)
 
     def _row(self, foot: str, axis: str, name: str) -> Parameter | None:
         rows = () if self.result is None else self.result.parameters

@@ -31,8 +31,10 @@ STIFFNESSES: Final = 4  # between those, that the search looks at
 KEPT: Final = (
     0.0055  # m of every centre of pressure to its sole's border in rehearsals: `identify feet` drops 5 mm
 )
-SMALLER: Final = 0.85  # a motion that does not hold is tried again so much smaller, if not by what it is too large
-SPARE: Final = 0.02  # smaller than what is just allowed: rubber that slips is not linear
+SMALLER: Final = (
+    0.85  # a motion that does not hold is tried again so much smaller, if not by what it is too large
+)
+SPARE: Final = 0.005  # smaller than what is just allowed
 LEAST_STEP: Final = 0.5  # of the amplitude that is kept at least from one try to the next
 ROUNDS: Final = 8
 FRICTION: Final = 0.3  # of horizontal to vertical force at most: dry rubber on any floor holds more

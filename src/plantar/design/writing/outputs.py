@@ -80,6 +80,24 @@ def content_of(found: Design, path: Path, rate: float) -> dict[str, Any]:
         "stiffness_range": [factor * told.stiffness for factor in found.factors],
         "least_stiffness": found.least_stiffness,
         "parameters": parameters,
+        "sensor_delay": {
+            "unit": "s",
+            "at": [
+                {"factor": one.factor, "half_width": width, "error": error}
+                for one in found.rehearsals
+                for width, error in [one.delay() or (None, None)]
+            ],
+        },
+        "vertical_compliance": {
+            "what": "sum of both feet",
+            "value": len(found.robot.feet) / told.vertical,
+            "unit": "m/N",
+            "at": [
+                {"factor": one.factor, "half_width_percent": width, "error_percent": error}
+                for one in found.rehearsals
+                for width, error in [one.vertical(told.vertical) or (None, None)]
+            ],
+        },
         "rehearsals": [_rehearsal(one) for one in found.rehearsals],
         "notes": _notes(parameters),
         "self_collision": {"checked": found.pairs > 0, "pairs": found.pairs},

@@ -75,10 +75,24 @@ def sheet(content: Mapping[str, Any], approach: bool) -> str:
             "|---|---|---|---|",
             *rows,
             "",
+            *_common(content),
+            "",
             *(f"- {note}." for note in content["notes"]),
             "",
         ]
     )
+
+
+def _common(content: Mapping[str, Any]) -> list[str]:
+    """What both feet share, the widest of all rehearsals: delay of the force sensors, vertical compliance."""
+    delays = [one["half_width"] for one in content["sensor_delay"]["at"]]
+    vertical = [one["half_width_percent"] for one in content["vertical_compliance"]["at"]]
+    late = "not measured" if None in delays else f"within {1e3 * max(delays):.2g} ms"
+    pressed = "not identified" if None in vertical else f"within {max(vertical):.2g} %"
+    return [
+        f"- Delay of the force sensors: {late}.",
+        f"- Vertical compliance, the sum of both feet: {pressed}, most of it what the robot file may be off by.",
+    ]
 
 
 def _number(value: float | None) -> str:
