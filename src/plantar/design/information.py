@@ -25,6 +25,9 @@ WANTED_VERTICAL: Final = 0.3
 # N·m by which Newton's law misses the moments on the ground, per independent sample of 0.1 s, with a careful lab's
 # sensors and masses.
 UNCLOSED: Final = 0.2
+SEEN_FORCE: Final = (
+    6.0  # N rms that the motion adds to the weight: beside less, sensors' noise looks like a hand's push
+)
 USUAL_DELAY: Final = 0.0075  # s: deviation of a delay of which nothing is known, as robot files have it
 UNEVEN: Final = (
     1e-4  # m: what encoders and the legs' lengths may be wrong by moves the soles' heights so much
@@ -76,9 +79,11 @@ def half_widths(reach: Reach, coefficients: Array, known: Array | float = 0.0) -
 
 
 def delay_half_width(reach: Reach, coefficients: Array) -> float:
-    """95 % half width [s] of the force sensors' delay: Newton's law shows it where the moments on the ground change."""
-    rates = reach.of(reach.moment_rates, coefficients)
-    shown = float(np.sum(rates**2)) * 10.0 / RATE / UNCLOSED**2
+    """95 % half width [s] of the force sensors' delay: Newton's law shows it where the moments on the ground change,
+    and forces are large enough to see that it holds."""
+    rates, forces = reach.of(reach.moment_rates, coefficients), reach.of(reach.forces, coefficients)
+    closed = min(float(np.mean(np.sum(forces**2, axis=0))) / SEEN_FORCE**2, 1.0)
+    shown = closed**STEEP * float(np.sum(rates**2)) * 10.0 / RATE / UNCLOSED**2
     return float(NORMAL95 * np.sqrt(1.0 / (shown + 1.0 / USUAL_DELAY**2)))
 
 
