@@ -170,6 +170,8 @@ def test_the_command_writes_and_says_it(tmp_path: Path, capsys: pytest.CaptureFi
         )
         said = capsys.readouterr()
         assert "Rehearsed" in said.out
+        page = out.with_suffix(".html").read_text()
+        assert "hrp2_like on its bushes" in page
         assert "write" in said.err
         assert (
             command_line.run("design", robot, "--stiffness", 500, "--out", out, "--rate", 50, "--json", "-q")

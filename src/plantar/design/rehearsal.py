@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
 
 from plantar.contact.polygon import inside_distance
-from plantar.conventions import GRAVITY, NORMAL95
+from plantar.conventions import GRAVITY, NORMAL95, Array
 from plantar.design.soft_feet import Softness
 from plantar.errors import MotionError, PlantarError
 from plantar.feet.identify import identify_feet
@@ -35,7 +35,8 @@ class Rehearsal:
     `standing_margin` before it moves; `least_load`: of a
     foot, as a share of its load at rest; `friction`: largest share of horizontal to vertical force of a foot;
     `effort`: largest share of a joint's torque limit; `bend`: largest deflection [rad]. `fell`: why it could not be
-    played; then the others are 0. `log`: what the robot recorded; `result`: what `identify feet` finds in it.
+    played; then the others are 0. `bushes`: by foot, pitch and roll (N, 2) [rad] at the plan's times. `log`: what the
+    robot recorded; `result`: what `identify feet` finds in it.
     """
 
     factor: float
@@ -46,6 +47,7 @@ class Rehearsal:
     effort: float = 0.0
     bend: float = 0.0
     fell: str | None = None
+    bushes: Mapping[str, Array] = field(default_factory=dict, repr=False)
     log: MotionLog | None = field(default=None, repr=False)
     result: FeetResult | None = field(default=None, repr=False)
 
@@ -141,9 +143,10 @@ def _measured(factor: float, robot: RobotModel, rollout: Rollout, recording: Twi
         bend = max(
             bend, *(float(np.abs(truth[f"{name}.deflection.{axis}"]).max()) for axis in ("pitch", "roll"))
         )
+    bushes = {foot: bent[:, 1:] for foot, bent in rollout.bush.items()}
     limits = {body.joint: body.effort for body in describe(robot).bodies[1:]}
     effort = max(
         float(np.abs(rollout.efforts[:, place]).max()) / limits[joint]
         for place, joint in enumerate(rollout.joints)
     )
-    return Rehearsal(factor, margin, standing, load, friction, effort, bend, log=recording.log)
+    return Rehearsal(factor, margin, standing, load, friction, effort, bend, bushes=bushes, log=recording.log)
