@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from unittest.mock import patch
@@ -16,11 +17,13 @@ from rosbags.typesys import Stores, get_typestore
 import command_line
 import design_samples
 from plantar.design import story
-from plantar.design.story import FRICTION, KEPT, DesignSettings, design_motion
+from plantar.design.rehearsal import Rehearsal
+from plantar.design.story import FRICTION, KEPT, SPARE, DesignSettings, design_motion
 from plantar.design.writing.outputs import content_of, write_design
 from plantar.errors import MotionError, SettingsError
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import open_log
+from plantar.motions.plan import Plan
 from plantar.robot.model import load_robot
 from plantar.twin.own_motion import own_plan
 from plantar.twin.robots import hrp2
@@ -121,6 +124,27 @@ def test_the_twin_plays_a_table_from_where_its_first_row_stands(written: Path) -
     assert plan.positions == pytest.approx(own.positions, abs=1e-4)
     assert plan.base[0][2] == pytest.approx(own.base[0][2], abs=1e-5)
     assert plan.standing == {"left", "right"}
+
+
+def test_a_motion_that_is_too_large_is_made_smaller_by_as_much() -> None:
+    """Of 50 mm to the border 48 are used where 44.5 may be."""
+    margins, tried = iter((0.002, 0.02)), []
+
+    def rehearse(
+        _: object, plan: Plan, told: object, factors: Sequence[float], *__: object
+    ) -> list[Rehearsal]:
+        tried.append(plan.positions - plan.positions[0])
+        margin = next(margins)
+        return [Rehearsal(factor, sole_margin=margin, standing_margin=0.05) for factor in factors]
+
+    with (
+        patch.object(story, "best_motion", design_samples.gentle_motion),
+        patch.object(story, "rehearse", rehearse),
+    ):
+        design_motion(hrp2.robot(), DesignSettings(500.0, duration=20.0, seed=1))
+    whole, less = tried
+    allowed = (1 - SPARE) * (0.05 - KEPT) / (0.05 - 0.002)
+    assert less == pytest.approx(allowed * whole, abs=0.01 * np.abs(whole).max())
 
 
 def test_feet_that_are_too_soft_are_refused_with_what_is_needed() -> None:

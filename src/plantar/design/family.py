@@ -102,3 +102,9 @@ class Lines:
     def displacements(self, coefficients: Array, time: Array) -> Array:
         """The channels (channels, N) of a motion with coefficients (size,)."""
         return np.asarray(np.tensordot(coefficients, self.basis(time), 1))
+
+    def without(self, coefficients: Array, channel: str) -> Array:
+        """The coefficients (size,) of the same motion with one channel at rest."""
+        kept = coefficients.reshape(len(CHANNELS), SHAPES).copy()
+        kept[CHANNELS.index(channel)] = 0.0
+        return kept.ravel()

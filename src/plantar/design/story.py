@@ -32,10 +32,9 @@ KEPT: Final = (
     0.0055  # m of every centre of pressure to its sole's border in rehearsals: `identify feet` drops 5 mm
 )
 SMALLER: Final = (
-    0.85  # a motion that does not hold is tried again so much smaller, if not by what it is too large
+    0.85  # a motion that does not hold is tried again by what it is too large, at most so much smaller
 )
 SPARE: Final = 0.005  # smaller than what is just allowed
-LEAST_STEP: Final = 0.5  # of the amplitude that is kept at least from one try to the next
 ROUNDS: Final = 8
 FRICTION: Final = 0.3  # of horizontal to vertical force at most: dry rubber on any floor holds more
 EFFORT: Final = 0.9  # of a joint's torque limit
@@ -177,8 +176,10 @@ def _rehearsed(
         if watched.touching is not None:
             first, second, row = watched.touching
             reason = f"'{first}' touches '{second}' at {trajectory.knots[row]:.1f} s"
-            progress(f"smaller: {reason}")
-            coefficients = SMALLER * coefficients
+            still = lines.without(coefficients, "arms")
+            quiet = not np.array_equal(still, coefficients)
+            progress(f"{'without arms' if quiet else 'smaller'}: {reason}")
+            coefficients = still if quiet else SMALLER * coefficients
             continue
         rehearsals = rehearse(robot, trajectory.plan(), told, factors, progress)
         used, reason = max((_used(one) for one in rehearsals), key=lambda each: each[0])
@@ -186,7 +187,7 @@ def _rehearsed(
             progress("identify the feet from the rehearsals")
             return coefficients, [one.identified(robot) for one in rehearsals], watched.pairs
         progress(f"smaller: {reason}")
-        coefficients = max((1 - SPARE) / used, LEAST_STEP) * coefficients
+        coefficients = max((1 - SPARE) / used, SMALLER) * coefficients
     raise MotionError(located(f"no motion holds over the range of stiffness: {reason}", path=robot.name))
 
 
@@ -194,7 +195,7 @@ def _used(one: Rehearsal) -> tuple[float, str]:
     """How much of the tightest limit a rehearsal took up, above 1 where it does not hold, and what that limit is."""
     at = f"at {one.factor:.3g} times the stiffness"
     if one.fell is not None:
-        return 1 / SMALLER, f"{at}: {one.fell}"
+        return np.inf, f"{at}: {one.fell}"
     room = one.standing_margin - KEPT
     share = (one.standing_margin - one.sole_margin) / room if room > 0 else np.inf
     close = f"{at} a centre of pressure comes within {1e3 * one.sole_margin:.1f} mm of a sole's border"
