@@ -16,7 +16,7 @@ CRITERIA: Final = get_args(Criterion)
 MISSED: Final = 0.1
 # With this power of what is missing widths grow: at 0.8 of TOLD_APART rubber that slips came out as a stiffer spring.
 STEEP: Final = 8
-TOLD_APART: Final = 1.8 * SLIP_ANGLE  # rad that a bush bends to either side
+TOLD_APART: Final = 1.7 * SLIP_ANGLE  # rad that a bush bends to either side
 # Half widths that are wanted: of stiffness and damping [share], delay [s], vertical compliance [share]. The widest is
 # the one that is farthest above.
 WANTED: Final = (0.01, 0.04)

@@ -16,7 +16,7 @@ from plantar.design.rubber import SECANT, SHARE, SLIP_ANGLE, remembered
 from plantar.design.soft_feet import Softness, respond
 
 RATE: Final = 20.0  # Hz: sixteen samples in the quickest sine
-EDGE: Final = 0.006  # m, of the centre of pressure from each sole's border; `identify feet` drops 5 mm
+EDGE: Final = 0.007  # m, of the centre of pressure from each sole's border; `identify feet` drops 5 mm
 SMALLER_EDGE: Final = 0.2  # of a sole's half width at most: small feet need some room to be excited
 LIFT: Final = 0.35  # of its load at rest that every foot keeps at least
 BEND: Final = 0.1  # rad of the bush: less than the paper's largest, where rubber may harden

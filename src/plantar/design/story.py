@@ -31,9 +31,9 @@ STIFFNESSES: Final = 4  # between those, that the search looks at
 KEPT: Final = (
     0.0055  # m of every centre of pressure to its sole's border in rehearsals: `identify feet` drops 5 mm
 )
-SMALLER: Final = (
-    0.85  # a motion that does not hold is tried again by what it is too large, at most so much smaller
-)
+# A motion that does not hold is tried again, smaller by half of what it is too large, as centres of pressure run ahead
+# where a sole begins to roll; at most so much smaller.
+SMALLER: Final = 0.85
 SPARE: Final = 0.005  # smaller than what is just allowed
 ROUNDS: Final = 8
 FRICTION: Final = 0.3  # of horizontal to vertical force at most: dry rubber on any floor holds more
@@ -187,7 +187,7 @@ def _rehearsed(
             progress("identify the feet from the rehearsals")
             return coefficients, [one.identified(robot) for one in rehearsals], watched.pairs
         progress(f"smaller: {reason}")
-        coefficients = max((1 - SPARE) / used, SMALLER) * coefficients
+        coefficients = max((1 - SPARE) / np.sqrt(used), SMALLER) * coefficients
     raise MotionError(located(f"no motion holds over the range of stiffness: {reason}", path=robot.name))
 
 
