@@ -67,7 +67,14 @@ def test_it_says_what_it_promises_and_what_it_kept(written: Path) -> None:
     for one in content["rehearsals"]:
         assert one["sole_margin"] > KEPT
         assert one["friction"] < FRICTION
+    assert {one["factor"] for one in content["sensor_delay"]["at"]} == {0.5, 1.0, 2.0}
+    for one in content["sensor_delay"]["at"]:
+        assert one["half_width"] is None or abs(one["error"]) < 2 * one["half_width"] < 0.02
+    for one in content["vertical_compliance"]["at"]:
+        assert one["half_width_percent"] is None or abs(one["error_percent"]) < 5.0
     page = written.with_suffix(".md").read_text()
+    assert "Delay of the force sensors: " in page
+    assert "The search wanted: stiffness within 1 %" in page
     assert "holds from 250 to 1000 N·m/rad" in page
     assert "25 % and 50 %" in page
 

@@ -9,6 +9,7 @@ from typing import Any, Final
 
 from plantar.choices import number_in, one_of
 from plantar.conventions import ROTATIONAL_AXES
+from plantar.design.information import WANTED, WANTED_DELAY, WANTED_VERTICAL
 from plantar.design.rehearsal import Rehearsal
 from plantar.design.story import EFFORT, FRICTION, KEPT, Design
 from plantar.design.writing.controllers import TARGETS
@@ -80,6 +81,12 @@ def content_of(found: Design, path: Path, rate: float) -> dict[str, Any]:
         "stiffness_range": [factor * told.stiffness for factor in found.factors],
         "least_stiffness": found.least_stiffness,
         "parameters": parameters,
+        "wanted": {
+            "stiffness_percent": 100 * WANTED[0],
+            "damping_percent": 100 * WANTED[1],
+            "sensor_delay": WANTED_DELAY,
+            "vertical_compliance_percent": 100 * WANTED_VERTICAL,
+        },
         "sensor_delay": {
             "unit": "s",
             "at": [
