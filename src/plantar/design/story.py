@@ -142,7 +142,7 @@ def design_motion(
     before = 0.0 if known is None else known.precision(reach.feet)
     coefficients = best_motion(reach, settings.criterion, random, before, progress)
     coefficients, rehearsals, pairs = _rehearsed(
-        robot, legs, lines, coefficients, told, tuple(sorted({1.0, *factors})), progress
+        robot, legs, lines, coefficients, told, _rehearsed_at(*factors), progress
     )
     return Design(settings, robot, told, factors, least, legs, lines, coefficients, tuple(rehearsals), pairs)
 
@@ -189,6 +189,11 @@ def _rehearsed(
         progress(f"smaller: {reason}")
         coefficients = max((1 - SPARE) / np.sqrt(used), SMALLER) * coefficients
     raise MotionError(located(f"no motion holds over the range of stiffness: {reason}", path=robot.name))
+
+
+def _rehearsed_at(low: float, high: float) -> tuple[float, ...]:
+    """Times the stiffness told: that, both ends, and between them, where a robot may resonate."""
+    return tuple(sorted({low, float(np.sqrt(low)), 1.0, float(np.sqrt(high)), high}))
 
 
 def _used(one: Rehearsal) -> tuple[float, str]:
