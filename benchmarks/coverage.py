@@ -107,7 +107,7 @@ def main() -> None:
 
 def _on_the_floor(robot: RobotModel, bushes: Feet, preset: str) -> Feet:
     """Each bush in series with the floor under its sole; the floor's damping is left out."""
-    physics = preset_named(preset).physics(bushes)
+    physics = preset_named(preset).physics(bushes, robot)
     found = {}
     for foot, bush in bushes.items():
         series = {}

@@ -110,7 +110,7 @@ def _robot(name: str) -> tuple[RobotModel, Feet]:
 def _rollouts(name: str, preset: Preset) -> dict[str, list[Rollout]]:
     """Each motion on softer rubber, on rubber as given and on stiffer rubber."""
     robot, bushes = _robot(name)
-    world = preset.physics(bushes)
+    world = preset.physics(bushes, robot)
     found = {}
     for motion in (*FIT, VALIDATED):
         plan = planned(motion, robot)
@@ -137,7 +137,7 @@ def _between(rollouts: Sequence[Rollout], share: float) -> Rollout:
 def _world(name: str, preset: Preset, seed: int) -> list[Row]:
     """Every interval of one world beside the truth."""
     robot, bushes = _robot(name)
-    world, logs, shares = preset.physics(bushes), [], {}
+    world, logs, shares = preset.physics(bushes, robot), [], {}
     errors: Mapping[str, Any] = {}
     for motion, pair in _rollouts(name, preset).items():
         shares[motion] = preset.stiffening(seed, motion)
@@ -151,7 +151,7 @@ def _world(name: str, preset: Preset, seed: int) -> list[Row]:
     causes = {(each.foot, each.axis, each.name): each.variance_shares for each in result.diagnosis}
     rows = []
     for row in result.parameters:
-        truth = _truth(row.foot, row.axis, row.name, bushes, preset)
+        truth = _truth(row.foot, row.axis, row.name, bushes, preset.slip_torques(robot))
         if truth is None or row.value is None or row.interval95 is None:
             continue
         low, high = row.interval95
@@ -174,9 +174,9 @@ def _world(name: str, preset: Preset, seed: int) -> list[Row]:
     return rows
 
 
-def _truth(foot: str, axis: str, name: str, bushes: Feet, preset: Preset) -> float | None:
+def _truth(foot: str, axis: str, name: str, bushes: Feet, slip_torques: Sequence[float]) -> float | None:
     if name == "slip_torque":
-        return dict(zip(("pitch", "roll"), preset.slip_torque, strict=True))[axis] or None
+        return dict(zip(("pitch", "roll"), slip_torques, strict=True))[axis] or None
     if name == "slip_angle":
         return SLIP_ANGLE
     if name in SHORT:

@@ -30,6 +30,15 @@ def test_the_second_half_is_the_mirror_image_of_the_first() -> None:
         assert MIRRORED[image] == (channel, sign)
 
 
+def test_one_channel_can_be_kept_at_rest() -> None:
+    time, drawn = LINES_OF.time(50.0), np.random.default_rng(0).standard_normal(LINES_OF.size)
+    whole, still = (LINES_OF.displacements(each, time) for each in (drawn, LINES_OF.without(drawn, "arms")))
+    arms = CHANNELS.index("arms")
+    assert np.abs(whole[arms]).max() > 0.1
+    assert not still[arms].any()
+    assert np.delete(still, arms, axis=0) == pytest.approx(np.delete(whole, arms, axis=0))
+
+
 def test_no_two_lines_share_a_frequency() -> None:
     assert len(np.unique(LINES_OF.frequencies)) == len(CHANNELS) * LINES
 

@@ -7,7 +7,18 @@ import pytest
 
 import design_samples
 from plantar.contact.polygon import inside_distance
-from plantar.design.information import MISSED, badness, half_widths, information
+from plantar.conventions import NORMAL95
+from plantar.design import information as objective
+from plantar.design.family import CHANNELS
+from plantar.design.information import (
+    MISSED,
+    UNCLOSED,
+    badness,
+    delay_half_width,
+    half_widths,
+    information,
+    vertical_half_width,
+)
 from plantar.design.reach import BEND, RATE, margin_kept
 from plantar.design.rubber import NEARBY, SHARE, SLIP_ANGLE, remembered
 from plantar.design.search import best_motion
@@ -42,13 +53,48 @@ def test_information_is_that_of_least_squares() -> None:
 def test_a_smaller_motion_promises_less_and_what_is_known_promises_more() -> None:
     reach, coefficients = design_samples.reach(), design_samples.coefficients()
     whole, half = half_widths(reach, coefficients), half_widths(reach, 0.5 * coefficients)
-    assert (half > 1.9 * whole).all()
+    assert (half[..., 0] > 1.9 * whole[..., 0]).all()
+    assert (half >= whole).all()  # of damping, an unknown delay leaves no more than is usual
     known = np.zeros((2, 2, 2, 2))
     known[0, 0] = np.diag([1.0, 100.0])
     more = half_widths(reach, coefficients, known)
     assert (more[:, 0, 0] < whole[:, 0, 0]).all()
     assert more[:, 1] == pytest.approx(whole[:, 1])
     assert badness(reach, coefficients, "D") < badness(reach, 0.5 * coefficients, "D")
+
+
+def test_a_delay_shows_where_the_moments_change_and_costs_damping(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What a late sensor misses at each moment is the rate times the delay; C is off by K times the delay."""
+    reach, coefficients = design_samples.reach(), design_samples.coefficients()
+    monkeypatch.setattr(objective, "USUAL_DELAY", np.inf)  # nothing known before
+    forces = np.sqrt(np.mean(np.sum(reach.of(reach.forces, coefficients) ** 2, axis=0)))
+    monkeypatch.setattr(objective, "SEEN_FORCE", 2 * forces)
+    unseen = delay_half_width(reach, coefficients)
+    monkeypatch.setattr(objective, "SEEN_FORCE", forces)
+    assert unseen > 10 * delay_half_width(reach, coefficients)
+    wide = delay_half_width(reach, coefficients)
+    assert delay_half_width(reach, 2 * coefficients) == pytest.approx(wide / 2)
+    time = reach.lines.time(200.0)
+    moved = reach.lines.displacements(coefficients, time)
+    pushed = np.gradient(np.gradient(moved, time, axis=1), time, axis=1)
+    rates = np.gradient(design_samples.linear().wrench(moved, pushed)[3:5], time, axis=1)
+    assert wide == pytest.approx(NORMAL95 * UNCLOSED / np.sqrt(np.sum(rates**2) * 10 / 200.0), rel=0.05)
+    unsure = half_widths(reach, coefficients)
+    monkeypatch.setattr(objective, "UNCLOSED", 1e-9)
+    known = half_widths(reach, coefficients)
+    assert unsure[..., 0] == pytest.approx(known[..., 0])
+    added = np.sqrt(unsure[..., 1] ** 2 - known[..., 1] ** 2) / wide
+    assert added == pytest.approx(25.0, rel=1e-6)  # K/C of the stiffness and damping told
+
+
+def test_vertical_compliance_shows_where_load_goes_from_foot_to_foot() -> None:
+    reach, coefficients = design_samples.reach(), design_samples.coefficients()
+    whole = vertical_half_width(reach, coefficients)
+    assert vertical_half_width(reach, 0.5 * coefficients) == pytest.approx(2 * whole)
+    middle = coefficients.reshape(len(CHANNELS), -1).copy()
+    for channel in ("centre.y", "trunk.roll", "left.roll", "right.roll", "left.pitch", "right.pitch"):
+        middle[CHANNELS.index(channel)] = 0.0
+    assert (vertical_half_width(reach, middle.ravel()) > 20 * whole).all()
 
 
 def test_the_motion_found_is_at_its_limits_and_not_beyond() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from unittest.mock import patch
@@ -16,11 +17,13 @@ from rosbags.typesys import Stores, get_typestore
 import command_line
 import design_samples
 from plantar.design import story
-from plantar.design.story import FRICTION, KEPT, DesignSettings, design_motion
+from plantar.design.rehearsal import Rehearsal
+from plantar.design.story import FRICTION, KEPT, SPARE, DesignSettings, design_motion
 from plantar.design.writing.outputs import content_of, write_design
 from plantar.errors import MotionError, SettingsError
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import open_log
+from plantar.motions.plan import Plan
 from plantar.robot.model import load_robot
 from plantar.twin.own_motion import own_plan
 from plantar.twin.robots import hrp2
@@ -60,11 +63,20 @@ def test_it_says_what_it_promises_and_what_it_kept(written: Path) -> None:
     }
     assert len(rows) == 8
     assert content["stiffness_range"] == pytest.approx([250.0, 1000.0])
-    assert {one["factor"] for one in content["rehearsals"]} == {0.5, 1.0, 2.0}
+    assert [one["factor"] for one in content["rehearsals"]] == pytest.approx(
+        [0.5, 0.5**0.5, 1.0, 2**0.5, 2.0]
+    )
     for one in content["rehearsals"]:
         assert one["sole_margin"] > KEPT
         assert one["friction"] < FRICTION
+    assert len(content["sensor_delay"]["at"]) == len(content["vertical_compliance"]["at"]) == 5
+    for one in content["sensor_delay"]["at"]:
+        assert one["half_width"] is None or abs(one["error"]) < 2 * one["half_width"] < 0.02
+    for one in content["vertical_compliance"]["at"]:
+        assert one["half_width_percent"] is None or abs(one["error_percent"]) < 5.0
     page = written.with_suffix(".md").read_text()
+    assert "Delay of the force sensors: " in page
+    assert "The search wanted: stiffness within 1 %" in page
     assert "holds from 250 to 1000 N·m/rad" in page
     assert "25 % and 50 %" in page
 
@@ -74,7 +86,7 @@ def test_a_number_that_rehearsals_do_not_find_is_said(written: Path) -> None:
     blind = replace(found, rehearsals=tuple(replace(one, result=None) for one in found.rehearsals))
     content = content_of(blind, written, 100.0)
     assert len(content["notes"]) == 8
-    assert "left pitch stiffness is not found at 0.5, 1, 2 times the stiffness told" in " ".join(
+    assert "left pitch stiffness is not found at 0.5, 0.707, 1, 1.41, 2 times the stiffness told" in " ".join(
         content["notes"]
     )
     for row in content_of(found, written, 100.0)["parameters"]:
@@ -121,6 +133,27 @@ def test_the_twin_plays_a_table_from_where_its_first_row_stands(written: Path) -
     assert plan.positions == pytest.approx(own.positions, abs=1e-4)
     assert plan.base[0][2] == pytest.approx(own.base[0][2], abs=1e-5)
     assert plan.standing == {"left", "right"}
+
+
+def test_a_motion_that_is_too_large_is_made_smaller_by_as_much() -> None:
+    """Of 50 mm to the border 48 are used where 44.5 may be: by half of that, as soles that roll exaggerate."""
+    margins, tried = iter((0.002, 0.02)), []
+
+    def rehearse(
+        _: object, plan: Plan, told: object, factors: Sequence[float], *__: object
+    ) -> list[Rehearsal]:
+        tried.append(plan.positions - plan.positions[0])
+        margin = next(margins)
+        return [Rehearsal(factor, sole_margin=margin, standing_margin=0.05) for factor in factors]
+
+    with (
+        patch.object(story, "best_motion", design_samples.gentle_motion),
+        patch.object(story, "rehearse", rehearse),
+    ):
+        design_motion(hrp2.robot(), DesignSettings(500.0, duration=20.0, seed=1))
+    whole, less = tried
+    allowed = (1 - SPARE) * np.sqrt((0.05 - KEPT) / (0.05 - 0.002))
+    assert less == pytest.approx(allowed * whole, abs=0.01 * np.abs(whole).max())
 
 
 def test_feet_that_are_too_soft_are_refused_with_what_is_needed() -> None:
@@ -170,6 +203,8 @@ def test_the_command_writes_and_says_it(tmp_path: Path, capsys: pytest.CaptureFi
         )
         said = capsys.readouterr()
         assert "Rehearsed" in said.out
+        page = out.with_suffix(".html").read_text()
+        assert "hrp2_like on its bushes" in page
         assert "write" in said.err
         assert (
             command_line.run("design", robot, "--stiffness", 500, "--out", out, "--rate", 50, "--json", "-q")

@@ -11,7 +11,7 @@ import pytest
 
 from example_folder import make_folder
 from page_blocks import PRINTED, ROOT, RUN, blocks, shown
-from page_folders import many_formats, nothing, other_names, own_logs, stand_in, with_robot_file
+from page_folders import STAND_INS, many_formats, nothing, other_names, own_logs, with_robot_file
 from page_runner import Reader, same
 
 DOCS = ROOT / "docs"
@@ -63,6 +63,7 @@ TWIN = (
     "docs/tutorials/walking.md",
     "docs/tutorials/mujoco.md",
     "docs/tutorials/choose_motions.md",
+    "docs/tutorials/design.md",
     "docs/tutorials/fleet.md",
 )
 # Pages that play their logs in a simulator again, which small made logs are not made for.
@@ -106,7 +107,7 @@ def test_every_block_says_what_it_is(page: Path) -> None:
 @pytest.mark.parametrize("page", OWN)
 def test_a_page_works_on_the_readers_own_files(page: str, tmp_path: Path) -> None:
     OWN[page](tmp_path)
-    reader = Reader(tmp_path, stand_in)
+    reader = Reader(tmp_path, STAND_INS)
     reader.read(ROOT / page)
     assert_shown(reader)
 
@@ -119,12 +120,12 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.parametrize("page", RESULTS)
 def test_a_page_works_on_a_readers_results(page: str, results: Path, tmp_path: Path) -> None:
     shutil.copytree(results, tmp_path, dirs_exist_ok=True)
-    Reader(tmp_path, stand_in).read(ROOT / page)
+    Reader(tmp_path, STAND_INS).read(ROOT / page)
 
 
 @pytest.mark.parametrize("page", TWIN)
 def test_a_page_works_on_small_made_logs(page: str, tmp_path: Path) -> None:
-    Reader(tmp_path, stand_in).read(ROOT / page)
+    Reader(tmp_path, STAND_INS).read(ROOT / page)
 
 
 @pytest.mark.twin_pages

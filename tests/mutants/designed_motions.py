@@ -30,6 +30,18 @@ DESIGNED_MOTIONS = (
         "whole[..., :2, :2] - across", "whole[..., :2, :2] - 0 * across", QUICK,
     ),
     Mutant(
+        "design/information.py", "a delay that is unsure costs no damping",
+        "np.hypot(widths[..., 1], by_delay", "np.hypot(widths[..., 1], 0 * by_delay", QUICK,
+    ),
+    Mutant(
+        "design/information.py", "load that goes along with the other foot's",
+        "load[:, 0] - load[:, -1]", "load[:, 0] + load[:, -1]", QUICK,
+    ),
+    Mutant(
+        "twin/presets.py", "a large robot on a small one's rubber",
+        "sized_for(robot) * torque", "torque", ("twin/sensing/test_sensors.py",),
+    ),
+    Mutant(
         "design/family.py", "the mirror image keeps the sign", "+= sign * halves[1][row]", "+= halves[1][row]", QUICK,
     ),
 )  # fmt: skip

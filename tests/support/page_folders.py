@@ -10,13 +10,18 @@ from pathlib import Path
 import mujoco
 import numpy as np
 
+import design_samples
 from biped import TRUTH, record, sway
 from biped_robot import FEET, URDF, Frame, Mounting, make_robot, write_robot
 from fleet_samples import small_fleet
 from page_blocks import ROOT, blocks
+from plantar.design.known import Known
+from plantar.design.writing.outputs import write_design
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.save import save_log
 from plantar.motions import CAMPAIGN, DEMO
+from plantar.results.feet import FeetResult
+from plantar.robot.model import load_robot
 
 MOUNTING = Mounting(wrench=Frame())  # force sensors at a link of the URDF, as drivers say in their messages
 SECONDS = 8.0
@@ -102,7 +107,7 @@ def other_names(folder: Path) -> None:
     np.savetxt(folder / "logger.csv", rows, delimiter=",", header=header, comments="", fmt="%.10g")
 
 
-def stand_in(words: list[str]) -> None:
+def simulated(words: list[str]) -> None:
     """`plantar simulate` without the twin: the made robot's logs under the motions' names, and its robot file."""
     asked = argparse.ArgumentParser(exit_on_error=True)
     asked.add_argument("motion")
@@ -126,7 +131,27 @@ def stand_in(words: list[str]) -> None:
     bushes: dict[str, dict[str, float]] = {foot: {} for foot in FEET}
     for (foot, axis), law in TRUTH.items():
         bushes[foot] |= {f"{axis}_stiffness": law.stiffness, f"{axis}_damping": law.damping}
-    for seed, name in enumerate(names):
+    for seed, name in enumerate(Path(name).stem for name in names):
         made = stepping(name, seed) if name.startswith("Walk") else swaying(name, seed)
         save_log(made, given.out / f"{name}.parquet")
         (given.out / f"{name}.truth.json").write_text(json.dumps({"bushes": bushes}))
+
+
+def designed(words: list[str]) -> None:
+    """`plantar design` without search and rehearsals: a small motion of the built-in robot."""
+    asked = argparse.ArgumentParser(exit_on_error=True)
+    asked.add_argument("robot", type=Path)
+    asked.add_argument("--out", type=Path, required=True)
+    asked.add_argument("--after", type=Path)
+    for option in ("--stiffness", "--duration"):
+        asked.add_argument(option, type=float)
+    asked.add_argument("--to", action="append", default=[])
+    asked.add_argument("--approach", action="store_true")
+    given = asked.parse_args(words)
+    load_robot(given.robot)
+    assert given.stiffness is not None or Known.of(FeetResult.load(given.after)).stiffness > 0
+    write_design(design_samples.designed(), given.out, 50.0, given.to, given.approach)
+
+
+# Commands that play the twin, and what does their work on small made logs.
+STAND_INS = {"simulate": simulated, "design": designed}

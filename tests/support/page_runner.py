@@ -9,7 +9,7 @@ import os
 import shlex
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -20,19 +20,19 @@ from page_blocks import Block, blocks, cut
 # Commands that set a machine up; a test of the documents does not.
 SET_UP = ("pip", "git", "make", "python3", "cd")
 ELLIPSIS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
-Simulate = Callable[[list[str]], None]
+StandIns = Mapping[str, Callable[[list[str]], None]]
 
 
 @dataclass
 class Reader:
     """Somebody who types what a page says, in `folder`.
 
-    `simulate` takes the words behind `plantar simulate` where the twin shall not play; `names` is what the page's
+    `instead`: by command, what takes the words behind it where the twin shall not play; `names` is what the page's
     Python snippets have defined so far; `outputs` is what was printed that the page shows, by block.
     """
 
     folder: Path
-    simulate: Simulate | None = None
+    instead: StandIns = field(default_factory=dict)
     names: dict[str, Any] = field(default_factory=dict)
     outputs: dict[Block, list[str]] = field(default_factory=dict)
 
@@ -77,8 +77,8 @@ class Reader:
         return printed.getvalue()
 
     def _done(self, words: list[str], line: str, complained: io.StringIO) -> int:
-        if words[:2] == ["plantar", "simulate"] and self.simulate is not None:
-            self.simulate(words[2:])
+        if words[0] == "plantar" and words[1] in self.instead:
+            self.instead[words[1]](words[2:])
             return 0
         if words[0] == "plantar":
             return run(*words[1:])

@@ -72,7 +72,7 @@ def record_rows(
     robot: RobotModel, recorded: Sequence[MotionLog], preset: str, bushes: Feet
 ) -> tuple[ReplayRow, ...]:
     """How far the recorded attitude itself is from the truth, by the same measure: no simulation can get below."""
-    physics, feet = preset_named(preset).physics(bushes), cut_feet(describe(robot), robot)
+    physics, feet = preset_named(preset).physics(bushes, robot), cut_feet(describe(robot), robot)
     rows = []
     for log in recorded:
         columns = exact_columns(rolled(planned(log.name, robot), robot, physics), robot, feet)

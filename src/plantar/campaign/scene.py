@@ -1,8 +1,8 @@
-"""The campaign's robot in motion, with the bush angles that plantar measured, as a page to turn and zoom."""
+"""A robot moving on its bushes, a page to turn and zoom: the campaign's as measured, a designed motion as rehearsed."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy as np
 from plantar.campaign.pictures import look_of, side_of
 from plantar.campaign.run import Campaign
 from plantar.conventions import ROTATIONAL_AXES, Array
+from plantar.motions.plan import Plan
 from plantar.report.scene import SceneBody, SceneFoot, SceneMotion, write_scene
 from plantar.results.residuals import Track, read_residuals, residuals_path
 from plantar.robot.model import RobotModel
@@ -27,15 +28,26 @@ PLATE = (
 def write_campaign_scene(campaign: Campaign, path: Path) -> Path:
     """Write the page of every motion; needs the residuals that the campaign saved."""
     look = look_of(campaign.robot)
-    feet = cut_feet(look, campaign.robot)
     source = residuals_path(campaign.directory)
     tracks = read_residuals(source) if source is not None else ()
     motions = [
         _motion(campaign, look, name, [t for t in tracks if t.motion == name]) for name in campaign.logs
     ]
-    title = f"{campaign.robot.name} on its bushes"
-    shown = [_foot(campaign.robot, foot) for foot in feet.values()]
-    return write_scene(path, title, _bodies(look, feet, campaign.robot), shown, motions)
+    return _write(path, campaign.robot, look, motions)
+
+
+def write_plan_scene(robot: RobotModel, plan: Plan, bushes: Mapping[str, Array], path: Path) -> Path:
+    """Write the page of one plan; `bushes`: by foot, pitch and roll (N, 2) [rad] at the plan's times."""
+    look = look_of(robot)
+    positions = plan.positions[:, [plan.joints.index(joint) for joint in look.joint_names]]
+    motion = SceneMotion(plan.name, plan.time, positions, dict(bushes), dict(plan.stance))
+    return _write(path, robot, look, [motion])
+
+
+def _write(path: Path, robot: RobotModel, look: Description, motions: Sequence[SceneMotion]) -> Path:
+    feet = cut_feet(look, robot)
+    shown = [_foot(robot, foot) for foot in feet.values()]
+    return write_scene(path, f"{robot.name} on its bushes", _bodies(look, feet, robot), shown, motions)
 
 
 def _bodies(look: Description, feet: dict[str, CutFoot], robot: RobotModel) -> list[SceneBody]:

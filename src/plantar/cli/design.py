@@ -26,7 +26,10 @@ if TYPE_CHECKING:
 def run(
     robot: Annotated[Path, typer.Argument(help="Robot file (YAML) of a biped.", metavar="ROBOT.yaml")],
     out: Annotated[
-        Path, typer.Option(help="CSV of the motion; a JSON with what it promises and a page go beside it.")
+        Path,
+        typer.Option(
+            help="CSV of the motion; a JSON with what it promises, a page and a preview go beside it."
+        ),
     ],
     stiffness: Annotated[
         float | None, typer.Option(help="Of each foot in pitch and roll, as far as you know it, in N·m/rad.")
@@ -65,11 +68,12 @@ def run(
 
     MOTION.csv holds `time` and the position of every joint of the URDF, from standing still to standing still.
     MOTION.json holds the half widths it predicts, the balance margins and the limits it kept; MOTION.md says the same
-    on a page for those who stand beside the robot.
+    on a page for those who stand beside the robot, MOTION.html shows the robot move, its bushes bent further.
 
     Example: plantar design robot.yaml --stiffness 500 --out motion.csv
     """
     try:
+        from plantar.campaign.scene import write_plan_scene
         from plantar.design.story import DesignSettings, design_motion
         from plantar.design.writing.outputs import check_outputs, write_design
     except ImportError as error:
@@ -90,6 +94,7 @@ def run(
     found = design_motion(load_robot(robot), settings, earlier, step)
     step("write")
     content = write_design(found, out, rate, to or (), approach)
+    write_plan_scene(found.robot, found.trajectory().plan(), found.nominal.bushes, out.with_suffix(".html"))
     end_progress(quiet)
     if json:
         print(dump_json(content), end="")
@@ -118,7 +123,7 @@ def run(
     )
     screen.print(table("\nRehearsed", heads, rows))
     print_notes(screen, [Note("rehearsal", "warning", text) for text in content["notes"]])
-    for ending in (".csv", ".json", ".md"):
+    for ending in (".csv", ".json", ".md", ".html"):
         screen.print(str(out.with_suffix(ending)), markup=False)
 
 

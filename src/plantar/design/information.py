@@ -1,4 +1,4 @@
-"""What a motion tells of each bush: the half widths that its deflections and torques promise (eq. 6 and 7)."""
+"""What a motion tells: half widths of each bush (eq. 6 and 7), of the sensors' delay and of the vertical compliance."""
 
 from __future__ import annotations
 
@@ -14,10 +14,24 @@ Criterion = Literal["widest", "D", "A"]
 CRITERIA: Final = get_args(Criterion)
 # N·m that a model of real rubber misses by, per independent sample of 0.1 s: sensors of a careful lab are better.
 MISSED: Final = 0.1
-STEEP: Final = (
-    4  # with this power of what is missing widths grow: at two thirds, K came out half as large again
+# With this power of what is missing widths grow: at 0.8 of TOLD_APART rubber that slips came out as a stiffer spring.
+STEEP: Final = 8
+TOLD_APART: Final = 1.7 * SLIP_ANGLE  # rad that a bush bends to either side
+# Half widths that are wanted: of stiffness and damping [share], delay [s], vertical compliance [share]. The widest is
+# the one that is farthest above.
+WANTED: Final = (0.01, 0.04)
+WANTED_DELAY: Final = 0.001
+WANTED_VERTICAL: Final = 0.3
+# N·m by which Newton's law misses the moments on the ground, per independent sample of 0.1 s, with a careful lab's
+# sensors and masses.
+UNCLOSED: Final = 0.2
+SEEN_FORCE: Final = (
+    6.0  # N rms that the motion adds to the weight: beside less, sensors' noise looks like a hand's push
 )
-TOLD_APART: Final = 2 * SLIP_ANGLE  # rad that a bush bends to either side
+USUAL_DELAY: Final = 0.0075  # s: deviation of a delay of which nothing is known, as robot files have it
+UNEVEN: Final = (
+    1e-4  # m: what encoders and the legs' lengths may be wrong by moves the soles' heights so much
+)
 
 
 def information(reach: Reach, coefficients: Array) -> Array:
@@ -48,7 +62,8 @@ def half_widths(reach: Reach, coefficients: Array, known: Array | float = 0.0) -
     """95 % half widths [share of the value] of stiffness and damping, (S, feet, 2, 2).
 
     `known`: information (feet, 2, 2, 2) from before. Where a bush bends less than TOLD_APART, `identify feet` may take
-    a spring that slips for a part of the stiffness: the motion's own widths grow steeply.
+    a spring that slips for a part of the stiffness: the motion's own widths grow steeply. What the delay of the
+    sensors is unsure by, times the stiffness, the damping is unsure by as well.
     """
     bend = np.ptp(reach.of(reach.firm_deflection, coefficients), axis=-1) / 2
     missing = np.maximum(TOLD_APART / np.maximum(bend, 1e-6), 1.0)[..., None, None]
@@ -57,13 +72,37 @@ def half_widths(reach: Reach, coefficients: Array, known: Array | float = 0.0) -
     scaled = found / (scale[..., :, None] * scale[..., None, :]) + 1e-9 * np.eye(2)
     deviations = np.sqrt(np.einsum("...ii->...i", np.linalg.inv(scaled))) / scale
     values = np.column_stack([reach.stiffness, reach.damping])[:, None, None]
-    return np.asarray(NORMAL95 * deviations / values)
+    widths = np.asarray(NORMAL95 * deviations / values)
+    by_delay = delay_half_width(reach, coefficients) * reach.stiffness / reach.damping
+    widths[..., 1] = np.hypot(widths[..., 1], by_delay[:, None, None])
+    return widths
+
+
+def delay_half_width(reach: Reach, coefficients: Array) -> float:
+    """95 % half width [s] of the force sensors' delay: Newton's law shows it where the moments on the ground change,
+    and forces are large enough to see that it holds."""
+    rates, forces = reach.of(reach.moment_rates, coefficients), reach.of(reach.forces, coefficients)
+    closed = min(float(np.mean(np.sum(forces**2, axis=0))) / SEEN_FORCE**2, 1.0)
+    shown = closed**STEEP * float(np.sum(rates**2)) * 10.0 / RATE / UNCLOSED**2
+    return float(NORMAL95 * np.sqrt(1.0 / (shown + 1.0 / USUAL_DELAY**2)))
+
+
+def vertical_half_width(reach: Reach, coefficients: Array) -> Array:
+    """95 % half widths (S,) [share] of the sum of both feet's vertical compliances: load that goes from foot to foot
+    presses one sole and frees the other."""
+    load = reach.of(reach.load, coefficients)
+    moved = np.std(load[:, 0] - load[:, -1], axis=-1) / reach.vertical
+    return np.asarray(NORMAL95 * UNEVEN / np.maximum(moved, 1e-9))
 
 
 def badness(reach: Reach, coefficients: Array, criterion: Criterion, known: Array | float = 0.0) -> float:
-    """What is minimised, the mean over the range of stiffness: the logarithm of the widest relative interval, of the
-    volume of all (D) or of their mean square (A)."""
-    widths = half_widths(reach, coefficients, known).reshape(len(reach.bushes), -1)
+    """What is minimised, the mean over the range of stiffness: the logarithm of the widest interval, each as a multiple
+    of what is wanted of it, of the volume of all (D) or of their mean square (A)."""
+    count = len(reach.bushes)
+    feet = (half_widths(reach, coefficients, known) / WANTED).reshape(count, -1)
+    delay = np.full((count, 1), delay_half_width(reach, coefficients) / WANTED_DELAY)
+    vertical = vertical_half_width(reach, coefficients)[:, None] / WANTED_VERTICAL
+    widths = np.hstack([feet, delay, vertical])
     if criterion == "widest":
         return float(np.log(widths.max(axis=1)).mean())
     if criterion == "D":

@@ -65,7 +65,7 @@ def paper_motions(
         except MotionError as error:
             refused[name] = str(error)
     preset = preset_named(DEFAULT)
-    world = preset.physics(dict.fromkeys(robot.feet, bush_of(told)))
+    world = preset.physics(dict.fromkeys(robot.feet, bush_of(told)), robot)
     rollouts = roll_each(
         [(plan, world) for plan in plans],
         robot,

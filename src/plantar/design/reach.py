@@ -16,7 +16,7 @@ from plantar.design.rubber import SECANT, SHARE, SLIP_ANGLE, remembered
 from plantar.design.soft_feet import Softness, respond
 
 RATE: Final = 20.0  # Hz: sixteen samples in the quickest sine
-EDGE: Final = 0.010  # m, of the centre of pressure from each sole's border; `identify feet` drops 5 mm
+EDGE: Final = 0.007  # m, of the centre of pressure from each sole's border; `identify feet` drops 5 mm
 SMALLER_EDGE: Final = 0.2  # of a sole's half width at most: small feet need some room to be excited
 LIFT: Final = 0.35  # of its load at rest that every foot keeps at least
 BEND: Final = 0.1  # rad of the bush: less than the paper's largest, where rubber may harden
@@ -34,7 +34,9 @@ class Reach:
 
     What one unit of each coefficient does: `deflection` [rad] and `rate` [rad/s] (size, S, feet, 2, N) in pitch and
     roll, `load` (size, S, feet, N) [N], for S bushes; `firm_deflection` and `firm_rate` where rubber that slips stands
-    beside the springs. Limits hold for the former, which is larger, intervals come from the latter.
+    beside the springs; what it asks of the ground, `forces` (size, 3, N) [N] and `moment_rates` (size, 2, N) of the
+    moments about x and y [N·m/s].
+    Limits hold for the plain springs, which bend more, intervals come from the others.
     """
 
     def __init__(
@@ -48,7 +50,7 @@ class Reach:
         )
         self._basis = lines.basis(self.time)
         self._quick = np.gradient(self._basis, 1 / RATE, axis=-1)
-        wrench = robot.wrench(self._basis, np.gradient(self._quick, 1 / RATE, axis=-1))[:, [2, 3, 4]]
+        wrench = robot.wrench(self._basis, np.gradient(self._quick, 1 / RATE, axis=-1))
         tilts = {
             foot: self._basis[:, [CHANNELS.index(f"{foot}.roll"), CHANNELS.index(f"{foot}.pitch")]]
             for foot in self.feet
@@ -57,7 +59,10 @@ class Reach:
 
         def parts(beside: Array, *names: str) -> list[Array]:
             pitch, roll = (float(value) for value in beside)
-            found = [respond(robot.pendulum, bush, wrench, tilts, 1 / RATE, (pitch, roll)) for bush in bushes]
+            found = [
+                respond(robot.pendulum, bush, wrench[:, [2, 3, 4]], tilts, 1 / RATE, (pitch, roll))
+                for bush in bushes
+            ]
             return [
                 np.stack(
                     [np.stack([getattr(one, name)[foot] for foot in self.feet], axis=1) for one in found],
@@ -70,6 +75,8 @@ class Reach:
         self.firm_deflection, self.firm_rate = parts(SECANT * self.element, "deflection", "rate")
         self.stiffness = np.array([bush.stiffness for bush in bushes])
         self.damping = np.array([bush.damping for bush in bushes])
+        self.forces, self.moment_rates = wrench[:, :3], np.gradient(wrench[:, 3:5], 1 / RATE, axis=-1)
+        self.vertical = told.vertical
         self.weight = robot.pendulum.mass * GRAVITY / len(self.feet)
         self._edges = [_edges(legs, foot) for foot in self.feet]
         height = robot.pendulum.height

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
 
 from plantar.contact.polygon import inside_distance
-from plantar.conventions import GRAVITY
+from plantar.conventions import GRAVITY, NORMAL95, Array
 from plantar.design.soft_feet import Softness
 from plantar.errors import MotionError, PlantarError
 from plantar.feet.identify import identify_feet
@@ -31,19 +31,23 @@ SEED: Final = 0  # of the sensors' noise
 class Rehearsal:
     """One rehearsal at `factor` times the stiffness that was told.
 
-    `sole_margin`: least distance of a foot's centre of pressure from the border of its sole [m]; `least_load`: of a
+    `sole_margin`: least distance of a foot's centre of pressure from the border of its sole [m], and
+    `standing_margin` before it moves; `least_load`: of a
     foot, as a share of its load at rest; `friction`: largest share of horizontal to vertical force of a foot;
     `effort`: largest share of a joint's torque limit; `bend`: largest deflection [rad]. `fell`: why it could not be
-    played; then the others are 0. `log`: what the robot recorded; `result`: what `identify feet` finds in it.
+    played; then the others are 0. `bushes`: by foot, pitch and roll (N, 2) [rad] at the plan's times. `log`: what the
+    robot recorded; `result`: what `identify feet` finds in it.
     """
 
     factor: float
     sole_margin: float = 0.0
+    standing_margin: float = 0.0
     least_load: float = 0.0
     friction: float = 0.0
     effort: float = 0.0
     bend: float = 0.0
     fell: str | None = None
+    bushes: Mapping[str, Array] = field(default_factory=dict, repr=False)
     log: MotionLog | None = field(default=None, repr=False)
     result: FeetResult | None = field(default=None, repr=False)
 
@@ -68,6 +72,24 @@ class Rehearsal:
         row = self._row(foot, axis, name)
         return None if row is None or row.value is None else 100 * (row.value / (self.factor * truth) - 1)
 
+    def delay(self) -> tuple[float, float] | None:
+        """Half width of the force sensors' delay and its error [s]; None where the recording does not show it."""
+        found = None if self.result is None else self.result.sensor_delay
+        if found is None or not found.measured:
+            return None
+        return NORMAL95 * found.std, found.wrench_delay - preset_named(DEFAULT).sensors.wrench_delay
+
+    def vertical(self, truth: float) -> tuple[float, float] | None:
+        """Half width and error [%] of the sum of both feet's vertical compliances, each 1/`truth` [N/m]; None where the
+        recording does not show it."""
+        rows = [self._row(foot, "z", "stiffness") for foot in ("left", "right")]
+        known = [row for row in rows if row is not None and row.value and row.interval95 is not None]
+        if len(known) < len(rows):
+            return None
+        total = sum(1 / row.value for row in known if row.value)
+        low, high = (sum(1 / row.interval95[end] for row in known if row.interval95) for end in (1, 0))
+        return 50 * (high - low) / total, 100 * (total * truth / len(known) - 1)
+
     def _row(self, foot: str, axis: str, name: str) -> Parameter | None:
         rows = () if self.result is None else self.result.parameters
         return next((row for row in rows if (row.foot, row.axis, row.name) == (foot, axis, name)), None)
@@ -83,7 +105,9 @@ def rehearse(
     """Play a plan on feet of `factors` times the stiffness told, on all cores, with the imperfections of the default
     preset."""
     preset = preset_named(DEFAULT)
-    worlds = [preset.physics(dict.fromkeys(robot.feet, bush_of(told.times(factor)))) for factor in factors]
+    worlds = [
+        preset.physics(dict.fromkeys(robot.feet, bush_of(told.times(factor))), robot) for factor in factors
+    ]
     progress(f"rehearse at {', '.join(f'{factor:.2g}' for factor in factors)} times the stiffness")
     rollouts = roll_each([(plan, world) for world in worlds], robot)
     found = []
@@ -104,7 +128,7 @@ def bush_of(softness: Softness) -> Bush:
 
 def _measured(factor: float, robot: RobotModel, rollout: Rollout, recording: TwinRecording) -> Rehearsal:
     truth = recording.truth.columns
-    margin, load, friction, bend = np.inf, np.inf, 0.0, 0.0
+    margin, standing, load, friction, bend = np.inf, np.inf, np.inf, 0.0, 0.0
     weight = robot.mass * GRAVITY / len(robot.feet)
     for name, foot in robot.feet.items():
         pressure = np.column_stack([truth[f"{name}.contact.cop.{axis}"] for axis in "xy"])
@@ -112,15 +136,17 @@ def _measured(factor: float, robot: RobotModel, rollout: Rollout, recording: Twi
         carried = np.isfinite(pressure).all(axis=1)
         inside = inside_distance(pressure[carried], foot.sole.polygon)
         margin = min(margin, float(inside.min()) if carried.all() else -1.0)
+        standing = min(standing, float(inside[0]) if carried.all() else 0.0)
         load = min(load, float(force[:, 2].min()) / weight)
         sideways = np.linalg.norm(force[:, :2], axis=1) / np.maximum(force[:, 2], 1e-3)
         friction = max(friction, float(sideways.max()))
         bend = max(
             bend, *(float(np.abs(truth[f"{name}.deflection.{axis}"]).max()) for axis in ("pitch", "roll"))
         )
+    bushes = {foot: bent[:, 1:] for foot, bent in rollout.bush.items()}
     limits = {body.joint: body.effort for body in describe(robot).bodies[1:]}
     effort = max(
         float(np.abs(rollout.efforts[:, place]).max()) / limits[joint]
         for place, joint in enumerate(rollout.joints)
     )
-    return Rehearsal(factor, margin, load, friction, effort, bend, log=recording.log)
+    return Rehearsal(factor, margin, standing, load, friction, effort, bend, bushes=bushes, log=recording.log)

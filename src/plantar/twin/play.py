@@ -67,7 +67,7 @@ def play_all(
     """
     robot, names = robot or hrp2.robot(), list(motions)
     chosen = preset_named(preset)
-    physics = chosen.physics(bushes)
+    physics = chosen.physics(bushes, robot)
 
     def plan(motion: str | Plan) -> Plan:
         if isinstance(motion, Plan):

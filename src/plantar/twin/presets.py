@@ -11,7 +11,10 @@ from typing import Final
 import numpy as np
 
 from plantar.errors import PlantarError, located
+from plantar.robot.model import RobotModel
 from plantar.twin.bush import Feet
+from plantar.twin.robots import hrp2
+from plantar.twin.robots.gravity import gravitational_stiffness
 from plantar.twin.robots.true_robot import RobotSpread
 from plantar.twin.sensing.logger import Logger
 from plantar.twin.sensing.sensor_errors import SensorSpread
@@ -19,21 +22,31 @@ from plantar.twin.sensing.sensors import DEGREE, Sensors
 from plantar.twin.simulation.mjcf import FLOOR
 from plantar.twin.simulation.physics import Physics, Slip
 
-SLIP_TORQUE: Final = (5.0, 2.2)  # N·m in pitch and roll: 7 to 10 % of the largest torques of the campaign
+# N·m in pitch and roll of HRP-2: 7 to 10 % of the largest torques of the campaign.
+SLIP_TORQUE: Final = (5.0, 2.2)
 SLIP_ANGLE: Final = 0.01  # rad
 HARDENING: Final = 5000.0  # N·m/rad³: a tenth more torque at 0.1 rad
 SOFT_FLOOR: Final = (62500.0, 500.0, 0.9)  # a contact that takes 4 ms to settle
 SLIPPERY: Final = (Slip(6.0, 7.0, 0.02), Slip(14.0, 15.0, 0.02))  # seconds of every motion
 
 
+def sized_for(robot: RobotModel | None) -> float:
+    """How much more than HRP-2 a robot's weight bears on its feet: what stands beside their springs grows with it, so
+    that hysteresis is alike in shape under small robots and large ones. None: the built-in robot, 1."""
+    if robot is None:
+        return 1.0
+    return round(gravitational_stiffness(robot) / gravitational_stiffness(hrp2.robot()), 3)
+
+
 @dataclass(frozen=True)
 class Preset:
     """Imperfections of the physics and of the sensors.
 
-    `slip_torque`: of the elastoplastic element beside each spring, (pitch, roll) [N·m]; `hardening` [N·m/rad³] of
-    both axes; `floor` and `slips` as in `Physics`. `robot` and `sensor_errors`: by how much the robot and its sensors
-    differ from the robot file, the same in all recordings of a seed; `between`: the share by which stiffness and
-    damping differ from recording to recording is drawn between these, for each seed.
+    `slip_torque`: of the elastoplastic element beside each spring, (pitch, roll) [N·m], and `hardening` [N·m/rad³] of
+    both axes, under HRP-2; under another robot see `sized_for`. `floor` and `slips` as in `Physics`. `robot` and
+    `sensor_errors`: by how much the robot and its sensors differ from the robot file, the same in all recordings of a
+    seed; `between`: the share by which stiffness and damping differ from recording to recording is drawn between these,
+    for each seed.
     """
 
     name: str
@@ -47,16 +60,22 @@ class Preset:
     sensor_errors: SensorSpread | None = None
     between: tuple[float, float] = (0.0, 0.0)
 
-    def physics(self, bushes: Feet | None) -> Physics:
-        """The world in which these bushes stand; rigid feet (None) have no rubber, the floor stays."""
+    def physics(self, bushes: Feet | None, robot: RobotModel | None = None) -> Physics:
+        """The world in which these bushes stand, under `robot` (None: the built-in one); rigid feet (None) have no
+        rubber, the floor stays."""
         world = Physics(bushes=bushes, floor=self.floor, slips=self.slips)
         if bushes is None:
             return world
-        pitch, roll = self.slip_torque
-        rubber = {"pitch_hardening": self.hardening, "roll_hardening": self.hardening}
+        pitch, roll = self.slip_torques(robot)
+        rubber = dict.fromkeys(("pitch_hardening", "roll_hardening"), sized_for(robot) * self.hardening)
         rubber |= {"pitch_slip_torque": pitch, "roll_slip_torque": roll, "pitch_slip_angle": SLIP_ANGLE}
         rubber["roll_slip_angle"] = SLIP_ANGLE
         return replace(world, bushes={foot: replace(bush, **rubber) for foot, bush in bushes.items()})
+
+    def slip_torques(self, robot: RobotModel | None) -> tuple[float, float]:
+        """Of each foot of `robot` in pitch and roll [N·m]."""
+        pitch, roll = (sized_for(robot) * torque for torque in self.slip_torque)
+        return pitch, roll
 
     def stiffening(self, seed: int, motion: str) -> float:
         """The share by which stiffness and damping are larger in one recording; a temperature's doing."""

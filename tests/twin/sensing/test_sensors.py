@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -150,6 +151,20 @@ def test_presets_grow_from_ideal_to_harsh() -> None:
     assert harsh.slips
     assert harsh.floor[0] < sensors.floor[0]
     assert harsh.physics(None).bushes is None
+
+
+def test_rubber_grows_with_the_robot_that_stands_on_it() -> None:
+    """Twice the mass at the same height: twice the torque of the same angle, and twice the hardening."""
+    built_in, harsh = hrp2.robot(), PRESETS["harsh"]
+    assert harsh.physics(PAPER, built_in) == harsh.physics(PAPER)
+    heavier = re.sub(r'<mass value="([^"]+)"', lambda m: f'<mass value="{2 * float(m[1])}"', built_in.urdf)
+    own, other = (harsh.physics(PAPER, robot).bushes for robot in (built_in, replace(built_in, urdf=heavier)))
+    for foot in PAPER:
+        for axis in ("pitch", "roll"):
+            for name in ("slip_torque", "hardening"):
+                size = getattr(other[foot], f"{axis}_{name}") / getattr(own[foot], f"{axis}_{name}")
+                assert size == pytest.approx(2.0, abs=2e-3)
+            assert getattr(other[foot], f"{axis}_slip_angle") == getattr(own[foot], f"{axis}_slip_angle")
 
 
 def test_an_unknown_preset_lists_the_known() -> None:

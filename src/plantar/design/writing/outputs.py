@@ -9,6 +9,7 @@ from typing import Any, Final
 
 from plantar.choices import number_in, one_of
 from plantar.conventions import ROTATIONAL_AXES
+from plantar.design.information import WANTED, WANTED_DELAY, WANTED_VERTICAL
 from plantar.design.rehearsal import Rehearsal
 from plantar.design.story import EFFORT, FRICTION, KEPT, Design
 from plantar.design.writing.controllers import TARGETS
@@ -80,6 +81,30 @@ def content_of(found: Design, path: Path, rate: float) -> dict[str, Any]:
         "stiffness_range": [factor * told.stiffness for factor in found.factors],
         "least_stiffness": found.least_stiffness,
         "parameters": parameters,
+        "wanted": {
+            "stiffness_percent": 100 * WANTED[0],
+            "damping_percent": 100 * WANTED[1],
+            "sensor_delay": WANTED_DELAY,
+            "vertical_compliance_percent": 100 * WANTED_VERTICAL,
+        },
+        "sensor_delay": {
+            "unit": "s",
+            "at": [
+                {"factor": one.factor, "half_width": width, "error": error}
+                for one in found.rehearsals
+                for width, error in [one.delay() or (None, None)]
+            ],
+        },
+        "vertical_compliance": {
+            "what": "sum of both feet",
+            "value": len(found.robot.feet) / told.vertical,
+            "unit": "m/N",
+            "at": [
+                {"factor": one.factor, "half_width_percent": width, "error_percent": error}
+                for one in found.rehearsals
+                for width, error in [one.vertical(told.vertical) or (None, None)]
+            ],
+        },
         "rehearsals": [_rehearsal(one) for one in found.rehearsals],
         "notes": _notes(parameters),
         "self_collision": {"checked": found.pairs > 0, "pairs": found.pairs},

@@ -43,7 +43,8 @@ def sheet(content: Mapping[str, Any], approach: bool) -> str:
             "## What it does",
             "",
             "The robot stands on both feet and starts and ends still. It leads its weight over one foot and turns that "
-            "ankle, sways its trunk and swings its arms; after half the time it does the same over the other foot. The "
+            "ankle, sways its trunk, swings its arms and goes up and down by some millimetres; after half the time it "
+            "does the same over the other foot. The "
             "soles stay flat: what an ankle turns is what the rubber bends.",
             "",
             "## Before",
@@ -75,10 +76,28 @@ def sheet(content: Mapping[str, Any], approach: bool) -> str:
             "|---|---|---|---|",
             *rows,
             "",
+            *_common(content),
+            "",
             *(f"- {note}." for note in content["notes"]),
             "",
         ]
     )
+
+
+def _common(content: Mapping[str, Any]) -> list[str]:
+    """What both feet share, the widest of all rehearsals: delay of the force sensors, vertical compliance."""
+    delays = [one["half_width"] for one in content["sensor_delay"]["at"]]
+    vertical = [one["half_width_percent"] for one in content["vertical_compliance"]["at"]]
+    wanted = content["wanted"]
+    late = "not measured" if None in delays else f"within {1e3 * max(delays):.2g} ms"
+    pressed = "not identified" if None in vertical else f"within {max(vertical):.2g} %"
+    return [
+        f"- Delay of the force sensors: {late}.",
+        f"- Vertical compliance, the sum of both feet: {pressed}, most of it what the robot file may be off by.",
+        f"- The search wanted: stiffness within {wanted['stiffness_percent']:g} %, damping within "
+        f"{wanted['damping_percent']:g} %, delay within {1e3 * wanted['sensor_delay']:g} ms, vertical compliance "
+        f"within {wanted['vertical_compliance_percent']:g} %.",
+    ]
 
 
 def _number(value: float | None) -> str:
