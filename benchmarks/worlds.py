@@ -2,6 +2,7 @@
 
     python benchmarks/worlds.py --robots hrp2 talos --worlds 50 --first 100 --jobs 2
     python benchmarks/worlds.py --worlds 6 --first 0 --without gain mount --between 0 0
+    python benchmarks/worlds.py --worlds 40 --without wrench_cutoff gyroscope_cutoff wrench_hold  # delays too
 
 Preset `imperfect`, the paper's composed motion to fit and Myrand5 to validate. The twin plays the robot of the file,
 and plantar is told one drawn about it: `plantar simulate` does it the other way round, which is as likely and has to
@@ -28,9 +29,11 @@ from typing import Any
 import numpy as np
 
 from coverage import ROBOTS
+from plantar.conventions import NORMAL95
 from plantar.feet.identify import identify_feet
 from plantar.feet.settings import FeetSettings
 from plantar.motions.campaign import FIT
+from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
 from plantar.twin.bush import Feet
 from plantar.twin.keep import rollout_arrays, rollout_from
@@ -42,6 +45,7 @@ from plantar.twin.simulation.rollout import Rollout
 
 SOFT_TO_STIFF = 0.02  # share of K and C, of the outer of the rollouts that others lie between
 VALIDATED = "Myrand5"
+DELAY = "delay, ms"
 SHORT = {"stiffness": "K", "damping": "C"}
 WORST = 8
 Row = dict[str, Any]
@@ -171,7 +175,34 @@ def _world(name: str, preset: Preset, seed: int) -> list[Row]:
                 "drawn": _told(drawn, errors, shares, row.foot),
             }
         )
-    return rows
+    return rows + _delay_row(name, preset, seed, result, errors)
+
+
+def _delay_row(
+    name: str, preset: Preset, seed: int, result: FeetResult, errors: Mapping[str, Any]
+) -> list[Row]:
+    """The force sensors' delay behind the IMU, in ms; none where the devices' filters make one beside what is drawn."""
+    found = result.sensor_delay
+    if found is None or any(
+        (preset.sensors.wrench_cutoff, preset.sensors.gyroscope_cutoff, preset.sensors.wrench_hold)
+    ):
+        return []
+    late = [value for key, value in errors.items() if key.startswith("wrench.") and key.endswith(".delay")]
+    error = 10 * (
+        found.wrench_delay - (float(np.mean(late)) - errors["imu.delay"])
+    )  # ms as the others' percent
+    half, shown = 10 * NORMAL95 * found.std, "usable" if found.measured else "weak"
+    row = {
+        "robot": name,
+        "seed": seed,
+        "foot": "",
+        "axis": "",
+        "name": DELAY,
+        "model": "",
+        "shares": {},
+        "drawn": "",
+    }
+    return [row | {"error": error, "half": half, "held": abs(error) <= half, "verdict": shown}]
 
 
 def _truth(foot: str, axis: str, name: str, bushes: Feet, slip_torques: Sequence[float]) -> float | None:
@@ -206,7 +237,8 @@ def _print(rows: Sequence[Row]) -> None:
         if row["axis"] == "z":
             groups["z"].append(row)
             continue
-        groups[f"{row['axis']} {row['name']}"].append(row)
+        if row["axis"]:
+            groups[f"{row['axis']} {row['name']}"].append(row)
         groups[row["name"]].append(row)
         if row["name"] in SHORT.values():
             groups["K and C"].append(row)
