@@ -19,6 +19,7 @@ extensions = [
     "sphinx.ext.autodoc",
     "sphinx.ext.napoleon",
     "command_reference",
+    "cpp_reference",
     "raised_errors",
 ]
 exclude_patterns = ["extensions"]

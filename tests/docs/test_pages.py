@@ -25,6 +25,7 @@ SHOWN = (
     "{toctree}",
     "{eval-rst}",
     "{commands}",
+    "{cpp-reference}",
     "{include}",
     "{literalinclude}",
 )
