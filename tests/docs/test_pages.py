@@ -65,6 +65,7 @@ TWIN = (
     "docs/tutorials/mujoco.md",
     "docs/tutorials/choose_motions.md",
     "docs/tutorials/fleet.md",
+    "docs/tutorials/controller.md",
 )
 # Pages that play their logs in a simulator again, which small made logs are not made for.
 PLAYED = ("docs/how_to/compare_in_simulator.md",)
