@@ -153,6 +153,14 @@ def test_questions_lead_to_every_how_to_page() -> None:
     assert pages == set(re.findall(r"\]\((\w+\.md)\)", text))
 
 
+def test_every_picture_is_shown_and_made_by_a_script_that_stands_beside_it() -> None:
+    scripts = "".join(path.read_text() for path in (DOCS / "images").glob("make_*.py"))
+    pages = "".join(path.read_text() for path in [ROOT / "README.md", *DOCS.rglob("*.md")])
+    for picture in (DOCS / "images").glob("*.png"):
+        assert picture.name in pages, picture.name
+        assert picture.name in scripts or f'"{picture.stem}"' in scripts, picture.name
+
+
 def test_issue_forms_ask_for_the_bug_report() -> None:
     forms = [path.read_text() for path in (ROOT / ".github" / "ISSUE_TEMPLATE").glob("*.md")]
     assert len(forms) == 3
