@@ -1,9 +1,10 @@
-"""The pictures of docs/intervals.md from tables that benchmarks printed: delay.png, coverage.png.
+"""Pictures from tables that benchmarks printed: delay.png, coverage.png, bush_models.png.
 
-python docs/images/make_intervals.py
+python docs/images/make_tables.py
 
 delay.csv holds what `python benchmarks/delay.py --seeds 2 --delays -10 0 5 10 20` printed, coverage.csv what
-`python benchmarks/worlds.py` did, with the options that the page names.
+`python benchmarks/worlds.py` did, with the options that the page names;
+bush_models.csv what `python benchmarks/bush_models.py --seeds 20` did.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ HERE = Path(__file__).resolve().parent
 RED, BLUE, GREY = "#c8470a", "#0063b1", "#8a949d"
 COLOURS = {"HRP-2-like": BLUE, "TALOS": RED}
 PROMISED = 95.0  # %
+LEAST = 0.01  # %: smaller errors are drawn here
 
 
 def rows(name: str) -> list[dict[str, str]]:
@@ -75,9 +77,28 @@ def coverage() -> Any:
     return figure
 
 
+def bush_models() -> Any:
+    """Errors of K and C by the model that was chosen and by spring and damper alone: median and largest of 20 seeds."""
+    found = rows("bush_models.csv")[::-1]
+    figure, panels = plt.subplots(1, 2, figsize=(10, 3.2), sharey=True, layout="constrained")
+    for panel, number in zip(panels, "kc", strict=True):
+        for way, colour, shift in (("", BLUE, 0.15), ("linear_", RED, -0.15)):
+            ends = [row[f"{way}{number}_{size}_percent"] for row in found for size in ("median", "largest")]
+            median, largest = np.array([max(float(end or "nan"), LEAST) for end in ends]).reshape(-1, 2).T
+            place = np.arange(len(found)) + shift
+            label = "spring and damper alone" if way else "the model chosen"
+            panel.hlines(place, median, largest, color=colour, linewidth=2, alpha=0.5)
+            panel.plot(median, place, "o", color=colour, label=label)
+            panel.plot(largest, place, "|", color=colour, markersize=9)
+        panel.set(xscale="log", xlabel=f"error of {number.upper()} [%]", xlim=(0.8 * LEAST, 400))
+    panels[0].set_yticks(range(len(found)), [row["rubber"] for row in found])
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False)
+    return figure
+
+
 def main() -> None:
     plt.rcParams.update({"font.size": 9, "axes.spines.top": False, "axes.spines.right": False})
-    for name, figure in (("delay", delay()), ("coverage", coverage())):
+    for name, figure in (("delay", delay()), ("coverage", coverage()), ("bush_models", bush_models())):
         figure.savefig(HERE / f"{name}.png", dpi=100, metadata={"Software": None})
         print(HERE / f"{name}.png")
 
