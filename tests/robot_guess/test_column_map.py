@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+import yaml
 
 from command_line import run
 from page_folders import other_names
@@ -56,6 +57,11 @@ def test_a_file_that_is_no_map_is_refused(text: str, tmp_path: Path) -> None:
     assert "\n" not in str(caught.value)
 
 
-def test_a_map_ends_its_line(tmp_path: Path) -> None:
-    (tmp_path / "map.yaml").write_text("columns: {time: t}")
-    assert read_column_map(tmp_path / "map.yaml") == "columns: {time: t}\n"
+@pytest.mark.parametrize(
+    "text", ["columns: {time: t}", "---\ncolumns: {time: t}\n...\n", "\ufeffcolumns: {time: t}"]
+)
+def test_a_map_can_stand_at_the_end_of_a_robot_file(text: str, tmp_path: Path) -> None:
+    (tmp_path / "map.yaml").write_text(text)
+    written = "name: robot\n" + read_column_map(tmp_path / "map.yaml")
+    assert yaml.safe_load(written) == {"name": "robot", "columns": {"time": "t"}}
+    assert written.endswith("\n")

@@ -12,6 +12,7 @@ from plantar.robot.schema import refuse_bombs
 
 KEY = "columns"
 LIMIT = 2**20  # bytes, as of a robot file
+OWN_DOCUMENT = ("---", "...", "%")  # lines that begin so cannot stand within a file
 
 
 def read_column_map(path: Path) -> str:
@@ -23,6 +24,7 @@ def read_column_map(path: Path) -> str:
     try:
         refuse_bombs(content, path)
         data = yaml.safe_load(content)
+        text = content.decode("utf-8-sig")
     except (yaml.YAMLError, ValueError) as error:
         reason = " ".join(str(getattr(error, "problem", None) or error).split())
         raise RobotError(located(f"is not readable YAML: {reason}", path=path)) from error
@@ -30,5 +32,6 @@ def read_column_map(path: Path) -> str:
         raise RobotError(
             located("is no map of columns", path=path, valid=f"one key, {KEY}:, and the map below it")
         )
-    text = content.decode()
+    if any(line.startswith(OWN_DOCUMENT) for line in text.splitlines()):
+        return yaml.safe_dump(data, sort_keys=False, allow_unicode=True)
     return text if text.endswith("\n") else f"{text}\n"
