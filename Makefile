@@ -33,7 +33,7 @@ check: $(INSTALLED)
 	$(BIN)/mypy
 	$(BIN)/python -m pytest tests/test_architecture.py tests/test_docs.py tests/docs/test_site.py
 
-# The site as it is published: out/site/index.html opens from disk. A warning or a dead link stops it.
+# The site as it is published: out/site/index.html opens from disk. A warning, a dead link or a notebook that fails stops it.
 docs: $(DOCUMENTING)
 	rm -rf out/site
 	$(BIN)/python -m sphinx -E -W --keep-going -q -b html docs out/site

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent / "extensions"))
+
+# Notebooks call `plantar`: this environment's, also where that is not on the path.
+os.environ["PATH"] = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
 
 from plantar import __version__
 
@@ -15,13 +19,22 @@ version = release = __version__
 language = "en"
 
 extensions = [
-    "myst_parser",
+    "myst_nb",  # Markdown by myst_parser, and notebooks
     "sphinx.ext.autodoc",
     "sphinx.ext.napoleon",
     "command_reference",
+    "cpp_reference",
     "raised_errors",
 ]
 exclude_patterns = ["extensions"]
+
+# Notebooks are stored without outputs and run when the site is built, each in a folder of its own.
+nb_execution_mode = "force"
+nb_execution_in_temp = True
+nb_execution_timeout = 300  # s for a cell: the first one plays the twin
+nb_execution_raise_on_error = True
+nb_merge_streams = True
+nb_ipywidgets_js = {}  # it would come from the network
 
 myst_heading_anchors = 4  # links such as formats.md#large-files, as in the repository's own view of the pages
 suppress_warnings = ["myst.xref_ambiguous"]

@@ -165,13 +165,15 @@ def test_the_snippets_of_the_documentation_are_robot_files(tmp_path: Path) -> No
         assert joint_order(robot) is None or len(joint_order(robot) or ()) > 1
         assert all(roles for roles in ports(robot).values())
     table = dict.fromkeys(
-        ["stamp", "hip_angle", "qx", "qy", "qz", "qw", "ax", "ay", "az", "mx", "my", "mz"], np.arange(3.0)
+        ["stamp", "hip_angle", "hip_speed", "qx", "qy", "qz", "qw", "ax", "ay", "az", "mx", "my", "mz"],
+        np.arange(3.0),
     )
     mapped = next(make_robot(tmp_path / "map", **s) for s in snippets if "time" in s.get("columns", {}))
     time, columns = apply(table, mapped, Path("log.csv"))
     assert time[1] == 1e-3
     assert columns["wrench.left.torque.x"][1] == -1e-3
-    assert columns["joint.hip.position"][1] == pytest.approx(np.pi / 180)
+    for quantity in ("position", "velocity"):
+        assert columns[f"joint.hip.{quantity}"][1] == pytest.approx(np.pi / 180)
 
 
 TALOS_LAW = {

@@ -13,7 +13,9 @@ from rich.markup import render
 from command_line import run
 from plantar import __version__
 from plantar.cli import COMMANDS
+from plantar.cli.console.advice import advised
 from plantar.cli.console.terminal import console, table
+from plantar.results.feet import Parameter
 
 
 def test_units_in_brackets_are_text_not_markup(capsys: pytest.CaptureFixture[str]) -> None:
@@ -35,6 +37,24 @@ def test_no_help_loses_a_unit_to_markup(verb: str) -> None:
     annotations = get_type_hints(run, include_extras=True).values()
     options = [option for annotation in annotations for option in getattr(annotation, "__metadata__", ())]
     assert all(render(option.help or "").plain == option.help for option in options)
+
+
+def test_advice_is_given_once() -> None:
+    rows = [
+        Parameter("left", axis, name, "", None, None, None, None, verdict, reason, advice)
+        for axis, name, verdict, reason, advice in (
+            ("pitch", "stiffness", "weak", "short", "record longer"),
+            ("pitch", "damping", "weak", "noisy", "record longer"),
+            ("roll", "stiffness", "weak", "short", "record longer"),
+            ("roll", "damping", "usable", "fine", None),
+            ("z", "stiffness", "unidentifiable", "still", None),
+        )
+    ]
+    assert list(advised(rows)) == [
+        ("weak", "left pitch stiffness, left roll stiffness", "short. Next: record longer."),
+        ("weak", "left pitch damping", "noisy. Next: as for left pitch stiffness."),
+        ("unidentifiable", "left z stiffness", "still."),
+    ]
 
 
 def test_version(capsys: pytest.CaptureFixture[str]) -> None:

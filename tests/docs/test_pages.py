@@ -25,6 +25,7 @@ SHOWN = (
     "{toctree}",
     "{eval-rst}",
     "{commands}",
+    "{cpp-reference}",
     "{include}",
     "{literalinclude}",
 )
@@ -65,6 +66,7 @@ TWIN = (
     "docs/tutorials/choose_motions.md",
     "docs/tutorials/design.md",
     "docs/tutorials/fleet.md",
+    "docs/tutorials/controller.md",
 )
 # Pages that play their logs in a simulator again, which small made logs are not made for.
 PLAYED = ("docs/how_to/compare_in_simulator.md",)

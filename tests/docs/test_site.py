@@ -27,7 +27,7 @@ from raised_errors import line_for_each
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
 API = (DOCS / "reference" / "api.md").read_text()
-TOOLS = ("sphinx", "myst_parser", "furo")
+TOOLS = ("sphinx", "myst_nb", "furo")
 missing = [tool for tool in TOOLS if find_spec(tool) is None]
 
 
@@ -43,6 +43,10 @@ def test_the_site_builds_without_a_warning_or_a_dead_link(tmp_path: Path) -> Non
         "-q",
         "-b",
         "html",
+        *(
+            "-D",
+            "nb_execution_mode=off",
+        ),  # `make docs` runs them, tests/docs/test_notebooks.py on small made logs
         str(DOCS),
         str(tmp_path),
     ]
@@ -75,7 +79,8 @@ def test_every_page_is_in_the_contents() -> None:
         for block in re.findall(r"```\{toctree\}\n(.*?)```", (DOCS / "index.md").read_text(), re.DOTALL)
         for line in re.findall(r"^[\w/]+$", block, re.MULTILINE)
     }
-    pages = {str(path.relative_to(DOCS).with_suffix("")) for path in DOCS.rglob("*.md")} - {"index"}
+    files = [path for kind in ("*.md", "*.ipynb") for path in DOCS.rglob(kind)]
+    pages = {str(path.relative_to(DOCS).with_suffix("")) for path in files} - {"index"}
     assert listed == pages
 
 
@@ -146,6 +151,14 @@ def test_questions_lead_to_every_how_to_page() -> None:
     text = (DOCS / "how_to" / "questions.md").read_text()
     pages = {path.name for path in (DOCS / "how_to").glob("*.md")} - {"questions.md", "install.md"}
     assert pages == set(re.findall(r"\]\((\w+\.md)\)", text))
+
+
+def test_every_picture_is_shown_and_made_by_a_script_that_stands_beside_it() -> None:
+    scripts = "".join(path.read_text() for path in (DOCS / "images").glob("make_*.py"))
+    pages = "".join(path.read_text() for path in [ROOT / "README.md", *DOCS.rglob("*.md")])
+    for picture in (DOCS / "images").glob("*.png"):
+        assert picture.name in pages, picture.name
+        assert picture.name in scripts or f'"{picture.stem}"' in scripts, picture.name
 
 
 def test_issue_forms_ask_for_the_bug_report() -> None:

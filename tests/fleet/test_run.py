@@ -165,6 +165,18 @@ def test_a_running_cluster_does_the_work(
     assert "value 'nowhere': no scheduler answers" in line
 
 
+def test_workers_elsewhere_find_what_is_named_from_here(
+    client: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Those of a running cluster work in folders of their own."""
+    small_fleet(tmp_path / "logs", 1)
+    monkeypatch.chdir(tmp_path)
+    command = ["fleet", "run", "logs/fleet.csv", "--out", "out", "--model", "kelvin_voigt", "--quiet"]
+    assert run(*command, "--scheduler", client.scheduler.address) == 0
+    assert len(pa_parquet.read_table("out/groups.parquet")) == 1
+    assert len(list(Path("out/units").rglob("*.json"))) == 1
+
+
 def test_the_command_ends_with_the_counts(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (name,) = make_logs(tmp_path, 1)
     rows = [("good", "robot.yaml", name, "", "", ""), ("bad", "robot.yaml", "gone.parquet", "", "", "")]

@@ -79,6 +79,17 @@ DATA_FAULTS = (
         ("logs/readers/test_read_limit.py",),
     ),
     Mutant(
+        "logs/readers/column_map.py", "the line for all joints beats a joint's own",
+        "return spread | {key: entry for key, entry in entries.items() if ANY_JOINT not in key}",
+        "return {key: entry for key, entry in entries.items() if ANY_JOINT not in key} | spread",
+        ("logs/readers/test_column_map.py",),
+    ),
+    Mutant(
+        "logs/readers/column_map.py", "the line for all joints has no unit",
+        '{**made, "from": before + joint + after}', '{"from": before + joint + after}',
+        ("logs/readers/test_column_map.py",),
+    ),
+    Mutant(
         "checks/stepping_joints.py", "one landing is a step", "FEWEST = 2 ", "FEWEST = 1 ",
         ("checks/test_stepping_joints.py",),
     ),

@@ -6,6 +6,10 @@ from mutant import Mutant
 
 FLEET = (
     Mutant(
+        "fleet/cluster.py", "workers elsewhere get paths that are relative to here",
+        "else os.path.abspath(place)", "else place",
+    ),
+    Mutant(
         "fleet/statistics/random_effects.py", "the normal's interval instead of Student's",
         "(1 + LEVEL) / 2, freedom if freedom > 0 else np.inf", "(1 + LEVEL) / 2, np.inf",
     ),

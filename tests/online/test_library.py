@@ -9,9 +9,12 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import example_robots
+from biped import record, sway
+from biped_robot import make_robot
 from plantar.online.estimator import FootEstimator
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -60,13 +63,41 @@ def test_its_own_tests_pass(built: Path) -> None:
     run("ctest", "--output-on-failure", where=built / "build")
 
 
-def test_a_controller_outside_the_tree_finds_it(built: Path, talos_model: Path) -> None:
+@pytest.fixture(scope="module")
+def outside(built: Path) -> Path:
+    """The programs of a project outside of the tree."""
     run("cmake", "-S", CONTROLLER, "-B", "outside", f"-DCMAKE_PREFIX_PATH={built / 'prefix'}", where=built)
     run("cmake", "--build", "outside", where=built)
-    said = run(built / "outside" / "controller", talos_model, where=built)
+    return built / "outside"
+
+
+def test_a_controller_outside_the_tree_finds_it(outside: Path, talos_model: Path) -> None:
+    said = run(outside / "controller", talos_model, where=outside)
     assert (
         said.splitlines()[-1] == "right: contact 2, load 442.6 N, pitch 0.0000 rad, stiffness not known yet"
     )
+
+
+def test_ticks_of_a_log_give_the_numbers_that_python_gives(outside: Path, tmp_path: Path) -> None:
+    """As docs/tutorials/controller.md does it: a model file, a file of ticks, and the last estimates of both."""
+    robot, log = make_robot(tmp_path), record(sway("sway", 1, duration=20.0))
+    estimator = FootEstimator(robot, wrench_delay=0.0)
+    model = estimator.write_model(tmp_path / "robot.estimator")
+    assert robot.imu is not None
+    columns = (log.positions(robot), log.orientation(robot.imu.name), log.angular_velocity(robot.imu.name))
+    wrenches = [log.wrench(foot.wrench.name) for foot in robot.feet.values()]
+    np.savetxt(tmp_path / "ticks.txt", np.column_stack([log.time, *columns, *wrenches]), fmt="%.17g")
+    said = run(outside / "replay", model, tmp_path / "ticks.txt", where=outside).splitlines()
+    replay = estimator.replay(log)
+    expected = []
+    for foot in robot.feet:
+        last = replay.estimate(foot)
+        for axis, now in (("pitch", last.pitch), ("roll", last.roll)):
+            known = "identified" if now.identified else "not known yet"
+            stiffness = f"{now.stiffness.value:.3f} ± {now.stiffness.half_width:.3f} N·m/rad"
+            expected.append(f"{foot} {axis}: {1e3 * now.deflection:.2f} mrad, K {stiffness}, {known}")
+    assert said == expected
+    assert "identified" in said[0]
 
 
 @pytest.mark.skipif(shutil.which("pkg-config") is None, reason="needs pkg-config")

@@ -18,7 +18,7 @@ def test_csv_residuals_serve_as_well(tmp_path: Path) -> None:
 
     write_campaign(tmp_path, seconds=2.0)
     table = pyarrow.parquet.read_table(tmp_path / "residuals.parquet")
-    from_parquet = read_residuals(tmp_path / "residuals.parquet")
+    from_parquet = read_residuals(tmp_path / "result.json")  # what `save` returns names the folder as well
     pyarrow.csv.write_csv(table, tmp_path / "residuals.csv")
     from_csv = read_residuals(tmp_path / "residuals.csv")
     assert [(t.motion, t.foot, t.role) for t in from_csv] == [

@@ -98,10 +98,8 @@ def other_names(folder: Path) -> None:
             renamed[f"q{rest[1]}"] = values
         elif rest[0] == "angular_velocity":
             renamed[f"g{rest[1]}"] = values
-        elif name in ("joint.left_ankle_pitch.position", "joint.left_ankle_roll.position"):
+        elif rest[0] == "position":
             renamed[f"q_{sensor}"] = np.degrees(values)
-        elif rest[0] != "linear_acceleration":
-            renamed[name] = values
     header = ",".join(["stamp", *list(renamed)[1:]])
     rows = np.column_stack(list(renamed.values()))
     np.savetxt(folder / "logger.csv", rows, delimiter=",", header=header, comments="", fmt="%.10g")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import doctest
 import io
+import json
 import os
 import shlex
 import subprocess
@@ -42,23 +43,35 @@ class Reader:
         with inside(self.folder):
             for block in blocks(page):
                 if block.kind == "python":
-                    printed = self._python(block)
+                    printed = self._python(block.text, block.where)
                 elif block.kind == "output":
                     self.outputs[block] = [printed]
                 elif block.kind == "sh":
                     for command in block.commands():
-                        self.type(command, block)
+                        self.type(command, block.where)
                 elif block.kind == "console":
-                    self.outputs[block] = [self.type(command, block) for command in block.commands()]
+                    self.outputs[block] = [self.type(command, block.where) for command in block.commands()]
 
-    def _python(self, block: Block) -> str:
+    def run_notebook(self, notebook: Path) -> None:
+        """Run every code cell of an `.ipynb`; a cell whose lines begin with `!` holds commands."""
+        cells = json.loads(notebook.read_text())["cells"]
+        with inside(self.folder):
+            for number, cell in enumerate(cells):
+                text, where = "".join(cell["source"]), f"{notebook.name}, cell {number}"
+                if cell["cell_type"] == "code" and text.startswith("!"):
+                    for line in text.splitlines():
+                        self.type(line.removeprefix("!"), where)
+                elif cell["cell_type"] == "code":
+                    self._python(text, where)
+
+    def _python(self, text: str, where: str) -> str:
         """What a snippet prints."""
         printed = io.StringIO()
         with contextlib.redirect_stdout(printed):
-            exec(compile(block.text, block.where, "exec"), self.names)
+            exec(compile(text, where, "exec"), self.names)
         return printed.getvalue()
 
-    def type(self, command: str, block: Block) -> str:
+    def type(self, command: str, where: str) -> str:
         """What one command prints on stdout; AssertionError with its stderr where it fails."""
         line, _, target = command.partition(" > ")
         quoted = {word[1:-1] for word in shlex.split(line, posix=False) if word[0] in "'\""}
@@ -70,7 +83,7 @@ class Reader:
         printed, complained = io.StringIO(), io.StringIO()
         with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(complained):
             code = self._done(words, line, complained)
-        assert code == 0, f"{block.where}: {command}\n{complained.getvalue()}"
+        assert code == 0, f"{where}: {command}\n{complained.getvalue()}"
         if target:
             Path(target.strip()).write_text(printed.getvalue())
             return ""

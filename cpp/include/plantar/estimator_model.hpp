@@ -20,36 +20,40 @@ struct PathJoint {
   Frame frame;  // before it moves, in the frame behind the joint before
 };
 
+// One foot: the way to it, its bush, its sole and its force sensor.
 struct FootModel {
-  std::string name;
-  bool always = false;  // stands throughout: its force sensor was zeroed under load
-  std::vector<PathJoint> path;
-  Frame bush;                                      // behind the last joint
-  Frame sole;                                      // in the bush frame, undeflected
-  Frame sensor;                                    // the force sensor in the bush frame
-  double sign = 1.0;                               // -1 where it reads the robot's action on the ground
-  std::vector<std::array<double, 2>> polygon;      // the sole's corners in its plane, counter-clockwise [m]
-  std::array<double, 2> place_std = {0.0, 0.0};    // of the bush's centre, aside and above [m]
-  double compliance = 0.0;                         // of the slide along the ankle's z [m/N], and its deviation
-  double compliance_std = 0.0;
-  std::array<double, 2> slip_angle = {0.0, 0.0};   // of a Jenkins element beside pitch and roll [rad]; 0: none
-  std::array<double, 2> slip_torque = {0.0, 0.0};  // of these, before any data [N·m], and its deviation; 0: not known
-  std::array<double, 2> slip_torque_std = {0.0, 0.0};
+  std::string name;                                    // as in the robot file
+  bool always = false;                                 // stands throughout: its force sensor was zeroed under load
+  std::vector<PathJoint> path;                         // from the IMU to the foot
+  Frame bush;                                          // behind the last joint
+  Frame sole;                                          // in the bush frame, undeflected
+  Frame sensor;                                        // the force sensor in the bush frame
+  double sign = 1.0;                                   // -1 where it reads the robot's action on the ground
+  std::vector<std::array<double, 2>> polygon;          // the sole's corners in its plane, counter-clockwise [m]
+  std::array<double, 2> place_std = {0.0, 0.0};        // of the bush's centre, aside and above [m]
+  double compliance = 0.0;                             // of the slide along the ankle's z [m/N]
+  double compliance_std = 0.0;                         // deviation of `compliance` [m/N]
+  std::array<double, 2> slip_angle = {0.0, 0.0};       // of a Jenkins element beside pitch and roll [rad]; 0: none
+  std::array<double, 2> slip_torque = {0.0, 0.0};      // of these, before any data [N·m]; 0: not known
+  std::array<double, 2> slip_torque_std = {0.0, 0.0};  // deviation of `slip_torque` [N·m]; 0: not known
 };
 
+// All that the estimator knows of a robot before its first reading.
 struct EstimatorModel {
-  std::string robot;
-  double weight = 0.0;              // [N]
+  std::string robot;                // its name
+  double weight = 0.0;              // of the robot [N]
   double cutoff = 5.0;              // of the filters in front of the regressions [Hz]
   double wrench_delay = 0.0;        // force sensors behind the IMU [s]; negative: before it
-  double wrench_delay_std = 0.0;    // [s]
-  double wrench_gain_std = 0.0;     // share
+  double wrench_delay_std = 0.0;    // its deviation [s]
+  double wrench_gain_std = 0.0;     // deviation of the force sensors' gains [share]
   std::vector<std::string> joints;  // what `Reading::position` holds, in this order
-  std::vector<FootModel> feet;
+  std::vector<FootModel> feet;      // `Reading::wrench` and the estimates have their order
 };
 
-// Throws std::runtime_error with the line's number where the text is no such file.
+// A model from the text of its file. Throws std::runtime_error with the line's number where the text is no such file.
 EstimatorModel read_model(std::istream& text);
+
+// The same from a path. Throws std::runtime_error where the file cannot be read.
 EstimatorModel load_model(const std::string& path);
 
 }  // namespace plantar

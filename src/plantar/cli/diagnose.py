@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 from rich.markup import escape
 
+from plantar.cli.console.advice import advised
 from plantar.cli.console.terminal import VERDICT_STYLE, console, number, table
 from plantar.results.feet import FeetResult
 from plantar.results.io import dump_json
@@ -39,11 +40,8 @@ def run(
     styles = [VERDICT_STYLE[verdicts[row.foot, row.axis, row.name]] for row in diagnosis]
     heads = ("foot", "axis", "parameter", "± % (95 %)", "limited by", "share of the variance")
     screen.print(table("What limits each number", heads, cells, styles))
-    for row in found.parameters:
-        if row.verdict != "usable":
-            advice = f" Next: {row.advice}." if row.advice else ""
-            line = f"{row.foot} {row.axis} {row.name} is {row.verdict}: {row.reason}.{advice}"
-            screen.print(escape(line))
+    for verdict, names, rest in advised(found.parameters):
+        screen.print(f"[{VERDICT_STYLE[verdict]}]{names}: {verdict}[/]: {escape(rest)}")
     for limit, advice in {row.limit: row.advice for row in diagnosis if row.advice}.items():
         screen.print(escape(f"Against {limit}: {advice}."))
     shares = [

@@ -13,6 +13,9 @@ from plantar.robot.model import load_robot
 from plantar.robot_guess import guess_robot_file
 
 OUT_HELP = "The robot file to write."
+COLUMNS_HELP = (
+    "A YAML file with the key `columns`, where the logs call their columns otherwise than plantar does."
+)
 LOGS_HELP = "Logs of the robot standing, to find sensors in and to check the file against."
 
 
@@ -20,6 +23,7 @@ def run(
     urdf: Annotated[Path, typer.Argument(help="The robot's URDF.", metavar="URDF")],
     logs: Annotated[list[Path] | None, typer.Argument(help=LOGS_HELP, metavar="[LOG...]")] = None,
     out: Annotated[Path, typer.Option("--out", help=OUT_HELP, metavar="FILE")] = Path("robot.yaml"),
+    columns: Annotated[Path | None, typer.Option("--columns", help=COLUMNS_HELP, metavar="FILE")] = None,
     force: Annotated[bool, typer.Option("--force", help="Write over an existing file.")] = False,
 ) -> None:
     """Write a first robot file by looking: feet and soles from the URDF, sensors from logs; every guess is marked.
@@ -28,7 +32,7 @@ def run(
     """
     if out.exists() and not force:
         raise PlantarError(located("is there already", path=out, valid="another --out, or --force"))
-    write_text(out, guess_robot_file(urdf, logs or [], out))
+    write_text(out, guess_robot_file(urdf, logs or [], out, columns))
     guesses = load_robot(out).guesses  # what was written must be readable
     print(out.read_text(), end="")
     print(f"# {out}: {len(guesses)} lines are guesses, marked GUESS; look at the bush heights first")

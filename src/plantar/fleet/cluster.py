@@ -11,6 +11,7 @@ from importlib.util import find_spec
 from typing import Any, Final
 
 from plantar.errors import MissingExtra, PlantarError, located
+from plantar.fleet.places import is_remote
 
 CONNECT: Final = 30  # s to wait for a scheduler
 SHARE: Final = 0.25  # of a worker's memory for the numbers of a group's logs, as for a machine's elsewhere
@@ -65,6 +66,11 @@ def connected(workers: int | None, scheduler: str | None, memory: int | None) ->
             Client(cluster, set_as_default=False) as client,
         ):
             yield client
+
+
+def seen_by_workers(place: str, scheduler: str | None) -> str:
+    """A place as workers find it: those of a running cluster work in folders of their own, so paths are absolute."""
+    return place if scheduler is None or is_remote(place) else os.path.abspath(place)
 
 
 async def _answer(scheduler: str) -> None:

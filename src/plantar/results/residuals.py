@@ -56,7 +56,8 @@ def read_residuals(path: str | os.PathLike[str]) -> tuple[Track, ...]:
     """Every sample that an identification of the feet looked at, beside what its model says of it.
 
     Args:
-        path: `residuals.parquet`, `.csv` or `.csv.gz`, or the folder of a result that holds one of them.
+        path: `residuals.parquet`, `.csv` or `.csv.gz`; the folder of a result that holds one of them, or the result's
+            `.json` in it.
 
     Returns:
         A `Track` for each motion and foot, in the order in which the file first names them.
@@ -74,6 +75,8 @@ def read_residuals(path: str | os.PathLike[str]) -> tuple[Track, ...]:
         True
     """
     file = Path(path)
+    if file.suffix == ".json":
+        file = file.parent
     if file.is_dir():
         found = residuals_path(file)
         if found is None:

@@ -118,7 +118,7 @@ def read_robot_file(path: Path) -> tuple[RobotEntry, tuple[Guess, ...]]:
     """
     content = read_bounded(path, FILE_LIMIT, RobotError)
     try:
-        _refuse_bombs(content, path)
+        refuse_bombs(content, path)
         data = yaml.safe_load(content)
     except (yaml.YAMLError, UnicodeDecodeError, ValueError) as error:
         reason = " ".join(str(getattr(error, "problem", None) or error).split())
@@ -134,7 +134,7 @@ def read_robot_file(path: Path) -> tuple[RobotEntry, tuple[Guess, ...]]:
     return entry, read_guesses(content)
 
 
-def _refuse_bombs(content: bytes, path: Path) -> None:
+def refuse_bombs(content: bytes, path: Path) -> None:
     """No aliases (they can multiply without bound) and no deep nesting, found before anything is built."""
     depth = 0
     for event in yaml.parse(content, Loader=yaml.SafeLoader):

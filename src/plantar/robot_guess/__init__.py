@@ -26,6 +26,7 @@ from plantar.robot.joint_names import JointNames, propose_names, propose_order
 from plantar.robot.model import RobotModel, load_robot, parse_urdf
 from plantar.robot_guess.biped import find_biped
 from plantar.robot_guess.bush import bush_shift
+from plantar.robot_guess.column_map import read_column_map
 from plantar.robot_guess.evidence import Remark, check_stance, widen_outline
 from plantar.robot_guess.feet import Sole, find_sole, fixed_links
 from plantar.robot_guess.imu import find_frame, turned_to_gravity
@@ -41,8 +42,8 @@ URDF_LIMIT = 64 * 2**20  # bytes
 WITHOUT_LOG = "imu"  # what an IMU is called before there is a log
 
 
-def guess_robot_file(urdf: Path, logs: Sequence[Path], out: Path) -> str:
-    """The robot file's text, for a file at `out`.
+def guess_robot_file(urdf: Path, logs: Sequence[Path], out: Path, columns: Path | None = None) -> str:
+    """The robot file's text, for a file at `out`; `columns` is a file with the map of the logs' columns, taken over.
 
     Raises RobotError where the URDF is unreadable or no biped, LogError where a log is, or is of another robot.
     """
@@ -50,7 +51,14 @@ def guess_robot_file(urdf: Path, logs: Sequence[Path], out: Path) -> str:
     tree = UrdfTree.load(urdf)
     biped = find_biped(tree, model)
     soles = [find_sole(tree, model, biped, leg) for leg in biped.legs]
-    sensors = look_at(logs)
+    mapped, reading = "", None
+    if columns is not None:
+        mapped = read_column_map(columns)
+        blind = _first_draft(tree, soles, Sensors(), urdf)
+        reading = replace(
+            _loaded(blind, urdf, mapped), path=columns
+        )  # what is wrong with the map names its file
+    sensors = look_at(logs, reading)
     draft = _first_draft(tree, soles, sensors, urdf)
     draft, recordings = _with_names(draft, tuple(model.names)[1:], sensors.logs)
     if recordings:
@@ -58,7 +66,7 @@ def guess_robot_file(urdf: Path, logs: Sequence[Path], out: Path) -> str:
         draft = _seen_standing(draft, tree, model, recordings)
         draft = _with_bush_by_log(draft, urdf, recordings)
         draft = replace(draft, remarks=[*draft.remarks, *_findings(draft, urdf, recordings)])
-    return draft.text(_relative(urdf, out))
+    return draft.text(_relative(urdf, out)) + mapped
 
 
 def _first_draft(tree: UrdfTree, soles: Sequence[Sole], sensors: Sensors, urdf: Path) -> Draft:
@@ -198,11 +206,11 @@ def _findings(draft: Draft, urdf: Path, logs: Sequence[MotionLog]) -> list[Remar
     ]
 
 
-def _loaded(draft: Draft, urdf: Path) -> RobotModel:
-    """The draft as the rest of plantar reads it."""
+def _loaded(draft: Draft, urdf: Path, mapped: str = "") -> RobotModel:
+    """The draft as the rest of plantar reads it, with a map of columns."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "robot.yaml"
-        write_text(path, draft.text(str(urdf.resolve())))
+        write_text(path, draft.text(str(urdf.resolve())) + mapped)
         return load_robot(path)
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import open_log
 from plantar.logs.readers.ros.bag import bag_topics
+from plantar.robot.model import RobotModel
 from plantar.robot_guess.biped import LEFT, RIGHT
 
 BAGS = (".mcap", ".db3", ".bag")
@@ -28,8 +29,11 @@ class Sensors:
     left_out: list[Path] = field(default_factory=list)
 
 
-def look_at(paths: Sequence[Path]) -> Sensors:
-    """Open logs and list their sensors; a file of the twin's truth is left out. Raises LogError."""
+def look_at(paths: Sequence[Path], robot: RobotModel | None = None) -> Sensors:
+    """Open logs and list their sensors; a file of the twin's truth is left out. `robot` has a map of their columns.
+
+    Raises LogError.
+    """
     sensors = Sensors()
     for path in paths:
         if TRUTH in path.name:
@@ -37,7 +41,7 @@ def look_at(paths: Sequence[Path]) -> Sensors:
             continue
         if path.suffix.lower() in BAGS or path.is_dir():
             _look_at_bag(path, sensors)
-        log = open_log(path)
+        log = open_log(path, robot)
         for name in log.columns:
             kind, _, rest = name.partition(".")
             if kind in ("imu", "wrench"):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
@@ -26,6 +27,9 @@ from plantar.robot.model import RobotModel
         ({"joint.neck.position": {"from": "neck_deg", "sign": 2}}, "1 or -1"),
         ({"joint.neck.position": {"of": "neck_deg"}}, "from"),
         ({"joint.neck.position": 7}, "no column 7"),
+        ({"joint.<joint>.position": {"from": "<joint>_rad"}}, "no column is called like '<joint>_rad'"),
+        ({"joint.<joint>.position": "neck_deg"}, "one <joint> here and there"),
+        ({"joint.neck.position": "<joint>_deg"}, "<joint>_deg"),
     ],
 )
 def test_a_map_that_cannot_hold_is_one_clear_line(
@@ -36,6 +40,19 @@ def test_a_map_that_cannot_hold_is_one_clear_line(
     with pytest.raises(LogError, match=expected) as caught:
         open_log(tmp_path / "log.csv", robot)
     assert "\n" not in str(caught.value)
+
+
+def test_one_line_maps_the_columns_of_all_joints(tmp_path: Path) -> None:
+    """A joint with a line of its own keeps it; a column without a joint's name is none."""
+    (tmp_path / "log.csv").write_text("time,q_neck,q_waist,q_,other\n0,180,9,9,9\n1,90,9,9,9\n2,0,9,9,9\n")
+    columns = {
+        "joint.<joint>.position": {"from": "q_<joint>", "unit": "deg"},
+        "joint.waist.position": "q_waist",
+    }
+    log = open_log(tmp_path / "log.csv", make_robot(tmp_path / "robot", columns=columns))
+    assert list(log.columns) == ["joint.neck.position", "joint.waist.position"]
+    np.testing.assert_allclose(log.columns["joint.neck.position"], [np.pi, np.pi / 2, 0])
+    np.testing.assert_array_equal(log.columns["joint.waist.position"], 9)
 
 
 def test_a_joint_vector_of_another_length_or_without_names_is_refused(tmp_path: Path) -> None:
@@ -58,7 +75,8 @@ def test_a_text_log_with_broken_lines_keeps_the_good_ones(tmp_path: Path) -> Non
 
 words = st.sampled_from([
     "time", "a", "joint.neck.position", "imu.chest.orientation", "wrench.left.force", "joints", "ports", "from", "unit",
-    "order", "sign", "deg", "N", "wxyz", "rpy", "role", "joints.position", "take", "",
+    "joint.<joint>.position", "<joint>", "order", "sign", "deg", "N", "wxyz", "rpy", "role", "joints.position", "take",
+    "",
 ])  # fmt: skip
 scalars = st.none() | st.booleans() | st.integers(-3, 5) | st.floats(allow_nan=False) | words
 trees = st.recursive(

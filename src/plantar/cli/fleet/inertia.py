@@ -14,7 +14,7 @@ from plantar.cli.identify import identification
 from plantar.cli.identify.dynamics_tables import print_inertia
 from plantar.errors import PlantarError, located
 from plantar.files import refuse_file
-from plantar.fleet.cluster import connected
+from plantar.fleet.cluster import connected, seen_by_workers
 from plantar.fleet.inertia import inertia_over
 from plantar.fleet.manifest import read_manifest
 from plantar.report import write_dynamics_report
@@ -44,7 +44,7 @@ def run(
     Example: plantar fleet inertia fleet.csv --out out/inertia
     """
     refuse_file(out)
-    groups = read_manifest(manifest)
+    groups = read_manifest(seen_by_workers(str(manifest), scheduler))
     robots = list(dict.fromkeys(group.robot for group in groups))
     if len(robots) > 1:
         message = f"names {len(robots)} robot files"

@@ -17,7 +17,7 @@ from plantar.cli.fleet.report import PAGE, RUN_FILE, RUN_SCHEMA, print_alarms, w
 from plantar.cli.identify.feet import DELAY_HELP, MODEL_HELP, OFFSET_HELP
 from plantar.feet.settings import AUTOMATIC, MODEL_CHOICES, FeetSettings, OffsetRule
 from plantar.files import refuse_file
-from plantar.fleet.cluster import SHARE, connected, dashboard
+from plantar.fleet.cluster import SHARE, connected, dashboard, seen_by_workers
 from plantar.fleet.manifest import read_manifest
 from plantar.fleet.places import Store, is_remote
 from plantar.fleet.run import Outcome, Progress, run_fleet
@@ -60,10 +60,10 @@ def run(
         raise typer.BadParameter("a running cluster has workers of its own", param_hint="--workers")
     late = None if wrench_delay is None else 1e-3 * wrench_delay
     settings = FeetSettings(offset, model, wrench_delay=late)
-    groups = read_manifest(manifest)
+    groups = read_manifest(seen_by_workers(str(manifest), scheduler))
     if not is_remote(out):
         refuse_file(Path(out))
-    store = Store(out)
+    store = Store(seen_by_workers(out, scheduler))
     step = progress(quiet)
     step(f"{len(groups)} groups; start the workers")
     room = None if memory is None else int(SHARE * memory)

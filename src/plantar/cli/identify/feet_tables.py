@@ -5,8 +5,9 @@ from __future__ import annotations
 from rich.console import Console
 from rich.markup import escape
 
+from plantar.cli.console.advice import advised
 from plantar.cli.console.terminal import VERDICT_STYLE, number, print_notes, table
-from plantar.results.feet import FeetResult, Parameter, ValidationRow, Verdict
+from plantar.results.feet import FeetResult, Parameter, ValidationRow
 
 
 def print_feet(out: Console, result: FeetResult) -> None:
@@ -16,16 +17,8 @@ def print_feet(out: Console, result: FeetResult) -> None:
         print_notes(out, warnings)
         out.print()
     out.print(parameter_table(result))
-    alike: dict[tuple[Verdict, str, str], list[str]] = {}
-    for row in result.parameters:
-        if row.verdict != "usable":
-            advice = f" Next: {row.advice}." if row.advice else ""
-            alike.setdefault((row.verdict, row.reason, advice), []).append(
-                f"{row.foot} {row.axis} {row.name}"
-            )
-    for (verdict, reason, advice), names in alike.items():
-        style = VERDICT_STYLE[verdict]
-        out.print(f"[{style}]{', '.join(names)}: {verdict}[/]: {escape(reason)}.{escape(advice)}")
+    for verdict, names, rest in advised(result.parameters):
+        out.print(f"[{VERDICT_STYLE[verdict]}]{names}: {verdict}[/]: {escape(rest)}")
     for kind, title in (("direct", "Table 2. Direct validation"), ("cross", "Table 3. Cross validation")):
         rows = [row for row in result.validation if row.kind == kind]
         if rows:

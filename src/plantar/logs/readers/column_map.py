@@ -3,6 +3,7 @@
     columns:
       time: {from: stamp, unit: ms}
       joint.hip.position: {from: hip_angle, unit: deg}
+      joint.<joint>.velocity: {from: <joint>_speed, unit: deg/s}       # every column of such a name, one a joint
       imu.chest.orientation: {from: [qx, qy, qz, qw], order: xyzw}     # or [roll, pitch, yaw], order: rpy
       imu.chest.linear_acceleration: {from: [ax, ay, az], unit: g}
       wrench.left.torque: {from: [mx, my, mz], unit: N.mm, sign: -1}
@@ -14,6 +15,7 @@ A source is a column's name, or its number from 0 where the file has no header.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -32,6 +34,7 @@ if TYPE_CHECKING:
 VECTORS = {"angular_velocity": 3, "linear_acceleration": 3, "force": 3, "torque": 3}
 ENTRY_KEYS = {"from", "unit", "order", "sign"}
 PORT_KEYS = {"role", "unit", "sign", "joints", "take"}
+ANY_JOINT = "<joint>"  # in a key and in its source: every joint that the file has such a column of
 
 
 @dataclass(frozen=True)
@@ -103,9 +106,8 @@ def apply(table: Mapping[str, Array], robot: RobotModel, path: Path) -> tuple[Ar
     """
     time = np.asarray(table["time"]) if "time" in table else None
     columns = {name: values for name, values in table.items() if COLUMN.fullmatch(name)}
-    for key, entry in robot.columns.items():
-        if key in ("joints", "ports"):
-            continue
+    entries = {key: entry for key, entry in robot.columns.items() if key not in ("joints", "ports")}
+    for key, entry in _for_each_joint(entries, list(table), robot.path).items():
         made = entry if isinstance(entry, Mapping) else {"from": entry}
         if made.get("from") in (None, "", []) or set(made) - ENTRY_KEYS:
             message, valid = (
@@ -130,6 +132,32 @@ def apply(table: Mapping[str, Array], robot: RobotModel, path: Path) -> tuple[Ar
             )
         )
     return time, columns
+
+
+def _for_each_joint(entries: Mapping[str, Any], names: Sequence[str], path: Path) -> dict[str, Any]:
+    """The entries, one with `<joint>` replaced by one for each joint that the file's names hold. A joint that has an
+    entry of its own keeps it."""
+    spread: dict[str, Any] = {}
+    for key, entry in entries.items():
+        if ANY_JOINT not in key:
+            continue
+        made = entry if isinstance(entry, Mapping) else {"from": entry}
+        source = made.get("from")
+        if not isinstance(source, str) or source.count(ANY_JOINT) != 1 or key.count(ANY_JOINT) != 1:
+            valid = f"joint.{ANY_JOINT}.position: {{from: {ANY_JOINT}_angle, unit: deg}}"
+            raise LogError(
+                located(f"columns.{key} needs one {ANY_JOINT} here and there", path=path, valid=valid)
+            )
+        before, after = source.split(ANY_JOINT)
+        found = [re.fullmatch(f"{re.escape(before)}(.+){re.escape(after)}", name) for name in names]
+        joints = [match[1] for match in found if match]
+        if not joints:
+            message = f"columns.{key}: no column is called like '{source}'"
+            raise LogError(located(message, path=path, valid=nearest(source, names)))
+        spread |= {
+            key.replace(ANY_JOINT, joint): {**made, "from": before + joint + after} for joint in joints
+        }
+    return spread | {key: entry for key, entry in entries.items() if ANY_JOINT not in key}
 
 
 def _mapped(

@@ -85,7 +85,7 @@ def _known(names: Sequence[str], path: Path) -> list[str]:
                 "is missing",
                 path=path,
                 column="time",
-                valid="a first column 'time' [s], or `columns` in the robot file",
+                valid="a first column 'time' [s]; or `columns` in the robot file, for `plantar init` as --columns FILE",
             )
         )
     return [name for name in names if name == "time" or COLUMN.fullmatch(name)]
