@@ -17,6 +17,7 @@ from plantar.signals.segments import longest_run
 BAND = 8.0  # Hz, in which rates are compared
 EDGE, LEAST_EDGES = 0.5, 10  # s that a filter's ends take; how many of them a run must hold
 USUAL = 0.005  # s: a device's own filter; a later one is a fault, or an orientation that follows the accelerometer
+LEAST = 0.0005  # s: less moves damping by less than its interval ever shows
 SURE = 3.0  # deviations
 
 
@@ -24,14 +25,14 @@ def with_gyroscope_on_time(log: MotionLog, imu: str) -> MotionLog:
     """An evenly sampled log with its gyroscope read at the moments that the orientation tells of, and a note of it.
 
     A device's own filter delays a gyroscope by milliseconds; damping, and the delay of the force sensors beside it,
-    would follow. As it is where the delay is not told from none, or larger than such a filter's.
+    would follow. As it is where the delay is small, not told from none, or larger than such a filter's.
     """
     orientation, columns = log.orientation(imu), imu_columns(imu, "angular_velocity")
     if orientation is None or not log.has(*columns):
         return log
     rates = log.angular_velocity(imu)
     found = gyroscope_delay(rates, rates_from(orientation, log.period), log.period)
-    if found is None or not SURE * found.std < abs(found.late) < USUAL:
+    if found is None or not max(SURE * found.std, LEAST) < abs(found.late) < USUAL:
         return log
     late, ahead = ("behind", "earlier") if found.late > 0 else ("ahead of", "later")
     text = f"{log.name}: gyroscope {1e3 * abs(found.late):.1f} ms {late} the orientation, read {ahead} by as much"
