@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from page_blocks import ROOT
-from page_folders import stand_in
+from page_folders import STAND_INS
 from page_runner import Reader
 from plantar.results.feet import FeetResult
 
@@ -28,7 +28,7 @@ def test_nothing_that_was_run_is_stored(notebook: Path) -> None:
 
 @named
 def test_a_notebook_runs(notebook: Path, tmp_path: Path) -> None:
-    reader = Reader(tmp_path, stand_in)
+    reader = Reader(tmp_path, STAND_INS)
     reader.run_notebook(notebook)
     assert any(isinstance(value, FeetResult) for value in reader.names.values())
 
