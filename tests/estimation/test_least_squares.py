@@ -126,6 +126,21 @@ def test_rows_that_are_thinned_leave_the_papers_deviation_as_it_is() -> None:
     assert thin.duration == pytest.approx(100.0)
 
 
+def test_a_nuisance_is_fitted_beside_the_values_and_forgotten() -> None:
+    """What all columns give as one fit, in values, residuals and their white deviations."""
+    drift = np.linspace(-1, 1, 300)[:, None] ** [1, 2]
+    one = block("a", 1)
+    moved = Block("a", one.regressor + 0.02 * drift[:, :1], one.response + drift @ [3.0, 5.0], 0.01)
+    design = np.column_stack([moved.regressor, np.ones(300), drift])
+    values, squares, *_ = np.linalg.lstsq(design, moved.response, rcond=None)
+    found = fit_linear([moved.with_nuisance(drift[:, :1]).with_nuisance(drift[:, 1:])])
+    np.testing.assert_allclose(found.values, values[:2], rtol=1e-10)
+    np.testing.assert_allclose(found.offsets["a"], values[2], rtol=1e-10)
+    np.testing.assert_allclose(found.residuals["a"], moved.response - design @ values, atol=1e-10)
+    white = np.sqrt(np.diag(np.linalg.inv(design.T @ design))[:2] * squares / (300 - 5))
+    np.testing.assert_allclose(found.white_std, white, rtol=1e-10)
+
+
 def test_values_without_each_recording_are_those_of_fits_of_the_others() -> None:
     random = np.random.default_rng(5)
     blocks = [
@@ -134,8 +149,7 @@ def test_values_without_each_recording_are_those_of_fits_of_the_others() -> None
             random.normal(size=(40, 2)),
             random.normal(size=40),
             0.1,
-            nuisance=np.arange(40.0)[:, None],
-        )
+        ).with_nuisance(np.arange(40.0)[:, None])
         for place in range(4)
     ]
     expected = [fit_linear([*blocks[:place], *blocks[place + 1 :]]).values for place in range(4)]

@@ -210,12 +210,22 @@ DATA_FAULTS = (
         "0.0 * float(np.mean(fit.residuals", ("feet/fit/test_bush_place.py",),
     ),
     Mutant(
-        "feet/fit/regression_data.py", "drift is a line", "drift = drift_beside(deflection, recording.time[used])",
-        "drift = drift_beside(deflection, recording.time[used])[:, :1]", ("feet/fit/test_regression_data.py",),
+        "feet/fit/regression_data.py", "drift is a line", "drift = drift_beside(deflection, recording.drift(foot))",
+        "drift = drift_beside(deflection, recording.drift(foot))[:, :1]", ("feet/fit/test_regression_data.py",),
     ),
     Mutant(
-        "signals/slow_drift.py", "drift takes a slow motion", "< (1 - QUICK) * beside_line", "< 2 * beside_line",
-        ("signals/test_slow_drift.py",),
+        "estimation/slow_drift.py", "drift takes a slow motion", "< (1 - QUICK) * beside_line", "< 2 * beside_line",
+        ("estimation/test_slow_drift.py",),
+    ),
+    Mutant(
+        "signals/thinning.py", "quick signals pass for slow ones",
+        "low_pass(values, log.period, BAND * rate / 2)[::step]",
+        "values[::step]", ("signals/test_thinning.py",),
+    ),
+    Mutant(
+        "estimation/least_squares.py", "nuisances stay in the rows",
+        "return rows if block.nuisance is None else without(block.nuisance, rows)", "return rows",
+        ("estimation/test_least_squares.py",),
     ),
     Mutant(
         "signals/gyroscope_delay.py", "the gyroscope is read later still", "log.period, found.late)",
@@ -231,7 +241,7 @@ DATA_FAULTS = (
         ("feet/assess/test_contradiction.py",),
     ),
     Mutant(
-        "signals/slow_drift.py", "what is quicker than drift passes for drift", "DRIFT_PERIOD = 20.0",
+        "estimation/slow_drift.py", "what is quicker than drift passes for drift", "DRIFT_PERIOD = 20.0",
         "DRIFT_PERIOD = 5.0", ("feet/assess/test_contradiction.py",),
     ),
     Mutant(

@@ -19,14 +19,14 @@ ESTIMATION = (
     ),
     Mutant(
         "estimation/least_squares.py", "white variance over rows, not degrees of freedom",
-        "max(total.rows - total.rank, 1)", "max(total.rows, 1)",
+        "max(total.rows - total.rank - forgotten, 1)", "max(total.rows, 1)",
     ),
     Mutant(
-        "estimation/delay.py", "the model's error without its square root",
+        "estimation/delays/delay.py", "the model's error without its square root",
         "MODEL_ERROR * np.sqrt(power / float(rate_p @ rate_p))", "MODEL_ERROR * (power / float(rate_p @ rate_p))",
     ),
     Mutant(
-        "estimation/delay.py", "no longest delay where a pair is tried for closing",
+        "estimation/delays/delay.py", "no longest delay where a pair is tried for closing",
         "np.clip(delay, -LONGEST, LONGEST) * rate", "delay * rate",
     ),
     Mutant(
@@ -42,7 +42,7 @@ ESTIMATION = (
         "np.sqrt(_core.drift_variance(weight, *chain))", "_core.drift_variance(weight, *chain)",
     ),
     Mutant(
-        "estimation/sensor_delays.py", "cells weighed by their noise, not by their length too",
+        "estimation/delays/sensor_delays.py", "cells weighed by their noise, not by their length too",
         "[len(rest) / float(rest @ rest + cell.floor)", "[1 / float(rest @ rest + cell.floor)",
     ),
 )  # fmt: skip
@@ -78,7 +78,7 @@ MODEL_SELECTION = (
         "value > (1 - AT_LIMIT) * high", "value > high",
     ),
     Mutant(
-        "signals/slow_drift.py", "drift about the first sample, so that means change",
+        "estimation/slow_drift.py", "drift about the first sample, so that means change",
         "columns - columns.mean(axis=0)", "columns - columns[0]",
     ),
     Mutant(

@@ -49,9 +49,9 @@ MADE_CHEAPER = (
         ("estimation/test_stance_least_squares.py",),
     ),
     Mutant(
-        "estimation/delay.py", "a late signal is moved the other way",
+        "estimation/delays/delay.py", "a late signal is moved the other way",
         "np.clip(delay, -LONGEST, LONGEST) * rate", "np.clip(-delay, -LONGEST, LONGEST) * rate",
-        ("estimation/test_delay.py",),
+        ("estimation/delays/test_delay.py",),
     ),
     Mutant(
         "model_selection/model_fit.py", "deviations of all values a third of what they are",

@@ -22,11 +22,11 @@ INTERVALS = (
         "Compliances(total, 0.0, unseen, float(fit.freedom[0]),", "Compliances(total, 0.0, unseen, np.inf,",
     ),
     Mutant(
-        "estimation/sensor_delays.py", "covariance without the sandwich",
+        "estimation/delays/sensor_delays.py", "covariance without the sandwich",
         "Delays(values, inverse @ middle @ inverse,", "Delays(values, inverse,",
     ),
     Mutant(
-        "estimation/delay.py", "cells that disagree do not widen the delay", "max(1.0, disagreement)", "1.0",
+        "estimation/delays/delay.py", "cells that disagree do not widen the delay", "max(1.0, disagreement)", "1.0",
     ),
     Mutant(
         "estimation/blocks.py", "every offset has the first one's deviation",

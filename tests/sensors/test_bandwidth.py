@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from plantar.estimation.delay import Pair
+from plantar.estimation.delays.delay import Pair
 from plantar.sensors.bandwidth import FILTERED, Fading, fading, fading_notes
 
 PERIOD, COUNT = 0.025, 2400

@@ -9,7 +9,7 @@ import pytest
 
 from biped_robot import make_robot
 from plantar.dynamics.inertial_motion import InertialSignals
-from plantar.estimation.delay import Pair
+from plantar.estimation.delays.delay import Pair
 from plantar.logs.motion_log import MotionLog
 from plantar.sensors.delays.sensor_delay import CLOCK, estimate_wrench_delay
 from plantar.sensors.newton_euler import NewtonEulerResidual

@@ -23,6 +23,7 @@ from plantar.logs.motion_log import MotionLog, wrench_columns
 from plantar.notes import Finding, Note
 from plantar.robot.model import RobotModel
 from plantar.signals.resampling import sampling
+from plantar.signals.thinning import picked
 
 DEGREES = 180 / np.pi
 FASTEST, SLOWEST = 1e-5, 1.0  # s between samples: beyond them time is in another unit
@@ -39,13 +40,11 @@ def check_log(robot: RobotModel, log: MotionLog) -> list[Finding]:
     if any(finding.fatal for finding in time):
         return [*names, *time]
     imu = check_imu(robot.imu.name, log) if robot.imu is not None else ()
-    channels, chain = (
-        [*check_gaps(robot, log), *check_channels(robot, log), *check_stepping_joints(robot, log)],
-        list(check_closed_chain(robot, log)),
-    )
-    wrenches = list(_wrenches(robot, log))
+    channels = [*check_gaps(robot, log), *check_channels(robot, log), *check_stepping_joints(robot, log)]
+    few = picked(log)
+    chain, wrenches = list(check_closed_chain(robot, few)), list(_wrenches(robot, few))
     missing = check_path_joints(robot, log) if any(one.fatal for one in (*wrenches, *chain)) else ()
-    bushes = [*check_bush_link(robot, log), *check_bush_axes(robot, log)]
+    bushes = [*check_bush_link(robot, few), *check_bush_axes(robot, few)]
     return [*names, *time, *_joints(robot, log), *imu, *missing, *bushes, *wrenches, *channels, *chain]
 
 

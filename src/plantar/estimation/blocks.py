@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plantar.conventions import Array
+from plantar.estimation.orthonormal import orthonormal
 
 
 @dataclass(frozen=True)
@@ -27,8 +28,8 @@ class Block:
     """One recording's rows: `regressor` (n, k) without the offset's column, `response` (n,), `period` [s].
 
     Rows may be every `thinned`th sample of a filtered signal, `period` apart: white residuals are those of all samples.
-    `nuisance` (n, m) are columns of this recording alone, fitted beside its offset and then forgotten; `noise` (k,) is
-    the variance of what is noise in the regressor's columns.
+    `nuisance` (n, m) are orthonormal columns of this recording alone, fitted beside its offset and then forgotten;
+    `noise` (k,) is the variance of what is noise in the regressor's columns.
 
     Where a foot steps, rows have `stances`, and `common_nuisance` (n, j) are columns that all recordings share beside
     the regressor's; `common_spread` (j,) is the deviation of their coefficients about zero before any data, infinite
@@ -52,10 +53,15 @@ class Block:
             self,
             regressor=self.regressor[rows],
             response=self.response[rows],
-            nuisance=None if self.nuisance is None else self.nuisance[rows],
+            nuisance=None if self.nuisance is None else orthonormal(self.nuisance[rows]),
             stances=self.stances and StanceRows(self.stances.number[rows], self.stances.weight[rows]),
             common_nuisance=None if self.common_nuisance is None else self.common_nuisance[rows],
         )
+
+    def with_nuisance(self, columns: Array) -> Block:
+        """The block with more columns (n, m) of its own to forget, beside those there."""
+        own = orthonormal(columns, self.nuisance)
+        return replace(self, nuisance=own if self.nuisance is None else np.hstack([self.nuisance, own]))
 
     @property
     def duration(self) -> float:
@@ -71,8 +77,8 @@ class Block:
 class LinearFit:
     """Parameters common to all recordings, then offsets: one per recording, or a single shared one.
 
-    `values` (k,), `offsets` by recording's label; `covariance` of values, offsets and nuisances, in this order, allows
-    for autocorrelated residuals, `white_covariance` assumes white ones (the paper's). `freedom` goes with `covariance`.
+    `values` (k,), `offsets` by recording's label; `covariance` of both, in this order, allows for
+    autocorrelated residuals, `white_covariance` assumes white ones (the paper's). `freedom` goes with `covariance`.
     `common_nuisance` (j,) are the coefficients of the blocks' columns of that name.
     """
 

@@ -9,6 +9,7 @@ import numpy as np
 from plantar.conventions import Array
 from plantar.estimation.blocks import Block, LinearFit
 from plantar.estimation.intervals import pooled_freedom, score_cosines
+from plantar.estimation.orthonormal import without
 from plantar.estimation.triangular import TriangularFactor
 
 
@@ -18,15 +19,15 @@ def fit_linear(blocks: Sequence[Block], *, shared_offset: bool = False) -> Linea
     With `shared_offset` one offset is used for every recording, as in the paper; otherwise each has its own.
     """
     columns = blocks[0].regressor.shape[1]
-    places, size = _places(blocks, columns, shared_offset)
-    total = _factor(blocks, places, size)
+    places, size = _places(blocks, shared_offset)
+    rows = [_rows(block) for block in blocks]
+    total = _factor(rows, places, size)
     solution = total.solve()
-    residuals = [
-        block.response - _design(block) @ solution[own] for block, own in zip(blocks, places, strict=True)
-    ]
+    residuals = [own[:, -1] - own[:, :-1] @ solution[at] for own, at in zip(rows, places, strict=True)]
     inverse = total.information_inverse()
-    covariance, freedom = _robust(blocks, places, residuals, inverse)
-    variance = total.residual_norm**2 / max(total.rows - total.rank, 1)
+    covariance, freedom = _robust(blocks, rows, places, residuals, inverse)
+    forgotten = sum(block.nuisance.shape[1] for block in blocks if block.nuisance is not None)
+    variance = total.residual_norm**2 / max(total.rows - total.rank - forgotten, 1)
     labels = [block.label for block in blocks]
     return LinearFit(
         values=solution[:columns],
@@ -43,16 +44,16 @@ def fit_linear(blocks: Sequence[Block], *, shared_offset: bool = False) -> Linea
 
 def factor_of(blocks: Sequence[Block], shared_offset: bool = False) -> TriangularFactor:
     """Triangular factor of all blocks' rows: parameters in the order of `LinearFit.covariance`."""
-    places, size = _places(blocks, blocks[0].regressor.shape[1], shared_offset)
-    return _factor(blocks, places, size)
+    places, size = _places(blocks, shared_offset)
+    return _factor([_rows(block) for block in blocks], places, size)
 
 
 def values_without_each(blocks: Sequence[Block]) -> Array:
     """The values (blocks, k) of fits of all blocks but one each, every recording with an offset of its own."""
     columns = blocks[0].regressor.shape[1]
-    places, size = _places(blocks, columns, shared_offset=False)
+    places, size = _places(blocks, shared_offset=False)
     parts = [
-        TriangularFactor.of(_design(block), block.response).among(own, size)
+        TriangularFactor.of_rows(_rows(block)).among(own, size)
         for block, own in zip(blocks, places, strict=True)
     ]
     none = TriangularFactor(np.zeros((size + 1, size + 1)), 0)
@@ -60,38 +61,42 @@ def values_without_each(blocks: Sequence[Block]) -> Array:
     return np.array([rest.solve()[:columns] for rest in rests])
 
 
-def _places(blocks: Sequence[Block], columns: int, shared_offset: bool) -> tuple[list[Array], int]:
-    """Where each block's own columns stand among all parameters: common ones, offsets, then nuisances; and how many."""
+def _places(blocks: Sequence[Block], shared_offset: bool) -> tuple[list[Array], int]:
+    """Where each block's values and offset stand among all parameters, and how many these are."""
+    columns = blocks[0].regressor.shape[1]
     size = columns + (1 if shared_offset else len(blocks))
-    places = []
-    for i, block in enumerate(blocks):
-        extra = 0 if block.nuisance is None else block.nuisance.shape[1]
-        offset = columns + (0 if shared_offset else i)
-        places.append(np.array([*range(columns), offset, *range(size, size + extra)]))
-        size += extra
-    return places, size
+    return [
+        np.array([*range(columns), columns + (0 if shared_offset else i)]) for i in range(len(blocks))
+    ], size
 
 
-def _factor(blocks: Sequence[Block], places: Sequence[Array], size: int) -> TriangularFactor:
+def _factor(rows: Sequence[Array], places: Sequence[Array], size: int) -> TriangularFactor:
     total = TriangularFactor(np.zeros((size + 1, size + 1)), 0)
-    for block, own in zip(blocks, places, strict=True):
-        total = total + TriangularFactor.of(_design(block), block.response).among(own, size)
+    for part, own in zip(rows, places, strict=True):
+        total = total + TriangularFactor.of_rows(part).among(own, size)
     return total
 
 
-def _design(block: Block) -> Array:
-    """The block's regressor with its offset's column and its nuisances, (n, k + 1 + m)."""
-    parts = [block.regressor, np.ones(len(block.response))]
-    return np.column_stack(parts if block.nuisance is None else [*parts, block.nuisance])
+def _rows(block: Block) -> Array:
+    """The block's regressor, its offset's column and its response, (n, k + 2), beside its nuisances.
+
+    A fit of these gives what one with the nuisances gives (R. Frisch, F. V. Waugh, Econometrica 1, 1933).
+    """
+    rows = np.column_stack([block.regressor, np.ones(len(block.response)), block.response])
+    return rows if block.nuisance is None else without(block.nuisance, rows)
 
 
 def _robust(
-    blocks: Sequence[Block], places: Sequence[Array], residuals: Sequence[Array], inverse: Array
+    blocks: Sequence[Block],
+    rows: Sequence[Array],
+    places: Sequence[Array],
+    residuals: Sequence[Array],
+    inverse: Array,
 ) -> tuple[Array, Array]:
     """Sandwich covariance with the coloured scores of each recording inside, and degrees of freedom."""
     parts, freedoms = [], []
-    for block, own, residual in zip(blocks, places, residuals, strict=True):
-        moved = score_cosines(_design(block) * residual[:, None], block.duration) @ inverse[own]
+    for block, part, own, residual in zip(blocks, rows, places, residuals, strict=True):
+        moved = score_cosines(part[:, :-1] * residual[:, None], block.duration) @ inverse[own]
         parts.append(moved.T @ moved)
         freedoms.append(len(moved))
     variances = np.array([np.diag(part) for part in parts])

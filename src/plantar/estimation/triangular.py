@@ -25,10 +25,14 @@ class TriangularFactor:
     @classmethod
     def of(cls, regressor: Array, response: Array) -> TriangularFactor:
         """Factor of `regressor` (n, k) and `response` (n,)."""
-        stacked = np.column_stack([regressor, response])
-        if len(stacked) < stacked.shape[1]:
-            stacked = np.vstack([stacked, np.zeros((stacked.shape[1] - len(stacked), stacked.shape[1]))])
-        return cls(np.asarray(np.linalg.qr(stacked, mode="r")), len(regressor))
+        return cls.of_rows(np.column_stack([regressor, response]))
+
+    @classmethod
+    def of_rows(cls, rows: Array) -> TriangularFactor:
+        """Factor of rows (n, k + 1) that end with the response."""
+        short = rows.shape[1] - len(rows)
+        filled = np.vstack([rows, np.zeros((short, rows.shape[1]))]) if short > 0 else rows
+        return cls(np.asarray(np.linalg.qr(filled, mode="r")), len(rows))
 
     def __add__(self, other: TriangularFactor) -> TriangularFactor:
         stacked = np.vstack([self.factor, other.factor])

@@ -29,6 +29,7 @@ from plantar.signals.held import without_held
 from plantar.signals.orientation import attitude
 from plantar.signals.resampling import evenly_sampled, without_holes
 from plantar.signals.spikes import without_spikes
+from plantar.signals.thinning import thinned
 
 VELOCITY_BAND = 4.0  # times the fit's cutoff, up to which joint angles are differentiated
 CONTACT_BAND = 2.0  # times the fit's cutoff, up to which a force tells landing from lifting
@@ -49,7 +50,7 @@ def checked(robot: RobotModel, log: MotionLog, findings: Sequence[Finding] | Non
     refuse_impossible(log, findings)
     odd = finding_notes(log, findings)
     even = without_spikes(without_holes(without_held(without_dropouts(evenly_sampled(log)))))
-    on_time = with_gyroscope_on_time(even, imu.name)
+    on_time = thinned(with_gyroscope_on_time(even, imu.name))
     return on_time.with_columns({}, *log.joint_notes(robot), *odd)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -14,6 +15,7 @@ from plantar.contact.reasons import Reason
 from plantar.contact.stances import Stances
 from plantar.conventions import FORCE, Array, Mask
 from plantar.estimation.errors_in_variables import noise_after_filter
+from plantar.estimation.slow_drift import drift_basis
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.results.walk_rows import SwingZero
@@ -88,6 +90,17 @@ class Recording:
         if self.stances[foot] is not None:
             return 1
         return max(1, int(1 / (SAMPLES_PER_CYCLE * self.cutoff * self.period)))
+
+    def drift(self, foot: str) -> Array:
+        """Orthonormal columns (n, m) of what drifts slowly over `rows`."""
+        if foot not in self._drifts:
+            self._drifts[foot] = drift_basis(self.time[self.rows(foot)])
+        return self._drifts[foot]
+
+    @cached_property
+    def _drifts(self) -> dict[str, Array]:
+        """Those columns by foot, once they were asked for: every fit of the recording does."""
+        return {}
 
     def decimated(self, foot: str) -> Recording:
         """What a fit of this foot reads, `rows` alone, and nothing else of the log; itself where these are all.

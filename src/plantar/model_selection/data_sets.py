@@ -10,14 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plantar.conventions import Array, Mask
+from plantar.estimation.orthonormal import orthonormal, without
+from plantar.estimation.slow_drift import drift_basis, drift_beside
 from plantar.models import BushModel, BushMotion
 from plantar.signals.filters import SHORTEST_RUN, low_pass
-from plantar.signals.slow_drift import drift_beside
 
 SAMPLES_PER_CYCLE = 7  # of the filter's cutoff, that thinning keeps
 THIN_BAND = 4.0  # cutoffs, that survive thinning
 SAMPLES_PER_CYCLE_IN_STANCES = 16  # so that the path keeps the band that survives thinning
-RANK_TOLERANCE = 1e-10  # of the largest singular value: a smaller one is no column of its own
 SHORTEST_STANCE_RUN = 8  # samples of a stance, for it to be filtered by itself
 
 
@@ -142,7 +142,7 @@ class FilteredDataSet:
             own = self._slow
         else:
             return rows
-        return np.asarray(flat - own @ (own.T @ flat)).reshape(rows.shape)
+        return without(own, flat).reshape(rows.shape)
 
     @cached_property
     def _nuisance(self) -> Array:
@@ -161,7 +161,7 @@ class FilteredDataSet:
     def _slow(self) -> Array:
         """Orthonormal columns (n, m) of drift at the used samples."""
         time = np.flatnonzero(self.used).astype(np.float64) * self.motion.period
-        return orthonormal(drift_beside(self.motion.deflection[self.used], time))
+        return drift_beside(self.motion.deflection[self.used], drift_basis(time))
 
     @cached_property
     def base(self) -> Array:
@@ -175,12 +175,6 @@ class FilteredDataSet:
         for place, run in enumerate(self.motion.runs):
             number[run] = place
         return number[self.used]
-
-
-def orthonormal(columns: Array) -> Array:
-    """A basis (n, r) of what columns (n, m) span."""
-    left, size, _ = np.linalg.svd(columns, full_matrices=False)
-    return np.asarray(left[:, size > RANK_TOLERANCE * max(float(size.max(initial=0.0)), 1e-300)])
 
 
 def prepare_data_sets(

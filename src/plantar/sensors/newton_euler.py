@@ -12,8 +12,8 @@ from plantar.conventions import FORCE, GRAVITY, Array, Mask
 from plantar.dynamics import Contact, Equation, model_parameters
 from plantar.dynamics.inertial_motion import InertialSignals, inertial_motion, inertial_signals
 from plantar.dynamics.motion import Motion
-from plantar.estimation.delay import LEAST_CLOSED, Pair, closes, unexplained
-from plantar.estimation.sensor_delays import Balance
+from plantar.estimation.delays.delay import LEAST_CLOSED, Pair, closes, unexplained
+from plantar.estimation.delays.sensor_delays import Balance
 from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.robot.model import RobotModel
 from plantar.sensors.below_sensor import below_sensors

@@ -53,7 +53,7 @@ def evenly_sampled(log: MotionLog) -> MotionLog:
     )
     columns = {
         name: interpolate(grid, log.time, values, GAP_PERIODS * period)
-        for name, values in _aligned(log).items()
+        for name, values in with_continuous_quaternions(log).items()
     }
     text = f"{log.name}: sampled unevenly or with gaps; put on an even grid of {1 / period:.4g} Hz, gaps kept as gaps"
     note = Note("resampled", "info", text)
@@ -70,7 +70,7 @@ def without_holes(log: MotionLog) -> MotionLog:
         if not np.isnan(values).any():
             continue
         if ".orientation." in name:
-            values = _aligned(log)[name]
+            values = with_continuous_quaternions(log)[name]
         there = interpolate(log.time, log.time, values, longest)
         if np.isfinite(there).sum() > np.isfinite(values).sum():
             filled[name] = there
@@ -108,7 +108,7 @@ def shifted(values: Array, period: float, delay: float) -> Array:
     )
 
 
-def _aligned(log: MotionLog) -> dict[str, Array]:
+def with_continuous_quaternions(log: MotionLog) -> dict[str, Array]:
     """The log's columns with each quaternion's sign made continuous, so that it can be interpolated."""
     columns = dict(log.columns)
     imus = {name.removesuffix(".orientation.w") for name in columns if name.endswith(".orientation.w")}

@@ -6,6 +6,7 @@ After a filter a spike is a hump of the filter's length, that nothing tells from
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from plantar.conventions import Array, Mask
 from plantar.logs.motion_log import MotionLog
@@ -71,47 +72,50 @@ def lone_spikes(values: Array, period: float, landings: Mask | None = None) -> M
     found = np.zeros(values.shape, dtype=bool)
     if len(values) < 2 * NEIGHBOURS + 2:
         return found
-    steps = np.abs(np.diff(values, axis=0))
-    usual = _usual(steps, period)
-    if landings is not None and landings.any():
-        at = landings[1:]
-        usual[at] = np.maximum(usual[at], np.nanquantile(steps[at], QUICK, axis=0))
-    far, reach = FAR_STEPS * usual, max(NEIGHBOURS, round(GROUP_GAP / period))
-    # Only where a step is far is a median worth its time: in clean columns nowhere.
-    for column in np.flatnonzero((steps > far).any(axis=0)):
-        jumps = np.flatnonzero(steps[:, column] > far[:, column])
-        suspects = np.unique(
-            np.clip(np.concatenate([jumps - 1, jumps, jumps + 1, jumps + 2]), 0, len(values) - 1)
-        )
-        around = suspects[:, None] + np.arange(-NEIGHBOURS, NEIGHBOURS + 1)
-        inside = (around[:, 0] >= 0) & (around[:, -1] < len(values))
-        suspects, around = suspects[inside], around[inside]
-        near = values[around, column]
-        away = np.abs(values[suspects, column] - np.median(near, axis=1))
-        spiked = suspects[away > far[np.minimum(suspects, len(far) - 1), column]]
-        quick = np.flatnonzero(2 * steps[:, column] > far[:, column])
-        first, last = (np.searchsorted(quick, spiked + side * reach) for side in (-1, 1))
-        spiked = spiked[last - first <= FEW]
-        if len(spiked) <= MOST * len(values):
-            found[spiked, column] = True
+    for column, own in enumerate(values.T):  # one by one: of a long log all at once take a gigabyte
+        found[_spiked(np.ascontiguousarray(own), period, landings), column] = True
     return found
 
 
+def _spiked(values: Array, period: float, landings: Mask | None) -> NDArray[np.intp]:
+    """Those samples of one column (N,)."""
+    steps = np.abs(np.diff(values))
+    usual = _usual(steps, period)
+    if landings is not None and landings.any():
+        at = landings[1:]
+        usual[at] = np.maximum(usual[at], np.nanquantile(steps[at], QUICK))
+    far, reach = FAR_STEPS * usual, max(NEIGHBOURS, round(GROUP_GAP / period))
+    # Only where a step is far is a median worth its time: in clean columns nowhere.
+    jumps = np.flatnonzero(steps > far)
+    suspects = np.unique(
+        np.clip(np.concatenate([jumps - 1, jumps, jumps + 1, jumps + 2]), 0, len(values) - 1)
+    )
+    around = suspects[:, None] + np.arange(-NEIGHBOURS, NEIGHBOURS + 1)
+    inside = (around[:, 0] >= 0) & (around[:, -1] < len(values))
+    suspects, around = suspects[inside], around[inside]
+    away = np.abs(values[suspects] - np.median(values[around], axis=1))
+    spiked = suspects[away > far[np.minimum(suspects, len(far) - 1)]]
+    quick = np.flatnonzero(2 * steps > far)
+    first, last = (np.searchsorted(quick, spiked + side * reach) for side in (-1, 1))
+    spiked = spiked[last - first <= FEW]
+    return np.asarray(spiked if len(spiked) <= MOST * len(values) else spiked[:0])
+
+
 def _usual(steps: Array, period: float) -> Array:
-    """Usual size of the steps (n, k) around each: the largest median of this second and the ones beside it, and of all.
+    """Usual size of the steps (n,) around each: the largest median of this second and the ones beside it, and of all.
 
     A column that moves in coarse steps has them as its smallest: a change by one of those is no spike.
     """
     count, width = len(steps), max(8, round(LOCAL / period))
     whole = max(1, count // width)
     filled = np.nan_to_num(steps)
+    long = count >= width
     parts = (
-        np.median(filled[: whole * width].reshape(whole, -1, steps.shape[1]), axis=1)
-        if count >= width
-        else filled
+        np.median(filled[: whole * width].reshape(whole, -1), axis=1)
+        if long
+        else np.array([np.median(filled)])
     )
-    parts = parts if count >= width else np.median(filled, axis=0)[None, :]
-    beside = np.maximum(parts, np.maximum(np.roll(parts, 1, axis=0), np.roll(parts, -1, axis=0)))
-    coarse = np.min(np.where(filled > 0, filled, np.inf), axis=0)
-    least = np.maximum(np.median(filled, axis=0), np.where(np.isfinite(coarse), coarse, 0.0))
-    return np.maximum(beside[np.minimum(np.arange(count) // width, len(beside) - 1)], least)
+    beside = np.maximum(parts, np.maximum(np.roll(parts, 1), np.roll(parts, -1)))
+    moving = filled[filled > 0]
+    least = max(float(np.median(filled)), float(moving.min()) if moving.size else 0.0)
+    return np.asarray(np.maximum(beside[np.minimum(np.arange(count) // width, len(beside) - 1)], least))

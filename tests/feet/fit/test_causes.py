@@ -12,10 +12,10 @@ from scipy import special
 from biped import WEIGHT, bush_force, deflection, deflection_rate, record, sway, times
 from biped_robot import AS_USUAL, FEET
 from feet_trials import AXES, LINEAR, codes, noisy
+from plantar.estimation.slow_drift import drift_basis
 from plantar.feet.identify import identify_feet
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
-from plantar.signals.slow_drift import drift_columns
 
 Torque = Callable[[np.ndarray, np.ndarray], np.ndarray]  # of pitch (N,) and of the force at the bush (N, 3)
 
@@ -57,7 +57,7 @@ def effects(axis: str, foot: str, torque: Torque) -> list[np.ndarray]:
         t = times(motion)
         t = t[(t > 0.3) & (t < motion.duration - 0.3)]
         both = (deflection(motion, AS_USUAL, foot, t), deflection_rate(motion, AS_USUAL, foot, t))
-        slow = np.column_stack([np.ones(len(t)), drift_columns(t)])
+        slow = np.column_stack([np.ones(len(t)), drift_basis(t)])
         own = np.zeros((len(t), slow.shape[1] * len(MOTIONS)))
         own[:, place * slow.shape[1] : (place + 1) * slow.shape[1]] = slow
         designs.append(np.column_stack([*(one[:, AXES.index(axis)] for one in both), own]))

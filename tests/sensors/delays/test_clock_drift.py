@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from plantar.estimation.delay import Pair
+from plantar.estimation.delays.delay import Pair
 from plantar.sensors.delays.clock_drift import clock_drift
 from plantar.sensors.delays.delays_by_log import delays_by_log
 from plantar.signals.filters import differentiate, low_pass

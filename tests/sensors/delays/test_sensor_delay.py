@@ -8,7 +8,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from plantar.estimation.lag_search import search_lags
+from plantar.estimation.delays.lag_search import search_lags
 from plantar.feet.prepare_log import checked
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel

@@ -8,13 +8,14 @@ from dataclasses import replace
 import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES, Array
+from plantar.estimation.orthonormal import without
+from plantar.estimation.slow_drift import drift_basis
 from plantar.feet.assess.residual_table import Predictions
 from plantar.feet.fit.axis import FittedModel
 from plantar.feet.fit.prediction import predict
 from plantar.feet.recording import Recording
 from plantar.results.feet import ValidationRow
 from plantar.results.scores import error_measures
-from plantar.signals.slow_drift import drift_columns
 
 HOLDS = 0.3  # mean error over that of a constant, of the liveliest motion: the model holds
 MISSED = 0.5  # likewise, of a motion that contradicts it
@@ -63,7 +64,7 @@ def missed_motions(rows: Sequence[ValidationRow]) -> list[ValidationRow]:
 def beside_drift(
     row: ValidationRow, fitted: FittedModel, recording: Recording, predictions: Predictions, mount: float
 ) -> ValidationRow:
-    """The score without what drifts slowly (`signals.slow_drift`), in error and torque alike, nor what a turn of the
+    """The score without what drifts slowly (`estimation.slow_drift`), in error and torque alike, nor what a turn of the
     IMU by less than `TURNED` times `mount` [rad] explains of the error.
 
     A foot that steps is scored with an offset of its own in each stance, which follows any drift.
@@ -72,11 +73,10 @@ def beside_drift(
         return row
     prediction = predictions[recording.name, fitted.foot, fitted.axis]
     torque = recording.bushes[fitted.foot].torque[prediction.scored, ROTATIONAL_AXES.index(fitted.axis)]
-    columns = drift_columns(recording.time[prediction.scored])
-    slow = np.column_stack([np.ones(len(columns)), columns])
+    slow = drift_basis(recording.time[prediction.scored])
 
     def quick(values: Array) -> Array:
-        return np.asarray(values - slow @ np.linalg.lstsq(slow, values, rcond=None)[0])
+        return without(slow, values - np.mean(values))
 
     def left(turned: Array) -> Array:
         """What is missed with an IMU that is turned by `turned` (3,) [rad] beside the robot file's mount."""

@@ -89,9 +89,7 @@ def _is_all(missed: Array, row: int, block: Block) -> bool:
     """Whether a step at this row is most of what is `missed` (n,), beside the block's own columns, and large enough."""
     step = np.where(np.arange(len(missed)) >= row, 1.0, 0.0)[:, None]
     own = replace(block, response=missed, noise=None)
-    kept = [] if block.nuisance is None else [block.nuisance]
-    freed = replace(own, nuisance=np.column_stack([*kept, step]))
-    left = fit_blocks([freed]).residuals[block.label]
+    left = fit_blocks([own.with_nuisance(step)]).residuals[block.label]
     size = abs(float(missed[row:].mean() - missed[:row].mean()))
     return bool(
         left @ left < (1 - EXPLAINS) * float(missed @ missed) and size > WORTH * float(np.std(block.response))

@@ -10,13 +10,14 @@ import numpy as np
 from plantar.conventions import ROTATIONAL_AXES, Array, Axis
 from plantar.estimation import Block
 from plantar.estimation.blocks import StanceRows
+from plantar.estimation.orthonormal import orthonormal
+from plantar.estimation.slow_drift import drift_beside
 from plantar.feet.fit.axis import AxisFit, FittedModel
 from plantar.feet.fit.load_torque import across_force, load_of, load_torque, moment_columns
 from plantar.feet.recording import SHORTEST_STANCE_RUN, Recording
 from plantar.model_selection.data_sets import DataSet, StepColumns
 from plantar.models import BushMotion, KelvinVoigt
 from plantar.signals.filters import SHORTEST_RUN, differentiate, low_pass
-from plantar.signals.slow_drift import drift_beside
 
 PATH_BAND = 4.0  # times the fit's cutoff, of the path that a memory follows through short stances
 # m, before any data, of the centre's place: aside anything (the torque of the load is its own), in height some
@@ -111,16 +112,16 @@ def _taken_off(recording: Recording, fit: AxisFit | None) -> Array | float:
 
 
 def _nuisance(recording: Recording, foot: str, column: int, fit: AxisFit | None) -> Array | None:
-    """Columns (n, m) of one recording alone; None where a foot steps: the offsets of its stances follow any drift."""
+    """Orthonormal columns (n, m) of one recording alone; None where a foot steps: its offsets follow any drift."""
     if recording.stances[foot] is not None:
         return None
     used = recording.rows(foot)
     deflection = recording.bushes[foot].deflection[used, column]
-    drift = drift_beside(deflection, recording.time[used])
+    drift = drift_beside(deflection, recording.drift(foot))
     if fit is None or not fit.model.zero_matters:
         return drift
     square = deflection**2
-    return np.column_stack([drift, square - square.mean()])
+    return np.hstack([drift, orthonormal((square - square.mean())[:, None], drift)])
 
 
 def _stance_rows(recording: Recording, foot: str) -> StanceRows:

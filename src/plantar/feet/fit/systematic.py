@@ -176,8 +176,7 @@ def _zeros_of_stances(
     freed = []
     for block, number in zip(blocks, stances, strict=True):
         own = (number[:, None] == np.unique(number)[1:]).astype(np.float64)
-        kept = [] if block.nuisance is None else [block.nuisance]
-        freed.append(replace(block, nuisance=np.column_stack([*kept, own - own.mean(axis=0)])))
+        freed.append(block.with_nuisance(own - own.mean(axis=0)))
     effect = fit_blocks(freed).values - fit_blocks(blocks).values
     return [Cause("zeros of stances", effect, UNIFORM)]
 
@@ -194,9 +193,8 @@ def _suspected_hardening(fit: AxisFit, blocks: Sequence[Block], shared: bool) ->
     reach = max(float(np.abs(block.regressor[:, 0]).max()) for block in blocks) or 1.0
     for block in blocks:
         cube, square = (reach * (block.regressor[:, 0] / reach) ** power for power in (3, 2))
-        kept = [] if block.nuisance is None else [block.nuisance]
         wider = beside(replace(block, noise=None), cube[:, None])
-        extended.append(replace(wider, nuisance=np.column_stack([*kept, square - square.mean()])))
+        extended.append(wider.with_nuisance((square - square.mean())[:, None]))
     found = fit_blocks(extended, shared_offset=shared)
     if found.condition_number > SINGULAR:
         return []

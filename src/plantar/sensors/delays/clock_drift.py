@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from plantar.estimation.delay import Pair, estimate_delay
+from plantar.estimation.delays.delay import Pair, estimate_delay
 from plantar.notes import Note
 
 SURE = 4.0  # deviations by which two halves must differ

@@ -7,7 +7,7 @@ import numpy as np
 from plantar.conventions import FORCE, GRAVITY, Array
 from plantar.dynamics import Contact, Equation, model_parameters
 from plantar.dynamics.inertial_motion import inertial_motion, inertial_signals
-from plantar.estimation.lag_search import WINDOW, LagGrid
+from plantar.estimation.delays.lag_search import WINDOW, LagGrid
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
 from plantar.sensors.newton_euler import BASE_ROWS, SLOW, with_gyroscope

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from plantar.conventions import Array, Mask
-from plantar.estimation.delay import LONGEST, estimate_delay
-from plantar.estimation.sensor_delays import estimate_delays
+from plantar.estimation.delays.delay import LONGEST, estimate_delay
+from plantar.estimation.delays.sensor_delays import estimate_delays
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
 from plantar.sensors.delays.clock_drift import ClockDrift, clock_drift

@@ -15,8 +15,8 @@ from functools import partial
 import numpy as np
 
 from plantar.conventions import NORMAL95, Mask
-from plantar.estimation.delay import LEAST_CLOSED
-from plantar.estimation.lag_search import Lags, search_lags
+from plantar.estimation.delays.delay import LEAST_CLOSED
+from plantar.estimation.delays.lag_search import Lags, search_lags
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.robot.model import RobotModel

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from plantar.conventions import Array
-from plantar.estimation.lag_search import LagGrid, search_lags
+from plantar.estimation.delays.lag_search import LagGrid, search_lags
 from plantar.signals.filters import low_pass
 
 PERIOD, SAMPLES, STEPS = 0.05, 800, 5

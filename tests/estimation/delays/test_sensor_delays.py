@@ -12,8 +12,8 @@ from biped import record, sway
 from biped_robot import make_robot
 from plantar.conventions import Array
 from plantar.dynamics.inertial_motion import InertialSignals
-from plantar.estimation.delay import Pair
-from plantar.estimation.sensor_delays import estimate_delays
+from plantar.estimation.delays.delay import Pair
+from plantar.estimation.delays.sensor_delays import estimate_delays
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.robot.model import RobotModel

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from plantar.conventions import Array
-from plantar.estimation.delay import Delay, Pair, closes, estimate_delay
+from plantar.estimation.delays.delay import Delay, Pair, closes, estimate_delay
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.resampling import interpolate
 

@@ -2,7 +2,7 @@
 
 Newton's law closes when every sensor is read at its own moment: what is missing of it at the moments recorded is, to
 first order, each sensor's delay times how the balance changes with it. The common delay has its own estimate
-(`estimation/delay.py`); this one is for telling sensors apart, and for their delays where they are.
+(`estimation/delays/delay.py`); this one is for telling sensors apart, and for their delays where they are.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.estimation.delay import GAIN_BAND, LEAST_EXPLAINED, LEAST_SHARE, MODEL_ERROR, banded
+from plantar.estimation.delays.delay import GAIN_BAND, LEAST_EXPLAINED, LEAST_SHARE, MODEL_ERROR, banded
 
 ROUNDS = 3  # of weighing cells by what the solution leaves of them
 FEWEST_CELLS = 6  # axes in bands that must close

@@ -1,0 +1,1 @@
+"""Delays between sensors, told by what both say of one motion."""

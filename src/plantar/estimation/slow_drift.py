@@ -1,0 +1,36 @@
+"""What an attitude drifts by over a recording, in columns: a line, and cosines slower than usual motions."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from plantar.conventions import Array
+from plantar.estimation.orthonormal import orthonormal
+
+DRIFT_PERIOD = 20.0  # s: attitudes wander more slowly, motions that were asked for are twice as quick or more
+MOST_COSINES = 60  # of ten minutes: a longer recording's drift is followed less closely, at bounded cost
+QUICK = 0.5  # of a motion's squares about its line: where cosines leave less, the motion itself is slow
+
+
+def drift_basis(time: Array) -> Array:
+    """Orthonormal columns (n, m) of mean zero over the times (n,) [s] of samples: of a line, which is first, and of
+    cosines down to `DRIFT_PERIOD`."""
+    if not time.size:
+        return np.zeros((0, 1))
+    length = float(np.ptp(time))
+    share = (time - time[0]) / max(length, 1e-9)
+    orders = np.arange(1, min(int(2 * length / DRIFT_PERIOD), MOST_COSINES) + 1)
+    columns = np.column_stack([time - time[0], np.cos(np.pi * np.outer(share, orders))])
+    return orthonormal(columns - columns.mean(axis=0))
+
+
+def drift_beside(motion: Array, basis: Array) -> Array:
+    """Those columns (n, k) of a `drift_basis` that `motion` (n,) can be told from: of a slow motion, the line alone.
+
+    A drift that is left in the angle draws the stiffness to zero, as noise does; but a foot that leans once in half a
+    minute shows its stiffness in nothing but slow angles.
+    """
+    about = motion - np.sum(motion) / max(len(motion), 1)
+    taken = (basis.T @ about) ** 2
+    beside_line = float(about @ about) - float(taken[:1].sum())
+    return basis if taken[1:].sum() < (1 - QUICK) * beside_line else basis[:, :1]

@@ -1,0 +1,56 @@
+"""Fewer samples of a quickly sampled log: what a fit reads lies far below half of its rate."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from plantar.logs.motion_log import MotionLog
+from plantar.notes import Note
+from plantar.signals.filters import low_pass
+from plantar.signals.resampling import with_continuous_quaternions
+
+LOWEST_RATE = 200.0  # Hz, that is kept: landings last some samples, delays are interpolated between two
+BAND = 0.8  # of half the rate that is kept: faster changes are filtered out first, or they would pass for slow ones
+
+
+def step_of(log: MotionLog) -> int:
+    """Every how many samples of a log are enough."""
+    return max(1, int(np.floor(1 / (log.period * LOWEST_RATE) * (1 + 1e-6))))
+
+
+def picked(log: MotionLog) -> MotionLog:
+    """Of every k samples of a raw log the first that a column holds, as it is: enough for a look at postures and loads.
+
+    A slower sensor may be read at any of them.
+    """
+    step = step_of(log)
+    if step < 2 or len(log) < 2 * step:
+        return log
+    columns = {}
+    for name, values in log.columns.items():
+        first = values[::step].copy()
+        for later in range(1, step):
+            if not (missing := np.isnan(first)).any():
+                break
+            rest = values[later::step]
+            first[: len(rest)] = np.where(missing[: len(rest)], rest, first[: len(rest)])
+        columns[name] = first
+    return MotionLog(log.name, log.time[::step], columns, log.path, log.sha256, log.notes)
+
+
+def thinned(log: MotionLog) -> MotionLog:
+    """Every k-th sample of an evenly sampled log, without what is faster; the same object at less than twice the rate.
+
+    What is slower keeps its size and its time to 1e-3. A stretch that is too short to filter becomes NaN.
+    """
+    step = step_of(log)
+    if step < 2:
+        return log
+    rate = 1 / (log.period * step)
+    columns = {
+        name: low_pass(values, log.period, BAND * rate / 2)[::step]
+        for name, values in with_continuous_quaternions(log).items()
+    }
+    text = f"{log.name}: {1 / log.period:.4g} Hz; every {step}th sample of the filtered signals is used ({rate:.4g} Hz)"
+    note = Note("thinned", "info", text)
+    return MotionLog(log.name, log.time[::step], columns, log.path, log.sha256, (*log.notes, note))

@@ -1,0 +1,59 @@
+"""Fewer samples of a quick log: slow signals as they were, quick ones gone, slow logs untouched."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from plantar.logs.motion_log import MotionLog
+from plantar.signals.thinning import LOWEST_RATE, picked, thinned
+
+
+def log_of(rate: float, **signals: object) -> MotionLog:
+    time = np.arange(0.0, 20.0, 1 / rate)
+    columns = {f"joint.{name}.position": signal(time) for name, signal in signals.items()}  # type: ignore[operator]
+    return MotionLog("log", time, columns)
+
+
+def tone(frequency: float):  # type: ignore[no-untyped-def]
+    return lambda time: np.sin(2 * np.pi * frequency * time)
+
+
+@pytest.mark.parametrize("rate", [100.0, 200.0, 250.0, 333.0, 399.0])
+def test_a_log_of_less_than_twice_the_rate_is_the_same_object(rate: float) -> None:
+    log = log_of(rate, knee=tone(1.0))
+    assert thinned(log) is log
+    assert picked(log) is log
+
+
+@pytest.mark.parametrize("rate", [400.0, 500.0, 1000.0, 2000.0])
+def test_slow_motions_keep_size_and_time(rate: float) -> None:
+    thin = thinned(log_of(rate, knee=tone(5.0)))
+    assert LOWEST_RATE <= 1 / thin.period < 2 * LOWEST_RATE
+    inner = slice(50, -50)
+    there = thin.column("joint.knee.position")[inner]
+    np.testing.assert_allclose(there, np.sin(10 * np.pi * thin.time[inner]), atol=1e-3)
+    assert [note.code for note in thin.notes] == ["thinned"]
+
+
+def test_what_is_too_quick_does_not_pass_for_slow() -> None:
+    thin = thinned(log_of(1000.0, knee=tone(199.0)))  # every fifth sample alone: a tone of 1 Hz
+    assert np.abs(thin.column("joint.knee.position")[50:-50]).max() < 1e-3
+
+
+def test_a_quaternion_that_changes_sign_is_one_turn() -> None:
+    time = np.arange(0.0, 10.0, 0.001)
+    sign = np.where(np.arange(len(time)) % 2, -1.0, 1.0)
+    columns = {
+        f"imu.base.orientation.{axis}": sign * value
+        for axis, value in zip("wxyz", (1.0, 0, 0, 0), strict=True)
+    }
+    thin = thinned(MotionLog("log", time, columns))
+    np.testing.assert_allclose(np.abs(thin.column("imu.base.orientation.w")), 1.0, atol=1e-9)
+
+
+def test_a_slower_sensor_is_read_wherever_it_stands() -> None:
+    log = log_of(1000.0, knee=tone(1.0))
+    sparse = np.where(np.arange(len(log)) % 10 == 3, log.column("joint.knee.position"), np.nan)
+    few = picked(log.with_columns({"joint.knee.position": sparse}))
+    assert np.isfinite(few.column("joint.knee.position")).sum() == np.isfinite(sparse).sum()
