@@ -23,9 +23,7 @@ Axis = Literal["pitch", "roll", "z"]
 
 GRAVITY: Final = 9.80665  # m/s², standard gravity
 NORMAL95: Final = 1.96  # deviations that a 95 % interval of a normal value reaches
-UNIFORM: Final = (
-    3**-0.5
-)  # deviation of what lies somewhere within its bounds (GUM, type B), as a share of these
+UNIFORM: Final = 3**-0.5  # of its bounds: the deviation of what lies anywhere within (GUM, type B)
 ROTATIONAL_AXES: Final[tuple[Axis, Axis]] = ("pitch", "roll")
 AXES: Final[tuple[Axis, Axis, Axis]] = ("pitch", "roll", "z")
 

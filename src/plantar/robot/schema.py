@@ -116,15 +116,7 @@ def read_robot_file(path: Path) -> tuple[RobotEntry, tuple[Guess, ...]]:
 
     Raises RobotError: one line that says which key is wrong and what would be valid.
     """
-    content = read_bounded(path, FILE_LIMIT, RobotError)
-    try:
-        refuse_bombs(content, path)
-        data = yaml.safe_load(content)
-    except (yaml.YAMLError, UnicodeDecodeError, ValueError) as error:
-        reason = " ".join(str(getattr(error, "problem", None) or error).split())
-        mark = getattr(error, "problem_mark", None)
-        line = f" at line {mark.line + 1}" if mark is not None else ""
-        raise RobotError(located(f"is not readable YAML{line}: {reason}", path=path)) from error
+    data, content = read_yaml(path)
     if not isinstance(data, dict):
         raise RobotError(located("holds no keys", path=path, valid="name, urdf, imu, feet"))
     try:
@@ -134,7 +126,23 @@ def read_robot_file(path: Path) -> tuple[RobotEntry, tuple[Guess, ...]]:
     return entry, read_guesses(content)
 
 
-def refuse_bombs(content: bytes, path: Path) -> None:
+def read_yaml(path: Path) -> tuple[object, bytes]:
+    """What an untrusted YAML file holds, and its bytes.
+
+    Raises RobotError: one line of why it cannot be read; it is too large, no YAML, or could grow without bound.
+    """
+    content = read_bounded(path, FILE_LIMIT, RobotError)
+    try:
+        _refuse_bombs(content, path)
+        return yaml.safe_load(content), content
+    except (yaml.YAMLError, UnicodeDecodeError, ValueError) as error:
+        reason = " ".join(str(getattr(error, "problem", None) or error).split())
+        mark = getattr(error, "problem_mark", None)
+        line = f" at line {mark.line + 1}" if mark is not None else ""
+        raise RobotError(located(f"is not readable YAML{line}: {reason}", path=path)) from error
+
+
+def _refuse_bombs(content: bytes, path: Path) -> None:
     """No aliases (they can multiply without bound) and no deep nesting, found before anything is built."""
     depth = 0
     for event in yaml.parse(content, Loader=yaml.SafeLoader):
