@@ -31,7 +31,7 @@ def test_factors_add_like_the_rows_they_stand_for(
     """R of a sum is R of the stacked rows, in any order: RᵀR agrees, and so does the solution."""
     random = np.random.default_rng(seed)
     parts = [(random.normal(size=(n, columns)) * 10.0**exponent, random.normal(size=n)) for n in rows]
-    factors = [TriangularFactor.of(x, y) for x, y in parts]
+    factors = [TriangularFactor.of(np.column_stack([x, y])) for x, y in parts]
     total, reverse = factors[0], factors[-1]
     for factor in factors[1:]:
         total = total + factor
@@ -52,7 +52,7 @@ def test_factors_add_like_the_rows_they_stand_for(
 
 def test_a_factor_among_others_fills_its_own_places() -> None:
     one = block("a", 4)
-    factor = TriangularFactor.of(one.regressor, one.response).among(np.array([2, 0]), 4)
+    factor = TriangularFactor.of(np.column_stack([one.regressor, one.response])).among(np.array([2, 0]), 4)
     gram = factor.factor.T @ factor.factor
     wide = np.zeros((300, 5))
     wide[:, [2, 0, 4]] = np.column_stack([one.regressor, one.response])

@@ -53,8 +53,7 @@ def values_without_each(blocks: Sequence[Block]) -> Array:
     columns = blocks[0].regressor.shape[1]
     places, size = _places(blocks, shared_offset=False)
     parts = [
-        TriangularFactor.of_rows(_rows(block)).among(own, size)
-        for block, own in zip(blocks, places, strict=True)
+        TriangularFactor.of(_rows(block)).among(own, size) for block, own in zip(blocks, places, strict=True)
     ]
     none = TriangularFactor(np.zeros((size + 1, size + 1)), 0)
     rests = [sum((*parts[:place], *parts[place + 1 :]), none) for place in range(len(parts))]
@@ -73,7 +72,7 @@ def _places(blocks: Sequence[Block], shared_offset: bool) -> tuple[list[Array], 
 def _factor(rows: Sequence[Array], places: Sequence[Array], size: int) -> TriangularFactor:
     total = TriangularFactor(np.zeros((size + 1, size + 1)), 0)
     for part, own in zip(rows, places, strict=True):
-        total = total + TriangularFactor.of_rows(part).among(own, size)
+        total = total + TriangularFactor.of(part).among(own, size)
     return total
 
 

@@ -23,13 +23,8 @@ class TriangularFactor:
     rows: int
 
     @classmethod
-    def of(cls, regressor: Array, response: Array) -> TriangularFactor:
-        """Factor of `regressor` (n, k) and `response` (n,)."""
-        return cls.of_rows(np.column_stack([regressor, response]))
-
-    @classmethod
-    def of_rows(cls, rows: Array) -> TriangularFactor:
-        """Factor of rows (n, k + 1) that end with the response."""
+    def of(cls, rows: Array) -> TriangularFactor:
+        """Factor of the rows [regressor response], (n, k + 1)."""
         short = rows.shape[1] - len(rows)
         filled = np.vstack([rows, np.zeros((short, rows.shape[1]))]) if short > 0 else rows
         return cls(np.asarray(np.linalg.qr(filled, mode="r")), len(rows))

@@ -96,9 +96,9 @@ class FilteredDataSet:
     state down at every turn (dither makes a Bouc-Wen element's memory fade), which the rubber itself does not feel.
     Where the foot steps, turns are too quick for that: the state follows the wide-band `path`.
 
-    With `drift`, response and columns come without what drifts slowly, as the IMU's attitude does, differently in each
-    recording, which is the same as fitting such columns beside the offset. Where the foot steps, it is what `steps`
-    holds that is taken off instead.
+    Response and columns come without what drifts slowly, as the IMU's attitude does, differently in each recording: the
+    orthonormal columns `slow` (n, m), which is the same as fitting these beside the offset. Where the foot steps, it is
+    what `steps` holds that is taken off instead.
     """
 
     label: str
@@ -107,7 +107,7 @@ class FilteredDataSet:
     response: Array
     used: Mask
     cutoff: float
-    drift: bool
+    slow: Array | None
     steps: StepColumns | None = None
 
     @classmethod
@@ -128,7 +128,11 @@ class FilteredDataSet:
         quick = replace(motion, deflection=motion.deflection + away, rate=motion.rate + away)
         path = slow if data_set.steps is None else quick
         used = data_set.used & known
-        raw = cls(data_set.label, slow, path, smooth[used, 2], used, cutoff, drift, data_set.steps)
+        own = None
+        if drift and data_set.steps is None:
+            time = np.flatnonzero(used).astype(np.float64) * motion.period
+            own = drift_beside(slow.deflection[used], drift_basis(time))
+        raw = cls(data_set.label, slow, path, smooth[used, 2], used, cutoff, own, data_set.steps)
         return replace(raw, response=raw.without_nuisance(raw.response))
 
     def without_nuisance(self, rows: Array) -> Array:
@@ -138,8 +142,8 @@ class FilteredDataSet:
         flat = rows.reshape(len(rows), -1)
         if self.steps is not None:
             flat, own = self.steps.centred(flat, self._stance), self._nuisance
-        elif self.drift:
-            own = self._slow
+        elif self.slow is not None:
+            own = self.slow
         else:
             return rows
         return without(own, flat).reshape(rows.shape)
@@ -156,12 +160,6 @@ class FilteredDataSet:
         """The number of each used sample's stance among those used, (n,); of a foot that steps."""
         assert self.steps is not None, "asked only where the foot steps"
         return np.asarray(np.unique(self.steps.stance[self.used], return_inverse=True)[1])
-
-    @cached_property
-    def _slow(self) -> Array:
-        """Orthonormal columns (n, m) of drift at the used samples."""
-        time = np.flatnonzero(self.used).astype(np.float64) * self.motion.period
-        return drift_beside(self.motion.deflection[self.used], drift_basis(time))
 
     @cached_property
     def base(self) -> Array:

@@ -29,6 +29,7 @@ from plantar.model_selection.variable_projection import (
     best_candidate,
     landed,
     scan,
+    scan_shape,
     step,
 )
 from plantar.models import BESIDE, BushModel
@@ -149,7 +150,10 @@ def refine(
         for _ in range(iterations):
             moved = step(problem, point, limits)
             if moved is None or moved.squares > (1 - SETTLED) * point.squares:
-                scanned = scan(problem, moved or point, width) if remembers else None
+                rest = moved or point
+                scanned = scan(problem, rest, width) if remembers else None
+                if remembers and scanned is None:
+                    scanned = scan_shape(problem, rest, limits, width)
                 width *= NARROWING
                 if scanned is None and (not remembers or width < NARROWEST_SCAN):
                     point = moved or point

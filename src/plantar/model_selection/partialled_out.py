@@ -46,7 +46,8 @@ class Linearised:
             self._reduced(place, y[:, None])[:, 0] for place, y in enumerate(self.responses)
         ]
         parts = [
-            TriangularFactor.of(x, y) for x, y in zip(self.columns, self._reduced_responses, strict=True)
+            TriangularFactor.of(np.column_stack([x, y]))
+            for x, y in zip(self.columns, self._reduced_responses, strict=True)
         ]
         self._factor = parts[0]
         for part in parts[1:]:

@@ -128,6 +128,7 @@ def choose_model(
         squares = cross_validate(pieces, whole=whole, shared_offset=shared_offset)
         scores.append(ModelScore(fit.model, float(np.sqrt(squares.sum() / rows)), fit, _refusal(fit)))
         errors.append(squares)
+    scores = [_hardly_shown(score, scores[linear]) for score in scores]
     winner = _winner(scores, errors, linear, least_gain)
     chosen = replace(scores[winner], chosen=True)
     ranking = [chosen if place == winner else score for place, score in enumerate(scores)]
@@ -142,6 +143,14 @@ def choose_model(
         reach=reach(motions),
         caution=_caution(scores, errors, winner, least_gain),
     )
+
+
+def _hardly_shown(score: ModelScore, linear: ModelScore) -> ModelScore:
+    """The score, refused where few turns of the path show its nonlinear parameters and it gains less than a telling
+    model does."""
+    if score.refused or score.held_out_rms < (1 - TELLING_GAIN) * linear.held_out_rms:
+        return score
+    return replace(score, refused=score.model.hardly_shown(score.fit.shape, score.fit.limits))
 
 
 def _refusal(fit: ModelFit) -> str | None:

@@ -24,6 +24,9 @@ WIDEST_SCAN, NARROWEST_SCAN, NARROWING = (
     0.05,
     0.2,
 )  # of the initial states about where the steps came to rest
+SCANNED_RATIO = (
+    0.25  # of a nonlinear parameter's logarithm, to either side at the widest scan: a step of the grid's
+)
 HALVINGS = 4
 SETTLED = 1e-4  # relative fall of the squares below which the refinement has arrived
 BOLDEST = 0.4  # largest step of a nonlinear parameter's logarithm
@@ -136,6 +139,28 @@ def step(problem: Problem, point: Point, limits: Array) -> Point | None:
             return tried
         share *= 0.4
     return None
+
+
+def scan_shape(problem: Problem, point: Point, limits: Array, width: float) -> Point | None:
+    """The point with one nonlinear parameter at the best of several about it, or None where none is better.
+
+    Where an element begins to slip the squares have corners too, and more than one minimum.
+    """
+    ratios = np.exp(width * SCANNED_RATIO * np.linspace(-1.0, 1.0, 9))
+    tried = [
+        problem.at(shape, point.initial_states)
+        for place in range(len(point.shape))
+        for ratio in ratios[ratios != 1.0]
+        for shape in [_with_ratio(point.shape, place, ratio, limits)]
+    ]
+    best = min(tried, key=lambda each: each.squares, default=point)
+    return best if best.squares < (1 - SETTLED) * point.squares else None
+
+
+def _with_ratio(shape: Array, place: int, ratio: float, limits: Array) -> Array:
+    changed = shape.copy()
+    changed[place] = np.clip(ratio * shape[place], limits[0, place], limits[1, place])
+    return changed
 
 
 def scan(problem: Problem, point: Point, width: float) -> Point | None:

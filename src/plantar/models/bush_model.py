@@ -124,9 +124,16 @@ class BushModel(ABC):
         """Initial state (runs,) of each run, if the bush was loaded to it from rest without turning back."""
         return np.zeros(len(motion.runs))
 
+    def hardly_shown(self, shape: Array, limits: Array) -> str | None:
+        """Why motions whose range of the nonlinear parameters is `limits` (2, s) hardly show `shape` (s,); None where
+        they do."""
+        return None
+
     def possible(self, values: Array) -> bool:
-        """Whether a bush with these linear parameters (k,) is passive."""
-        return all(values[self.terms.index(term)] >= 0 for term in self.dissipative_terms)
+        """Whether a bush with these linear parameters (k,) is passive, and a spring."""
+        return bool(values[0] > 0) and all(
+            values[self.terms.index(term)] >= 0 for term in self.dissipative_terms
+        )
 
 
 def reach(motions: Sequence[BushMotion]) -> float:

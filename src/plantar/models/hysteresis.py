@@ -19,8 +19,12 @@ from plantar.conventions import Array
 from plantar.models.bush_model import BESIDE, BushModel, BushMotion, reach
 
 SMALLEST_SLIP_ANGLE = 0.02  # of the reach: below it the element looks like dry friction
-LARGEST_SLIP_ANGLE = 0.8  # of the reach: an element that hardly slips looks like a spring
-TRIED = 17  # slip angles, a quarter apart: of angles 1.4 times apart the best led to another minimum
+LARGEST_SLIP_ANGLE = 1.3  # of the reach: an element that hardly slips looks like a spring
+SURE_SLIP_ANGLE = 0.8  # of the reach: beyond it few turns make the element slip, if any but the first
+# Slip angles that are tried, a quarter apart, and closer where few turns are as long: of coarser ones the best led to
+# another minimum.
+RARE = 0.5  # of the reach
+TRIED, TRIED_RARE = 14, 14
 
 
 @dataclass(frozen=True)
@@ -90,7 +94,14 @@ class Hysteretic(BushModel):
     def candidates(self, motions: Sequence[BushMotion]) -> Array:
         """Slip angles in equal ratios, from what looks like dry friction to what hardly slips in these motions."""
         size = reach(motions) or 1.0
-        return np.geomspace(SMALLEST_SLIP_ANGLE * size, LARGEST_SLIP_ANGLE * size, TRIED)[:, None]
+        usual = np.geomspace(SMALLEST_SLIP_ANGLE, RARE, TRIED)
+        rare = np.linspace(RARE, LARGEST_SLIP_ANGLE, TRIED_RARE + 1)[1:]
+        return size * np.concatenate([usual, rare])[:, None]
+
+    def hardly_shown(self, shape: Array, limits: Array) -> str | None:
+        """Where few turns of the path, if any, are as long as it takes to slip."""
+        sure = limits[1, 0] * SURE_SLIP_ANGLE / LARGEST_SLIP_ANGLE
+        return f"slip_angle {shape[0]:.3g} is hardly reached by these motions" if shape[0] > sure else None
 
     def initial_states(self, motion: BushMotion, shape: Array) -> Array:
         """State of an element that was loaded from rest to where each run begins."""

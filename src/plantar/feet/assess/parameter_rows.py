@@ -28,7 +28,8 @@ def axis_rows(
 
     contradicted: the score of a motion, seen or not, that the model misses although it holds in others.
     """
-    evidence = replace(_evidence(fit, recordings, predictions), contradicted=contradicted)
+    caution = None if fit.choice is None else fit.choice.caution
+    evidence = replace(_evidence(fit, recordings, predictions), contradicted=contradicted, caution=caution)
     rows = []
     for place, term in enumerate(fit.names):
         value, std = float(fit.numbers[place]), float(fit.std[place])

@@ -12,6 +12,7 @@ from plantar.results.feet import ValidationRow, Verdict
 USABLE_WIDTH = 0.15  # half width of the 95 % interval over the value, at most
 WEAK_WIDTH = 0.5
 LEAST_SECONDS = 3.0  # of used samples
+LEAST_EXCITATION = 1e-7  # rad rms: no sensor tells as little, it is rounding
 SHORT_SECONDS = 10.0  # likewise: in less, what is slower than 0.1 Hz, as drift is, has not shown itself
 LEAST_EXPLAINED = 0.3  # share of the torque's variance that the model must explain
 GOOD_EXPLAINED = 0.8
@@ -28,8 +29,9 @@ SWAY = {
 @dataclass(frozen=True)
 class Evidence:
     """What one fit shows: used `seconds`, rms of deflection [rad], share of variance explained, whether the
-    damping is negative beyond doubt, the motion that contradicts the others (None where they agree), and the share of
-    the time in which the sole leans, where the model has a memory that has to go through that."""
+    damping is negative beyond doubt, the motion that contradicts the others (None where they agree), the share of the
+    time in which the sole leans, where the model has a memory that has to go through that, and why a model that could
+    not be chosen is nearer to the truth (None where none is)."""
 
     seconds: float
     excitation: float
@@ -37,6 +39,7 @@ class Evidence:
     not_passive: bool = False
     contradicted: ValidationRow | None = None
     leaning: float = 0.0
+    caution: str | None = None
 
 
 def judge(
@@ -47,6 +50,8 @@ def judge(
     half = (interval[1] - interval[0]) / 2
     width = half / abs(value) if value else np.inf
     motion = f"{np.degrees(evidence.excitation):.2g} deg rms of {axis}"
+    if evidence.excitation < LEAST_EXCITATION:
+        return "unidentifiable", f"nothing moves: {motion}", advice
     if evidence.seconds < LEAST_SECONDS:
         return "unidentifiable", f"only {evidence.seconds:.1f} s of samples can be used", advice
     if value <= 0 and interval[1] <= 0:
@@ -86,6 +91,8 @@ def judge(
             f"the sole leans for {100 * evidence.leaning:.0f} % of the time, where hysteresis cannot be followed",
             f"{_advice(foot, axis, term)}: the centre of pressure has to stay inside the sole",
         )
+    if evidence.caution is not None:
+        return "weak", evidence.caution, f"{SWAY[axis]} with its weight on the {foot} foot, by larger angles"
     if evidence.seconds < SHORT_SECONDS:
         told = f"only {evidence.seconds:.1f} s of samples are used, too few to show what drifts"
         return "weak", f"{told} (valid: {SHORT_SECONDS:.0f} s or more)", advice

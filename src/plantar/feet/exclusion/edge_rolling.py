@@ -36,6 +36,7 @@ SMEAR = 0.02  # s that this filter spreads a lean
 FLAT_SEARCH = 0.5  # s: how far a flat sole is looked for
 VISIT_PAUSE = 0.05  # s: visits to the edge that are closer are one
 FEWEST = 0.04  # s of sure lean, for the edge to be known
+GUESSED = 0.015  # m by which an outline that is a guess may be too large: a sole tips before it seems to be at its edge
 
 
 def without_edge_rolling(
@@ -49,22 +50,23 @@ def without_edge_rolling(
     rest = list(recordings)
     for name, foot in robot.feet.items():
         if foot.contact != "always":
-            rest = _flat(rest, name, foot.sole.polygon, settings)
+            guessed = any(guess.key.startswith(f"feet.{name}.sole") for guess in robot.guesses)
+            margin = settings.edge_margin + (GUESSED if guessed else 0.0)
+            rest = _flat(rest, name, foot.sole.polygon, settings.edge_margin, margin)
     return rest
 
 
 def _flat(
-    recordings: Sequence[Recording], name: str, polygon: Array, settings: FeetSettings
+    recordings: Sequence[Recording], name: str, polygon: Array, beyond: float, margin: float
 ) -> list[Recording]:
-    """The recordings without leans of one foot."""
+    """The recordings without leans of one foot: it may tip within `margin` [m] of its border, and cannot be loaded
+    `beyond` it."""
     depths = [
         edge_distances(low_pass(recording.bushes[name].cop, recording.period, QUICK_CUTOFF), polygon)
         for recording in recordings
     ]
     near = [
-        recording.contacts[name].standing
-        & (depth < settings.edge_margin).any(axis=1)
-        & (recording.stances[name] is None)
+        recording.contacts[name].standing & (depth < margin).any(axis=1) & (recording.stances[name] is None)
         for recording, depth in zip(recordings, depths, strict=True)
     ]
     if not any(edge.any() for edge in near):
@@ -88,11 +90,11 @@ def _flat(
         bush = filtered(recording.raw[name], recording.period, QUICK_CUTOFF)
         load = np.maximum(bush.force_z, 1.0)
         excess = bush.deflection - (bush.torque - damping * bush.rate) / stiffness
-        outside = (depth < -settings.edge_margin - (zero / load)[:, None]).any(axis=1)
+        outside = (depth < -beyond - (zero / load)[:, None]).any(axis=1)
         recording = recording.without(name, contact.standing & outside, Reason.OUTSIDE_THE_SOLE)
         used, leans = recording.used(name), np.zeros(len(load), dtype=bool)
         for border in depth.T:
-            visits = contact.standing & (border < settings.edge_margin + zero / load)
+            visits = contact.standing & (border < margin + zero / load)
             leans |= leaning(excess, border, load, visits, used, recording.period)
         beside = widened(leans | (contact.standing & outside), reach)
         rest.append(

@@ -12,7 +12,7 @@ from plantar.estimation import Block, LinearFit, fit_blocks
 from plantar.estimation.stance_problem import StanceProblem
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.bush_place import PlaceSpread, about_its_place
-from plantar.feet.fit.corrections import about_true_zero, over_stances, unattenuated
+from plantar.feet.fit.corrections import about_true_zero, over_stances, unattenuated, with_best_offsets
 from plantar.feet.fit.load_torque import load_torque
 from plantar.feet.fit.regression_data import blocks_of, data_set_of
 from plantar.feet.recording import Recording
@@ -63,7 +63,7 @@ def fit_axis(
         return None
     fit = about_true_zero(fit, recordings, shared)
     fit = fit if place is None else about_its_place(fit, recordings, place, shared)
-    return unattenuated(fit, recordings, shared)
+    return with_best_offsets(unattenuated(fit, recordings, shared), recordings, shared)
 
 
 def _fitted(

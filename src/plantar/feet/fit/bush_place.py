@@ -109,7 +109,8 @@ class PlaceSpread:
 def about_its_place(
     fit: AxisFit, recordings: Sequence[Recording], spread: PlaceSpread, shared: bool
 ) -> AxisFit:
-    """The fit of a standing foot about where its centre is, widened by what that leaves unknown.
+    """The fit of a standing foot about where its centre is, widened by what that leaves unknown; its offsets are as
+    before (`corrections.with_best_offsets`).
 
     What the fit has found of the place before is drawn to the robot file anew. A foot that steps has its centre from
     its stances already.
@@ -144,18 +145,20 @@ def about_its_place(
     moved = -follows @ (place - before)
     covariance = fit.covariance.copy()
     covariance[:size, :size] += follows @ unsure @ follows.T
-    offsets = {
-        block.label: fit.offsets[block.label]
-        - float(np.mean(block.regressor, axis=0) @ moved)
-        - float(np.mean(own, axis=0) @ (place - before))
-        for block, own in zip(blocks, columns, strict=True)
-    }
+    # An offset is the torque at zero angle: it moves with the IMU's turn, also with one that does not show.
+    unshown = np.diag(np.where(spreads > 0, 0.0, spread.deviations) ** 2)
+    offset_std = dict(fit.offset_std)
+    for block, column in zip(blocks, columns, strict=True):
+        slope = np.mean(block.regressor, axis=0) @ follows - np.mean(column, axis=0)
+        offset_std[block.label] = float(
+            np.sqrt(fit.offset_std[block.label] ** 2 + slope @ (unsure + unshown) @ slope)
+        )
     return replace(
         fit,
         values=fit.values + moved[: len(fit.values)],
         shape=shape_moved(fit.shape, moved[len(fit.values) :]) if size == len(fit.numbers) else fit.shape,
         covariance=covariance,
-        offsets=fit.offsets if shared else {**fit.offsets, **offsets},
+        offset_std=offset_std,
         moment_arms=(float(place[0]), float(place[1])),
         turned=float(place[2]),
         imu_turned=(float(place[3]), float(place[4]), float(place[5])),

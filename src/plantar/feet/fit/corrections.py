@@ -61,6 +61,18 @@ def about_true_zero(fit: AxisFit, recordings: Sequence[Recording], shared: bool)
     )
 
 
+def with_best_offsets(fit: AxisFit, recordings: Sequence[Recording], shared: bool) -> AxisFit:
+    """The fit of a standing foot with the offsets that its other parameters leave: the corrections before it are of
+    first order, and a place and a stiffness that both move leave a constant of second order."""
+    blocks = blocks_of(recordings, fit.foot, fit.axis, fit=fit)
+    if blocks[0].stances is not None:
+        return fit
+    missed = {block.label: block.response - block.regressor @ fit.values for block in blocks}
+    if shared:
+        missed = dict.fromkeys(missed, np.concatenate(list(missed.values())))
+    return replace(fit, offsets={label: float(np.mean(left)) for label, left in missed.items()})
+
+
 def unattenuated(fit: AxisFit, recordings: Sequence[Recording], shared: bool) -> AxisFit:
     """The fit without the bias of noisy regressors; as it is where that is small."""
     blocks = blocks_of(recordings, fit.foot, fit.axis, drift=not shared, fit=fit)

@@ -184,15 +184,17 @@ def _zeros_of_stances(
 def _suspected_hardening(fit: AxisFit, blocks: Sequence[Block], shared: bool) -> list[Cause]:
     """A cube that the model leaves out and the motions show, though no held-out motion asked for it.
 
-    It hardly matters to the torque, but the spring's slope at zero is not its mean slope. Empty where the motions are
-    too small to tell the two apart.
+    It hardly matters to the torque, but the spring's slope in the motions' middle is not its mean slope; about the
+    angle's zero, which a turned IMU puts anywhere, a cube would say nothing of these motions. Empty where they are too
+    small to tell the two apart.
     """
     if any("hardening" in term for term in fit.model.terms):
         return []
     size, extended = blocks[0].regressor.shape[1], []
-    reach = max(float(np.abs(block.regressor[:, 0]).max()) for block in blocks) or 1.0
+    middle = float(np.mean(np.concatenate([block.regressor[:, 0] for block in blocks])))
+    reach = max(float(np.abs(block.regressor[:, 0] - middle).max()) for block in blocks) or 1.0
     for block in blocks:
-        cube, square = (reach * (block.regressor[:, 0] / reach) ** power for power in (3, 2))
+        cube, square = (reach * ((block.regressor[:, 0] - middle) / reach) ** power for power in (3, 2))
         wider = beside(replace(block, noise=None), cube[:, None])
         extended.append(wider.with_nuisance((square - square.mean())[:, None]))
     found = fit_blocks(extended, shared_offset=shared)
