@@ -67,6 +67,15 @@ def test_what_is_no_jump_is_not_taken_for_one(recordings: list[Recording], model
     assert said(recordings, model) == []
 
 
+def test_memory_of_a_push_is_no_jump_of_a_zero() -> None:
+    """After a push to the other side the element pulls the other way, as long as small motions do not make it slip."""
+    time = PERIOD * np.arange(COUNT)
+    pushed = [0.01 * side * np.exp(-(((time - at) / 0.7) ** 2)) for side, at in ((-1, 4.0), (1, 33.0))]
+    recordings = swaying(SLIPPING, angle=0.05 * swayed(COUNT, seed=0) + sum(pushed))
+    assert len(said(recordings, "kelvin_voigt")) == 2
+    assert said(recordings, "elastoplastic") == []
+
+
 def test_a_foot_that_was_lifted_meanwhile_stands_elsewhere() -> None:
     recordings = swaying(PLAIN, 6.0 * LATER)
     contact = recordings[1].contacts[FOOT]

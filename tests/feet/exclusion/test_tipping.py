@@ -14,6 +14,7 @@ from biped_robot import FEET, make_robot, robot_entry
 from feet_trials import LINEAR, noisy
 from plantar.feet.identify import identify_feet
 from plantar.results.feet import FeetResult
+from plantar.robot.guesses import Guess
 from plantar.robot.model import RobotModel
 
 LIMIT = 8.5  # N·m: half of the weight on an edge 29 mm from the middle
@@ -68,6 +69,21 @@ def tips(found: FeetResult, foot: str) -> list[tuple[float, float]]:
         for phase in found.phases
         if phase.foot == foot and phase.reason is not None and phase.reason.startswith("tipping")
     ]
+
+
+@pytest.mark.parametrize("guessed", [True, False])
+def test_an_outline_that_is_a_guess_may_be_too_large(tmp_path: Path, guessed: bool) -> None:
+    """The sole tips 14 mm inside of the edge that the robot file draws: looked for where the file calls it a guess."""
+    motion = pitching(sines((np.radians(2.5), 0.25, 0.3)), -LIMIT, LIMIT)
+    robot = short_soled(tmp_path, 0.043)
+    if guessed:
+        marks = tuple(Guess(f"feet.{foot}.sole", "the lowest points of its shape", 0.005) for foot in FEET)
+        robot = replace(robot, guesses=marks)
+    found = identify_feet(robot, [noisy(record(motion), 1)], settings=LINEAR)
+    for foot in FEET:
+        row, truth = found.parameter(foot, "pitch", "stiffness"), TRUTH[foot, "pitch"].stiffness
+        assert (len(tips(found, foot)) > 10) == guessed
+        assert (row.value == pytest.approx(truth, rel=0.03)) == guessed
 
 
 def test_what_lies_beside_a_lean_is_left_out_with_it(tmp_path: Path) -> None:

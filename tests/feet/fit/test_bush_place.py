@@ -157,6 +157,37 @@ def test_an_imu_turned_in_its_mount_shows_where_hips_move(measured: RobotModel) 
     assert not any(any(model.imu_turned) for model in identify_feet(sure, logs, settings=LINEAR).models)
 
 
+def test_an_offset_is_as_unsure_as_the_mount_of_the_imu(
+    measured: RobotModel, recorded: list[MotionLog]
+) -> None:
+    """It is the torque at zero angle: a mount that is off by a moves it by stiffness times a."""
+    loose, exact = (replace(measured, uncertainty=Uncertainty(bush_position=0.0, wrench_crosstalk=0.0, imu_mount=mount))
+                    for mount in (0.01, 0.0))  # fmt: skip
+    wide, narrow = (identify_feet(robot, recorded, settings=LINEAR).offsets for robot in (loose, exact))
+    for more, less in zip(wide, narrow, strict=True):
+        expected = 0.01 * TRUTH[more.foot, more.axis].stiffness
+        assert np.sqrt(more.std**2 - less.std**2) == pytest.approx(expected, rel=0.1)
+
+
+def test_a_place_and_a_stiffness_that_both_move_leave_no_constant(measured: RobotModel) -> None:
+    """Their product is of second order; the offset takes it up."""
+    turn = Mounting(imu=Frame((0.0, 0.0, 0.0), (0.03, 0.03, 0.02)))
+    aside = np.array([0.02, 0.0, 0.04])
+    logs = [
+        shifted(noisy(record(sway(f"sway_{seed}", seed, duration=40.0), turn), seed), aside)
+        for seed in (3, 4)
+    ]
+    found = identify_feet(measured, logs, settings=LINEAR)
+    assert any(any(model.imu_turned) for model in found.models)
+    table = found.residuals.to_pydict()
+    used, motion, side = (np.array(table[name]) for name in ("used", "motion", "foot"))
+    for foot in FEET:
+        for axis in AXES:
+            left = np.array(table[f"{axis}.torque"]) - np.array(table[f"{axis}.predicted"])
+            for log in logs:
+                assert abs(np.mean(left[used & (motion == log.name) & (side == foot)])) < 0.01
+
+
 def test_a_centre_in_its_place_is_left_there(measured: RobotModel, recorded: list[MotionLog]) -> None:
     found = identify_feet(measured, recorded, settings=LINEAR)
     assert "bush_place" not in codes(found)

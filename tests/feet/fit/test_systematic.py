@@ -10,8 +10,11 @@ import pytest
 from biped import TRUTH, Motion, record, sway
 from biped_robot import FEET
 from feet_trials import AXES, LINEAR, noisy
+from made_recording import FOOT, made_recording, swayed
 from plantar.conventions import NORMAL95
-from plantar.feet.fit.systematic import _by_delay
+from plantar.feet.fit.axis_fit import fit_axis
+from plantar.feet.fit.regression_data import blocks_of
+from plantar.feet.fit.systematic import _by_delay, _suspected_hardening
 from plantar.feet.identify import identify_feet
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
@@ -50,6 +53,21 @@ def test_a_spring_that_stiffens_widens_the_stiffness_of_a_model_that_does_not(
             low, high = row.interval95
             assert low < truth < high
             assert row.std < 1.5 * abs(row.value - truth)
+
+
+def test_a_cube_is_looked_for_about_the_middle_of_the_motions() -> None:
+    """A turned IMU puts the angle's zero anywhere: far from it a cube is a slope, and says nothing of these motions."""
+    angle = swayed(4000, seed=2)
+    found = []
+    for middle in (0.0, 0.05):
+        torque = 400.0 * angle + 2e5 * angle**3
+        fit = fit_axis([made_recording("sway", angle + middle, torque)], FOOT, "pitch", LINEAR)
+        assert fit is not None
+        blocks = blocks_of([made_recording("sway", angle + middle, torque)], FOOT, "pitch", fit=fit)
+        found += [cause.effect[0] * cause.std for cause in _suspected_hardening(fit, blocks, False)]
+    assert len(found) == 2
+    assert abs(found[0]) > 5.0
+    assert found[1] == pytest.approx(found[0], rel=1e-6)
 
 
 def test_a_spring_that_does_not_stiffen_is_not_widened(plain: FeetResult) -> None:

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from plantar.contact.reasons import TIPPING
 from plantar.conventions import Array
-from plantar.estimation import Block, fit_blocks
+from plantar.estimation import Block, LinearFit, fit_blocks
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.regression_data import blocks_of, tangent_blocks
 from plantar.feet.recording import Recording
@@ -37,23 +38,38 @@ def zero_jumps(recordings: Sequence[Recording], fit: AxisFit, shared: bool) -> l
     blocks = blocks_of(recordings, fit.foot, fit.axis)
     if blocks[0].stances is not None or shared:
         return []
-    jumps = _jumps(blocks, recordings, fit.foot)
-    if not isinstance(fit.model, KelvinVoigt):  # beside a true memory, its own misfit shows a jump better
-        jumps = _jumps(tangent_blocks(recordings, fit), recordings, fit.foot) | jumps
+    jumps = _jumps(fit_blocks(blocks), blocks, recordings, fit.foot)
+    if not isinstance(fit.model, KelvinVoigt):
+        # Beside a true memory, its own misfit shows a jump better. A memory that was made up for a jump leaves more
+        # than the jump would; one that leaves less is what moves the means of spring and damper's misfit.
+        own = tangent_blocks(recordings, fit)
+        law = fit_blocks(own)
+        left = {label: float(residual @ residual) for label, residual in law.residuals.items()}
+        jumps = {label: jump for label, jump in jumps.items() if jump.left < left[label]}
+        jumps = _jumps(law, own, recordings, fit.foot) | jumps
     return [
         Note(
             CODE,
             "warning",
-            f"{label}: t = {time:.1f} s: the zero of {fit.foot} {fit.axis} jumps: an encoder between IMU and foot "
+            f"{label}: t = {jump.time:.1f} s: the zero of {fit.foot} {fit.axis} jumps: an encoder between IMU and foot "
             "slipped, or IMU or force sensor were zeroed anew (valid: one zero throughout a log; cut it there)",
         )
-        for label, time in jumps.items()
+        for label, jump in jumps.items()
     ]
 
 
-def _jumps(blocks: Sequence[Block], recordings: Sequence[Recording], foot: str) -> dict[str, float]:
-    """Moment [s] of the jump in each recording that has one, in what the blocks' fit leaves."""
-    whole, found = fit_blocks(blocks), {}
+class _Jump(NamedTuple):
+    """Its moment [s], and the squares that are `left` of the misfit beside it."""
+
+    time: float
+    left: float
+
+
+def _jumps(
+    whole: LinearFit, blocks: Sequence[Block], recordings: Sequence[Recording], foot: str
+) -> dict[str, _Jump]:
+    """The jump in each recording that has one, in what the blocks' fit leaves."""
+    found = {}
     by_name = {recording.name: recording for recording in recordings}
     for block in blocks:
         recording, missed = by_name[block.label], whole.residuals[block.label]
@@ -62,8 +78,9 @@ def _jumps(blocks: Sequence[Block], recordings: Sequence[Recording], foot: str) 
         # A jump may look like a slide, but not like a sole that tips, and then may come to lie otherwise.
         stands = run_numbers(contact.loaded & ~contact.left_out_for(TIPPING))[places]
         row = _jump(missed, stands, block.period)
-        if row is not None and _is_all(missed, row, block):
-            found[block.label] = float(recording.time[places[row]])
+        left = None if row is None else _left_beside(missed, row, block)
+        if row is not None and left is not None:
+            found[block.label] = _Jump(float(recording.time[places[row]]), left)
     return found
 
 
@@ -85,12 +102,12 @@ def _jump(missed: Array, stands: NDArray[np.intp], period: float) -> int | None:
     return best + width if apart[best] > FAR * float(np.median(apart[same])) else None
 
 
-def _is_all(missed: Array, row: int, block: Block) -> bool:
-    """Whether a step at this row is most of what is `missed` (n,), beside the block's own columns, and large enough."""
+def _left_beside(missed: Array, row: int, block: Block) -> float | None:
+    """What a step at this row leaves of the squares that are `missed` (n,), beside the block's own columns; None where
+    it is not most of them, or small."""
     step = np.where(np.arange(len(missed)) >= row, 1.0, 0.0)[:, None]
     own = replace(block, response=missed, noise=None)
     left = fit_blocks([own.with_nuisance(step)]).residuals[block.label]
     size = abs(float(missed[row:].mean() - missed[:row].mean()))
-    return bool(
-        left @ left < (1 - EXPLAINS) * float(missed @ missed) and size > WORTH * float(np.std(block.response))
-    )
+    most = left @ left < (1 - EXPLAINS) * float(missed @ missed)
+    return float(left @ left) if most and size > WORTH * float(np.std(block.response)) else None
