@@ -20,11 +20,11 @@ from plantar.estimation.errors_in_variables import attenuation
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.load_torque import place_columns
 from plantar.feet.fit.place_notes import (
+    BUSH_WORTH_SAYING,
     CLEAR,
     FAR,
     PLACE,
     STEPS_WORTH_SAYING,
-    TURN_WORTH_SAYING,
     place_notes,
     turned_bush,
 )
@@ -189,7 +189,7 @@ def turned_bush_note(
     pitch, roll = (fits[axis] for axis in ROTATIONAL_AXES)
     in_pitch, in_roll = (_others_torque(fit, recordings, shared) for fit in (pitch, roll))
     if in_pitch is None or in_roll is None:
-        return turned_bush(pitch.foot, pitch.turned, roll.turned, TURN_WORTH_SAYING)
+        return turned_bush(pitch.foot, pitch.turned, roll.turned, BUSH_WORTH_SAYING)
     (of_roll, left), (of_pitch, also_left) = in_pitch, in_roll
     # A leg that gives way shows some of it as well, but explains little of what the feet's models leave.
     explained = min(left, also_left) < STEPS_LEAVE and of_roll != 0 and of_pitch != 0

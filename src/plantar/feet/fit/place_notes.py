@@ -11,6 +11,7 @@ from plantar.notes import Note
 CLEAR = 3.0  # deviations of prior and data together, beyond which the robot file's place is called wrong
 WORTH_SAYING = 0.005  # m: a centre that is nearer to its place is within what drawings get wrong
 TURN_WORTH_SAYING = 0.02  # rad: of a mount, likewise
+BUSH_WORTH_SAYING = 0.035  # of the other axis' torque in both axes: mounts a degree off show half as much
 STEPS_WORTH_SAYING = 0.012  # rad, of what stances show: ten times what healthy feet do
 FARTHEST = np.array(
     [0.04, 0.04, 0.12, 0.12, 0.12, 0.12]
