@@ -209,21 +209,28 @@ def _clear(
 def _caution(
     scores: Sequence[ModelScore], errors: Sequence[Array], winner: int, least_gain: float
 ) -> str | None:
-    """Whether a model that was refused predicts clearly better: then the bush is not as the chosen model says."""
+    """Whether a model that was not chosen predicts clearly better: then the bush is not as the chosen model says.
+
+    It was refused, or in short stances, whose states are free, gains less than the `least_gain` asked for there.
+    """
     better = [
         place
         for place, score in enumerate(scores)
-        if score.refused is not None
-        and score.held_out_rms < (1 - TELLING_GAIN) * scores[winner].held_out_rms
-        and _clear(scores, errors, least_gain, simple=winner, rich=place)
+        if score.held_out_rms < (1 - TELLING_GAIN) * scores[winner].held_out_rms
+        and _clear(scores, errors, min(least_gain, TELLING_GAIN), simple=winner, rich=place)
     ]
     if not better:
         return None
     best = scores[min(better, key=lambda place: scores[place].held_out_rms)]
+    why = (
+        f"cannot be identified: {best.refused}"
+        if best.refused
+        else "by too little for steps as short as these"
+    )
     return (
         f"{best.model.name} predicts held-out motion better ({best.held_out_rms:.3g} against "
-        f"{scores[winner].held_out_rms:.3g} rms) but cannot be identified: {best.refused}; stiffness and damping "
-        "are those of these motions only (record larger motions)"
+        f"{scores[winner].held_out_rms:.3g} rms) but {why}; stiffness and damping are those of these motions only "
+        "(record larger motions)"
     )
 
 

@@ -48,13 +48,6 @@ class Cause:
         return np.abs(self.effect) * self.std
 
 
-def share_of_both(name: str, fit: AxisFit, share: float) -> Cause:
-    """A cause that makes stiffness and damping uncertain by a share of themselves."""
-    effect = np.zeros(len(fit.values))
-    effect[:2] = np.abs(fit.values[:2])
-    return Cause(name, effect, share)
-
-
 def systematic_causes(
     fit: AxisFit,
     recordings: Sequence[Recording],
@@ -141,10 +134,12 @@ def _ends_of_stances(blocks: Sequence[Block]) -> Cause:
 
 
 def _between_walks(fit: AxisFit, recordings: int) -> list[Cause]:
-    """By how much another walk may differ, where there are too few for their scatter to say it."""
-    if recordings >= FEWEST_RECORDINGS:
-        return []
-    return [share_of_both("between walks", fit, WALKS_DIFFER / np.sqrt(recordings))]
+    """By how much another walk may differ, where there are too few for their scatter to say it; a memory's numbers, of
+    which each walk's scatter is not looked at, always."""
+    few = recordings < FEWEST_RECORDINGS
+    effect = np.abs(fit.numbers)
+    effect[:2] *= few
+    return [Cause("between walks", effect, WALKS_DIFFER / np.sqrt(recordings))]
 
 
 def _shared_slope(fit: AxisFit) -> list[Cause]:
@@ -158,7 +153,7 @@ def _shared_slope(fit: AxisFit) -> list[Cause]:
     slip_torque = fit.values[fit.model.terms.index("slip_torque")]
     slope = abs(float(slip_torque / fit.shape[fit.model.shape_terms.index("slip_angle")]))
     effect = np.zeros(len(fit.values))
-    effect[0] = slope
+    effect[[0, fit.model.terms.index("slip_torque")]] = slope, -slip_torque
     return [Cause("memory in stances", effect, SLOPE_UNSURE)]
 
 
