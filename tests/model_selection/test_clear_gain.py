@@ -68,7 +68,9 @@ def test_a_refused_model_is_told_of_where_it_is_far_better(fit: ModelFit) -> Non
     assert "not told from nothing" in said
 
 
-def test_a_model_that_gains_much_but_less_than_is_asked_for_in_short_stances_is_told_of(fit: ModelFit) -> None:
+def test_a_model_that_gains_much_but_less_than_is_asked_for_in_short_stances_is_told_of(
+    fit: ModelFit,
+) -> None:
     even = 10.0 + np.linspace(-1.0, 1.0, 8)
     for share, told in ((0.8, False), (0.6, True)):
         scores, errors = contest(fit, even, share**2 * even)

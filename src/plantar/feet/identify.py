@@ -16,6 +16,7 @@ from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.between_recordings import apart_notes
 from plantar.feet.fit.bush_place import PlaceSpread
 from plantar.feet.foot_fit import FittedFoot, assess_foot, between_all, fit_foot, without_needless
+from plantar.feet.memory_of_others import with_memory_of_others
 from plantar.feet.prepare import PreparedLogs, over_logs, prepare_all
 from plantar.feet.recording import Recording
 from plantar.feet.settings import FeetSettings
@@ -81,7 +82,7 @@ def fit_prepared(
         names = ", ".join(log.name for log in logs)
         valid = "a standing robot; were the sensors zeroed under load, 'contact: always' for these feet"
         raise DataError(f"{names}: no foot carries load in any log (valid: {valid})")
-    fitted = _fitted_feet(ready, progress)
+    fitted = with_memory_of_others(_fitted_feet(ready, progress))
     between = between_all(list(fitted.values()))
     fitted = {foot: without_needless(one) for foot, one in fitted.items()}
     found = [assess_foot(one) for one in fitted.values()]
