@@ -83,8 +83,9 @@ def export(
 
         text, notes = with_inertial_parameters(data, given or robot_urdf(data, base))
     else:
-        feet, remarks = feet_of_result(data, base, with_offset=with_offset)
         module = import_module(f"plantar.exporters.{TARGETS[target][0]}")
+        hysteresis = getattr(module, "HYSTERESIS", False)
+        feet, remarks = feet_of_result(data, base, with_offset=with_offset, hysteresis=hysteresis)
         if given is None and getattr(module, "EXTENDS", False):
             given = robot_urdf(data, base)
         if given is not None and not getattr(module, "EXTENDS", False):
