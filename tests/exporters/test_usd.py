@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import subprocess
 from pathlib import Path
 from typing import Any
@@ -14,7 +13,7 @@ import pytest
 from command_line import run
 from export_robots import CENTRE, TRUTH, bush_rotation, result, write_urdf
 from plantar.exporters import export
-from pushed_foot import DIRECTION, LOAD, check, joint_name
+from pushed_foot import DIRECTION, LOAD, check, joint_name, other_python
 from usd_stage import write_usd
 
 pxr = pytest.importorskip("pxr", reason="no usd-core: pip install 'plantar[usd]'")
@@ -200,16 +199,6 @@ print("\\n" + json.dumps(answers))
 """
 
 
-@pytest.fixture(scope="session")
-def physx_python() -> str:
-    """The Python that PLANTAR_PHYSX_PYTHON names, with PhysX as Isaac uses it."""
-    python = os.environ.get("PLANTAR_PHYSX_PYTHON")
-    if not python or subprocess.run([python, "-c", "import ovphysx"], capture_output=True).returncode:
-        pytest.skip("no PhysX: name a Python with ovphysx, physx-usd-schemas, newton-usd-schemas in "
-                    "PLANTAR_PHYSX_PYTHON")  # fmt: skip
-    return python
-
-
 def _as_articulation(layer: Path) -> None:
     """Hang each foot's ankle on the world, as a robot's would be: PhysX solves joints of light bodies well only so."""
     from pxr import UsdGeom, UsdPhysics
@@ -231,7 +220,8 @@ def _as_articulation(layer: Path) -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_physx_gives_stiffness_and_damping_back(kind: str, tmp_path: Path, physx_python: str) -> None:
+def test_physx_gives_stiffness_and_damping_back(kind: str, tmp_path: Path) -> None:
+    python = other_python("PLANTAR_PHYSX_PYTHON", "ovphysx")
     out = written(kind, tmp_path)
     where = {"layer": "/feet/{0}/{0}_{1}", "over": "/World/biped/{0}_{1}"}[kind]
     cases = [(foot, axis) for foot, axes in TRUTH.items() for axis in axes]
@@ -243,7 +233,7 @@ def test_physx_gives_stiffness_and_damping_back(kind: str, tmp_path: Path, physx
     job = {"file": str(out), "loads": loads, "step": 0.001,
            "pattern": where.split("{", 1)[0] + "**"}  # fmt: skip
     done = subprocess.run(
-        [physx_python, "-c", PHYSX_PROGRAM],
+        [python, "-c", PHYSX_PROGRAM],
         input=json.dumps(job),
         capture_output=True,
         text=True,
