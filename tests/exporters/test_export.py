@@ -248,7 +248,7 @@ def test_what_cannot_be_written_is_one_clear_line(feet: dict[str, Any], urdf: Pa
         (feet, "urdf", tmp_path / "cut.urdf", "not readable XML"),
         (feet, "urdf", tmp_path / "other.urdf", "lef_ankle"),
         (feet, "urdf", tmp_path / "missing.urdf", "cannot be read"),
-        (feet, "usd", urdf, "takes no model"),
+        (feet, "yaml", urdf, "takes no model"),
         ({"schema": "plantar.inertia/1"}, "urdf", None, "--model"),
         ({"schema": "plantar.inertia/1"}, "sdf", None, "plantar.inertia/1"),
         ({**feet, "schema": "plantar.joints/1"}, "yaml", None, "schema"),
