@@ -33,8 +33,10 @@ def write(job: Job) -> tuple[str, tuple[Note, ...]]:
         from plantar.exporters.usd.over import write as write_over
 
         return write_over(job, job.model)
-    text = ("the layer holds the bushes alone: reference each foot at its ankle, point body0 of its first joint to the "
-            "robot's ankle, and switch the ankle's own sole collision off; --model with your stage does that")  # fmt: skip
+    text = (
+        "the layer holds the bushes alone: reference each foot at its ankle, point body0 of its first joint to the "
+        "robot's ankle, and switch the ankle's own sole collision off; --model with your stage does that"
+    )
     notes = (Note("export_usd", "info", text),)
     lines = head(
         job.result, job.feet, "USD (angles per degree)", (*job.remarks, *notes), with_offset=job.with_offset
