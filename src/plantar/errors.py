@@ -43,7 +43,11 @@ class SettingsError(PlantarError):
 
 
 class MotionError(PlantarError):
-    """A planned motion cannot be played: out of reach, out of limits or out of balance."""
+    """A planned motion cannot be played: out of reach, out of limits or out of balance; then `fell` says when [s]."""
+
+    def __init__(self, message: str, fell: float | None = None) -> None:
+        super().__init__(message)
+        self.fell = fell
 
 
 class ExportError(PlantarError):

@@ -6,12 +6,14 @@ import json
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from command_line import run
 from plantar.comparison.compare import KindScore, compare, pooled
 from plantar.comparison.picture import write_picture
 from plantar.comparison.scenes import AS_IT_WAS, CONTACT, JOINTS, KINDS, scenes
+from plantar.contact.balance import soles_in_root
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.save import save_log
 from plantar.results.feet import FeetResult, Parameter
@@ -105,8 +107,45 @@ def test_the_scenes_are_what_the_exporters_write(result: FeetResult, log: Motion
     assert "LLEG_BUSH_PITCH" not in names[CONTACT]
 
 
+@pytest.mark.slow
+def test_a_robot_that_falls_is_scored_up_to_there(result: FeetResult, log: MotionLog) -> None:
+    """From the third second on its hips bend until it lies."""
+    robot = hrp2.robot()
+    bent = {
+        f"joint.{side}_JOINT2.position": log.columns[f"joint.{side}_JOINT2.position"]
+        - 0.5 * np.clip(log.time - 3.0, 0.0, None)
+        for side in ("LLEG", "RLEG")
+    }
+    scores, replayed = compare(result, robot, [MotionLog("bent", log.time, dict(log.columns) | bent)])
+    assert [one.feet for one in scores] == list(KINDS)
+    falls = [one.fell for one in scores if one.fell is not None]
+    assert falls
+    assert min(falls) > 3.0
+    for one in scores:
+        assert one.until == pytest.approx(min(falls) - 1.0, abs=0.01), "all over the same time"
+        assert one.chest is not None
+    assert all(one.time[-1] == scores[0].until for one in replayed)
+
+
+def test_a_robot_starts_with_no_sole_in_the_ground(log: MotionLog) -> None:
+    """A knee that reads 0.02 rad wrong puts one sole 3 mm deeper than the other: stiff ground would throw it over."""
+    robot = hrp2.robot()
+    for side in ("LLEG", "RLEG"):
+        name = f"joint.{side}_JOINT3.position"
+        wrong = MotionLog("wrong", log.time, dict(log.columns) | {name: log.columns[name] - 0.02})
+        plan = plan_of(robot, wrong)
+        lowest = [
+            (plan.base[0] @ pose @ np.array([*corner, 0.0, 1.0]))[2]
+            for foot, pose in soles_in_root(robot, wrong.positions(robot)[0]).items()
+            for corner in robot.feet[foot].sole.polygon
+        ]
+        assert min(lowest) == pytest.approx(0.0, abs=1e-9), side
+        assert max(lowest) > 1e-3, "the other sole is above the ground"
+
+
 def test_a_kind_that_falls_has_no_score_over_all_motions() -> None:
-    stood, fell = KindScore("a", CONTACT, 3e-3, 4e-3, 1.0), KindScore("b", CONTACT, None, None, None)
+    stood = KindScore("a", CONTACT, 3e-3, 4e-3, 1.0, 20.0)
+    fell = KindScore("b", CONTACT, None, None, None, 0.0, 0.4)
     assert stood.chest == pytest.approx(5e-3)
     assert pooled([stood, stood], CONTACT) == pytest.approx(5e-3)
     assert pooled([stood, fell], CONTACT) is None

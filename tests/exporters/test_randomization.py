@@ -68,6 +68,29 @@ def test_means_and_deviations_are_the_identified_ones(feet: dict[str, Any], tmp_
     assert made["independent"][0]["measured"] is False
 
 
+def test_rubber_that_slips_is_drawn_as_the_model_holds_it(feet: dict[str, Any], tmp_path: Path) -> None:
+    """K and C beside the slip, as `mjcf` writes them, not the linear equivalent; its sensor scales them together."""
+    slip = {"slip_torque": (5.0, 0.05), "slip_angle": (0.01, 0.0002)}
+    for name, (value, std) in slip.items():
+        feet["parameters"].append(
+            {"foot": "left", "axis": "pitch", "name": name, "unit": "", "value": value, "std": std,
+             "interval95": None, "verdict": "usable"}
+        )  # fmt: skip
+    feet["diagnosis"].append(
+        {"foot": "left", "axis": "pitch", "name": "slip_torque", "variance_shares": {"sensor gain": 0.25}}
+    )
+    nearest = {"stiffness": 600.0, "damping": 50.0}
+    feet["laws"] = [{"foot": "left", "axis": "pitch", "law": "elastoplastic", "linear_equivalent": nearest}]
+    made, place = ranges(feet, tmp_path)
+    rows, matrix = made["parameters"], np.array(made["correlation"])
+    for name, (value, std) in slip.items():
+        row = rows[place[f"left.pitch.{name}"]]
+        assert (row["mean"], row["std"], row["above"]) == pytest.approx((value, std, 0))
+    assert rows[place["left.pitch.stiffness"]]["mean"] == TRUTH["left"]["pitch"][0]
+    assert matrix[place["left.pitch.slip_torque"], place["left.roll.stiffness"]] == pytest.approx(0.5 * 0.6)
+    assert not any(name.startswith("right") and "slip" in name for name in place)
+
+
 def test_a_thousand_draws_have_the_covariance(
     feet: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

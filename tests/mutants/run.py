@@ -27,6 +27,7 @@ from typing import TypeVar
 from data_faults import DATA_FAULTS
 from designed_motions import DESIGNED_MOTIONS
 from drawn import DRAWN
+from engine_exports import ENGINE_EXPORTS
 from fleet_statistics import FLEET
 from made_cheaper import MADE_CHEAPER
 from mutant import Mutant, StaleMutant
@@ -44,6 +45,7 @@ LISTS = {
     "data_faults": DATA_FAULTS,
     "designed_motions": DESIGNED_MOTIONS,
     "fleet": FLEET,
+    "engine_exports": ENGINE_EXPORTS,
 }
 LEAST_CAUGHT = 0.85
 PATIENCE, LEAST_PATIENCE = 20.0, 300.0  # usual seconds of the tests, and seconds: beyond, a mutant hangs

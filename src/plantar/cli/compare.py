@@ -69,10 +69,17 @@ def run(
         screen.print(table("Error against the record", heads, [_cells(row) for row in scores]))
         together = [(kind, pooled(scores, kind)) for kind in KINDS]
         text = ", ".join(
-            f"{kind} {'falls' if error is None else f'{number(MILLI * error, 3)} mrad'}"
+            f"{kind} {'-' if error is None else f'{number(MILLI * error, 3)} mrad'}"
             for kind, error in together
         )
         screen.print(f"chest, all motions: {text}", markup=False)
+        for one in scores:
+            if one.fell is not None:
+                text = f"{one.motion}: on '{one.feet}' the robot falls at {one.fell:.1f} s"
+                text += (
+                    f", all are compared up to {one.until:.1f} s" if one.until else ", too early to compare"
+                )
+                screen.print(text, markup=False, style="yellow")
 
 
 def _cells(row: KindScore) -> tuple[str, ...]:

@@ -11,7 +11,7 @@ import typer
 from plantar.exporters import TARGETS, export
 
 TARGET_HELP = "One of: " + ", ".join(TARGETS) + "."
-MODEL_HELP = "Existing robot model to extend: MJCF, SDFormat or URDF; the result's own URDF if left out."
+MODEL_HELP = "Existing robot model to extend: MJCF, SDFormat, URDF or USD; the result's own URDF if left out."
 OFFSET_HELP = "Let each spring rest at -offset/K instead of 0."
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -11,26 +11,35 @@ import numpy as np
 from plantar.comparison.scenes import KINDS, RIGID, scenes
 from plantar.errors import MotionError
 from plantar.logs.motion_log import MotionLog
+from plantar.motions.plan import Plan
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
 from plantar.twin.play import on_cores
 from plantar.twin.replay import Replayed, beside, plan_of, record_of
-from plantar.twin.simulation.rollout import roll_out
+from plantar.twin.simulation.rollout import Rollout, roll_out
 
 SIMULATORS: Final = ("mujoco",)
+BEFORE: Final = 1.0  # s before a fall that are not scored: the robot is on its way down
+SHORTEST: Final = 2.0  # s that are worth a score; the first one holds the zeros of the torques
 Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True)
 class KindScore:
     """One kind of feet in one motion: root mean square error of the chest's pitch and roll [rad], mean absolute error
-    of the feet's torques [N·m], the mean over feet and axes; None where the robot falls."""
+    of the feet's torques [N·m], the mean over feet and axes; None where nothing is left to score.
+
+    `until`: the time that is scored [s], the same for all kinds: to the end, or to `BEFORE` seconds before the first of
+    them fell. `fell`: when this one fell [s], None where it stood to the end.
+    """
 
     motion: str
     feet: str
     chest_pitch: float | None
     chest_roll: float | None
     torque: float | None
+    until: float
+    fell: float | None = None
 
     @property
     def chest(self) -> float | None:
@@ -61,32 +70,49 @@ def compare(
     found: list[Replayed] = []
     for log in logs:
         plan = plan_of(robot, log)
-        record = record_of(robot, log, plan)
         made = scenes(result, robot, plan)
-
-        def rolled(kind: str) -> Replayed | None:
-            try:
-                rollout = roll_out(robot, plan, RIGID, made[kind])  # noqa: B023 - used within this turn
-            except MotionError:
-                return None
-            return beside(robot, plan, kind, rollout, record)  # noqa: B023
-
-        for kind, one in zip(KINDS, on_cores(rolled, KINDS), strict=True):
-            scores.append(_score(log.name, kind, one))
-            found += [one] if one is not None else []
+        played = _played(robot, plan, made)
+        fell = {kind: one.fell for kind, one in played.items() if isinstance(one, MotionError)}
+        falls = [time for time in fell.values() if time is not None]
+        if falls and (until := min(falls) - BEFORE) > SHORTEST:
+            plan = _cut(plan, until)
+            played = _played(robot, plan, made)
+        record = record_of(robot, log, plan)
+        for kind, one in played.items():
+            if isinstance(one, MotionError):
+                scores.append(KindScore(log.name, kind, None, None, None, 0.0, one.fell))
+                continue
+            replayed = beside(robot, plan, kind, one, record)
+            scores.append(_score(replayed, float(plan.time[-1]), fell.get(kind)))
+            found.append(replayed)
         progress(f"played {log.name}")
     return tuple(scores), tuple(found)
 
 
-def _score(motion: str, kind: str, one: Replayed | None) -> KindScore:
-    if one is None:
-        return KindScore(motion, kind, None, None, None)
+def _played(robot: RobotModel, plan: Plan, made: Mapping[str, str]) -> dict[str, Rollout | MotionError]:
+    """A rollout for each kind of feet, or how the robot fell."""
+
+    def rolled(kind: str) -> Rollout | MotionError:
+        try:
+            return roll_out(robot, plan, RIGID, made[kind])
+        except MotionError as error:
+            return error
+
+    return dict(zip(KINDS, on_cores(rolled, KINDS), strict=True))
+
+
+def _cut(plan: Plan, until: float) -> Plan:
+    kept = plan.time <= until
+    return replace(plan, time=plan.time[kept], positions=plan.positions[kept], base=plan.base[kept])
+
+
+def _score(one: Replayed, until: float, fell: float | None) -> KindScore:
     torque = float(np.mean([one.torque_error(foot, axis) for foot, axis in one.torque]))
-    return KindScore(motion, kind, *one.chest_error(), torque)
+    return KindScore(one.motion, one.feet, *one.chest_error(), torque, until, fell)
 
 
 def pooled(scores: Sequence[KindScore], kind: str) -> float | None:
-    """Chest error of one kind over all motions, root mean square [rad]; None where the robot falls in one."""
+    """Chest error of one kind over all motions, root mean square [rad]; None where one has no score."""
     errors = [one.chest for one in scores if one.feet == kind]
     known = [error for error in errors if error is not None]
     return float(np.sqrt(np.mean(np.square(known)))) if known and len(known) == len(errors) else None

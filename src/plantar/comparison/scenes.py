@@ -34,14 +34,21 @@ def scenes(result: FeetResult, robot: RobotModel, plan: Plan) -> Mapping[str, st
     The exporters extend the rigid scene as they extend a user's model: what is compared is what they write.
     """
     data, base = open_result(result)
-    feet, remarks = feet_of_result(data, base, with_offset=False)
-    feet = tuple(_on_twin(foot, robot) for foot in feet)
     rigid = scene_xml(robot, plan, RIGID)
     with tempfile.TemporaryDirectory() as folder:
         model = Path(folder) / "rigid.xml"
         model.write_text(rigid)
-        job = Job(data, feet, model, Path(folder) / "out.xml", False, remarks)
-        return {AS_IT_WAS: rigid, JOINTS: joints.write(job)[0], CONTACT: contact.write(job)[0]}
+
+        def job(hysteresis: bool) -> Job:
+            feet, remarks = feet_of_result(data, base, with_offset=False, hysteresis=hysteresis)
+            moved = tuple(_on_twin(foot, robot) for foot in feet)
+            return Job(data, moved, model, model.with_name("out.xml"), False, remarks)
+
+        return {
+            AS_IT_WAS: rigid,
+            JOINTS: joints.write(job(joints.HYSTERESIS))[0],
+            CONTACT: contact.write(job(False))[0],
+        }
 
 
 def _on_twin(foot: FootBush, robot: RobotModel) -> FootBush:

@@ -25,7 +25,7 @@ TARGETS: dict[str, tuple[str, str]] = {
     "sdf": ("sdf.target", "SDFormat model: prismatic and revolute joints with spring and damper"),
     "urdf": ("urdf.target", "URDF with Gazebo's spring tags, or the inertias of a plantar.inertia/1"),
     "drake": ("sdf.drake", "SDFormat for Drake: free bush joints under a drake:linear_bushing_rpy"),
-    "usd": ("usd", "USD layer (.usda) with UsdPhysics joint drives, per degree, as Isaac reads them"),
+    "usd": ("usd.target", "USD layer (.usda) with UsdPhysics joint drives, per degree, as Isaac reads them"),
     "mc_rtc": ("mc_rtc", "mc_rtc robot module: the JSON entry 'flexibilities'"),
     "openhrp": ("openhrp", "OpenHRP and hrpsys: configuration of the bush customizer"),
     "choreonoid": ("choreonoid", "Choreonoid: the YAML entry 'bush' of a body customizer"),
@@ -50,8 +50,8 @@ def export(
         target: mjcf, mujoco-contact, sdf, urdf, drake, usd, mc_rtc, openhrp, choreonoid, kinetics_observer,
             randomization or yaml; for inertias urdf.
         out: the file to write.
-        model: an existing robot model of that format to extend (MJCF, SDFormat, URDF; a URDF works for MJCF and
-            SDFormat too); the result's own URDF where left out.
+        model: an existing robot model of that format to extend (MJCF, SDFormat, URDF, USD; a URDF works for MJCF and
+            SDFormat too); the result's own URDF where left out, for USD a layer to reference.
         with_offset: the springs rest at -offset/K; else at 0, since the offset is mostly the sensors' zero.
 
     Returns:
@@ -83,11 +83,13 @@ def export(
 
         text, notes = with_inertial_parameters(data, given or robot_urdf(data, base))
     else:
-        feet, remarks = feet_of_result(data, base, with_offset=with_offset)
         module = import_module(f"plantar.exporters.{TARGETS[target][0]}")
+        hysteresis = getattr(module, "HYSTERESIS", False)
+        feet, remarks = feet_of_result(data, base, with_offset=with_offset, hysteresis=hysteresis)
         if given is None and getattr(module, "EXTENDS", False):
             given = robot_urdf(data, base)
-        if given is not None and not getattr(module, "EXTENDS", False):
+        takes_model = getattr(module, "EXTENDS", False) or getattr(module, "OPTIONAL_MODEL", False)
+        if given is not None and not takes_model:
             raise ExportError(located("this target takes no model", value=target, valid="no --model"))
         text, notes = module.write(Job(data, feet, given, path, with_offset, remarks))
         notes = (*remarks, *notes)

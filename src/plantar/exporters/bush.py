@@ -32,16 +32,31 @@ from plantar.notes import Note
 SIDES = {"left": "LLEG", "right": "RLEG"}
 DAMPING_TIME = 0.002  # s: C/K written where none was identified, that of published bush models (5e5, 1e3)
 KNOWN_TERMS = ("stiffness", "damping", "offset")
+SLIP_TERMS = ("slip_torque", "slip_angle")
+
+
+@dataclass(frozen=True)
+class Slip:
+    """An elastoplastic (Jenkins) element beside spring and damper: it yields at `torque` [N·m] after `angle` [rad]."""
+
+    torque: float
+    angle: float
+
+    @property
+    def stiffness(self) -> float:
+        """Before it yields [N·m/rad]."""
+        return self.torque / self.angle
 
 
 @dataclass(frozen=True)
 class Spring:
-    """One axis: stiffness, damping and offset, in N, m, rad and s."""
+    """One axis: stiffness, damping and offset, in N, m, rad and s; `slip` only for targets that hold a hysteresis."""
 
     axis: Axis
     stiffness: float
     damping: float
     offset: float
+    slip: Slip | None = None
 
     @property
     def rest(self) -> float:
@@ -102,9 +117,12 @@ class FootBush:
 
 
 def feet_of_result(
-    result: Mapping[str, Any], base: Path, *, with_offset: bool
+    result: Mapping[str, Any], base: Path, *, with_offset: bool, hysteresis: bool = False
 ) -> tuple[tuple[FootBush, ...], tuple[Note, ...]]:
     """Every foot of a plantar.feet/1 result, and notes on what no target will hold.
+
+    With `hysteresis`, for a target that holds one, an elastoplastic axis keeps it; else it becomes the nearest spring
+    and damper.
 
     Raises ExportError: no foot, a foot without stiffness, a stiffness that is not positive, no geometry.
     """
@@ -119,7 +137,7 @@ def feet_of_result(
         springs = tuple(
             spring
             for axis in ("z", "pitch", "roll")
-            if (spring := _spring(result, rows, name, axis, with_offset, notes)) is not None
+            if (spring := _spring(result, rows, name, axis, with_offset, hysteresis, notes)) is not None
         )
         if not {"pitch", "roll"} & {spring.axis for spring in springs}:
             raise ExportError(
@@ -145,6 +163,7 @@ def _spring(
     foot: str,
     axis: Axis,
     with_offset: bool,
+    hysteresis: bool,
     notes: list[Note],
 ) -> Spring | None:
     mine = {str(row["name"]): row for row in rows if row.get("foot") == foot and row.get("axis") == axis}
@@ -163,10 +182,11 @@ def _spring(
     if "damping" not in values:
         text = f"{where}: no damping identified; exported as K x {DAMPING_TIME} s, for stable simulators"
         notes.append(Note("export_damping", "warning", text))
-    if damping < 0:
-        text = f"{where}: the identified damping {damping:.4g} is negative (feeds energy in); exported as 0"
+    if damping <= 0:
+        text = f"{where}: the identified damping {damping:.4g} is not positive, and a foot would never come to rest; "
+        text += f"exported as K x {DAMPING_TIME} s"
         notes.append(Note("export_damping", "warning", text))
-        damping = 0.0
+        damping = DAMPING_TIME * stiffness
     for name in ("stiffness", "damping"):
         verdict = mine.get(name, {}).get("verdict", "usable")
         if verdict != "usable":
@@ -174,7 +194,10 @@ def _spring(
                 Note("export_verdict", "warning", f"{where}: the verdict on the {name} is '{verdict}'")
             )
     extra = [name for name in values if name not in KNOWN_TERMS]
-    if extra:
+    slip = None
+    if hysteresis and set(extra) == set(SLIP_TERMS) and all(values[name] > 0 for name in SLIP_TERMS):
+        slip = Slip(*(values[name] for name in SLIP_TERMS))
+    elif extra:
         text = f"{where}: the target holds a linear spring and damper; left out: {', '.join(extra)}"
         if (nearest := _linear_equivalent(result, foot, axis)) is not None:
             stiffness, damping = nearest
@@ -190,7 +213,7 @@ def _spring(
         text = f"{where}: offset {offset:.4g}, the mean of {len(offsets)} motions"
         text += f" from {min(offsets):.4g} to {max(offsets):.4g}"
         notes.append(Note("export_offset", "info", text))
-    return Spring(axis, stiffness, damping, offset if with_offset else 0.0)
+    return Spring(axis, stiffness, damping, offset if with_offset else 0.0, slip)
 
 
 def _linear_equivalent(result: Mapping[str, Any], foot: str, axis: Axis) -> tuple[float, float] | None:

@@ -26,6 +26,8 @@ def head(
         for spring in foot.springs:
             k, c, o = spring.units
             line = f"{foot.joint(spring.axis)}: K = {spring.stiffness:.6g} {k}, C = {spring.damping:.6g} {c}"
+            if spring.slip is not None:
+                line += f", slips at {spring.slip.torque:.4g} {o} after {spring.slip.angle:.4g} rad"
             lines.append(line + (f", offset = {spring.offset:.4g} {o}" if with_offset else ""))
     if with_offset:
         lines.append("Each spring rests at -offset/K.")

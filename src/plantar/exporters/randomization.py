@@ -22,6 +22,7 @@ from plantar.notes import Note
 if TYPE_CHECKING:
     from plantar.exporters.job import Job
 
+HYSTERESIS = True  # for models of `mjcf`, which hold it
 SCHEMA: Final = "plantar.randomization/1"
 GAINS: Final = ("sensor gain", "force gain", "torque gain")  # causes that scale all numbers of one foot
 DELAY: Final = "delay"  # late sensors take K times what they are late off the damping
@@ -83,13 +84,21 @@ def correlation(numbers: Iterable[Number]) -> Array:
 
 
 def _of_foot(result: Mapping[str, Any], foot: FootBush, notes: list[Note]) -> list[Number]:
-    """Stiffness and damping of each axis as the other targets write them, with the identified relative deviation."""
+    """Stiffness, damping and slip of each axis as `mjcf` writes them, with the identified relative deviation."""
     numbers = []
     for spring in foot.springs:
-        for name, mean, unit in (
+        values = [
             ("stiffness", spring.stiffness, spring.units[0]),
             ("damping", spring.damping, spring.units[1]),
-        ):
+        ]
+        if spring.slip is not None:
+            values += [("slip_torque", spring.slip.torque, "N.m"), ("slip_angle", spring.slip.angle, "rad")]
+            text = (
+                f"{foot.name}.{spring.axis}: K and C are those beside a slip, as in the model of --to mjcf; "
+            )
+            text += "a model without it wants the K and C that its own target writes"
+            notes.append(Note("export_slip", "info", text))
+        for name, mean, unit in values:
             key = {"foot": foot.name, "axis": spring.axis, "name": name}
             row = _row(result.get("parameters", ()), key)
             where = f"{foot.name}.{spring.axis}.{name}"

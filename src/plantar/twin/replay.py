@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, fields, replace
 from typing import Final
 
@@ -187,14 +188,29 @@ def plan_of(robot: RobotModel, log: MotionLog, hand: Hand | None = None) -> Plan
     )
     if not standing:
         raise DataError(located("no foot carries the robot", path=log.source))
-    base = np.tile(_root(robot, recorded.positions(robot)[0], soles, min(standing)), (time.size, 1, 1))
+    base = np.tile(_root(robot, recorded.positions(robot)[0], soles, standing), (time.size, 1, 1))
     stance = {name: soles[name] for name in standing}
     return Plan(log.name, time, robot.joint_names, positions, base, standing, stance, hand)
 
 
-def _root(robot: RobotModel, positions: Array, soles: Mapping[str, Array], foot: str) -> Array:
-    """Pose (4, 4) of the root that puts one sole where it stands."""
-    return np.asarray(soles[foot] @ np.linalg.inv(soles_in_root(robot, positions)[foot]))
+def _root(
+    robot: RobotModel, positions: Array, soles: Mapping[str, Array], standing: AbstractSet[str]
+) -> Array:
+    """Pose (4, 4) of the root that puts one sole where it stands and no corner of the others below the ground.
+
+    Encoders are not exact and legs bend, so that a second sole may end millimetres deep: stiff ground would throw the
+    robot over.
+    """
+    first = min(standing)
+    placed = soles_in_root(robot, positions)
+    root = np.asarray(soles[first] @ np.linalg.inv(placed[first]))
+    heights = [
+        (root @ placed[name] @ np.array([*corner, 0.0, 1.0]))[2]
+        for name in standing
+        for corner in robot.feet[name].sole.polygon
+    ]
+    root[2, 3] -= min(0.0, *heights)
+    return root
 
 
 def _at(log: MotionLog, time: Array) -> MotionLog:

@@ -18,6 +18,7 @@ from plantar.exporters.bush import FootBush, Spring
 from plantar.exporters.comment import head, plate_note, updated_note
 from plantar.exporters.mjcf.file import Compiled, relocate
 from plantar.exporters.mjcf.from_urdf import opened
+from plantar.exporters.mjcf.hysteresis import set_slip, slip_joint
 from plantar.exporters.shapes import SOLE_INERTIA, SOLE_MASS, plate, reaches_sole
 from plantar.exporters.xml_file import numbers, to_text
 from plantar.notes import Note
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from plantar.exporters.job import Job
 
 EXTENDS = True
+HYSTERESIS = True
 SENSORS_ABOVE = {"force", "torque", "accelerometer", "gyro", "velocimeter", "magnetometer"}
 
 
@@ -40,6 +42,9 @@ def write(job: Job) -> tuple[str, tuple[Note, ...]]:
     before = Compiled(root, job.model)
     for foot in job.feet:
         _insert(root, foot, before, notes)
+        for spring in foot.springs:
+            ankle = before.body_element(root, foot.ankle)
+            set_slip(root, ankle, foot, spring, float(before.model.opt.timestep))
     _widen_keyframes(root, before, job)
     after = Compiled(root, job.model)  # MuJoCo must take what is written
     _check_timestep(after, job, notes)
@@ -215,8 +220,9 @@ def _widen_keyframes(root: ET.Element, before: Compiled, job: Job) -> None:
         root.remove(section)
     after = Compiled(root, before.path)
     root.extend(sections)
-    names = [foot.joint(spring.axis) for foot in job.feet for spring in foot.springs]
-    added = [name for name in names if not before.has_joint(name)]
+    springs = [(foot, spring) for foot in job.feet for spring in foot.springs]
+    names = [name for foot, spring in springs for name in (foot.joint(spring.axis), slip_joint(foot, spring))]
+    added = [name for name in names if after.has_joint(name) and not before.has_joint(name)]
     for key in keys:
         for attribute in ("qpos", "qvel"):
             if (text := key.get(attribute)) is not None:

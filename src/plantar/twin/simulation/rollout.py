@@ -171,4 +171,5 @@ def _check_upright(plan: Plan, sample: int, data: mujoco.MjData) -> None:
     lean = np.arccos(min(1.0, float(plan.base[sample, 2, :3] @ up)))  # yaw never lets a robot fall
     if not lean < FALLEN:
         message = f"{plan.name}: the robot falls, it leans {np.degrees(lean):.0f}° away from its plan"
-        raise MotionError(located(message, time=float(plan.time[sample]), valid="a smaller or slower motion"))
+        fell = float(plan.time[sample])
+        raise MotionError(located(message, time=fell, valid="a smaller or slower motion"), fell)

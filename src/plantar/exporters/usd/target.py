@@ -7,7 +7,6 @@ linear drives stay in N/m and N·s/m (openusd.org, UsdPhysicsDriveAPI; PhysX' US
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,19 +15,28 @@ from plantar.conventions import Array
 from plantar.exporters.bush import FootBush, Spring
 from plantar.exporters.comment import head
 from plantar.exporters.shapes import SOLE_INERTIA, SOLE_MASS, plate
+from plantar.exporters.usd.conventions import AXIS, drive, identifier, quaternion
 from plantar.notes import Note
 
 if TYPE_CHECKING:
     from plantar.exporters.job import Job
 
-AXIS = {"z": "Z", "pitch": "Y", "roll": "X"}
-PER_DEGREE = math.pi / 180
+OPTIONAL_MODEL = True
 
 
 def write(job: Job) -> tuple[str, tuple[Note, ...]]:
-    """The layer's text (.usda)."""
-    text = ("the layer holds the bushes alone: reference it, point body0 of each foot's first joint "
-            "to the robot's ankle, and switch the ankle's own sole collision off")  # fmt: skip
+    """The layer's text (.usda): the bushes alone, or overs on the job's stage.
+
+    Raises ExportError: the stage cannot be opened or has not the ankles. MissingExtra: a stage, and no usd-core.
+    """
+    if job.model is not None:
+        from plantar.exporters.usd.over import write as write_over
+
+        return write_over(job, job.model)
+    text = (
+        "the layer holds the bushes alone: reference each foot at its ankle, point body0 of its first joint to the "
+        "robot's ankle, and switch the ankle's own sole collision off; --model with your stage does that"
+    )
     notes = (Note("export_usd", "info", text),)
     lines = head(
         job.result, job.feet, "USD (angles per degree)", (*job.remarks, *notes), with_offset=job.with_offset
@@ -41,14 +49,14 @@ def write(job: Job) -> tuple[str, tuple[Note, ...]]:
 
 
 def _foot(foot: FootBush) -> str:
-    name = _identifier(foot.name)
+    name = identifier(foot.name)
     path = f"/feet/{name}"
-    parts = [_link(_identifier(foot.ankle), np.zeros(3), (1.0, 0.0, 0.0, 0.0), "", kinematic=True)]
-    parent, place, turn = _identifier(foot.ankle), foot.centre, _quaternion(foot.rotation)
+    parts = [_link(identifier(foot.ankle), np.zeros(3), (1.0, 0.0, 0.0, 0.0), "", kinematic=True)]
+    parent, place, turn = identifier(foot.ankle), foot.centre, quaternion(foot.rotation)
     for spring in foot.springs:
-        child = _identifier(foot.link(spring.axis))
+        child = identifier(foot.link(spring.axis))
         last = spring is foot.springs[-1]
-        parts.append(_link(child, foot.centre, _quaternion(foot.rotation), _plate(foot) if last else ""))
+        parts.append(_link(child, foot.centre, quaternion(foot.rotation), _plate(foot) if last else ""))
         parts.append(
             _joint(foot.joint(spring.axis), spring, f"{path}/{parent}", f"{path}/{child}", place, turn)
         )
@@ -63,6 +71,7 @@ def _link(name: str, place: Array, turn: tuple[float, ...], inside: str, *, kine
         'uniform token[] xformOpOrder = ["xformOp:translate", "xformOp:orient"]',
         f"float physics:mass = {SOLE_MASS}",
         f"float3 physics:diagonalInertia = {_tuple([SOLE_INERTIA] * 3)}",
+        "quatf physics:principalAxes = (1, 0, 0, 0)",  # the validator of USD wants both or neither
     ]
     if kinematic:
         lines.append("bool physics:kinematicEnabled = 1")
@@ -73,8 +82,8 @@ def _link(name: str, place: Array, turn: tuple[float, ...], inside: str, *, kine
 
 def _joint(name: str, spring: Spring, body0: str, body1: str, place: Array, turn: tuple[float, ...]) -> str:
     slide = spring.axis == "z"
-    kind, drive = ("PhysicsPrismaticJoint", "linear") if slide else ("PhysicsRevoluteJoint", "angular")
-    factor = 1.0 if slide else PER_DEGREE
+    kind = "PhysicsPrismaticJoint" if slide else "PhysicsRevoluteJoint"
+    unit, stiffness, damping, target = drive(spring)
     lines = [
         f"rel physics:body0 = <{body0}>",
         f"rel physics:body1 = <{body1}>",
@@ -84,13 +93,13 @@ def _joint(name: str, spring: Spring, body0: str, body1: str, place: Array, turn
         "point3f physics:localPos1 = (0, 0, 0)",
         "quatf physics:localRot1 = (1, 0, 0, 0)",
         "bool physics:collisionEnabled = 0",
-        f'uniform token drive:{drive}:physics:type = "force"',
-        f"float drive:{drive}:physics:stiffness = {spring.stiffness * factor:.9g}",
-        f"float drive:{drive}:physics:damping = {spring.damping * factor:.9g}",
-        f"float drive:{drive}:physics:targetPosition = {spring.rest / factor:.9g}",
+        f'uniform token drive:{unit}:physics:type = "force"',
+        f"float drive:{unit}:physics:stiffness = {stiffness:.9g}",
+        f"float drive:{unit}:physics:damping = {damping:.9g}",
+        f"float drive:{unit}:physics:targetPosition = {target:.9g}",
     ]
     body = "".join(f"{line}\n" for line in lines)
-    schemas = f'prepend apiSchemas = ["PhysicsDriveAPI:{drive}"]'
+    schemas = f'prepend apiSchemas = ["PhysicsDriveAPI:{unit}"]'
     return f'def {kind} "{name}" (\n    {schemas}\n)\n{{\n{_indent(body)}}}\n'
 
 
@@ -104,26 +113,6 @@ def _plate(foot: FootBush) -> str:
     ]
     body = "".join(f"{line}\n" for line in lines)
     return f'def Cube "plate" (\n    prepend apiSchemas = ["PhysicsCollisionAPI"]\n)\n{{\n{_indent(body)}}}\n'
-
-
-def _identifier(name: str) -> str:
-    """USD prim names hold letters, digits and underscores and start with no digit."""
-    clean = "".join(c if c.isascii() and (c.isalnum() or c == "_") else "_" for c in name)
-    return clean if clean and not clean[0].isdigit() else f"_{clean}"
-
-
-def _quaternion(rotation: Array) -> tuple[float, ...]:
-    """A rotation matrix as w, x, y, z, by the largest of the four."""
-    r = rotation
-    squares = np.array([1 + np.trace(r), *(1 + 2 * np.diag(r) - np.trace(r))])
-    big = int(np.argmax(squares))
-    columns = np.array([
-        [squares[0], r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]],
-        [r[2, 1] - r[1, 2], squares[1], r[0, 1] + r[1, 0], r[0, 2] + r[2, 0]],
-        [r[0, 2] - r[2, 0], r[0, 1] + r[1, 0], squares[2], r[1, 2] + r[2, 1]],
-        [r[1, 0] - r[0, 1], r[0, 2] + r[2, 0], r[1, 2] + r[2, 1], squares[3]],
-    ])  # fmt: skip
-    return tuple(float(value) for value in columns[big] / np.linalg.norm(columns[big]))
 
 
 def _tuple(values: Array | tuple[float, ...] | list[float]) -> str:

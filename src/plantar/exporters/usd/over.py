@@ -1,0 +1,245 @@
+"""Overs on a robot's own stage: a layer above it in which the ankles stand on bush joints.
+
+The user's stage is a sublayer and stays as it is: its scene, its joints and their drives. What is added stands in the
+layer alone: light bodies and joints below each ankle, a plate under the sole with the material of the shapes that
+stood on the ground, and `collisionEnabled = false` on those.
+"""
+
+from __future__ import annotations
+
+import difflib
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from plantar.conventions import Array
+from plantar.errors import ExportError, MissingExtra, located
+from plantar.exporters.bush import FootBush, Spring
+from plantar.exporters.comment import head, plate_note
+from plantar.exporters.geometry import box_corners
+from plantar.exporters.shapes import SOLE_INERTIA, SOLE_MASS, plate, reaches_sole
+from plantar.exporters.usd.conventions import AXIS, drive, identifier, quaternion
+from plantar.notes import Note
+
+if TYPE_CHECKING:
+    from plantar.exporters.job import Job
+
+
+def write(job: Job, model: Path) -> tuple[str, tuple[Note, ...]]:
+    """The text (.usda) of the layer above the stage at `model`.
+
+    Raises ExportError: no stage, other units than metre and kilogram, no rigid body of an ankle's name. MissingExtra:
+    no usd-core.
+    """
+    try:
+        from pxr import Sdf, Usd
+    except ImportError as error:
+        raise MissingExtra("pxr", "usd", "export to a USD stage") from error
+    stage = _opened(model)
+    notes: list[Note] = []
+    layer = Sdf.Layer.CreateAnonymous(".usda")
+    layer.subLayerPaths.append(str(model.resolve()))
+    above = Usd.Stage.Open(layer)
+    for name in ("upAxis", "metersPerUnit", "kilogramsPerUnit"):
+        above.SetMetadata(name, stage.GetMetadata(name))
+    if stage.HasDefaultPrim():
+        above.SetDefaultPrim(above.GetPrimAtPath(stage.GetDefaultPrim().GetPath()))
+    for foot in job.feet:
+        _insert(above, foot, model, notes)
+    _scene(above, notes)
+    lines = head(job.result, job.feet, "USD", (*job.remarks, *notes), with_offset=job.with_offset)
+    layer.documentation = "\n".join(lines)
+    # Relative to where the layer will stand, as a stage that is moved as a whole needs it.
+    layer.subLayerPaths[0] = Path(os.path.relpath(model.resolve(), job.out.resolve().parent)).as_posix()
+    return str(layer.ExportToString()), tuple(notes)
+
+
+def _opened(model: Path) -> Any:
+    from pxr import Tf, Usd, UsdGeom, UsdPhysics
+
+    try:
+        stage = Usd.Stage.Open(str(model))
+    except Tf.ErrorException as error:
+        raise ExportError(located("USD cannot open the stage", path=model, valid="a USD stage")) from error
+    units = UsdGeom.GetStageMetersPerUnit(stage), UsdPhysics.GetStageKilogramsPerUnit(stage)
+    if not np.allclose(units, 1.0):
+        message = f"one unit of the stage is {units[0]:g} m and {units[1]:g} kg"
+        raise ExportError(located(message, path=model, valid="metersPerUnit = 1 and kilogramsPerUnit = 1"))
+    return stage
+
+
+def _insert(stage: Any, foot: FootBush, model: Path, notes: list[Note]) -> None:
+    ankle = _ankle(stage, foot, model)
+    holder = _without_body(ankle)
+    place = _relative(ankle, holder)
+    centre = place[:3, :3] @ foot.centre + place[:3, 3]
+    turn = place[:3, :3] @ foot.rotation
+    there = bool(stage.GetPrimAtPath(holder.GetPath().AppendChild(identifier(foot.sole_link))))
+    shapes = _standing_shapes(ankle, foot)
+    above, at, rotated = ankle, foot.centre, foot.rotation
+    for spring in foot.springs:
+        link = _link(stage, holder, identifier(foot.link(spring.axis)), centre, turn)
+        _joint(stage, holder, foot.joint(spring.axis), spring, (above, link), at, rotated)
+        above, at, rotated = link, np.zeros(3), np.eye(3)
+    _plate(stage, above, foot, shapes)
+    _quiet(stage, shapes)
+    _filter(above, ankle)
+    if there:
+        return
+    _lighter(ankle, SOLE_MASS * len(foot.springs))
+    notes.append(plate_note(foot)) if not shapes else notes.append(
+        Note("export_plate", "info", f"{foot.name}: a plate touches the ground now, not "
+             + ", ".join(str(shape.GetPath()) for shape in shapes))
+    )  # fmt: skip
+
+
+def _ankle(stage: Any, foot: FootBush, model: Path) -> Any:
+    from pxr import UsdPhysics
+
+    bodies = [prim for prim in stage.Traverse() if prim.HasAPI(UsdPhysics.RigidBodyAPI)]
+    found = [prim for prim in bodies if prim.GetName() == identifier(foot.ankle)]
+    if len(found) == 1:
+        return found[0]
+    if found:
+        paths = ", ".join(str(prim.GetPath()) for prim in found)
+        message = f"has several rigid bodies '{foot.ankle}': {paths}"
+        raise ExportError(located(message, path=model, valid="a stage with one robot"))
+    names = [prim.GetName() for prim in bodies]
+    near = difflib.get_close_matches(identifier(foot.ankle), names, n=3) or names[:5]
+    message = f"has no rigid body '{foot.ankle}' (the ankle link of the robot file)"
+    raise ExportError(located(message, path=model, valid=", ".join(near) or "a stage of the robot"))
+
+
+def _without_body(ankle: Any) -> Any:
+    """The nearest prim above that is in no rigid body: bodies must not stand in each other."""
+    from pxr import UsdPhysics
+
+    holder, above = ankle.GetParent(), ankle.GetParent()
+    while above and not above.IsPseudoRoot():
+        if above.HasAPI(UsdPhysics.RigidBodyAPI):
+            holder = above.GetParent()
+        above = above.GetParent()
+    return holder
+
+
+def _relative(prim: Any, other: Any) -> Array:
+    """Pose (4, 4) of a prim in another's frame, its scale taken off."""
+    from pxr import UsdGeom
+
+    cache = UsdGeom.XformCache()
+    matrix = cache.GetLocalToWorldTransform(prim) * cache.GetLocalToWorldTransform(other).GetInverse()
+    return np.array(matrix.RemoveScaleShear()).T
+
+
+def _standing_shapes(ankle: Any, foot: FootBush) -> list[Any]:
+    """Shapes of the ankle that collide and reach down to the sole."""
+    from pxr import Usd, UsdGeom, UsdPhysics
+
+    boxes = UsdGeom.BBoxCache(
+        Usd.TimeCode.Default(), [UsdGeom.Tokens.default_, UsdGeom.Tokens.guide, UsdGeom.Tokens.proxy]
+    )
+    found = []
+    for prim in Usd.PrimRange(ankle, Usd.TraverseInstanceProxies()):
+        if not prim.HasAPI(UsdPhysics.CollisionAPI):
+            continue
+        box = boxes.ComputeRelativeBound(prim, ankle).ComputeAlignedRange()
+        low, high = np.array(box.GetMin()), np.array(box.GetMax())
+        if np.all(high >= low) and reaches_sole(box_corners(high - low) + (high + low) / 2, foot):
+            found.append(prim)
+    return found
+
+
+def _link(stage: Any, holder: Any, name: str, centre: Array, turn: Array) -> Any:
+    from pxr import Gf, UsdGeom, UsdPhysics
+
+    link = UsdGeom.Xform.Define(stage, holder.GetPath().AppendChild(name))
+    link.ClearXformOpOrder()
+    link.AddTranslateOp(UsdGeom.XformOp.PrecisionDouble).Set(Gf.Vec3d(*map(float, centre)))
+    link.AddOrientOp(UsdGeom.XformOp.PrecisionDouble).Set(Gf.Quatd(*quaternion(turn)))
+    UsdPhysics.RigidBodyAPI.Apply(link.GetPrim())
+    mass = UsdPhysics.MassAPI.Apply(link.GetPrim())
+    mass.CreateMassAttr(SOLE_MASS)
+    mass.CreateDiagonalInertiaAttr(Gf.Vec3f(SOLE_INERTIA))
+    mass.CreatePrincipalAxesAttr(Gf.Quatf(1.0))
+    return link.GetPrim()
+
+
+def _joint(
+    stage: Any, holder: Any, name: str, spring: Spring, bodies: tuple[Any, Any], at: Array, turn: Array
+) -> None:
+    from pxr import Gf, UsdPhysics
+
+    kind = UsdPhysics.PrismaticJoint if spring.axis == "z" else UsdPhysics.RevoluteJoint
+    joint = kind.Define(stage, holder.GetPath().AppendChild(identifier(name)))
+    joint.CreateBody0Rel().SetTargets([bodies[0].GetPath()])
+    joint.CreateBody1Rel().SetTargets([bodies[1].GetPath()])
+    joint.CreateAxisAttr(AXIS[spring.axis])
+    joint.CreateLocalPos0Attr(Gf.Vec3f(*map(float, at)))
+    joint.CreateLocalRot0Attr(Gf.Quatf(*quaternion(turn)))
+    joint.CreateLocalPos1Attr(Gf.Vec3f(0.0))
+    joint.CreateLocalRot1Attr(Gf.Quatf(1.0))
+    joint.CreateCollisionEnabledAttr(False)
+    unit, stiffness, damping, target = drive(spring)
+    pushed = UsdPhysics.DriveAPI.Apply(joint.GetPrim(), unit)
+    pushed.CreateTypeAttr("force")
+    pushed.CreateStiffnessAttr(stiffness)
+    pushed.CreateDampingAttr(damping)
+    pushed.CreateTargetPositionAttr(target)
+
+
+def _plate(stage: Any, sole: Any, foot: FootBush, shapes: list[Any]) -> None:
+    from pxr import Gf, UsdGeom, UsdPhysics, UsdShade
+
+    size, centre = plate(foot)
+    made = UsdGeom.Cube.Define(stage, sole.GetPath().AppendChild("plate"))
+    made.CreateSizeAttr(1.0)
+    made.CreateExtentAttr([Gf.Vec3f(-0.5), Gf.Vec3f(0.5)])
+    made.ClearXformOpOrder()
+    made.AddTranslateOp(UsdGeom.XformOp.PrecisionDouble).Set(Gf.Vec3d(*map(float, centre)))
+    made.AddScaleOp(UsdGeom.XformOp.PrecisionFloat).Set(Gf.Vec3f(*map(float, size)))
+    UsdPhysics.CollisionAPI.Apply(made.GetPrim())
+    for shape in shapes:
+        material = UsdShade.MaterialBindingAPI(shape).ComputeBoundMaterial("physics")[0]
+        if material and not material.GetPrim().IsInstanceProxy():
+            binding = UsdShade.MaterialBindingAPI.Apply(made.GetPrim())
+            binding.Bind(material, UsdShade.Tokens.weakerThanDescendants, "physics")
+            return
+
+
+def _quiet(stage: Any, shapes: list[Any]) -> None:
+    """Take contact from shapes; those of an instance are set apart from it first."""
+    from pxr import UsdPhysics
+
+    for path in [shape.GetPath() for shape in shapes]:
+        while (prim := stage.GetPrimAtPath(path)).IsInstanceProxy():
+            above = prim
+            while not above.IsInstance():
+                above = above.GetParent()
+            above.SetInstanceable(False)
+        UsdPhysics.CollisionAPI(prim).CreateCollisionEnabledAttr(False)
+
+
+def _filter(sole: Any, ankle: Any) -> None:
+    from pxr import UsdPhysics
+
+    UsdPhysics.FilteredPairsAPI.Apply(sole).CreateFilteredPairsRel().SetTargets([ankle.GetPath()])
+
+
+def _lighter(ankle: Any, mass: float) -> None:
+    """Take the new bodies' mass off the ankle where the stage gives it one."""
+    from pxr import UsdPhysics
+
+    attribute = UsdPhysics.MassAPI(ankle).GetMassAttr()
+    old = attribute.Get() if attribute and attribute.HasAuthoredValue() else 0.0
+    if old > 2 * mass:
+        attribute.Set(old - mass)
+
+
+def _scene(stage: Any, notes: list[Note]) -> None:
+    from pxr import UsdPhysics
+
+    if not any(prim.IsA(UsdPhysics.Scene) for prim in stage.Traverse()):
+        UsdPhysics.Scene.Define(stage, "/physicsScene")
+        notes.append(Note("export_scene", "info", "the stage had no PhysicsScene; one was added"))

@@ -1,0 +1,60 @@
+"""Careless changes of what goes to simulators: slips in MuJoCo, overs on a stage, comparisons up to a fall."""
+
+from __future__ import annotations
+
+from mutant import Mutant
+
+ENGINE_EXPORTS = (
+    Mutant(
+        "exporters/bush.py", "the slip's spring is its torque times its angle",
+        "return self.torque / self.angle", "return self.torque * self.angle", ("exporters/test_mjcf_hysteresis.py",),
+    ),
+    Mutant(
+        "exporters/mjcf/hysteresis.py", "a slip of an earlier export stays",
+        "if spring.slip is not None else (0.0, 0.0)", "if spring.slip is not None else (5.0, 500.0)",
+        ("exporters/test_mjcf_hysteresis.py",),
+    ),
+    Mutant(
+        "exporters/mjcf/hysteresis.py", "the tendon rests at the slip angle",
+        'springlength="0"', 'springlength="0.01"',
+        ("exporters/test_mjcf_hysteresis.py",),
+    ),
+    Mutant(
+        "exporters/mjcf/hysteresis.py", "dry friction as soft as MuJoCo's own",
+        "IMPERFECT: Final = 1e-4", "IMPERFECT: Final = 1e-1", ("exporters/test_mjcf_hysteresis.py",),
+    ),
+    Mutant(
+        "exporters/mjcf/target.py", "keyframes without the slip's joint",
+        "for name in (foot.joint(spring.axis), slip_joint(foot, spring))]", "for name in (foot.joint(spring.axis),)]",
+        ("exporters/test_mjcf_hysteresis.py",),
+    ),
+    Mutant(
+        "exporters/randomization.py", "ranges of the linear equivalent for a model with slip",
+        "HYSTERESIS = True", "HYSTERESIS = False", ("exporters/test_randomization.py",),
+    ),
+    Mutant(
+        "exporters/usd/conventions.py", "stiffness per radian in a drive that counts degrees",
+        "PER_DEGREE = math.pi / 180", "PER_DEGREE = 1.0", ("exporters/test_usd.py", "exporters/test_export.py"),
+    ),
+    Mutant(
+        "exporters/usd/over.py", "the ankle's turn in the world is left out",
+        "turn = place[:3, :3] @ foot.rotation", "turn = foot.rotation.T", ("exporters/test_usd.py",),
+    ),
+    Mutant(
+        "exporters/usd/over.py", "mass comes in from nowhere",
+        "attribute.Set(old - mass)", "attribute.Set(old)", ("exporters/test_usd.py",),
+    ),
+    Mutant(
+        "exporters/usd/over.py", "the shapes that stood on the ground go on touching it",
+        "CreateCollisionEnabledAttr(False)\n\n\ndef _filter", "CreateCollisionEnabledAttr(True)\n\n\ndef _filter",
+        ("exporters/test_usd.py",),
+    ),
+    Mutant(
+        "twin/replay.py", "a sole starts in the ground",
+        "root[2, 3] -= min(0.0, *heights)", "root[2, 3] -= 0.0", ("comparison/test_compare.py",),
+    ),
+    Mutant(
+        "comparison/compare.py", "the fall itself is scored",
+        "BEFORE: Final = 1.0", "BEFORE: Final = 0.0", ("comparison/test_compare.py",),
+    ),
+)  # fmt: skip
