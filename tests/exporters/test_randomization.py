@@ -99,3 +99,12 @@ def test_what_has_no_deviation_is_said(feet: dict[str, Any], tmp_path: Path) -> 
     assert unknown[0].startswith("right.roll.damping")
     made, place = ranges(feet, tmp_path)
     assert made["parameters"][place["left.pitch.stiffness"]]["std"] == pytest.approx(480 * 0.04 / 3.92)
+
+
+def test_a_range_is_as_wide_as_the_logs_leave_it(feet: dict[str, Any], tmp_path: Path) -> None:
+    row = feet["parameters"][3]
+    assert (row["axis"], row["name"]) == ("pitch", "damping")
+    row.update(value=9.5, std=11.0, interval95=[-12.0, 31.0], verdict="unidentifiable")
+    made, place = ranges(feet, tmp_path)
+    found = made["parameters"][place["left.pitch.damping"]]
+    assert (found["mean"], found["std"], found["above"]) == pytest.approx((9.5, 11.0, 0.0))

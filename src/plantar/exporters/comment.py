@@ -26,6 +26,7 @@ def head(
         for spring in foot.springs:
             k, c, o = spring.units
             line = f"{foot.joint(spring.axis)}: K = {spring.stiffness:.6g} {k}, C = {spring.damping:.6g} {c}"
+            line += " (assumed)" if spring.assumed else ""
             lines.append(line + (f", offset = {spring.offset:.4g} {o}" if with_offset else ""))
     if with_offset:
         lines.append("Each spring rests at -offset/K.")

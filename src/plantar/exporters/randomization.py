@@ -94,11 +94,17 @@ def _of_foot(result: Mapping[str, Any], foot: FootBush, notes: list[Note]) -> li
             row = _row(result.get("parameters", ()), key)
             where = f"{foot.name}.{spring.axis}.{name}"
             relative = _relative(row)
+            if name == "damping" and spring.assumed and relative is not None:
+                mean = float(
+                    row["value"]
+                )  # unlike one number, a range holds what is not known: its width says so
+                text = f"{where}: unidentifiable; the range is as wide as the logs leave it, cut at 0"
+                notes.append(Note("export_wide", "warning", text))
             if relative is None:
                 text = f"{where}: no standard deviation is known, so it is written as 0"
                 notes.append(Note("export_spread", "warning", text))
             shared = _shared(_row(result.get("diagnosis", ()), key), foot.name, name)
-            numbers.append(Number(where, unit, mean, (relative or 0.0) * mean, True, shared))
+            numbers.append(Number(where, unit, mean, (relative or 0.0) * abs(mean), True, shared))
     return numbers
 
 

@@ -25,7 +25,7 @@ def parameter_table(parameters: Sequence[Parameter]) -> Table:
             row.axis,
             Cell(symbol(row.name), hover=row.name),
             unit(row.unit),
-            number(row.value),
+            _value_cell(row),
             number(row.std, 2),
             interval(row.interval95),
             percent(row.relative_std_percent),
@@ -48,9 +48,17 @@ def parameter_table(parameters: Sequence[Parameter]) -> Table:
     )
     remark = (
         "Trust std and the interval: they allow for residuals that are alike from sample to sample. The "
-        "paper's relative deviation takes residuals for white noise and is far too small; here to compare."
+        "paper's relative deviation takes residuals for white noise and is far too small; here to compare. "
+        "A value in brackets is unidentifiable: not to be used."
     )
     return Table.of("Table 1. Identified parameters", columns, rows, remark=remark)
+
+
+def _value_cell(row: Parameter) -> Cell:
+    """The value; in brackets where nobody may use it."""
+    if row.value is None or row.verdict != "unidentifiable":
+        return Cell(number(row.value))
+    return Cell(f"({number(row.value)})", hover="unidentifiable: not to be used")
 
 
 def verdict_cell(row: Parameter | JointParameter) -> Cell:
