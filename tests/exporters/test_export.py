@@ -86,6 +86,7 @@ def test_a_damping_that_no_log_shows_is_not_exported(
     (said,) = [note.text for note in notes if note.code == "export_damping"]
     assert f"95 % from {interval[0]:.4g} to {interval[1]:.4g}" in said
     assert f"= {written:.4g}" in said
+    assert any(said in line for line in json.loads(out.read_text())["plantar"]), "the file says so too"
 
 
 @pytest.mark.parametrize("target", ["mjcf", "sdf", "urdf", "drake", "usd", "openhrp"])
