@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def write(job: Job) -> tuple[str, tuple[Note, ...]]:
-    """The JSON to merge into a robot module; it holds no comments, so a key that no reader asks for, `plantar`, has them."""
+    """The JSON to merge into a robot module; the key `plantar`, which no reader asks for, stands for comments."""
     flexibilities = [
         {"jointName": foot.joint(s.axis), "K": s.stiffness, "C": s.damping, "O": s.offset}
         for foot in job.feet
