@@ -4,21 +4,24 @@ from __future__ import annotations
 
 import json
 import xml.etree.ElementTree as ET
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from command_line import run
 from plantar.comparison.compare import KindScore, compare, pooled
 from plantar.comparison.picture import write_picture
 from plantar.comparison.scenes import AS_IT_WAS, CONTACT, JOINTS, KINDS, scenes
-from plantar.logs.motion_log import MotionLog
+from plantar.conventions import rotation_from_rpy
+from plantar.logs.motion_log import MotionLog, wrench_columns
 from plantar.logs.save import save_log
 from plantar.results.feet import FeetResult, Parameter
 from plantar.robot.model import load_robot
 from plantar.twin.bush import PAPER
 from plantar.twin.play import rolled
-from plantar.twin.replay import Replayed, plan_of
+from plantar.twin.replay import Replayed, plan_of, record_of
 from plantar.twin.robots import hrp2
 from plantar.twin.robots.foot import cut_feet
 from plantar.twin.robots.from_robot import describe
@@ -103,6 +106,24 @@ def test_the_scenes_are_what_the_exporters_write(result: FeetResult, log: Motion
     assert "left_contact_0" in names[CONTACT]
     assert not {"LLEG_BUSH_PITCH", "left_contact_0"} & names[AS_IT_WAS]
     assert "LLEG_BUSH_PITCH" not in names[CONTACT]
+
+
+def test_sensors_with_axes_of_their_own_carry_the_robot_too(log: MotionLog) -> None:
+    """The same forces read in axes whose x points up: the same feet stand, and the same torques are recorded."""
+    robot, turn = hrp2.robot(), np.array([0.4, -np.pi / 2, 0.0])
+    feet, columns = {}, {}
+    for name, foot in robot.feet.items():
+        place = foot.wrench.placement
+        assert not place.rpy.any()
+        feet[name] = replace(foot, wrench=replace(foot.wrench, placement=replace(place, rpy=turn)))
+        read = log.wrench(foot.wrench.name).reshape(-1, 2, 3) @ rotation_from_rpy(turn)
+        columns |= dict(zip(wrench_columns(foot.wrench.name), read.reshape(-1, 6).T, strict=True))
+    turned, told = replace(robot, feet=feet), log.with_columns(columns)
+    plain, again = plan_of(robot, log), plan_of(turned, told)
+    assert again.standing == plain.standing == frozenset(robot.feet)
+    expected = record_of(robot, log, plain).torque
+    for key, torque in record_of(turned, told, again).torque.items():
+        np.testing.assert_allclose(torque, expected[key], atol=1e-9)
 
 
 def test_a_kind_that_falls_has_no_score_over_all_motions() -> None:

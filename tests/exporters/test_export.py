@@ -102,6 +102,17 @@ def test_no_target_holds_an_unidentifiable_damping(target: str, feet: dict[str, 
     assert not any(f"{9.87654 * scale:.6g}" in line for line in held)
 
 
+@pytest.mark.parametrize("target", TARGETS)
+def test_what_was_guessed_goes_along(target: str, feet: dict[str, Any], tmp_path: Path) -> None:
+    if "mujoco" in target or target == "mjcf":
+        pytest.importorskip("mujoco")
+    said = "robot.yaml: marked GUESS and not measured: the left foot's numbers depend on bush"
+    feet["notes"] = [{"code": "guessed_geometry", "severity": "warning", "text": said}]
+    notes = export(feet, target, tmp_path / "a")
+    assert said in [note.text for note in notes if note.severity == "warning"]
+    assert "marked GUESS" in (tmp_path / "a").read_text()
+
+
 def test_choreonoid_takes_means(feet: dict[str, Any], tmp_path: Path) -> None:
     export(feet, "choreonoid", tmp_path / "c.yaml")
     bush = yaml.safe_load((tmp_path / "c.yaml").read_text())["bush"]

@@ -89,7 +89,11 @@ def feet_of_result(
     if not names:
         raise ExportError(located("the result holds no parameters", valid="a result of identify feet"))
     entries = robot_model(result).get("feet", {})
-    notes: list[Note] = []
+    notes = [
+        Note("export_guess", "warning", str(note.get("text")))
+        for note in result.get("notes", ())
+        if isinstance(note, Mapping) and note.get("code") == "guessed_geometry"
+    ]
     feet = []
     for name in names:
         springs = tuple(

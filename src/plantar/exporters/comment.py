@@ -49,7 +49,10 @@ def updated_note(foot: FootBush) -> Note:
 
 
 def plate_note(foot: FootBush) -> Note:
-    text = "the model has no collision shape under the bush; a plate under the sole's outline was added"
+    corners = (foot.sole - foot.centre) @ foot.rotation
+    long, wide = 1e3 * (corners.max(axis=0) - corners.min(axis=0))[:2]
+    text = "the model has no collision shape under the bush; added was a plate of the sole's size in the robot file, "
+    text += f"{long:.0f} x {wide:.0f} mm"
     return Note("export_plate", "info", f"{foot.name}: {text}")
 
 

@@ -15,7 +15,7 @@ from plantar.errors import DataError, MotionError, PlantarError, located
 from plantar.logs.motion_log import MotionLog
 from plantar.motions.plan import RATE, Hand, Plan
 from plantar.results.feet import FeetResult
-from plantar.robot.model import RobotModel
+from plantar.robot.model import Foot, RobotModel
 from plantar.signals.filters import low_pass
 from plantar.twin.bush import Bush, Feet
 from plantar.twin.play import Progress, roll_each
@@ -183,7 +183,7 @@ def plan_of(robot: RobotModel, log: MotionLog, hand: Hand | None = None) -> Plan
     standing = frozenset(
         name
         for name, foot in robot.feet.items()
-        if np.nanmedian(foot.wrench.sign * recorded.wrench(foot.wrench.name)[:, 2]) > least
+        if np.nanmedian(_bush_wrench(robot, foot, recorded)[0][:, 2]) > least
     )
     if not standing:
         raise DataError(located("no foot carries the robot", path=log.source))
@@ -207,12 +207,17 @@ def _torques(robot: RobotModel, log: MotionLog) -> dict[tuple[str, str], Array]:
     """Pitch and roll torque at each foot's bush centre, less its mean over the first second."""
     torques = {}
     for name, foot in robot.feet.items():
-        wrench = foot.wrench.sign * log.wrench(foot.wrench.name)
-        to_bush = (robot.frame(foot.bush)[1].inverse() * robot.frame(foot.wrench.placement)[1]).homogeneous
-        force, torque = wrench[:, :3] @ to_bush[:3, :3].T, wrench[:, 3:] @ to_bush[:3, :3].T
-        torque = _changed(log, torque + np.cross(to_bush[:3, 3], force))
+        torque = _changed(log, _bush_wrench(robot, foot, log)[1])
         torques[name, "pitch"], torques[name, "roll"] = torque[:, 1], torque[:, 0]
     return torques
+
+
+def _bush_wrench(robot: RobotModel, foot: Foot, log: MotionLog) -> tuple[Array, Array]:
+    """Force and torque (n, 3) on the robot at the bush centre, in the bush's own axes [N, N·m]."""
+    wrench = foot.wrench.sign * log.wrench(foot.wrench.name)
+    to_bush = (robot.frame(foot.bush)[1].inverse() * robot.frame(foot.wrench.placement)[1]).homogeneous
+    force, torque = wrench[:, :3] @ to_bush[:3, :3].T, wrench[:, 3:] @ to_bush[:3, :3].T
+    return force, torque + np.cross(to_bush[:3, 3], force)
 
 
 def _changed(log: MotionLog, values: Array) -> Array:
