@@ -228,7 +228,7 @@ def _feet_notes(robot: RobotModel, recordings: Sequence[Recording]) -> list[Note
 
 
 def _robot_model(robot: RobotModel) -> dict[str, Any]:
-    """What an export needs of the robot: its URDF's path, and each foot's geometry."""
+    """What an export needs of the robot: its URDF's path, each foot's geometry, and what its file may be off by."""
 
     def placed(placement: Placement) -> dict[str, Any]:
         return {"link": placement.link, "xyz": placement.xyz.tolist(), "rpy": placement.rpy.tolist()}
@@ -240,4 +240,5 @@ def _robot_model(robot: RobotModel) -> dict[str, Any]:
     return {
         "urdf": str(robot.urdf_path),
         "feet": {name: described(foot) for name, foot in robot.feet.items()},
+        "uncertainty": robot.uncertainty.model_dump(),
     }
