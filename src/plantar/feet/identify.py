@@ -11,6 +11,7 @@ import numpy as np
 
 from plantar.conventions import OFFSET_UNIT
 from plantar.errors import DataError
+from plantar.feet.assess.far_arms import far_arms
 from plantar.feet.assess.feasible_advice import hardly_standing, remedies, with_remedies
 from plantar.feet.assess.residual_table import residual_table
 from plantar.feet.fit.axis import AxisFit
@@ -203,7 +204,7 @@ def _model_notes(fits: Sequence[AxisFit]) -> list[Note]:
             notes.append(Note("model", "info", text))
         if fit.choice is not None and fit.choice.caution is not None:
             notes.append(Note("model_caution", "warning", f"{where}: {fit.choice.caution}"))
-        notes += fit.notes
+        notes += fit.notes or far_arms(fit)
     return notes
 
 
