@@ -77,7 +77,9 @@ def guess_notes(file: str, guesses: Sequence[Guess]) -> list[Note]:
     parts = [f"the {foot} foot's numbers depend on {_listing(names)}" for foot, names in feet.items()]
     if others:
         parts.append(f"all numbers depend on {_listing(others)}")
-    text = f"{file}: marked GUESS and not measured: {'; '.join(parts)}. {_first(guesses)}, then delete the mark"
+    text = (
+        f"{file}: marked GUESS and not measured: {'; '.join(parts)}. {_first(guesses)}, then delete the mark"
+    )
     return [Note("guessed_geometry", "warning", text)]
 
 

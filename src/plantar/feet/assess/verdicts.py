@@ -87,7 +87,9 @@ def judge(
             f"{_advice(foot, axis, term)}: the centre of pressure has to stay inside the sole",
         )
     if evidence.seconds < SHORT_SECONDS:
-        told = f"only {evidence.seconds:.1f} s of samples are used, too few to show what drifts"
+        told = (
+            f"only {evidence.seconds:.1f} s of samples are used, too short to tell slow drift from the foot"
+        )
         return "weak", f"{told} (valid: {SHORT_SECONDS:.0f} s or more)", advice
     if width > USABLE_WIDTH:
         return "weak", f"the 95 % interval is ±{100 * width:.0f} %; the motion gave {motion}", advice
