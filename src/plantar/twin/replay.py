@@ -18,6 +18,7 @@ from plantar.results.feet import FeetResult
 from plantar.robot.model import Foot, RobotModel
 from plantar.signals.filters import low_pass
 from plantar.twin.bush import Bush, Feet
+from plantar.twin.holding_torques import holding_torques
 from plantar.twin.play import Progress, roll_each
 from plantar.twin.robots.foot import cut_feet
 from plantar.twin.robots.from_robot import describe
@@ -167,16 +168,18 @@ def feet_of(result: FeetResult) -> Feet:
 def plan_of(robot: RobotModel, log: MotionLog, hand: Hand | None = None) -> Plan:
     """The recorded joints as a plan at 200 Hz, from where the first sample stands on flat soles.
 
-    Where efforts were recorded, a servo's give under them is added, so that it stands where the recorded one did.
+    A servo's give is added, so that it stands where the recorded one did: under the recorded efforts, or, of a joint
+    that has none, under those that hold the robot against gravity on the recorded wrenches.
     """
     time = np.arange(int((log.time[-1] - log.time[0]) * RATE + 1e-6) + 1) / RATE
     recorded = _at(log, log.time[0] + time)
     positions = recorded.positions(robot)
     limits = {body.joint: body.effort for body in describe(robot).bodies[1:]}
+    held = holding_torques(robot, recorded)
     for place, joint in enumerate(robot.joint_names):
         effort = recorded.joint(joint, "effort")
-        if effort is not None:
-            positions[:, place] += np.nan_to_num(effort) * SERVO_ANGLE / limits[joint]
+        effort = held[:, place] if effort is None else np.nan_to_num(effort)
+        positions[:, place] += effort * SERVO_ANGLE / limits[joint]
     positions = low_pass(positions, 1 / RATE, SMOOTH)
     soles = flat_soles(robot, recorded.positions(robot)[0])
     least = LOADED * robot.mass * GRAVITY

@@ -15,7 +15,7 @@ LEAST_SECONDS = 3.0  # of used samples
 SHORT_SECONDS = 10.0  # likewise: in less, what is slower than 0.1 Hz, as drift is, has not shown itself
 LEAST_EXPLAINED = 0.3  # share of the torque's variance that the model must explain
 GOOD_EXPLAINED = 0.8
-SIGNS = "check sign and rpy of this foot's wrench, rpy of the IMU, and the signs of the joints: no motion helps here"
+SIGNS = "check sign and rpy of this foot's wrench, link and rpy of the IMU, signs of the joints: no motion helps here"
 LEANING = 0.05  # of the time: shorter leans hardly move what comes behind them
 
 SWAY = {
