@@ -23,6 +23,7 @@ from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.results.feet import Diagnosis, Parameter
+from plantar.robot.guesses import Guess
 from plantar.sensors.delays.sensor_delay import SensorDelay
 
 KNOWN = FeetSettings(model="kelvin_voigt", wrench_delay=0.0)
@@ -49,6 +50,9 @@ def test_a_delay_is_asked_of_sensors_that_can_show_it(tmp_path: Path) -> None:
     assert "delay" not in remedies(KNOWN, UNKNOWN, robot, seeing), "arm sweeps, as ever"
     shown = SensorDelay(0.002, 0.001, np.inf, True, UNKNOWN.note)
     assert "± 2.0 ms" in remedies(KNOWN, shown, robot, seeing)["delay"]
+    assert "arm sweeps" in remedies(KNOWN, shown, robot, seeing)["delay"]
+    unsure = replace(robot, guesses=(Guess("imu", "its name"),))
+    assert "measure where the IMU sits" in remedies(KNOWN, shown, unsure, seeing)["delay"]
 
 
 def test_what_was_tried_is_not_advised(tmp_path: Path) -> None:

@@ -39,7 +39,10 @@ def remedies(
         )
     elif delay.measured and not delay.doubtful:
         told = f"these logs show the force sensors' delay to ± {1e3 * NORMAL95 * delay.std:.1f} ms"
-        found["delay"] = f"{told}: longer arm sweeps at 0.3 to 1 Hz would tell it better"
+        better = "longer arm sweeps at 0.3 to 1 Hz would tell it better"
+        if any(guess.key == "imu" for guess in robot.guesses):  # the delay is found from what the IMU feels
+            better = "measure where the IMU sits, which is marked GUESS: then they tell it better"
+        found["delay"] = f"{told}: {better}"
     return found
 
 
