@@ -28,6 +28,7 @@ from data_faults import DATA_FAULTS
 from designed_motions import DESIGNED_MOTIONS
 from drawn import DRAWN
 from fleet_statistics import FLEET
+from handed_on import HANDED_ON
 from made_cheaper import MADE_CHEAPER
 from mutant import Mutant, StaleMutant
 from once_unnoticed import ONCE_UNNOTICED
@@ -44,6 +45,7 @@ LISTS = {
     "data_faults": DATA_FAULTS,
     "designed_motions": DESIGNED_MOTIONS,
     "fleet": FLEET,
+    "handed_on": HANDED_ON,
 }
 LEAST_CAUGHT = 0.85
 PATIENCE, LEAST_PATIENCE = 20.0, 300.0  # usual seconds of the tests, and seconds: beyond, a mutant hangs

@@ -49,8 +49,7 @@ def test_a_delay_is_asked_of_sensors_that_can_show_it(tmp_path: Path) -> None:
     ).fitted
     assert "delay" not in remedies(KNOWN, UNKNOWN, robot, seeing), "arm sweeps, as ever"
     shown = SensorDelay(0.002, 0.001, np.inf, True, UNKNOWN.note)
-    assert "± 2.0 ms" in remedies(KNOWN, shown, robot, seeing)["delay"]
-    assert "arm sweeps" in remedies(KNOWN, shown, robot, seeing)["delay"]
+    assert "arm sweeps at 0.3 to 1 Hz for longer" in remedies(KNOWN, shown, robot, seeing)["delay"]
     unsure = replace(robot, guesses=(Guess("imu", "its name"),))
     assert "measure where the IMU sits" in remedies(KNOWN, shown, unsure, seeing)["delay"]
 

@@ -116,7 +116,8 @@ def _import(tree: UrdfTree, compiler: ET.Element, notes: list[Note]) -> Any:
     try:
         return spec()
     except (ValueError, mujoco.FatalError) as error:
-        text = f"inertias balanced and bounded, for MuJoCo says: {' '.join(str(error).split())[:120]}"
+        text = "moments of inertia that no body can have were set to their mean, masses below 0.1 g and moments below "
+        text += f"1e-7 kg·m² raised to that: MuJoCo says {' '.join(str(error).split())[:120]}"
         compiler.attrib |= {"balanceinertia": "true", "boundmass": "1e-4", "boundinertia": "1e-7"}
         made = spec()
         notes.append(Note("export_inertia", "warning", text))

@@ -8,7 +8,6 @@ from typing import Final
 
 import numpy as np
 
-from plantar.conventions import NORMAL95
 from plantar.feet.assess.diagnosis import REMEDY
 from plantar.feet.recording import Recording
 from plantar.feet.settings import AUTOMATIC, FeetSettings
@@ -38,11 +37,10 @@ def remedies(
             f"record the {missing} of the IMU: without it no log shows the force sensors' delay; {known}"
         )
     elif delay.measured and not delay.doubtful:
-        told = f"these logs show the force sensors' delay to ± {1e3 * NORMAL95 * delay.std:.1f} ms"
-        better = "longer arm sweeps at 0.3 to 1 Hz would tell it better"
+        better = "record arm sweeps at 0.3 to 1 Hz for longer"
         if any(guess.key == "imu" for guess in robot.guesses):  # the delay is found from what the IMU feels
-            better = "measure where the IMU sits, which is marked GUESS: then they tell it better"
-        found["delay"] = f"{told}: {better}"
+            better = "measure where the IMU sits, which is marked GUESS"
+        found["delay"] = f"{better}: these logs show the force sensors' delay, but not well"
     return found
 
 
