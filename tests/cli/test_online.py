@@ -36,6 +36,13 @@ def test_a_log_is_replayed_and_told_as_tables(
     assert model.read_text().startswith("plantar.foot_estimator/1")
 
 
+def test_the_delay_is_told_in_ms_and_written_in_s(campaign: Path, tmp_path: Path) -> None:
+    model = tmp_path / "biped.estimator"
+    words = ("--wrench-delay", 7.5, "--write-model", model, "-q")
+    assert run("online", campaign / "robot.yaml", campaign / "first.csv", *words) == 0
+    assert "wrench_delay 0.0075 0" in model.read_text()
+
+
 def test_a_joint_that_the_log_lacks_is_noted(
     campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -51,7 +58,7 @@ def test_what_is_wrong_is_one_line(
     campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert "does not exist" in refused(capsys, "online", campaign / "robot.yaml", tmp_path / "none.csv", "-q")
-    words = ("online", campaign / "robot.yaml", campaign / "first.csv", "--wrench-delay", 2, "-q")
+    words = ("online", campaign / "robot.yaml", campaign / "first.csv", "--wrench-delay", 2000, "-q")
     assert "wrench_delay" in refused(capsys, *words)
 
 

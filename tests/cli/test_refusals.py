@@ -126,6 +126,17 @@ def test_a_setting_out_of_its_range_is_one_line(
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.parametrize("verb", ["identify feet", "online", "fleet run"])
+def test_a_delay_in_seconds_is_not_taken_for_milliseconds(
+    verb: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = {"fleet run": ["m.csv", "--out", "x"], "online": ["r.yaml", "l.csv"]}
+    given = [*verb.split(), *words.get(verb, ["r.yaml", "l.csv", "--out", "x"]), "--wrench-delay", "0.0075"]
+    assert run(*given) == 2
+    said = " ".join(capsys.readouterr().err.replace("│", " ").split())
+    assert "the unit is ms (valid: 7.5 for 0.0075 s" in said
+
+
 def test_no_traceback_in_a_real_process(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "plantar", "inspect", str(tmp_path / "none.yaml"), "none.csv"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)

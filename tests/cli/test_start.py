@@ -5,17 +5,21 @@ from __future__ import annotations
 import subprocess
 import sys
 from importlib import import_module
+from pathlib import Path
 from typing import get_type_hints
 
+import numpy as np
 import pytest
 from rich.markup import render
 
-from command_line import run
+from command_line import run, write_csv
 from plantar import __version__
 from plantar.cli import COMMANDS
 from plantar.cli.console.advice import advised
 from plantar.cli.console.terminal import console, table
+from plantar.logs.readers import open_log
 from plantar.results.feet import Parameter
+from plantar.robot.model import load_robot
 
 
 def test_units_in_brackets_are_text_not_markup(capsys: pytest.CaptureFixture[str]) -> None:
@@ -112,3 +116,21 @@ def test_public_names() -> None:
             assert getattr(plantar, name) is not None
     with pytest.raises(AttributeError, match="no attribute 'nonsense'"):
         _ = plantar.nonsense
+
+
+def test_inspect_says_once_what_is_wrong_and_what_the_weight_holds(
+    campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The right foot carries all from second 4 to 10, while the left sensor, not zeroed, reads 80 N and more."""
+    log = open_log(campaign / "first.csv", load_robot(campaign / "robot.yaml"))
+    lifted = (log.time > 4.0) & (log.time < 10.0)
+    left, right = (log.column(f"wrench.{foot}.force.z") for foot in ("left", "right"))
+    columns = {"wrench.left.force.z": np.where(lifted, 0.0, left) + 40.0}
+    columns["wrench.right.force.z"] = np.where(lifted, left + right, right)
+    file = write_csv(log.with_columns(columns), tmp_path / "lifted.csv")
+    assert run("inspect", campaign / "robot.yaml", file) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    assert said.count("hangs in the air, so its zero is off") == 1
+    assert "kg on average, in which the zeros named below are still inside" in said
+    assert run("inspect", campaign / "robot.yaml", campaign / "first.csv") == 0
+    assert "kg on average; the URDF weighs" in " ".join(capsys.readouterr().out.split())

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import xml.etree.ElementTree as ET
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,13 +15,15 @@ from plantar.comparison.compare import KindScore, compare, pooled
 from plantar.comparison.picture import write_picture
 from plantar.comparison.scenes import AS_IT_WAS, CONTACT, JOINTS, KINDS, scenes
 from plantar.contact.balance import soles_in_root
-from plantar.logs.motion_log import MotionLog
+from plantar.conventions import Array, rotation_from_rpy
+from plantar.logs.motion_log import MotionLog, wrench_columns
 from plantar.logs.save import save_log
+from plantar.motions.plan import Plan
 from plantar.results.feet import FeetResult, Parameter
-from plantar.robot.model import load_robot
+from plantar.robot.model import RobotModel, load_robot
 from plantar.twin.bush import PAPER
 from plantar.twin.play import rolled
-from plantar.twin.replay import Replayed, plan_of
+from plantar.twin.replay import Replayed, plan_of, record_of
 from plantar.twin.robots import hrp2
 from plantar.twin.robots.foot import cut_feet
 from plantar.twin.robots.from_robot import describe
@@ -62,6 +65,13 @@ def result(tmp_path_factory: pytest.TempPathFactory) -> FeetResult:
     )  # fmt: skip
     made.save(folder)
     return made
+
+
+def log_positions(robot: RobotModel, log: MotionLog, like: Plan) -> Array:
+    """The recorded joint positions at a plan's times, (n, joints)."""
+    return np.column_stack(
+        [np.interp(like.time, log.time - log.time[0], row) for row in log.positions(robot).T]
+    )
 
 
 @pytest.fixture(scope="module")
@@ -141,6 +151,33 @@ def test_a_robot_starts_with_no_sole_in_the_ground(log: MotionLog) -> None:
         ]
         assert min(lowest) == pytest.approx(0.0, abs=1e-9), side
         assert max(lowest) > 1e-3, "the other sole is above the ground"
+
+
+def test_servos_give_as_much_where_no_efforts_were_recorded(log: MotionLog) -> None:
+    """A servo gives by 10 mrad at full torque: what holds the robot has to be known to some per cent of that."""
+    robot, columns = hrp2.robot(), {name: v for name, v in log.columns.items() if not name.endswith("effort")}
+    recorded, computed = plan_of(robot, log), plan_of(robot, replace(log, columns=columns))
+    given = np.abs(recorded.positions - log_positions(robot, log, recorded)).max()
+    assert given > 1e-3
+    np.testing.assert_allclose(computed.positions, recorded.positions, atol=0.1 * given)
+
+
+def test_sensors_with_axes_of_their_own_carry_the_robot_too(log: MotionLog) -> None:
+    """The same forces read in axes whose x points up: the same feet stand, and the same torques are recorded."""
+    robot, turn = hrp2.robot(), np.array([0.4, -np.pi / 2, 0.0])
+    feet, columns = {}, {}
+    for name, foot in robot.feet.items():
+        place = foot.wrench.placement
+        assert not place.rpy.any()
+        feet[name] = replace(foot, wrench=replace(foot.wrench, placement=replace(place, rpy=turn)))
+        read = log.wrench(foot.wrench.name).reshape(-1, 2, 3) @ rotation_from_rpy(turn)
+        columns |= dict(zip(wrench_columns(foot.wrench.name), read.reshape(-1, 6).T, strict=True))
+    turned, told = replace(robot, feet=feet), log.with_columns(columns)
+    plain, again = plan_of(robot, log), plan_of(turned, told)
+    assert again.standing == plain.standing == frozenset(robot.feet)
+    expected = record_of(robot, log, plain).torque
+    for key, torque in record_of(turned, told, again).torque.items():
+        np.testing.assert_allclose(torque, expected[key], atol=1e-9)
 
 
 def test_a_kind_that_falls_has_no_score_over_all_motions() -> None:

@@ -18,10 +18,11 @@ from export_robots import CENTRE, TRUTH, bush_rotation, result, write_mjcf, writ
 from plantar.conventions import GRAVITY, Axis
 from plantar.errors import ExportError
 from plantar.exporters import export
-from plantar.exporters.bush import FootBush, Spring
+from plantar.exporters.bush import FootBush
 from plantar.exporters.contact.alone import Measured, measured
 from plantar.exporters.contact.fit import LOADS, STEPS, fitted
 from plantar.exporters.contact.points import EDGES, Sides, points_for, sides_of
+from plantar.exporters.spring import Spring
 
 mujoco = pytest.importorskip("mujoco")
 ROTATIONS: tuple[Axis, ...] = ("pitch", "roll")

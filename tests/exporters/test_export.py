@@ -61,6 +61,58 @@ def test_mc_rtc_flexibilities_are_the_identified_numbers(feet: dict[str, Any], t
     assert all(e["O"] == 0 for e in json.loads((tmp_path / "b.json").read_text())["flexibilities"])
 
 
+def spoiled(feet: dict[str, Any], value: float, low: float, high: float) -> dict[str, Any]:
+    """The feet, with a damping of left pitch that no log shows."""
+    made = copy.deepcopy(feet)
+    row = made["parameters"][3]
+    assert (row["foot"], row["axis"], row["name"]) == ("left", "pitch", "damping")
+    row.update(value=value, interval95=[low, high], std=(high - low) / 4, verdict="unidentifiable")
+    return made
+
+
+@pytest.mark.parametrize(
+    ("interval", "written"),
+    [((-12.0, 31.0), 0.96), ((22.6, 95.8), 22.6), ((0.1, 0.8), 0.8), ((-9.0, -1.0), 0.96)],
+)
+def test_a_damping_that_no_log_shows_is_not_exported(
+    interval: tuple[float, float], written: float, feet: dict[str, Any], tmp_path: Path
+) -> None:
+    given = spoiled(feet, sum(interval) / 2, *interval)
+    out = tmp_path / "a.json"
+    notes = export(given, "mc_rtc", out)
+    entries = {e["jointName"]: e for e in json.loads(out.read_text())["flexibilities"]}
+    assert entries["LLEG_BUSH_PITCH"]["C"] == pytest.approx(written)
+    assert entries["LLEG_BUSH_ROLL"]["C"] == TRUTH["left"]["roll"][1]
+    (said,) = [note.text for note in notes if note.code == "export_damping"]
+    assert f"95 % from {interval[0]:.4g} to {interval[1]:.4g}" in said
+    assert f"= {written:.4g}" in said
+    assert any(said in line for line in json.loads(out.read_text())["plantar"]), "the file says so too"
+
+
+@pytest.mark.parametrize("target", ["mjcf", "sdf", "urdf", "drake", "usd", "openhrp"])
+def test_no_target_holds_an_unidentifiable_damping(target: str, feet: dict[str, Any], tmp_path: Path) -> None:
+    if target == "mjcf":
+        pytest.importorskip("mujoco")
+    out = tmp_path / "a"
+    export(spoiled(feet, 9.87654, -12.0, 31.0), target, out)
+    text = out.read_text()
+    scale = math.pi / 180 if target == "usd" else 1
+    assert "0.96" in text if scale == 1 else f"{0.96 * scale:.9g}" in text
+    held = [line for line in text.splitlines() if "unidentifiable" not in line]
+    assert not any(f"{9.87654 * scale:.6g}" in line for line in held)
+
+
+@pytest.mark.parametrize("target", TARGETS)
+def test_what_was_guessed_goes_along(target: str, feet: dict[str, Any], tmp_path: Path) -> None:
+    if "mujoco" in target or target == "mjcf":
+        pytest.importorskip("mujoco")
+    said = "robot.yaml: marked GUESS and not measured: the left foot's numbers depend on bush"
+    feet["notes"] = [{"code": "guessed_geometry", "severity": "warning", "text": said}]
+    notes = export(feet, target, tmp_path / "a")
+    assert said in [note.text for note in notes if note.severity == "warning"]
+    assert "marked GUESS" in (tmp_path / "a").read_text()
+
+
 def test_choreonoid_takes_means(feet: dict[str, Any], tmp_path: Path) -> None:
     export(feet, "choreonoid", tmp_path / "c.yaml")
     bush = yaml.safe_load((tmp_path / "c.yaml").read_text())["bush"]

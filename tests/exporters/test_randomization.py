@@ -54,6 +54,7 @@ def test_numbers_that_share_a_cause_are_correlated(feet: dict[str, Any], tmp_pat
 
 
 def test_means_and_deviations_are_the_identified_ones(feet: dict[str, Any], tmp_path: Path) -> None:
+    feet["robot_model"]["uncertainty"] = {"imu_mount": 0.0, "encoder_zero": 0.0}
     made, place = ranges(feet, tmp_path)
     rows = made["parameters"]
     for foot, axes in TRUTH.items():
@@ -122,3 +123,64 @@ def test_what_has_no_deviation_is_said(feet: dict[str, Any], tmp_path: Path) -> 
     assert unknown[0].startswith("right.roll.damping")
     made, place = ranges(feet, tmp_path)
     assert made["parameters"][place["left.pitch.stiffness"]]["std"] == pytest.approx(480 * 0.04 / 3.92)
+
+
+def test_a_range_is_as_wide_as_the_logs_leave_it(feet: dict[str, Any], tmp_path: Path) -> None:
+    row = feet["parameters"][3]
+    assert (row["axis"], row["name"]) == ("pitch", "damping")
+    row.update(value=9.5, std=11.0, interval95=[-12.0, 31.0], verdict="unidentifiable")
+    made, place = ranges(feet, tmp_path)
+    found = made["parameters"][place["left.pitch.damping"]]
+    assert (found["mean"], found["std"], found["above"]) == pytest.approx((9.5, 11.0, 0.0))
+
+
+def test_offsets_hold_what_no_recording_shows(feet: dict[str, Any], tmp_path: Path) -> None:
+    """A lean of the IMU by its mount's deviation moves each offset by K times that, all of one axis together."""
+    feet["robot_model"]["uncertainty"] = {"imu_mount": 0.02, "encoder_zero": 0.0}
+    made, place = ranges(feet, tmp_path)
+    scatter = np.std([-0.5, 0.5], ddof=1)
+    for foot in ("left", "right"):
+        k = TRUTH[foot]["pitch"][0]
+        found = made["parameters"][place[f"{foot}.pitch.offset"]]
+        assert found["std"] == pytest.approx(np.hypot(scatter, 0.02 * k))
+    both = made["correlation"][place["left.pitch.offset"]][place["right.pitch.offset"]]
+    leans = [0.02 * TRUTH[foot]["pitch"][0] for foot in ("left", "right")]
+    assert both == pytest.approx(np.prod([lean / np.hypot(scatter, lean) for lean in leans]), abs=1e-4)
+    assert made["correlation"][place["left.pitch.offset"]][place["left.roll.offset"]] == 0
+    feet["robot_model"]["uncertainty"] = {"imu_mount": 0.0, "encoder_zero": 0.0}
+    made, place = ranges(feet, tmp_path)
+    assert made["parameters"][place["left.pitch.offset"]]["std"] == pytest.approx(scatter)
+
+
+def test_a_vertical_stiffness_that_only_the_sum_shows_is_one_number(
+    feet: dict[str, Any], tmp_path: Path
+) -> None:
+    for row in [row for row in feet["parameters"] if row["foot"] == "left" and row["axis"] == "z"]:
+        feet["parameters"].append({**row, "foot": "right"})
+    name = "left.z.stiffness", "right.z.stiffness"
+    made, place = ranges(feet, tmp_path)
+    assert made["correlation"][place[name[0]]][place[name[1]]] == 0
+    feet["notes"] = [{"code": "z_sum_only", "severity": "info", "text": "only the sum"}]
+    made, place = ranges(feet, tmp_path)
+    assert made["correlation"][place[name[0]]][place[name[1]]] == 1
+
+
+def test_the_page_sets_the_friction_that_contacts_have(feet: dict[str, Any], tmp_path: Path) -> None:
+    """In a model whose feet have a friction of their own, which is larger than any that is drawn."""
+    mujoco = pytest.importorskip("mujoco")
+    export(feet, "mjcf", tmp_path / "robot.xml")
+    page = ROOT / "docs" / "how_to" / "randomisation.md"
+    line = next(
+        row
+        for block in blocks(page)
+        for row in block.text.splitlines()
+        if "friction[" in row and " = " in row
+    )
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "robot.xml"))
+    assert model.geom_friction[:, 0].max() == 1.0
+    exec(line, {"model": model, "random": np.random.default_rng(0), "low": 0.4, "high": 0.5})
+    data = mujoco.MjData(model)
+    for _ in range(50):
+        mujoco.mj_step(model, data)
+    assert data.ncon > 0
+    assert all(0.4 <= contact.friction[0] <= 0.5 for contact in data.contact)

@@ -6,6 +6,7 @@ torque over the settled angle, C comes from the decay after release.
 
 from __future__ import annotations
 
+import re
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
@@ -162,6 +163,25 @@ def test_a_sole_that_is_a_body_of_its_own_goes_along_wherever_its_frame_stands(t
     export(result(write_urdf(tmp_path / "b.urdf")), "mjcf", tmp_path / "out.xml", model=source)
     model = mujoco.MjModel.from_xml_path(str(tmp_path / "out.xml"))
     assert model.body(model.body("left_plate").parentid[0]).name == "left_bush_sole"
+
+
+def test_a_urdfs_contact_is_stiff_and_said_to_be(tmp_path: Path) -> None:
+    """Time constant of every contact of a standing robot, shapes of the URDF or plates, and what the note says."""
+    mujoco = pytest.importorskip("mujoco")
+    urdf = write_urdf(tmp_path / "b.urdf")
+    for text in (urdf.read_text(), re.sub(r'<collision name="foot">.*?</collision>', "", urdf.read_text())):
+        urdf.write_text(text)
+        notes = export(result(urdf), "mjcf", tmp_path / "o.xml")
+        model = mujoco.MjModel.from_xml_path(str(tmp_path / "o.xml"))
+        data = mujoco.MjData(model)
+        for _ in range(50):
+            mujoco.mj_step(model, data)
+        assert data.ncon > 0
+        assert {float(contact.solref[0]) for contact in data.contact} == {0.004}
+        assert any("contact of 4 ms" in note.text for note in notes)
+    assert any("200 x 120 mm" in note.text for note in notes if note.code == "export_plate")
+    softer = export(result(urdf), "mjcf", tmp_path / "own.xml", model=write_mjcf(tmp_path / "m.xml"))
+    assert any("as soft as the model has it" in note.text for note in softer)
 
 
 def test_mujoco_export_onto_its_own_export_updates_the_values(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ from biped_robot import make_robot, robot_entry
 from feet_trials import LINEAR
 from plantar.errors import DataError
 from plantar.feet.identify import delay_estimate, identify_feet
-from plantar.feet.validate import validate_feet
+from plantar.feet.validate import scored_feet, validate_feet
 from plantar.notes import Note
 from plantar.results.feet import DelayEstimate
 from plantar.robot.model import RobotModel
@@ -46,6 +46,20 @@ def test_a_log_too_short_to_score_is_refused(robot: RobotModel) -> None:
     found = identify_feet(robot, [record(sway("a", 1, duration=8.0))], settings=LINEAR)
     with pytest.raises(DataError, match="no log has samples"):
         validate_feet(found, robot, [record(sway("b", 2, duration=1.2))])
+
+
+def test_a_foot_that_cannot_be_scored_is_named_with_the_reasons(robot: RobotModel) -> None:
+    found = identify_feet(robot, [record(sway("a", 1, duration=8.0))], settings=LINEAR)
+    log = record(sway("b", 2, duration=10.0))
+    lifted = {name: 0.0 * values for name, values in log.columns.items() if name.startswith("wrench.right")}
+    held = {name: values + log.columns[name.replace("left", "right")] for name, values in log.columns.items()
+            if name == "wrench.left.force.z"}  # fmt: skip
+    rows, notes = scored_feet(found, robot, [log, replace(log.with_columns(lifted | held), name="c")])
+    assert {(row.motion, row.foot) for row in rows} >= {("b", "left"), ("b", "right")}
+    told = [note.text for note in notes if "the right foot is not scored" in note.text]
+    assert len(told) == 1
+    assert told[0].startswith("c: ")
+    assert "in the air" in told[0]
 
 
 def test_the_results_delays_are_taken_off_unseen_logs(robot: RobotModel) -> None:

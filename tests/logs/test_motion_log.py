@@ -146,3 +146,15 @@ def test_an_imu_is_there_with_all_its_columns_or_not_at_all() -> None:
     assert log.has_imu("chest", "angular_velocity")
     assert not log.has_imu("chest", "angular_velocity", "orientation")
     assert not log.has_imu("head", "angular_velocity")
+
+
+def test_joints_that_no_foot_needs_are_told_in_short(robot: RobotModel) -> None:
+    time = np.linspace(0.0, 1.0, 11)
+    named = {f"joint.{name}.position": time for name in robot.joint_names}
+    without = {name: values for name, values in named.items() if "neck" not in name}
+    (note,) = MotionLog("a", time, without).joint_notes(robot)
+    assert note.text.endswith("neck; none lies between IMU and feet")
+    lacking = {name: values for name, values in without.items() if "left_ankle_roll" not in name}
+    assert len(lacking) < len(without)
+    (note,) = MotionLog("a", time, lacking).joint_notes(robot)
+    assert "none lies" not in note.text

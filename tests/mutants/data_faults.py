@@ -11,7 +11,7 @@ DATA_FAULTS = (
     ),
     Mutant(
         "feet/assess/zero_jumps.py", "whatever moves is a jump",
-        "row is not None and _is_all(missed, row, block)", "row is not None",
+        "if most and size > WORTH", "if size > WORTH",
         ("feet/assess/test_zero_jumps.py",),
     ),
     Mutant(

@@ -29,6 +29,7 @@ from designed_motions import DESIGNED_MOTIONS
 from drawn import DRAWN
 from engine_exports import ENGINE_EXPORTS
 from fleet_statistics import FLEET
+from handed_on import HANDED_ON
 from made_cheaper import MADE_CHEAPER
 from mutant import Mutant, StaleMutant
 from once_unnoticed import ONCE_UNNOTICED
@@ -46,6 +47,7 @@ LISTS = {
     "designed_motions": DESIGNED_MOTIONS,
     "fleet": FLEET,
     "engine_exports": ENGINE_EXPORTS,
+    "handed_on": HANDED_ON,
 }
 LEAST_CAUGHT = 0.85
 PATIENCE, LEAST_PATIENCE = 20.0, 300.0  # usual seconds of the tests, and seconds: beyond, a mutant hangs

@@ -9,6 +9,7 @@ from data_faults import DATA_FAULTS
 from designed_motions import DESIGNED_MOTIONS
 from drawn import DRAWN
 from fleet_statistics import FLEET
+from handed_on import HANDED_ON
 from made_cheaper import MADE_CHEAPER
 from mutant import Mutant
 from once_unnoticed import ONCE_UNNOTICED
@@ -19,7 +20,7 @@ SOURCE = TESTS.parent / "src" / "plantar"
 
 @pytest.mark.parametrize(
     "mutant",
-    [*DRAWN, *MADE_CHEAPER, *ONCE_UNNOTICED, *DATA_FAULTS, *DESIGNED_MOTIONS, *FLEET],
+    [*DRAWN, *MADE_CHEAPER, *ONCE_UNNOTICED, *DATA_FAULTS, *DESIGNED_MOTIONS, *FLEET, *HANDED_ON],
     ids=lambda each: each.name,
 )
 def test_no_mutant_is_stale(mutant: Mutant) -> None:

@@ -6,8 +6,9 @@ import math
 
 import pytest
 
-from plantar.report.tables import offset_table, validation_table
-from plantar.results.feet import Offset, ValidationRow
+from plantar.report.tables import offset_table, parameter_table, settings_table, validation_table
+from plantar.report.verdict import statement
+from plantar.results.feet import Offset, Parameter, ValidationRow
 
 
 def test_an_offsets_plus_minus_is_half_of_the_95_percent_interval() -> None:
@@ -44,3 +45,38 @@ def test_errors_of_torques_stand_under_newton_metres(kind: str) -> None:
         "mean |error| of the offset alone": ("0.500", "N·m"),
         "skill": ("75 % better", ""),
     }
+
+
+def row(name: str, verdict: str) -> Parameter:
+    return Parameter("left", "pitch", name, "", 59.2, 18.0, (22.6, 95.8), 7.0, verdict, "wide")  # type: ignore[arg-type]
+
+
+def test_a_value_that_nobody_may_use_is_in_brackets() -> None:
+    shown = [
+        cells[4].text
+        for cells in parameter_table([row("stiffness", "weak"), row("damping", "unidentifiable")]).rows
+    ]
+    assert shown == ["59.20", "(59.20)"]
+
+
+def test_settings_are_rounded_and_have_units() -> None:
+    table = settings_table(
+        {"cutoff": 2.4607377956741168, "model": "auto", "nested": {"window": 0.5}, "wrench_delay": None}
+    )
+    shown = {cells[0].text: cells[1].text for cells in table.rows}
+    assert shown["cutoff"] == "2.461 Hz"
+    assert shown["model"] == "auto"
+    assert shown["nested.window"] == "0.5000"
+
+
+@pytest.mark.parametrize(
+    ("verdicts", "mark"),
+    [
+        (("usable", "usable"), "good"),
+        (("weak", "unidentifiable"), "weak"),
+        (("unidentifiable", "unidentifiable"), "bad"),
+    ],
+)
+def test_an_axis_is_red_where_neither_number_can_be_told(verdicts: tuple[str, str], mark: str) -> None:
+    rows = [row(name, verdict) for name, verdict in zip(("stiffness", "damping"), verdicts, strict=True)]
+    assert statement("left pitch", "pitch", rows).mark == mark

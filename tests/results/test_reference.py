@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -34,6 +35,16 @@ def test_a_result_stands_among_its_neighbours_by_stiffness() -> None:
     assert (own.robot, own.rotation, own.damping, own.z) == ("this result, left", 750.0, 20.0, None)
     assert softer.rotation < 750 < stiffer.rotation
     assert not any(line.own for line in neighbours())
+
+
+def test_what_no_log_shows_is_nobodys_neighbour() -> None:
+    doubtful = [
+        replace(r, verdict="unidentifiable") if r.name == "damping" and r.axis == "roll" else r for r in OWN
+    ]
+    (own,) = [line.reference for line in neighbours(doubtful) if line.own]
+    assert own.damping is None, "the mean of one number and of one that is not known is no number"
+    unknown = [replace(r, verdict="unidentifiable") if r.name == "stiffness" else r for r in OWN]
+    assert not any(line.own for line in neighbours(unknown))
 
 
 def test_every_reference_says_where_it_is_from_and_whether_it_was_measured() -> None:

@@ -6,6 +6,7 @@ import pytest
 
 from biped import record, sway
 from biped_robot import make_robot
+from plantar.contact.phases import Phase
 from plantar.feet.identify import identify_feet
 from plantar.feet.settings import FeetSettings
 from plantar.results.usage import used_shares
@@ -21,3 +22,12 @@ def test_every_second_is_accounted_for(tmp_path: object) -> None:
     assert 12 < left["served"] < 17.5
     assert "in the air" in left["reasons"]
     assert result.diagnosis, "what limits each number is told"
+
+
+def test_a_reason_of_no_time_is_not_told() -> None:
+    phases = [
+        Phase("a", "left", 0.0, 20.0, "double", True, None),
+        Phase("a", "left", 20.0, 20.02, "double", False, "gap"),
+    ]
+    assert [row["reasons"] for row in used_shares(phases)] == [""]
+    assert "gap (0.1 s)" in used_shares([Phase("a", "left", 0.0, 0.06, "double", False, "gap")])[0]["reasons"]

@@ -50,8 +50,8 @@ def test_the_note_says_which_numbers_hang_on_what() -> None:
     (note,) = guess_notes("robot.yaml", read_guesses(TEXT.encode()))
     assert note.code == "guessed_geometry"
     assert note.severity == "warning"
-    assert "the left foot's numbers hang on bush (± 20 mm) and sole" in note.text
-    assert "all numbers hang on name and imu" in note.text
+    assert "the left foot's numbers depend on bush (± 20 mm) and sole" in note.text
+    assert "all numbers depend on name and imu" in note.text
 
 
 def test_every_result_names_what_is_still_a_guess(tmp_path: Path) -> None:
@@ -71,6 +71,6 @@ def test_every_result_names_what_is_still_a_guess(tmp_path: Path) -> None:
         prepare_logs(robot, [log], [], settings, lambda _: None).notes,
     ):
         (said,) = [note for note in notes if note.code == "guessed_geometry"]
-        assert "left foot's numbers hang on bush (± 20 mm)" in said.text
+        assert "left foot's numbers depend on bush (± 20 mm)" in said.text
     path.write_text("\n".join(lines))
     assert load_robot(path).guesses == ()

@@ -34,5 +34,5 @@ def run(
     notes = export(result, to, out, model, with_offset=with_offset)
     if not quiet:
         for note in notes:
-            print(f"{note.severity}: {note.text}", file=sys.stderr)
+            print(f"{out.name}: {note.severity}: {note.text}", file=sys.stderr)
     print(out)

@@ -35,4 +35,5 @@ def run(
     write_text(out, guess_robot_file(urdf, logs or [], out, columns))
     guesses = load_robot(out).guesses  # what was written must be readable
     print(out.read_text(), end="")
-    print(f"# {out}: {len(guesses)} lines are guesses, marked GUESS; look at the bush heights first")
+    first = "look at the outlines of the soles first: no interval allows for a wrong one"
+    print(f"# {out}: {len(guesses)} lines are guesses, marked GUESS; {first}")

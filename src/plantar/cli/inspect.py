@@ -73,7 +73,9 @@ def _print(out: Console, log: LogSummary, columns: bool) -> None:
     for column in holes[:5]:
         out.print(f"  {escape(column.name)}: {column.missing} samples without a value")
     if log.carried is not None:
-        out.print(f"  the feet carry {log.carried:.2f} kg, the URDF weighs {log.mass:.2f} kg")
+        out.print(
+            f"  the feet carry {log.carried:.2f} kg on average{_still_inside(log)}; the URDF weighs {log.mass:.2f} kg"
+        )
     for finding in log.findings:
         mark = (
             "[red]problem[/]"
@@ -82,9 +84,12 @@ def _print(out: Console, log: LogSummary, columns: bool) -> None:
         )
         out.print(f"  {mark}: {escape(finding.text)}")
     if log.feet:
-        out.print(table("Feet", ("foot", "double s", "single s", "load N", "serving s", "pitch deg rms", "roll deg rms",
+        out.print(table("Feet", ("foot", "both stand s", "alone s", "load N", "used s", "pitch deg rms", "roll deg rms",
                                  "pitch rad/s rms", "roll rad/s rms"), _foot_rows(log)))  # fmt: skip
-    warnings = [note for note in log.notes if note.severity == "warning"]
+    told = {finding.text for finding in log.findings} | {
+        f"{log.name}: {finding.text}" for finding in log.findings
+    }
+    warnings = [note for note in log.notes if note.severity == "warning" and note.text not in told]
     _print_notes(out, warnings)
     if log.parameters:
         heads = ("foot", "axis", "parameter", "value", "verdict", "reason")
@@ -98,7 +103,13 @@ def _print(out: Console, log: LogSummary, columns: bool) -> None:
     if columns:
         ranges = [(c.name, number(c.least), number(c.largest), str(c.missing)) for c in log.columns]
         out.print(table("Columns", ("column", "least", "largest", "missing"), ranges))
-    _print_notes(out, [note for note in log.notes if note not in warnings])
+    _print_notes(out, [note for note in log.notes if note.severity != "warning"])
+
+
+def _still_inside(log: LogSummary) -> str:
+    """Whether zeros of force sensors stand in what the feet carry."""
+    off = any(finding.code == "air_reading" for finding in log.findings)
+    return ", in which the zeros named below are still inside unless taken off" if off else ""
 
 
 def _print_notes(out: Console, notes: Sequence[Note]) -> None:

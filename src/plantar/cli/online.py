@@ -10,6 +10,7 @@ from typing import Annotated
 
 import typer
 
+from plantar.cli.console.delay import WrenchDelay
 from plantar.cli.console.memory import Memory
 from plantar.cli.console.terminal import (
     VERDICT_STYLE,
@@ -31,14 +32,13 @@ from plantar.robot.model import RobotModel, load_robot
 
 LONGEST_WAIT = 120.0  # s for a browser to open the page
 RESULT_HELP = "A result of `identify feet`: its hysteresis, compliance, delay and cutoff are used."
-DELAY_HELP = "How late the force sensors are against the IMU, in s; of the result, or unknown, if left out."
 
 
 def run(
     robot: Annotated[Path, typer.Argument(help="Robot file (YAML).", metavar="ROBOT.yaml")],
     log: Annotated[Path, typer.Argument(help="Log to replay.", metavar="LOG")],
     result: Annotated[Path | None, typer.Option(help=RESULT_HELP, metavar="RESULT.json")] = None,
-    wrench_delay: Annotated[float | None, typer.Option(help=DELAY_HELP)] = None,
+    wrench_delay: WrenchDelay = None,
     cutoff: Annotated[
         float | None, typer.Option(help="Of the filters before the regressions, in Hz; the result's, or 5.")
     ] = None,
@@ -56,7 +56,7 @@ def run(
 ) -> None:
     """Replay a log through the estimator of controllers, sample by sample, as if it happened now.
 
-    Example: plantar online robot.yaml walk.csv --wrench-delay 0.004
+    Example: plantar online robot.yaml walk.csv --wrench-delay 4
     """
     step = progress(quiet)
     batch = None if result is None else FeetResult.load(result, residuals=False)

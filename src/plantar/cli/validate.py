@@ -9,9 +9,9 @@ from typing import Annotated
 import typer
 
 from plantar.cli.console.memory import Memory
-from plantar.cli.console.terminal import console, end_progress, progress
+from plantar.cli.console.terminal import console, end_progress, print_notes, progress
 from plantar.cli.identify.feet_tables import validation_table
-from plantar.feet.validate import validate_feet
+from plantar.feet.validate import scored_feet
 from plantar.logs.inputs import open_together
 from plantar.results.feet import FeetResult
 from plantar.results.io import dump_json
@@ -33,11 +33,19 @@ def run(
     step = progress(quiet)
     found = FeetResult.load(result, residuals=False)
     known = load_robot(robot)
-    rows = validate_feet(found, known, open_together(logs, known, memory), step)
+    rows, notes = scored_feet(found, known, open_together(logs, known, memory), step)
     end_progress(quiet)
     if json:
         print(
-            dump_json({"schema": "plantar.validation/1", "validation": [asdict(row) for row in rows]}), end=""
+            dump_json(
+                {
+                    "schema": "plantar.validation/1",
+                    "validation": [asdict(row) for row in rows],
+                    "notes": [asdict(note) for note in notes],
+                }
+            ),
+            end="",
         )
     elif not quiet:
         console().print(validation_table("Table 3. Cross validation", rows))
+        print_notes(console(), notes)

@@ -7,7 +7,6 @@ the joint's rest position is -offset/K.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,55 +16,17 @@ import numpy as np
 
 from plantar.conventions import (
     AXES,
-    DAMPING_UNIT,
-    OFFSET_UNIT,
-    STIFFNESS_UNIT,
     Array,
     Axis,
     rotation_from_rpy,
 )
 from plantar.errors import ExportError, located
 from plantar.exporters.source import robot_model, robot_urdf
+from plantar.exporters.spring import Spring, spring_of
 from plantar.exporters.urdf.tree import UrdfTree
 from plantar.notes import Note
 
 SIDES = {"left": "LLEG", "right": "RLEG"}
-DAMPING_TIME = 0.002  # s: C/K written where none was identified, that of published bush models (5e5, 1e3)
-KNOWN_TERMS = ("stiffness", "damping", "offset")
-SLIP_TERMS = ("slip_torque", "slip_angle")
-
-
-@dataclass(frozen=True)
-class Slip:
-    """An elastoplastic (Jenkins) element beside spring and damper: it yields at `torque` [N·m] after `angle` [rad]."""
-
-    torque: float
-    angle: float
-
-    @property
-    def stiffness(self) -> float:
-        """Before it yields [N·m/rad]."""
-        return self.torque / self.angle
-
-
-@dataclass(frozen=True)
-class Spring:
-    """One axis: stiffness, damping and offset, in N, m, rad and s; `slip` only for targets that hold a hysteresis."""
-
-    axis: Axis
-    stiffness: float
-    damping: float
-    offset: float
-    slip: Slip | None = None
-
-    @property
-    def rest(self) -> float:
-        """Where the spring pushes with nothing [rad, or m for z]."""
-        return -self.offset / self.stiffness
-
-    @property
-    def units(self) -> tuple[str, str, str]:
-        return STIFFNESS_UNIT[self.axis], DAMPING_UNIT[self.axis], OFFSET_UNIT[self.axis]
 
 
 @dataclass(frozen=True)
@@ -131,13 +92,18 @@ def feet_of_result(
     if not names:
         raise ExportError(located("the result holds no parameters", valid="a result of identify feet"))
     entries = robot_model(result).get("feet", {})
-    notes: list[Note] = []
+    notes = [
+        Note("export_guess", "warning", str(note.get("text")))
+        for note in result.get("notes", ())
+        if isinstance(note, Mapping) and note.get("code") == "guessed_geometry"
+    ]
     feet = []
     for name in names:
         springs = tuple(
             spring
             for axis in ("z", "pitch", "roll")
-            if (spring := _spring(result, rows, name, axis, with_offset, hysteresis, notes)) is not None
+            if (spring := spring_of(result, rows, name, axis, with_offset, notes, hysteresis=hysteresis))
+            is not None
         )
         if not {"pitch", "roll"} & {spring.axis for spring in springs}:
             raise ExportError(
@@ -155,82 +121,6 @@ def feet_of_result(
         centre, rotation, sole = _geometry(entries[name], result, base)
         feet.append(FootBush(name, str(entries[name]["ankle"]), springs, centre, rotation, sole))
     return tuple(feet), tuple(notes)
-
-
-def _spring(
-    result: Mapping[str, Any],
-    rows: list[Mapping[str, Any]],
-    foot: str,
-    axis: Axis,
-    with_offset: bool,
-    hysteresis: bool,
-    notes: list[Note],
-) -> Spring | None:
-    mine = {str(row["name"]): row for row in rows if row.get("foot") == foot and row.get("axis") == axis}
-    where = f"{foot} {axis}"
-    found = {name: row["value"] for name, row in mine.items() if row.get("value") is not None}
-    # What hardly gives looks like any large number; in pitch and roll a foot that gives must not be made rigid.
-    nothing_known = axis == "z" and mine.get("stiffness", {}).get("verdict") == "unidentifiable"
-    if "stiffness" not in found or nothing_known:
-        return None
-    values = {name: _number(value, f"{where} {name}") for name, value in found.items()}
-    stiffness = values["stiffness"]
-    damping = values.get("damping", DAMPING_TIME * stiffness)
-    if stiffness <= 0:
-        message = f"{where}: the stiffness is not positive; no simulator can stand on it"
-        raise ExportError(located(message, value=stiffness, valid="a result whose stiffness is usable"))
-    if "damping" not in values:
-        text = f"{where}: no damping identified; exported as K x {DAMPING_TIME} s, for stable simulators"
-        notes.append(Note("export_damping", "warning", text))
-    if damping <= 0:
-        text = f"{where}: the identified damping {damping:.4g} is not positive, and a foot would never come to rest; "
-        text += f"exported as K x {DAMPING_TIME} s"
-        notes.append(Note("export_damping", "warning", text))
-        damping = DAMPING_TIME * stiffness
-    for name in ("stiffness", "damping"):
-        verdict = mine.get(name, {}).get("verdict", "usable")
-        if verdict != "usable":
-            notes.append(
-                Note("export_verdict", "warning", f"{where}: the verdict on the {name} is '{verdict}'")
-            )
-    extra = [name for name in values if name not in KNOWN_TERMS]
-    slip = None
-    if hysteresis and set(extra) == set(SLIP_TERMS) and all(values[name] > 0 for name in SLIP_TERMS):
-        slip = Slip(*(values[name] for name in SLIP_TERMS))
-    elif extra:
-        text = f"{where}: the target holds a linear spring and damper; left out: {', '.join(extra)}"
-        if (nearest := _linear_equivalent(result, foot, axis)) is not None:
-            stiffness, damping = nearest
-            text += "; K and C are those of the spring and damper nearest to the identified motions"
-        notes.append(Note("export_terms", "warning", text))
-    offsets = [
-        _number(row.get("value"), f"{where} offset")
-        for row in (*result.get("offsets", ()), *(row for name, row in mine.items() if name == "offset"))
-        if row.get("foot") == foot and row.get("axis") == axis
-    ]
-    offset = float(np.mean(offsets)) if offsets else 0.0
-    if with_offset and len(offsets) > 1:
-        text = f"{where}: offset {offset:.4g}, the mean of {len(offsets)} motions"
-        text += f" from {min(offsets):.4g} to {max(offsets):.4g}"
-        notes.append(Note("export_offset", "info", text))
-    return Spring(axis, stiffness, damping, offset if with_offset else 0.0, slip)
-
-
-def _linear_equivalent(result: Mapping[str, Any], foot: str, axis: Axis) -> tuple[float, float] | None:
-    """K and C of the spring and damper that fits the motions of a richer law best, where the result has usable ones."""
-    for row in result.get("laws", ()):
-        if (row.get("foot"), row.get("axis")) == (foot, axis):
-            nearest = row.get("linear_equivalent") or {}
-            stiffness, damping = (float(nearest.get(name) or math.nan) for name in ("stiffness", "damping"))
-            if 0 < stiffness < math.inf and 0 < damping < math.inf:
-                return stiffness, damping
-    return None
-
-
-def _number(value: object, what: str) -> float:
-    if not isinstance(value, int | float) or not math.isfinite(value):
-        raise ExportError(located(f"{what} is not a number", value=str(value), valid="a finite value"))
-    return float(value)
 
 
 def _geometry(entry: Mapping[str, Any], result: Mapping[str, Any], base: Path) -> tuple[Array, Array, Array]:

@@ -28,6 +28,7 @@ def head(
             line = f"{foot.joint(spring.axis)}: K = {spring.stiffness:.6g} {k}, C = {spring.damping:.6g} {c}"
             if spring.slip is not None:
                 line += f", slips at {spring.slip.torque:.4g} {o} after {spring.slip.angle:.4g} rad"
+            line += " (assumed)" if spring.assumed else ""
             lines.append(line + (f", offset = {spring.offset:.4g} {o}" if with_offset else ""))
     if with_offset:
         lines.append("Each spring rests at -offset/K.")
@@ -50,7 +51,10 @@ def updated_note(foot: FootBush) -> Note:
 
 
 def plate_note(foot: FootBush) -> Note:
-    text = "the model has no collision shape under the bush; a plate under the sole's outline was added"
+    corners = (foot.sole - foot.centre) @ foot.rotation
+    long, wide = 1e3 * (corners.max(axis=0) - corners.min(axis=0))[:2]
+    text = "the model has no collision shape under the bush; added was a plate of the sole's size in the robot file, "
+    text += f"{long:.0f} x {wide:.0f} mm"
     return Note("export_plate", "info", f"{foot.name}: {text}")
 
 

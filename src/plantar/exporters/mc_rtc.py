@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING
 
+from plantar.exporters.comment import head
 from plantar.notes import Note
 
 if TYPE_CHECKING:
@@ -17,15 +18,15 @@ if TYPE_CHECKING:
 
 
 def write(job: Job) -> tuple[str, tuple[Note, ...]]:
-    """The JSON to merge into a robot module."""
+    """The JSON to merge into a robot module; the key `plantar`, which no reader asks for, stands for comments."""
     flexibilities = [
         {"jointName": foot.joint(s.axis), "K": s.stiffness, "C": s.damping, "O": s.offset}
         for foot in job.feet
         for s in foot.springs
     ]
-    text = (
-        "JSON holds no comment; the joints named must be in the module's URDF: export --to urdf writes them"
-    )
-    return json.dumps({"flexibilities": flexibilities}, indent=2) + "\n", (
-        Note("export_mc_rtc", "info", text),
-    )
+    text = "the joints named must be in the module's URDF: export --to urdf writes them"
+    notes = (Note("export_mc_rtc", "info", text),)
+    lines = head(job.result, job.feet, "mc_rtc", (*job.remarks, *notes), with_offset=job.with_offset)
+    return json.dumps(
+        {"plantar": lines, "flexibilities": flexibilities}, indent=2, ensure_ascii=False
+    ) + "\n", notes

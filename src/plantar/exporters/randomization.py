@@ -1,8 +1,8 @@
 """Ranges for training: means, standard deviations and correlations of what was identified, as YAML.
 
-An error of a force sensor's gain moves every number of its foot by the same share, and an error of the sensors' delay
-moves every damping: such causes are shared, all others are each number's own. With a_ik the part of number i's standard
-deviation that comes from shared cause k, the correlation of i and j is Σ_k a_ik a_jk / (s_i s_j).
+An error of a force sensor's gain moves every number of its foot by the same share, an error of the sensors' delay moves
+every damping, a turned IMU every offset: such causes are shared, all others are each number's own. With a_ik the part
+of number i's standard deviation that comes from shared cause k, i and j correlate by Σ_k a_ik a_jk / (s_i s_j).
 """
 
 from __future__ import annotations
@@ -17,7 +17,9 @@ import yaml
 from plantar.conventions import STIFFNESS_UNIT, Array
 from plantar.exporters.bush import FootBush
 from plantar.exporters.comment import head
+from plantar.exporters.source import robot_model
 from plantar.notes import Note
+from plantar.robot.uncertainty import Uncertainty
 
 if TYPE_CHECKING:
     from plantar.exporters.job import Job
@@ -25,8 +27,11 @@ if TYPE_CHECKING:
 HYSTERESIS = True  # for models of `mjcf`, which hold it
 SCHEMA: Final = "plantar.randomization/1"
 GAINS: Final = ("sensor gain", "force gain", "torque gain")  # causes that scale all numbers of one foot
+SUM_ONLY: Final = "z_sum_only"  # the note of a result whose vertical stiffness is one number for all feet
+LEG_JOINTS: Final = 6  # between IMU and foot: each encoder's zero turns the foot by at most itself
 DELAY: Final = "delay"  # late sensors take K times what they are late off the damping
 NORMAL95: Final = 2 * 1.96  # standard deviations in a 95 % interval
+CAREFUL: Final = Uncertainty()  # of a result that does not say what its robot file may be off by
 # Standing feet do not show where they slip. From damp or dusty to dry floors, for rubber soles; not measured.
 FRICTION: Final = (0.4, 1.0)
 
@@ -103,11 +108,19 @@ def _of_foot(result: Mapping[str, Any], foot: FootBush, notes: list[Note]) -> li
             row = _row(result.get("parameters", ()), key)
             where = f"{foot.name}.{spring.axis}.{name}"
             relative = _relative(row)
+            if name == "damping" and spring.assumed and relative is not None:
+                mean = float(
+                    row["value"]
+                )  # unlike one number, a range holds what is not known: its width says so
+                text = f"{where}: unidentifiable; the range is as wide as the logs leave it, cut at 0"
+                notes.append(Note("export_wide", "warning", text))
             if relative is None:
                 text = f"{where}: no standard deviation is known, so it is written as 0"
                 notes.append(Note("export_spread", "warning", text))
             shared = _shared(_row(result.get("diagnosis", ()), key), foot.name, name)
-            numbers.append(Number(where, unit, mean, (relative or 0.0) * mean, True, shared))
+            if spring.axis == "z" and name == "stiffness" and _z_is_one(result):
+                shared = {"vertical stiffness": 1.0}
+            numbers.append(Number(where, unit, mean, (relative or 0.0) * abs(mean), True, shared))
     return numbers
 
 
@@ -133,6 +146,11 @@ def _shared(row: Mapping[str, Any], foot: str, name: str) -> dict[str, float]:
     return shared
 
 
+def _z_is_one(result: Mapping[str, Any]) -> bool:
+    """Whether the logs showed only the sum over the feet, so that each got the same number with the same error."""
+    return any(isinstance(note, Mapping) and note.get("code") == SUM_ONLY for note in result.get("notes", ()))
+
+
 def _delay(result: Mapping[str, Any]) -> list[Number]:
     found = result.get("latency") or {}
     mean, std = found.get("wrench_delay"), found.get("std")
@@ -142,7 +160,12 @@ def _delay(result: Mapping[str, Any]) -> list[Number]:
 
 
 def _zeros(result: Mapping[str, Any], feet: Iterable[FootBush]) -> list[Number]:
-    """Offsets with their scatter from recording to recording, which is far more than each one's own deviation."""
+    """Offsets: their scatter from recording to recording, and what no recording shows, since it is the same in all.
+
+    A turned IMU and encoders whose zero is off lean every deflection by the same angle, and every offset by K times it.
+    """
+    known = robot_model(result).get("uncertainty") or {}
+    mount, encoder = (float(known.get(key, getattr(CAREFUL, key))) for key in ("imu_mount", "encoder_zero"))
     numbers = []
     for foot in feet:
         for spring in foot.springs:
@@ -151,10 +174,20 @@ def _zeros(result: Mapping[str, Any], feet: Iterable[FootBush]) -> list[Number]:
                 for row in result.get("offsets", ())
                 if row.get("foot") == foot.name and row.get("axis") == spring.axis
             ]
-            if values:
-                found, own = np.array(values).T
-                scatter = found.std(ddof=1) if len(found) > 1 else own[0]
-                unit = STIFFNESS_UNIT[spring.axis].split("/")[0]
-                name = f"{foot.name}.{spring.axis}.offset"
-                numbers.append(Number(name, unit, float(found.mean()), float(scatter), False))
+            if not values:
+                continue
+            found, own = np.array(values).T
+            scatter = float(found.std(ddof=1)) if len(found) > 1 else 0.0
+            unit = STIFFNESS_UNIT[spring.axis].split("/")[0]
+            name = f"{foot.name}.{spring.axis}.offset"
+            if spring.axis == "z":
+                numbers.append(Number(name, unit, float(found.mean()), scatter or float(own[0]), False))
+                continue
+            turned = spring.stiffness * mount
+            unshown = float(np.hypot(turned, spring.stiffness * encoder * np.sqrt(LEG_JOINTS)))
+            std = max(
+                float(np.hypot(scatter, unshown)), float(own.min())
+            )  # an offset's own holds the mount as well
+            shared = {f"imu {spring.axis}": turned / std} if std > 0 else {}
+            numbers.append(Number(name, unit, float(found.mean()), std, False, shared))
     return numbers

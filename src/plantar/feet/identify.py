@@ -11,6 +11,8 @@ import numpy as np
 
 from plantar.conventions import OFFSET_UNIT
 from plantar.errors import DataError
+from plantar.feet.assess.far_arms import far_arms
+from plantar.feet.assess.feasible_advice import hardly_standing, remedies, with_remedies
 from plantar.feet.assess.residual_table import residual_table
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.between_recordings import apart_notes
@@ -88,7 +90,9 @@ def fit_prepared(
     found = [assess_foot(one) for one in fitted.values()]
     ready = _merged(ready, {foot: one.ready for foot, one in fitted.items()})
     fits = [fit for each in found for fit in each.fits]
-    parameters = [row for each in found for row in each.parameters]
+    limits = [row for each in found for row in each.diagnosis]
+    feasible = remedies(ready.settings, ready.sensor_delay, robot, ready.fitted)
+    parameters, limits = with_remedies([row for each in found for row in each.parameters], limits, feasible)
     rows = [row for each in found for row in each.validation]
     predictions = {key: value for each in found for key, value in each.predictions.items()}
     return FeetResult(
@@ -96,7 +100,7 @@ def fit_prepared(
         inputs=tuple(Input.of(recording.log, recording.role) for recording in ready.recordings),
         settings=ready.settings.to_dict(),
         model=_model(fits),
-        parameters=(*parameters, *ready.vertical.parameters),
+        parameters=(*parameters, *hardly_standing(ready.vertical.parameters, ready.fitted)),
         offsets=tuple(offset for fit in fits for offset in _offsets(fit)),
         phases=tuple(
             phase
@@ -119,7 +123,7 @@ def fit_prepared(
         models=tuple(_axis_model(fit) for fit in fits),
         sensor_delay=delay_estimate(ready.sensor_delay),
         compliance=dict(ready.vertical.compliance),
-        diagnosis=tuple(row for each in found for row in each.diagnosis),
+        diagnosis=tuple(limits),
         stances=tuple(row for each in found for row in each.stances),
         walks=tuple(row for each in found for row in each.walks),
         swing_zeros=tuple(row for recording in ready.recordings for row in recording.zeros),
@@ -201,7 +205,7 @@ def _model_notes(fits: Sequence[AxisFit]) -> list[Note]:
             notes.append(Note("model", "info", text))
         if fit.choice is not None and fit.choice.caution is not None:
             notes.append(Note("model_caution", "warning", f"{where}: {fit.choice.caution}"))
-        notes += fit.notes
+        notes += fit.notes or far_arms(fit)
     return notes
 
 
@@ -229,7 +233,7 @@ def _feet_notes(robot: RobotModel, recordings: Sequence[Recording]) -> list[Note
 
 
 def _robot_model(robot: RobotModel) -> dict[str, Any]:
-    """What an export needs of the robot: its URDF's path, and each foot's geometry."""
+    """What an export needs of the robot: its URDF's path, each foot's geometry, and what its file may be off by."""
 
     def placed(placement: Placement) -> dict[str, Any]:
         return {"link": placement.link, "xyz": placement.xyz.tolist(), "rpy": placement.rpy.tolist()}
@@ -241,4 +245,5 @@ def _robot_model(robot: RobotModel) -> dict[str, Any]:
     return {
         "urdf": str(robot.urdf_path),
         "feet": {name: described(foot) for name, foot in robot.feet.items()},
+        "uncertainty": robot.uncertainty.model_dump(),
     }

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 
@@ -12,11 +12,13 @@ from plantar.errors import DataError
 from plantar.feet.assess.scores import score_axis
 from plantar.feet.fit.axis import FittedModel
 from plantar.feet.prepare import prepare_unseen
+from plantar.feet.recording import Recording
 from plantar.feet.settings import FeetSettings
 from plantar.logs.inputs import LogInputs, RobotInput, logs_of, robot_of
 from plantar.models import MODELS, KelvinVoigt
 from plantar.notes import Note
 from plantar.results.feet import DelayEstimate, FeetResult, ValidationRow
+from plantar.results.usage import used_shares
 from plantar.sensors.delays.sensor_delay import SensorDelay
 
 
@@ -50,6 +52,17 @@ def validate_feet(
         >>> len(rows), all(row.mean_abs_error < row.zero_mean_abs for row in rows)
         (4, True)
     """
+    rows, _ = scored_feet(result, robot, logs, progress)
+    return rows
+
+
+def scored_feet(
+    result: FeetResult | str | os.PathLike[str],
+    robot: RobotInput,
+    logs: LogInputs,
+    progress: Callable[[str], None] = lambda _: None,
+) -> tuple[list[ValidationRow], list[Note]]:
+    """The rows of `validate_feet`, and a warning for each foot of each log that has none, with what its seconds are."""
     found = result if isinstance(result, FeetResult) else FeetResult.load(result, residuals=False)
     robot = robot_of(robot)
     logs = logs_of(logs, robot)
@@ -71,7 +84,24 @@ def validate_feet(
         raise DataError(
             "no log has samples of a standing foot that could be scored (valid: more than 1.3 s of stance)"
         )
-    return rows
+    return rows, _unscored(rows, recordings, feet)
+
+
+def _unscored(
+    rows: Sequence[ValidationRow], recordings: Sequence[Recording], feet: Iterable[str]
+) -> list[Note]:
+    scored = {(row.motion, row.foot) for row in rows}
+    notes = []
+    for recording in recordings:
+        for foot in sorted(feet):
+            if (recording.name, foot) in scored:
+                continue
+            (share,) = used_shares(recording.contacts[foot].phases(recording.name, foot, recording.time))
+            text = f"{recording.name}: the {foot} foot is not scored: "
+            text += f"of {share['seconds']:.1f} s {share['served']:.1f} can be used. Left out: "
+            reasons = share["reasons"] or "nothing, but the result has no model of this foot"
+            notes.append(Note("not_scored", "warning", text + reasons))
+    return notes
 
 
 def _sensor_delay(stored: DelayEstimate | None) -> SensorDelay:

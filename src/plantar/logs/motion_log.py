@@ -40,6 +40,9 @@ def wrench_columns(sensor: str) -> tuple[str, ...]:
     return tuple(f"wrench.{sensor}.{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz")
 
 
+HARMLESS = 3  # names of joints that no foot needs: more of them only fill the screen
+
+
 @dataclass(frozen=True)
 class MotionLog:
     """One recording: a time base and labelled columns. Made by `open_log`, or from arrays.
@@ -178,7 +181,7 @@ class MotionLog:
             note
             for names, note in (
                 (missing, Note("joint_missing", "info", f"{self.name}: not recorded, held at the neutral position: "
-                               + _listing(missing))),
+                               + _missing(robot, missing))),
                 (unknown, Note("joint_unknown", "info", f"{self.name}: recorded, but not in the URDF, not used: "
                                + _listing(unknown))),
             )
@@ -193,6 +196,21 @@ class MotionLog:
     def with_columns(self, columns: Mapping[str, Array], *notes: Note) -> MotionLog:
         """The same recording with columns added or replaced, and notes added."""
         return replace(self, columns={**self.columns, **columns}, notes=self.notes + notes)
+
+
+def _missing(robot: RobotModel, names: list[str]) -> str:
+    """The names; in short where no foot's angles need them."""
+    if robot.imu is None or not robot.feet:
+        return _listing(names)
+    way = frozenset[str]().union(
+        *(robot.joints_between(robot.imu.placement, foot.bush) for foot in robot.feet.values())
+    )
+    if way & set(names):
+        return _listing(names)
+    some = ", ".join(names[:HARMLESS]) + (
+        f" and {len(names) - HARMLESS} more" if len(names) > HARMLESS else ""
+    )
+    return f"{some}; none lies between IMU and feet"
 
 
 def _frozen(values: Array) -> Array:

@@ -77,7 +77,11 @@ def _parameter(foot: str, axis: Axis, name: str, unit: str, found: Estimated) ->
     verdict: Verdict = "usable" if half <= USABLE * abs(value) else "weak"
     if half >= abs(value):
         verdict = "unidentifiable"
-    reason = "" if verdict == "usable" else f"± {100 * half / abs(value):.0f} % so far"
+    reason = (
+        ""
+        if verdict == "usable"
+        else f"± {100 * half / abs(value):.0f} % so far; known from ± {100 * USABLE:.0f} % on"
+    )
     return Parameter(
         foot, axis, name, unit, value, found.std, (value - half, value + half), None, verdict, reason
     )

@@ -16,6 +16,8 @@ from plantar.results.feet import Comparison, FeetResult, Input, Offset, Paramete
 from plantar.results.numbers import MISSING, interval, number, percent, unit, with_uncertainty
 from plantar.results.reference import neighbours
 
+SETTING_UNITS = {"cutoff": "Hz", "edge_margin": "m", "window": "rad", "wrench_delay": "s"}
+
 
 def parameter_table(parameters: Sequence[Parameter]) -> Table:
     """Table 1: every parameter with its deviation, interval and verdict."""
@@ -25,7 +27,7 @@ def parameter_table(parameters: Sequence[Parameter]) -> Table:
             row.axis,
             Cell(symbol(row.name), hover=row.name),
             unit(row.unit),
-            number(row.value),
+            _value_cell(row),
             number(row.std, 2),
             interval(row.interval95),
             percent(row.relative_std_percent),
@@ -48,9 +50,17 @@ def parameter_table(parameters: Sequence[Parameter]) -> Table:
     )
     remark = (
         "Trust std and the interval: they allow for residuals that are alike from sample to sample. The "
-        "paper's relative deviation takes residuals for white noise and is far too small; here to compare."
+        "paper's relative deviation takes residuals for white noise and is far too small; here to compare. "
+        "A value in brackets is unidentifiable: not to be used."
     )
     return Table.of("Table 1. Identified parameters", columns, rows, remark=remark)
+
+
+def _value_cell(row: Parameter) -> Cell:
+    """The value; in brackets where nobody may use it."""
+    if row.value is None or row.verdict != "unidentifiable":
+        return Cell(number(row.value))
+    return Cell(f"({number(row.value)})", hover="unidentifiable: not to be used")
 
 
 def verdict_cell(row: Parameter | JointParameter) -> Cell:
@@ -75,7 +85,9 @@ def neighbour_table(parameters: Sequence[Parameter]) -> Table:
     ]
     columns += [Column("z", unit("N/m")), Column("C", unit("N.m.s/rad"))]
     columns += [Column("", numeric=False), Column("source", numeric=False)]
-    remark = "Most were configured and never measured: they show a likely size, no more."
+    remark = (
+        "Most were configured and never measured: they show a likely size, no more. 1e8 stands for rigid."
+    )
     return Table.of("Foot stiffness elsewhere", columns, rows, remark=remark, folded=True)
 
 
@@ -131,7 +143,10 @@ def validation_table(validation: Sequence[ValidationRow], kind: str) -> Table:
     }[kind]
     remark = "A model that does not beat its own offset has learnt nothing."
     if kind == "cross":
-        remark += " The unseen motion's offset comes from its first second, which is left out of the score."
+        remark += (
+            " The unseen motion's offset comes from its first second, which is left out of the score; where a foot "
+            "steps, each stance has an offset of its own, for the model and for the offset alone alike."
+        )
     return Table.of(title, columns, rows, remark=remark)
 
 
@@ -218,8 +233,8 @@ def input_table(inputs: Sequence[Input]) -> Table:
 
 
 def settings_table(settings: Mapping[str, Any]) -> Table:
-    """Settings with nested ones as `outer.inner`."""
-    rows = [(key, text) for key, text in _flat(settings, "")]
+    """Settings with nested ones as `outer.inner`, and the units of those that have one."""
+    rows = [(key, f"{text} {SETTING_UNITS.get(key, '')}".rstrip()) for key, text in _flat(settings, "")]
     return Table.of("Settings", [Column("setting", numeric=False), Column("value", numeric=False)], rows)
 
 
@@ -229,7 +244,6 @@ def _flat(settings: Mapping[str, Any], prefix: str, depth: int = 0) -> list[tupl
         if isinstance(value, Mapping) and value and depth < 4:
             lines += _flat(value, f"{prefix}{key}.", depth + 1)
         else:
-            lines.append(
-                (f"{prefix}{key}", value if isinstance(value, str) else json.dumps(value, ensure_ascii=False))
-            )
+            text = value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
+            lines.append((f"{prefix}{key}", number(value) if isinstance(value, float) else text))
     return lines

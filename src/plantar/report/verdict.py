@@ -12,6 +12,10 @@ from plantar.results.numbers import unit, with_uncertainty
 
 MARKS: Final[dict[str, Mark]] = {"usable": "good", "weak": "weak", "unidentifiable": "bad"}
 SYMBOLS: Final[dict[str, str]] = {"stiffness": "K", "damping": "C"}
+BEYOND: Final = (
+    "No interval holds for what these logs do not show: larger angles, another floor, colder or warmer rubber, a sole "
+    "whose outline in the robot file is wrong."
+)
 _ORDER: Final[dict[Mark, int]] = {"good": 0, "": 1, "weak": 2, "bad": 3}
 
 
@@ -48,6 +52,8 @@ def statement(subject: str, axis: str, rows: Sequence[Parameter]) -> Statement:
     """`left pitch: K = 480 ± 1 N·m/rad, C = ... — usable`; a number that cannot be trusted is not given."""
     marks = [MARKS.get(row.verdict, "") for row in rows]
     worst = max(marks, key=lambda mark: _ORDER[mark])
+    if worst == "bad" and set(marks) != {"bad"}:
+        worst = "weak"  # one number cannot be told, the other stands there
     verdicts = list(dict.fromkeys(row.verdict for row in rows if row.verdict))
     alone = len(verdicts) == 1
     phrases = [_phrase(row, alone) for row in rows if row.verdict != "unidentifiable"]
@@ -104,6 +110,8 @@ def trust(result: FeetResult) -> tuple[str, ...]:
                 f"{lead}: {'; '.join(f'{name} {listed(terms)}' for name, terms in subjects.items())}."
             )
     sentences += [text for kind in ("cross", "direct") for text in _skill(result.validation, kind)]
+    if any(row.verdict != "unidentifiable" for row in result.parameters):
+        sentences.append(BEYOND)
     return tuple(sentences)
 
 

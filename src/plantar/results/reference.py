@@ -58,16 +58,21 @@ class Neighbour:
 
 
 def neighbours(parameters: Sequence[Parameter] = ()) -> tuple[Neighbour, ...]:
-    """References and the feet of a result, softest first; a foot without K of both axes is left out."""
+    """References and the feet of a result, softest first; a foot without K of both axes is left out.
+
+    What is unidentifiable counts as not there, and a damping is given where both axes have one.
+    """
     values: dict[tuple[str, str, str], float] = {
-        (row.foot, row.axis, row.name): row.value for row in parameters if row.value is not None
+        (row.foot, row.axis, row.name): row.value
+        for row in parameters
+        if row.value is not None and row.verdict != "unidentifiable"
     }
     own = []
     for foot in dict.fromkeys(row.foot for row in parameters):
         pitch, roll = (values.get((foot, axis, "stiffness")) for axis in ("pitch", "roll"))
         dampers = [values[key] for axis in ("pitch", "roll") if (key := (foot, axis, "damping")) in values]
         if pitch is not None and roll is not None:
-            damping = sum(dampers) / len(dampers) if dampers else None
+            damping = sum(dampers) / 2 if len(dampers) == 2 else None
             z = values.get((foot, "z", "stiffness"))
             own.append(Reference(f"this result, {foot}", pitch, roll, z, damping, "measured", "these logs"))
     lines = [Neighbour(row, False) for row in REFERENCES] + [Neighbour(row, True) for row in own]

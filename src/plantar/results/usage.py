@@ -8,6 +8,8 @@ from typing import Any
 
 from plantar.contact.phases import Phase
 
+LEAST = 0.05  # s: of less nobody needs a reason
+
 
 def used_shares(phases: Iterable[Phase]) -> list[dict[str, Any]]:
     """Seconds, seconds that were used and the reasons for the others, by motion and foot, from a result's phases."""
@@ -28,7 +30,9 @@ def used_shares(phases: Iterable[Phase]) -> list[dict[str, Any]]:
             "seconds": total,
             "served": used[motion, foot],
             "reasons": "; ".join(
-                f"{reason} ({spent:.1f} s)" for reason, spent in reasons[motion, foot].items()
+                f"{reason} ({spent:.1f} s)"
+                for reason, spent in reasons[motion, foot].items()
+                if spent >= LEAST
             ),
         }
         for (motion, foot), total in seconds.items()

@@ -74,11 +74,20 @@ def guess_notes(file: str, guesses: Sequence[Guess]) -> list[Note]:
             feet.setdefault(rest[0], []).append(part + spread)
         else:
             others.append(guess.key)
-    parts = [f"the {foot} foot's numbers hang on {_listing(names)}" for foot, names in feet.items()]
+    parts = [f"the {foot} foot's numbers depend on {_listing(names)}" for foot, names in feet.items()]
     if others:
-        parts.append(f"all numbers hang on {_listing(others)}")
-    text = f"{file}: marked GUESS and not measured: {'; '.join(parts)}. Measure them and delete the mark"
+        parts.append(f"all numbers depend on {_listing(others)}")
+    text = (
+        f"{file}: marked GUESS and not measured: {'; '.join(parts)}. {_first(guesses)}, then delete the mark"
+    )
     return [Note("guessed_geometry", "warning", text)]
+
+
+def _first(guesses: Sequence[Guess]) -> str:
+    """What to measure first: the intervals allow for what may be wrong about bush, wrench and IMU, and for no sole."""
+    if any(guess.key.split(".")[-1] in ("sole", "polygon") for guess in guesses):
+        return "Measure the soles first, for which the intervals do not allow"
+    return "The intervals allow for that; measure it for narrower ones"
 
 
 def naming_notes(file: str, guesses: Sequence[Guess]) -> list[Note]:

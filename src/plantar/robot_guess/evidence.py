@@ -17,6 +17,8 @@ FEWEST = 20
 RARE = 1.0  # % of the samples at either end that are left aside
 EDGE = 0.01  # m: no robot stands on the very edge of its soles
 OUTSIDE = 0.05  # share of the samples that may lie an EDGE or more outside an outline
+ALIKE = 0.005  # m by which the outlines of two feet may differ
+WORTH_A_WORD = 0.03  # of the weight
 MOSTLY = 0.5  # share beyond which even a guessed outline contradicts the centre of pressure
 OFF_WEIGHT = 0.15  # share by which the feet may carry more or less than the URDF weighs
 UNEVEN = 0.02  # m between the planes of two soles
@@ -80,6 +82,8 @@ def check_stance(
         total += np.sum(force * stance.up, axis=1)
     carried = float(np.median(total))
     text = f"the feet carry {carried / GRAVITY:.1f} kg, the URDF weighs {weight / GRAVITY:.1f} kg"
+    if abs(carried - weight) > WORTH_A_WORD * weight:
+        text += ": other masses, a gain, or somebody who holds the robot or leans on it"
     found = [Remark(text, abs(carried - weight) > OFF_WEIGHT * weight)]
     text = f"the feet's wrenches balance gravity to {100 * left:.1f} cm about the URDF's centre of mass"
     found.append(Remark(text))
@@ -96,4 +100,21 @@ def check_stance(
         apart = float(np.median(np.abs(heights[0] - heights[1])[both]))
         text = f"in double support both soles lie on one plane within {1e3 * apart:.0f} mm"
         found.append(Remark(text, apart > UNEVEN))
-    return found
+    return found + unlike_soles(soles)
+
+
+def unlike_soles(soles: Sequence[Sole]) -> list[Remark]:
+    """A doubt where two feet have other outlines: a foot that tips moves its centre of pressure past its own edge."""
+    if len(soles) != 2:
+        return []
+    sides = [(sole.corners.min(axis=0), sole.corners.max(axis=0)) for sole in soles]
+    (low, high), (other_low, other_high) = sides
+    mirrored = np.array([other_low[0], -other_high[1]]), np.array([other_high[0], -other_low[1]])
+    apart = max(np.abs(low - mirrored[0]).max(), np.abs(high - mirrored[1]).max())
+    if apart <= ALIKE:
+        return []
+    text = (
+        f"the soles' outlines differ by {1e3 * apart:.0f} mm, and feet are usually alike: measure them; where one was "
+        "widened, its foot may have tipped"
+    )
+    return [Remark(text, True)]

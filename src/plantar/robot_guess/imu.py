@@ -109,13 +109,17 @@ def turned_to_gravity(mount: Mount, stance: Stance) -> Mount:
     own, left = _turned(mount, stance, stance.felt)
     if not mount.guess:
         return own
+    apart = {mount.link: left}
     for link in mount.others:
-        rest = tuple(other for other in (mount.link, *mount.others) if other != link)
-        other, remains = _turned(replace(mount, link=link, others=rest), stance, stance.felt)
+        other, remains = _turned(replace(mount, link=link), stance, stance.felt)
+        apart[link] = remains
         if remains < CLEARLY * left:
             reason = f"{other.reason}; {link} tilts as the IMU does, {own.link} does not"
             own, left = replace(other, reason=reason), remains
-    return own
+    alike = tuple(
+        link for link, remains in apart.items() if link != own.link and not left < CLEARLY * remains
+    )
+    return replace(own, others=alike)
 
 
 def _turned(mount: Mount, stance: Stance, felt: Array) -> tuple[Mount, float]:

@@ -95,13 +95,13 @@ class Draft:
             evidence = f"link: {seat.reason}{why}"
         corners = ", ".join(vector(corner) for corner in np.round(sole.corners, 4))
         depth = sole.place(round(sole.depth, 4))
-        outline = f"the outline may be off by {_mm(sole.outline_spread)} mm"
+        within = f"± {_mm(sole.outline_spread)} mm in the outline, ± {_mm(sole.spread)} mm in height"
         return [
             f"  {side}:",
             f"    ankle: {scalar(sole.limb.link)}",
             f"    bush: {{{sole.place(round(bush.height, 4))}}}  # GUESS{_spread(bush.spread)}: {bush.reason}",
             f"    wrench: {{name: {scalar(self.sensors.get(side, side))}{link}{pose}{sign}}}  # {evidence}",
-            f"    # GUESS{_spread(sole.spread)}: {sole.reason}; {outline}",
+            f"    # GUESS {within}: {sole.reason}",
             f"    sole: {{{depth}, polygon: [{corners}]}}",
         ]
 

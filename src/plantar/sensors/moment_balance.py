@@ -107,7 +107,8 @@ def torque_gain_notes(gains: Mapping[Axis, TorqueGain]) -> dict[Axis, Note]:
             )
         text = (
             f"{axis}: the feet's torques do not give the moments that the robot's motion needs: {read}, and stiffness "
-            f"and damping follow them. Check {'sign, ' * opposite}unit and calibration of the torque channels"
+            f"and damping follow them. Check {'sign, ' * opposite}unit and calibration of the torque channels, and in "
+            "the robot file where each force sensor measures (wrench: xyz): a place that is wrong looks the same"
         )
         notes[axis] = Note("torque_gain", "warning", text)
     return notes

@@ -16,9 +16,10 @@ from plantar.errors import DataError, MotionError, PlantarError, located
 from plantar.logs.motion_log import MotionLog
 from plantar.motions.plan import RATE, Hand, Plan
 from plantar.results.feet import FeetResult
-from plantar.robot.model import RobotModel
+from plantar.robot.model import Foot, RobotModel
 from plantar.signals.filters import low_pass
 from plantar.twin.bush import Bush, Feet
+from plantar.twin.holding_torques import holding_torques
 from plantar.twin.play import Progress, roll_each
 from plantar.twin.robots.foot import cut_feet
 from plantar.twin.robots.from_robot import describe
@@ -168,23 +169,25 @@ def feet_of(result: FeetResult) -> Feet:
 def plan_of(robot: RobotModel, log: MotionLog, hand: Hand | None = None) -> Plan:
     """The recorded joints as a plan at 200 Hz, from where the first sample stands on flat soles.
 
-    Where efforts were recorded, a servo's give under them is added, so that it stands where the recorded one did.
+    A servo's give is added, so that it stands where the recorded one did: under the recorded efforts, or, of a joint
+    that has none, under those that hold the robot against gravity on the recorded wrenches.
     """
     time = np.arange(int((log.time[-1] - log.time[0]) * RATE + 1e-6) + 1) / RATE
     recorded = _at(log, log.time[0] + time)
     positions = recorded.positions(robot)
     limits = {body.joint: body.effort for body in describe(robot).bodies[1:]}
+    held = holding_torques(robot, recorded)
     for place, joint in enumerate(robot.joint_names):
         effort = recorded.joint(joint, "effort")
-        if effort is not None:
-            positions[:, place] += np.nan_to_num(effort) * SERVO_ANGLE / limits[joint]
+        effort = held[:, place] if effort is None else np.nan_to_num(effort)
+        positions[:, place] += effort * SERVO_ANGLE / limits[joint]
     positions = low_pass(positions, 1 / RATE, SMOOTH)
     soles = flat_soles(robot, recorded.positions(robot)[0])
     least = LOADED * robot.mass * GRAVITY
     standing = frozenset(
         name
         for name, foot in robot.feet.items()
-        if np.nanmedian(foot.wrench.sign * recorded.wrench(foot.wrench.name)[:, 2]) > least
+        if np.nanmedian(_bush_wrench(robot, foot, recorded)[0][:, 2]) > least
     )
     if not standing:
         raise DataError(located("no foot carries the robot", path=log.source))
@@ -223,12 +226,17 @@ def _torques(robot: RobotModel, log: MotionLog) -> dict[tuple[str, str], Array]:
     """Pitch and roll torque at each foot's bush centre, less its mean over the first second."""
     torques = {}
     for name, foot in robot.feet.items():
-        wrench = foot.wrench.sign * log.wrench(foot.wrench.name)
-        to_bush = (robot.frame(foot.bush)[1].inverse() * robot.frame(foot.wrench.placement)[1]).homogeneous
-        force, torque = wrench[:, :3] @ to_bush[:3, :3].T, wrench[:, 3:] @ to_bush[:3, :3].T
-        torque = _changed(log, torque + np.cross(to_bush[:3, 3], force))
+        torque = _changed(log, _bush_wrench(robot, foot, log)[1])
         torques[name, "pitch"], torques[name, "roll"] = torque[:, 1], torque[:, 0]
     return torques
+
+
+def _bush_wrench(robot: RobotModel, foot: Foot, log: MotionLog) -> tuple[Array, Array]:
+    """Force and torque (n, 3) on the robot at the bush centre, in the bush's own axes [N, N·m]."""
+    wrench = foot.wrench.sign * log.wrench(foot.wrench.name)
+    to_bush = (robot.frame(foot.bush)[1].inverse() * robot.frame(foot.wrench.placement)[1]).homogeneous
+    force, torque = wrench[:, :3] @ to_bush[:3, :3].T, wrench[:, 3:] @ to_bush[:3, :3].T
+    return force, torque + np.cross(to_bush[:3, 3], force)
 
 
 def _changed(log: MotionLog, values: Array) -> Array:

@@ -38,7 +38,12 @@ def test_shares_are_of_variances_and_the_largest_limits() -> None:
     assert stiffness.variance_shares == pytest.approx({"delay": 0.64, "noise": 0.36})
     assert damping.variance_shares == pytest.approx({"delay": 0.96, "noise": 0.04})
     assert stiffness.limit == "delay"
-    assert stiffness.half_width_percent == pytest.approx(196 * 5.0 / 400.0)
+    assert stiffness.half_width_percent == rows()[0].half_width_percent, "one number has one width"
+    unbounded = [replace(row, interval95=None) for row in rows()]
+    alone, _ = diagnose_axis(narrow, wide, [delay], unbounded)
+    assert alone.half_width_percent == pytest.approx(196 * 5.0 / 400.0)
+    assert "64 % of its variance from delay" in stiffness.text
+    assert "nearly all of it from delay" in damping.text
     assert stiffness.advice == REMEDY["delay"]
     assert stiffness.advice in stiffness.text
 
@@ -69,6 +74,16 @@ def test_beside_a_fault_of_the_data_nothing_else_is_advised() -> None:
     assert second.reason == weak.reason
     assert second.advice == f"{ADVICE}: {fault.text}"
     assert mend_first([weak], []) == [weak]
+
+
+def test_a_wrong_gain_scales_a_number_and_hides_none() -> None:
+    """Beside it a number keeps the advice against its own limit; what hangs on the gain alone gets that against it."""
+    fault = Note("force_gain", "warning", "forces do not add up to 68.6 kg: +14 %. Weigh the robot")
+    weak = rows("weak")[1]
+    doubted = replace(weak, advice=ADVICE)
+    assert mend_first([weak, doubted], [fault]) == [weak, replace(weak, advice=REMEDY["force gain"])]
+    other = Note("sign", "warning", "sway: torque.y is reversed. Check the sign")
+    assert mend_first([weak], [fault, other])[0].advice == f"{ADVICE}: forces do not add up to 68.6 kg: +14 %"
 
 
 def test_a_number_without_a_width_is_not_diagnosed() -> None:

@@ -53,7 +53,7 @@ def test_a_stance_that_says_little_does_not_set_the_scale() -> None:
     lowest = max(dots(chart, "stance fit"), key=lambda dot: dot.y)
     assert lowest.y == pytest.approx(chart.panels[0].height - 2)
     assert "−9000" in lowest.hover
-    assert chart.remark == "1 stances lie beyond the scale, at its edge."
+    assert chart.remark == "Stances whose K is beyond the scale of this plot, drawn at its edge: 1."
 
 
 def test_strips_are_bounded(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,10 +11,11 @@ from typing import Annotated, Final
 
 import typer
 
+from plantar.cli.console.delay import WrenchDelay
 from plantar.cli.console.memory import size_in_bytes
 from plantar.cli.console.terminal import end_progress, progress
 from plantar.cli.fleet.report import PAGE, RUN_FILE, RUN_SCHEMA, print_alarms, write_report
-from plantar.cli.identify.feet import DELAY_HELP, MODEL_HELP, OFFSET_HELP
+from plantar.cli.identify.feet import MODEL_HELP, OFFSET_HELP
 from plantar.feet.settings import AUTOMATIC, MODEL_CHOICES, FeetSettings, OffsetRule
 from plantar.files import refuse_file
 from plantar.fleet.cluster import SHARE, connected, dashboard, seen_by_workers
@@ -44,7 +45,7 @@ def run(
     ] = None,
     offset: Annotated[OffsetRule, typer.Option(help=OFFSET_HELP)] = "per-motion",
     model: Annotated[str, typer.Option(help=MODEL_HELP, metavar="MODEL")] = AUTOMATIC,
-    wrench_delay: Annotated[float | None, typer.Option(help=DELAY_HELP)] = None,
+    wrench_delay: WrenchDelay = None,
     json: Annotated[bool, typer.Option("--json", help="Print the counts as JSON.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no counts.")] = False,
 ) -> None:
@@ -58,8 +59,7 @@ def run(
         raise typer.BadParameter(f"'{model}' is not one of {', '.join(MODEL_CHOICES)}", param_hint="--model")
     if workers is not None and scheduler is not None:
         raise typer.BadParameter("a running cluster has workers of its own", param_hint="--workers")
-    late = None if wrench_delay is None else 1e-3 * wrench_delay
-    settings = FeetSettings(offset, model, wrench_delay=late)
+    settings = FeetSettings(offset, model, wrench_delay=wrench_delay)
     groups = read_manifest(seen_by_workers(str(manifest), scheduler))
     if not is_remote(out):
         refuse_file(Path(out))

@@ -9,6 +9,7 @@ from typing import Annotated
 import numpy as np
 import typer
 
+from plantar.cli.console.delay import WrenchDelay
 from plantar.cli.console.memory import Memory
 from plantar.cli.console.terminal import progress
 from plantar.cli.identify import identification
@@ -20,7 +21,6 @@ MODEL_HELP = (
     f"{AUTOMATIC} takes the one that predicts held-out motions best."
 )
 OFFSET_HELP = "One offset per motion, or shared by all as in the paper."
-DELAY_HELP = "Delay of the force sensors in ms; estimated if left out."
 CUTOFF_HELP = (
     f"Zero-phase low-pass on both sides of the fit [Hz]. If left out: {DEFAULT_CUTOFF:g}, or less where angle and "
     "torque of a walk are not coherent up to there."
@@ -35,7 +35,7 @@ def run(
     validate: identification.Validate = None,
     offset: Annotated[OffsetRule, typer.Option(help=OFFSET_HELP)] = "per-motion",
     model: Annotated[str, typer.Option(help=MODEL_HELP, metavar="MODEL")] = AUTOMATIC,
-    wrench_delay: Annotated[float | None, typer.Option(help=DELAY_HELP)] = None,
+    wrench_delay: WrenchDelay = None,
     cutoff: Annotated[float | None, typer.Option(help=CUTOFF_HELP, min=0.1)] = None,
     window: Annotated[float | None, typer.Option(help=WINDOW_HELP, min=0.01)] = None,
     memory: Memory = None,
@@ -49,8 +49,7 @@ def run(
     if model not in MODEL_CHOICES:
         raise typer.BadParameter(f"'{model}' is not one of {', '.join(MODEL_CHOICES)}", param_hint="--model")
     reach = None if window is None else float(np.radians(window))
-    late = None if wrench_delay is None else 1e-3 * wrench_delay
-    settings = FeetSettings(offset, model, cutoff, window=reach, wrench_delay=late)
+    settings = FeetSettings(offset, model, cutoff, window=reach, wrench_delay=wrench_delay)
     with ThreadPoolExecutor(1) as reader:
         inputs = reader.submit(identification.opened, robot, logs, validate, out, memory)
         # What fits them is imported while they are read.

@@ -20,7 +20,8 @@ from scipy.spatial import ConvexHull, QhullError
 
 from plantar.conventions import Array, Axis
 from plantar.errors import ExportError, located
-from plantar.exporters.bush import DAMPING_TIME, FootBush
+from plantar.exporters.bush import FootBush
+from plantar.exporters.spring import DAMPING_TIME
 
 Pair = tuple[float, float]
 

@@ -14,8 +14,8 @@ import numpy as np
 from plantar.conventions import Array
 from plantar.errors import ExportError, located
 from plantar.exporters.bush import FootBush
-from plantar.exporters.geometry import box_corners
 from plantar.exporters.shapes import reaches_sole
+from plantar.exporters.urdf.geometry import box_corners
 from plantar.exporters.xml_file import load_xml
 from plantar.notes import Note
 

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from plantar.exporters.job import Job
 
 MESHES = {".stl", ".obj"}  # what MuJoCo's importer reads
+STIFF = "0.004 1"  # solref of every shape: at MuJoCo's own 0.02 the contact is as soft as some bushes
 
 
 def opened(job: Job, purpose: str, notes: list[Note]) -> ET.Element:
@@ -44,7 +45,11 @@ def mjcf_from_urdf(path: Path, feet: tuple[FootBush, ...], notes: list[Note]) ->
     lost = _collision_only(tree)
     if lost:
         notes.append(
-            Note("export_mesh", "warning", f"meshes MuJoCo cannot read, left out: {', '.join(lost[:4])}")
+            Note(
+                "export_mesh",
+                "warning",
+                f"meshes MuJoCo cannot read, left out, so those links touch nothing: {', '.join(lost[:4])}",
+            )
         )
     extension = tree.root.find("mujoco")
     extension = ET.SubElement(tree.root, "mujoco") if extension is None else extension
@@ -68,6 +73,8 @@ def mjcf_from_urdf(path: Path, feet: tuple[FootBush, ...], notes: list[Note]) ->
     if world is not None:
         world.insert(0, ET.Element("light", pos="0 0 4", dir="0 0 -1", directional="true"))
         world.insert(0, ET.Element("geom", name="floor", type="plane", size="0 0 0.05"))
+        for geom in world.iter("geom"):
+            geom.set("solref", STIFF)
     option = model.find("option")
     option = ET.SubElement(model, "option") if option is None else option
     option.attrib |= {"timestep": "0.001", "integrator": "implicitfast"}
@@ -109,7 +116,8 @@ def _import(tree: UrdfTree, compiler: ET.Element, notes: list[Note]) -> Any:
     try:
         return spec()
     except (ValueError, mujoco.FatalError) as error:
-        text = f"inertias balanced and bounded, for MuJoCo says: {' '.join(str(error).split())[:120]}"
+        text = "moments of inertia that no body can have were set to their mean, masses below 0.1 g and moments below "
+        text += f"1e-7 kg·m² raised to that: MuJoCo says {' '.join(str(error).split())[:120]}"
         compiler.attrib |= {"balanceinertia": "true", "boundmass": "1e-4", "boundinertia": "1e-7"}
         made = spec()
         notes.append(Note("export_inertia", "warning", text))

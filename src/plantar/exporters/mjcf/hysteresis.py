@@ -10,7 +10,8 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 from typing import Final
 
-from plantar.exporters.bush import FootBush, Spring
+from plantar.exporters.bush import FootBush
+from plantar.exporters.spring import Spring
 from plantar.exporters.xml_file import numbers
 
 # The slipping body's inertia is the tendon's stiffness times this squared. Heavier, it lags behind what it should

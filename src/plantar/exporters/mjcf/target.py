@@ -14,12 +14,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from plantar.errors import ExportError, located
-from plantar.exporters.bush import FootBush, Spring
+from plantar.exporters.bush import FootBush
 from plantar.exporters.comment import head, plate_note, updated_note
 from plantar.exporters.mjcf.file import Compiled, relocate
-from plantar.exporters.mjcf.from_urdf import opened
+from plantar.exporters.mjcf.from_urdf import STIFF, opened
 from plantar.exporters.mjcf.hysteresis import set_slip, slip_joint
 from plantar.exporters.shapes import SOLE_INERTIA, SOLE_MASS, plate, reaches_sole
+from plantar.exporters.spring import Spring
 from plantar.exporters.xml_file import numbers, to_text
 from plantar.notes import Note
 
@@ -49,10 +50,18 @@ def write(job: Job) -> tuple[str, tuple[Note, ...]]:
     after = Compiled(root, job.model)  # MuJoCo must take what is written
     _check_timestep(after, job, notes)
     relocate(root, job.out)
-    text = "a soft floor is a spring in series: contacts of 4 ms time constant take 1 to 2 percent off K"
-    notes.append(Note("export_floor", "info", text))
+    notes.append(_floor_note(job.model.suffix.lower() == ".urdf"))
     lines = head(job.result, job.feet, "MuJoCo", (*job.remarks, *notes), with_offset=job.with_offset)
     return to_text(root, lines), tuple(notes)
+
+
+def _floor_note(ours: bool) -> Note:
+    """How stiff the ground is, which is a spring in series with the bush; `ours`: floor and shapes are from a URDF."""
+    if ours:
+        text = "floor and shapes have a contact of 4 ms (solref 0.004 1), a spring in series: 1 to 2 percent off K"
+        return Note("export_floor", "info", text)
+    text = "the contact is as soft as the model has it, a spring in series: solref 0.004 takes 1 to 2 percent off K, "
+    return Note("export_floor", "info", f"{text}MuJoCo's default of 0.02 about ten")
 
 
 def _insert(root: ET.Element, foot: FootBush, before: Compiled, notes: list[Note]) -> None:
@@ -87,7 +96,7 @@ def _insert(root: ET.Element, foot: FootBush, before: Compiled, notes: list[Note
         size, centre = plate(foot)
         place = foot.rotation @ centre + foot.centre
         axes = numbers([*foot.rotation[:, 0], *foot.rotation[:, 1]])
-        ET.SubElement(sole, "geom", name=f"{foot.name}_bush_plate", type="box", size=numbers(size / 2),
+        ET.SubElement(sole, "geom", name=f"{foot.name}_bush_plate", type="box", size=numbers(size / 2), solref=STIFF,
                       pos=numbers(place), xyaxes=axes, mass="0")  # fmt: skip
         notes.append(plate_note(foot))
     _share_mass(body, sole, foot, before)

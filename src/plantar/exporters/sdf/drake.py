@@ -14,11 +14,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from plantar.conventions import rotation_from_rpy
-from plantar.exporters.bush import FootBush, Spring
+from plantar.exporters.bush import FootBush
 from plantar.exporters.comment import head
 from plantar.exporters.poses import pose
 from plantar.exporters.sdf.target import insert_bushes
 from plantar.exporters.sdf.tree import SdfTree, set_pose
+from plantar.exporters.spring import Spring
 from plantar.exporters.xml_file import numbers, to_text
 from plantar.notes import Note
 

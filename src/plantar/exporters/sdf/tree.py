@@ -14,8 +14,8 @@ import numpy as np
 
 from plantar.conventions import Array
 from plantar.errors import ExportError, located
-from plantar.exporters.geometry import box_corners, mesh_points
 from plantar.exporters.poses import inverse, pose, rpy_of
+from plantar.exporters.urdf.geometry import box_corners, mesh_points
 from plantar.exporters.xml_file import load_xml, numbers, vector
 
 OLDEST = (1, 5)  # before it a joint's axis stood in another frame

@@ -13,10 +13,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.exporters.bush import FootBush, Spring
+from plantar.exporters.bush import FootBush
 from plantar.exporters.comment import head, mesh_note, moved_note, plate_note, updated_note
 from plantar.exporters.poses import inverse, pose
 from plantar.exporters.shapes import SOLE_INERTIA, SOLE_MASS, plate, reaches_sole
+from plantar.exporters.spring import Spring
 from plantar.exporters.urdf.tree import UrdfTree, origin_of, set_origin
 from plantar.exporters.xml_file import numbers, to_text, vector
 from plantar.notes import Note

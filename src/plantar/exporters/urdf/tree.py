@@ -10,8 +10,8 @@ import numpy as np
 
 from plantar.conventions import Array
 from plantar.errors import ExportError, located
-from plantar.exporters.geometry import box_corners, mesh_points
 from plantar.exporters.poses import inverse, pose, rpy_of
+from plantar.exporters.urdf.geometry import box_corners, mesh_points
 from plantar.exporters.xml_file import load_xml, numbers, vector
 
 PARENTS_SEARCHED = 8  # directories above the URDF in which a package:// path may start

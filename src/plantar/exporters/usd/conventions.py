@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.exporters.bush import Spring
+from plantar.exporters.spring import Spring
 
 AXIS = {"z": "Z", "pitch": "Y", "roll": "X"}
 PER_DEGREE = math.pi / 180

@@ -16,10 +16,11 @@ import numpy as np
 
 from plantar.conventions import Array
 from plantar.errors import ExportError, MissingExtra, located
-from plantar.exporters.bush import FootBush, Spring
+from plantar.exporters.bush import FootBush
 from plantar.exporters.comment import head, plate_note
-from plantar.exporters.geometry import box_corners
 from plantar.exporters.shapes import SOLE_INERTIA, SOLE_MASS, plate, reaches_sole
+from plantar.exporters.spring import Spring
+from plantar.exporters.urdf.geometry import box_corners
 from plantar.exporters.usd.conventions import AXIS, drive, identifier, quaternion
 from plantar.notes import Note
 

@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.exporters.bush import FootBush, Spring
+from plantar.exporters.bush import FootBush
 from plantar.exporters.comment import head
 from plantar.exporters.shapes import SOLE_INERTIA, SOLE_MASS, plate
+from plantar.exporters.spring import Spring
 from plantar.exporters.usd.conventions import AXIS, drive, identifier, quaternion
 from plantar.notes import Note
 

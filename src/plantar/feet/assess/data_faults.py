@@ -28,13 +28,18 @@ def data_faults(recordings: Sequence[Recording], fit: AxisFit) -> list[Note]:
     return [note for note in (*seen, *fit.notes) if note.severity == "warning" and note.code in UNMENDED]
 
 
+def first_sentence(note: Note) -> str:
+    """What a warning says, without what to do about it: the warning itself stands above the numbers."""
+    return note.text.partition(". ")[0]
+
+
 def doubted(rows: Sequence[Parameter], faults: Sequence[Note]) -> list[Parameter]:
     """The rows, no longer usable where the data have a fault: a sensor behind a slow filter leaves the stiffness."""
     found = []
     for row in rows:
         own = [note for note in faults if note.code != FILTERED or row.name != "stiffness"]
         if own and row.verdict == "usable":
-            reason = f"a fault of the data: {own[0].text}"
+            reason = f"a fault of the data: {first_sentence(own[0])}"
             found.append(replace(row, verdict="weak", reason=reason, advice=ADVICE))
         else:
             found.append(row)

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from plantar.conventions import NORMAL95
-from plantar.feet.assess.data_faults import ADVICE
+from plantar.feet.assess.data_faults import ADVICE, first_sentence
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.systematic import Cause
 from plantar.notes import Note
 from plantar.results.feet import Diagnosis, Parameter
+from plantar.results.numbers import number
 
 ZEROS_OF_STANCES = "zeros of stances"
 REMEDY = {
@@ -21,14 +22,15 @@ REMEDY = {
     "lever": "add a slow shift of the weight from foot to foot: it shows the vertical compliance",
     "sensor gain": "calibrate the force sensors, and say so in the robot file: uncertainty: wrench_gain",
     "between recordings": "recordings differ by more than each alone shows: warm the rubber up, record more of them",
-    "force gain": "weigh the robot: then calibrate the force sensors, or correct the URDF's masses",
+    "force gain": "weigh the robot. If the URDF is wrong, scale its masses to that weight: that narrows the interval, "
+    "and hardly moves the number. If it is right, calibrate the force sensors, which the number follows",
     "torque gain": "check unit and calibration of the torque channels, and correct the logs",
-    "yaw torque zero": "zero the force sensors with the feet in the air before recording",
+    "yaw torque zero": "before the next recording, zero the force sensors with the feet in the air",
     "between walks": "add walks: five or more show by themselves how much they differ",
     "ends of stances": "walk with longer stances, or stand and sway: landing and lifting disturb the fit",
     ZEROS_OF_STANCES: "keep the foot on the floor through a recording: put down again, it lands with another zero",
     "memory in stances": "add a recording of standing and swaying: short steps hardly separate spring and hysteresis",
-    "hardening": "record larger motions, or use --model hardening: the spring stiffens, which this model leaves out",
+    "hardening": "record larger motions, or use --model hardening: the stiffness changes with the angle",
     "model": "more of the same will not help: the model does not fit the rubber; try --model auto or other motions",
     "excitation": "use larger motions: twice the amplitude halves the interval",
 }
@@ -36,6 +38,8 @@ REMEDY = {
 OTHER_MOTION_HELPS = (
     "delay", "lever", "hardening", "yaw torque zero", ZEROS_OF_STANCES, "force gain", "torque gain",
 )  # fmt: skip
+GAINS = ("force_gain", "torque_gain")  # codes of warnings on a sensor's gain
+NEARLY_ALL = 0.9
 MODEL_SHARE = 10.0  # times the white deviation: residuals this coloured are the model's, not noise
 
 
@@ -57,11 +61,12 @@ def diagnose_axis(
         shares[name] = float(fit.std[place] / total) ** 2
         limit = max(shares, key=lambda cause: shares[cause])
         without = float(np.sqrt(max(0.0, 1 - shares[limit])))
-        percent = 100 * NORMAL95 * total / abs(row.value)
+        # As the row itself says it, which knows how few the data are that it comes from.
+        percent = row.half_width_percent or 100 * NORMAL95 * total / abs(row.value)
         term = row.name.replace("_", " ")
         text = (
-            f"{row.foot} {row.axis} {term}: ±{percent:.2g} %, {100 * shares[limit]:.0f} % of its variance from "
-            f"{limit}; without it ±{percent * without:.2g} %. To tighten: {REMEDY[limit]}"
+            f"{row.foot} {row.axis} {term}: ±{number(percent, 2)} %, {share_of(limit, shares)}; without it "
+            f"±{number(percent * without, 2)} %. To tighten: {REMEDY[limit]}"
         )
         found.append(
             Diagnosis(row.foot, row.axis, row.name, limit, shares, percent, text, advice=REMEDY[limit])
@@ -69,17 +74,29 @@ def diagnose_axis(
     return found
 
 
+def share_of(limit: str, shares: Mapping[str, float]) -> str:
+    """How much of the variance a cause makes, in words that fit the share."""
+    share = shares[limit]
+    if share > NEARLY_ALL:
+        return f"nearly all of it from {limit}"
+    return f"{100 * share:.0f} % of its variance from {limit}"
+
+
 def mend_first(rows: Sequence[Parameter], faults: Sequence[Note]) -> list[Parameter]:
     """The rows, those that are not usable with no other advice than to mend the data's first fault.
 
-    What else they lack, more motion or another model, may be nothing but that fault.
+    What else they lack, more motion or another model, may be nothing but that fault. A wrong gain is none of these: it
+    scales a number and hides none, and stands among the causes with its share.
     """
-    if not faults:
-        return list(rows)
+    if all(note.code in GAINS for note in faults):
+        return [
+            replace(row, advice=REMEDY[faults[0].code.replace("_", " ")]) if row.advice == ADVICE else row
+            for row in rows
+        ]
     return [
         row
         if row.verdict == "usable" or row.advice == ADVICE
-        else replace(row, advice=f"{ADVICE}: {faults[0].text}")
+        else replace(row, advice=f"{ADVICE}: {first_sentence(faults[0])}")
         for row in rows
     ]
 
@@ -91,7 +108,8 @@ def advised(rows: Sequence[Parameter], diagnosis: Sequence[Diagnosis]) -> list[P
     for row in rows:
         each = limits.get((row.foot, row.axis, row.name))
         if row.verdict != "usable" and each and each.limit in OTHER_MOTION_HELPS:
-            row = replace(row, reason=f"{row.reason}; nearly all of it from {each.limit}", advice=each.advice)
+            told = share_of(each.limit, each.variance_shares)
+            row = replace(row, reason=f"{row.reason}; {told}", advice=each.advice)
         elif row.verdict == "unidentifiable" and each and ZEROS_OF_STANCES in each.variance_shares:
             anew = "the foot was lifted and put down again, each time with another zero"
             row = replace(row, reason=f"{row.reason}; {anew}", advice=REMEDY[ZEROS_OF_STANCES])

@@ -16,7 +16,7 @@ LEAST_EXCITATION = 1e-7  # rad rms: no sensor tells as little, it is rounding
 SHORT_SECONDS = 10.0  # likewise: in less, what is slower than 0.1 Hz, as drift is, has not shown itself
 LEAST_EXPLAINED = 0.3  # share of the torque's variance that the model must explain
 GOOD_EXPLAINED = 0.8
-SIGNS = "check sign and rpy of this foot's wrench, rpy of the IMU, and the signs of the joints: no motion helps here"
+SIGNS = "check sign and rpy of this foot's wrench, link and rpy of the IMU, signs of the joints: no motion helps here"
 LEANING = 0.05  # of the time: shorter leans hardly move what comes behind them
 
 SWAY = {
@@ -94,7 +94,9 @@ def judge(
     if evidence.caution is not None:
         return "weak", evidence.caution, f"{SWAY[axis]} with its weight on the {foot} foot, by larger angles"
     if evidence.seconds < SHORT_SECONDS:
-        told = f"only {evidence.seconds:.1f} s of samples are used, too few to show what drifts"
+        told = (
+            f"only {evidence.seconds:.1f} s of samples are used, too short to tell slow drift from the foot"
+        )
         return "weak", f"{told} (valid: {SHORT_SECONDS:.0f} s or more)", advice
     if width > USABLE_WIDTH:
         return "weak", f"the 95 % interval is ±{100 * width:.0f} %; the motion gave {motion}", advice

@@ -75,7 +75,9 @@ def _chart(
         names.append(slanted(motion, left + middle, top + height))
     paths, texts = frame(PLACE, x, y, "", "K [N·m/rad]", numbers=False)
     away = sum(not y.low <= row.stiffness <= y.high for row in heaviest if row.motion in drawn)
-    remarks = [f"{away} stances lie beyond the scale, at its edge."] if away else []
+    remarks = (
+        [f"Stances whose K is beyond the scale of this plot, drawn at its edge: {away}."] if away else []
+    )
     remarks += [f"The first {MOST_WALKS} of {len(motions)} recordings."] if len(drawn) < len(motions) else []
     if len(heaviest) < len(stances):
         remarks.append(f"The {MOST_STANCES} stances that say most, of {len(stances)}.")

@@ -128,8 +128,10 @@ def _doubtful(robot: RobotModel, lags: Lags) -> SensorDelay:
     text = (
         f"sensors may be late by {1e3 * NORMAL95 * std:.0f} ms: no delays up to {1e3 * SEARCHED:.0f} ms were found "
         "with which the ground's wrench follows from IMU, encoders and URDF, though the robot moves; not corrected. "
-        "Check the clocks of IMU, encoders and force sensors, the IMU's mount and the URDF, or record arm sweeps of "
-        "0.3 to 1 Hz that nobody disturbs; --wrench-delay gives a delay that is known"
+        "Check first that the IMU sits on the link that the robot file says, and how it is turned there; then the "
+        "clocks of IMU, encoders and force sensors, and the URDF, or record arm sweeps of 0.3 to 1 Hz that nobody "
+        "disturbs; "
+        "--wrench-delay gives a delay that is known"
     )
     note = Note("delay_beyond_search", "warning", text)
     return SensorDelay(0.0, std, np.inf, False, note, doubtful=True)

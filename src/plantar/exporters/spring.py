@@ -1,0 +1,173 @@
+"""One axis of a bush as a simulator gets it: which numbers of a result are written, and what is said of the others."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from plantar.conventions import DAMPING_UNIT, OFFSET_UNIT, STIFFNESS_UNIT, Axis
+from plantar.errors import ExportError, located
+from plantar.notes import Note
+from plantar.results.numbers import unit
+
+DAMPING_TIME = 0.002  # s: C/K written where none was identified, that of published bush models (5e5, 1e3)
+ASSUMED = f"K x {1e3 * DAMPING_TIME:g} ms"
+KNOWN_TERMS = ("stiffness", "damping", "offset")
+SLIP_TERMS = ("slip_torque", "slip_angle")
+
+
+@dataclass(frozen=True)
+class Slip:
+    """An elastoplastic (Jenkins) element beside spring and damper: it yields at `torque` [N·m] after `angle` [rad]."""
+
+    torque: float
+    angle: float
+
+    @property
+    def stiffness(self) -> float:
+        """Before it yields [N·m/rad]."""
+        return self.torque / self.angle
+
+
+@dataclass(frozen=True)
+class Spring:
+    """One axis: stiffness, damping and offset, in N, m, rad and s; `assumed`: the logs do not show the damping; `slip`
+    only for targets that hold a hysteresis."""
+
+    axis: Axis
+    stiffness: float
+    damping: float
+    offset: float
+    assumed: bool = False
+    slip: Slip | None = None
+
+    @property
+    def rest(self) -> float:
+        """Where the spring pushes with nothing [rad, or m for z]."""
+        return -self.offset / self.stiffness
+
+    @property
+    def units(self) -> tuple[str, str, str]:
+        return STIFFNESS_UNIT[self.axis], DAMPING_UNIT[self.axis], OFFSET_UNIT[self.axis]
+
+
+def spring_of(
+    result: Mapping[str, Any],
+    rows: list[Mapping[str, Any]],
+    foot: str,
+    axis: Axis,
+    with_offset: bool,
+    notes: list[Note],
+    *,
+    hysteresis: bool = False,
+) -> Spring | None:
+    """The spring of one axis, or None where it is rigid; `notes` gets what nobody should miss.
+
+    hysteresis: whether the target can hold an element that slips.
+
+    Raises ExportError where the stiffness is not positive or a number is none.
+    """
+    mine = {str(row["name"]): row for row in rows if row.get("foot") == foot and row.get("axis") == axis}
+    where = f"{foot} {axis}"
+    found = {name: row["value"] for name, row in mine.items() if row.get("value") is not None}
+    # What hardly gives looks like any large number; in pitch and roll a foot that gives must not be made rigid.
+    nothing_known = axis == "z" and mine.get("stiffness", {}).get("verdict") == "unidentifiable"
+    if "stiffness" not in found or nothing_known:
+        return None
+    values = {name: _number(value, f"{where} {name}") for name, value in found.items()}
+    stiffness = values["stiffness"]
+    if stiffness <= 0:
+        message = f"{where}: the stiffness is not positive; no simulator can stand on it"
+        raise ExportError(located(message, value=stiffness, valid="a result whose stiffness is usable"))
+    extra = [name for name in values if name not in KNOWN_TERMS]
+    slip = None
+    if hysteresis and set(extra) == set(SLIP_TERMS) and all(values[name] > 0 for name in SLIP_TERMS):
+        slip, extra = Slip(*(values[name] for name in SLIP_TERMS)), []
+    nearest = _linear_equivalent(result, foot, axis) if extra else None
+    if extra:
+        text = f"{where}: the target holds a linear spring and damper; left out: {', '.join(extra)}"
+        if nearest is not None:
+            text += "; K and C are those of the spring and damper nearest to the identified motions"
+        notes.append(Note("export_terms", "warning", text))
+    _doubt(mine["stiffness"], where, notes)
+    if nearest is not None:
+        stiffness, damping, assumed = *nearest, False
+        _doubt(mine.get("damping", {}), where, notes)
+    else:
+        damping, assumed = _damping(mine.get("damping", {}), stiffness, where, notes)
+    offsets = [
+        _number(row.get("value"), f"{where} offset")
+        for row in (*result.get("offsets", ()), *(row for name, row in mine.items() if name == "offset"))
+        if row.get("foot") == foot and row.get("axis") == axis
+    ]
+    offset = float(np.mean(offsets)) if offsets else 0.0
+    if with_offset and len(offsets) > 1:
+        text = f"{where}: offset {offset:.4g}, the mean of {len(offsets)} motions"
+        text += f" from {min(offsets):.4g} to {max(offsets):.4g}"
+        notes.append(Note("export_offset", "info", text))
+    return Spring(axis, stiffness, damping, offset if with_offset else 0.0, assumed, slip)
+
+
+def _damping(row: Mapping[str, Any], stiffness: float, where: str, notes: list[Note]) -> tuple[float, bool]:
+    """The damping to write, and whether it is assumed because the logs do not show it.
+
+    Assumed is K·2 ms; where the interval lies above or below that, its nearer end, which the logs do not exclude.
+    """
+    verdict = row.get("verdict", "usable")
+    value = row.get("value")
+    if value is None:
+        text = f"{where}: no damping identified; exported as {ASSUMED}, for stable simulators"
+        notes.append(Note("export_damping", "warning", text))
+        return DAMPING_TIME * stiffness, True
+    if verdict == "unidentifiable":
+        damping, said = DAMPING_TIME * stiffness, ASSUMED
+        low, high = row.get("interval95") or (damping, damping)
+        if low > damping:
+            damping, said = float(low), "the low end"
+        elif 0 < high < damping:
+            damping, said = float(high), "the high end"
+        text = f"{where}: the damping is unidentifiable{_known(row)}; exported as {said} = {damping:.4g}"
+        notes.append(Note("export_damping", "warning", text))
+        return damping, True
+    _doubt(row, where, notes)
+    if value <= 0:
+        text = f"{where}: the identified damping {value:.4g} is not positive, and a foot would never come to rest; "
+        notes.append(Note("export_damping", "warning", f"{text}exported as {ASSUMED}"))
+        return DAMPING_TIME * stiffness, True
+    return float(value), False
+
+
+def _doubt(row: Mapping[str, Any], where: str, notes: list[Note]) -> None:
+    verdict = row.get("verdict", "usable")
+    if verdict != "usable":
+        text = f"{where}: the {row['name']} is {verdict}{_known(row)}"
+        notes.append(Note("export_verdict", "warning", text))
+
+
+def _known(row: Mapping[str, Any]) -> str:
+    """What a row knows of its number, in brackets: the value and its 95 % interval."""
+    if not row.get("interval95"):
+        return ""
+    low, high = row["interval95"]
+    return f" ({row['value']:.4g}, 95 % from {low:.4g} to {high:.4g} {unit(str(row.get('unit', '')))})"
+
+
+def _linear_equivalent(result: Mapping[str, Any], foot: str, axis: Axis) -> tuple[float, float] | None:
+    """K and C of the spring and damper that fits the motions of a richer law best, where the result has usable ones."""
+    for row in result.get("laws", ()):
+        if (row.get("foot"), row.get("axis")) == (foot, axis):
+            nearest = row.get("linear_equivalent") or {}
+            stiffness, damping = (float(nearest.get(name) or math.nan) for name in ("stiffness", "damping"))
+            if 0 < stiffness < math.inf and 0 < damping < math.inf:
+                return stiffness, damping
+    return None
+
+
+def _number(value: object, what: str) -> float:
+    if not isinstance(value, int | float) or not math.isfinite(value):
+        raise ExportError(located(f"{what} is not a number", value=str(value), valid="a finite value"))
+    return float(value)

@@ -1,0 +1,34 @@
+"""Which frame the IMU's tilts are those of, and which others may still be meant."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from plantar.conventions import Array, rotation_from_rpy
+from plantar.robot_guess.imu import Mount, turned_to_gravity
+from plantar.robot_guess.stance import Stance
+
+SAMPLES = 200
+
+
+def poses(pitch: Array) -> Array:
+    """Of a link that pitches over level soles, (n, 4, 4)."""
+    made = np.tile(np.eye(4), (len(pitch), 1, 1))
+    made[:, :3, :3] = [rotation_from_rpy(np.array([0.0, angle, 0.0])) for angle in pitch]
+    return made
+
+
+@pytest.mark.parametrize("named", ["torso", "twin", "head"])
+def test_a_frame_that_tilts_otherwise_is_not_offered(named: str) -> None:
+    sway = np.radians(4) * np.sin(np.linspace(0, 20, SAMPLES))
+    links = {"torso": poses(sway), "twin": poses(sway), "head": poses(0 * sway)}
+    felt = np.einsum("nji,j->ni", links["torso"][:, :3, :3], [0.0, 0.0, 1.0])
+    up = np.tile([0.0, 0.0, 1.0], (SAMPLES, 1))
+    none = np.zeros(SAMPLES, np.intp)
+    stance = Stance({}, {}, np.zeros((SAMPLES, 3)), up, {}, {}, felt, links, none)
+    others = tuple(link for link in links if link != named)
+    found = turned_to_gravity(Mount(named, np.eye(3), True, "a frame", others), stance)
+    assert found.link in ("torso", "twin")
+    assert {found.link, *found.others} == {"torso", "twin"}
+    assert ("tilts as the IMU does" in found.reason) == (named == "head")
