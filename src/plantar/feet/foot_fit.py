@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from plantar.contact.reasons import Reason
 from plantar.conventions import ROTATIONAL_AXES, Axis, Mask
 from plantar.feet.assess.contradiction import contradiction
-from plantar.feet.assess.data_faults import data_faults, doubted
+from plantar.feet.assess.data_faults import OF_MOMENTS, data_faults, doubted
 from plantar.feet.assess.diagnosis import advised, diagnose_axis, mend_first
 from plantar.feet.assess.parameter_rows import axis_rows, missing_rows, unseen_rows
 from plantar.feet.assess.play import play_notes
@@ -39,7 +39,6 @@ from plantar.results.feet import Diagnosis, Parameter, ValidationRow
 from plantar.results.walk_rows import StanceStiffness, WalkStiffness
 from plantar.robot.guesses import naming_notes
 from plantar.sensors.attitude_scale import ATTITUDE_SCALE
-from plantar.sensors.bandwidth import FILTERED
 from plantar.sensors.moment_balance import torque_gain_notes
 
 ROUNDS = 3  # of leaving outliers out: a large one hides smaller ones
@@ -178,7 +177,7 @@ def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit) -> FootFit:
         *torque_gain_notes(ready.torque_gains).values(),
         *naming_notes(ready.robot.path.name, ready.robot.guesses),
         *(note for foot, note in ready.turned.items() if foot == fit.foot),
-        *(note for note in ready.notes if note.code in (FILTERED, ATTITUDE_SCALE)),
+        *(note for note in ready.notes if note.code in (*OF_MOMENTS, ATTITUDE_SCALE)),
     ]
     return FootFit(
         fits=[*found.fits, wide],

@@ -8,14 +8,13 @@ import pytest
 
 from biped import record, sway
 from feet_trials import LINEAR, noisy
-from plantar.feet.assess.data_faults import UNMENDED, data_faults, doubted
+from plantar.feet.assess.data_faults import OF_MOMENTS, UNMENDED, data_faults, doubted
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.identify import fit_prepared
 from plantar.feet.prepare import PreparedLogs, prepare_all
 from plantar.notes import Note
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
-from plantar.sensors.bandwidth import FILTERED
 
 
 @pytest.fixture(scope="module")
@@ -54,10 +53,11 @@ def test_what_was_put_right_or_is_only_said_takes_nothing_away(ready: PreparedLo
     assert doubted([], [Note("sign", "warning", "reversed")]) == []
 
 
-def test_a_slow_filter_on_one_side_leaves_the_stiffness(
-    robot: RobotModel, ready: PreparedLogs, healthy: FeetResult
+@pytest.mark.parametrize("code", sorted(OF_MOMENTS))
+def test_sensors_that_read_at_other_moments_leave_the_stiffness(
+    robot: RobotModel, ready: PreparedLogs, healthy: FeetResult, code: str
 ) -> None:
-    note = Note(FILTERED, "warning", "torques fade")
+    note = Note(code, "warning", "torques fade")
     faded = fit_prepared(robot, replace(ready, notes=(*ready.notes, note)))
     before = {(row.foot, row.axis, row.name): row.verdict for row in healthy.parameters}
     usable = {key for key, verdict in before.items() if verdict == "usable" and key[1] != "z"}

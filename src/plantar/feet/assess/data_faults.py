@@ -11,6 +11,7 @@ from plantar.feet.recording import Recording
 from plantar.notes import Note
 from plantar.results.feet import Parameter
 from plantar.sensors.bandwidth import FILTERED
+from plantar.sensors.delays.sensor_delay import BEYOND_SEARCH
 
 # Codes of warnings on a log's signs, frames, times, full scales and load, and on a bush far from its place.
 UNMENDED = frozenset(
@@ -19,6 +20,8 @@ UNMENDED = frozenset(
         "path_joint_missing", "stuck_channel", "weight", "bush_axes", "bush_link", "sparse_stances", FAR, BUSH_TURNED,
     }
 )  # fmt: skip
+# Codes of warnings on when sensors read: what they spoil is damping and memory.
+OF_MOMENTS = frozenset({FILTERED, BEYOND_SEARCH})
 ADVICE = "mend what the warning names, or leave this log out"
 
 
@@ -34,10 +37,11 @@ def first_sentence(note: Note) -> str:
 
 
 def doubted(rows: Sequence[Parameter], faults: Sequence[Note]) -> list[Parameter]:
-    """The rows, no longer usable where the data have a fault: a sensor behind a slow filter leaves the stiffness."""
+    """The rows, no longer usable where the data have a fault: a sensor behind a slow filter, or late by nobody knows
+    how much, leaves the stiffness to its interval."""
     found = []
     for row in rows:
-        own = [note for note in faults if note.code != FILTERED or row.name != "stiffness"]
+        own = [note for note in faults if note.code not in OF_MOMENTS or row.name != "stiffness"]
         if own and row.verdict == "usable":
             reason = f"a fault of the data: {first_sentence(own[0])}"
             found.append(replace(row, verdict="weak", reason=reason, advice=ADVICE))

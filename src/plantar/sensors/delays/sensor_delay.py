@@ -37,6 +37,7 @@ SIGNIFICANT = 2.5  # deviations from zero: a poorly known delay is corrected bey
 PUSHED = (
     3.0  # predicted over measured squares of the torques, or the reverse; a delay of a second halves them
 )
+BEYOND_SEARCH = "delay_beyond_search"
 
 
 @dataclass(frozen=True)
@@ -133,7 +134,7 @@ def _doubtful(robot: RobotModel, lags: Lags) -> SensorDelay:
         "disturbs; "
         "--wrench-delay gives a delay that is known"
     )
-    note = Note("delay_beyond_search", "warning", text)
+    note = Note(BEYOND_SEARCH, "warning", text)
     return SensorDelay(0.0, std, np.inf, False, note, doubtful=True)
 
 
