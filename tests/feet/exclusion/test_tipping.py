@@ -73,9 +73,9 @@ def tips(found: FeetResult, foot: str) -> list[tuple[float, float]]:
 
 @pytest.mark.parametrize("guessed", [True, False])
 def test_an_outline_that_is_a_guess_may_be_too_large(tmp_path: Path, guessed: bool) -> None:
-    """The sole tips 14 mm inside of the edge that the robot file draws: looked for where the file calls it a guess."""
+    """The sole tips 7 mm inside of the edge that the robot file draws: looked for where the file calls it a guess."""
     motion = pitching(sines((np.radians(2.5), 0.25, 0.3)), -LIMIT, LIMIT)
-    robot = short_soled(tmp_path, 0.043)
+    robot = short_soled(tmp_path, 0.036)
     if guessed:
         marks = tuple(Guess(f"feet.{foot}.sole", "the lowest points of its shape", 0.005) for foot in FEET)
         robot = replace(robot, guesses=marks)

@@ -36,7 +36,9 @@ SMEAR = 0.02  # s that this filter spreads a lean
 FLAT_SEARCH = 0.5  # s: how far a flat sole is looked for
 VISIT_PAUSE = 0.05  # s: visits to the edge that are closer are one
 FEWEST = 0.04  # s of sure lean, for the edge to be known
-GUESSED = 0.015  # m by which an outline that is a guess may be too large: a sole tips before it seems to be at its edge
+# By how much an outline that is a guess may be too large [m, and of half the sole's width]: a sole tips before it seems
+# to be at its edge.
+GUESSED, GUESSED_SHARE = 0.015, 0.15
 
 
 def without_edge_rolling(
@@ -51,7 +53,8 @@ def without_edge_rolling(
     for name, foot in robot.feet.items():
         if foot.contact != "always":
             guessed = any(guess.key.startswith(f"feet.{name}.sole") for guess in robot.guesses)
-            margin = settings.edge_margin + (GUESSED if guessed else 0.0)
+            inner = min(GUESSED, GUESSED_SHARE * float(np.ptp(foot.sole.polygon, axis=0).min()) / 2)
+            margin = settings.edge_margin + (inner if guessed else 0.0)
             rest = _flat(rest, name, foot.sole.polygon, settings.edge_margin, margin)
     return rest
 
@@ -72,6 +75,8 @@ def _flat(
     if not any(edge.any() for edge in near):
         return list(recordings)
     model, rest = _bush_model(recordings, name, near), []
+    if model is None and margin > beyond:  # nothing is clear of so wide a border
+        return _flat(recordings, name, polygon, beyond, beyond)
     for recording, depth, edge in zip(recordings, depths, near, strict=True):
         contact = recording.contacts[name]
         if not edge.any():
