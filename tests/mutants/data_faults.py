@@ -135,7 +135,7 @@ DATA_FAULTS = (
     ),
     Mutant(
         "feet/assess/data_faults.py", "a filter leaves no stiffness",
-        'note.code != FILTERED or row.name != "stiffness"', "True", ("feet/assess/test_data_faults.py",),
+        'note.code not in OF_MOMENTS or row.name != "stiffness"', "True", ("feet/assess/test_data_faults.py",),
     ),
     Mutant(
         "sensors/sensor_turns.py", "a turn that is hardly known is told", "and is_wrong(", "and not is_wrong(",
@@ -173,7 +173,7 @@ DATA_FAULTS = (
         ("sensors/test_attitude_scale.py",),
     ),
     Mutant(
-        "feet/foot_fit.py", "a scaled attitude takes nothing away", "in (FILTERED, ATTITUDE_SCALE)", "in (FILTERED,)",
+        "feet/foot_fit.py", "a scaled attitude takes nothing away", "in (*OF_MOMENTS, ATTITUDE_SCALE)", "in OF_MOMENTS",
         ("sensors/test_attitude_scale.py",),
     ),
     Mutant(
@@ -216,6 +216,27 @@ DATA_FAULTS = (
     Mutant(
         "estimation/slow_drift.py", "drift takes a slow motion", "< (1 - QUICK) * beside_line", "< 2 * beside_line",
         ("estimation/test_slow_drift.py",),
+    ),
+    Mutant(
+        "feet/memory_of_others.py", "a memory is made up", "s.refused is None and s.model.name in shown", "True",
+        ("feet/test_memory_of_others.py",),
+    ),
+    Mutant(
+        "model_selection/selection.py", "what hardly slips need not gain", "score.refused or score.held_out_rms <",
+        "True or score.held_out_rms <", ("model_selection/test_selection.py",),
+    ),
+    Mutant(
+        "feet/fit/axis_fit.py", "offsets stay of first order",
+        "with_best_offsets(unattenuated(fit, recordings, shared), recordings, shared)",
+        "unattenuated(fit, recordings, shared)", ("feet/fit/test_bush_place.py",),
+    ),
+    Mutant(
+        "feet/exclusion/edge_rolling.py", "a guessed outline is trusted", "(inner if guessed else 0.0)", "0.0",
+        ("feet/exclusion/test_tipping.py",),
+    ),
+    Mutant(
+        "feet/assess/verdicts.py", "a nearer law is said alone", "if evidence.caution is not None:", "if False:",
+        ("feet/assess/test_verdicts.py",),
     ),
     Mutant(
         "signals/thinning.py", "quick signals pass for slow ones",
