@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import gc
+import weakref
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -9,9 +12,10 @@ import pytest
 
 from biped import VERTICAL, record, sway
 from feet_trials import PUNCTUAL
-from plantar.errors import DataError
-from plantar.feet.prepare import PreparedLogs, prepare_all, prepare_unseen
+from plantar.errors import DataError, LogError
+from plantar.feet.prepare import PreparedLogs, checked_in_turn, prepare_all, prepare_unseen
 from plantar.feet.settings import FeetSettings
+from plantar.logs.inputs import logs_of
 from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.robot.model import RobotModel
 
@@ -86,3 +90,38 @@ def test_a_gyroscope_behind_its_orientation_is_read_on_time(robot: RobotModel, l
     inner = slice(100, -100)
     apart = np.abs(found.bushes["left"].rate - exact.bushes["left"].rate)[inner]
     assert np.nanmean(apart) < 0.05 * np.nanmean(np.abs(exact.bushes["left"].rate[inner]))
+
+
+def test_a_log_is_let_go_once_it_is_checked(robot: RobotModel, logs: list[MotionLog]) -> None:
+    """While one is read, only the one that is being checked is there."""
+    alive: list[int] = []
+    seen: list[weakref.ref[MotionLog]] = []
+
+    def read() -> Iterator[MotionLog]:
+        for place in range(6):
+            gc.collect()
+            alive.append(sum(one() is not None for one in seen))
+            # A column that is even, and told of: what is checked is another object.
+            log = replace(logs[0], name=f"log {place}").with_columns(
+                {"joint.of_no_foot.position": logs[0].time}
+            )
+            seen.append(weakref.ref(log))
+            yield log
+            del log
+
+    found = checked_in_turn(robot, read())
+    assert [one.name for one in found] == [f"log {place}" for place in range(6)]
+    assert max(alive) <= 1
+
+
+def test_the_first_log_with_an_error_is_named(robot: RobotModel, logs: list[MotionLog]) -> None:
+    def degrees(name: str) -> MotionLog:
+        moved = {
+            column: np.degrees(values) for column, values in logs[0].columns.items() if "joint" in column
+        }
+        return replace(logs[0].with_columns(moved), name=name)
+
+    with pytest.raises(DataError, match="second"):
+        checked_in_turn(robot, [logs[0], degrees("second"), degrees("third"), logs[1]])
+    with pytest.raises(LogError, match="does not exist"):
+        checked_in_turn(robot, logs_of([logs[0], "nowhere.csv", degrees("third")], robot))

@@ -57,3 +57,16 @@ def test_a_slower_sensor_is_read_wherever_it_stands() -> None:
     sparse = np.where(np.arange(len(log)) % 10 == 3, log.column("joint.knee.position"), np.nan)
     few = picked(log.with_columns({"joint.knee.position": sparse}))
     assert np.isfinite(few.column("joint.knee.position")).sum() == np.isfinite(sparse).sum()
+
+
+def test_columns_are_filtered_as_if_each_were_alone() -> None:
+    holes = lambda time: np.where((time > 3) & (time < 3.5), np.nan, time)  # noqa: E731
+    signals = {f"joint_{k}": tone(0.3 + k) for k in range(11)} | {"holed": holes}
+    thin = thinned(log_of(1000.0, **signals))
+    for name, signal in signals.items():
+        alone = thinned(log_of(1000.0, **{name: signal}))
+        np.testing.assert_array_equal(
+            thin.column(f"joint.{name}.position"), alone.column(f"joint.{name}.position")
+        )
+    assert np.isnan(thin.column("joint.holed.position")).sum() == 99
+    assert list(thin.columns) == [f"joint.{name}.position" for name in signals]

@@ -79,7 +79,7 @@ def turned_motions(
 def _joint_motion(signals: InertialSignals, kept: slice, late: float = 0.0) -> tuple[Array, Array, Array]:
     """Positions, velocities and accelerations at the samples `kept`, of encoders that report `late` [s]."""
     positions, velocities, accelerations = (
-        shifted(values, signals.period, late)[kept] for values in signals.joints
+        shifted(values, signals.period, late, kept) for values in signals.joints
     )
     return positions, velocities, accelerations
 
@@ -97,7 +97,7 @@ def _with_base(
     kept: slice,
     late: float = 0.0,
 ) -> Motion:
-    rate, slope = (shifted(values, signals.period, late)[kept] for values in signals.turning)
+    rate, slope = (shifted(values, signals.period, late, kept) for values in signals.turning)
     return Motion(root_motion(seen, signals.proper[kept], rate, slope), *joints)
 
 

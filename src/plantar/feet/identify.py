@@ -68,11 +68,10 @@ def identify_feet(
         'result.json'
     """
     robot = robot_of(robot)
-    logs, validate = logs_of(logs, robot), logs_of(validate, robot)
-    settings = settings or FeetSettings()
-    if not logs:
-        raise DataError("no logs to fit (valid: at least one)")
-    return fit_prepared(robot, prepare_all(robot, logs, validate, settings, progress), progress)
+    ready = prepare_all(
+        robot, logs_of(logs, robot), logs_of(validate, robot), settings or FeetSettings(), progress
+    )
+    return fit_prepared(robot, ready, progress)
 
 
 def fit_prepared(

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
+from itertools import count
+from threading import Lock
 
 from plantar.conventions import Axis
+from plantar.errors import DataError
 from plantar.feet.coherent_band import coherent_band
 from plantar.feet.exclusion.edge_rolling import without_edge_rolling
 from plantar.feet.exclusion.slip import without_slip
@@ -34,6 +37,8 @@ from plantar.sensors.tilt_error import NO_TILT_ERROR, log_tilt_error
 
 Progress = Callable[[str], None]
 LONG = 50_000  # samples: with fewer, threads mostly hand Python's lock to each other, and hold memory each
+
+AT_ONCE = 2  # logs: one is read while another is checked
 
 
 @dataclass(frozen=True)
@@ -72,21 +77,54 @@ def over_logs(logs: Sequence[MotionLog]) -> Iterator[Each]:
 
 def prepare_all(
     robot: RobotModel,
-    logs: Sequence[MotionLog],
-    validate: Sequence[MotionLog],
+    logs: Iterable[MotionLog],
+    validate: Iterable[MotionLog],
     settings: FeetSettings,
     progress: Progress,
 ) -> PreparedLogs:
-    """Check, put on even grids, and `prepare_checked`.
+    """Check, put on even grids, and `prepare_checked`; a log that is read when its turn comes is let go when checked.
 
-    Raises RobotError, LogError or DataError with one line where an input cannot be used.
+    Raises RobotError, LogError or DataError with one line where an input cannot be used, or nothing is to be fitted.
     """
-    everything = [*logs, *validate]
-    check_names(everything)
     progress("check the logs")
-    with over_logs(everything) as each:
-        even = list(each(lambda log: checked(robot, log), everything))
-    return prepare_checked(robot, even[: len(logs)], even[len(logs) :], settings, progress)
+    fitted = checked_in_turn(robot, logs)
+    if not fitted:
+        raise DataError("no logs to fit (valid: at least one)")
+    unseen = checked_in_turn(robot, validate)
+    check_names([*fitted, *unseen])
+    return prepare_checked(robot, fitted, unseen, settings, progress)
+
+
+def checked_in_turn(robot: RobotModel, logs: Iterable[MotionLog]) -> list[MotionLog]:
+    """Every log `checked`, in order; while one is, the next is read. Raises the error of the first that has one."""
+    source, reading = iter(logs), Lock()
+    even: dict[int, MotionLog] = {}
+    errors: dict[int, Exception] = {}
+    places = count()
+
+    def work() -> None:
+        while not errors:
+            with reading:
+                place = next(places)
+                try:
+                    log = next(source, None)
+                except Exception as error:
+                    errors[place] = error
+                    return
+            if log is None:
+                return
+            try:
+                even[place] = checked(robot, log)
+            except Exception as error:
+                errors[place] = error
+            del log  # or it would stay while the next is read
+
+    with ThreadPoolExecutor(AT_ONCE) as pool:
+        for worker in [pool.submit(work) for _ in range(AT_ONCE)]:
+            worker.result()
+    if errors:
+        raise errors[min(errors)]
+    return [even[place] for place in sorted(even)]
 
 
 def prepare_checked(
@@ -134,15 +172,15 @@ def prepare_checked(
 
 def prepare_unseen(
     robot: RobotModel,
-    logs: Sequence[MotionLog],
+    logs: Iterable[MotionLog],
     settings: FeetSettings,
     delay: SensorDelay,
     compliance: Mapping[str, float],
     progress: Progress,
 ) -> list[Recording]:
     """Logs to score with what an earlier fit found: its cutoff in `settings`, its `delay`, its `compliance` [m/N]."""
-    check_names(logs)
-    even = [checked(robot, log) for log in logs]
+    even = checked_in_turn(robot, logs)
+    check_names(even)
     recordings, _ = _recordings(robot, even, 0, settings, delay, progress)
     return [moved_centre(recording, compliance) for recording in recordings]
 

@@ -96,7 +96,7 @@ def select_motions(
         [1, 2]
     """
     robot = robot_of(robot)
-    logs = logs_of(logs, robot)
+    logs = tuple(logs_of(logs, robot))
     settings = settings or FeetSettings()
     check_names(logs)
     names = [log.name for log in logs]

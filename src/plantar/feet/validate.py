@@ -65,7 +65,6 @@ def scored_feet(
     """The rows of `validate_feet`, and a warning for each foot of each log that has none, with what its seconds are."""
     found = result if isinstance(result, FeetResult) else FeetResult.load(result, residuals=False)
     robot = robot_of(robot)
-    logs = logs_of(logs, robot)
     feet = {row.foot for row in found.parameters}
     strangers = sorted(feet - set(robot.feet))
     if strangers:
@@ -73,7 +72,9 @@ def scored_feet(
     known = {key: value for key, value in found.settings.items() if key in FeetSettings.__dataclass_fields__}
     compliance = {foot: found.compliance.get(foot, 0.0) for foot in robot.feet}
     delay = _sensor_delay(found.sensor_delay)
-    recordings = prepare_unseen(robot, logs, FeetSettings(**known), delay, compliance, progress)
+    recordings = prepare_unseen(
+        robot, logs_of(logs, robot), FeetSettings(**known), delay, compliance, progress
+    )
     rows: list[ValidationRow] = []
     for foot in sorted(feet):
         for axis in ROTATIONAL_AXES:

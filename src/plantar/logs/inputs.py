@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from threading import Lock
@@ -18,6 +18,7 @@ PathInput = str | os.PathLike[str]
 RobotInput = RobotModel | PathInput
 LogInput = MotionLog | PathInput
 LogInputs = LogInput | Iterable[LogInput]
+FEWER_LOGS = "fewer logs at a time, or more with --memory (memory= in Python)"
 
 
 def robot_of(robot: RobotInput) -> RobotModel:
@@ -30,13 +31,35 @@ def robot_of(robot: RobotInput) -> RobotModel:
     raise RobotError(located("is not a robot", value=kind, valid="a RobotModel or the path of a robot file"))
 
 
-def logs_of(logs: LogInputs, robot: RobotModel) -> tuple[MotionLog, ...]:
-    """One log or several, each itself or read from its file. Raises LogError for anything else."""
+def logs_of(logs: LogInputs, robot: RobotModel) -> Iterator[MotionLog]:
+    """One log or several, each itself or read from its file when its turn comes. Raises LogError for anything else."""
     if isinstance(logs, MotionLog | str | os.PathLike):
-        return (_log_of(logs, robot),)
+        logs = (logs,)
     if not isinstance(logs, Iterable):
         raise _no_log(logs)
-    return tuple(_log_of(log, robot) for log in logs)
+    return (_log_of(log, robot) for log in logs)
+
+
+def open_in_turn(
+    paths: Sequence[Path], robot: RobotModel, kept: Callable[[MotionLog], int], memory: int | None = None
+) -> Iterator[MotionLog]:
+    """Logs read when their turns come: each must fit in `memory` bytes beside those that are `kept` of the ones before.
+
+    If left out, the usual memory. Raises LogError as `open_log`.
+    """
+    whole = usual_memory() if memory is None else memory
+    left = whole
+    for path in paths:
+        try:
+            log = open_log(path, robot, memory=left)
+        except NoRoom as error:
+            if left == whole:
+                raise
+            message = f"does not fit beside the other logs, which leave {shown(left)}"
+            raise NoRoom(located(message, path=path, valid=FEWER_LOGS)) from error
+        left = max(0, left - kept(log))
+        yield log
+        del log  # or it would stay until the next was read
 
 
 def open_together(paths: Sequence[Path], robot: RobotModel, memory: int | None = None) -> list[MotionLog]:
@@ -54,8 +77,7 @@ def open_together(paths: Sequence[Path], robot: RobotModel, memory: int | None =
             left -= log.size
             if left < 0:
                 message = f"does not fit beside the other logs: {shown(-left)} too much"
-                valid = "fewer logs at a time, or more with --memory (memory= in Python)"
-                raise NoRoom(located(message, path=path, valid=valid))
+                raise NoRoom(located(message, path=path, valid=FEWER_LOGS))
         return log
 
     if all(path.suffix.lower() == ".csv" for path in paths):  # each is parsed on all cores

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from plantar.conventions import Array
 from plantar.logs.motion_log import MotionLog
@@ -94,18 +95,26 @@ def interpolate(at: Array, time: Array, values: Array, longest: float) -> Array:
     return result
 
 
-def shifted(values: Array, period: float, delay: float) -> Array:
-    """Evenly sampled `values` (N, k) as they were `delay` [s] later: undoes a sensor that reports late by `delay`."""
+def shifted(values: Array, period: float, delay: float, kept: slice = slice(None)) -> Array:
+    """Evenly sampled `values` (N, ...) as they were `delay` [s] later, at the samples `kept`: undoes a sensor that
+    reports late by `delay`.
+    """
     if delay == 0:
-        return values
+        return values[kept]
     whole, share = int(delay // period), delay % period / period
-    wide = np.full((len(values) + 2 * abs(whole) + 2, *values.shape[1:]), np.nan)
-    first = abs(whole)
-    wide[first : first + len(values)] = values
-    before = wide[first + whole :][: len(values)]
-    return (
-        before.copy() if share == 0 else before + share * (wide[first + whole + 1 :][: len(values)] - before)
-    )
+    rows = np.arange(*kept.indices(len(values))) + whole
+    before = _at(values, rows)
+    return before if share == 0 else before + share * (_at(values, rows + 1) - before)
+
+
+def _at(values: Array, rows: NDArray[np.intp]) -> Array:
+    """Values at `rows`, NaN beyond the ends."""
+    inside = (rows >= 0) & (rows < len(values))
+    if inside.all():
+        return np.asarray(values[rows])
+    found = np.full((len(rows), *values.shape[1:]), np.nan)
+    found[inside] = values[rows[inside]]
+    return found
 
 
 def with_continuous_quaternions(log: MotionLog) -> dict[str, Array]:

@@ -54,7 +54,9 @@ def identify_inertia(
     if robot.base == "fixed":
         message = "a fixed base has no base rows to identify from"
         raise RobotError(located(message, path=robot.path, valid="plantar identify joints"))
-    made = prepare_logs(robot, logs_of(logs, robot), logs_of(validate, robot), settings, progress)
+    made = prepare_logs(
+        robot, tuple(logs_of(logs, robot)), tuple(logs_of(validate, robot)), settings, progress
+    )
     body = made.body
     fitted, unseen = (
         [inertial_samples(body, whole, made.calibration) for whole in wholes]

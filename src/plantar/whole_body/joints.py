@@ -82,7 +82,9 @@ def identify_joints(
     if inertia == "first" and robot.base == "fixed":
         message = "a fixed base has no base rows to identify inertias from first"
         raise RobotError(located(message, path=robot.path, valid="inertia: together, known"))
-    made = prepare_logs(robot, logs_of(logs, robot), logs_of(validate, robot), settings, progress)
+    made = prepare_logs(
+        robot, tuple(logs_of(logs, robot)), tuple(logs_of(validate, robot)), settings, progress
+    )
     body = made.body
     given, said = _given(made, inertia, progress)
     terms, fit, choice = _chosen(made, given, progress)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor
 from functools import partial
+from itertools import islice
 from typing import Annotated
 
 import numpy as np
@@ -15,6 +15,9 @@ from plantar.cli.console.terminal import progress
 from plantar.cli.identify import identification
 from plantar.cli.identify.feet_tables import print_feet
 from plantar.feet.settings import AUTOMATIC, DEFAULT_CUTOFF, MODEL_CHOICES, FeetSettings, OffsetRule
+from plantar.files import refuse_file
+from plantar.logs.inputs import open_in_turn
+from plantar.robot.model import load_robot
 
 MODEL_HELP = (
     f"Model of the bush: {', '.join(MODEL_CHOICES)}. "
@@ -50,13 +53,13 @@ def run(
         raise typer.BadParameter(f"'{model}' is not one of {', '.join(MODEL_CHOICES)}", param_hint="--model")
     reach = None if window is None else float(np.radians(window))
     settings = FeetSettings(offset, model, cutoff, window=reach, wrench_delay=wrench_delay)
-    with ThreadPoolExecutor(1) as reader:
-        inputs = reader.submit(identification.opened, robot, logs, validate, out, memory)
-        # What fits them is imported while they are read.
-        from plantar.feet.identify import identify_feet
-        from plantar.report import write_feet_report
+    refuse_file(out)
+    known = load_robot(robot)
+    from plantar.feet.identify import identify_feet
+    from plantar.report import write_feet_report
+    from plantar.signals.thinning import kept_size
 
-        result = identify_feet(*inputs.result(), settings=settings, progress=progress(quiet))
-    del inputs  # the report needs the logs' memory
+    read = open_in_turn([*logs, *(validate or ())], known, kept_size, memory)
+    result = identify_feet(known, islice(read, len(logs)), read, settings, progress(quiet))
     report = partial(write_feet_report, table=result.residuals)
     identification.keep(result, out, report, print_feet, json=json, quiet=quiet)
