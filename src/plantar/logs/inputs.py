@@ -49,7 +49,9 @@ def open_in_turn(
     """
     whole = usual_memory() if memory is None else memory
     left = whole
-    for path in paths:
+
+    def read(path: Path) -> MotionLog:
+        nonlocal left
         try:
             log = open_log(path, robot, memory=left)
         except NoRoom as error:
@@ -58,8 +60,9 @@ def open_in_turn(
             message = f"does not fit beside the other logs, which leave {shown(left)}"
             raise NoRoom(located(message, path=path, valid=FEWER_LOGS)) from error
         left = max(0, left - kept(log))
-        yield log
-        del log  # or it would stay until the next was read
+        return log
+
+    return map(read, paths)  # which keeps no log that it has handed over
 
 
 def open_together(paths: Sequence[Path], robot: RobotModel, memory: int | None = None) -> list[MotionLog]:

@@ -24,6 +24,7 @@ BAND = 2.0  # Hz: the robot moves below it, and most of the sensors' noise is ab
 LATE = 0.02  # s, of feet's sensors, encoders and gyroscope behind the accelerometer
 MOUNT = 0.1  # rad, by which sensors and IMU may be turned: wide, so that no turned mount passes for a gain
 KEPT_PER_BAND = 5.0  # samples for each period of BAND: far above what has passed the filter
+TOGETHER = 96  # columns that are filtered at once
 TURN = 0.01  # rad, of the IMU, for the slope of what it predicts
 
 
@@ -59,19 +60,26 @@ def moment_errors(robot: RobotModel, residual: NewtonEulerResidual, steps: bool)
     by_gyroscope, by_mount = _imu_slopes(robot, residual)
     slopes = [*-by_mount, *residual.rates, residual.by_encoders, -by_gyroscope]
     pair, period, count = residual.pair, residual.pair.period, len(readings) + len(slopes)
+    noisy = 6 * (1 + len(readings))
     errors = predicted_errors(robot, inertial_motion(robot, residual.signals, residual.kept))
     every = np.hstack([pair.predicted - pair.measured, *readings, *slopes, *errors])
-    every[:, 6:] -= low_pass(every[:, 6:], period, SLOW)  # what postures and drifting zeros do to them
+    del readings, slopes, errors
+    for first in range(
+        6, every.shape[1], TOGETHER
+    ):  # a copy of all at once would be the largest array of any log
+        some = every[:, first : first + TOGETHER]
+        some -= low_pass(some, period, SLOW)  # what postures and drifting zeros do to them
     if steps:
         return _errors(_by_row(every), count, period, CUTOFF)
-    slow = low_pass(every, period, BAND)
     # Slopes are smooth: their noise is not white, and small below BAND.
-    noisy = 6 * (1 + len(readings))
-    noise = _by_row(every[:, :noisy] - slow[:, :noisy])
     stride = max(1, round(1 / (KEPT_PER_BAND * BAND * period)))
-    found = _errors(_by_row(slow[::stride]), count, stride * period, BAND)
+    read = low_pass(every[:, :noisy], period, BAND)
+    noise = _by_row(every[:, :noisy] - read)
+    slow = np.hstack([read[::stride], low_pass(every[:, noisy:], period, BAND)[::stride]])
+    del every, read
+    found = _errors(_by_row(slow), count, stride * period, BAND)
     share = _below_to_above(period) / stride
-    found.products[:, : len(readings) + 1, : len(readings) + 1] -= share * (noise @ noise.transpose(0, 2, 1))
+    found.products[:, : noisy // 6, : noisy // 6] -= share * (noise @ noise.transpose(0, 2, 1))
     return found
 
 

@@ -20,6 +20,7 @@ CUTOFF = 2.0  # Hz
 LEAST_MOVED = (
     0.003  # of the robot's weight: a force that changes by less shows its sensor's noise, and no lag
 )
+LONGEST = 200.0  # s of a log that are searched: a grid of lags holds each sample a hundred times
 KEPT_RATE = 1 / STEP  # Hz: a sample for each step
 
 
@@ -39,6 +40,7 @@ def lagged_log(robot: RobotModel, log: MotionLog) -> LagGrid | None:
     inner = slice(longest.start + steps[-1], longest.stop - steps[-1])
     if (inner.stop - inner.start) * thin.period < 2 * WINDOW:
         return None
+    inner = _liveliest(readings[..., FORCE].sum(axis=0), inner, round(LONGEST / thin.period))
     equation, parameters = Equation(robot.floating_model), model_parameters(robot.floating_model)
     contacts = [Contact(*robot.frame(foot.wrench.placement)) for foot in robot.feet.values()]
     late = np.stack([readings[:, inner.start + step : inner.stop + step] for step in steps], axis=1)
@@ -52,6 +54,16 @@ def lagged_log(robot: RobotModel, log: MotionLog) -> LagGrid | None:
     if np.sum(np.var(together, axis=0)) < (LEAST_MOVED * GRAVITY * robot.mass) ** 2:
         return None
     return LagGrid(np.array(predicted), np.array(measured), lags, lags, thin.period)
+
+
+def _liveliest(force: Array, inner: slice, most: int) -> slice:
+    """Of the samples `inner` the `most` consecutive ones in which the force (N, 3) changes most."""
+    if inner.stop - inner.start <= most:
+        return inner
+    changes = np.sum(np.diff(force[inner], axis=0, prepend=force[inner][:1]) ** 2, axis=1)
+    until = np.append(0.0, np.cumsum(changes))
+    first = inner.start + int(np.argmax(until[most:] - until[:-most]))
+    return slice(first, first + most)
 
 
 def _thinned(robot: RobotModel, log: MotionLog) -> MotionLog:
