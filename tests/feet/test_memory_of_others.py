@@ -11,6 +11,7 @@ import pytest
 
 from bush_data_sets import Rubber
 from made_recording import FOOT, PERIOD, made_recording, swayed
+from plantar.contact.stances import Stances
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.foot_fit import FittedFoot
@@ -20,6 +21,7 @@ from plantar.feet.settings import FeetSettings
 from plantar.models import KelvinVoigt
 
 RUBBER = Rubber(stiffness=420.0, damping=18.0, slip_torque=4.0, slip_angle=0.006)
+STEPPING = Stances(np.arange(4000) // 1000, np.ones(4000))
 NEARER = "elastoplastic predicts held-out motion better"
 
 
@@ -46,7 +48,9 @@ def spring(recordings: list[Recording], clear: AxisFit) -> AxisFit:
     return replace(fit, choice=replace(clear.choice, caution=NEARER))
 
 
-def foot(fit: AxisFit, recordings: list[Recording]) -> FittedFoot:
+def foot(fit: AxisFit, recordings: list[Recording], *, steps: bool = False) -> FittedFoot:
+    if steps:
+        recordings = [replace(recording, stances={FOOT: STEPPING}) for recording in recordings]
     ready: Any = SimpleNamespace(fitted=recordings, settings=FeetSettings())
     return FittedFoot(FOOT, None, {"pitch": fit}, {}, ready, ready, ())  # type: ignore[arg-type]
 
@@ -65,16 +69,52 @@ def test_a_memory_that_another_axis_shows_is_taken(
     assert "other axes" in found.reason
 
 
-def test_no_memory_is_made_up(recordings: list[Recording], clear: AxisFit, spring: AxisFit) -> None:
-    assert spring.choice is not None
-    sure = replace(spring, choice=replace(spring.choice, caution=None))
-    refused = replace(
-        spring,
-        choice=replace(
-            spring.choice,
-            ranking=tuple(replace(score, refused="is not passive") for score in spring.choice.ranking),
-        ),
+def changed(fit: AxisFit, **scores: object) -> AxisFit:
+    """With no caution, and something else said of each model but spring and damper."""
+    assert fit.choice is not None
+    ranking = tuple(
+        replace(
+            score,
+            chosen=score.model.name == "kelvin_voigt",
+            **({} if score.model.name == "kelvin_voigt" else scores),
+        )
+        for score in fit.choice.ranking
     )
-    for one, other in ((spring, spring), (sure, clear), (refused, clear)):
-        feet = {"one": foot(one, recordings), "other": foot(other, recordings)}
-        assert with_memory_of_others(feet)["one"].fits["pitch"] is one
+    return replace(fit, choice=replace(fit.choice, caution=None, ranking=ranking))
+
+
+def of(one: AxisFit, other: AxisFit, recordings: list[Recording], *, steps: bool = False) -> AxisFit:
+    feet = {"one": foot(one, recordings, steps=steps), "other": foot(other, recordings)}
+    return with_memory_of_others(feet)["one"].fits["pitch"]
+
+
+def test_no_memory_is_made_up(recordings: list[Recording], clear: AxisFit, spring: AxisFit) -> None:
+    worse = changed(spring, held_out_rms=9e9, refused=None)
+    for one, other in ((spring, spring), (worse, clear)):
+        assert of(one, other, recordings) is one
+
+
+def test_of_a_foot_that_steps_a_memory_is_taken_as_soon_as_it_predicts_better(
+    recordings: list[Recording], clear: AxisFit, spring: AxisFit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("plantar.feet.memory_of_others.fit_axis", lambda *_: clear)
+    better = changed(spring, refused=None)
+    assert of(better, clear, recordings) is better
+    assert of(better, clear, recordings, steps=True).model.name == "elastoplastic"
+    assert of(better, spring, recordings, steps=True) is better
+
+
+@pytest.mark.parametrize(
+    ("scores", "steps"),
+    [({"refused": "is hardly reached"}, False), ({"held_out_rms": 9e9, "refused": None}, True)],
+)
+def test_a_memory_that_is_neither_shown_nor_excluded_makes_a_caution(
+    recordings: list[Recording], clear: AxisFit, spring: AxisFit, scores: dict[str, object], steps: bool
+) -> None:
+    unsure = changed(spring, **scores)
+    found = of(unsure, clear, recordings, steps=steps)
+    assert found.model.name == "kelvin_voigt"
+    assert found.choice is not None
+    assert "neither show nor exclude" in (found.choice.caution or "")
+    alone = of(unsure, unsure, recordings, steps=steps)
+    assert alone is unsure

@@ -194,7 +194,7 @@ def _model(fits: Sequence[AxisFit]) -> str:
 
 def _model_notes(fits: Sequence[AxisFit]) -> list[Note]:
     """Models richer than spring and damper, and what a chosen model leaves open."""
-    notes = []
+    notes, cautions = [], dict[str, list[str]]()
     for fit in fits:
         where = f"{fit.foot} {fit.axis}"
         if fit.model.name != KelvinVoigt.name:
@@ -203,9 +203,12 @@ def _model_notes(fits: Sequence[AxisFit]) -> list[Note]:
             text = f"{where}: {fit.model.name} ({fit.reason}); {linear}"
             notes.append(Note("model", "info", text))
         if fit.choice is not None and fit.choice.caution is not None:
-            notes.append(Note("model_caution", "warning", f"{where}: {fit.choice.caution}"))
+            cautions.setdefault(fit.choice.caution, []).append(where)
         notes += fit.notes or far_arms(fit)
-    return notes
+    told = [
+        Note("model_caution", "warning", f"{', '.join(where)}: {text}") for text, where in cautions.items()
+    ]
+    return notes + told
 
 
 def _offsets(fit: AxisFit) -> list[Offset]:

@@ -13,20 +13,36 @@ from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.foot_fit import FittedFoot
 from plantar.feet.internal_error import gives_up
-from plantar.model_selection.selection import ModelScore
+from plantar.model_selection.selection import ModelChoice, ModelScore
 from plantar.models import KelvinVoigt
+
+NOT_EXCLUDED = (
+    "other axes of this robot show a memory, which these motions neither show nor exclude here: with one, stiffness is "
+    "smaller"
+)
 
 
 def with_memory_of_others(feet: Mapping[str, FittedFoot]) -> dict[str, FittedFoot]:
-    """The feet with a memory in each axis that a `caution` says is nearer to it, and that another axis has."""
+    """The feet with a memory that another axis has in each axis that is nearer to it than to spring and damper.
+
+    An axis that neither shows nor excludes it keeps spring and damper, with a caution.
+    """
     every = [fit for one in feet.values() for fit in one.fits.values()]
     shown = {fit.model.name for fit in every if fit.model.remembers}
     found = {}
     for foot, one in feet.items():
         fits = dict(one.fits)
         for axis, fit in one.fits.items():
-            score = _nearer(fit, shown)
-            if score is None or axis in one.given_up:
+            if (
+                fit.choice is None
+                or not isinstance(fit.model, KelvinVoigt)
+                or axis in one.given_up
+                or not shown
+            ):
+                continue
+            score = _nearer(fit.choice, shown, steps=_steps(one))
+            if score is None:
+                fits[axis] = _cautioned(fit, fit.choice, shown, steps=_steps(one))
                 continue
             with gives_up(axis, one.given_up):
                 own = fit_axis(one.thin.fitted, one.foot, axis, one.ready.settings, score.model, one.place)
@@ -35,11 +51,25 @@ def with_memory_of_others(feet: Mapping[str, FittedFoot]) -> dict[str, FittedFoo
     return found
 
 
-def _nearer(fit: AxisFit, shown: Collection[str]) -> ModelScore | None:
-    """Where a fit of spring and damper is cautioned about: the nearest model of those `shown` that was identified."""
-    if fit.choice is None or fit.choice.caution is None or not isinstance(fit.model, KelvinVoigt):
+def _steps(foot: FittedFoot) -> bool:
+    return any(recording.stances[foot.foot] is not None for recording in foot.thin.fitted)
+
+
+def _nearer(choice: ModelChoice, shown: Collection[str], *, steps: bool) -> ModelScore | None:
+    """The nearest model of those `shown` that was identified; of a standing foot only where a caution asks for it."""
+    spring = next(score for score in choice.ranking if isinstance(score.model, KelvinVoigt))
+    found = next((s for s in choice.ranking if s.refused is None and s.model.name in shown), None)
+    if found is None or (choice.caution is None and not steps):
         return None
-    return next((s for s in fit.choice.ranking if s.refused is None and s.model.name in shown), None)
+    return found if found.held_out_rms < spring.held_out_rms else None
+
+
+def _cautioned(fit: AxisFit, choice: ModelChoice, shown: Collection[str], *, steps: bool) -> AxisFit:
+    """The fit with a caution, unless a memory was identified in motions that show one, and predicts no better there."""
+    excluded = any(score.refused is None and score.model.name in shown for score in choice.ranking)
+    if choice.caution is not None or (excluded and not steps):
+        return fit
+    return replace(fit, choice=replace(choice, caution=NOT_EXCLUDED))
 
 
 def _in_place_of(spring: AxisFit, fit: AxisFit) -> AxisFit:

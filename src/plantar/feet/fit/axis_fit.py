@@ -35,6 +35,10 @@ LEAST_GAIN_IN_STANCES = (
 )
 CENTRE_ROUNDS = 2  # of finding memory and centre in turn
 PLACE_EXPLAINS = 0.5  # of the squares that spring and damper miss: what is left of them about another place
+UNTIMED = (
+    "sensors may be late by any time, which looks like a memory of the rubber: none was looked for, and with one "
+    "stiffness is smaller"
+)
 CANDIDATES = (
     "kelvin_voigt", "hardening", "coulomb", "elastoplastic", "hardening_elastoplastic", "bouc_wen",
     "standard_linear_solid",
@@ -109,6 +113,8 @@ def _fitted(
     models = [MODELS[name] for name in names if memory or not MODELS[name].remembers]
     gain = LEAST_GAIN_IN_STANCES if steps else LEAST_GAIN
     choice = choose_model(data_sets, models, cutoff, shared_offset=shared, least_gain=gain)
+    if not timed and choice.caution is None:
+        choice = replace(choice, caution=UNTIMED)
     if choice.fit.model.name == KelvinVoigt.name:
         return _of_linear(foot, axis, linear, choice, choice.reason)
     return found(choice.fit, choice, choice.reason)
