@@ -27,6 +27,7 @@ from plantar.feet.fit.between_recordings import (
 )
 from plantar.feet.fit.bush_place import PlaceSpread, turned_bush_note
 from plantar.feet.fit.force_gain import force_gain_causes, force_gain_notes, torque_gain_causes
+from plantar.feet.fit.imu_mount import imu_turn_causes
 from plantar.feet.fit.robot_causes import robot_causes
 from plantar.feet.fit.systematic import inflated, systematic_causes
 from plantar.feet.fit.worth import hardly_matters, in_place_of
@@ -157,6 +158,7 @@ def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit) -> FootFit:
     shared = ready.settings.offset == "shared"
     causes = systematic_causes(fit, thin.fitted, ready.sensor_delay, ready.vertical, shared)
     causes += robot_causes(fit, thin.fitted, ready.robot.uncertainty, shared)
+    causes += imu_turn_causes(fit, thin.fitted, ready.imu_turn)
     causes += force_gain_causes(fit, ready.gain_errors)
     causes += torque_gain_causes(fit, ready.torque_gains)
     wide = inflated(fit, causes)

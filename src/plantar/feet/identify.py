@@ -17,7 +17,9 @@ from plantar.feet.assess.residual_table import residual_table
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.between_recordings import apart_notes
 from plantar.feet.fit.bush_place import PlaceSpread
+from plantar.feet.fit.imu_mount import ImuTurn
 from plantar.feet.foot_fit import FittedFoot, assess_foot, between_all, fit_foot, without_needless
+from plantar.feet.imu_of_steps import imu_turn_notes, is_worth, put_right, turn_shown
 from plantar.feet.memory_of_others import with_memory_of_others
 from plantar.feet.prepare import PreparedLogs, over_logs, prepare_all
 from plantar.feet.recording import Recording
@@ -29,6 +31,8 @@ from plantar.results.feet import AxisModel, DelayEstimate, FeetResult, Input, Of
 from plantar.results.feet_rows import Candidate, LinearEquivalent
 from plantar.robot.model import Foot, Placement, RobotModel
 from plantar.sensors.delays.sensor_delay import SensorDelay
+
+TURN_ROUNDS = 2  # of fitting again with the IMU's turn: what a fit took up of it before shows in the next
 
 
 def identify_feet(
@@ -83,7 +87,8 @@ def fit_prepared(
         names = ", ".join(log.name for log in logs)
         valid = "a standing robot; were the sensors zeroed under load, 'contact: always' for these feet"
         raise DataError(f"{names}: no foot carries load in any log (valid: {valid})")
-    fitted = with_memory_of_others(_fitted_feet(ready, progress))
+    ready, feet = _with_imu_right(ready, progress)
+    fitted = with_memory_of_others(feet)
     between = between_all(list(fitted.values()))
     fitted = {foot: without_needless(one) for foot, one in fitted.items()}
     found = [assess_foot(one) for one in fitted.values()]
@@ -111,6 +116,7 @@ def fit_prepared(
         notes=joined(
             [
                 *ready.notes,
+                *imu_turn_notes(ready.imu_turn, robot.uncertainty.imu_mount),
                 *_feet_notes(robot, ready.fitted),
                 *_model_notes(fits),
                 *apart_notes(between),
@@ -119,7 +125,7 @@ def fit_prepared(
             [recording.name for recording in ready.recordings],
         ),
         robot_model=_robot_model(robot),
-        models=tuple(_axis_model(fit) for fit in fits),
+        models=tuple(_axis_model(fit, ready.imu_turn) for fit in fits),
         sensor_delay=delay_estimate(ready.sensor_delay),
         compliance=dict(ready.vertical.compliance),
         diagnosis=tuple(limits),
@@ -128,6 +134,21 @@ def fit_prepared(
         swing_zeros=tuple(row for recording in ready.recordings for row in recording.zeros),
         residuals=residual_table(ready.recordings, predictions),
     )
+
+
+def _with_imu_right(
+    ready: PreparedLogs, progress: Callable[[str], None]
+) -> tuple[PreparedLogs, dict[str, FittedFoot]]:
+    """The logs and every foot fitted to them; again with the IMU as its steps show it turned, where they do."""
+    feet, mount = _fitted_feet(ready, progress), ready.robot.uncertainty.imu_mount
+    for _ in range(TURN_ROUNDS):
+        shown = turn_shown(feet, ready.imu_turn, mount)
+        if shown is None or not is_worth(shown, ready.imu_turn):
+            break
+        progress("fit again with the IMU's turn put right")
+        ready = put_right(ready, shown)
+        feet = _fitted_feet(ready, progress)
+    return ready, feet
 
 
 def _fitted_feet(ready: PreparedLogs, progress: Callable[[str], None]) -> dict[str, FittedFoot]:
@@ -148,8 +169,9 @@ def _fitted_feet(ready: PreparedLogs, progress: Callable[[str], None]) -> dict[s
     return found | fit_all({foot: place for foot, place in wider.items() if place != places[foot]})
 
 
-def _axis_model(fit: AxisFit) -> AxisModel:
+def _axis_model(fit: AxisFit, turn: ImuTurn) -> AxisModel:
     """The model of one axis, why it was chosen, and what the others missed by on held-out motions."""
+    x, y, z = (np.array(fit.imu_turned) + turn.angles).tolist()  # in all, beside the logs as they were
     linear = LinearEquivalent(*fit.equivalent)
     axis_model = AxisModel(
         fit.foot,
@@ -159,7 +181,7 @@ def _axis_model(fit: AxisFit) -> AxisModel:
         linear,
         fit.moment_arms,
         turned=fit.turned,
-        imu_turned=fit.imu_turned,
+        imu_turned=(x, y, z),
     )
     if fit.choice is None:
         return axis_model

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
+from functools import partial
 from itertools import count
 from threading import Lock
 
@@ -17,6 +18,7 @@ from plantar.feet.exclusion.edge_rolling import without_edge_rolling
 from plantar.feet.exclusion.slip import without_slip
 from plantar.feet.exclusion.torque_saturation import without_torque_saturation
 from plantar.feet.fit.force_gain import GainError, force_gain_errors, force_gain_notes
+from plantar.feet.fit.imu_mount import ImuTurn
 from plantar.feet.fit.vertical_stiffness import VerticalStiffness, fit_vertical_stiffness
 from plantar.feet.prepare_log import checked, prepare
 from plantar.feet.recording import Recording, Role, filtered_recording, moved_centre
@@ -46,7 +48,7 @@ class PreparedLogs:
     """Recordings to fit and to validate, the wrenches' delay and the bushes' vertical compliance behind them.
 
     `settings` hold the cutoff that was used. `gain_errors`: see `force_gain_errors`; `torque_gains`: see there.
-    `turned`: by foot, a warning that its force sensor is.
+    `turned`: by foot, a warning that its force sensor is; `imu_turn`: by which all angles were put right.
     """
 
     robot: RobotModel
@@ -59,6 +61,7 @@ class PreparedLogs:
     gain_errors: Mapping[str, GainError] = field(default_factory=dict)
     torque_gains: Mapping[Axis, TorqueGain] = field(default_factory=dict)
     turned: Mapping[str, Note] = field(default_factory=dict)
+    imu_turn: ImuTurn = field(default_factory=partial(ImuTurn.unknown, 0.0))
 
     @property
     def recordings(self) -> tuple[Recording, ...]:
@@ -165,8 +168,9 @@ def prepare_checked(
     ]
     notes = [*odd, *(note for one in recordings for note in one.notes), delay.note, *vertical.notes]
     fitted, unseen = tuple(moved[: len(logs)]), tuple(moved[len(logs) :])
+    mount = ImuTurn.unknown(robot.uncertainty.imu_mount)
     return PreparedLogs(
-        robot, fitted, unseen, settings, delay, vertical, unique(notes), forces, torques, turned
+        robot, fitted, unseen, settings, delay, vertical, unique(notes), forces, torques, turned, mount
     )
 
 

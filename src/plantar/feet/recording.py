@@ -20,7 +20,7 @@ from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.results.walk_rows import SwingZero
 from plantar.sensors.attitude_scale import AttitudeScale
-from plantar.signals.filters import low_pass
+from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.segments import run_ends
 
 FILTER_EDGE = 1.0  # of the filter's period, left out where a run of samples begins or ends
@@ -127,6 +127,16 @@ class Recording:
             every=stride * self.every,
         )
 
+    def with_imu_turned(self, turn: tuple[float, float, float]) -> Recording:
+        """The recording with bush angles and rates as an IMU has seen them that is turned by `turn` [rad] about its own
+        axes, to first order (`imu_turns`); as they are where a foot is in the air."""
+
+        def right(states: Mapping[str, BushState]) -> dict[str, BushState]:
+            return {foot: _plus(state, change[foot], self.period) for foot, state in states.items()}
+
+        change = {foot: effects @ np.array(turn) for foot, effects in self.imu_turns.items()}
+        return replace(self, raw=right(self.raw), bushes=right(self.bushes)) if any(turn) else self
+
     def without(self, foot: str, samples: Mask, reason: Reason, detail: str = "") -> Recording:
         """The same recording with these samples of one foot left out."""
         contact = self.contacts[foot].without(samples, reason, detail)
@@ -159,6 +169,12 @@ def filtered(state: BushState, period: float, cutoff: float) -> BushState:
     """The state with angles, rates and torques through one zero-phase filter: the model between them stays."""
     signals = np.column_stack([state.deflection, state.rate, state.torque])
     return _with_signals(state, low_pass(signals, period, cutoff))
+
+
+def _plus(state: BushState, angles: Array, period: float) -> BushState:
+    """The state with angles (N, 2) added, and how these change to its rates; as it is where they are NaN."""
+    rates = np.nan_to_num(differentiate(angles, period))
+    return replace(state, deflection=state.deflection + np.nan_to_num(angles), rate=state.rate + rates)
 
 
 def _with_signals(state: BushState, signals: Array) -> BushState:

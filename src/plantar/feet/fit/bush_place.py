@@ -228,12 +228,18 @@ def shape_moved(shape: Array, by: Array) -> Array:
 def _columns(recording: Recording, fit: AxisFit) -> Array:
     """Torque (N, 6) for each metre or radian by which the centre, the force sensor and the IMU are elsewhere."""
 
+    return np.column_stack([place_columns(recording, fit.foot, fit.axis), imu_columns(recording, fit)])
+
+
+def imu_columns(recording: Recording, fit: AxisFit) -> Array:
+    """Torque (N, 3) for each radian by which the IMU is turned about its axes, under a fit's model."""
+
     def turned(angle: float, axis: Array) -> Array:
         x, y, z = np.array(fit.imu_turned) + angle * axis
         return model_columns(recording, fit.foot, fit.axis, replace(fit, imu_turned=(x, y, z))) @ fit.values
 
     turns = [(turned(TURN_STEP, axis) - turned(-TURN_STEP, axis)) / (2 * TURN_STEP) for axis in np.eye(3)]
-    return np.column_stack([place_columns(recording, fit.foot, fit.axis), *turns])
+    return np.column_stack(turns)
 
 
 def _seen(blocks: Sequence[Block], columns: Sequence[Array], spreads: Array) -> Mask:
