@@ -11,7 +11,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from plantar.feet.fit.imu_mount import ImuTurn, turn_of_axis
+from plantar.estimation import fit_blocks
+from plantar.feet.fit.imu_mount import ImuTurn, Told, turn_told, with_turns
 from plantar.feet.foot_fit import FittedFoot
 from plantar.feet.internal_error import gives_up
 from plantar.feet.prepare import PreparedLogs
@@ -27,27 +28,25 @@ def turn_shown(feet: Mapping[str, FittedFoot], found: ImuTurn, mount: float) -> 
 
     mount: deviation of the robot file's [rad], a prior of each angle. None where no foot steps, or none shows any.
     """
-    shown: list[ImuTurn] = []
+    shown: list[Told] = []
     for foot, one in feet.items():
         for axis, fit in one.fits.items():
             if axis not in one.given_up and any(each.stances[foot] is not None for each in one.thin.fitted):
                 with gives_up(axis, one.given_up):
-                    own = turn_of_axis(fit, one.thin.fitted)
-                    shown += [] if own is None else [own]
+                    blocks, about = with_turns(fit, one.thin.fitted, mount)
+                    shown += turn_told(fit_blocks(blocks), about)
     if not shown or not mount:
         return None
-    before, information = np.array(found.angles), [np.linalg.inv(each.covariance) for each in shown]
-    normal = np.sum(information, axis=0) + np.eye(3) / mount**2
-    told = [before + each.angles for each in shown]
-    angles = np.linalg.solve(
-        normal, np.sum([w @ own for w, own in zip(information, told, strict=True)], axis=0)
-    )
+    before, known = np.array(found.angles), np.eye(3) / mount**2
+    normal = known + np.sum([each.information for each in shown], axis=0)
+    told = np.sum([each.information @ (before + each.angles) for each in shown], axis=0)
+    angles = np.linalg.solve(normal, told)
     # Axes disagree by more than their noise: each bush has errors of its own.
-    apart = sum(float((own - angles) @ w @ (own - angles)) for w, own in zip(information, told, strict=True))
-    misfit = max(1.0, apart / max(3 * len(shown) - 3, 1))
-    unsure = np.linalg.inv(np.sum(information, axis=0) / misfit + np.eye(3) / mount**2)
+    apart = [before + each.angles - angles for each in shown]
+    missed = sum(float(own @ each.information @ own) for own, each in zip(apart, shown, strict=True))
+    misfit = max(1.0, missed / max(3 * len(shown) - 3, 1))
     x, y, z = angles.tolist()
-    return ImuTurn((x, y, z), unsure)
+    return ImuTurn((x, y, z), np.linalg.inv((normal - known) / misfit + known))
 
 
 def is_worth(shown: ImuTurn, found: ImuTurn) -> bool:

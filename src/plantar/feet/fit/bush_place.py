@@ -120,7 +120,7 @@ def about_its_place(
         return fit
     chosen = [one for one in recordings if one.name in {block.label for block in blocks}]
     columns = [_columns(one, fit)[one.rows(fit.foot)] for one in chosen]
-    spreads = np.where(_seen(blocks, columns, spread.expected), spread.expected, 0.0)
+    spreads = np.where(that_show(blocks, columns, spread.expected), spread.expected, 0.0)
     size, tried = blocks[0].regressor.shape[1], np.flatnonzero(spreads)
     before = np.array([*fit.moment_arms, fit.turned, *fit.imu_turned])
     wider = [beside(block, own[:, tried]) for block, own in zip(blocks, columns, strict=True)]
@@ -242,7 +242,7 @@ def imu_columns(recording: Recording, fit: AxisFit) -> Array:
     return np.column_stack(turns)
 
 
-def _seen(blocks: Sequence[Block], columns: Sequence[Array], spreads: Array) -> Mask:
+def that_show(blocks: Sequence[Block], columns: Sequence[Array], spreads: Array) -> Mask:
     """Which columns, by one deviation each, add anything to the torque that no offset takes up, (k,)."""
     moved = [own - own.mean(axis=0) for own in columns]
     torque = np.concatenate([block.response - block.response.mean() for block in blocks])

@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from plantar.conventions import Array
-from plantar.estimation import effect_of, fit_blocks
+from plantar.conventions import Array, Mask
+from plantar.estimation import Block, LinearFit, effect_of
 from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.bush_place import imu_columns
+from plantar.feet.fit.bush_place import imu_columns, that_show
 from plantar.feet.fit.regression_data import beside, blocks_of
 from plantar.feet.fit.systematic import Cause
 from plantar.feet.recording import Recording
@@ -32,17 +32,34 @@ class ImuTurn(NamedTuple):
         return cls((0.0, 0.0, 0.0), std**2 * np.eye(3))
 
 
-def turn_of_axis(fit: AxisFit, recordings: Sequence[Recording]) -> ImuTurn | None:
-    """The turn (3,) that one axis shows and its covariance; None where its motions do not show it."""
+class Told(NamedTuple):
+    """What one axis tells of the turn: its `angles` (3,) [rad], and with which `information` (3, 3), none where its
+    motions show nothing."""
+
+    angles: Array
+    information: Array
+
+
+def with_turns(fit: AxisFit, recordings: Sequence[Recording], mount: float) -> tuple[list[Block], Mask]:
+    """Eq. 6 of one axis with more columns at its end, the torque for each radian of a turn; about which axes (3,).
+
+    mount: deviation of the angles; about an axis about which one adds as good as nothing to the torque there is none.
+    """
     blocks = blocks_of(recordings, fit.foot, fit.axis, fit=fit)
-    size = blocks[0].regressor.shape[1]
     columns = _columns(fit, recordings, [block.label for block in blocks])
-    found = fit_blocks([beside(block, own) for block, own in zip(blocks, columns, strict=True)])
-    own = slice(size, size + 3)
-    if not found.condition_number < SINGULAR:
-        return None
-    x, y, z = found.values[own].tolist()
-    return ImuTurn((x, y, z), found.covariance[own, own])
+    shown = that_show(blocks, columns, np.full(3, mount))
+    return [beside(block, own[:, shown]) for block, own in zip(blocks, columns, strict=True)], shown
+
+
+def turn_told(found: LinearFit, shown: Mask) -> list[Told]:
+    """What a fit of `with_turns` tells of the turn; empty where its motions do not tell it from the bush."""
+    if not shown.any() or not found.condition_number < SINGULAR:
+        return []
+    own = slice(len(found.values) - int(shown.sum()), len(found.values))
+    angles, information = np.zeros(3), np.zeros((3, 3))
+    angles[shown] = found.values[own]
+    information[np.ix_(shown, shown)] = np.linalg.inv(found.covariance[own, own])
+    return [Told(angles, information)]
 
 
 def imu_turn_causes(fit: AxisFit, recordings: Sequence[Recording], turn: ImuTurn) -> list[Cause]:
