@@ -142,7 +142,7 @@ def assess_foot(fitted: FittedFoot) -> FootFit:
         if axis in fitted.given_up:
             found.parameters.extend(missing_rows(fitted.foot, axis, fitted.given_up[axis]))
         elif axis not in fitted.fits:
-            found.parameters.extend(unseen_rows(fitted.foot, axis))
+            found.parameters.extend(unseen_rows(fitted.foot, axis, fitted.ready.fitted))
     return replace(found, notes=(*found.notes, *internal_errors(fitted.foot, fitted.given_up)))
 
 

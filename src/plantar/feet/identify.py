@@ -13,6 +13,7 @@ from plantar.conventions import OFFSET_UNIT
 from plantar.errors import DataError
 from plantar.feet.assess.far_arms import far_arms
 from plantar.feet.assess.feasible_advice import hardly_standing, remedies, with_remedies
+from plantar.feet.assess.left_out import unused_logs
 from plantar.feet.assess.residual_table import residual_table
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.between_recordings import apart_notes
@@ -113,6 +114,7 @@ def fit_prepared(
             [
                 *ready.notes,
                 *_feet_notes(robot, ready.fitted),
+                *unused_logs(ready.fitted),
                 *_model_notes(fits),
                 *apart_notes(between),
                 *(note for each in found for note in each.notes),
@@ -205,8 +207,8 @@ def _model_notes(fits: Sequence[AxisFit]) -> list[Note]:
             notes.append(Note("model", "info", text))
         if fit.choice is not None and fit.choice.caution is not None:
             notes.append(Note("model_caution", "warning", f"{where}: {fit.choice.caution}"))
-        notes += fit.notes or far_arms(fit)
-    return notes
+        notes += fit.notes
+    return notes + far_arms([fit for fit in fits if not fit.notes])
 
 
 def _offsets(fit: AxisFit) -> list[Offset]:

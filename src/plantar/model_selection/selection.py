@@ -222,11 +222,7 @@ def _caution(
     if not better:
         return None
     best = scores[min(better, key=lambda place: scores[place].held_out_rms)]
-    why = (
-        f"cannot be identified: {best.refused}"
-        if best.refused
-        else "by too little for steps as short as these"
-    )
+    why = best.refused or "by too little for steps as short as these"
     return (
         f"{best.model.name} predicts held-out motion better ({best.held_out_rms:.3g} against "
         f"{scores[winner].held_out_rms:.3g} rms) but {why}; stiffness and damping are those of these motions only "
