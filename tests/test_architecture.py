@@ -14,7 +14,7 @@ FILES = sorted(SOURCE.rglob("*.py"))
 
 # A room imports only from rooms that stand before it.
 ROOMS = (
-    "conventions", "errors", "choices", "notes", "files",
+    "conventions", "errors", "choices", "notes", "pages", "files",
     "robot", "logs", "signals", "contact", "checks",
     "dynamics", "models", "estimation", "model_selection",
     "results", "sensors", "feet", "whole_body",

@@ -9,6 +9,7 @@ from typing import Any, Final
 
 from plantar.files import write_text
 from plantar.notes import kinds
+from plantar.pages import on_joints
 from plantar.report.content import Cell, Column, Figure, Section, Table
 from plantar.report.page import render
 from plantar.report.tables import input_table, settings_table, skill_cell, verdict_cell
@@ -16,7 +17,6 @@ from plantar.report.verdict import listed
 from plantar.results.dynamics import JOINTS_SCHEMA, DynamicsResult, DynamicsScore
 from plantar.results.io import result_path
 from plantar.results.numbers import interval, number, percent, unit, with_uncertainty
-from plantar.results.read_on import on_joints
 
 _HEADINGS: Final = {
     "kind": "kind",

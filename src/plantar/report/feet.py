@@ -11,6 +11,7 @@ import numpy as np
 
 from plantar.files import write_text
 from plantar.notes import kinds
+from plantar.pages import on_feet
 from plantar.report import tables
 from plantar.report.charts.loop import loop_charts
 from plantar.report.content import Figure, Section, Table
@@ -20,7 +21,6 @@ from plantar.report.verdict import foot_verdicts, limits, trust
 from plantar.report.walks import walk_section
 from plantar.results.feet import FeetResult
 from plantar.results.io import result_path
-from plantar.results.read_on import on_feet
 from plantar.results.residuals import read_residuals, residuals_path, tracks_of
 
 

@@ -7,8 +7,8 @@ from rich.markup import escape
 
 from plantar.cli.console.advice import advised
 from plantar.cli.console.terminal import VERDICT_STYLE, number, print_notes, table
+from plantar.pages import on_feet
 from plantar.results.feet import FeetResult, Parameter, ValidationRow
-from plantar.results.read_on import on_feet
 
 
 def print_feet(out: Console, result: FeetResult) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 from plantar.contact.reasons import Reason
 from plantar.feet.recording import Recording
 from plantar.notes import Note
-from plantar.results.read_on import REASONS
+from plantar.pages import REASONS
 
 UNUSED = "log_unused"
 
