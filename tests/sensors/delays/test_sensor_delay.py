@@ -221,3 +221,16 @@ def test_intervals_of_the_delay_hold_for_wrong_urdfs(twin: RobotModel, sweep: Mo
     assert np.sum(np.abs(far) < 1.96) >= 9
     assert 0.4 < np.sqrt(np.mean(far**2)) < 1.5, "nor wider than they need to be"
     assert min(one.std for one in found) > 1.2 * sure.std
+
+
+def test_cells_without_horizontal_force_show_no_delay_and_raise_no_alarm(
+    twin: RobotModel, sweep: MotionLog
+) -> None:
+    gone = {
+        name: 0 * values for name, values in sweep.columns.items() if name.endswith(("force.x", "force.y"))
+    }
+    gone |= {name: 0 * values for name, values in sweep.columns.items() if name.endswith("torque.z")}
+    found = estimate_wrench_delay(twin, [sweep.with_columns(gone)])
+    assert (found.measured, found.doubtful, found.delay) == (False, False, 0.0)
+    assert "cells" in found.note.text
+    assert "--wrench-delay" in found.note.text

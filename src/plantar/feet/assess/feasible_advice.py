@@ -31,7 +31,9 @@ def remedies(
     if settings.model == AUTOMATIC:
         found["model"] = NO_BETTER_MODEL
     missing = _missing(robot, recordings)
-    if missing:
+    if any(each.log.vertical_only(foot.wrench.name) for each in recordings for foot in robot.feet.values()):
+        found["delay"] = "measure how late the force cells are, and give it with --wrench-delay"
+    elif missing:
         known = "or give a delay that is known with --wrench-delay"
         found["delay"] = (
             f"record the {missing} of the IMU: without it no log shows the force sensors' delay; {known}"
