@@ -119,6 +119,7 @@ def prepare_checked(
     odd = [
         *naming_notes(file, robot.guesses),
         *guess_notes(file, robot.guesses),
+        *robot.weight_notes,
         *force_gain_notes(robot, forces),
         *torque_gain_notes(torques).values(),
         *turned.values(),

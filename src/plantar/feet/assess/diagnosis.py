@@ -22,8 +22,9 @@ REMEDY = {
     "lever": "add a slow shift of the weight from foot to foot: it shows the vertical compliance",
     "sensor gain": "calibrate the force sensors, and say so in the robot file: uncertainty: wrench_gain",
     "between recordings": "recordings differ by more than each alone shows: warm the rubber up, record more of them",
-    "force gain": "weigh the robot. If the URDF is wrong, scale its masses to that weight: that narrows the interval, "
-    "and hardly moves the number. If it is right, calibrate the force sensors, which the number follows",
+    "force gain": "weigh the robot and write its mass into the robot file (mass: ...). If the URDF was wrong, that "
+    "narrows the interval and hardly moves the number; if it was right, calibrate the force sensors, which the number "
+    "follows",
     "torque gain": "check unit and calibration of the torque channels, and correct the logs",
     "yaw torque zero": "before the next recording, zero the force sensors with the feet in the air",
     "between walks": "add walks: five or more show by themselves how much they differ",

@@ -30,6 +30,8 @@ def remedies(
     found = {}
     if settings.model == AUTOMATIC:
         found["model"] = NO_BETTER_MODEL
+    if robot.weighed is not None:
+        found["force gain"] = "calibrate the force sensors, which the number follows: the robot was weighed"
     missing = _missing(robot, recordings)
     if any(each.log.vertical_only(foot.wrench.name) for each in recordings for foot in robot.feet.values()):
         found["delay"] = "measure how late the force cells are, and give it with --wrench-delay"
