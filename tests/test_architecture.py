@@ -24,7 +24,8 @@ ROOMS = (
 )  # fmt: skip
 # So does a folder or a file inside `feet`: from those before it.
 FEET = (
-    "settings", "recording", "coherent_band", "fit", "exclusion", "assess", "internal_error", "prepare_log", "prepare",
+    "settings", "recording", "coherent_band", "fit", "interval_width", "exclusion", "assess",
+    "internal_error", "prepare_log", "prepare",
     "foot_fit", "memory_of_others", "identify", "validate", "select_motions",
 )  # fmt: skip
 # Two identifications that know nothing of one another: what both need stands in an earlier room.

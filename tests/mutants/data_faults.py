@@ -150,9 +150,9 @@ DATA_FAULTS = (
         ("checks/test_bush_link.py",),
     ),
     Mutant(
-        "feet/fit/systematic.py", "a delay in doubt counts by its slope alone",
+        "feet/interval_width/systematic.py", "a delay in doubt counts by its slope alone",
         "if not sensor_delay.doubtful:", "if True:",
-        ("feet/fit/test_systematic.py",),
+        ("feet/interval_width/test_systematic.py",),
     ),
     Mutant(
         "feet/prepare_log.py", "a sensor may repeat itself through a stance",

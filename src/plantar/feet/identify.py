@@ -16,9 +16,9 @@ from plantar.feet.assess.feasible_advice import hardly_standing, remedies, with_
 from plantar.feet.assess.left_out import unused_logs
 from plantar.feet.assess.residual_table import residual_table
 from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.between_recordings import apart_notes
 from plantar.feet.fit.bush_place import PlaceSpread
 from plantar.feet.foot_fit import FittedFoot, assess_foot, between_all, fit_foot, without_needless
+from plantar.feet.interval_width.between_recordings import apart_notes
 from plantar.feet.memory_of_others import with_memory_of_others
 from plantar.feet.prepare import PreparedLogs, over_logs, prepare_all
 from plantar.feet.recording import Recording

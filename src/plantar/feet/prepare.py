@@ -13,8 +13,8 @@ from plantar.feet.coherent_band import coherent_band
 from plantar.feet.exclusion.edge_rolling import without_edge_rolling
 from plantar.feet.exclusion.slip import without_slip
 from plantar.feet.exclusion.torque_saturation import without_torque_saturation
-from plantar.feet.fit.force_gain import GainError, force_gain_errors, force_gain_notes
 from plantar.feet.fit.vertical_stiffness import VerticalStiffness, fit_vertical_stiffness
+from plantar.feet.interval_width.force_gain import GainError, force_gain_errors, force_gain_notes
 from plantar.feet.prepare_log import checked, prepare
 from plantar.feet.recording import Recording, Role, filtered_recording, moved_centre
 from plantar.feet.settings import FeetSettings

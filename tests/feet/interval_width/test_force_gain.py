@@ -11,8 +11,8 @@ from biped import TRUTH, record, sway
 from biped_robot import make_robot, robot_entry
 from feet_trials import LINEAR, codes
 from plantar.conventions import NORMAL95
-from plantar.feet.fit.force_gain import GainError, force_gain_errors
 from plantar.feet.identify import identify_feet
+from plantar.feet.interval_width.force_gain import GainError, force_gain_errors
 from plantar.feet.prepare_log import checked, prepare
 from plantar.feet.recording import Recording
 from plantar.logs.motion_log import MotionLog

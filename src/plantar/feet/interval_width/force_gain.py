@@ -14,7 +14,7 @@ import numpy as np
 
 from plantar.conventions import GRAVITY, NORMAL95, Array, Axis
 from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.systematic import Cause
+from plantar.feet.interval_width.systematic import Cause
 from plantar.feet.recording import Recording
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
