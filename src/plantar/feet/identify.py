@@ -202,8 +202,8 @@ def _model_notes(fits: Sequence[AxisFit]) -> list[Note]:
         where = f"{fit.foot} {fit.axis}"
         if fit.model.name != KelvinVoigt.name:
             stiffness, damping = fit.equivalent
-            linear = f"as spring and damper K = {stiffness:.4g}, C = {damping:.4g}"
-            text = f"{where}: {fit.model.name} ({fit.reason}); {linear}"
+            linear = f"the nearest spring and damper has K = {stiffness:.4g}, C = {damping:.4g}"
+            text = f"{where}: the model is {fit.model.name}: {fit.reason}; {linear}"
             notes.append(Note("model", "info", text))
         if fit.choice is not None and fit.choice.caution is not None:
             notes.append(Note("model_caution", "warning", f"{where}: {fit.choice.caution}"))

@@ -19,7 +19,7 @@ ZEROS_OF_STANCES = "zeros of stances"
 REMEDY = {
     "noise": "record the same motion for longer: four times as long halves the interval",
     "delay": "add a recording of arm sweeps at 0.3 to 1 Hz without an operator: it shows the force sensors' delay",
-    "lever": "add a slow shift of the weight from foot to foot: it shows the vertical compliance",
+    "moment arm": "add a slow shift of the weight from foot to foot: it shows the vertical compliance",
     "sensor gain": "calibrate the force sensors, and say so in the robot file: uncertainty: wrench_gain",
     "between recordings": "recordings differ by more than each alone shows: warm the rubber up, record more of them",
     "force gain": "weigh the robot and write its mass into the robot file (mass: ...). If the URDF was wrong, that "
@@ -37,7 +37,7 @@ REMEDY = {
 }
 # Causes that no more of the same motion makes smaller: the advice against them replaces the axis' own.
 OTHER_MOTION_HELPS = (
-    "delay", "lever", "hardening", "yaw torque zero", ZEROS_OF_STANCES, "force gain", "torque gain",
+    "delay", "moment arm", "hardening", "yaw torque zero", ZEROS_OF_STANCES, "force gain", "torque gain",
 )  # fmt: skip
 GAINS = ("force_gain", "torque_gain")  # codes of warnings on a sensor's gain
 NEARLY_ALL = 0.9

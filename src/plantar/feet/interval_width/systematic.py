@@ -77,7 +77,7 @@ def systematic_causes(
             sensor_delay.std,
             sensor_delay.freedom,
         ),
-        Cause("lever", moved_by(moment_arms), vertical.compliance_std[foot], vertical.freedom),
+        Cause("moment arm", moved_by(moment_arms), vertical.compliance_std[foot], vertical.freedom),
     ]
     if blocks[0].stances is not None:
         # The zeros were read in the air, and within a stance no cube is told from how a sole lands and lifts.
