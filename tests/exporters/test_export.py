@@ -357,7 +357,8 @@ def test_the_joints_that_are_bushes_are_named(target: str, feet: dict[str, Any],
     named = re.findall(r"\w+_BUSH_\w+", said)
     written = (tmp_path / "feet").read_text()
     assert sorted(named) == sorted(set(re.findall(r"(?<![\w/])[LR]LEG_BUSH_(?:Z|PITCH|ROLL)\b", written)))
-    assert "left foot LLEG_BUSH_Z (slide" in said
+    assert "left foot LLEG_BUSH_Z, LLEG_BUSH_PITCH, LLEG_BUSH_ROLL;" in said
+    assert "pitch about y, toes down > 0" in said
     assert "LLEG_BUSH_PITCH (left foot, pitch about y, toes down > 0): K" in written
 
 

@@ -49,11 +49,13 @@ def head(
 
 def joints_note(feet: Iterable[FootBush]) -> Note:
     """Which joints of the written model are the bushes."""
+    feet = list(feet)
     told = [
-        f"{foot.name} foot {', '.join(f'{foot.joint(spring.axis)} ({MOTION[spring.axis]})' for spring in foot.springs)}"
-        for foot in feet
+        f"{foot.name} foot {', '.join(foot.joint(spring.axis) for spring in foot.springs)}" for foot in feet
     ]
-    return Note("export_joints", "info", f"the bushes are these joints: {'; '.join(told)}")
+    axes = dict.fromkeys(spring.axis for foot in feet for spring in foot.springs)
+    signs = ", ".join(MOTION[axis] for axis in axes)
+    return Note("export_joints", "info", f"the bushes are these joints: {'; '.join(told)} ({signs})")
 
 
 def moved_note(foot: FootBush, moved: Iterable[str]) -> Note:
