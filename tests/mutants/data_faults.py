@@ -273,4 +273,22 @@ DATA_FAULTS = (
         "feet/assess/contradiction.py", "no turn of the IMU is allowed", "np.abs(turned).max() < TURNED * mount",
         "False", ("feet/assess/test_contradiction.py",),
     ),
+    Mutant(
+        "logs/readers/force_cells.py", "a cell in front of the frame turns the foot the other way",
+        "-values @ at[:, 0]", "values @ at[:, 0]", ("logs/readers/test_force_cells.py",),
+    ),
+    Mutant(
+        "robot/weighed.py", "a weighed robot keeps the URDF's moments of inertia",
+        "share * inertia.inertia", "inertia.inertia", ("robot/test_weighed.py",),
+    ),
+    Mutant(
+        "feet/interval_width/force_gain.py", "a balance is trusted no more than the URDF",
+        "if robot.weighed is not None:\n        return robot.uncertainty.total_mass",
+        "if False:\n        return robot.uncertainty.total_mass", ("feet/interval_width/test_force_gain.py",),
+    ),
+    Mutant(
+        "sensors/delays/sensor_delay.py", "the delay of force cells is searched for",
+        "if any(log.vertical_only(foot.wrench.name) for log in logs for foot in robot.feet.values()):\n        return",
+        "if False:\n        return", ("sensors/delays/test_sensor_delay.py",),
+    ),
 )  # fmt: skip
