@@ -14,7 +14,7 @@ FILES = sorted(SOURCE.rglob("*.py"))
 
 # A room imports only from rooms that stand before it.
 ROOMS = (
-    "conventions", "errors", "choices", "notes", "files",
+    "conventions", "errors", "choices", "notes", "pages", "files",
     "robot", "logs", "signals", "contact", "checks",
     "dynamics", "models", "estimation", "model_selection",
     "results", "sensors", "feet", "whole_body",
@@ -24,8 +24,9 @@ ROOMS = (
 )  # fmt: skip
 # So does a folder or a file inside `feet`: from those before it.
 FEET = (
-    "settings", "recording", "coherent_band", "fit", "exclusion", "assess", "internal_error", "prepare_log", "prepare",
-    "foot_fit", "memory_of_others", "identify", "validate", "select_motions",
+    "settings", "recording", "coherent_band", "fit", "interval_width", "exclusion", "assess",
+    "internal_error", "prepare_log", "prepare",
+    "foot_fit", "imu_of_steps", "memory_of_others", "identify", "validate", "select_motions",
 )  # fmt: skip
 # Two identifications that know nothing of one another: what both need stands in an earlier room.
 APART = ("feet", "whole_body")

@@ -7,7 +7,7 @@ import io
 from rich.console import Console
 
 from plantar.cli.console.terminal import SCREENFUL, print_notes
-from plantar.notes import Note, joined
+from plantar.notes import Note, NoteKind, joined, kinds
 
 LOGS = ["walk_1", "walk_2", "walk_3", "walk_4"]
 
@@ -35,7 +35,7 @@ def test_a_note_of_one_log_keeps_its_name() -> None:
 
 
 def test_the_terminal_shows_a_screenful_warnings_first() -> None:
-    notes = [Note("a", "info", f"remark {k}") for k in range(SCREENFUL + 3)]
+    notes = [Note(f"a{k}", "info", f"remark {k}") for k in range(SCREENFUL + 3)]
     notes.append(Note("b", "warning", "look here"))
     out = io.StringIO()
     print_notes(Console(file=out, width=100), notes)
@@ -43,3 +43,30 @@ def test_the_terminal_shows_a_screenful_warnings_first() -> None:
     assert "look here" in lines[0]
     assert len(lines) == SCREENFUL + 1
     assert "4 more notes" in lines[-1]
+
+
+def test_the_terminal_says_once_what_many_logs_say_alike() -> None:
+    notes = [Note("air_zero", "info", f"{log}: reads 3 N in the air") for log in LOGS]
+    notes += [
+        Note("sign", "warning", "left: check the sign"),
+        Note("sign", "warning", "right: check the sign"),
+    ]
+    out = io.StringIO()
+    print_notes(Console(file=out, width=100), notes)
+    lines = out.getvalue().splitlines()
+    assert [line.count("check the sign") for line in lines] == [1, 1, 0], "a warning is never counted away"
+    assert "walk_1: reads 3 N in the air (and 3 more like it" in lines[2]
+
+
+def test_notes_of_one_kind_are_one_and_rare_kinds_come_first() -> None:
+    notes = [
+        Note("spikes", "warning", "walk_1: one sample bridged"),
+        Note("delay", "info", "3 ms late"),
+        Note("spikes", "warning", "walk_2: two samples bridged"),
+        Note("delay_unknown", "warning", "delay unknown"),
+    ]
+    assert kinds(notes, "warning") == (
+        NoteKind("delay_unknown", "warning", "delay unknown", ()),
+        NoteKind("spikes", "warning", "walk_1: one sample bridged", ("walk_2: two samples bridged",)),
+    )
+    assert kinds((), "info") == ()

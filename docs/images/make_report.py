@@ -24,7 +24,7 @@ MOTION = "details.motion[open]"
 # Picture: the part of the page that it shows, how much of it [px], and what the numbers stand at.
 PICTURES: dict[str, tuple[str, int, list[tuple[int, str]]]] = {
     "report_verdict": ("#verdict", 640, [(1, ".foot .statement"), (2, ".foot .reasons"), (3, ".foot svg")]),
-    "report_trust": ("#verdict > p", 290, [(4, "#verdict > p"), (5, "#verdict .diagnosis")]),
+    "report_trust": ("#verdict > p", 390, [(4, "#verdict > p"), (5, "#verdict .diagnosis")]),
     "report_parameters": ("#tables", 720, [(6, "#tables table")]),
     "report_scores": (SCORES, 230, [(7, f"{SCORES} caption")]),
     "report_motion": (

@@ -32,6 +32,16 @@ class Finding:
     severity: Severity = "warning"
 
 
+@dataclass(frozen=True)
+class NoteKind:
+    """Notes with one code and severity: the first one's text, and those of the others."""
+
+    code: str
+    severity: Severity
+    text: str
+    others: tuple[str, ...]
+
+
 def unique(notes: Iterable[Note]) -> tuple[Note, ...]:
     """The notes in their order, each once."""
     return tuple(dict.fromkeys(notes))
@@ -55,3 +65,13 @@ def _of_logs(names: Sequence[str]) -> str:
         return "".join(f"{name}: " for name in names)
     some = ", ".join(names[:NAMED]) + (", ..." if len(names) > NAMED else "")
     return f"{len(names)} logs ({some}): "
+
+
+def kinds(notes: Iterable[Note], severity: Severity) -> tuple[NoteKind, ...]:
+    """The notes of one severity by their codes; kinds with fewer notes, which say more each, come first."""
+    texts: dict[str, list[str]] = {}
+    for note in notes:
+        if note.severity == severity:
+            texts.setdefault(note.code, []).append(note.text)
+    ordered = sorted(texts.items(), key=lambda entry: len(entry[1]))
+    return tuple(NoteKind(code, severity, first, tuple(others)) for code, (first, *others) in ordered)

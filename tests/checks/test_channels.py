@@ -93,3 +93,13 @@ def test_a_force_that_stands_still_is_told_with_its_column(robot: RobotModel) ->
     force[400:900] = force[400]
     found = check_channels(robot, log.with_columns({"wrench.left.force.x": force}))
     assert any("wrench.left.force.x" in finding.text for finding in found)
+
+
+def test_force_cells_are_named_and_not_called_dead(robot: RobotModel) -> None:
+    log = record(sway("cells", 1, duration=8.0))
+    none = {f"wrench.left.{part}": np.zeros(len(log)) for part in ("force.x", "force.y", "torque.z")}
+    cells = log.with_columns(none)
+    found = [finding for finding in check_log(robot, cells) if "wrench.left" in finding.text]
+    assert [finding.code for finding in found] == ["vertical_only"]
+    broken = cells.with_columns({"wrench.left.torque.z": log.column("wrench.left.torque.z")})
+    assert [f.code for f in check_log(robot, broken) if "wrench.left" in f.text] == ["dead_channel"]

@@ -165,7 +165,24 @@ def test_the_snippets_of_the_documentation_are_robot_files(tmp_path: Path) -> No
         assert joint_order(robot) is None or len(joint_order(robot) or ()) > 1
         assert all(roles for roles in ports(robot).values())
     table = dict.fromkeys(
-        ["stamp", "hip_angle", "hip_speed", "qx", "qy", "qz", "qw", "ax", "ay", "az", "mx", "my", "mz"],
+        [
+            "stamp",
+            "hip_angle",
+            "hip_speed",
+            "qx",
+            "qy",
+            "qz",
+            "qw",
+            "ax",
+            "ay",
+            "az",
+            "mx",
+            "my",
+            "mz",
+            "f1",
+            "f2",
+            "f3",
+        ],
         np.arange(3.0),
     )
     mapped = next(make_robot(tmp_path / "map", **s) for s in snippets if "time" in s.get("columns", {}))

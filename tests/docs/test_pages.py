@@ -11,7 +11,7 @@ import pytest
 
 from example_folder import make_folder
 from page_blocks import PRINTED, ROOT, RUN, blocks, shown
-from page_folders import STAND_INS, many_formats, nothing, other_names, own_logs, with_robot_file
+from page_folders import STAND_INS, force_cells, many_formats, nothing, other_names, own_logs, with_robot_file
 from page_runner import Reader, same
 
 DOCS = ROOT / "docs"
@@ -41,13 +41,13 @@ OWN: dict[str, Callable[[Path], object]] = {
     "docs/how_to/install.md": nothing,
     "docs/how_to/fleet.md": with_robot_file,
     "docs/how_to/other_names.md": other_names,
+    "docs/how_to/force_cells.md": force_cells,
     "docs/how_to/try_on_twin.md": own_logs,
     "docs/how_to/solref.md": nothing,
     "docs/how_to/regressors.md": nothing,
 }
 # Pages that go on from a robot, logs and results: those of the examples in docstrings.
 RESULTS = (
-    "docs/how_to/force_sensors.md",
     "docs/how_to/mujoco_contact.md",
     "docs/how_to/randomisation.md",
     "docs/how_to/stabiliser.md",

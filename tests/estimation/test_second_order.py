@@ -8,8 +8,8 @@ import pytest
 from plantar.conventions import Array
 from plantar.estimation.delays.delay import Delay, Pair, estimate_delay
 from plantar.estimation.delays.sensor_delays import Balance, estimate_delays
-from plantar.estimation.intervals import cosine_covariance
 from plantar.estimation.least_squares import Block, fit_linear
+from plantar.estimation.residual_covariance import cosine_covariance
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.resampling import interpolate
 

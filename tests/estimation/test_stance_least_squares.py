@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from plantar.estimation.blocks import Block, StanceRows
-from plantar.estimation.intervals import interval95
 from plantar.estimation.linear import effect_of, fit_blocks, information_inverse
+from plantar.estimation.residual_covariance import interval95
 from plantar.estimation.stance_least_squares import fit_stances
 from plantar.estimation.stance_problem import StanceProblem
 

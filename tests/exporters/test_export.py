@@ -25,6 +25,7 @@ from export_robots import CENTRE, SOLE_Z, TRUTH, bush_rotation, result, write_sd
 from plantar.cli import main
 from plantar.errors import ExportError
 from plantar.exporters import TARGETS, export
+from plantar.exporters.bush import feet_of_result
 
 SIDES = {"left": "LLEG", "right": "RLEG"}
 
@@ -345,3 +346,45 @@ def test_the_command_line(feet: dict[str, Any], tmp_path: Path, capsys: pytest.C
         main(["export", str(tmp_path / "result.json"), "--to", "lego", "--out", str(tmp_path / "g.json")])
     assert failed.value.code == 1
     assert "kinetics_observer" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("target", ["urdf", "mjcf", "sdf", "usd", "drake"])
+def test_the_joints_that_are_bushes_are_named(target: str, feet: dict[str, Any], tmp_path: Path) -> None:
+    if target == "mjcf":
+        pytest.importorskip("mujoco")
+    notes = export(feet, target, tmp_path / "feet")
+    (said,) = [note.text for note in notes if note.code == "export_joints"]
+    named = re.findall(r"\w+_BUSH_\w+", said)
+    written = (tmp_path / "feet").read_text()
+    assert sorted(named) == sorted(set(re.findall(r"(?<![\w/])[LR]LEG_BUSH_(?:Z|PITCH|ROLL)\b", written)))
+    assert "left foot LLEG_BUSH_Z, LLEG_BUSH_PITCH, LLEG_BUSH_ROLL;" in said
+    assert "pitch about y, toes down > 0" in said
+    assert "LLEG_BUSH_PITCH (left foot, pitch about y, toes down > 0): K" in written
+
+
+def test_positive_is_toes_down_and_left_edge_up(feet: dict[str, Any]) -> None:
+    found, _ = feet_of_result(feet, Path(), with_offset=False)
+    for foot in found:
+        axes = np.column_stack([foot.direction("roll"), foot.direction("pitch"), foot.direction("z")])
+        forward, left, up = axes.T
+        small = 0.1
+        toes = forward + small * np.cross(foot.direction("pitch"), forward)
+        edge = left + small * np.cross(foot.direction("roll"), left)
+        assert toes @ up < 0
+        assert edge @ up > 0
+
+
+def test_the_urdf_is_found_from_the_folder_in_which_identify_ran(
+    feet: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A result in out/feet names the URDF as seen from where the command ran."""
+    urdf = Path(feet["robot_model"]["urdf"]).read_text()
+    (tmp_path / "robots").mkdir()
+    (tmp_path / "robots" / "robot.urdf").write_text(urdf)
+    folder = tmp_path / "out" / "feet"
+    folder.mkdir(parents=True)
+    content = {**feet, "robot_model": {**feet["robot_model"], "urdf": "robots/robot.urdf"}}
+    (folder / "result.json").write_text(json.dumps(content))
+    monkeypatch.chdir(folder)
+    export("result.json", "urdf", "robot.urdf")
+    assert "LLEG_BUSH_PITCH" in Path("robot.urdf").read_text()

@@ -12,7 +12,7 @@ import pytest
 from biped import record, sway
 from feet_trials import PUNCTUAL
 from plantar.errors import DataError
-from plantar.estimation.intervals import relative_std_percent
+from plantar.estimation.residual_covariance import relative_std_percent
 from plantar.feet import foot_fit
 from plantar.feet.identify import fit_prepared
 from plantar.feet.internal_error import described
@@ -84,5 +84,5 @@ def rest_of(rows: Any) -> list[Any]:
 def test_an_error_is_described_by_its_innermost_place_in_plantar() -> None:
     with pytest.raises(TypeError) as caught:
         relative_std_percent("none", 1.0)  # type: ignore[arg-type]
-    assert described(caught.value).startswith("TypeError in estimation/intervals.py, line ")
+    assert described(caught.value).startswith("TypeError in estimation/residual_covariance.py, line ")
     assert described(ValueError("two\nlines")) == "ValueError outside plantar: two lines"

@@ -150,9 +150,9 @@ DATA_FAULTS = (
         ("checks/test_bush_link.py",),
     ),
     Mutant(
-        "feet/fit/systematic.py", "a delay in doubt counts by its slope alone",
+        "feet/interval_width/systematic.py", "a delay in doubt counts by its slope alone",
         "if not sensor_delay.doubtful:", "if True:",
-        ("feet/fit/test_systematic.py",),
+        ("feet/interval_width/test_systematic.py",),
     ),
     Mutant(
         "feet/prepare_log.py", "a sensor may repeat itself through a stance",
@@ -272,5 +272,23 @@ DATA_FAULTS = (
     Mutant(
         "feet/assess/contradiction.py", "no turn of the IMU is allowed", "np.abs(turned).max() < TURNED * mount",
         "False", ("feet/assess/test_contradiction.py",),
+    ),
+    Mutant(
+        "logs/readers/force_cells.py", "a cell in front of the frame turns the foot the other way",
+        "-values @ at[:, 0]", "values @ at[:, 0]", ("logs/readers/test_force_cells.py",),
+    ),
+    Mutant(
+        "robot/weighed.py", "a weighed robot keeps the URDF's moments of inertia",
+        "share * inertia.inertia", "inertia.inertia", ("robot/test_weighed.py",),
+    ),
+    Mutant(
+        "feet/interval_width/force_gain.py", "a balance is trusted no more than the URDF",
+        "if robot.weighed is not None:\n        return robot.uncertainty.total_mass",
+        "if False:\n        return robot.uncertainty.total_mass", ("feet/interval_width/test_force_gain.py",),
+    ),
+    Mutant(
+        "sensors/delays/sensor_delay.py", "the delay of force cells is searched for",
+        "if any(log.vertical_only(foot.wrench.name) for log in logs for foot in robot.feet.values()):\n        return",
+        "if False:\n        return", ("sensors/delays/test_sensor_delay.py",),
     ),
 )  # fmt: skip

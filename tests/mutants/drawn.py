@@ -6,15 +6,15 @@ from mutant import Mutant
 
 ESTIMATION = (
     Mutant(
-        "estimation/intervals.py", "the mean counts as a cosine",
+        "estimation/residual_covariance.py", "the mean counts as a cosine",
         "np.arange(1, min(cosines, count - 1) + 1)", "np.arange(min(cosines, count - 1))",
     ),
     Mutant(
-        "estimation/intervals.py", "half as many cosines",
+        "estimation/residual_covariance.py", "half as many cosines",
         "round(2 * SCORE_BANDWIDTH * duration)", "round(SCORE_BANDWIDTH * duration)",
     ),
     Mutant(
-        "estimation/intervals.py", "Welch and Satterthwaite without the square",
+        "estimation/residual_covariance.py", "Welch and Satterthwaite without the square",
         "np.sum(variances**2 / freedoms, axis=0)", "np.sum(variances / freedoms, axis=0)",
     ),
     Mutant(
@@ -128,11 +128,11 @@ FIT = (
         "np.var(clear[:, :2], axis=0) > RELIABLE", "np.std(clear[:, :2], axis=0) > RELIABLE",
     ),
     Mutant(
-        "feet/fit/systematic.py", "sine of roll instead of pitch",
+        "feet/interval_width/systematic.py", "sine of roll instead of pitch",
         "np.sin(one.bushes[foot].deflection[used, 0])", "np.sin(one.bushes[foot].deflection[used, 1])",
     ),
     Mutant(
-        "feet/fit/systematic.py", "degrees of freedom from deviations, not variances",
+        "feet/interval_width/systematic.py", "degrees of freedom from deviations, not variances",
         "np.array([np.diag(covariance), added**2])", "np.array([np.diag(covariance), added])",
     ),
     Mutant(

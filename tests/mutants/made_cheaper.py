@@ -6,24 +6,25 @@ from mutant import Mutant
 
 MADE_CHEAPER = (
     Mutant(
-        "feet/fit/force_gain.py", "a gain in doubt widens by a quarter of what it may be",
-        "(error.reach / NORMAL95) ** 2", "(error.reach / NORMAL95 / 4) ** 2", ("feet/fit/test_force_gain.py",),
+        "feet/interval_width/force_gain.py", "a gain in doubt widens by a quarter of what it may be",
+        "(error.reach / NORMAL95) ** 2", "(error.reach / NORMAL95 / 4) ** 2",
+        ("feet/interval_width/test_force_gain.py",),
     ),
     Mutant(
-        "feet/fit/between_recordings.py", "what recordings differ by counts a tenth",
+        "feet/interval_width/between_recordings.py", "what recordings differ by counts a tenth",
         "np.sqrt(np.maximum(beyond, 0.0))", "0.1 * np.sqrt(np.maximum(beyond, 0.0))",
-        ("feet/fit/test_between_recordings.py",),
+        ("feet/interval_width/test_between_recordings.py",),
     ),
     Mutant(
         "feet/fit/bush_place.py", "a bush elsewhere is corrected the wrong way",
         "moved = -follows @ (place", "moved = follows @ (place", ("feet/fit/test_bush_place.py",),
     ),
     Mutant(
-        "feet/fit/systematic.py", "a suspected cube widens nothing",
+        "feet/interval_width/systematic.py", "a suspected cube widens nothing",
         "def _suspected_hardening(fit: AxisFit, blocks: Sequence[Block], shared: bool) -> list[Cause]:\n",
         "def _suspected_hardening(fit: AxisFit, blocks: Sequence[Block], shared: bool) -> list[Cause]:\n"
         "    return []\n",
-        ("feet/fit/test_systematic.py",),
+        ("feet/interval_width/test_systematic.py",),
     ),
     Mutant(
         "feet/assess/data_faults.py", "a fault of the data takes nothing away",

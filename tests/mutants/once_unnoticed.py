@@ -6,11 +6,11 @@ from mutant import Mutant
 
 INTERVALS = (
     Mutant(
-        "feet/fit/systematic.py", "the moment arm's deviation is zero",
+        "feet/interval_width/systematic.py", "the moment arm's deviation is zero",
         "moved_by(moment_arms), vertical.compliance_std[foot]", "moved_by(moment_arms), 0.0",
     ),
     Mutant(
-        "feet/fit/systematic.py", "no cause for the yaw torque's zero",
+        "feet/interval_width/systematic.py", "no cause for the yaw torque's zero",
         'if fit.axis == "roll":', 'if fit.axis == "none":',
     ),
     Mutant(

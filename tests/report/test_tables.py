@@ -79,4 +79,4 @@ def test_settings_are_rounded_and_have_units() -> None:
 )
 def test_an_axis_is_red_where_neither_number_can_be_told(verdicts: tuple[str, str], mark: str) -> None:
     rows = [row(name, verdict) for name, verdict in zip(("stiffness", "damping"), verdicts, strict=True)]
-    assert statement("left pitch", "pitch", rows).mark == mark
+    assert statement("left pitch", "pitch", rows, {}).mark == mark

@@ -9,7 +9,6 @@ from pathlib import Path
 import pyarrow as pa
 
 from plantar.report import write_feet_report
-from plantar.report.warning_groups import WarningGroup, warning_groups
 from plantar.results.feet import FeetResult
 from report_walks import standing_result, walk_result, walk_tracks
 
@@ -56,11 +55,3 @@ def test_a_name_in_a_chart_is_text(tmp_path: Path) -> None:
     rows = [replace(row, motion=hostile) if row.motion == "walk_1" else row for row in walk_result().stances]
     page = written(replace(walk_result(), stances=tuple(rows)), tmp_path)
     assert "<img" not in page
-
-
-def test_warnings_of_one_kind_are_one_and_rare_kinds_come_first() -> None:
-    assert warning_groups(walk_result().notes) == (
-        WarningGroup("delay_unknown", "delay of the wrenches unknown", ()),
-        WarningGroup("spikes", "walk_1: one sample bridged", ("walk_2: two samples bridged",)),
-    )
-    assert warning_groups(()) == ()

@@ -9,10 +9,11 @@ from pathlib import Path
 
 import mujoco
 import numpy as np
+import yaml
 
 import design_samples
 from biped import TRUTH, record, sway
-from biped_robot import FEET, URDF, Frame, Mounting, make_robot, write_robot
+from biped_robot import FEET, SOLE_DEPTH, URDF, Frame, Mounting, make_robot, robot_entry, write_robot
 from fleet_samples import small_fleet
 from page_blocks import ROOT, blocks
 from plantar.design.known import Known
@@ -103,6 +104,36 @@ def other_names(folder: Path) -> None:
     header = ",".join(["stamp", *list(renamed)[1:]])
     rows = np.column_stack(list(renamed.values()))
     np.savetxt(folder / "logger.csv", rows, delimiter=",", header=header, comments="", fmt="%.10g")
+
+
+def force_cells(folder: Path) -> None:
+    """A robot on force cells at the places that the page shows, and a table of what they read."""
+    page = ROOT / "docs" / "how_to" / "force_cells.md"
+    shown = yaml.safe_load(next(block.text for block in blocks(page) if block.kind == "yaml"))
+    mounting = Mounting(wrench=Frame((0.0, 0.0, -SOLE_DEPTH)))
+    entry = robot_entry(mounting)
+    for foot, own in entry["feet"].items():  # type: ignore[attr-defined]
+        own |= shown["feet"][foot]
+    (folder / "biped.urdf").write_text(URDF)
+    (folder / "cells.yaml").write_text(yaml.safe_dump({**entry, "columns": shown["columns"]}))
+    log = record(sway("cells", 1, duration=SECONDS), mounting)
+    columns = {name: values for name, values in log.columns.items() if not name.startswith("wrench.")}
+    for foot in FEET:
+        cells = shown["columns"][f"wrench.{foot}.cells"]
+        at, wrench = np.array(cells["at"]), log.wrench(foot)
+        made = np.vstack(
+            [np.ones(len(at)), at[:, 1], -at[:, 0]]
+        )  # force z, torques x and y of each cell's newton
+        columns |= dict(zip(cells["from"], np.linalg.pinv(made) @ wrench[:, [2, 3, 4]].T, strict=True))
+    rows = np.column_stack([log.time, *columns.values()])
+    np.savetxt(
+        folder / "cells.csv",
+        rows,
+        delimiter=",",
+        header=",".join(["time", *columns]),
+        comments="",
+        fmt="%.10g",
+    )
 
 
 def simulated(words: list[str]) -> None:

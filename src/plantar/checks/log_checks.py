@@ -134,7 +134,13 @@ def _wrenches(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         )
         parts = wrench_columns(sensor.name)
         dead = [part for span, part in zip(spans, parts, strict=True) if alive and span == 0]
-        if dead:
+        if log.vertical_only(sensor.name):
+            text = (
+                f"columns 'wrench.{sensor.name}.*': vertical force cells, no horizontal force: the bush's torque is "
+                "off by that force times the bush's height over the cells"
+            )
+            yield Finding("vertical_only", text)
+        elif dead:
             text = (
                 f"{named(dead, f'wrench.{sensor.name}.', len(parts))}: never change{'s' * (len(dead) == 1)}"
             )

@@ -5,41 +5,43 @@ from __future__ import annotations
 import os
 import sys
 from importlib import import_module
+from typing import Any
 
 import typer
+from typer.core import TyperGroup
 
 from plantar import __version__
 from plantar.errors import PlantarError
 
-# verb -> (module of this package, one line of help); the module has a function `run`.
+# verb -> (module of this package, one line of help), in the order in which they are listed; the module has `run`.
 COMMANDS = {
     "demo": ("demo", "The paper's campaign on the built-in twin: tables, figures, report."),
+    "init": ("init", "A first robot file from a URDF and, if given, logs; every guess is marked."),
     "inspect": ("inspect", "What is in the logs, what is wrong with them, what they can identify."),
     "identify feet": ("identify.feet", "Stiffness, damping and offset of each foot (eq. 4 to 7)."),
     "identify inertia": ("identify.inertia", "Inertial parameters without joint torques (eq. 2)."),
     "identify joints": ("identify.joints", "Friction, springs and offsets of the joints (eq. 3)."),
     "validate": ("validate", "Score a result on logs that it has not seen."),
-    "simulate": ("simulate", "Logs from the twin, with the imperfections that you choose."),
-    "export": ("export", "Write a result in the format of a simulator or controller."),
-    "design": ("design", "A motion made to show the feet, within balance and limits."),
-    "compare": ("compare", "Play logs in MuJoCo on rigid and on exported feet, beside the record."),
-    "select": ("select", "Which of these logs are most informative about each parameter."),
     "diagnose": ("diagnose", "What limits each number of a result, and what to record next."),
+    "report": ("report", "Write the result's report.html again."),
+    "export": ("export", "Write a result in the format of a simulator or controller."),
+    "compare": ("compare", "Play logs in MuJoCo on rigid and on exported feet, beside the record."),
     "online": ("online", "Replay a log through the estimator of controllers, sample by sample."),
-    "show reference": ("show", "Foot stiffness that others published or configured, and yours among it."),
+    "design": ("design", "A motion that identifies the feet well, within balance and limits."),
+    "select": ("select", "Which of these logs are most informative about each parameter."),
+    "simulate": ("simulate", "Logs from the twin, with the imperfections that you choose."),
+    "convert": ("convert", "A log in another format."),
     "fleet plan": ("fleet.plan", "A manifest from files: a group for each robot and day."),
     "fleet run": ("fleet.run", "Identify the feet of every group of a manifest, on a Dask cluster."),
     "fleet inertia": ("fleet.inertia", "Inertial parameters from all logs of a manifest (eq. 2)."),
     "fleet report": ("fleet.report", "Alarms, robots over time and failures of a fleet, on one page."),
-    "report": ("report", "Write the result's report.html again."),
-    "convert": ("convert", "A log in another format."),
-    "init": ("init", "A first robot file from a URDF and, if given, logs; every guess is marked."),
+    "show reference": ("show", "Foot stiffness that others published or configured, and yours among it."),
     "bug-report": ("bug_report", "What to send with a question: versions, settings, what inspect says."),
 }
 SEVERAL = "--validate"  # takes one log or more
 GROUPS = {
     "identify": "Identify feet, inertial parameters or joints from logs.",
-    "show": "What is known elsewhere.",
+    "show": "Published values to compare with.",
     "fleet": "Many logs of many robots: plan, run, report.",
 }
 
@@ -101,8 +103,18 @@ def _called(arguments: list[str]) -> str:
     return " ".join(words[:2]) if words and words[0] in GROUPS else words[0] if words else ""
 
 
+class _Listed(TyperGroup):
+    """Commands and groups of commands in the order of COMMANDS: a user's first steps come first."""
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        if ctx.parent is not None:
+            return list(self.commands)
+        return list(dict.fromkeys(verb.split()[0] for verb in COMMANDS))
+
+
 def _group(text: str) -> typer.Typer:
     return typer.Typer(
+        cls=_Listed,
         help=text,
         epilog=EPILOG,
         no_args_is_help=True,

@@ -45,7 +45,10 @@ def run(
     duration: Annotated[float, typer.Option(help="Of the motion, in s.")] = 60.0,
     rate: Annotated[float, typer.Option(help="Rows a second, in Hz.")] = 200.0,
     criterion: Annotated[
-        str, typer.Option(help="What is made small: the 'widest' relative interval, or D, A of all.")
+        str,
+        typer.Option(
+            help="What the search makes small: the 'widest' relative interval, or criterion D or A of all parameters."
+        ),
     ] = "widest",
     seed: Annotated[int, typer.Option(help="Draws frequencies and the search.", min=0)] = 0,
     to: Annotated[
@@ -56,7 +59,7 @@ def run(
     ] = None,
     approach: Annotated[
         bool,
-        typer.Option("--approach", help="Also versions of 25 and 50 % of the amplitude, to approach with."),
+        typer.Option("--approach", help="Also versions with 25 and 50 % of the amplitude, to play first."),
     ] = False,
     like: Annotated[
         str | None, typer.Option(help="'campaign': for comparison, the best of the paper's fourteen motions.")
@@ -64,11 +67,12 @@ def run(
     json: Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")] = False,
 ) -> None:
-    """Make a motion that shows the feet as well as balance and limits allow, for half to twice the stiffness told.
+    """Make a motion that identifies the feet as well as balance and joint limits allow,
+    even if the stiffness is half or twice what you say.
 
     MOTION.csv holds `time` and the position of every joint of the URDF, from standing still to standing still.
     MOTION.json holds the half widths it predicts, the balance margins and the limits it kept; MOTION.md says the same
-    on a page for those who stand beside the robot, MOTION.html shows the robot move, its bushes bent further.
+    on a page for those who stand beside the robot, MOTION.html shows the robot move, the angles of its bushes enlarged.
 
     Example: plantar design robot.yaml --stiffness 500 --out motion.csv
     """

@@ -24,10 +24,10 @@ def run(
     model: Annotated[Path | None, typer.Option("--model", help=MODEL_HELP, metavar="MODEL")] = None,
     with_offset: Annotated[bool, typer.Option("--with-offset", help=OFFSET_HELP)] = False,
     quiet: Annotated[
-        bool, typer.Option("--quiet", "-q", help="Do not print what the target cannot hold.")
+        bool, typer.Option("--quiet", "-q", help="No notes on what the target cannot hold.")
     ] = False,
 ) -> None:
-    """Hand a result to a simulator or controller: springs and dampers in its own format and units.
+    """Write a result for a simulator or controller: springs and dampers in its own format and units.
 
     Example: plantar export out/feet/result.json --to mjcf --model robot.xml --out robot_on_bushes.xml
     """

@@ -13,9 +13,7 @@ from plantar.robot.model import load_robot
 from plantar.robot_guess import guess_robot_file
 
 OUT_HELP = "The robot file to write."
-COLUMNS_HELP = (
-    "A YAML file with the key `columns`, where the logs call their columns otherwise than plantar does."
-)
+COLUMNS_HELP = "A YAML file with the key `columns`, for logs whose column names are not plantar's."
 LOGS_HELP = "Logs of the robot standing, to find sensors in and to check the file against."
 
 
@@ -26,7 +24,7 @@ def run(
     columns: Annotated[Path | None, typer.Option("--columns", help=COLUMNS_HELP, metavar="FILE")] = None,
     force: Annotated[bool, typer.Option("--force", help="Write over an existing file.")] = False,
 ) -> None:
-    """Write a first robot file by looking: feet and soles from the URDF, sensors from logs; every guess is marked.
+    """Write a first robot file: feet and soles from the URDF, sensors from the logs; every guess is marked.
 
     Example: plantar init talos.urdf sway_1.mcap --out talos.yaml
     """

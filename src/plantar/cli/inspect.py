@@ -56,12 +56,12 @@ def run(
         )
     elif not quiet:
         for summary in summaries:
-            _print(console(), summary, columns)
+            _print(console(), summary, columns, "URDF" if loaded.weighed is None else "robot, as weighed,")
     if any(finding.fatal for summary in summaries for finding in summary.findings):
         raise typer.Exit(1)
 
 
-def _print(out: Console, log: LogSummary, columns: bool) -> None:
+def _print(out: Console, log: LogSummary, columns: bool, weighs: str) -> None:
     sampling = log.sampling
     out.print(
         f"\n[bold]{escape(log.name)}[/]: {log.duration:.1f} s, {log.samples} samples at {sampling.rate:.4g} Hz, "
@@ -74,7 +74,8 @@ def _print(out: Console, log: LogSummary, columns: bool) -> None:
         out.print(f"  {escape(column.name)}: {column.missing} samples without a value")
     if log.carried is not None:
         out.print(
-            f"  the feet carry {log.carried:.2f} kg on average{_still_inside(log)}; the URDF weighs {log.mass:.2f} kg"
+            f"  the feet carry {log.carried:.2f} kg on average{_still_inside(log)}; the {weighs} "
+            f"weighs {log.mass:.2f} kg"
         )
     for finding in log.findings:
         mark = (

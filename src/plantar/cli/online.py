@@ -54,7 +54,7 @@ def run(
     json: Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No table, no progress.")] = False,
 ) -> None:
-    """Replay a log through the estimator of controllers, sample by sample, as if it happened now.
+    """Replay a log through the estimator of controllers, sample by sample, as a controller would.
 
     Example: plantar online robot.yaml walk.csv --wrench-delay 4
     """

@@ -1,9 +1,9 @@
 """Least squares that stream, and what may be believed of them."""
 
 from plantar.estimation.blocks import Block, LinearFit
-from plantar.estimation.intervals import interval95, relative_std_percent
 from plantar.estimation.least_squares import fit_linear
 from plantar.estimation.linear import effect_of, fit_blocks
+from plantar.estimation.residual_covariance import interval95, relative_std_percent
 from plantar.estimation.triangular import TriangularFactor
 
 __all__ = [

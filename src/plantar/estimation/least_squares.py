@@ -8,8 +8,8 @@ import numpy as np
 
 from plantar.conventions import Array
 from plantar.estimation.blocks import Block, LinearFit
-from plantar.estimation.intervals import pooled_freedom, score_cosines
 from plantar.estimation.orthonormal import without
+from plantar.estimation.residual_covariance import pooled_freedom, score_cosines
 from plantar.estimation.triangular import TriangularFactor
 
 

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from plantar.errors import ExportError, located
 from plantar.exporters.bush import feet_of_result
+from plantar.exporters.comment import joints_note
 from plantar.exporters.job import Job
 from plantar.exporters.source import ResultInput, open_result, robot_urdf
 from plantar.files import write_text
@@ -33,6 +34,10 @@ TARGETS: dict[str, tuple[str, str]] = {
     "randomization": ("randomization", "YAML of means, deviations and correlations, to train with"),
     "yaml": ("plain", "YAML with every number, its unit and its interval"),
 }
+
+WITH_JOINTS = frozenset(
+    {"mjcf", "sdf", "urdf", "drake", "usd"}
+)  # targets in which a bush is a joint for each axis
 
 
 def export(
@@ -92,6 +97,7 @@ def export(
         if given is not None and not takes_model:
             raise ExportError(located("this target takes no model", value=target, valid="no --model"))
         text, notes = module.write(Job(data, feet, given, path, with_offset, remarks))
-        notes = (*remarks, *notes)
+        named = (joints_note(feet),) if target in WITH_JOINTS else ()
+        notes = (*remarks, *notes, *named)
     write_text(path, text)
     return unique(notes)

@@ -3,10 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Any
+from typing import Any, Final
 
+from plantar.conventions import Axis
 from plantar.exporters.bush import FootBush
 from plantar.notes import Note
+
+# What a bush's joint does, and which way is positive: signs are those of the identified deflection.
+MOTION: Final[Mapping[Axis, str]] = {
+    "z": "slide along z, compressed > 0",
+    "pitch": "pitch about y, toes down > 0",
+    "roll": "roll about x, left edge up > 0",
+}
 
 
 def head(
@@ -25,7 +33,8 @@ def head(
     for foot in feet:
         for spring in foot.springs:
             k, c, o = spring.units
-            line = f"{foot.joint(spring.axis)}: K = {spring.stiffness:.6g} {k}, C = {spring.damping:.6g} {c}"
+            line = f"{foot.joint(spring.axis)} ({foot.name} foot, {MOTION[spring.axis]}): "
+            line += f"K = {spring.stiffness:.6g} {k}, C = {spring.damping:.6g} {c}"
             if spring.slip is not None:
                 line += f", slips at {spring.slip.torque:.4g} {o} after {spring.slip.angle:.4g} rad"
             line += " (assumed)" if spring.assumed else ""
@@ -36,6 +45,17 @@ def head(
         lines.append("Each spring rests at 0: the identified offset is mostly the sensors' zero.")
     lines += [f"{note.severity}: {note.text}" for note in notes]
     return [" ".join(line.split()) for line in lines]
+
+
+def joints_note(feet: Iterable[FootBush]) -> Note:
+    """Which joints of the written model are the bushes."""
+    feet = list(feet)
+    told = [
+        f"{foot.name} foot {', '.join(foot.joint(spring.axis) for spring in foot.springs)}" for foot in feet
+    ]
+    axes = dict.fromkeys(spring.axis for foot in feet for spring in foot.springs)
+    signs = ", ".join(MOTION[axis] for axis in axes)
+    return Note("export_joints", "info", f"the bushes are these joints: {'; '.join(told)} ({signs})")
 
 
 def moved_note(foot: FootBush, moved: Iterable[str]) -> Note:

@@ -48,13 +48,14 @@ def robot_model(result: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 def robot_urdf(result: Mapping[str, Any], base: Path) -> Path:
-    """The URDF of the result: absolute, or relative to the result or to the working directory."""
+    """The URDF of the result: absolute, or relative to the result, to the working directory, or to the folder that
+    `identify` was run in, which holds the result somewhere below."""
     named = robot_model(result).get("urdf")
     if not isinstance(named, str):
         raise ExportError(located("the result names no URDF", valid="--model with a robot model"))
-    for candidate in (base / named, Path(named)):
-        if candidate.is_file():
-            return candidate
+    for folder in (base, Path(), *base.resolve().parents):
+        if (folder / named).is_file():
+            return folder / named
     raise ExportError(
         located("the result's URDF is not there", path=named, valid="--model with a robot model")
     )

@@ -19,19 +19,19 @@ from plantar.feet.assess.zero_jumps import zero_jumps
 from plantar.feet.exclusion.outliers import outlier_masks
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.axis_fit import fit_axis
-from plantar.feet.fit.between_recordings import (
+from plantar.feet.fit.bush_place import PlaceSpread, turned_bush_note
+from plantar.feet.fit.worth import hardly_matters, in_place_of
+from plantar.feet.internal_error import gives_up, internal_errors
+from plantar.feet.interval_width.between_recordings import (
     Apart,
     AxisDifferences,
     axis_differences,
     recordings_apart,
 )
-from plantar.feet.fit.bush_place import PlaceSpread, turned_bush_note
-from plantar.feet.fit.force_gain import force_gain_causes, force_gain_notes, torque_gain_causes
-from plantar.feet.fit.imu_mount import imu_turn_causes
-from plantar.feet.fit.robot_causes import robot_causes
-from plantar.feet.fit.systematic import inflated, systematic_causes
-from plantar.feet.fit.worth import hardly_matters, in_place_of
-from plantar.feet.internal_error import gives_up, internal_errors
+from plantar.feet.interval_width.force_gain import force_gain_causes, force_gain_notes, torque_gain_causes
+from plantar.feet.interval_width.imu_turn import imu_turn_causes
+from plantar.feet.interval_width.robot_causes import robot_causes
+from plantar.feet.interval_width.systematic import inflated, systematic_causes
 from plantar.feet.prepare import PreparedLogs
 from plantar.feet.recording import Recording
 from plantar.models import BushModel, KelvinVoigt
@@ -143,7 +143,7 @@ def assess_foot(fitted: FittedFoot) -> FootFit:
         if axis in fitted.given_up:
             found.parameters.extend(missing_rows(fitted.foot, axis, fitted.given_up[axis]))
         elif axis not in fitted.fits:
-            found.parameters.extend(unseen_rows(fitted.foot, axis))
+            found.parameters.extend(unseen_rows(fitted.foot, axis, fitted.ready.fitted))
     return replace(found, notes=(*found.notes, *internal_errors(fitted.foot, fitted.given_up)))
 
 

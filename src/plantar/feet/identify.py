@@ -13,13 +13,14 @@ from plantar.conventions import OFFSET_UNIT
 from plantar.errors import DataError
 from plantar.feet.assess.far_arms import far_arms
 from plantar.feet.assess.feasible_advice import hardly_standing, remedies, with_remedies
+from plantar.feet.assess.left_out import unused_logs
 from plantar.feet.assess.residual_table import residual_table
 from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.between_recordings import apart_notes
 from plantar.feet.fit.bush_place import PlaceSpread
 from plantar.feet.fit.imu_mount import ImuTurn
 from plantar.feet.foot_fit import FittedFoot, assess_foot, between_all, fit_foot, without_needless
 from plantar.feet.imu_of_steps import imu_turn_notes, is_worth, put_right, turn_shown
+from plantar.feet.interval_width.between_recordings import apart_notes
 from plantar.feet.memory_of_others import with_memory_of_others
 from plantar.feet.prepare import PreparedLogs, over_logs, prepare_all
 from plantar.feet.recording import Recording
@@ -118,6 +119,7 @@ def fit_prepared(
                 *ready.notes,
                 *imu_turn_notes(ready.imu_turn, robot.uncertainty.imu_mount),
                 *_feet_notes(robot, ready.fitted),
+                *unused_logs(ready.fitted),
                 *_model_notes(fits),
                 *apart_notes(between),
                 *(note for each in found for note in each.notes),
@@ -221,16 +223,16 @@ def _model_notes(fits: Sequence[AxisFit]) -> list[Note]:
         where = f"{fit.foot} {fit.axis}"
         if fit.model.name != KelvinVoigt.name:
             stiffness, damping = fit.equivalent
-            linear = f"as spring and damper K = {stiffness:.4g}, C = {damping:.4g}"
-            text = f"{where}: {fit.model.name} ({fit.reason}); {linear}"
+            linear = f"the nearest spring and damper has K = {stiffness:.4g}, C = {damping:.4g}"
+            text = f"{where}: the model is {fit.model.name}: {fit.reason}; {linear}"
             notes.append(Note("model", "info", text))
         if fit.choice is not None and fit.choice.caution is not None:
             cautions.setdefault(fit.choice.caution, []).append(where)
-        notes += fit.notes or far_arms(fit)
+        notes += fit.notes
     told = [
         Note("model_caution", "warning", f"{', '.join(where)}: {text}") for text, where in cautions.items()
     ]
-    return notes + told
+    return [*notes, *told, *far_arms([fit for fit in fits if not fit.notes])]
 
 
 def _offsets(fit: AxisFit) -> list[Offset]:

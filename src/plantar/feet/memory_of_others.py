@@ -78,5 +78,5 @@ def _in_place_of(spring: AxisFit, fit: AxisFit) -> AxisFit:
     ranking = tuple(
         replace(score, chosen=score.model.name == fit.model.name) for score in spring.choice.ranking
     )
-    reason = f"{fit.model.name} predicts held-out motion better, and other axes of this robot show it clearly"
+    reason = "it predicts held-out motion better, and other axes of this robot show it clearly"
     return replace(fit, choice=replace(spring.choice, ranking=ranking, caution=None), reason=reason)

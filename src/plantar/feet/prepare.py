@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import partial
-from itertools import count
-from threading import Lock
 
 from plantar.conventions import Axis
 from plantar.errors import DataError
@@ -17,9 +15,9 @@ from plantar.feet.coherent_band import coherent_band
 from plantar.feet.exclusion.edge_rolling import without_edge_rolling
 from plantar.feet.exclusion.slip import without_slip
 from plantar.feet.exclusion.torque_saturation import without_torque_saturation
-from plantar.feet.fit.force_gain import GainError, force_gain_errors, force_gain_notes
 from plantar.feet.fit.imu_mount import ImuTurn
 from plantar.feet.fit.vertical_stiffness import VerticalStiffness, fit_vertical_stiffness
+from plantar.feet.interval_width.force_gain import GainError, force_gain_errors, force_gain_notes
 from plantar.feet.prepare_log import checked, prepare
 from plantar.feet.recording import Recording, Role, filtered_recording, moved_centre
 from plantar.feet.settings import FeetSettings
@@ -39,8 +37,6 @@ from plantar.sensors.tilt_error import NO_TILT_ERROR, log_tilt_error
 
 Progress = Callable[[str], None]
 LONG = 50_000  # samples: with fewer, threads mostly hand Python's lock to each other, and hold memory each
-
-AT_ONCE = 2  # logs: one is read while another is checked
 
 
 @dataclass(frozen=True)
@@ -100,34 +96,20 @@ def prepare_all(
 
 def checked_in_turn(robot: RobotModel, logs: Iterable[MotionLog]) -> list[MotionLog]:
     """Every log `checked`, in order; while one is, the next is read. Raises the error of the first that has one."""
-    source, reading = iter(logs), Lock()
-    even: dict[int, MotionLog] = {}
-    errors: dict[int, Exception] = {}
-    places = count()
-
-    def work() -> None:
-        while not errors:
-            with reading:
-                place = next(places)
-                try:
-                    log = next(source, None)
-                except Exception as error:
-                    errors[place] = error
-                    return
-            if log is None:
-                return
-            try:
-                even[place] = checked(robot, log)
-            except Exception as error:
-                errors[place] = error
-            del log  # or it would stay while the next is read
-
-    with ThreadPoolExecutor(AT_ONCE) as pool:
-        for worker in [pool.submit(work) for _ in range(AT_ONCE)]:
-            worker.result()
-    if errors:
-        raise errors[min(errors)]
-    return [even[place] for place in sorted(even)]
+    even: list[MotionLog] = []
+    pending: Future[MotionLog] | None = None
+    with ThreadPoolExecutor(1) as pool:
+        try:
+            for log in logs:
+                if pending is not None:
+                    before, pending = pending, None
+                    even.append(before.result())
+                pending = pool.submit(checked, robot, log)
+                del log  # or it would stay until the next was read
+        finally:  # also where the next one cannot be read: what is wrong with this one is told first
+            if pending is not None:
+                even.append(pending.result())
+    return even
 
 
 def prepare_checked(
@@ -160,6 +142,7 @@ def prepare_checked(
     odd = [
         *naming_notes(file, robot.guesses),
         *guess_notes(file, robot.guesses),
+        *robot.weight_notes,
         *force_gain_notes(robot, forces),
         *torque_gain_notes(torques).values(),
         *turned.values(),

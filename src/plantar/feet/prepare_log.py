@@ -168,9 +168,8 @@ def _contacts(
     always = {name: foot.contact == "always" for name, foot in robot.feet.items()}
     carried, model_weight = carried_weight(force), robot.mass * GRAVITY
     if not any(always.values()) and abs(carried - model_weight) > WEIGHT_MISMATCH * model_weight:
-        text = (
-            f"{log.name}: the feet carry {carried / GRAVITY:.1f} kg where the URDF weighs {robot.mass:.1f} kg"
-        )
+        whose = "the URDF weighs" if robot.weighed is None else "the robot was weighed as"
+        text = f"{log.name}: the feet carry {carried / GRAVITY:.1f} kg where {whose} {robot.mass:.1f} kg"
         notes.append(Note("weight", "warning", text))
     weight = carried if carried > 0.3 * model_weight else model_weight
     contacts = detect_contact(force, always, weight, log.period)

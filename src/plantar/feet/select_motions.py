@@ -11,7 +11,7 @@ import numpy as np
 from plantar.conventions import NORMAL95, ROTATIONAL_AXES, Array
 from plantar.errors import DataError
 from plantar.estimation import fit_blocks
-from plantar.estimation.intervals import cosine_covariance
+from plantar.estimation.residual_covariance import cosine_covariance
 from plantar.feet.fit.regression_data import blocks_of
 from plantar.feet.prepare import prepare_all
 from plantar.feet.settings import FeetSettings

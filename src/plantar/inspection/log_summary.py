@@ -75,7 +75,12 @@ def inspect_log(robot: RobotModel, log: MotionLog) -> LogSummary:
     findings = []
     feet: tuple[FootSummary, ...] = ()
     parameters: tuple[Parameter, ...] = ()
-    notes = (*guess_notes(robot.path.name, robot.guesses), *log.notes, *log.joint_notes(robot))
+    notes = (
+        *guess_notes(robot.path.name, robot.guesses),
+        *robot.weight_notes,
+        *log.notes,
+        *log.joint_notes(robot),
+    )
     try:
         findings = check_log(robot, log)
         if robot.feet and not any(finding.fatal for finding in findings):

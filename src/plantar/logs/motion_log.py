@@ -146,6 +146,11 @@ class MotionLog:
         """Force then torque as recorded, in the sensor's frame, (N, 6) [N, N·m]."""
         return self.stack(wrench_columns(sensor))
 
+    def vertical_only(self, sensor: str) -> bool:
+        """Whether a force sensor is one of single-axis cells: no horizontal force and no moment about the vertical."""
+        wrench = self.wrench(sensor)
+        return bool(not wrench[:, [0, 1, 5]].any() and wrench[:, 2].any())
+
     def orientation(self, imu: str) -> Array | None:
         """Quaternion w x y z, body to world, (N, 4); None where the log has no such columns."""
         names = imu_columns(imu, "orientation")

@@ -13,7 +13,7 @@ import numpy as np
 
 from plantar.conventions import Array
 from plantar.errors import DataError
-from plantar.estimation.intervals import interval95
+from plantar.estimation.residual_covariance import interval95
 from plantar.model_selection.data_sets import DataSet, prepare_data_sets
 from plantar.model_selection.grid import Pieces
 from plantar.model_selection.partialled_out import robust_covariance

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.estimation.intervals import cosine_covariance, pooled_freedom
+from plantar.estimation.residual_covariance import cosine_covariance, pooled_freedom
 from plantar.estimation.triangular import TriangularFactor
 
 NEGLIGIBLE = 1e-9  # of a column's square left after projection: nothing of its own is left in it

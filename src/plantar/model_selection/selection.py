@@ -222,11 +222,7 @@ def _caution(
     if not better:
         return None
     best = scores[min(better, key=lambda place: scores[place].held_out_rms)]
-    why = (
-        f"cannot be identified: {best.refused}"
-        if best.refused
-        else "by too little for steps as short as these"
-    )
+    why = best.refused or "by too little for steps as short as these"
     return (
         f"{best.model.name} predicts held-out motion better ({best.held_out_rms:.3g} against "
         f"{scores[winner].held_out_rms:.3g} rms) but {why}; stiffness and damping are those of these motions only "
@@ -239,6 +235,6 @@ def _reason(chosen: ModelScore, linear: ModelScore, held_out: str) -> str:
         return f"no richer model predicts {held_out} clearly better than spring and damper"
     gain = 100 * (1 - chosen.held_out_rms / linear.held_out_rms) if linear.held_out_rms > 0 else 0.0
     return (
-        f"held-out {held_out}: {chosen.model.name} misses by {chosen.held_out_rms:.3g} rms, spring and damper by "
+        f"on held-out data ({held_out}) it misses by {chosen.held_out_rms:.3g} N·m rms, spring and damper by "
         f"{linear.held_out_rms:.3g} ({gain:.0f} % less)"
     )

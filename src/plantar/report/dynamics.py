@@ -8,11 +8,12 @@ from pathlib import Path
 from typing import Any, Final
 
 from plantar.files import write_text
+from plantar.notes import kinds
+from plantar.pages import on_joints
 from plantar.report.content import Cell, Column, Figure, Section, Table
 from plantar.report.page import render
 from plantar.report.tables import input_table, settings_table, skill_cell, verdict_cell
 from plantar.report.verdict import listed
-from plantar.report.warning_groups import warning_groups
 from plantar.results.dynamics import JOINTS_SCHEMA, DynamicsResult, DynamicsScore
 from plantar.results.io import result_path
 from plantar.results.numbers import interval, number, percent, unit, with_uncertainty
@@ -56,8 +57,8 @@ def write_dynamics_report(
         styles=["report.css"],
         title=f"{subject} of {read.robot}",
         result=read,
-        warnings=warning_groups(read.notes),
-        notes=[note for note in read.notes if note.severity != "warning"],
+        warnings=kinds(read.notes, "warning"),
+        notes=kinds(read.notes, "info"),
         verdict=verdict,
         tables=made,
         sections=sections,
@@ -84,7 +85,8 @@ def _joints_verdict(result: DynamicsResult) -> list[str]:
         if names:
             shown = names if len(names) <= 8 else [*names[:7], f"{len(names) - 7} more"]
             sentences.append(f"{lead}: {listed(shown)}.")
-    return sentences + _prediction(result)
+    further = on_joints(row.verdict for row in result.parameters)
+    return [*sentences, *_prediction(result), *([further] if further else [])]
 
 
 def _prediction(result: DynamicsResult) -> list[str]:

@@ -10,14 +10,15 @@ from typing import Any
 import numpy as np
 
 from plantar.files import write_text
+from plantar.notes import kinds
+from plantar.pages import on_feet
 from plantar.report import tables
 from plantar.report.charts.loop import loop_charts
 from plantar.report.content import Figure, Section, Table
 from plantar.report.motions import motion_views
 from plantar.report.page import render
-from plantar.report.verdict import foot_verdicts, trust, widest
+from plantar.report.verdict import foot_verdicts, limits, trust
 from plantar.report.walks import walk_section
-from plantar.report.warning_groups import warning_groups
 from plantar.results.feet import FeetResult
 from plantar.results.io import result_path
 from plantar.results.residuals import read_residuals, residuals_path, tracks_of
@@ -55,10 +56,11 @@ def write_feet_report(
         verdicts=foot_verdicts(content.parameters),
         trust=trust(content),
         loops=loop_charts(content, tracks),
-        widest=widest(content),
+        limits=limits(content),
+        read_on=on_feet(row.verdict for row in content.parameters),
         walks=walk_section(content, tracks),
-        warnings=warning_groups(content.notes),
-        notes=[note for note in content.notes if note.severity != "warning"],
+        warnings=kinds(content.notes, "warning"),
+        notes=kinds(content.notes, "info"),
         tables=_tables(content),
         sections=sections,
         motions=motions,

@@ -10,7 +10,7 @@ from typing import Any
 from plantar.contact.phases import Phase
 from plantar.conventions import NORMAL95
 from plantar.report.content import Cell, Column, Mark, Table
-from plantar.report.verdict import MARKS, symbol, why_of
+from plantar.report.verdict import MARKS, symbol
 from plantar.results.dynamics import DynamicsScore, JointParameter
 from plantar.results.feet import Comparison, FeetResult, Input, Offset, Parameter, ValidationRow
 from plantar.results.numbers import MISSING, interval, number, percent, unit, with_uncertainty
@@ -32,7 +32,6 @@ def parameter_table(parameters: Sequence[Parameter]) -> Table:
             interval(row.interval95),
             percent(row.relative_std_percent),
             verdict_cell(row),
-            why_of(row),
         )
         for row in parameters
     ]
@@ -46,10 +45,9 @@ def parameter_table(parameters: Sequence[Parameter]) -> Table:
         Column("95 % interval"),
         Column("relative std, as in the paper"),
         Column("verdict", numeric=False),
-        Column("why", numeric=False),
     )
     remark = (
-        "Trust std and the interval: they allow for residuals that are alike from sample to sample. The "
+        "Trust std and the interval: they allow for autocorrelated residuals. The "
         "paper's relative deviation takes residuals for white noise and is far too small; here to compare. "
         "A value in brackets is unidentifiable: not to be used."
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -39,17 +39,30 @@ class FootVerdict:
 def foot_verdicts(parameters: Sequence[Parameter]) -> tuple[FootVerdict, ...]:
     """For each foot a statement per axis, in the result's order."""
     feet = dict.fromkeys(parameter.foot for parameter in parameters)
-    return tuple(FootVerdict(foot, tuple(_statements(foot, parameters))) for foot in feet)
+    given = first_given(parameters)
+    return tuple(FootVerdict(foot, tuple(_statements(foot, parameters, given))) for foot in feet)
 
 
-def _statements(foot: str, parameters: Sequence[Parameter]) -> Iterable[Statement]:
+def first_given(parameters: Sequence[Parameter]) -> dict[str, str]:
+    """Each advice, and the number that it is given to first."""
+    given: dict[str, str] = {}
+    for row in parameters:
+        if row.advice:
+            given.setdefault(row.advice, f"{row.foot} {row.axis} {symbol(row.name)}")
+    return given
+
+
+def _statements(foot: str, parameters: Sequence[Parameter], given: Mapping[str, str]) -> Iterable[Statement]:
     rows = [parameter for parameter in parameters if parameter.foot == foot]
     for axis in dict.fromkeys(row.axis for row in rows):
-        yield statement(f"{foot} {axis}", axis, [row for row in rows if row.axis == axis])
+        yield statement(f"{foot} {axis}", axis, [row for row in rows if row.axis == axis], given)
 
 
-def statement(subject: str, axis: str, rows: Sequence[Parameter]) -> Statement:
-    """`left pitch: K = 480 ± 1 N·m/rad, C = ... — usable`; a number that cannot be trusted is not given."""
+def statement(subject: str, axis: str, rows: Sequence[Parameter], given: Mapping[str, str]) -> Statement:
+    """`left pitch: K = 480 ± 1 N·m/rad, C = ... — usable`; a number that cannot be trusted is not given.
+
+    An advice stands with the first number that it is `given` to; others name that number.
+    """
     marks = [MARKS.get(row.verdict, "") for row in rows]
     worst = max(marks, key=lambda mark: _ORDER[mark])
     if worst == "bad" and set(marks) != {"bad"}:
@@ -63,11 +76,14 @@ def statement(subject: str, axis: str, rows: Sequence[Parameter]) -> Statement:
     text = ", ".join(phrases)
     if alone and not unknown:
         text += f" — {verdicts[0]}"
-    behind: dict[str, list[str]] = {}
+    behind: dict[tuple[str, str], list[str]] = {}
     for row in rows:
-        if why := why_of(row):
-            behind.setdefault(why, []).append(symbol(row.name))
-    reasons = tuple(f"{listed(names)}: {why}" for why, names in behind.items())
+        if row.reason:
+            behind.setdefault((row.reason, row.advice or ""), []).append(symbol(row.name))
+    reasons = tuple(
+        f"{listed(names)}: {why}{_next(advice, f'{subject} {names[0]}', given)}"
+        for (why, advice), names in behind.items()
+    )
     return Statement(subject, axis, text, worst, reasons)
 
 
@@ -81,9 +97,40 @@ def _phrase(row: Parameter, alone: bool) -> str:
     return text if alone or not row.verdict else f"{text} ({row.verdict})"
 
 
-def why_of(row: Parameter) -> str:
-    """The verdict's reason and what to record next."""
-    return ". Next: ".join(part for part in (row.reason, row.advice) if part)
+def _next(advice: str, name: str, given: Mapping[str, str]) -> str:
+    """What to record next for the number of that name."""
+    first = given.get(advice, name)
+    return f". Next: {advice if first == name else f'as for {first}'}" if advice else ""
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What limits each number, and what helps against each of these causes that no number's verdict says."""
+
+    widest: str
+    each: tuple[str, ...]
+    remedies: tuple[str, ...]
+
+
+def limits(result: FeetResult) -> Limits:
+    """What limits the widest interval among the numbers that may be used, and each number; no advice twice."""
+    given = first_given(result.parameters)
+    found = widest(result)
+    against = {row.limit: row.advice for row in result.diagnosis if row.advice and row.advice not in given}
+    return Limits(
+        "" if found is None else found.text if found.advice not in given else _cause(found),
+        tuple(_cause(row) for row in result.diagnosis) if len(result.diagnosis) > 1 else (),
+        tuple(
+            f"Against {limit}: {advice}."
+            for limit, advice in against.items()
+            if found is None or advice != found.advice
+        ),
+    )
+
+
+def _cause(row: Diagnosis) -> str:
+    """What limits a number, without the advice."""
+    return row.text.removesuffix(f" To tighten: {row.advice}") if row.advice else row.text
 
 
 def widest(result: FeetResult) -> Diagnosis | None:

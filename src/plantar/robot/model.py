@@ -17,11 +17,13 @@ import pinocchio as pin
 from plantar.conventions import Array, rotation_from_rpy
 from plantar.errors import RobotError, located
 from plantar.files import read_bounded
+from plantar.notes import Note
 from plantar.robot.guesses import Guess
 from plantar.robot.joint_names import JointNames
 from plantar.robot.kinematics import KinematicTree
 from plantar.robot.schema import FootEntry, FrameEntry, JointEntry, read_robot_file
 from plantar.robot.uncertainty import Uncertainty
+from plantar.robot.weighed import check_weight, of_mass, weight_notes, weight_of
 
 URDF_LIMIT = 64 * 2**20  # bytes
 
@@ -94,6 +96,7 @@ class RobotModel:
         joints: what eq. 3 models in the joints that the robot file describes.
         topics, columns: where readers find each quantity in a log.
         joint_names_in_logs: what logs call the joints, where not as the URDF does.
+        weighed: what it weighs on a balance [kg], or None; `model` is scaled to that.
         guesses: keys of the file that are marked as not measured. uncertainty: what its numbers may be off by.
 
     Example:
@@ -116,16 +119,17 @@ class RobotModel:
     joint_names_in_logs: JointNames = field(default_factory=JointNames)
     uncertainty: Uncertainty = field(default_factory=Uncertainty)
     guesses: tuple[Guess, ...] = ()
+    weighed: float | None = None
 
     @cached_property
     def model(self) -> pin.Model:
         """Pinocchio's model with the root link fixed: the joints that a log can hold."""
-        return parse_urdf(self.urdf, self.urdf_path, floating=False)
+        return of_mass(parse_urdf(self.urdf, self.urdf_path, floating=False), self.weighed)
 
     @cached_property
     def floating_model(self) -> pin.Model:
         """Pinocchio's model with a free-flyer above the root link."""
-        return parse_urdf(self.urdf, self.urdf_path, floating=True)
+        return of_mass(parse_urdf(self.urdf, self.urdf_path, floating=True), self.weighed)
 
     @cached_property
     def tree(self) -> KinematicTree:
@@ -139,8 +143,22 @@ class RobotModel:
 
     @cached_property
     def mass(self) -> float:
+        """What the robot weighs [kg]: on a balance, where the robot file says it, else by the URDF."""
+        return weight_of(self.model)
+
+    @cached_property
+    def urdf_mass(self) -> float:
         """Total mass of the URDF's links [kg]."""
-        return float(sum(inertia.mass for inertia in self.model.inertias))
+        return (
+            self.mass
+            if self.weighed is None
+            else weight_of(parse_urdf(self.urdf, self.urdf_path, floating=False))
+        )
+
+    @property
+    def weight_notes(self) -> list[Note]:
+        """What is to be said of a URDF that weighs something else than the robot."""
+        return weight_notes(self.path.name, self.weighed, self.urdf_mass, self.uncertainty.total_mass)
 
     def frame(self, placement: Placement) -> tuple[int, pin.SE3]:
         """The joint of `model` that carries a placement, and the placement in that joint's frame.
@@ -203,6 +221,7 @@ def load_robot(path: str | os.PathLike[str]) -> RobotModel:
         ),
         uncertainty=entry.uncertainty,
         guesses=guesses,
+        weighed=entry.mass,
     )
     _check(robot)
     return robot
@@ -252,6 +271,7 @@ def parse_urdf(urdf: str, path: Path, *, floating: bool) -> pin.Model:
 
 
 def _check(robot: RobotModel) -> None:
+    check_weight(robot.path, robot.weighed, robot.urdf_mass)
     if robot.imu is not None:
         robot.frame(robot.imu.placement)
     for foot in robot.feet.values():

@@ -95,6 +95,7 @@ class RobotEntry(Entry):
     name: Name
     urdf: Name
     base: Literal["floating", "fixed"] = "floating"
+    mass: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None = None  # kg, as weighed
     imu: ImuEntry | None = None
     feet: Annotated[dict[Name, FootEntry], Field(max_length=8)] = {}
     joints: dict[Name, JointEntry] = {}

@@ -26,6 +26,9 @@ class Uncertainty(BaseModel):
     encoder_zero: Annotated[Deviation, Field(description="rad, each joint")] = 0.001
     imu_mount: Annotated[Deviation, Field(description="rad, about each axis")] = 0.01
     link_mass: Annotated[Deviation, Field(description="share, of each link's mass")] = 0.05
+    total_mass: Annotated[
+        Deviation, Field(description="share, of the robot's `mass` where it was weighed")
+    ] = 0.005
     link_com: Annotated[Deviation, Field(description="m, of each link's centre of mass, each axis")] = 0.005
     between_recordings: Annotated[
         Deviation,
@@ -41,5 +44,6 @@ EXACT = Uncertainty(
     encoder_zero=0.0,
     imu_mount=0.0,
     link_mass=0.0,
+    total_mass=0.0,
     link_com=0.0,
 )

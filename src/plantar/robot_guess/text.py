@@ -50,6 +50,7 @@ class Draft:
             *(f"# {'DOUBT' if remark.doubt else 'Seen'}: {remark.text}" for remark in self.remarks),
             f"name: {scalar(self.name)}",
             f"urdf: {scalar(urdf)}",
+            "# mass: ...  # kg: weigh the robot, with battery and cover, if you can",
             *self._imu(),
             "feet:",
         ]

@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.estimation.intervals import cosine_covariance, pooled_freedom
 from plantar.estimation.quantiles import MOST_FREEDOM, fisher_quantile
+from plantar.estimation.residual_covariance import cosine_covariance, pooled_freedom
 from plantar.robot.model import RobotModel
 from plantar.sensors.delays.refined_delays import Each
 from plantar.sensors.moment_errors import LOOSE, MomentErrors, moment_errors, prior_deviations

@@ -9,7 +9,7 @@ import numpy as np
 
 from plantar.conventions import Array
 from plantar.dynamics.consistency import Normal
-from plantar.estimation.intervals import cosine_covariance
+from plantar.estimation.residual_covariance import cosine_covariance
 from plantar.whole_body.folds import Samples
 from plantar.whole_body.regularised_fit import RegularisedFit
 

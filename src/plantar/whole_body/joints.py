@@ -10,7 +10,7 @@ import numpy as np
 from plantar.choices import one_of
 from plantar.conventions import Array
 from plantar.errors import DataError, RobotError, located
-from plantar.estimation.intervals import interval95
+from plantar.estimation.residual_covariance import interval95
 from plantar.logs.inputs import LogInputs, RobotInput, logs_of, robot_of
 from plantar.notes import Note
 from plantar.results.dynamics import JOINTS_SCHEMA, DynamicsResult, JointParameter

@@ -12,7 +12,7 @@ from plantar.conventions import INERTIAL_NAMES, INERTIAL_UNITS
 from plantar.dynamics import parameter_name, solve_triangle
 from plantar.dynamics.consistency import is_consistent
 from plantar.dynamics.equation import PER_LINK
-from plantar.estimation.intervals import interval95, relative_std_percent
+from plantar.estimation.residual_covariance import interval95, relative_std_percent
 from plantar.notes import Note, unique
 from plantar.results.dynamics import BaseParameter, DynamicsResult, InertialParameter, JointParameter
 from plantar.robot.identified_urdf import write_inertias

@@ -56,6 +56,6 @@ def prepare_logs(
     if body.equation.floating:
         calibration, notes = calibrate(body, fitted, as_recorded=settings.as_recorded)
     inputs = (*(Input.of(log, "fit") for log in logs), *(Input.of(log, "validate") for log in validate))
-    guessed = guess_notes(robot.path.name, robot.guesses)
+    guessed = [*guess_notes(robot.path.name, robot.guesses), *robot.weight_notes]
     said = (*guessed, *(note for whole in fitted + unseen for note in whole.notes), *notes)
     return WholeLogs(body, fitted, unseen, calibration, inputs, said)

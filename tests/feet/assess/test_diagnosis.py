@@ -10,7 +10,7 @@ import pytest
 from plantar.feet.assess.data_faults import ADVICE
 from plantar.feet.assess.diagnosis import REMEDY, advised, diagnose_axis, mend_first
 from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.systematic import Cause
+from plantar.feet.interval_width.systematic import Cause
 from plantar.models import KelvinVoigt
 from plantar.notes import Note
 from plantar.results.feet import Parameter

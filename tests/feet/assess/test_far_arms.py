@@ -15,8 +15,8 @@ from plantar.models import KelvinVoigt
     [
         ((0.0, 0.0), ""),
         ((0.03, -0.03), ""),
-        ((-0.055, 0.001), "55 mm forward or backward of"),
-        ((0.0, 0.05), "50 mm above"),
+        ((-0.055, 0.001), "left pitch 55 mm forward or backward, left pitch 55 mm"),
+        ((0.0, 0.05), "50 mm above or below"),
     ],
 )
 def test_an_arm_beyond_what_drawings_get_wrong_is_told(arms: tuple[float, float], told: str) -> None:
@@ -25,6 +25,6 @@ def test_an_arm_beyond_what_drawings_get_wrong_is_told(arms: tuple[float, float]
         covariance=np.eye(2), freedom=np.full(2, 30.0), white_std=np.ones(2), offset_std={}, equivalent=(400.0, 20.0),
         choice=None, reason="", moment_arms=arms,
     )  # fmt: skip
-    notes = far_arms(fit)
+    notes = far_arms([fit, fit])
     assert [note.code for note in notes] == ([FAR_ARM] if told else [])
     assert all(told in note.text and "feet.left.wrench" in note.text for note in notes)

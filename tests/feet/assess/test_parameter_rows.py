@@ -81,7 +81,7 @@ def test_a_lean_matters_to_a_model_with_memory_alone() -> None:
 
 def test_a_foot_without_samples_has_rows_that_say_why() -> None:
     for rows, words in (
-        (unseen_rows("left", "roll"), "no samples"),
+        (unseen_rows(FOOT, "roll", []), "no samples"),
         (missing_rows("left", "roll", "why"), "why"),
     ):
         assert [row.name for row in rows] == ["stiffness", "damping"]

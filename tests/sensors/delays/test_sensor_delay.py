@@ -13,6 +13,7 @@ from plantar.feet.prepare_log import checked
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
 from plantar.robot.uncertainty import Uncertainty
+from plantar.sensors.delays import sensor_delay
 from plantar.sensors.delays.lagged_log import STEP, lagged_log
 from plantar.sensors.delays.refined_delays import refined_delays
 from plantar.sensors.delays.sensor_delay import estimate_wrench_delay
@@ -221,3 +222,16 @@ def test_intervals_of_the_delay_hold_for_wrong_urdfs(twin: RobotModel, sweep: Mo
     assert np.sum(np.abs(far) < 1.96) >= 9
     assert 0.4 < np.sqrt(np.mean(far**2)) < 1.5, "nor wider than they need to be"
     assert min(one.std for one in found) > 1.2 * sure.std
+
+
+def test_cells_without_horizontal_force_show_no_delay_and_none_is_searched(
+    twin: RobotModel, sweep: MotionLog, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """On some motions a search would find that no delay closes Newton's law, and raise an alarm about clocks."""
+    monkeypatch.setattr(sensor_delay, "refined_delays", lambda *_: pytest.fail("searched"))
+    none = ("force.x", "force.y", "torque.z")
+    gone = {name: 0 * values for name, values in sweep.columns.items() if name.endswith(none)}
+    found = estimate_wrench_delay(twin, [sweep.with_columns(gone)])
+    assert (found.measured, found.doubtful, found.delay) == (False, False, 0.0)
+    assert "cells" in found.note.text
+    assert "--wrench-delay" in found.note.text

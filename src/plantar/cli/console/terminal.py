@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from plantar.notes import Note
+from plantar.notes import Note, NoteKind, kinds
 
 VERDICT_STYLE = {"usable": "green", "weak": "yellow", "unidentifiable": "red"}
 SEVERITY_STYLE = {"info": "dim", "warning": "yellow"}
@@ -54,12 +54,24 @@ def table(
 
 
 def print_notes(out: Console, notes: Sequence[Note]) -> None:
-    """Notes, warnings first; at most SCREENFUL of them, the others counted: the report holds them all."""
-    warnings_first = sorted(notes, key=lambda note: note.severity != "warning")
-    for note in warnings_first[:SCREENFUL]:
-        out.print(f"[{SEVERITY_STYLE[note.severity]}]note ({note.severity}): {escape(note.text)}[/]")
-    if len(notes) > SCREENFUL:
-        out.print(f"[dim]and {len(notes) - SCREENFUL} more notes: see the report[/]")
+    """Notes by their kinds, each warning in full and before the others, of other kinds the first; at most SCREENFUL
+    lines, the rest counted."""
+    warnings = [note for note in notes if note.severity == "warning"]
+    remarks = [_remark(kind) for kind in kinds(notes, "info")]
+    lines = [f"[{SEVERITY_STYLE['warning']}]note (warning): {escape(note.text)}[/]" for note in warnings]
+    lines += [f"[{SEVERITY_STYLE['info']}]note (info): {escape(text)}[/]" for text in remarks]
+    for line in lines[:SCREENFUL]:
+        out.print(line)
+    if len(lines) > SCREENFUL:
+        out.print(f"[dim]and {len(lines) - SCREENFUL} more notes, in the result's notes[/]")
+
+
+def _remark(kind: NoteKind) -> str:
+    return (
+        f"{kind.text} (and {len(kind.others)} more like it, in the result's notes)"
+        if kind.others
+        else kind.text
+    )
 
 
 def number(value: float | None, digits: int = 4) -> str:

@@ -25,8 +25,8 @@ MODEL_HELP = (
 )
 OFFSET_HELP = "One offset per motion, or shared by all as in the paper."
 CUTOFF_HELP = (
-    f"Zero-phase low-pass on both sides of the fit [Hz]. If left out: {DEFAULT_CUTOFF:g}, or less where angle and "
-    "torque of a walk are not coherent up to there."
+    f"Cut-off of the zero-phase low-pass filter on angles and torques [Hz]. If left out: {DEFAULT_CUTOFF:g}, or less "
+    "where angle and torque of a walk are not coherent up to there."
 )
 WINDOW_HELP = "Use only deflections up to this many degrees from the resting pose."
 

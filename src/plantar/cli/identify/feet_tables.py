@@ -7,6 +7,7 @@ from rich.markup import escape
 
 from plantar.cli.console.advice import advised
 from plantar.cli.console.terminal import VERDICT_STYLE, number, print_notes, table
+from plantar.pages import on_feet
 from plantar.results.feet import FeetResult, Parameter, ValidationRow
 
 
@@ -19,6 +20,8 @@ def print_feet(out: Console, result: FeetResult) -> None:
     out.print(parameter_table(result))
     for verdict, names, rest in advised(result.parameters):
         out.print(f"[{VERDICT_STYLE[verdict]}]{names}: {verdict}[/]: {escape(rest)}")
+    if further := on_feet(row.verdict for row in result.parameters):
+        out.print(escape(further))
     for kind, title in (("direct", "Table 2. Direct validation"), ("cross", "Table 3. Cross validation")):
         rows = [row for row in result.validation if row.kind == kind]
         if rows:

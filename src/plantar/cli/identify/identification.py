@@ -19,8 +19,13 @@ from plantar.robot.model import RobotModel, load_robot
 Robot = Annotated[Path, typer.Argument(help="Robot file (YAML).", metavar="ROBOT.yaml")]
 Logs = Annotated[list[Path], typer.Argument(help="Logs to fit.", metavar="LOG...")]
 Out = Annotated[Path, typer.Option("--out", help="Folder for result.json, the residuals and the report.")]
-Validate = Annotated[list[Path] | None, typer.Option("--validate", help="Logs to score only.")]
-Cutoff = Annotated[float, typer.Option(help="Zero-phase low-pass on both sides of the fit [Hz].", min=0.1)]
+Validate = Annotated[
+    list[Path] | None,
+    typer.Option("--validate", help="Logs that are not fitted: predicted and scored only (table 3)."),
+]
+Cutoff = Annotated[
+    float, typer.Option(help="Cut-off of the zero-phase low-pass filter on motion and forces [Hz].", min=0.1)
+]
 AsRecorded = Annotated[
     bool,
     typer.Option(

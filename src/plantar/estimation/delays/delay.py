@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from plantar.conventions import FORCE, Array
-from plantar.estimation.intervals import cosine_covariance
+from plantar.estimation.residual_covariance import cosine_covariance
 from plantar.signals.filters import differentiate, low_pass
 
 ROUNDS = 4  # the moment equation is linear near its solution: each round shifts and solves again

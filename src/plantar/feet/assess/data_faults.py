@@ -17,7 +17,8 @@ from plantar.sensors.delays.sensor_delay import BEYOND_SEARCH
 UNMENDED = frozenset(
     {
         "sign", "force_leans", "imu_turned", "imu_late", "gyroscope_frame", "gyroscope_scale",
-        "path_joint_missing", "stuck_channel", "weight", "bush_axes", "bush_link", "sparse_stances", FAR, BUSH_TURNED,
+        "path_joint_missing", "stuck_channel", "vertical_only", "weight", "bush_axes", "bush_link", "sparse_stances",
+        FAR, BUSH_TURNED,
     }
 )  # fmt: skip
 # Codes of warnings on when sensors read: what they spoil is damping and memory.

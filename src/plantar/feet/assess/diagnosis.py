@@ -10,7 +10,7 @@ import numpy as np
 from plantar.conventions import NORMAL95
 from plantar.feet.assess.data_faults import ADVICE, first_sentence
 from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.systematic import Cause
+from plantar.feet.interval_width.systematic import Cause
 from plantar.notes import Note
 from plantar.results.feet import Diagnosis, Parameter
 from plantar.results.numbers import number
@@ -19,11 +19,12 @@ ZEROS_OF_STANCES = "zeros of stances"
 REMEDY = {
     "noise": "record the same motion for longer: four times as long halves the interval",
     "delay": "add a recording of arm sweeps at 0.3 to 1 Hz without an operator: it shows the force sensors' delay",
-    "lever": "add a slow shift of the weight from foot to foot: it shows the vertical compliance",
+    "moment arm": "add a slow shift of the weight from foot to foot: it shows the vertical compliance",
     "sensor gain": "calibrate the force sensors, and say so in the robot file: uncertainty: wrench_gain",
     "between recordings": "recordings differ by more than each alone shows: warm the rubber up, record more of them",
-    "force gain": "weigh the robot. If the URDF is wrong, scale its masses to that weight: that narrows the interval, "
-    "and hardly moves the number. If it is right, calibrate the force sensors, which the number follows",
+    "force gain": "weigh the robot and write its mass into the robot file (mass: ...). If the URDF was wrong, that "
+    "narrows the interval and hardly moves the number; if it was right, calibrate the force sensors, which the number "
+    "follows",
     "torque gain": "check unit and calibration of the torque channels, and correct the logs",
     "yaw torque zero": "before the next recording, zero the force sensors with the feet in the air",
     "between walks": "add walks: five or more show by themselves how much they differ",
@@ -36,7 +37,7 @@ REMEDY = {
 }
 # Causes that no more of the same motion makes smaller: the advice against them replaces the axis' own.
 OTHER_MOTION_HELPS = (
-    "delay", "lever", "hardening", "yaw torque zero", ZEROS_OF_STANCES, "force gain", "torque gain",
+    "delay", "moment arm", "hardening", "yaw torque zero", ZEROS_OF_STANCES, "force gain", "torque gain",
 )  # fmt: skip
 GAINS = ("force_gain", "torque_gain")  # codes of warnings on a sensor's gain
 NEARLY_ALL = 0.9

@@ -30,8 +30,12 @@ def remedies(
     found = {}
     if settings.model == AUTOMATIC:
         found["model"] = NO_BETTER_MODEL
+    if robot.weighed is not None:
+        found["force gain"] = "calibrate the force sensors, which the number follows: the robot was weighed"
     missing = _missing(robot, recordings)
-    if missing:
+    if any(each.log.vertical_only(foot.wrench.name) for each in recordings for foot in robot.feet.values()):
+        found["delay"] = "measure how late the force cells are, and give it with --wrench-delay"
+    elif missing:
         known = "or give a delay that is known with --wrench-delay"
         found["delay"] = (
             f"record the {missing} of the IMU: without it no log shows the force sensors' delay; {known}"

@@ -10,6 +10,7 @@ import numpy as np
 from plantar.contact.reasons import TIPPING
 from plantar.conventions import ROTATIONAL_AXES, Axis
 from plantar.estimation import interval95, relative_std_percent
+from plantar.feet.assess.left_out import why_unseen
 from plantar.feet.assess.residual_table import Predictions
 from plantar.feet.assess.verdicts import Evidence, judge, judge_term
 from plantar.feet.fit.axis import AxisFit
@@ -28,7 +29,10 @@ def axis_rows(
 
     contradicted: the score of a motion, seen or not, that the model misses although it holds in others.
     """
-    caution = None if fit.choice is None else fit.choice.caution
+    # What follows from it for the numbers stands in the warning, `model_caution`.
+    caution = None
+    if fit.choice is not None and fit.choice.caution is not None:
+        caution = fit.choice.caution.partition("; ")[0]
     evidence = replace(_evidence(fit, recordings, predictions), contradicted=contradicted, caution=caution)
     rows = []
     for place, term in enumerate(fit.names):
@@ -46,10 +50,9 @@ def axis_rows(
     return rows
 
 
-def unseen_rows(foot: str, axis: Axis) -> list[Parameter]:
+def unseen_rows(foot: str, axis: Axis, recordings: Sequence[Recording]) -> list[Parameter]:
     """Stiffness and damping of a foot that no log shows."""
-    reason = f"the {foot} foot has no samples in these logs that can be used"
-    return missing_rows(foot, axis, reason, f"record motions in which the {foot} foot stands")
+    return missing_rows(foot, axis, *why_unseen(recordings, foot))
 
 
 def missing_rows(foot: str, axis: Axis, reason: str, advice: str = "") -> list[Parameter]:

@@ -91,7 +91,7 @@ def unattenuated(fit: AxisFit, recordings: Sequence[Recording], shared: bool) ->
         for name, part, value in zip(fit.model.terms, taken, fit.values, strict=True)
         if value
     )
-    text = f"{where}: noise in angles and rates had drawn values towards zero; given back: {share}"
+    text = f"{where}: noise in angles and rates had made the values too small; corrected: {share}"
     values = fit.values + taken
     linear = isinstance(fit.model, KelvinVoigt)
     return replace(

@@ -8,15 +8,13 @@ from typing import NamedTuple
 import numpy as np
 
 from plantar.conventions import Array, Mask
-from plantar.estimation import Block, LinearFit, effect_of
+from plantar.estimation import Block, LinearFit
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.bush_place import imu_columns, that_show
 from plantar.feet.fit.regression_data import beside, blocks_of
-from plantar.feet.fit.systematic import Cause
 from plantar.feet.recording import Recording
 
 SINGULAR = 1e6  # condition of a fit beyond which its motions do not show the turn
-NAME = "imu turn"
 
 
 class ImuTurn(NamedTuple):
@@ -46,7 +44,7 @@ def with_turns(fit: AxisFit, recordings: Sequence[Recording], mount: float) -> t
     mount: deviation of the angles; about an axis about which one adds as good as nothing to the torque there is none.
     """
     blocks = blocks_of(recordings, fit.foot, fit.axis, fit=fit)
-    columns = _columns(fit, recordings, [block.label for block in blocks])
+    columns = turn_columns(fit, recordings, [block.label for block in blocks])
     shown = that_show(blocks, columns, np.full(3, mount))
     return [beside(block, own[:, shown]) for block, own in zip(blocks, columns, strict=True)], shown
 
@@ -62,18 +60,7 @@ def turn_told(found: LinearFit, shown: Mask) -> list[Told]:
     return [Told(angles, information)]
 
 
-def imu_turn_causes(fit: AxisFit, recordings: Sequence[Recording], turn: ImuTurn) -> list[Cause]:
-    """What is not known of the turn, as far as it moves the fit of a foot that steps; others have it in their place."""
-    blocks = blocks_of(recordings, fit.foot, fit.axis, fit=fit)
-    if blocks[0].stances is None or not turn.covariance.any():
-        return []
-    columns = _columns(fit, recordings, [block.label for block in blocks])
-    ways = np.linalg.cholesky(turn.covariance).T
-    effects = [effect_of(blocks, [own @ way for own in columns]) for way in ways]
-    return [Cause(NAME, np.sqrt(np.sum(np.square(effects), axis=0)), 1.0)]
-
-
-def _columns(fit: AxisFit, recordings: Sequence[Recording], labels: Sequence[str]) -> list[Array]:
+def turn_columns(fit: AxisFit, recordings: Sequence[Recording], labels: Sequence[str]) -> list[Array]:
     """Torque of the used samples for each radian of a turn, (n, 3) of each recording that is named."""
     by_name = {recording.name: recording for recording in recordings}
     return [imu_columns(by_name[label], fit)[by_name[label].rows(fit.foot)] for label in labels]

@@ -7,6 +7,7 @@
       imu.chest.orientation: {from: [qx, qy, qz, qw], order: xyzw}     # or [roll, pitch, yaw], order: rpy
       imu.chest.linear_acceleration: {from: [ax, ay, az], unit: g}
       wrench.left.torque: {from: [mx, my, mz], unit: N.mm, sign: -1}
+      wrench.right.cells: {from: [rf1, rf2, rf3], at: [[0.09, 0], [-0.07, 0.05], [-0.07, -0.05]]}     # force cells
       joints: [hip, knee, ankle]                 # order of the joint vectors, where a format has no names
       ports: {q: joints.position, lfsensor: wrench.left}               # file, port or key -> role
 
@@ -26,13 +27,14 @@ import numpy as np
 from plantar.conventions import Array
 from plantar.errors import LogError, located
 from plantar.logs.motion_log import COLUMN
+from plantar.logs.readers.force_cells import wrench_of_cells
 from plantar.logs.readers.roles import ORDERS, QUANTITIES, factor, nearest, quaternion_from_rpy
 
 if TYPE_CHECKING:
     from plantar.robot.model import RobotModel
 
 VECTORS = {"angular_velocity": 3, "linear_acceleration": 3, "force": 3, "torque": 3}
-ENTRY_KEYS = {"from", "unit", "order", "sign"}
+ENTRY_KEYS = {"from", "unit", "order", "sign", "at"}
 PORT_KEYS = {"role", "unit", "sign", "joints", "take"}
 ANY_JOINT = "<joint>"  # in a key and in its source: every joint that the file has such a column of
 
@@ -112,13 +114,16 @@ def apply(table: Mapping[str, Array], robot: RobotModel, path: Path) -> tuple[Ar
         if made.get("from") in (None, "", []) or set(made) - ENTRY_KEYS:
             message, valid = (
                 f"columns.{key} is no source",
-                "a column, a list of columns, or {from, unit, order, sign}",
+                "a column, a list of columns, or {from, unit, order, sign, at}",
             )
             raise LogError(located(message, path=robot.path, value=str(entry)[:60], valid=valid))
         sources = made["from"] if isinstance(made["from"], list) else [made["from"]]
         values = np.column_stack([_source(table, source, key, path) for source in sources])
         unit, sign = made.get("unit"), _sign(made.get("sign", 1), f"columns.{key}", robot.path)
-        if key == "time":
+        if key.startswith("wrench.") and key.endswith(".cells"):
+            newtons = values * sign * factor(unit, "force", f"columns.{key}", robot.path)
+            columns |= wrench_of_cells(key.removesuffix(".cells"), newtons, made.get("at"), robot.path)
+        elif key == "time":
             time = _one(values, key, path)[:, 0] * factor(unit, "time", "columns.time", robot.path)
         else:
             columns |= _mapped(key, values, unit, made.get("order"), sign, robot.path)

@@ -78,6 +78,8 @@ def estimate_wrench_delay(robot: RobotModel, logs: Sequence[MotionLog], each: Ea
 
     `each` maps a function over logs: a pool's map uses all cores.
     """
+    if any(log.vertical_only(foot.wrench.name) for log in logs for foot in robot.feet.values()):
+        return _unseen(robot, logs)
     still = np.zeros(len(robot.feet) + 1)
     found = refined_delays(robot, logs, each, still)
     if found is not None and found.std <= KNOWN_STD and not found.suspect:
@@ -141,11 +143,16 @@ def _doubtful(robot: RobotModel, lags: Lags) -> SensorDelay:
 def _unseen(robot: RobotModel, logs: Sequence[MotionLog]) -> SensorDelay:
     """What the robot file says of a delay that no log shows."""
     imu, prior = robot.imu, robot.uncertainty.wrench_delay
+    cells = any(log.vertical_only(foot.wrench.name) for log in logs for foot in robot.feet.values())
     blind = imu is not None and not any(log.has_imu(imu.name, "linear_acceleration") for log in logs)
+    why = "no log in which the ground's wrench follows from IMU, encoders and URDF"
+    todo = "Record the accelerometer" if blind else "Record arm sweeps of 0.3 to 1 Hz without an operator"
+    if cells:
+        why = "vertical force cells read no horizontal force, by which it would show"
+        todo = "Measure how late they are and give it with --wrench-delay"
     text = (
-        "delay of the wrenches unknown: no log in which the ground's wrench follows from IMU, encoders and URDF; "
-        f"taken as 0 ± {1e3 * prior:.1f} ms, which widens the interval of the damping by stiffness times that. "
-        f"{'Record the accelerometer' if blind else 'Record arm sweeps of 0.3 to 1 Hz without an operator'}"
+        f"delay of the wrenches unknown: {why}; taken as 0 ± {1e3 * prior:.1f} ms, which widens the interval of the "
+        f"damping by stiffness times that. {todo}"
     )
     return SensorDelay(0.0, prior, np.inf, False, Note("delay_unknown", "warning", text))
 

@@ -11,8 +11,8 @@ from biped import TRUTH, record, sway
 from biped_robot import make_robot, robot_entry
 from feet_trials import LINEAR, codes
 from plantar.conventions import NORMAL95
-from plantar.feet.fit.force_gain import GainError, force_gain_errors
 from plantar.feet.identify import identify_feet
+from plantar.feet.interval_width.force_gain import GainError, force_gain_errors
 from plantar.feet.prepare_log import checked, prepare
 from plantar.feet.recording import Recording
 from plantar.logs.motion_log import MotionLog
@@ -145,3 +145,23 @@ def test_intervals_hold_both_a_wrong_gain_and_wrong_masses(weighed: RobotModel) 
     limits = {(each.foot, each.axis, each.name): each.limit for each in found.diagnosis}
     assert limits["left", "pitch", "stiffness"] == "force gain"
     assert "force_gain" not in codes(identify_feet(weighed, [record(SHIFTING)], settings=LINEAR))
+
+
+def test_a_balance_decides_between_masses_and_gains(tmp_path: Path) -> None:
+    """Both feet read 12 % more than the URDF weighs: a robot of 67.2 kg, or wrong sensors on one of 60 kg."""
+    log = scaled(record(SHIFTING), left=1.12, right=1.12)
+    doubts = {"link_mass": 0.05, "wrench_gain": 0.01}
+    unknown, heavy, light = (
+        identify_feet(make_robot(tmp_path / str(mass), uncertainty=doubts, **mass), [log], settings=LINEAR)
+        for mass in ({}, {"mass": 67.2}, {"mass": 60.0})
+    )
+    half = [
+        found.parameter("left", "pitch", "stiffness").half_width_percent for found in (unknown, heavy, light)
+    ]
+    assert None not in half
+    assert half[1] < 4 < half[0]  # type: ignore[operator]
+    assert half[2] > 10  # type: ignore[operator]
+    assert {"weighed", "force_gain"} & set(codes(heavy)) == {"weighed"}
+    assert {"weighed", "force_gain"} & set(codes(light)) == {"force_gain"}
+    assert "weighed 60.0 kg" in next(note.text for note in light.notes if note.code == "force_gain")
+    assert "was weighed" in (light.parameter("left", "pitch", "stiffness").advice or "")

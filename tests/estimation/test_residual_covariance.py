@@ -6,8 +6,13 @@ import numpy as np
 import pytest
 from scipy import signal
 
-from plantar.estimation.intervals import cosine_covariance, interval95, pooled_freedom, relative_std_percent
 from plantar.estimation.least_squares import Block, fit_linear
+from plantar.estimation.residual_covariance import (
+    cosine_covariance,
+    interval95,
+    pooled_freedom,
+    relative_std_percent,
+)
 
 
 def test_cosines_of_white_scores_give_the_white_variance() -> None:

@@ -14,8 +14,8 @@ from made_recording import FOOT, made_recording, swayed
 from plantar.conventions import NORMAL95
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.fit.regression_data import blocks_of
-from plantar.feet.fit.systematic import _by_delay, _suspected_hardening
 from plantar.feet.identify import identify_feet
+from plantar.feet.interval_width.systematic import _by_delay, _suspected_hardening
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.results.feet import FeetResult

@@ -10,8 +10,8 @@ import pytest
 from biped import TRUTH, record, sway
 from feet_trials import LINEAR, noisy
 from plantar.feet.fit.axis_fit import fit_axis
-from plantar.feet.fit.robot_causes import robot_causes
 from plantar.feet.identify import identify_feet
+from plantar.feet.interval_width.robot_causes import robot_causes
 from plantar.feet.prepare import prepare_all
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel

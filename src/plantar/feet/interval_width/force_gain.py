@@ -14,7 +14,7 @@ import numpy as np
 
 from plantar.conventions import GRAVITY, NORMAL95, Array, Axis
 from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.systematic import Cause
+from plantar.feet.interval_width.systematic import Cause
 from plantar.feet.recording import Recording
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
@@ -139,10 +139,13 @@ def force_gain_notes(robot: RobotModel, errors: Mapping[str, GainError]) -> list
     if not sure:
         return []
     feet = " and ".join(f"the {foot} foot's {100 * error.share:+.0f} %" for foot, error in sure.items())
+    zeros = "or their zeros: read the sensors with the feet in the air"
+    whose, gains = "the URDF's", "Either the URDF's masses are wrong, or the force sensors' gains"
+    if robot.weighed is not None:
+        whose, gains = "the weighed", "Wrong are the force sensors' gains"
     text = (
-        f"vertical forces do not add up to the URDF's {robot.mass:.1f} kg: {feet}. Either the URDF's masses are wrong, "
-        "or the force sensors' gains, which stiffness and damping follow (their intervals hold both), or their zeros. "
-        "Weigh the robot, and read the sensors with the feet in the air"
+        f"vertical forces do not add up to {whose} {robot.mass:.1f} kg: {feet}. {gains}, which stiffness and damping "
+        f"follow (their intervals hold both), {zeros}"
     )
     return [Note("force_gain", "warning", text)]
 
@@ -171,6 +174,8 @@ def _windows(recording: Recording, weight: float) -> Array:
 
 
 def _mass_deviation(robot: RobotModel) -> float:
-    """Standard deviation of the URDF's total mass over itself, each link's mass being off by itself."""
+    """Standard deviation of the total mass over itself: the balance's, or the URDF's, each link being off by itself."""
+    if robot.weighed is not None:
+        return robot.uncertainty.total_mass
     masses = np.array([inertia.mass for inertia in robot.model.inertias])
     return robot.uncertainty.link_mass * float(np.linalg.norm(masses) / masses.sum())

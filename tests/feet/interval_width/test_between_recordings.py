@@ -11,7 +11,7 @@ from biped import TRUTH, record, sway
 from feet_trials import PUNCTUAL, noisy
 from plantar.estimation.random_effects import Differences
 from plantar.feet.fit.axis_fit import fit_axis
-from plantar.feet.fit.between_recordings import (
+from plantar.feet.interval_width.between_recordings import (
     AxisDifferences,
     apart_notes,
     between_recordings,

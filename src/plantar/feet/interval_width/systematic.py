@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from plantar.conventions import NORMAL95, ROTATIONAL_AXES, UNIFORM, Array, Mask
 from plantar.estimation import Block, effect_of, fit_blocks
-from plantar.estimation.intervals import pooled_freedom
+from plantar.estimation.residual_covariance import pooled_freedom
 from plantar.estimation.stance_least_squares import FEWEST_RECORDINGS
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.regression_data import beside, tangent_blocks
@@ -77,7 +77,7 @@ def systematic_causes(
             sensor_delay.std,
             sensor_delay.freedom,
         ),
-        Cause("lever", moved_by(moment_arms), vertical.compliance_std[foot], vertical.freedom),
+        Cause("moment arm", moved_by(moment_arms), vertical.compliance_std[foot], vertical.freedom),
     ]
     if blocks[0].stances is not None:
         # The zeros were read in the air, and within a stance no cube is told from how a sole lands and lifts.

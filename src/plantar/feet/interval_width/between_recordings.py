@@ -14,7 +14,7 @@ from plantar.estimation.random_effects import Differences, share_between
 from plantar.estimation.stance_least_squares import FEWEST_RECORDINGS, jackknife
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.regression_data import beside, tangent_blocks
-from plantar.feet.fit.systematic import Cause
+from plantar.feet.interval_width.systematic import Cause
 from plantar.feet.recording import Recording
 from plantar.notes import Note
 
@@ -58,10 +58,10 @@ def apart_notes(apart: Apart) -> list[Note]:
         return []
     low, high = (100 * end for end in apart.shown)
     text = (
-        f"stiffness and damping differ by {low:.2g} to {high:.2g} % (standard deviation, 95 %) from recording to "
-        f"recording, as all axes of {apart.others + 1} recordings show; each interval holds what its own axis shows of "
-        "it. Rubber that warms up or that stood under load before does that; so does a joint between IMU and foot that "
-        "is read wrongly in some of them"
+        f"from recording to recording, stiffness and damping differ by a standard deviation of {low:.2g} to "
+        f"{high:.2g} % (95 %; from all axes of {apart.others + 1} recordings); the intervals allow for it. Rubber that "
+        "warms up or that stood under load before does that; so does a joint between IMU and foot that is read wrongly "
+        "in some of them"
     )
     return [Note("between_recordings", "info", text)]
 

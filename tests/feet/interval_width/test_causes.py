@@ -85,7 +85,7 @@ def test_an_unknown_vertical_compliance_widens_by_what_its_moment_arm_moves(
     assert expected[0] == pytest.approx(SOFT_RUBBER * (WEIGHT / 2) ** 2, rel=0.3), (
         "c·Fz² of stiffness, roughly"
     )
-    assert added(found, foot, axis, "stiffness", "lever") == pytest.approx(expected[0], rel=0.05)
+    assert added(found, foot, axis, "stiffness", "moment arm") == pytest.approx(expected[0], rel=0.05)
 
 
 @pytest.mark.parametrize("foot", FEET)

@@ -1,0 +1,51 @@
+"""Nothing is left out in silence: a foot, or a log, of which nothing can be used says why."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from made_recording import FOOT, made_recording, swayed
+from plantar.contact.reasons import Reason
+from plantar.feet.assess.left_out import UNUSED, unused_logs, why_unseen
+from plantar.feet.recording import Recording
+
+
+def left_out(share: float, reason: Reason) -> Recording:
+    """A log of 3000 samples, `share` of them left out for `reason`, the rest for being landings."""
+    angle = swayed(3000)
+    one = made_recording("sway", angle, 400.0 * angle)
+    first = np.arange(len(angle)) < share * len(angle)
+    contact = one.contacts[FOOT].without(first, reason).without(~first, Reason.SETTLING)
+    return replace(one, contacts={FOOT: contact})
+
+
+@pytest.mark.parametrize("share", [0.9, 0.2])
+def test_the_reason_that_takes_most_is_named_with_its_seconds(share: float) -> None:
+    one = left_out(share, Reason.ON_THE_EDGE)
+    reason, advice = why_unseen([one, one], FOOT)
+    most = Reason.ON_THE_EDGE if share > 0.5 else Reason.SETTLING
+    assert most.value in reason
+    assert f"({2 * max(share, 1 - share) * 3000 * one.period:.1f} s)" in reason
+    assert "Why did my fit fail?" in advice
+    note = unused_logs([one, one])[0]
+    assert (note.code, note.severity) == (UNUSED, "warning")
+    assert note.text.startswith("sway: ")
+    assert most.value in note.text
+
+
+def test_a_foot_in_the_air_has_to_stand() -> None:
+    reason, advice = why_unseen([left_out(0.9, Reason.IN_THE_AIR)], FOOT)
+    assert reason.endswith("can be used")
+    assert "stands" in advice
+
+
+def test_nothing_is_said_of_a_log_with_one_used_sample_or_that_is_alone() -> None:
+    one = left_out(0.9, Reason.ON_THE_EDGE)
+    code = one.contacts[FOOT].code.copy()
+    code[7] = 0
+    used = replace(one, contacts={FOOT: replace(one.contacts[FOOT], code=code)})
+    assert unused_logs([used, used]) == []
+    assert unused_logs([one]) == []
