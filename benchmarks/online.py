@@ -107,11 +107,12 @@ def _score(
         begun += one.log.duration
 
 
-def law(preset: Preset, seed: int) -> FeetResult | None:
-    """A batch result that knows the bushes' elements; None where they have none."""
+def law(preset: Preset, seed: int) -> FeetResult:
+    """A batch result that knows the bushes' elements, or that they have none."""
     rows, random = [], np.random.default_rng([seed, 7])
     for foot, bush in preset.physics(PAPER).bushes.items():
         for axis in ROTATIONAL_AXES:
+            rows.append(_row(foot, axis, "stiffness", getattr(bush, f"{axis}_stiffness"), 0.0))
             torque, angle = getattr(bush, f"{axis}_slip_torque"), getattr(bush, f"{axis}_slip_angle")
             if torque:
                 told = torque * (1 + TORQUE_STD * random.standard_normal())
@@ -119,7 +120,7 @@ def law(preset: Preset, seed: int) -> FeetResult | None:
                     _row(foot, axis, "slip_angle", angle, 0.0),
                     _row(foot, axis, "slip_torque", told, TORQUE_STD * torque),
                 ]
-    return FeetResult("twin", (), {}, "elastoplastic", tuple(rows), (), (), (), ()) if rows else None
+    return FeetResult("twin", (), {}, "told", tuple(rows), (), (), (), ())
 
 
 def _row(foot: str, axis: str, name: str, value: float, std: float) -> Parameter:

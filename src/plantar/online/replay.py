@@ -15,6 +15,8 @@ USABLE = 0.1  # half width of the 95 % interval over the value, narrower than a 
 UNKNOWN = 10.0  # the same, from which on a value says nothing
 MEMORY = (Flag.PITCH_MEMORY, Flag.ROLL_MEMORY)
 REMEMBERS = "the rubber has a memory: motions of another size have another stiffness"
+UNTESTED = (Flag.PITCH_UNTESTED, Flag.ROLL_UNTESTED)
+SMALL = "too small motions to show whether the rubber has a memory: larger ones may have less stiffness"
 IDENTIFY = "run identify feet on logs of this robot, and give its result"
 
 
@@ -56,17 +58,19 @@ class Replay:
     def _parameters(self) -> Iterator[Parameter]:
         for foot in self.feet:
             last = self.estimate(foot)
-            for axis, found, flag in zip(ROTATIONAL_AXES, (last.pitch, last.roll), MEMORY, strict=True):
+            found_axes = zip(ROTATIONAL_AXES, (last.pitch, last.roll), MEMORY, UNTESTED, strict=True)
+            for axis, found, memory, untested in found_axes:
+                reason = REMEMBERS if last.flags & memory else SMALL if last.flags & untested else None
                 stiffness = _parameter(foot, axis, "stiffness", STIFFNESS_UNIT[axis], found.stiffness)
                 damping = _parameter(foot, axis, "damping", DAMPING_UNIT[axis], found.damping)
-                yield from (_of_memory(row) if last.flags & flag else row for row in (stiffness, damping))
+                yield from (_weakened(row, reason) if reason else row for row in (stiffness, damping))
                 if found.slip_torque.std:
                     yield _parameter(foot, axis, "slip_torque", "N.m", found.slip_torque)
 
 
-def _of_memory(row: Parameter) -> Parameter:
+def _weakened(row: Parameter, reason: str) -> Parameter:
     verdict: Verdict = "weak" if row.verdict == "usable" else row.verdict
-    return replace(row, verdict=verdict, reason=REMEMBERS, advice=IDENTIFY)
+    return replace(row, verdict=verdict, reason=reason, advice=IDENTIFY)
 
 
 def _parameter(foot: str, axis: Axis, name: str, unit: str, found: Estimated) -> Parameter:
