@@ -10,6 +10,7 @@ namespace {
 constexpr double COLOUR = 8.0;        // rows in a cycle of the filter: so many say the same
 constexpr double LEAST_LEFT = 1e-3;   // share of what is known that must stay when one group is left out
 constexpr double MOST_NOISE = 0.9;    // of a square: beyond, nothing of it is known
+constexpr int GROUPS_TO_WATCH = 6;
 constexpr double SETTLED = 0.1;       // deviation over stiffness, from which jumps are looked for
 constexpr double USUAL_LOAD = 0.5;    // of the weight, on one foot
 constexpr double DRIFT = 3e-5;        // rad/s, of the attitude: a tenth of a degree in a minute
@@ -59,21 +60,26 @@ void AxisRegression::restart() noexcept {
   changed_ = unsure_ = fresh_ = false;
   watch_.restart();
   values_ = {};
+  before_ = {};
   values_.value = prior_.mean, values_.std = values_.resolved = prior_.spread;
 }
 
-// Rows are compared with what was learnt, once that is worth it; at a jump everything is learnt anew.
+// Rows are compared with what was learnt, once that is worth it; at a jump everything is learnt anew. While a jump is
+// suspected, they are compared with what was learnt before.
 void AxisRegression::watch(const RegressionRow& row, double dt) noexcept {
-  const double stiffness = values_.value[STIFFNESS];
-  if (values_.groups < FEWEST_GROUPS || !(values_.std[STIFFNESS] < SETTLED * stiffness)) return;
+  if (watch_.calm()) before_ = values_, noise_before_ = noise_;
+  const double stiffness = before_.value[STIFFNESS];
+  const double unsure = std::max(before_.std[STIFFNESS], before_.resolved[STIFFNESS]);
+  if (before_.groups < GROUPS_TO_WATCH || !(unsure < SETTLED * stiffness)) return;
   double left = row.torque;
-  for (int i = 0; i < UNKNOWNS; ++i) left -= row.columns[i] * values_.value[i];
-  watch_.add(row.own[OFFSET], row.columns[STIFFNESS], left, dt);
+  for (int i = 0; i < UNKNOWNS; ++i) left -= row.columns[i] * before_.value[i];
+  const double unknown = ANYWHERE * std::abs(before_.value[SLIP_TORQUE]) * row.own[BEGINNING];
+  watch_.add(row.own[OFFSET], row.columns[STIFFNESS], unknown, left, dt);
   if (watch_.full()) end_probe();
 }
 
 void AxisRegression::end_probe() noexcept {
-  if (!watch_.judge(values_.value[STIFFNESS], values_.std[STIFFNESS], noise_)) return;
+  if (!watch_.judge(before_.value[STIFFNESS], before_.std[STIFFNESS], noise_before_)) return;
   restart();
   jumped_ = true;
 }

@@ -125,7 +125,8 @@ class AxisRegression {
   bool changed_ = false, unsure_ = false, fresh_ = false;
   bool jumped_ = false;
   ChangeWatch watch_;
-  AxisValues values_;
+  AxisValues values_, before_;  // now, and before a jump was suspected
+  double noise_before_ = 0.0;
 };
 
 }  // namespace plantar
