@@ -80,6 +80,10 @@ void AxisRegression::watch(const RegressionRow& row, double dt) noexcept {
 
 void AxisRegression::end_probe() noexcept {
   if (!watch_.judge(before_.value[STIFFNESS], before_.std[STIFFNESS], noise_before_)) return;
+  jump();
+}
+
+void AxisRegression::jump() noexcept {
   restart();
   jumped_ = true;
 }

@@ -81,6 +81,9 @@ class AxisRegression {
   void restart() noexcept;
   // Whether the stiffness has jumped since this was asked last; then everything before is forgotten.
   bool jumped() noexcept;
+  // What speaks for a jump so far, and to believe it for other reasons.
+  const ChangeWatch& suspicion() const noexcept { return watch_; }
+  void jump() noexcept;
   void set_spread(Unknown unknown, double spread) noexcept { prior_.spread[unknown] = spread; }
 
   // One piece of the work that keeps `values` current, each short enough for one tick.

@@ -36,6 +36,9 @@ class ChangeWatch {
   }
   // Nothing speaks for a change, and no probe has begun.
   bool calm() const noexcept { return rows_ == 0 && softer_ == 0.0 && stiffer_ == 0.0; }
+  // What speaks for a change to either side [log-likelihood].
+  double softer() const noexcept { return softer_; }
+  double stiffer() const noexcept { return stiffer_; }
   bool full() const noexcept { return time_ >= PROBE_TIME; }
   void drop() noexcept { probe_ = {}, rows_ = 0, time_ = 0.0; }
 

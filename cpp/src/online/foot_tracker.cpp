@@ -310,6 +310,17 @@ void FootTracker::work(int piece) noexcept {
   publish(axis);
 }
 
+// A stumble shows in both axes, so that the one that shows more speaks for the foot.
+std::array<double, 2> FootTracker::suspicion() const noexcept {
+  const ChangeWatch &pitch = axes_[0].suspicion(), &roll = axes_[1].suspicion();
+  return {std::max(pitch.softer(), roll.softer()), std::max(pitch.stiffer(), roll.stiffer())};
+}
+
+void FootTracker::change_ground() noexcept {
+  for (AxisRegression& axis : axes_)
+    if (axis.suspicion().softer() + axis.suspicion().stiffer() > 0.0) axis.jump();
+}
+
 void FootTracker::publish(int axis) noexcept {
   const AxisValues& found = axes_[axis].values();
   AxisEstimate& out = axis == 0 ? estimate_.pitch : estimate_.roll;

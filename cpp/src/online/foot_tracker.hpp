@@ -48,6 +48,10 @@ class FootTracker {
   static constexpr int PIECES = 4;
   void work(int piece) noexcept;
 
+  // What speaks for ground that is softer, or stiffer, than it was [log-likelihood]; and to believe it.
+  std::array<double, 2> suspicion() const noexcept;
+  void change_ground() noexcept;
+
   double load() const noexcept { return estimate_.load; }
   ContactState contact() const noexcept { return gate_.contact(); }
   const FootEstimate& estimate() const noexcept { return estimate_; }
