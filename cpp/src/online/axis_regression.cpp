@@ -70,7 +70,8 @@ void AxisRegression::watch(const RegressionRow& row, double dt) noexcept {
   if (watch_.calm()) before_ = values_, noise_before_ = noise_;
   const double stiffness = before_.value[STIFFNESS];
   const double unsure = std::max(before_.std[STIFFNESS], before_.resolved[STIFFNESS]);
-  if (before_.groups < GROUPS_TO_WATCH || !(unsure < SETTLED * stiffness)) return;
+  if (before_.groups < GROUPS_TO_WATCH || !before_.plausible(prior_.spread[STIFFNESS])) return;
+  if (!(unsure < SETTLED * stiffness)) return;
   double left = row.torque;
   for (int i = 0; i < UNKNOWNS; ++i) left -= row.columns[i] * before_.value[i];
   const double unknown = ANYWHERE * std::abs(before_.value[SLIP_TORQUE]) * row.own[BEGINNING];

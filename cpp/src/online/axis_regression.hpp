@@ -67,6 +67,9 @@ struct AxisValues {
   double offset = 0.0;
   double pace = 0.0;  // squares of the rate over those of the deflection [1/s²]
   int groups = 0;
+
+  // Whether the stiffness is one of a bush: where nothing moves, what is left beside the noise can be anything.
+  bool plausible(double stiffest) const noexcept { return value[STIFFNESS] > 0.0 && value[STIFFNESS] < stiffest; }
 };
 
 class AxisRegression {

@@ -248,7 +248,7 @@ void FootTracker::unload_elements() noexcept {
   lifted_ = true;
   for (int a = 0; a < 2; ++a) {
     const AxisValues& found = has_element(*foot_, a) ? axes_[a].values() : memories_[a].values();
-    lifted_ = lifted_ && found.groups >= FEWEST_GROUPS && found.value[STIFFNESS] > 0.0;
+    lifted_ = lifted_ && found.groups >= FEWEST_GROUPS && found.plausible(STIFFEST * weight_);
     if (!lifted_) return;
     hanging_[a] = element_[a];
     hanging_[a].unload(std::max(found.value[SLIP_TORQUE], 0.0) / found.value[STIFFNESS]);
@@ -340,7 +340,7 @@ void FootTracker::publish(int axis) noexcept {
   out.offset = found.offset;
   learnt_compliance_[axis] = parameter(COMPLIANCE, 0.0);
   publish_compliance();
-  const bool sure = found.groups >= FEWEST_GROUPS && k > 0.0 && out.stiffness.half_width < TRUSTED * k;
+  const bool sure = found.groups >= FEWEST_GROUPS && found.plausible(STIFFEST * weight_) && out.stiffness.half_width < TRUSTED * k;
   const bool told = has_element(*foot_, axis) || foot_->linear[axis], tested = told || memories_[axis].excluded();
   out.identified = sure && tested && !memories_[axis].seen();
   const auto tell = [this](std::uint32_t flag, bool holds) {
