@@ -76,7 +76,7 @@ class Replay:
 def _vertical(foot: str, compliance: Estimated) -> Parameter:
     """The vertical stiffness: one over the slide's compliance, whose interval turns round."""
     value, half = compliance.value, compliance.half_width
-    if 0.0 < value and half <= TOLD * value:
+    if value > 0.0 and half <= TOLD * value:
         return Parameter(
             foot, "z", "stiffness", STIFFNESS_UNIT["z"], 1 / value, None, None, None, "weak", AS_TOLD
         )
