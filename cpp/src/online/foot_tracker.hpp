@@ -20,6 +20,10 @@
 
 namespace plantar {
 
+constexpr double STIFFEST = 100.0;     // m, times the weight: stiffness before any data
+
+inline bool has_element(const FootModel& foot, int axis) noexcept { return foot.slip_angle[axis] > 0.0; }
+
 // What the kinematics say of one foot at one tick.
 struct FootKinematics {
   double up[3];          // the world's up in the bush frame
