@@ -87,5 +87,12 @@ int main() {
     faded.add(row);
   }
   check::that(information(faded, weak) > 0.49 * information(all, weak), "rows without excitation wind nothing up");
+
+  // What a filter leaves of a signal that has ended: its squares vanish.
+  RootTriangle<N> empty;
+  double tiny[N + 1] = {0.0, 1e-170, 1e-300, 0.0};
+  empty.add(tiny);
+  for (int i = 0; i <= N; ++i)
+    for (int j = 0; j <= N; ++j) check::that(std::isfinite(empty.r[i][j]), "a row too small for squares");
   return check::result();
 }

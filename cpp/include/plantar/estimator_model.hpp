@@ -36,6 +36,7 @@ struct FootModel {
   std::array<double, 2> slip_angle = {0.0, 0.0};       // of a Jenkins element beside pitch and roll [rad]; 0: none
   std::array<double, 2> slip_torque = {0.0, 0.0};      // of these, before any data [N·m]; 0: not known
   std::array<double, 2> slip_torque_std = {0.0, 0.0};  // deviation of `slip_torque` [N·m]; 0: not known
+  std::array<bool, 2> linear = {false, false};         // a batch fit has found no memory in pitch, in roll
 };
 
 // All that the estimator knows of a robot before its first reading.

@@ -48,7 +48,9 @@ enum Flag : std::uint32_t {
   ROLL_UNKNOWN = 1 << 9,     // the same of roll
   GROUND_CHANGED = 1 << 10,  // the stiffness jumped lately: it is learnt anew
   PITCH_MEMORY = 1 << 11,    // the rubber has a memory that the model lacks: other motions have another stiffness
-  ROLL_MEMORY = 1 << 12      // the same of roll
+  ROLL_MEMORY = 1 << 12,     // the same of roll
+  PITCH_UNTESTED = 1 << 13,  // its motions were too small to show a memory, and no batch fit has excluded one
+  ROLL_UNTESTED = 1 << 14    // the same of roll
 };
 
 // A parameter with its standard deviation and half of its 95 % interval (wider than 1.96 deviations while data are
@@ -68,7 +70,7 @@ struct AxisEstimate {
   Parameter damping;        // [N·m·s/rad]
   Parameter slip_torque;    // [N·m], of a Jenkins element where the model has one
   double offset = 0.0;      // [N·m], of this stance
-  bool identified = false;  // whether the deviations are known and small beside the values, and no memory is seen
+  bool identified = false;  // whether the stiffness is known within a tenth, and a memory is modelled or excluded
 };
 
 // One foot at one tick.

@@ -10,9 +10,11 @@ namespace {
 constexpr double COLOUR = 8.0;        // rows in a cycle of the filter: so many say the same
 constexpr double LEAST_LEFT = 1e-3;   // share of what is known that must stay when one group is left out
 constexpr double MOST_NOISE = 0.9;    // of a square: beyond, nothing of it is known
+constexpr int GROUPS_TO_WATCH = 6;
 constexpr double SETTLED = 0.1;       // deviation over stiffness, from which jumps are looked for
 constexpr double USUAL_LOAD = 0.5;    // of the weight, on one foot
 constexpr double DRIFT = 3e-5;        // rad/s, of the attitude: a tenth of a degree in a minute
+constexpr double ANYWHERE = 0.6;      // deviation of what is anywhere between -1 and 1; an element is as stiff as the rest
 constexpr double FIRST_NOISE = 1e-3;  // of the weight, as torque at 1 m, before any residual is known
 
 void squares_of(const RootTriangle<UNKNOWNS>& root, double (&a)[UNKNOWNS][UNKNOWNS]) noexcept {
@@ -58,21 +60,31 @@ void AxisRegression::restart() noexcept {
   changed_ = unsure_ = fresh_ = false;
   watch_.restart();
   values_ = {};
-  values_.value = prior_.mean, values_.std = prior_.spread;
+  before_ = {};
+  values_.value = prior_.mean, values_.std = values_.resolved = prior_.spread;
 }
 
-// Rows are compared with what was learnt, once that is worth it; at a jump everything is learnt anew.
+// Rows are compared with what was learnt, once that is worth it; at a jump everything is learnt anew. While a jump is
+// suspected, they are compared with what was learnt before.
 void AxisRegression::watch(const RegressionRow& row, double dt) noexcept {
-  const double stiffness = values_.value[STIFFNESS];
-  if (values_.groups < FEWEST_GROUPS || !(values_.std[STIFFNESS] < SETTLED * stiffness)) return;
+  if (watch_.calm()) before_ = values_, noise_before_ = noise_;
+  const double stiffness = before_.value[STIFFNESS];
+  const double unsure = std::max(before_.std[STIFFNESS], before_.resolved[STIFFNESS]);
+  if (before_.groups < GROUPS_TO_WATCH || !before_.plausible(prior_.spread[STIFFNESS])) return;
+  if (!(unsure < SETTLED * stiffness)) return;
   double left = row.torque;
-  for (int i = 0; i < UNKNOWNS; ++i) left -= row.columns[i] * values_.value[i];
-  watch_.add(row.own[OFFSET], row.columns[STIFFNESS], left, dt);
+  for (int i = 0; i < UNKNOWNS; ++i) left -= row.columns[i] * before_.value[i];
+  const double unknown = ANYWHERE * std::abs(before_.value[SLIP_TORQUE]) * row.own[BEGINNING];
+  watch_.add(row.own[OFFSET], row.columns[STIFFNESS], unknown, left, dt);
   if (watch_.full()) end_probe();
 }
 
 void AxisRegression::end_probe() noexcept {
-  if (!watch_.judge(values_.value[STIFFNESS], values_.std[STIFFNESS], noise_)) return;
+  if (!watch_.judge(before_.value[STIFFNESS], before_.std[STIFFNESS], noise_before_)) return;
+  jump();
+}
+
+void AxisRegression::jump() noexcept {
   restart();
   jumped_ = true;
 }
@@ -96,12 +108,15 @@ void AxisRegression::add(const RegressionRow& row, double dt) noexcept {
   if (open_time_ >= std::min(BLOCK * group_time_, LONGEST_BLOCK)) close();
 }
 
-// The open block with what is known of drift and twist: they are small. A short block cannot tell them from a motion.
+// The open block with what is known of drift, twist and the element's beginning: they are small. A short block cannot
+// tell them from a motion.
 RootTriangle<BLOCK_UNKNOWNS> AxisRegression::pinned() const noexcept {
   RootTriangle<BLOCK_UNKNOWNS> block = open_;
   const double stiffness = values_.value[STIFFNESS] > 0.0 ? values_.value[STIFFNESS] : prior_.scale[ASIDE];
-  for (const Own own : {SLOPE, TWIST}) {
-    const double spread = own == SLOPE ? DRIFT * stiffness : prior_.twist;
+  const double element = prior_.element_slope > 0.0 ? ANYWHERE * stiffness / prior_.element_slope : 0.0;
+  const double spreads[OWN] = {0.0, DRIFT * stiffness, prior_.twist, element};
+  for (const Own own : {SLOPE, TWIST, BEGINNING}) {
+    const double spread = spreads[own];
     double line[BLOCK_UNKNOWNS + 1] = {};
     if (spread > 0.0) line[own] = noise_ / spread;
     block.add(line, own);
@@ -184,11 +199,14 @@ std::array<double, UNKNOWNS + 1> AxisRegression::direction(int source) const noe
   std::array<double, UNKNOWNS + 1> along = {};
   switch (source) {
     case OF_ANGLE_AND_ELEMENT:
-      along[SLIP_TORQUE] = prior_.element_slope;
+      along[SLIP_TORQUE] = prior_.element_slope * prior_.element_share;
       [[fallthrough]];
     case OF_ANGLE:
       along[STIFFNESS] = 1.0;
       break;
+    case OF_RATE_AND_ELEMENT:
+      along[SLIP_TORQUE] = prior_.element_slope * prior_.element_lag;
+      [[fallthrough]];
     case OF_RATE:
       along[DAMPING] = 1.0;
       break;
@@ -262,6 +280,7 @@ void AxisRegression::find_deviations() noexcept {
     unit[i] = 1.0;
     std::copy(&normal[0][0], &normal[0][0] + UNKNOWNS * UNKNOWNS, &m[0][0]);
     solve_positive(m, unit, row);
+    values_.resolved[i] = noise_ * std::sqrt(std::max(row[i], 0.0)) / prior_.scale[i];
     for (int j = 0; j < UNKNOWNS; ++j) {  // what the prior may be off by
       const double moves = row[j] * noise_ * noise_ / (prior_.spread[j] * prior_.scale[j]);
       squares += moves * moves;

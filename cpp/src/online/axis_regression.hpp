@@ -21,15 +21,16 @@ namespace plantar {
 // place, and higher the more it is loaded (COMPLIANCE).
 enum Unknown : int { STIFFNESS, DAMPING, SLIP_TORQUE, ASIDE, ABOVE, COMPLIANCE };
 constexpr int UNKNOWNS = 6;
-// What each block has of its own: an offset, its drift, and the zero of the yaw torque, which pitch turns into roll.
-enum Own : int { OFFSET, SLOPE, TWIST };
-constexpr int OWN = 3;
+// What each block has of its own: an offset, its drift, the zero of the yaw torque, which pitch turns into roll, and
+// where between its bounds the element was when the block began.
+enum Own : int { OFFSET, SLOPE, TWIST, BEGINNING };
+constexpr int OWN = 4;
 constexpr int BLOCK_UNKNOWNS = OWN + UNKNOWNS;
 
-// Where noise enters: the deflection alone, the rate, the deflection and with it an element that does not slip, the
-// load, or the horizontal force.
-enum NoiseSource : int { OF_ANGLE, OF_RATE, OF_ANGLE_AND_ELEMENT, OF_LOAD, OF_HORIZONTAL };
-constexpr int NOISE_SOURCES = 5;
+// Where noise enters: the deflection or the rate, alone or with an element that does not slip, the load, or the
+// horizontal force.
+enum NoiseSource : int { OF_ANGLE, OF_RATE, OF_ANGLE_AND_ELEMENT, OF_RATE_AND_ELEMENT, OF_LOAD, OF_HORIZONTAL };
+constexpr int NOISE_SOURCES = 6;
 
 constexpr int MOST_GROUPS = 12;
 constexpr int FEWEST_GROUPS = 3;       // that say how they differ
@@ -41,7 +42,7 @@ constexpr double LONGEST_BLOCK = 10.0;  // s
 constexpr int FEWEST_ROWS = 8;          // of a block: with fewer its offset takes most of it
 
 struct RegressionRow {
-  double own[OWN];  // what the filter has made of a constant, of the time, of what turns with the pitch
+  double own[OWN];  // what the filter has made of a constant, the time, what turns with the pitch, the element's gap
   double columns[UNKNOWNS];
   double torque;
   double noise[NOISE_SOURCES];  // variance, of each source
@@ -52,6 +53,8 @@ struct RegressionPrior {
   std::array<double, UNKNOWNS> mean;   // of each unknown, before any data, and how far it may be off
   std::array<double, UNKNOWNS> spread;
   double element_slope;  // of the element's state over the deflection, where it does not slip [1/rad]
+  double element_share;  // of the deflection's noise, that the element follows
+  double element_lag;    // what it follows of the rate's noise [s]
   double load_arm;       // torque that the sensor's load and horizontal force bring with them to the bush [m]
   double horizontal_arm;
   double twist;  // how far the yaw torque's zero may be off [N·m]; 0: of no account about this axis
@@ -59,10 +62,14 @@ struct RegressionPrior {
 
 struct AxisValues {
   std::array<double, UNKNOWNS> value = {};
-  std::array<double, UNKNOWNS> std = {};  // of the rows' errors and of the prior
+  std::array<double, UNKNOWNS> std = {};       // of the rows' errors and of the prior
+  std::array<double, UNKNOWNS> resolved = {};  // deviations that the rows' scatter alone would leave
   double offset = 0.0;
   double pace = 0.0;  // squares of the rate over those of the deflection [1/s²]
   int groups = 0;
+
+  // Whether the stiffness is one of a bush: where nothing moves, what is left beside the noise can be anything.
+  bool plausible(double stiffest) const noexcept { return value[STIFFNESS] > 0.0 && value[STIFFNESS] < stiffest; }
 };
 
 class AxisRegression {
@@ -77,6 +84,9 @@ class AxisRegression {
   void restart() noexcept;
   // Whether the stiffness has jumped since this was asked last; then everything before is forgotten.
   bool jumped() noexcept;
+  // What speaks for a jump so far, and to believe it for other reasons.
+  const ChangeWatch& suspicion() const noexcept { return watch_; }
+  void jump() noexcept;
   void set_spread(Unknown unknown, double spread) noexcept { prior_.spread[unknown] = spread; }
 
   // One piece of the work that keeps `values` current, each short enough for one tick.
@@ -121,7 +131,8 @@ class AxisRegression {
   bool changed_ = false, unsure_ = false, fresh_ = false;
   bool jumped_ = false;
   ChangeWatch watch_;
-  AxisValues values_;
+  AxisValues values_, before_;  // now, and before a jump was suspected
+  double noise_before_ = 0.0;
 };
 
 }  // namespace plantar

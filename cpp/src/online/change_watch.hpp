@@ -27,12 +27,18 @@ class ChangeWatch {
  public:
   void restart() noexcept { *this = {}; }
 
-  // A row: what the filter has made of a constant, the deflection, and what the model leaves of the torque.
-  void add(double one, double deflection, double left, double dt) noexcept {
-    double row[3] = {one, deflection, left};
+  // A row: what the filter has made of a constant, the deflection, what an element's torque may be off by, and what the
+  // model leaves of the torque.
+  void add(double one, double deflection, double unknown, double left, double dt) noexcept {
+    double row[4] = {one, deflection, unknown, left};
     probe_.add(row);
     ++rows_, time_ += dt;
   }
+  // Nothing speaks for a change, and no probe has begun.
+  bool calm() const noexcept { return rows_ == 0 && softer_ == 0.0 && stiffer_ == 0.0; }
+  // What speaks for a change to either side [log-likelihood].
+  double softer() const noexcept { return softer_; }
+  double stiffer() const noexcept { return stiffer_; }
   bool full() const noexcept { return time_ >= PROBE_TIME; }
   void drop() noexcept { probe_ = {}, rows_ = 0, time_ = 0.0; }
 
@@ -40,8 +46,8 @@ class ChangeWatch {
   bool judge(double stiffness, double deviation, double noise) noexcept {
     const double shown = probe_.r[1][1];
     const bool enough = rows_ >= PROBE_ROWS && shown > 0.0 && stiffness > 0.0;
-    const double away = enough ? probe_.r[1][2] / shown / stiffness : 0.0;
-    const double own = enough ? noise / shown / stiffness : 1.0;
+    const double away = enough ? probe_.r[1][3] / shown / stiffness : 0.0;
+    const double own = enough ? std::hypot(noise, probe_.r[1][2]) / shown / stiffness : 1.0;
     drop();
     if (own > SHOWS) return false;
     const double known = deviation / stiffness;
@@ -56,7 +62,7 @@ class ChangeWatch {
   }
 
  private:
-  RootTriangle<2> probe_;
+  RootTriangle<3> probe_;
   int rows_ = 0;
   double time_ = 0.0, softer_ = 0.0, stiffer_ = 0.0, scatter_ = FIRST_SCATTER * FIRST_SCATTER;
 };

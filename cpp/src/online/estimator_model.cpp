@@ -35,6 +35,12 @@ class Line {
     return frame;
   }
 
+  int axis() {
+    const int axis = next<int>();
+    if (axis != 0 && axis != 1) fail("no axis (valid: 0 for pitch, 1 for roll)");
+    return axis;
+  }
+
   bool ended() {
     words_ >> std::ws;
     return words_.eof();
@@ -88,9 +94,10 @@ void read_foot_line(FootModel& foot, Line& line) {
     foot.place_std[0] = line.next<double>(), foot.place_std[1] = line.next<double>();
   else if (line.kind() == "compliance")
     foot.compliance = line.next<double>(), foot.compliance_std = line.next<double>();
-  else if (line.kind() == "element") {
-    const int axis = line.next<int>();
-    if (axis != 0 && axis != 1) line.fail("no axis (valid: 0 for pitch, 1 for roll)");
+  else if (line.kind() == "linear") {
+    foot.linear[line.axis()] = true;
+  } else if (line.kind() == "element") {
+    const int axis = line.axis();
     foot.slip_angle[axis] = line.next<double>();
     foot.slip_torque[axis] = line.next<double>(), foot.slip_torque_std[axis] = line.next<double>();
   } else

@@ -72,6 +72,7 @@ struct FootEstimator::State {
   void joints(const Reading& reading) noexcept;
   void kinematics(std::size_t foot) noexcept;
   void miss_all(std::uint32_t reason) noexcept;
+  void watch_ground() noexcept;
 
   const EstimatorModel model;
   const double weight;
@@ -206,6 +207,19 @@ void FootEstimator::State::miss_all(std::uint32_t reason) noexcept {
   slip.restart();
 }
 
+// Feet that step onto other ground one after the other say the same. Where all stand, one lean of the attitude shows in
+// all of them.
+void FootEstimator::State::watch_ground() noexcept {
+  std::array<double, 2> all = {};
+  bool steps = false;
+  for (const FootTracker& foot : feet) steps = steps || foot.contact() == ContactState::air;
+  if (!steps) return;
+  for (const FootTracker& foot : feet)
+    for (int side = 0; side < 2; ++side) all[side] += foot.suspicion()[side];
+  if (std::max(all[0], all[1]) < SURE_OF_CHANGE) return;
+  for (FootTracker& foot : feet) foot.change_ground();
+}
+
 void FootEstimator::State::step(const Reading& reading) noexcept {
   const Time went = keep_time(reading.time);
   if (went == Time::jumped) return miss_all(TIME_FAULT);
@@ -253,6 +267,7 @@ void FootEstimator::State::step(const Reading& reading) noexcept {
     was_bad[f] = bad[f] != 0;
   }
   known = true;
+  watch_ground();
   feet[next_work / FootTracker::PIECES].work(next_work % FootTracker::PIECES);
   next_work = (next_work + 1) % (FootTracker::PIECES * static_cast<int>(feet.size()));
   for (std::size_t f = 0; f < feet.size(); ++f) estimates[f] = feet[f].estimate();

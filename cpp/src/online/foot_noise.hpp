@@ -31,6 +31,7 @@ class FootNoise {
   void follow(const Signals& now, double dt, double period) noexcept {
     const double band = 2.0 * cutoff_ * period;  // of all frequencies, those that pass
     const double share = NOISE_ABOVE * band < NYQUIST_SHARE ? band : 0.0;
+    gyroscope = now.gyroscope;
     const double edge = 2.0 * std::numbers::pi * cutoff_;
     for (int a = 0; a < 2; ++a) {
       angle_[a].see(now.angle[a], dt), turning_[a].see(now.turning[a], dt);
@@ -45,6 +46,7 @@ class FootNoise {
 
   // Variances behind the filter.
   double of_angle[2] = {}, of_rate[2] = {}, of_force[3] = {};
+  bool gyroscope = false;  // whose noise that of the rates is
 
  private:
   double cutoff_;

@@ -17,21 +17,13 @@ constexpr int STEPS = 3;                // stances, from which a foot counts as 
 constexpr double USUAL_ANGLE = 0.01;    // rad, rad/s: what columns are scaled by
 constexpr double USUAL_RATE = 0.1;
 constexpr double USUAL_SLOPE = 0.1;    // horizontal force over weight
-constexpr double STIFFEST = 100.0;     // m, times the weight: stiffness before any data
 constexpr double SLOWEST = 1.0;        // s: damping over stiffness before any data
-// Of a period: how far apart the readings of one tick are, and how far a sample is from what it stands for: motors
-// that are told something new at each tick shake the joints in step with the samples.
-constexpr double SKEW = 0.03;
 constexpr double TWIST_ZERO = 2e-3;    // m, times the weight: zero of a yaw torque
-constexpr double NEWLY_KNOWN = 0.02;   // of an element's range: less changes no offset
+constexpr double NEWLY_KNOWN = 0.005;   // of an element's range: less changes no offset
 constexpr double HARDLY_SLIPS = 0.99;  // of an element's largest state: below it noise moves it as the deflection
-constexpr double TRUSTED = 0.1;        // half width over stiffness
 constexpr double CHANGE_TOLD = 5.0;    // s for which the flag of a change stands
 constexpr std::uint32_t OF_LEARNING =
-    NEVER_LOADED | PITCH_UNKNOWN | ROLL_UNKNOWN | PITCH_MEMORY | ROLL_MEMORY;  // they outlast a tick
-constexpr double NORMAL = 1.96;
-// Student's t for 95 %, by degrees of freedom from 2.
-constexpr double QUANTILE[] = {4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201};
+    NEVER_LOADED | PITCH_UNKNOWN | ROLL_UNKNOWN | PITCH_MEMORY | ROLL_MEMORY | PITCH_UNTESTED | ROLL_UNTESTED;  // they outlast a tick
 
 double outline_middle_depth(const FootModel& foot) noexcept {
   Point middle = {0.0, 0.0};
@@ -39,8 +31,6 @@ double outline_middle_depth(const FootModel& foot) noexcept {
     for (int i = 0; i < 2; ++i) middle[i] += corner[i] / static_cast<double>(foot.polygon.size());
   return depth(foot.polygon, middle);
 }
-
-bool has_element(const FootModel& foot, int axis) noexcept { return foot.slip_angle[axis] > 0.0; }
 
 RegressionPrior prior_of(const EstimatorModel& model, const FootModel& foot, int axis, double slip) noexcept {
   const double w = model.weight;
@@ -54,6 +44,7 @@ RegressionPrior prior_of(const EstimatorModel& model, const FootModel& foot, int
                   std::max(foot.place_std[1], 1e-9), std::max(foot.compliance_std, 1e-9 / w)};
   prior.twist = axis == 1 ? TWIST_ZERO * w : 0.0;
   prior.element_slope = slip > 0.0 ? 1.0 / slip : 0.0;
+  prior.element_share = smooth_share(model.cutoff), prior.element_lag = smooth_lag(model.cutoff);
   prior.load_arm = axis == 0 ? -foot.sensor.origin[0] : foot.sensor.origin[1];
   prior.horizontal_arm = foot.sensor.origin[2];
   return prior;
@@ -155,6 +146,7 @@ void FootTracker::learn(const FootKinematics& motion, double others, SlipGate::V
   if (!fresh) {
     angles_.restart(), forces_.restart();
     noise_.restart();
+    for (SmoothAngle& angle : smooth_) angle.restart();
     restart_filter();
   }
   if (contact != ContactState::stance || edge || struck || slips == SlipGate::Verdict::sure) {
@@ -173,13 +165,12 @@ void FootTracker::filter(const FootKinematics& motion, double time, double dt, d
   for (int i = 0; i < 5; ++i) mean[i] = 0.5 * (now[i] + before_[i]);
   before_ = now;
   if (period <= 0.0) return;
-  std::array<double, 4> angles;
-  const bool reaches =
-      angles_.pass(time, {motion.mean_angle[0], motion.mean_angle[1], motion.mean_rate[0], motion.mean_rate[1]}, delay_,
-                   angles) &&
-      forces_.pass(time, mean, -delay_, forces);
+  const double *angle = motion.mean_angle, *rate = motion.mean_rate;
+  std::array<double, 6> angles = {angle[0], angle[1], rate[0], rate[1], 0.0, 0.0};
+  for (int a = 0; a < 2; ++a) angles[4 + a] = smooth_[a].pass(angle[a], rate[a], dt);
+  const bool reaches = angles_.pass(time, angles, delay_, angles) && forces_.pass(time, mean, -delay_, forces);
   if (!reaches) return;
-  follow_elements(angles.data(), time);
+  follow_elements(angles.data() + 4, time);
   const bool paused = pause_ > 0.0;
   pause_ -= std::min(pause_, dt);
   if (estimate_.contact != ContactState::stance) return;
@@ -197,8 +188,8 @@ void FootTracker::filter(const FootKinematics& motion, double time, double dt, d
   const double load = forces[0], x = forces[1], y = forces[2];
   double channels[CHANNELS] = {1.0,       time - begun_, load,                x,         y,         load * x,
                                load * y,  -std::sin(angles[0]),
-                               angles[0], angles[2],     element_[0].state(), forces[3],
-                               angles[1], angles[3],     element_[1].state(), forces[4]};
+                               angles[0], angles[2],     element_[0].state(), element_[0].gap(), forces[3],
+                               angles[1], angles[3],     element_[1].state(), element_[1].gap(), forces[4]};
   filter_.pass(channels);
   row_time_ += dt;
   const int stride = std::max(1, static_cast<int>(1.0 / (ROWS_PER_CYCLE * cutoff_ * period)));
@@ -207,33 +198,51 @@ void FootTracker::filter(const FootKinematics& motion, double time, double dt, d
   row_ticks_ = 0, row_time_ = 0.0;
 }
 
-// Elements from tick to tick. In the air one is at rest; it is loaded from there until the sole lies flat. Of a foot
-// that stood when time began nobody knows: each time that less is unknown, the rows' offset changes.
+// Elements from tick to tick. Of a foot that stood when time began nobody knows: each time that less is unknown, the
+// rows' offset changes; where little is unknown, the rows carry it. A sole that rolls over its edge turns with the
+// ankle, and the bush stays about as it is. What a foot lands with is known from how it lifted; it is loaded from there
+// until the sole lies flat.
 void FootTracker::follow_elements(const double* angles, double time) noexcept {
-  const bool air = estimate_.contact == ContactState::air;
-  swung_ = swung_ || air;
+  const bool stands = estimate_.contact == ContactState::stance, rolls = stands && (estimate_.flags & EDGE);
+  if (stood_ && !stands) unload_elements();
+  const bool lands = lifted_ && flat_ && estimate_.contact == ContactState::landing;
+  stood_ = stands;
   bool known = false, suspected = false;
-  for (int a = 0; a < 2; ++a) {
-    const double slip = slip_angle_[a], by = angles[a] - last_angle_[a];
-    last_angle_[a] = angles[a];
+  for (int a = 0; a < 2 && !rolls; ++a) {
     ElementState& element = element_[a];
-    if (estimate_.contact == ContactState::stance || (swung_ && !air && flat_)) {
-      element.move(by / slip);
-      if (element.opened - element.gap() > NEWLY_KNOWN) (has_element(*foot_, a) ? known : suspected) = true;
-    } else if (swung_) {
-      const double guess = std::clamp(angles[a] / slip, -1.0, 1.0);
-      element.begin(guess, guess);
+    if (stands || lands) {
+      if (rolled_) element.hold(angles[a]), opened_[a] = element.gap();
+      element.load(angles[a]);
+      const bool wide = opened_[a] > LEAN / slip_angle_[a];
+      if (wide && opened_[a] - element.gap() > NEWLY_KNOWN) (has_element(*foot_, a) ? known : suspected) = true;
+    } else if (lifted_) {
+      ElementState landed = hanging_[a];
+      landed.load(angles[a]);
+      element = landed, opened_[a] = element.gap();
     } else {
-      element.begin(-1.0, 1.0);
+      element.begin(slip_angle_[a], angles[a]), opened_[a] = element.gap();
     }
   }
+  rolled_ = rolls;
   if (!known && !suspected) return;
   commit(time);
-  for (ElementState& element : element_) element.opened = element.gap();
+  for (int a = 0; a < 2; ++a) opened_[a] = element_[a].gap();
   for (MemoryWatch& memory : memories_) memory.close();
   if (!known) return;
   for (AxisRegression& axis : axes_) axis.close();
   restart_filter();
+}
+
+// The foot has lifted.
+void FootTracker::unload_elements() noexcept {
+  lifted_ = true;
+  for (int a = 0; a < 2; ++a) {
+    const AxisValues& found = has_element(*foot_, a) ? axes_[a].values() : memories_[a].values();
+    lifted_ = lifted_ && found.groups >= FEWEST_GROUPS && found.plausible(STIFFEST * weight_);
+    if (!lifted_) return;
+    hanging_[a] = element_[a];
+    hanging_[a].unload(std::max(found.value[SLIP_TORQUE], 0.0) / found.value[STIFFNESS]);
+  }
 }
 
 void FootTracker::hold(double time, double dt, const double* channels) noexcept {
@@ -261,14 +270,17 @@ void FootTracker::give(const HeldRow& row) noexcept {
     // torque.
     const double across = a == 0 ? c[FORCE_X] : -c[FORCE_Y], loaded = a == 0 ? c[LOAD_X] : -c[LOAD_Y];
     const bool known = has_element(*foot_, a), sticks = std::abs(own[ELEMENT]) < HARDLY_SLIPS * c[ONE];
-    RegressionRow line = {{c[ONE], c[TIME], a == 1 ? c[TURN] : 0.0},
+    RegressionRow line = {{c[ONE], c[TIME], a == 1 ? c[TURN] : 0.0, own[GAP]},
                           {own[ANGLE], own[ANGLE_RATE], own[ELEMENT], c[LOAD], across, loaded},
                           own[TORQUE],
-                          {0.0, noise_.of_rate[a], 0.0, noise_.of_force[0], noise_.of_force[1 + a]}};
+                          {0.0, 0.0, 0.0, 0.0, noise_.of_force[0], noise_.of_force[1 + a]}};
     line.noise[sticks ? OF_ANGLE_AND_ELEMENT : OF_ANGLE] = noise_.of_angle[a];
+    line.noise[sticks && noise_.gyroscope ? OF_RATE_AND_ELEMENT : OF_RATE] = noise_.of_rate[a];
     if (!known) {
       memories_[a].add(line, row.dt);
-      line.columns[SLIP_TORQUE] = line.noise[OF_ANGLE_AND_ELEMENT] = 0.0, line.noise[OF_ANGLE] = noise_.of_angle[a];
+      line.columns[SLIP_TORQUE] = line.own[BEGINNING] = 0.0;
+      line.noise[OF_ANGLE_AND_ELEMENT] = line.noise[OF_RATE_AND_ELEMENT] = 0.0;
+      line.noise[OF_ANGLE] = noise_.of_angle[a], line.noise[OF_RATE] = noise_.of_rate[a];
     }
     axes_[a].add(line, row.dt);
   }
@@ -288,41 +300,15 @@ void FootTracker::work(int piece) noexcept {
   publish(axis);
 }
 
-void FootTracker::publish(int axis) noexcept {
-  const AxisValues& found = axes_[axis].values();
-  AxisEstimate& out = axis == 0 ? estimate_.pitch : estimate_.roll;
-  const double k = found.value[STIFFNESS], c = found.value[DAMPING];
-  const double quantile = QUANTILE[std::clamp(found.groups - 1, 2, 11) - 2];
-  const auto parameter = [&](Unknown unknown, double systematic) {
-    const double std = found.std[unknown];
-    return Parameter{found.value[unknown], std::hypot(std, systematic),
-                     std::hypot(quantile * std, NORMAL * systematic)};
-  };
-  // A wrench that is late by more than it was told to be takes K·delay off the damping and adds C·ω²·delay to K.
-  const double late = std::hypot(delay_std_, SKEW * period_);
-  out.stiffness = parameter(STIFFNESS, std::hypot(gain_std_ * k, late * c * found.pace));
-  out.damping = parameter(DAMPING, std::hypot(gain_std_ * c, late * k));
-  out.slip_torque =
-      has_element(*foot_, axis) ? parameter(SLIP_TORQUE, gain_std_ * found.value[SLIP_TORQUE]) : Parameter{};
-  out.offset = found.offset;
-  learnt_compliance_[axis] = parameter(COMPLIANCE, 0.0);
-  publish_compliance();
-  const bool sure = found.groups >= FEWEST_GROUPS && k > 0.0 && out.stiffness.half_width < TRUSTED * k;
-  out.identified = sure && !memories_[axis].seen();
-  const auto tell = [this](std::uint32_t flag, bool holds) {
-    estimate_.flags = holds ? estimate_.flags | flag : estimate_.flags & ~flag;
-  };
-  tell(axis == 0 ? PITCH_UNKNOWN : ROLL_UNKNOWN, !sure);
-  tell(axis == 0 ? PITCH_MEMORY : ROLL_MEMORY, memories_[axis].seen());
+// A stumble shows in both axes, so that the one that shows more speaks for the foot.
+std::array<double, 2> FootTracker::suspicion() const noexcept {
+  const ChangeWatch &pitch = axes_[0].suspicion(), &roll = axes_[1].suspicion();
+  return {std::max(pitch.softer(), roll.softer()), std::max(pitch.stiffer(), roll.stiffer())};
 }
 
-// Both axes have learnt it, each with a prior of its own, from torques of the same load.
-void FootTracker::publish_compliance() noexcept {
-  const Parameter &p = learnt_compliance_[0], &r = learnt_compliance_[1];
-  const double share = r.std > 0.0 ? r.std * r.std / (p.std * p.std + r.std * r.std) : 0.0;
-  const auto mean = [share](double pitch, double roll) { return share * pitch + (1.0 - share) * roll; };
-  estimate_.compliance = {foot_->compliance + mean(p.value, r.value), std::min(p.std, r.std),
-                          std::min(p.half_width, r.half_width)};
+void FootTracker::change_ground() noexcept {
+  for (AxisRegression& axis : axes_)
+    if (axis.suspicion().softer() + axis.suspicion().stiffer() > 0.0) axis.jump();
 }
 
 void FootTracker::miss(std::uint32_t reason) noexcept {
@@ -331,7 +317,7 @@ void FootTracker::miss(std::uint32_t reason) noexcept {
   held_count_ = 0;
   if (reason & TIME_FAULT)  // who knows what has passed: zeros and offsets may be others
     close_blocks();
-  if (reason & TIME_FAULT) swung_ = false;
+  if (reason & TIME_FAULT) stood_ = lifted_ = false;
   gate_.restart();  // what is told of the contact stays, until readings say otherwise
   shaking_.restart();
   noise_.restart();

@@ -9,14 +9,20 @@
 #include "online/causal_filter.hpp"
 #include "online/contact_gate.hpp"
 #include "online/delay_line.hpp"
+#include "online/element_state.hpp"
 #include "online/foot_noise.hpp"
 #include "online/memory_watch.hpp"
 #include "online/shaking.hpp"
 #include "online/slip_gate.hpp"
+#include "online/smooth_angle.hpp"
 #include "online/sole.hpp"
 #include "plantar/foot_estimator.hpp"
 
 namespace plantar {
+
+constexpr double STIFFEST = 100.0;     // m, times the weight: stiffness before any data
+
+inline bool has_element(const FootModel& foot, int axis) noexcept { return foot.slip_angle[axis] > 0.0; }
 
 // What the kinematics say of one foot at one tick.
 struct FootKinematics {
@@ -28,17 +34,6 @@ struct FootKinematics {
   double turning[2];     // what the gyroscope alone adds to the rates [rad/s]
   bool gyroscope;        // else rates come from the attitude
   SolePlace place;
-};
-
-// A Jenkins element whose state at the start may be unknown: the lowest and the highest that it can be.
-struct ElementState {
-  double low = 0.0, high = 0.0;
-  double opened = 0.0;  // how far apart these were when the offset of the rows began
-
-  double state() const noexcept { return 0.5 * (low + high); }
-  double gap() const noexcept { return high - low; }
-  void begin(double from, double to) noexcept { low = from, high = to, opened = to - from; }
-  void move(double by) noexcept { low = std::clamp(low + by, -1.0, 1.0), high = std::clamp(high + by, -1.0, 1.0); }
 };
 
 class FootTracker {
@@ -57,17 +52,21 @@ class FootTracker {
   static constexpr int PIECES = 4;
   void work(int piece) noexcept;
 
+  // What speaks for ground that is softer, or stiffer, than it was [log-likelihood]; and to believe it.
+  std::array<double, 2> suspicion() const noexcept;
+  void change_ground() noexcept;
+
   double load() const noexcept { return estimate_.load; }
   ContactState contact() const noexcept { return gate_.contact(); }
   const FootEstimate& estimate() const noexcept { return estimate_; }
 
  private:
-  static constexpr int CHANNELS = 16;
+  static constexpr int CHANNELS = 18;
   static constexpr int HELD = 32;      // rows that wait until the foot has not lifted behind them
   // What the filter passes: constant, time, load, horizontal forces, the load times each, what turns with the pitch;
   // then of each axis.
   enum Channel : int { ONE, TIME, LOAD, FORCE_X, FORCE_Y, LOAD_X, LOAD_Y, TURN, FIRST_AXIS };
-  enum AxisChannel : int { ANGLE, ANGLE_RATE, ELEMENT, TORQUE, AXIS_CHANNELS };
+  enum AxisChannel : int { ANGLE, ANGLE_RATE, ELEMENT, GAP, TORQUE, AXIS_CHANNELS };
   struct HeldRow {
     double time, dt;
     double channels[CHANNELS];
@@ -76,6 +75,7 @@ class FootTracker {
   void restart_filter() noexcept;
   void filter(const FootKinematics& motion, double time, double dt, double period) noexcept;
   void follow_elements(const double* angles, double time) noexcept;
+  void unload_elements() noexcept;
   void hold(double time, double dt, const double* channels) noexcept;
   void commit(double before) noexcept;
   void give(const HeldRow& row) noexcept;
@@ -93,17 +93,20 @@ class FootTracker {
   AirZero zero_;
   Shaking shaking_;
   CausalFilter<CHANNELS> filter_;
-  DelayLine<4> angles_;
+  DelayLine<6> angles_;  // of both axes: angles, rates, angles without noise
+  std::array<SmoothAngle, 2> smooth_;
   DelayLine<6> forces_;
   std::array<AxisRegression, 2> axes_;
   std::array<MemoryWatch, 2> memories_;  // of axes whose model has no element
   Parameter learnt_compliance_[2];       // of the slide beside the model's, as each axis has it
   double slip_angle_[2];                 // of the model's element, or of the one that a memory is looked for with
   std::array<double, 6> raw_ = {}, wrench_ = {}, before_ = {};  // before_: load, force x, y, both torques, of last tick
-  ElementState element_[2];
-  double last_angle_[2] = {};
+  ElementState element_[2], hanging_[2];  // now, and in the air
+  double opened_[2] = {};  // the elements' gaps when the offset of the rows began
   bool flat_ = false;         // the centre of pressure is inside the sole
-  bool swung_ = false;        // the foot was in the air since time last jumped: its elements begin there at rest
+  bool stood_ = false;        // it stood at the last tick
+  bool lifted_ = false;       // its elements are followed from its last stance, through the air
+  bool rolled_ = false;       // the sole was rolling over its edge at the last tick
   bool running_ = false;      // the filter has begun
   double begun_ = 0.0;        // at this time
   double pause_ = 0.0;        // s for which the lines still hold ticks that were left out

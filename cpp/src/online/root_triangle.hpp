@@ -15,8 +15,8 @@ struct RootTriangle {
   // Adds one row (N + 1 values, of which those before `first` are zero); the row is used up.
   void add(double* row, int first = 0) noexcept {
     for (int i = first; i <= N; ++i) {
-      if (row[i] == 0.0) continue;
       const double length = std::sqrt(r[i][i] * r[i][i] + row[i] * row[i]);
+      if (length == 0.0) continue;  // both may be so small that their squares vanish
       const double c = r[i][i] / length, s = row[i] / length;
       r[i][i] = length;
       for (int j = i + 1; j <= N; ++j) {

@@ -33,6 +33,8 @@ class Flag(IntFlag):
     GROUND_CHANGED = 1024
     PITCH_MEMORY = 2048
     ROLL_MEMORY = 4096
+    PITCH_UNTESTED = 8192
+    ROLL_UNTESTED = 16384
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from plantar import _core
 from plantar.choices import number_in
-from plantar.conventions import Array, Axis
+from plantar.conventions import ROTATIONAL_AXES, Array, Axis
 from plantar.errors import DataError
 from plantar.files import write_text
 from plantar.logs.motion_log import MotionLog
@@ -36,7 +36,8 @@ class FootEstimator:
     Args:
         robot: the robot file, or what `load_robot` made of it.
         result: of `identify_feet`, for elements that slip in bushes with hysteresis, the slides' compliance, the
-            sensors' delay and the filter's cutoff; without one bushes are springs with dampers.
+            sensors' delay and the filter's cutoff; without one bushes are springs with dampers, and `identified` only
+            where motions were large enough to show a hysteresis.
         wrench_delay: how late the force sensors are against the IMU [s], > 0: late. None takes the result's; without a
             result none, and widens the damping's deviation by what the robot file's `uncertainty` allows.
         cutoff: of the filter that deflection, rate and torque pass before they are compared [Hz]; None takes the
@@ -72,6 +73,7 @@ class FootEstimator:
             wrench_delay=_delay(self.robot, result, wrench_delay),
             elements=_elements(result),
             compliance={} if result is None else result.compliance,
+            linear=_linear(result),
         )
         self._core = _core.FootEstimator(self._model)
         self._rows = np.empty((len(self.robot.feet), len(FIELDS)))
@@ -193,6 +195,17 @@ def _elements(result: FeetResult | None) -> dict[tuple[str, Axis], Element]:
         if name == "slip_angle" and angle.value and torque is not None and torque.value is not None:
             found[foot, axis] = Element(angle.value, torque.value, torque.std or abs(torque.value))
     return found
+
+
+def _linear(result: FeetResult | None) -> list[tuple[str, Axis]]:
+    """Feet and axes whose stiffness a batch result calls usable; `_elements` says in which of them something slips."""
+    rows = () if result is None else result.parameters
+    return [
+        (row.foot, axis)
+        for row in rows
+        for axis in ROTATIONAL_AXES
+        if row.axis == axis and row.name == "stiffness" and row.verdict == "usable"
+    ]
 
 
 def _row(what: str, values: ArrayLike | None, size: int) -> Array | None:

@@ -5,7 +5,7 @@ One fact a line, a word and its values; frames are nine numbers of rotation, row
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -36,12 +36,13 @@ def estimator_model(
     wrench_delay: tuple[float, float],
     elements: Mapping[tuple[str, Axis], Element],
     compliance: Mapping[str, float],
+    linear: Collection[tuple[str, Axis]] = (),
 ) -> str:
     """The text of the model file.
 
     cutoff: of the filters before the regressions [Hz]; wrench_delay: of the force sensors behind the IMU, and
     its deviation [s]; elements: Jenkins elements by foot and axis;
-    compliance: of the slides by foot [m/N].
+    compliance: of the slides by foot [m/N]; linear: feet and axes in which a batch fit has found no memory.
 
     Raises RobotError where the robot file names no IMU or no feet.
     """
@@ -67,6 +68,8 @@ def estimator_model(
                 lines.append(
                     f"element {place} " + _numbers([found.slip_angle, found.torque, found.torque_std])
                 )
+            elif (name, axis) in linear:
+                lines.append(f"linear {place}")
         lines += _place_lines(robot, name, compliance.get(name, 0.0))
     return "\n".join(lines) + "\n"
 

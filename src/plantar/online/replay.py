@@ -13,8 +13,14 @@ from plantar.results.feet_rows import Parameter, Verdict
 
 USABLE = 0.1  # half width of the 95 % interval over the value, narrower than a batch result's
 UNKNOWN = 10.0  # the same, from which on a value says nothing
+TOLD = 1e-3  # half width over the compliance, that no log reaches: it was told
+AS_TOLD = "as in the batch result, not learnt here"
+LEVEL = "horizontal forces under changing load have not shown it"
+WALK = "walk, or sway with the weight on one foot and the other"
 MEMORY = (Flag.PITCH_MEMORY, Flag.ROLL_MEMORY)
 REMEMBERS = "the rubber has a memory: motions of another size have another stiffness"
+UNTESTED = (Flag.PITCH_UNTESTED, Flag.ROLL_UNTESTED)
+SMALL = "too small motions to show whether the rubber has a memory: larger ones may have less stiffness"
 IDENTIFY = "run identify feet on logs of this robot, and give its result"
 
 
@@ -40,7 +46,7 @@ class Replay:
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
-        """Stiffness, damping and slip torque of each foot and axis at the end, as in `result.json`."""
+        """Stiffness, damping and slip torque of each foot and axis at the end, as in `result.json`; of z stiffness."""
         return tuple(self._parameters())
 
     @property
@@ -56,17 +62,40 @@ class Replay:
     def _parameters(self) -> Iterator[Parameter]:
         for foot in self.feet:
             last = self.estimate(foot)
-            for axis, found, flag in zip(ROTATIONAL_AXES, (last.pitch, last.roll), MEMORY, strict=True):
+            found_axes = zip(ROTATIONAL_AXES, (last.pitch, last.roll), MEMORY, UNTESTED, strict=True)
+            for axis, found, memory, untested in found_axes:
+                reason = REMEMBERS if last.flags & memory else SMALL if last.flags & untested else None
                 stiffness = _parameter(foot, axis, "stiffness", STIFFNESS_UNIT[axis], found.stiffness)
                 damping = _parameter(foot, axis, "damping", DAMPING_UNIT[axis], found.damping)
-                yield from (_of_memory(row) if last.flags & flag else row for row in (stiffness, damping))
+                yield from (_weakened(row, reason) if reason else row for row in (stiffness, damping))
                 if found.slip_torque.std:
                     yield _parameter(foot, axis, "slip_torque", "N.m", found.slip_torque)
+            yield _vertical(foot, last.compliance)
 
 
-def _of_memory(row: Parameter) -> Parameter:
+def _vertical(foot: str, compliance: Estimated) -> Parameter:
+    """The vertical stiffness: one over the slide's compliance, whose interval turns round."""
+    value, half = compliance.value, compliance.half_width
+    if value > 0.0 and half <= TOLD * value:
+        return Parameter(
+            foot, "z", "stiffness", STIFFNESS_UNIT["z"], 1 / value, None, None, None, "weak", AS_TOLD
+        )
+    if half >= value:
+        return Parameter(
+            foot, "z", "stiffness", STIFFNESS_UNIT["z"], None, None, None, None, "unidentifiable", LEVEL, WALK
+        )
+    interval = (1 / (value + half), 1 / (value - half))
+    reason = f"± {100 * half / value:.0f} % so far; known from ± {100 * USABLE:.0f} % on"
+    usable = half <= USABLE * value
+    return Parameter(
+        foot, "z", "stiffness", STIFFNESS_UNIT["z"], 1 / value, compliance.std / value**2, interval, None,
+        "usable" if usable else "weak", "" if usable else reason,
+    )  # fmt: skip
+
+
+def _weakened(row: Parameter, reason: str) -> Parameter:
     verdict: Verdict = "weak" if row.verdict == "usable" else row.verdict
-    return replace(row, verdict=verdict, reason=REMEMBERS, advice=IDENTIFY)
+    return replace(row, verdict=verdict, reason=reason, advice=IDENTIFY)
 
 
 def _parameter(foot: str, axis: Axis, name: str, unit: str, found: Estimated) -> Parameter:

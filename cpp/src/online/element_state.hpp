@@ -1,0 +1,61 @@
+// The state of a Jenkins element, from -1 to 1, as far as it is known: the lowest and the highest that it can be.
+//
+// On the ground the state follows the deflection. A foot that lifts does not come to rest where it began: the element
+// holds on, and leaves the unloaded spring bent the other way. From there the next step loads it.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+namespace plantar {
+
+constexpr double LEAN = 0.005;  // rad: how far an attitude may lean, two deviations of a usual one
+
+class ElementState {
+ public:
+  double state() const noexcept { return 0.5 * (low_.state + high_.state); }
+  // How far from its state it may be: half the way between both bounds.
+  double gap() const noexcept { return 0.5 * (high_.state - low_.state); }
+
+  // Nothing is known of it but its slip angle and the bush's `angle` [rad].
+  void begin(double slip, double angle) noexcept { slip_ = slip, low_ = {-1.0, angle}, high_ = {1.0, angle}; }
+  // The bush on the ground is bent to `angle` [rad].
+  void load(double angle) noexcept { low_.bend(angle, slip_), high_.bend(angle, slip_); }
+  // The sole has turned with the ankle for a while, the bush hardly. It is at `angle` now.
+  void hold(double angle) noexcept {
+    low_.angle = high_.angle = angle;
+    widen(LEAN / slip_);
+  }
+  // The bush is unloaded; `pull` [rad] is slip torque over stiffness, by which an element that slips leaves it bent.
+  void unload(double pull) noexcept {
+    low_.unload(pull, slip_), high_.unload(pull, slip_);
+    widen(LEAN / (slip_ + pull));
+  }
+
+ private:
+  struct Bound {
+    double state = 0.0, angle = 0.0;
+
+    void bend(double to, double slip) noexcept {
+      state = std::clamp(state + (to - angle) / slip, -1.0, 1.0);
+      angle = to;
+    }
+    // No torque: angle + pull·state = 0, with a state that sticks on the way or slips.
+    void unload(double pull, double slip) noexcept {
+      const double sticks = pull * (angle - slip * state) / (slip + pull);
+      const double reached = state + (sticks - angle) / slip;
+      if (std::abs(reached) <= 1.0)
+        state = reached, angle = sticks;
+      else
+        state = std::clamp(reached, -1.0, 1.0), angle = -pull * state;
+    }
+  };
+  void widen(double by) noexcept {
+    low_.state = std::max(low_.state - by, -1.0), high_.state = std::min(high_.state + by, 1.0);
+  }
+
+  double slip_ = 1.0;
+  Bound low_, high_;
+};
+
+}  // namespace plantar

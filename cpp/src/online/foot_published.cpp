@@ -1,0 +1,60 @@
+// What a foot's regressions have found, as estimates: intervals, flags, what may be called identified.
+#include <algorithm>
+#include <cmath>
+
+#include "online/foot_tracker.hpp"
+
+namespace plantar {
+
+namespace {
+
+// Of a period: how far apart the readings of one tick are, and how far a sample is from what it stands for: motors
+// that are told something new at each tick shake the joints in step with the samples.
+constexpr double SKEW = 0.03;
+constexpr double TRUSTED = 0.1;        // half width over stiffness
+constexpr double NORMAL = 1.96;
+// Student's t for 95 %, by degrees of freedom from 2.
+constexpr double QUANTILE[] = {4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201};
+
+}  // namespace
+
+void FootTracker::publish(int axis) noexcept {
+  const AxisValues& found = axes_[axis].values();
+  AxisEstimate& out = axis == 0 ? estimate_.pitch : estimate_.roll;
+  const double k = found.value[STIFFNESS], c = found.value[DAMPING];
+  const double quantile = QUANTILE[std::clamp(found.groups - 1, 2, 11) - 2];
+  const auto parameter = [&](Unknown unknown, double systematic) {
+    const double std = found.std[unknown];
+    return Parameter{found.value[unknown], std::hypot(std, systematic),
+                     std::hypot(quantile * std, NORMAL * systematic)};
+  };
+  // A wrench that is late by more than it was told to be takes K·delay off the damping and adds C·ω²·delay to K.
+  const double late = std::hypot(delay_std_, SKEW * period_);
+  out.stiffness = parameter(STIFFNESS, std::hypot(gain_std_ * k, late * c * found.pace));
+  out.damping = parameter(DAMPING, std::hypot(gain_std_ * c, late * k));
+  out.slip_torque =
+      has_element(*foot_, axis) ? parameter(SLIP_TORQUE, gain_std_ * found.value[SLIP_TORQUE]) : Parameter{};
+  out.offset = found.offset;
+  learnt_compliance_[axis] = parameter(COMPLIANCE, 0.0);
+  publish_compliance();
+  const bool sure = found.groups >= FEWEST_GROUPS && found.plausible(STIFFEST * weight_) && out.stiffness.half_width < TRUSTED * k;
+  const bool told = has_element(*foot_, axis) || foot_->linear[axis], tested = told || memories_[axis].excluded();
+  out.identified = sure && tested && !memories_[axis].seen();
+  const auto tell = [this](std::uint32_t flag, bool holds) {
+    estimate_.flags = holds ? estimate_.flags | flag : estimate_.flags & ~flag;
+  };
+  tell(axis == 0 ? PITCH_UNKNOWN : ROLL_UNKNOWN, !sure);
+  tell(axis == 0 ? PITCH_MEMORY : ROLL_MEMORY, memories_[axis].seen());
+  tell(axis == 0 ? PITCH_UNTESTED : ROLL_UNTESTED, sure && !tested && !memories_[axis].seen());
+}
+
+// Both axes have learnt it, each with a prior of its own, from torques of the same load.
+void FootTracker::publish_compliance() noexcept {
+  const Parameter &p = learnt_compliance_[0], &r = learnt_compliance_[1];
+  const double share = r.std > 0.0 ? r.std * r.std / (p.std * p.std + r.std * r.std) : 0.0;
+  const auto mean = [share](double pitch, double roll) { return share * pitch + (1.0 - share) * roll; };
+  estimate_.compliance = {foot_->compliance + mean(p.value, r.value), std::min(p.std, r.std),
+                          std::min(p.half_width, r.half_width)};
+}
+
+}  // namespace plantar

@@ -1,0 +1,56 @@
+// A Jenkins element against its own law in small steps, on the ground and in the air.
+#include "online/element_state.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "check.hpp"
+
+using plantar::ElementState;
+
+namespace {
+
+constexpr double SLIP = 0.01, STIFFNESS = 434.0, TORQUE = 5.0;
+
+// Bends a bush from rest to `angle`; then takes the torque away in small steps of a damped bush without load.
+struct Rubber {
+  double state = 0.0, angle = 0.0;
+
+  void bend(double to) {
+    const double by = (to - angle) / 1000;
+    for (int i = 0; i < 1000; ++i) state = std::clamp(state + by / SLIP, -1.0, 1.0), angle += by;
+  }
+  void hang() {
+    for (int i = 0; i < 200000; ++i) {
+      const double by = -1e-7 * (STIFFNESS * angle + TORQUE * state);
+      state = std::clamp(state + by / SLIP, -1.0, 1.0), angle += by;
+    }
+  }
+};
+
+}  // namespace
+
+int main() {
+  for (const double first : {0.004, 0.02, -0.03, 0.06})
+    for (const double landing : {-0.02, 0.0, 0.005, 0.03}) {
+      Rubber rubber;
+      ElementState element;
+      element.begin(SLIP, 0.0);
+      for (const double there : {0.05, -0.05, 0.0, first}) rubber.bend(there), element.load(there);
+      check::near(element.gap(), 0.0, 1e-12, "who has slipped to and fro is known");
+      check::near(element.state(), rubber.state, 1e-9, "on the ground");
+      rubber.hang(), element.unload(TORQUE / STIFFNESS);
+      check::that(std::abs(element.state() - rubber.state) <= element.gap() + 1e-3, "in the air");
+      rubber.bend(landing), element.load(landing);
+      check::that(std::abs(element.state() - rubber.state) <= element.gap() + 1e-3, "behind the landing");
+      check::that(element.gap() < 0.25, "as well as the attitude leans");
+    }
+  ElementState unknown;
+  unknown.begin(SLIP, 0.003);
+  check::near(unknown.gap(), 1.0, 1e-12, "nobody knows");
+  unknown.load(0.013);
+  check::near(unknown.gap(), 0.5, 1e-12, "half of it is known");
+  unknown.hold(0.5), unknown.load(0.5);
+  check::near(unknown.gap(), 0.75, 1e-12, "a sole that rolls bends nothing, but one does not know");
+  return check::result();
+}
