@@ -22,6 +22,15 @@ from plantar.notes import Note, unique
 TARGETS: dict[str, tuple[str, str]] = {
     "mjcf": ("mjcf.target", "MuJoCo model (MJCF): bush joints and a light sole in each foot"),
     "mujoco-contact": ("contact.target", "MuJoCo model (MJCF): points under each foot with fitted solref"),
+    "drake-contact": (
+        "contact.drake",
+        "SDFormat for Drake: points under each foot with stiffness and damping",
+    ),
+    "bullet-contact": (
+        "contact.bullet",
+        "URDF for Bullet: points under each foot with stiffness and damping",
+    ),
+    "physx-contact": ("contact.physx", "USD layer over your stage: points with PhysX' compliant contact"),
     "sdf": ("sdf.target", "SDFormat model: prismatic and revolute joints with spring and damper"),
     "urdf": ("urdf.target", "URDF with Gazebo's spring tags, or the inertias of a plantar.inertia/1"),
     "drake": ("sdf.drake", "SDFormat for Drake: free bush joints under a drake:linear_bushing_rpy"),
@@ -47,8 +56,8 @@ def export(
 
     Args:
         result: what `identify_feet` or `identify_inertia` found, or the path of its `result.json`.
-        target: mjcf, mujoco-contact, sdf, urdf, drake, usd, mc_rtc, openhrp, choreonoid, kinetics_observer,
-            randomization or yaml; for inertias urdf.
+        target: one of `TARGETS`: mjcf, mujoco-contact, drake-contact, bullet-contact, physx-contact, sdf, urdf, drake,
+            usd, mc_rtc, openhrp, choreonoid, kinetics_observer, randomization or yaml; for inertias urdf.
         out: the file to write.
         model: an existing robot model of that format to extend (MJCF, SDFormat, URDF, USD; a URDF works for MJCF and
             SDFormat too); the result's own URDF where left out, for USD a layer to reference.
