@@ -12,7 +12,7 @@ from importlib import import_module
 from pathlib import Path
 
 from plantar.errors import ExportError, located
-from plantar.exporters.bush import feet_of_result
+from plantar.exporters.bush import check_swing, feet_of_result
 from plantar.exporters.job import Job
 from plantar.exporters.source import ResultInput, open_result, robot_urdf
 from plantar.files import write_text
@@ -51,6 +51,7 @@ def export(
     model: str | os.PathLike[str] | None = None,
     *,
     with_offset: bool = False,
+    swing: float | None = None,
 ) -> tuple[Note, ...]:
     """Hand a result to a simulator or controller: springs and dampers in its own format and units.
 
@@ -61,13 +62,16 @@ def export(
         out: the file to write.
         model: an existing robot model of that format to extend (MJCF, SDFormat, URDF, USD; a URDF works for MJCF and
             SDFormat too); the result's own URDF where left out, for USD a layer to reference.
+        swing: for rubber that slips and a target that holds no slip, the amplitude of the motions it is for [rad]: the
+            slip becomes their spring and damper. Where left out, K and C are the nearest to the identified motions.
         with_offset: the springs rest at -offset/K; else at 0, since the offset is mostly the sensors' zero.
 
     Returns:
         What the target could not hold, as notes.
 
     Raises:
-        ExportError: an unknown target, a result without what the target needs, a model without the ankle.
+        ExportError: an unknown target, a swing that is no angle, a result without what the target needs, a model
+            without the ankle.
 
     Example:
         >>> import plantar
@@ -76,6 +80,7 @@ def export(
         >>> "LLEG_BUSH_PITCH" in open("out/robot_on_bushes.urdf").read()
         True
     """
+    check_swing(swing)
     if target not in TARGETS:
         raise ExportError(located(f"'{target}' is not a target", valid=", ".join(TARGETS)))
     data, base = open_result(result)
@@ -94,7 +99,9 @@ def export(
     else:
         module = import_module(f"plantar.exporters.{TARGETS[target][0]}")
         hysteresis = getattr(module, "HYSTERESIS", False)
-        feet, remarks = feet_of_result(data, base, with_offset=with_offset, hysteresis=hysteresis)
+        feet, remarks = feet_of_result(
+            data, base, with_offset=with_offset, hysteresis=hysteresis, swing=swing
+        )
         if given is None and getattr(module, "EXTENDS", False):
             given = robot_urdf(data, base)
         takes_model = getattr(module, "EXTENDS", False) or getattr(module, "OPTIONAL_MODEL", False)
