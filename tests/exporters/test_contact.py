@@ -207,7 +207,8 @@ def test_the_robot_stays_and_only_the_points_touch(exported: tuple[Path, Any], s
     weight = float(model.body_mass.sum()) * GRAVITY
     force = sum(data.efc_force[contact.efc_address] for contact in data.contact)
     assert force == pytest.approx(weight, rel=0.02)
-    assert not [note for note in exported[1] if note.severity == "warning"]
+    # The left foot's z is softer than points that turn like it: said, and nothing else is.
+    assert {note.code for note in exported[1] if note.severity == "warning"} == {"export_vertical"}
     assert {"export_contact", "export_vertical", "export_friction"} <= {note.code for note in exported[1]}
 
 
