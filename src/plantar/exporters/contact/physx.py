@@ -53,9 +53,7 @@ def write(job: Job) -> tuple[str, tuple[Note, ...]]:
         _insert(stage, foot, points, job.model, notes)
         notes += [*said(foot, made, weight), *sliding_note(foot, points)]
     with_scene(stage, notes)
-    text = (
-        "the ground's own material stays rigid; PhysX' solver TGS takes 5 to 6 % off K where PGS takes 1 % "
-    )
+    text = "the ground's own material stays rigid; PhysX' solver TGS takes 5 to 6 % off K, PGS at most 2 % "
     text += "(physxScene:solverType)"
     notes.append(Note("export_physx", "info", text))
     lines = head(job.result, job.feet, "PhysX' contact", (*job.remarks, *notes), with_offset=job.with_offset)
