@@ -26,18 +26,29 @@ from plantar.cli import main
 from plantar.errors import ExportError
 from plantar.exporters import TARGETS, export
 from plantar.exporters.bush import feet_of_result
+from plantar.exporters.kinetics_observer import read_contacts
+from plantar.exporters.mc_rtc import read_flexibilities
+from usd_stage import write_usd
 
 SIDES = {"left": "LLEG", "right": "RLEG"}
+
+
+def stage_for(target: str, folder: Path) -> Path | None:
+    """The model that a target cannot do without."""
+    if target != "physx-contact":
+        return None
+    pytest.importorskip("pxr")
+    return write_usd(folder / "stage.usda")
 
 
 @pytest.mark.parametrize("target", TARGETS)
 def test_every_target_writes_a_file_and_says_what_it_left_out(
     target: str, feet: dict[str, Any], tmp_path: Path
 ) -> None:
-    if target == "mjcf":
+    if target in ("mjcf", "mujoco-contact"):
         pytest.importorskip("mujoco")
     out = tmp_path / "deep" / f"feet.{target}"
-    notes = export(feet, target, out)
+    notes = export(feet, target, out, model=stage_for(target, tmp_path))
     assert out.stat().st_size > 100
     assert any("right z" in note.text for note in notes), (
         "the axis that was not identified is said to be rigid"
@@ -60,6 +71,34 @@ def test_mc_rtc_flexibilities_are_the_identified_numbers(feet: dict[str, Any], t
             assert (entry["K"], entry["C"], entry["O"]) == pytest.approx((k, c, o))
     export(feet, "mc_rtc", tmp_path / "b.json")
     assert all(e["O"] == 0 for e in json.loads((tmp_path / "b.json").read_text())["flexibilities"])
+
+
+def test_mc_rtc_and_the_observer_are_read_back(feet: dict[str, Any], tmp_path: Path) -> None:
+    """What a reader finds pushes as plantar's law: the sign of the offset, radians, x for roll."""
+    export(feet, "mc_rtc", tmp_path / "a.json", with_offset=True)
+    found = read_flexibilities(tmp_path / "a.json")
+    assert len(found) == 5
+    for foot, axes in TRUTH.items():
+        for axis, truth in axes.items():
+            one = found[f"{SIDES[foot]}_BUSH_{axis.upper()}"]
+            assert (one.stiffness, one.damping, one.offset) == pytest.approx(truth)
+    export(feet, "kinetics_observer", tmp_path / "k.yaml")
+    contacts = read_contacts(tmp_path / "k.yaml")
+    assert contacts["pitch"] == pytest.approx((457, 20.08))
+    assert contacts["roll"] == pytest.approx((337.5, 22.84))
+    assert contacts["z"] == (40000, 400)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["nonsense: [", "[1, 2]", '{"flexibilities": [{"jointName": "a", "K": 1}]}', "linStiffness: [1, 2, .nan]",
+     '{"flexibilities": [{"jointName": "a", "K": -1, "C": 0, "O": 0}]}'],
+)  # fmt: skip
+def test_a_broken_configuration_is_refused(text: str, tmp_path: Path) -> None:
+    (tmp_path / "a").write_text(text)
+    for read in (read_flexibilities, read_contacts):
+        with pytest.raises(ExportError, match="valid:"):
+            read(tmp_path / "a")
 
 
 def spoiled(feet: dict[str, Any], value: float, low: float, high: float) -> dict[str, Any]:
@@ -109,7 +148,7 @@ def test_what_was_guessed_goes_along(target: str, feet: dict[str, Any], tmp_path
         pytest.importorskip("mujoco")
     said = "robot.yaml: marked GUESS and not measured: the left foot's numbers depend on bush"
     feet["notes"] = [{"code": "guessed_geometry", "severity": "warning", "text": said}]
-    notes = export(feet, target, tmp_path / "a")
+    notes = export(feet, target, tmp_path / "a", model=stage_for(target, tmp_path))
     assert said in [note.text for note in notes if note.severity == "warning"]
     assert "marked GUESS" in (tmp_path / "a").read_text()
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import subprocess
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +14,7 @@ import yaml
 from export_robots import TRUTH, result, write_urdf
 from page_blocks import ROOT, blocks
 from plantar.exporters import export
+from pushed_foot import other_python
 
 
 @pytest.fixture
@@ -184,3 +187,81 @@ def test_the_page_sets_the_friction_that_contacts_have(feet: dict[str, Any], tmp
         mujoco.mj_step(model, data)
     assert data.ncon > 0
     assert all(0.4 <= contact.friction[0] <= 0.5 for contact in data.contact)
+
+
+def snippets(*names: str) -> str:
+    """The page's blocks of Python, up to the last that defines one of these functions."""
+    texts = [block.text for block in blocks(ROOT / "docs/how_to/randomisation.md") if block.kind == "python"]
+    return "\n".join(
+        texts[: 1 + max(i for i, text in enumerate(texts) for name in names if f"def {name}(" in text)]
+    )
+
+
+def test_the_pages_function_for_playground_draws_in_mjx(feet: dict[str, Any], tmp_path: Path) -> None:
+    python = other_python("PLANTAR_MJX_PYTHON", "mujoco.mjx")
+    ranges(feet, tmp_path)
+    export(feet, "mjcf", tmp_path / "robot_on_bushes.xml")
+    program = (
+        snippets("domain_randomize")
+        + """
+import json
+import jax
+from mujoco import mjx
+randomized, rows = domain_randomize(mjx.put_model(model), jax.random.split(jax.random.PRNGKey(0), 2000))
+assert rows.jnt_stiffness == rows.dof_damping == rows.geom_friction == 0 and rows.body_mass is None
+joint = model.joint("LLEG_BUSH_PITCH")
+found = [randomized.jnt_stiffness[:, joint.id], randomized.dof_damping[:, joint.dofadr[0]],
+         randomized.jnt_stiffness[:, model.joint("LLEG_BUSH_ROLL").id], randomized.geom_friction[:, 0, 0]]
+print("\\n" + json.dumps(np.array(found, float).tolist()))
+"""
+    )
+    done = subprocess.run([python, "-c", program], capture_output=True, text=True, cwd=tmp_path, timeout=200)
+    assert done.returncode == 0, done.stderr[-2000:]
+    k, c, roll, friction = np.array(json.loads(done.stdout.splitlines()[-1]))
+    assert (k.mean(), k.std()) == pytest.approx((480, 4.8), rel=0.06)
+    assert (c.mean(), c.std()) == pytest.approx((24.27, 0.2427), rel=0.06)
+    assert np.corrcoef(k, roll)[0, 1] == pytest.approx(0.36, abs=0.06), "one force sensor's gain"
+    assert 0.4 <= friction.min() < 0.41
+    assert 0.99 < friction.max() <= 1
+
+
+def test_the_pages_event_term_writes_correlated_feet(feet: dict[str, Any], tmp_path: Path) -> None:
+    """On an articulation that keeps what it is given, by the names and arguments of Isaac Lab's."""
+    python = other_python("PLANTAR_TORCH_PYTHON", "torch, yaml")
+    ranges(feet, tmp_path)
+    text = snippets("draw_feet")
+    text = "import numpy as np\nimport yaml\n" + text[text.index("def draw_feet(") :]
+    program = (
+        text
+        + """
+import json
+import torch
+
+class Robot:
+    device = "cpu"
+    def __init__(self): self.names, self.kept = [], {}
+    def find_joints(self, name_keys, joint_subset=None, preserve_order=False):
+        self.names += [name_keys] if name_keys not in self.names else []
+        return [self.names.index(name_keys)], [name_keys]
+    def write_joint_stiffness_to_sim(self, stiffness, joint_ids=None, env_ids=None):
+        assert stiffness.shape == (len(env_ids), len(joint_ids))
+        self.kept["K", self.names[joint_ids[0]]] = stiffness[:, 0]
+    def write_joint_damping_to_sim(self, damping, joint_ids=None, env_ids=None):
+        assert damping.shape == (len(env_ids), len(joint_ids))
+        self.kept["C", self.names[joint_ids[0]]] = damping[:, 0]
+
+class Env:
+    num_envs, scene = 4000, {"robot": Robot()}
+
+draw_feet(Env, torch.arange(2000), "ranges.yaml")
+kept = Env.scene["robot"].kept
+pitch, roll = (kept["K", f"LLEG_BUSH_{axis}"].tolist() for axis in ("PITCH", "ROLL"))
+print("\\n" + json.dumps([len(kept), pitch, roll]))
+"""
+    )
+    done = subprocess.run([python, "-c", program], capture_output=True, text=True, cwd=tmp_path, timeout=200)
+    assert done.returncode == 0, done.stderr[-2000:]
+    count, pitch, roll = json.loads(done.stdout.splitlines()[-1])
+    assert count == 10
+    assert (np.mean(pitch), np.std(pitch)) == pytest.approx((480, 4.8), rel=0.06)
+    assert np.corrcoef(pitch, roll)[0, 1] == pytest.approx(0.36, abs=0.06)

@@ -6,7 +6,7 @@ from mutant import Mutant
 
 ENGINE_EXPORTS = (
     Mutant(
-        "exporters/bush.py", "the slip's spring is its torque times its angle",
+        "exporters/spring.py", "the slip's spring is its torque times its angle",
         "return self.torque / self.angle", "return self.torque * self.angle", ("exporters/test_mjcf_hysteresis.py",),
     ),
     Mutant(
@@ -45,9 +45,37 @@ ENGINE_EXPORTS = (
         "attribute.Set(old - mass)", "attribute.Set(old)", ("exporters/test_usd.py",),
     ),
     Mutant(
-        "exporters/usd/over.py", "the shapes that stood on the ground go on touching it",
-        "CreateCollisionEnabledAttr(False)\n\n\ndef _filter", "CreateCollisionEnabledAttr(True)\n\n\ndef _filter",
+        "exporters/usd/stage.py", "the shapes that stood on the ground go on touching it",
+        "CreateCollisionEnabledAttr(False)\n\n\ndef with_scene",
+        "CreateCollisionEnabledAttr(True)\n\n\ndef with_scene",
         ("exporters/test_usd.py",),
+    ),
+    Mutant(
+        "exporters/contact/springs.py", "the ground's push does not lean with the sole",
+        "return foot.turning(axis)[0] - sum(", "return foot.turning(axis)[0] - 0 * sum(",
+        ("exporters/test_contact_files.py",),
+    ),
+    Mutant(
+        "exporters/contact/springs.py", "a sphere's radius is forgotten",
+        "foot.depth + p.lower - RADIUS) for", "foot.depth + p.lower) for", ("exporters/test_contact_files.py",),
+    ),
+    Mutant(
+        "exporters/contact/bullet.py", "the middle point rubs",
+        "0.0 if point.middle else outer", "outer", ("exporters/test_contact_files.py",),
+    ),
+    Mutant(
+        "exporters/contact/drake.py", "a damping for a relaxation time",
+        '"relaxation_time", point.damping / point.stiffness', '"relaxation_time", point.damping',
+        ("exporters/test_contact_files.py",),
+    ),
+    Mutant(
+        "exporters/spring.py", "a slip's damper at another rate",
+        "(math.pi * SWAY * swing**2)", "(math.pi * swing**2)", ("exporters/test_contact.py",),
+    ),
+    Mutant(
+        "exporters/kinetics_observer.py", "roll and pitch change places on the way back",
+        '("roll", "ang", 0), ("pitch", "ang", 1)', '("roll", "ang", 1), ("pitch", "ang", 0)',
+        ("exporters/test_export.py",),
     ),
     Mutant(
         "twin/replay.py", "a sole starts in the ground",

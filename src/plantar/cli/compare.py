@@ -33,6 +33,9 @@ def run(
     out: Annotated[
         Path | None, typer.Option("--out", help="Folder for comparison.svg and comparison.json.")
     ] = None,
+    swing: Annotated[
+        float | None, typer.Option("--swing", help="As of `export`, for the contact; in rad.", metavar="RAD")
+    ] = None,
     memory: Memory = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No table, no progress.")] = False,
@@ -54,7 +57,7 @@ def run(
     step = progress(quiet)
     found = FeetResult.load(result, residuals=False)
     known = load_robot(robot)
-    scores, replayed = compare(found, known, open_together(logs, known, memory), step)
+    scores, replayed = compare(found, known, open_together(logs, known, memory), step, swing)
     end_progress(quiet)
     content = dump_json({"schema": "plantar.comparison/1", "scores": [asdict(row) for row in scores]})
     if out is not None:

@@ -12,6 +12,10 @@ from plantar.exporters import TARGETS, export
 
 TARGET_HELP = "One of: " + ", ".join(TARGETS) + "."
 MODEL_HELP = "Existing robot model to extend: MJCF, SDFormat, URDF or USD; the result's own URDF if left out."
+SWING_HELP = (
+    "Rubber that slips, for a target that holds no slip: amplitude of the motions to be right for, in rad. "
+    "If left out: K and C nearest to the identified motions."
+)
 OFFSET_HELP = "Let each spring rest at -offset/K instead of 0."
 
 
@@ -23,6 +27,7 @@ def run(
     out: Annotated[Path, typer.Option("--out", help="The file to write.", metavar="FILE")],
     model: Annotated[Path | None, typer.Option("--model", help=MODEL_HELP, metavar="MODEL")] = None,
     with_offset: Annotated[bool, typer.Option("--with-offset", help=OFFSET_HELP)] = False,
+    swing: Annotated[float | None, typer.Option("--swing", help=SWING_HELP, metavar="RAD")] = None,
     quiet: Annotated[
         bool, typer.Option("--quiet", "-q", help="No notes on what the target cannot hold.")
     ] = False,
@@ -31,7 +36,7 @@ def run(
 
     Example: plantar export out/feet/result.json --to mjcf --model robot.xml --out robot_on_bushes.xml
     """
-    notes = export(result, to, out, model, with_offset=with_offset)
+    notes = export(result, to, out, model, with_offset=with_offset, swing=swing)
     if not quiet:
         for note in notes:
             print(f"{out.name}: {note.severity}: {note.text}", file=sys.stderr)

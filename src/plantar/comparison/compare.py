@@ -54,12 +54,13 @@ def compare(
     robot: RobotModel,
     logs: Sequence[MotionLog],
     progress: Progress = lambda _: None,
+    swing: float | None = None,
 ) -> tuple[tuple[KindScore, ...], tuple[Replayed, ...]]:
     """Play each log's joints open loop on the model's rigid feet, on exported joints and on exported contact.
 
     Args:
         result: of `identify_feet`. robot: that the logs are of. logs: with an attitude of the IMU.
-        progress: is told each motion that is done.
+        progress: is told each motion that is done. swing: as of `plantar.export`, for the contact [rad].
 
     Returns:
         A score for each motion and kind, and what was simulated beside what was recorded, where no robot fell.
@@ -70,7 +71,7 @@ def compare(
     found: list[Replayed] = []
     for log in logs:
         plan = plan_of(robot, log)
-        made = scenes(result, robot, plan)
+        made = scenes(result, robot, plan, swing)
         played = _played(robot, plan, made)
         fell = {kind: one.fell for kind, one in played.items() if isinstance(one, MotionError)}
         falls = [time for time in fell.values() if time is not None]

@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
-from plantar.exporters.bush import FootBush, feet_of_result
+from plantar.exporters.bush import FootBush, check_swing, feet_of_result
 from plantar.exporters.contact import target as contact
 from plantar.exporters.job import Job
 from plantar.exporters.mjcf import target as joints
@@ -28,11 +28,14 @@ KINDS: Final = (AS_IT_WAS, JOINTS, CONTACT)
 RIGID: Final = Physics(bushes=None)
 
 
-def scenes(result: FeetResult, robot: RobotModel, plan: Plan) -> Mapping[str, str]:
+def scenes(
+    result: FeetResult, robot: RobotModel, plan: Plan, swing: float | None = None
+) -> Mapping[str, str]:
     """MJCF by kind of feet, each of the scene that `plan` is played on.
 
     The exporters extend the rigid scene as they extend a user's model: what is compared is what they write.
     """
+    check_swing(swing)
     data, base = open_result(result)
     rigid = scene_xml(robot, plan, RIGID)
     with tempfile.TemporaryDirectory() as folder:
@@ -40,7 +43,7 @@ def scenes(result: FeetResult, robot: RobotModel, plan: Plan) -> Mapping[str, st
         model.write_text(rigid)
 
         def job(hysteresis: bool) -> Job:
-            feet, remarks = feet_of_result(data, base, with_offset=False, hysteresis=hysteresis)
+            feet, remarks = feet_of_result(data, base, with_offset=False, hysteresis=hysteresis, swing=swing)
             moved = tuple(_on_twin(foot, robot) for foot in feet)
             return Job(data, moved, model, model.with_name("out.xml"), False, remarks)
 

@@ -12,7 +12,7 @@ from importlib import import_module
 from pathlib import Path
 
 from plantar.errors import ExportError, located
-from plantar.exporters.bush import feet_of_result
+from plantar.exporters.bush import check_swing, feet_of_result
 from plantar.exporters.comment import joints_note
 from plantar.exporters.job import Job
 from plantar.exporters.source import ResultInput, open_result, robot_urdf
@@ -23,6 +23,15 @@ from plantar.notes import Note, unique
 TARGETS: dict[str, tuple[str, str]] = {
     "mjcf": ("mjcf.target", "MuJoCo model (MJCF): bush joints and a light sole in each foot"),
     "mujoco-contact": ("contact.target", "MuJoCo model (MJCF): points under each foot with fitted solref"),
+    "drake-contact": (
+        "contact.drake",
+        "SDFormat for Drake: points under each foot with stiffness and damping",
+    ),
+    "bullet-contact": (
+        "contact.bullet",
+        "URDF for Bullet: points under each foot with stiffness and damping",
+    ),
+    "physx-contact": ("contact.physx", "USD layer over your stage: points with PhysX' compliant contact"),
     "sdf": ("sdf.target", "SDFormat model: prismatic and revolute joints with spring and damper"),
     "urdf": ("urdf.target", "URDF with Gazebo's spring tags, or the inertias of a plantar.inertia/1"),
     "drake": ("sdf.drake", "SDFormat for Drake: free bush joints under a drake:linear_bushing_rpy"),
@@ -47,23 +56,27 @@ def export(
     model: str | os.PathLike[str] | None = None,
     *,
     with_offset: bool = False,
+    swing: float | None = None,
 ) -> tuple[Note, ...]:
     """Hand a result to a simulator or controller: springs and dampers in its own format and units.
 
     Args:
         result: what `identify_feet` or `identify_inertia` found, or the path of its `result.json`.
-        target: mjcf, mujoco-contact, sdf, urdf, drake, usd, mc_rtc, openhrp, choreonoid, kinetics_observer,
-            randomization or yaml; for inertias urdf.
+        target: one of `TARGETS`: mjcf, mujoco-contact, drake-contact, bullet-contact, physx-contact, sdf, urdf, drake,
+            usd, mc_rtc, openhrp, choreonoid, kinetics_observer, randomization or yaml; for inertias urdf.
         out: the file to write.
         model: an existing robot model of that format to extend (MJCF, SDFormat, URDF, USD; a URDF works for MJCF and
             SDFormat too); the result's own URDF where left out, for USD a layer to reference.
+        swing: for rubber that slips and a target that holds no slip, the amplitude of the motions it is for [rad]: the
+            slip becomes their spring and damper. Where left out, K and C are the nearest to the identified motions.
         with_offset: the springs rest at -offset/K; else at 0, since the offset is mostly the sensors' zero.
 
     Returns:
         What the target could not hold, as notes.
 
     Raises:
-        ExportError: an unknown target, a result without what the target needs, a model without the ankle.
+        ExportError: an unknown target, a swing that is no angle, a result without what the target needs, a model
+            without the ankle.
 
     Example:
         >>> import plantar
@@ -72,6 +85,7 @@ def export(
         >>> "LLEG_BUSH_PITCH" in open("out/robot_on_bushes.urdf").read()
         True
     """
+    check_swing(swing)
     if target not in TARGETS:
         raise ExportError(located(f"'{target}' is not a target", valid=", ".join(TARGETS)))
     data, base = open_result(result)
@@ -90,7 +104,9 @@ def export(
     else:
         module = import_module(f"plantar.exporters.{TARGETS[target][0]}")
         hysteresis = getattr(module, "HYSTERESIS", False)
-        feet, remarks = feet_of_result(data, base, with_offset=with_offset, hysteresis=hysteresis)
+        feet, remarks = feet_of_result(
+            data, base, with_offset=with_offset, hysteresis=hysteresis, swing=swing
+        )
         if given is None and getattr(module, "EXTENDS", False):
             given = robot_urdf(data, base)
         takes_model = getattr(module, "EXTENDS", False) or getattr(module, "OPTIONAL_MODEL", False)

@@ -77,8 +77,21 @@ class FootBush:
         return float(np.mean([self.depth(corner) for corner in self.sole]))
 
 
+def check_swing(swing: float | None) -> None:
+    """Raise ExportError where an amplitude is no angle of a foot."""
+    if swing is not None and not 0 < swing < 1:
+        raise ExportError(
+            located("the swing is no angle of a foot", value=swing, valid="above 0, below 1 rad")
+        )
+
+
 def feet_of_result(
-    result: Mapping[str, Any], base: Path, *, with_offset: bool, hysteresis: bool = False
+    result: Mapping[str, Any],
+    base: Path,
+    *,
+    with_offset: bool,
+    hysteresis: bool = False,
+    swing: float | None = None,
 ) -> tuple[tuple[FootBush, ...], tuple[Note, ...]]:
     """Every foot of a plantar.feet/1 result, and notes on what no target will hold.
 
@@ -102,7 +115,11 @@ def feet_of_result(
         springs = tuple(
             spring
             for axis in ("z", "pitch", "roll")
-            if (spring := spring_of(result, rows, name, axis, with_offset, notes, hysteresis=hysteresis))
+            if (
+                spring := spring_of(
+                    result, rows, name, axis, with_offset, notes, hysteresis=hysteresis, swing=swing
+                )
+            )
             is not None
         )
         if not {"pitch", "roll"} & {spring.axis for spring in springs}:

@@ -3,16 +3,24 @@
 Four vectors x, y, z: `linStiffness` [N/m], `linDamping` [N·s/m], `angStiffness` [N·m/rad], `angDamping`
 [N·m·s/rad], one set for all contacts (mc_state_observation, etc/MCKineticsObserver/robots). What no
 recording gave stands at the observer's own defaults: 40000, 120, 400, 12.
+
+The observer's wrench on the robot is -(K·(p - p₀) + C·v) and -(K·sin θ·axis + C·ω), so K and C are plantar's, positive,
+per radian at small angles (state-observation, kinetics-observer.cpp). But it takes p, θ and ω along the world's axes: x
+is roll and y pitch only as long as the robot faces the world's x.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import os
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
+import yaml
 
 from plantar.conventions import Axis
+from plantar.errors import ExportError, located
 from plantar.exporters.comment import head
+from plantar.files import read_bounded
 from plantar.notes import Note
 
 if TYPE_CHECKING:
@@ -25,6 +33,41 @@ ENTRIES: dict[str, tuple[str, tuple[Axis | None, ...], float]] = {
     "linDamping": ("damping", (None, None, "z"), 120.0),
     "angDamping": ("damping", ("roll", "pitch", None), 12.0),
 }
+LIMIT: Final = 2**20  # bytes
+
+
+def read_contacts(path: str | os.PathLike[str]) -> dict[Axis, tuple[float, float]]:
+    """K and C by axis in an observer's YAML: pitch, roll [N·m/rad, N·m·s/rad] and z [N/m, N·s/m].
+
+    Raises ExportError: a file that cannot be read, or without one of the four vectors of three numbers.
+
+    Example:
+        >>> from plantar.exporters.kinetics_observer import read_contacts
+        >>> text = "linStiffness: [4e4, 4e4, 4e4]\\nangStiffness: [338, 457, 400]\\n"
+        >>> text += "linDamping: [120, 120, 120]\\nangDamping: [23, 20, 12]\\n"
+        >>> _ = open("observer.yaml", "w").write(text)
+        >>> read_contacts("observer.yaml")["pitch"]
+        (457.0, 20.0)
+    """
+    try:
+        data = yaml.safe_load(read_bounded(path, LIMIT, ExportError))
+    except (yaml.YAMLError, ValueError, RecursionError) as error:
+        raise ExportError(located("is not YAML", path=path, valid="an observer's configuration")) from error
+    found = {}
+    for key in ENTRIES:
+        try:
+            values = np.array(data[key], float)
+        except (TypeError, KeyError, ValueError):
+            values = np.empty(0)
+        if values.shape != (3,) or not np.isfinite(values).all() or values.min() < 0:
+            message = f"'{key}' is not three numbers"
+            raise ExportError(located(message, path=path, valid="x, y, z, none negative"))
+        found[key] = [float(value) for value in values]
+    places: tuple[tuple[Axis, str, int], ...] = (("roll", "ang", 0), ("pitch", "ang", 1), ("z", "lin", 2))
+    return {
+        axis: (found[f"{kind}Stiffness"][place], found[f"{kind}Damping"][place])
+        for axis, kind, place in places
+    }
 
 
 def write(job: Job) -> tuple[str, tuple[Note, ...]]:
@@ -38,6 +81,8 @@ def write(job: Job) -> tuple[str, tuple[Note, ...]]:
     ]
     text = "what was not identified (horizontal, yaw, z where missing) stands at the observer's defaults"
     notes.append(Note("export_default", "warning", text))
+    text = "the observer's x and y are the world's: roll and pitch of a robot that faces the world's x"
+    notes.append(Note("export_world", "info", text))
     if job.with_offset:
         notes.append(Note("export_offset", "warning", "the observer has no rest position: offsets left out"))
     body = ""

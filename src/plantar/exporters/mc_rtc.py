@@ -8,13 +8,65 @@ pushes back what the ground puts on the sole, so K, C and O are the identified o
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING
+import math
+import os
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
 
+from plantar.errors import ExportError, located
 from plantar.exporters.comment import head
+from plantar.files import read_bounded
 from plantar.notes import Note
 
 if TYPE_CHECKING:
     from plantar.exporters.job import Job
+
+LIMIT: Final = 2**24  # bytes: a robot module with all its meshes and limits has some hundred thousand
+
+
+@dataclass(frozen=True)
+class Flexibility:
+    """One flexible joint of a robot module: stiffness [N·m/rad, N/m], damping [N·m·s/rad, N·s/m], offset [N·m, N].
+
+    With plantar's signs: what the ground puts on the sole is K·deflection + C·rate + offset.
+    """
+
+    stiffness: float
+    damping: float
+    offset: float
+
+
+def read_flexibilities(path: str | os.PathLike[str]) -> dict[str, Flexibility]:
+    """The flexible joints of a robot module in JSON, by joint name.
+
+    Raises ExportError: a file that cannot be read, without `flexibilities`, or with an entry that is no joint with
+    three finite numbers K, C >= 0 and O, or the same joint twice.
+
+    Example:
+        >>> from plantar.exporters.mc_rtc import read_flexibilities
+        >>> entry = '{"jointName": "LLEG_BUSH_ROLL", "K": 352, "C": 28, "O": -4.1}'
+        >>> _ = open("module.json", "w").write('{"flexibilities": [' + entry + "]}")
+        >>> read_flexibilities("module.json")["LLEG_BUSH_ROLL"].stiffness
+        352.0
+    """
+    try:
+        data = json.loads(read_bounded(path, LIMIT, ExportError))
+    except (ValueError, RecursionError) as error:
+        raise ExportError(located("is not JSON", path=path, valid="a robot module of mc_rtc")) from error
+    entries = data.get("flexibilities") if isinstance(data, dict) else None
+    if not isinstance(entries, list):
+        raise ExportError(located("has no list 'flexibilities'", path=path, valid="a robot module of mc_rtc"))
+    found: dict[str, Flexibility] = {}
+    for place, entry in enumerate(entries, start=1):
+        try:
+            name, values = str(entry["jointName"]), [float(entry[key]) for key in ("K", "C", "O")]
+        except (TypeError, KeyError, ValueError):
+            name, values = "", [math.nan]
+        if not name or name in found or not all(map(math.isfinite, values)) or min(values[:2]) < 0:
+            message = f"flexibility {place} is no joint with K, C and O"
+            raise ExportError(located(message, path=path, valid="each jointName once; K, C not negative"))
+        found[name] = Flexibility(*values)
+    return found
 
 
 def write(job: Job) -> tuple[str, tuple[Note, ...]]:

@@ -17,6 +17,9 @@ from plantar.results.numbers import unit
 DAMPING_TIME = 0.002  # s: C/K written where none was identified, that of published bush models (5e5, 1e3)
 ASSUMED = f"K x {1e3 * DAMPING_TIME:g} ms"
 KNOWN_TERMS = ("stiffness", "damping", "offset")
+SWAY = (
+    3.0  # rad/s: half a hertz, as a standing robot sways; slip loses the same at any rate, a damper does not
+)
 SLIP_TERMS = ("slip_torque", "slip_angle")
 
 
@@ -31,6 +34,21 @@ class Slip:
     def stiffness(self) -> float:
         """Before it yields [N·m/rad]."""
         return self.torque / self.angle
+
+    def stiffness_at(self, swing: float) -> float:
+        """Stiffness in phase with swings of this amplitude [rad]: the describing function of an element that slips.
+
+        With cos β = 1 - 2·angle/swing it is (torque/angle)·(β - sin 2β/2)/π, and torque/angle before it slips.
+        """
+        if swing <= self.angle:
+            return self.stiffness
+        beta = math.acos(1 - 2 * self.angle / swing)
+        return self.stiffness * (beta - math.sin(2 * beta) / 2) / math.pi
+
+    def damping_at(self, swing: float) -> float:
+        """The damper that loses as much as the slip in swings of this amplitude [rad] at `SWAY` [N·m·s/rad]."""
+        lost = 4 * self.torque * max(swing - self.angle, 0.0)  # J a cycle, the loop's area
+        return lost / (math.pi * SWAY * swing**2)
 
 
 @dataclass(frozen=True)
@@ -64,10 +82,12 @@ def spring_of(
     notes: list[Note],
     *,
     hysteresis: bool = False,
+    swing: float | None = None,
 ) -> Spring | None:
     """The spring of one axis, or None where it is rigid; `notes` gets what nobody should miss.
 
-    hysteresis: whether the target can hold an element that slips.
+    hysteresis: whether the target can hold an element that slips. swing: amplitude [rad] at which a slip that the
+    target cannot hold becomes spring and damper; else the nearest ones of the identified motions.
 
     Raises ExportError where the stiffness is not positive or a number is none.
     """
@@ -84,11 +104,18 @@ def spring_of(
         message = f"{where}: the stiffness is not positive; no simulator can stand on it"
         raise ExportError(located(message, value=stiffness, valid="a result whose stiffness is usable"))
     extra = [name for name in values if name not in KNOWN_TERMS]
-    slip = None
-    if hysteresis and set(extra) == set(SLIP_TERMS) and all(values[name] > 0 for name in SLIP_TERMS):
-        slip, extra = Slip(*(values[name] for name in SLIP_TERMS)), []
-    nearest = _linear_equivalent(result, foot, axis) if extra else None
-    if extra:
+    slip = swung = None
+    if set(extra) == set(SLIP_TERMS) and all(values[name] > 0 for name in SLIP_TERMS):
+        element = Slip(*(values[name] for name in SLIP_TERMS))
+        if hysteresis:
+            slip, extra = element, []
+        elif swing is not None:
+            swung = element
+    nearest = _linear_equivalent(result, foot, axis) if extra and swung is None else None
+    if swung is not None:
+        text = f"{where}: the slip is written as the spring and damper of swings of {swing:g} rad at {SWAY:g} rad/s"
+        notes.append(Note("export_swing", "warning", text))
+    elif extra:
         text = f"{where}: the target holds a linear spring and damper; left out: {', '.join(extra)}"
         if nearest is not None:
             text += "; K and C are those of the spring and damper nearest to the identified motions"
@@ -99,6 +126,9 @@ def spring_of(
         _doubt(mine.get("damping", {}), where, notes)
     else:
         damping, assumed = _damping(mine.get("damping", {}), stiffness, where, notes)
+    if swung is not None and swing is not None:
+        stiffness += swung.stiffness_at(swing)
+        damping += swung.damping_at(swing)
     offsets = [
         _number(row.get("value"), f"{where} offset")
         for row in (*result.get("offsets", ()), *(row for name, row in mine.items() if name == "offset"))

@@ -16,6 +16,7 @@ from plantar.exporters.bush import FootBush
 from plantar.exporters.comment import head
 from plantar.exporters.contact.alone import IMPRATIO, RADIUS, contact_attributes
 from plantar.exporters.contact.fit import LOADS, STEPS, Check, Fitted, fitted
+from plantar.exporters.contact.springs import vertical_note
 from plantar.exporters.mjcf.file import Compiled, relocate
 from plantar.exporters.mjcf.from_urdf import opened
 from plantar.exporters.shapes import reaches_sole
@@ -159,14 +160,7 @@ def _said(foot: FootBush, found: Fitted, step: float) -> list[Note]:
             text = f"{foot.name} {check.axis}: the model's step of {step:g} s was not seen to hold K and C; "
             text += f"steps that do: {_steps(check)}"
             notes.append(Note("export_timestep", "warning", text))
-    stiffness, damping = found.foot.vertical
-    text = f"{foot.name} z: {stiffness:.4g} N/m and {damping:.4g} N·s/m"
-    lower = max(point.lower for point in found.foot.points)
-    if lower > 0:
-        edges = sum(point.stiffness for point in found.foot.points if point.lower > 0)
-        text += f", once the load is more than {edges * lower:.3g} N; below that {edges:.4g} N/m, of the edges alone"
-        text += f", which stand {1e3 * lower:.1f} mm lower than the sole"
-    notes.append(Note("export_vertical", "info", text))
+    notes.append(vertical_note(foot, found.foot))
     return notes
 
 

@@ -70,6 +70,16 @@ class SdfTree:
         base = default if place is None else place.get("relative_to", place.get("frame", "")) or default
         return self.in_model(base, depth + 1) @ pose_of(element)
 
+    def mass(self) -> float:
+        """Of the model's links [kg]. ExportError where they have none."""
+        texts = [link.findtext("inertial/mass") for link in self.links.values()]
+        total = float(sum(vector(text, 1, "mass")[0] for text in texts))
+        if total <= 0:
+            raise ExportError(
+                located("the model's links weigh nothing", path=self.path, valid="<inertial> with <mass>")
+            )
+        return total
+
     def fixed_children(self, link: str) -> list[tuple[ET.Element, str]]:
         """Fixed joints whose parent is a link, each with its child link."""
         return [

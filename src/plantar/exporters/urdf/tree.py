@@ -43,6 +43,18 @@ class UrdfTree:
             "" if child is None else child.get("link", ""),
         )
 
+    def mass(self) -> float:
+        """Of all links [kg]. ExportError where they have none."""
+        found = [
+            element for link in self.links.values() if (element := link.find("inertial/mass")) is not None
+        ]
+        total = float(sum(vector(element.get("value"), 1, "mass")[0] for element in found))
+        if total <= 0:
+            raise ExportError(
+                located("the links weigh nothing", path=self.path, valid="<inertial> with <mass>")
+            )
+        return total
+
     def fixed_children(self, link: str) -> list[tuple[ET.Element, str]]:
         """Fixed joints below a link, each with its child link."""
         joints = [joint for joint in self.joints.values() if joint.get("type") == "fixed"]

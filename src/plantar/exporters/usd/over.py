@@ -7,21 +7,18 @@ stood on the ground, and `collisionEnabled = false` on those.
 
 from __future__ import annotations
 
-import difflib
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.errors import ExportError, MissingExtra, located
 from plantar.exporters.bush import FootBush
 from plantar.exporters.comment import head, plate_note
-from plantar.exporters.shapes import SOLE_INERTIA, SOLE_MASS, plate, reaches_sole
+from plantar.exporters.shapes import SOLE_INERTIA, SOLE_MASS, plate
 from plantar.exporters.spring import Spring
-from plantar.exporters.urdf.geometry import box_corners
 from plantar.exporters.usd.conventions import AXIS, drive, identifier, quaternion
+from plantar.exporters.usd.stage import ankle_of, layer_above, quiet, standing_shapes, text_of, with_scene
 from plantar.notes import Note
 
 if TYPE_CHECKING:
@@ -34,58 +31,30 @@ def write(job: Job, model: Path) -> tuple[str, tuple[Note, ...]]:
     Raises ExportError: no stage, other units than metre and kilogram, no rigid body of an ankle's name. MissingExtra:
     no usd-core.
     """
-    try:
-        from pxr import Sdf, Usd
-    except ImportError as error:
-        raise MissingExtra("pxr", "usd", "export to a USD stage") from error
-    stage = _opened(model)
+    layer, above = layer_above(model)
     notes: list[Note] = []
-    layer = Sdf.Layer.CreateAnonymous(".usda")
-    layer.subLayerPaths.append(str(model.resolve()))
-    above = Usd.Stage.Open(layer)
-    for name in ("upAxis", "metersPerUnit", "kilogramsPerUnit"):
-        above.SetMetadata(name, stage.GetMetadata(name))
-    if stage.HasDefaultPrim():
-        above.SetDefaultPrim(above.GetPrimAtPath(stage.GetDefaultPrim().GetPath()))
     for foot in job.feet:
         _insert(above, foot, model, notes)
-    _scene(above, notes)
+    with_scene(above, notes)
     lines = head(job.result, job.feet, "USD", (*job.remarks, *notes), with_offset=job.with_offset)
-    layer.documentation = "\n".join(lines)
-    # Relative to where the layer will stand, as a stage that is moved as a whole needs it.
-    layer.subLayerPaths[0] = Path(os.path.relpath(model.resolve(), job.out.resolve().parent)).as_posix()
-    return str(layer.ExportToString()), tuple(notes)
-
-
-def _opened(model: Path) -> Any:
-    from pxr import Tf, Usd, UsdGeom, UsdPhysics
-
-    try:
-        stage = Usd.Stage.Open(str(model))
-    except Tf.ErrorException as error:
-        raise ExportError(located("USD cannot open the stage", path=model, valid="a USD stage")) from error
-    units = UsdGeom.GetStageMetersPerUnit(stage), UsdPhysics.GetStageKilogramsPerUnit(stage)
-    if not np.allclose(units, 1.0):
-        message = f"one unit of the stage is {units[0]:g} m and {units[1]:g} kg"
-        raise ExportError(located(message, path=model, valid="metersPerUnit = 1 and kilogramsPerUnit = 1"))
-    return stage
+    return text_of(layer, lines, model, job.out), tuple(notes)
 
 
 def _insert(stage: Any, foot: FootBush, model: Path, notes: list[Note]) -> None:
-    ankle = _ankle(stage, foot, model)
+    ankle = ankle_of(stage, foot, model)
     holder = _without_body(ankle)
     place = _relative(ankle, holder)
     centre = place[:3, :3] @ foot.centre + place[:3, 3]
     turn = place[:3, :3] @ foot.rotation
     there = bool(stage.GetPrimAtPath(holder.GetPath().AppendChild(identifier(foot.sole_link))))
-    shapes = _standing_shapes(ankle, foot)
+    shapes = standing_shapes(ankle, foot)
     above, at, rotated = ankle, foot.centre, foot.rotation
     for spring in foot.springs:
         link = _link(stage, holder, identifier(foot.link(spring.axis)), centre, turn)
         _joint(stage, holder, foot.joint(spring.axis), spring, (above, link), at, rotated)
         above, at, rotated = link, np.zeros(3), np.eye(3)
     _plate(stage, above, foot, shapes)
-    _quiet(stage, shapes)
+    quiet(stage, shapes)
     _filter(above, ankle)
     if there:
         return
@@ -94,23 +63,6 @@ def _insert(stage: Any, foot: FootBush, model: Path, notes: list[Note]) -> None:
         Note("export_plate", "info", f"{foot.name}: a plate touches the ground now, not "
              + ", ".join(str(shape.GetPath()) for shape in shapes))
     )  # fmt: skip
-
-
-def _ankle(stage: Any, foot: FootBush, model: Path) -> Any:
-    from pxr import UsdPhysics
-
-    bodies = [prim for prim in stage.Traverse() if prim.HasAPI(UsdPhysics.RigidBodyAPI)]
-    found = [prim for prim in bodies if prim.GetName() == identifier(foot.ankle)]
-    if len(found) == 1:
-        return found[0]
-    if found:
-        paths = ", ".join(str(prim.GetPath()) for prim in found)
-        message = f"has several rigid bodies '{foot.ankle}': {paths}"
-        raise ExportError(located(message, path=model, valid="a stage with one robot"))
-    names = [prim.GetName() for prim in bodies]
-    near = difflib.get_close_matches(identifier(foot.ankle), names, n=3) or names[:5]
-    message = f"has no rigid body '{foot.ankle}' (the ankle link of the robot file)"
-    raise ExportError(located(message, path=model, valid=", ".join(near) or "a stage of the robot"))
 
 
 def _without_body(ankle: Any) -> Any:
@@ -132,24 +84,6 @@ def _relative(prim: Any, other: Any) -> Array:
     cache = UsdGeom.XformCache()
     matrix = cache.GetLocalToWorldTransform(prim) * cache.GetLocalToWorldTransform(other).GetInverse()
     return np.array(matrix.RemoveScaleShear()).T
-
-
-def _standing_shapes(ankle: Any, foot: FootBush) -> list[Any]:
-    """Shapes of the ankle that collide and reach down to the sole."""
-    from pxr import Usd, UsdGeom, UsdPhysics
-
-    boxes = UsdGeom.BBoxCache(
-        Usd.TimeCode.Default(), [UsdGeom.Tokens.default_, UsdGeom.Tokens.guide, UsdGeom.Tokens.proxy]
-    )
-    found = []
-    for prim in Usd.PrimRange(ankle, Usd.TraverseInstanceProxies()):
-        if not prim.HasAPI(UsdPhysics.CollisionAPI):
-            continue
-        box = boxes.ComputeRelativeBound(prim, ankle).ComputeAlignedRange()
-        low, high = np.array(box.GetMin()), np.array(box.GetMax())
-        if np.all(high >= low) and reaches_sole(box_corners(high - low) + (high + low) / 2, foot):
-            found.append(prim)
-    return found
 
 
 def _link(stage: Any, holder: Any, name: str, centre: Array, turn: Array) -> Any:
@@ -209,19 +143,6 @@ def _plate(stage: Any, sole: Any, foot: FootBush, shapes: list[Any]) -> None:
             return
 
 
-def _quiet(stage: Any, shapes: list[Any]) -> None:
-    """Take contact from shapes; those of an instance are set apart from it first."""
-    from pxr import UsdPhysics
-
-    for path in [shape.GetPath() for shape in shapes]:
-        while (prim := stage.GetPrimAtPath(path)).IsInstanceProxy():
-            above = prim
-            while not above.IsInstance():
-                above = above.GetParent()
-            above.SetInstanceable(False)
-        UsdPhysics.CollisionAPI(prim).CreateCollisionEnabledAttr(False)
-
-
 def _filter(sole: Any, ankle: Any) -> None:
     from pxr import UsdPhysics
 
@@ -236,11 +157,3 @@ def _lighter(ankle: Any, mass: float) -> None:
     old = attribute.Get() if attribute and attribute.HasAuthoredValue() else 0.0
     if old > 2 * mass:
         attribute.Set(old - mass)
-
-
-def _scene(stage: Any, notes: list[Note]) -> None:
-    from pxr import UsdPhysics
-
-    if not any(prim.IsA(UsdPhysics.Scene) for prim in stage.Traverse()):
-        UsdPhysics.Scene.Define(stage, "/physicsScene")
-        notes.append(Note("export_scene", "info", "the stage had no PhysicsScene; one was added"))

@@ -1,0 +1,113 @@
+"""Drake's contact: spheres under each ankle with a point stiffness and damping of their own. No joint is added.
+
+A point contact pushes with k·depth and damps, as the plant is set up, either by `relaxation_time` τ, k·τ·rate (the
+discrete approximation SAP), or by `hunt_crossley_dissipation` d, k·depth·d·rate (all others). Both are written: τ is
+c/k, and d is c over what the point carries on a robot on two feet (drake.mit.edu, "Modeling Compliant Contact" and the
+page on parsing multibody files).
+"""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from typing import TYPE_CHECKING, Final
+
+from plantar.conventions import GRAVITY, Array
+from plantar.exporters.bush import FootBush
+from plantar.exporters.comment import head, mesh_note
+from plantar.exporters.contact.springs import FRICTION, RADIUS, Placed, placed, said, spring_foot
+from plantar.exporters.poses import pose
+from plantar.exporters.sdf.drake import MESHES, URI, tag
+from plantar.exporters.sdf.from_urdf import sdf_from_urdf
+from plantar.exporters.sdf.tree import SdfTree, relative, set_pose
+from plantar.exporters.shapes import reaches_sole
+from plantar.exporters.xml_file import numbers, to_text, vector
+from plantar.notes import Note
+
+if TYPE_CHECKING:
+    from plantar.exporters.job import Job
+
+EXTENDS = True
+GROUND: Final = 1e9  # N/m: of a floor that is no second spring; Drake's own default is as soft as a foot
+
+
+def write(job: Job) -> tuple[str, tuple[Note, ...]]:
+    """The model with its feet on points, as SDFormat.
+
+    Raises ExportError: no ankle, a model without mass, a bush that does not stand over its sole.
+    """
+    assert job.model is not None
+    notes: list[Note] = []
+    ankles = tuple(foot.ankle for foot in job.feet)
+    if job.model.suffix.lower() == ".urdf":
+        tree = SdfTree(sdf_from_urdf(job.model, notes, MESHES), job.model, ankles)
+    else:
+        tree = SdfTree.load(job.model, ankles)
+    ET.register_namespace("drake", URI)
+    weight = tree.mass() * GRAVITY
+    for foot in job.feet:
+        made = spring_foot(foot, weight)
+        friction = _silenced(tree, foot, notes)
+        for point in placed(foot, made, weight):
+            _add(tree.links[foot.ankle], point, friction)
+        notes += said(foot, made, weight)
+    text = f"give the ground drake:point_contact_stiffness of {GROUND:g} N/m or more, and no dissipation: else it is a "
+    text += "second spring; a discrete plant of 4 ms or less holds these feet"
+    notes.append(Note("export_ground", "info", text))
+    lines = head(job.result, job.feet, "Drake's contact", (*job.remarks, *notes), with_offset=job.with_offset)
+    return to_text(tree.root, lines), tuple(notes)
+
+
+def _silenced(tree: SdfTree, foot: FootBush, notes: list[Note]) -> float:
+    """Take out the shapes that stand on the ground, points of an earlier export too; their friction."""
+    quiet, friction = [], None
+    queue = [foot.ankle]
+    while queue:
+        name = queue.pop()
+        queue += [child for _, child in tree.fixed_children(name)]
+        place = relative(tree, name, foot.ankle)
+        for shape in tree.links[name].findall("collision"):
+            points = tree.points(shape)
+            if points is None:
+                notes.append(mesh_note(foot))
+            elif not reaches_sole(_moved(place, points), foot):
+                continue
+            tree.links[name].remove(shape)
+            if friction is None:
+                friction = _friction(shape)
+            if not shape.get("name", "").startswith(f"{foot.name}_contact_"):
+                quiet.append(shape.get("name", ""))
+    if quiet:
+        text = f"{foot.name}: these shapes are left out, the points touch instead: {', '.join(quiet)}"
+        notes.append(Note("export_silent", "info", text))
+    return FRICTION if friction is None else friction
+
+
+def _moved(place: Array, points: Array) -> Array:
+    return points @ place[:3, :3].T + place[:3, 3]
+
+
+def _friction(shape: ET.Element) -> float | None:
+    for path in (f"{tag('proximity_properties')}/{tag('mu_dynamic')}", "surface/friction/ode/mu"):
+        if shape.findtext(path) is not None:
+            return float(vector(shape.findtext(path), 1, "friction")[0])
+    return None
+
+
+def _add(ankle: ET.Element, placed: Placed, friction: float) -> None:
+    point = placed.point
+    collision = ET.SubElement(ankle, "collision", name=placed.name)
+    set_pose(collision, pose(placed.centre))
+    sphere = ET.SubElement(ET.SubElement(collision, "geometry"), "sphere")
+    ET.SubElement(sphere, "radius").text = numbers([RADIUS])
+    properties = ET.SubElement(collision, tag("proximity_properties"))
+    carried = max(
+        placed.push, 1e-3 * point.stiffness * RADIUS
+    )  # one that hardly touches must not damp without bound
+    for name, value in (
+        ("point_contact_stiffness", point.stiffness),
+        ("relaxation_time", point.damping / point.stiffness),
+        ("hunt_crossley_dissipation", point.damping / carried),
+        ("mu_dynamic", friction),
+        ("mu_static", friction),
+    ):
+        ET.SubElement(properties, tag(name)).text = numbers([value])
