@@ -24,7 +24,8 @@ def stance_stiffness(recordings: Sequence[Recording], fit: AxisFit) -> list[Stan
     """Of every stance with enough samples, of fitted and unseen recordings; none where the foot does not step.
 
     A stance alone is too short to tell a spring from a damper and from the load, or to tell how well it does: damping,
-    memory and the load's moment arms are those of `fit`, the offset is the stance's own, and there is no interval.
+    memory, the load's moment arms and the sensor's turn are those of `fit`, the offset is the stance's own, and there
+    is no interval.
     """
     found: list[tuple[StanceStiffness, float]] = []
     for recording, block in _walks(recordings, fit):
@@ -76,7 +77,8 @@ def _slope(block: Block, rows: NDArray[np.intp], fit: AxisFit) -> tuple[float, f
     weight, regressor = block.stances.weight[rows], block.regressor[rows]
     if not weight.sum() > 0:
         return 0.0, 0.0
-    others = regressor[:, 1:] @ fit.values[1:] + block.common_nuisance[rows] @ np.array(fit.moment_arms)
+    place = np.array([*fit.moment_arms, fit.turned])
+    others = regressor[:, 1:] @ fit.values[1:] + block.common_nuisance[rows] @ place
     angle = _centred(regressor[:, 0], weight)
     torque = _centred(block.response[rows] - others, weight)
     information = float(np.sum(weight * angle**2))

@@ -175,8 +175,8 @@ def _about_its_centre(
     """A fit of stances whose memory is found about the bush's centre; where that is, the linear parameters tell."""
     found = over_stances(_with_model(linear, fit), recordings)
     for _ in range(CENTRE_ROUNDS):
-        above = found.moment_arms[1]
-        data_sets = [data_set_of(each, linear.foot, linear.axis, share, above) for each in recordings]
+        place = (found.moment_arms[1], found.turned)
+        data_sets = [data_set_of(each, linear.foot, linear.axis, share, *place) for each in recordings]
         fit = fit_again(fit, data_sets)
         found = over_stances(_with_model(linear, fit), recordings)
     return found
@@ -215,13 +215,15 @@ def _remembers(data_sets: Sequence[DataSet]) -> bool:
 
 def _of_linear(foot: str, axis: Axis, fit: LinearFit, choice: ModelChoice | None, reason: str) -> AxisFit:
     size = len(fit.values)
+    aside, above, turned = _place(fit)
     return AxisFit(
         foot=foot,
         axis=axis,
         model=KelvinVoigt(),
         values=fit.values,
         shape=np.zeros(0),
-        moment_arms=_moment_arms(fit),
+        moment_arms=(aside, above),
+        turned=turned,
         offsets=fit.offsets,
         covariance=fit.covariance[:size, :size],
         freedom=fit.freedom[:size],
@@ -249,7 +251,7 @@ def _with_model(linear: AxisFit, fit: ModelFit) -> AxisFit:
     )
 
 
-def _moment_arms(fit: LinearFit) -> tuple[float, float]:
-    """Where a fit of stances found the bush's centre, zeros of others."""
-    aside, above = fit.common_nuisance if fit.common_nuisance.size else (0.0, 0.0)
-    return float(aside), float(above)
+def _place(fit: LinearFit) -> list[float]:
+    """Where a fit of stances found the bush's centre, aside and above, and its sensor turned; zeros of others."""
+    found: list[float] = fit.common_nuisance.tolist()
+    return found or [0.0, 0.0, 0.0]

@@ -36,6 +36,7 @@ def over_stances(fit: AxisFit, recordings: Sequence[Recording]) -> AxisFit:
         covariance=fit.covariance * np.outer(wider, wider),
         freedom=freedom,
         moment_arms=(float(found.common_nuisance[0]), float(found.common_nuisance[1])),
+        turned=float(found.common_nuisance[2]),
         offsets=found.offsets,
         offset_std={label: found.offset_std(label) for label in found.offsets},
     )

@@ -13,16 +13,17 @@ from plantar.estimation.blocks import StanceRows
 from plantar.estimation.orthonormal import orthonormal
 from plantar.estimation.slow_drift import drift_beside
 from plantar.feet.fit.axis import AxisFit, FittedModel
-from plantar.feet.fit.load_torque import across_force, load_of, load_torque, moment_columns
+from plantar.feet.fit.load_torque import across_force, load_of, load_torque, place_columns
 from plantar.feet.recording import SHORTEST_STANCE_RUN, Recording
 from plantar.model_selection.data_sets import DataSet, StepColumns
 from plantar.models import BushMotion, KelvinVoigt
 from plantar.signals.filters import SHORTEST_RUN, differentiate, low_pass
 
 PATH_BAND = 4.0  # times the fit's cutoff, of the path that a memory follows through short stances
-# m, before any data, of the centre's place: aside anything (the torque of the load is its own), in height some
-# millimetres of the robot file's and of the slide under load.
-MOMENT_SPREAD = np.array([np.inf, 0.006])
+# Before any data, of where steps find the centre [m] and how far the force sensor is turned about the vertical [rad]:
+# aside anything (the torque of the load is its own), in height some millimetres of the robot file's and of the slide
+# under load, turned by a degree, as a mount that nobody measured.
+PLACE_SPREAD = np.array([np.inf, 0.006, 0.02])
 Turn = tuple[float, float, float]
 UNTURNED: Turn = (0.0, 0.0, 0.0)
 SHAPE_STEP = 0.01  # share of a nonlinear parameter, of the differences that stand for derivatives
@@ -66,8 +67,8 @@ def blocks_of(
                 nuisance=_nuisance(recording, foot, column, fit) if drift else None,
                 noise=noise,
                 stances=_stance_rows(recording, foot) if steps else None,
-                common_nuisance=moment_columns(recording, foot, axis)[rows] if steps else None,
-                common_spread=MOMENT_SPREAD if steps else None,
+                common_nuisance=place_columns(recording, foot, axis)[rows] if steps else None,
+                common_spread=PLACE_SPREAD if steps else None,
             )
         )
     return blocks
@@ -200,17 +201,19 @@ def data_set_of(
     axis: Axis,
     own_share: float = 0.0,
     above: float = 0.0,
+    turned: float = 0.0,
     imu_turned: Turn = UNTURNED,
 ) -> DataSet:
     """One recording of one axis, as the models take it.
 
     `imu_turned`: as in `motion_of`. Of a foot that steps: `own_share` of the offsets of stances is their own; the
-    bush's centre is `above` its place in the robot file [m].
+    bush's centre is `above` its place in the robot file [m], the force sensor `turned` about the vertical [rad].
     """
     column, stances = ROTATIONAL_AXES.index(axis), recording.stances[foot]
     torque, used = recording.bushes[foot].torque[:, column], recording.used(foot)
     if stances is None:
         return DataSet(recording.name, motion_of(recording, foot, axis, imu_turned), torque, used)
     steps = StepColumns(stances.number, load_of(recording, foot)[:, None], own_share)
-    measured = recording.raw[foot].torque[:, column] - above * across_force(recording, foot, column)
+    raw = recording.raw[foot].torque
+    measured = raw[:, column] - above * across_force(recording, foot, column) - turned * raw[:, 1 - column]
     return DataSet(recording.name, path_of(recording, foot, axis), measured, used, steps)
