@@ -42,8 +42,9 @@ def exact() -> Recording:
     stances = Stances(np.arange(count) // STEP, np.ones(count))
     torque = STIFFNESS * angle + DAMPING * np.gradient(angle, PERIOD) + rng.normal(0, 0.02, count)
     recording = made_recording("walk", angle, torque, stances=stances)
-    loads = {name: replace(bush, wrench=rng.normal(0, 50, bush.wrench.shape), force_z=rng.uniform(300, 700, count))
-             for name, bush in recording.bushes.items()}  # fmt: skip
+    both = np.column_stack([torque, rng.normal(0, 5, count)])
+    loads = {name: replace(bush, wrench=rng.normal(0, 50, bush.wrench.shape), force_z=rng.uniform(300, 700, count),
+                           torque=both) for name, bush in recording.bushes.items()}  # fmt: skip
     return replace(recording, bushes=loads, raw=loads, imu_turns={FOOT: effects})
 
 

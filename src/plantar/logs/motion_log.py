@@ -148,6 +148,8 @@ class MotionLog:
 
     def vertical_only(self, sensor: str) -> bool:
         """Whether a force sensor is one of single-axis cells: no horizontal force and no moment about the vertical."""
+        if not self.has(*wrench_columns(sensor)):
+            return False
         wrench = self.wrench(sensor)
         return bool(not wrench[:, [0, 1, 5]].any() and wrench[:, 2].any())
 

@@ -204,6 +204,7 @@ def _others_torque(fit: AxisFit, recordings: Sequence[Recording], shared: bool) 
     blocks = tangent_blocks(recordings, fit, drift=not shared)
     if blocks[0].stances is None:
         return None
+    blocks = [_without_the_other(block) for block in blocks]
     by_name = {recording.name: recording for recording in recordings}
     chosen = [by_name[block.label] for block in blocks]
     other = [place_columns(one, fit.foot, fit.axis)[one.rows(fit.foot)][:, 2:] for one in chosen]
@@ -215,6 +216,15 @@ def _others_torque(fit: AxisFit, recordings: Sequence[Recording], shared: bool) 
     size, found = blocks[0].regressor.shape[1], fits[1]
     sure = found.condition_number <= SINGULAR and abs(found.values[size]) > SURE * found.std[size]
     return (float(found.values[size]) if sure else 0.0), left / max(before, np.finfo(float).tiny)
+
+
+def _without_the_other(block: Block) -> Block:
+    """The block of a foot that steps without the other axis' torque among its nuisances, their last column."""
+    assert block.common_nuisance is not None, "a block of a foot that steps"
+    assert block.common_spread is not None, "a block of a foot that steps"
+    return replace(
+        block, common_nuisance=block.common_nuisance[:, :-1], common_spread=block.common_spread[:-1]
+    )
 
 
 def shape_moved(shape: Array, by: Array) -> Array:

@@ -22,10 +22,10 @@ from plantar.signals.resampling import shifted
 from plantar.signals.segments import run_numbers
 
 SUSPECTED = 2.0  # deviations of a term that the model leaves out
-WALKS_DIFFER = 0.035  # share of K by which walks of one robot differ, beyond what their own stances show
+WALKS_DIFFER = 0.02  # share of K by which walks of one robot differ, beyond what their own stances show
 STANCE_END = 0.1  # of a stance at either end, without which a fit over stances is made again
 SLOPE_UNSURE = (
-    0.02  # of the slope of an element found in short stances: what its share of the spring is unsure by
+    0.01  # of the slope of an element found in short stances: what its share of the spring is unsure by
 )
 FEWEST_STANDS = 2  # stances of a foot in one recording, for their zeros to differ
 SINGULAR = 1e6  # condition of the fit beyond which nothing moves enough to tell
@@ -146,7 +146,7 @@ def _shared_slope(fit: AxisFit) -> list[Cause]:
     """What a memory that was found in short stances may have taken from the spring, or left to it.
 
     Until it slips, an element is a spring; each stance begins with a state that nobody knows. On walks of a simulated
-    robot whose feet are known, K is off by up to 2.5 % of the element's slope.
+    robot whose feet are known, K is off by about a per cent of the element's slope.
     """
     if "slip_torque" not in fit.model.terms:
         return []
