@@ -79,6 +79,7 @@ def test_the_turn_is_found_and_the_stiffness_with_it(read: Recording) -> None:
     shown = turn_shown(feet, logs.imu_turn, MOUNT)
     assert shown is not None
     np.testing.assert_allclose(shown.angles[:2], TURN[:2], atol=0.002)
+    assert (shown.angles[2], shown.covariance[2, 2]) == pytest.approx((0.0, MOUNT**2)), "nothing shows it"
     assert is_worth(shown, logs.imu_turn)
     right = put_right(logs, shown)
     assert right.imu_turn is shown

@@ -106,7 +106,11 @@ def test_of_a_foot_that_steps_a_memory_is_taken_as_soon_as_it_predicts_better(
 
 @pytest.mark.parametrize(
     ("scores", "steps"),
-    [({"refused": "is hardly reached"}, False), ({"held_out_rms": 9e9, "refused": None}, True)],
+    [
+        ({"refused": "is hardly reached"}, False),
+        ({"refused": "is hardly reached"}, True),
+        ({"held_out_rms": 9e9, "refused": None}, True),
+    ],
 )
 def test_a_memory_that_is_neither_shown_nor_excluded_makes_a_caution(
     recordings: list[Recording], clear: AxisFit, spring: AxisFit, scores: dict[str, object], steps: bool

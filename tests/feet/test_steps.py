@@ -158,3 +158,22 @@ def test_a_leg_that_gives_way_is_no_turned_bush(robot: RobotModel) -> None:
         logs.append(log.with_columns(changed))
     found = identify_feet(robot, logs, settings=LINEAR)
     assert not [note for note in found.notes if note.code == BUSH_TURNED]
+
+
+def test_a_force_sensor_that_is_turned_is_found_from_steps(robot: RobotModel) -> None:
+    """About the vertical: each axis' torque shows in the other. Left out, it is stiffness where both axes move."""
+    turn, exact, read = 0.03, [], []
+    for seed in (1, 2, 3):
+        log = stepping(record(sway(f"walk_{seed}", seed, duration=15.0)))
+        x, y = (log.column(f"wrench.left.torque.{axis}") for axis in "xy")
+        turned = {"wrench.left.torque.x": x + turn * y, "wrench.left.torque.y": y - turn * x}
+        exact.append(log)
+        read.append(log.with_columns(turned))
+    found = {
+        name: identify_feet(robot, logs, settings=LINEAR) for name, logs in (("exact", exact), ("read", read))
+    }
+    by_axis = {model.axis: model.turned for model in found["read"].models if model.foot == "left"}
+    assert by_axis == pytest.approx({"pitch": -turn, "roll": turn}, abs=0.006)
+    for axis in ("pitch", "roll"):
+        told, truth = (found[name].parameter("left", axis, "stiffness").value for name in ("read", "exact"))
+        assert told == pytest.approx(truth, rel=0.004)

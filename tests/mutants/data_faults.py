@@ -218,8 +218,49 @@ DATA_FAULTS = (
         ("estimation/test_slow_drift.py",),
     ),
     Mutant(
-        "feet/memory_of_others.py", "a memory is made up", "s.refused is None and s.model.name in shown", "True",
+        "feet/memory_of_others.py", "a memory is made up", "s.refused is None and s.model.name in shown), None)",
+        "True), None)",
         ("feet/test_memory_of_others.py",),
+    ),
+    Mutant(
+        "feet/memory_of_others.py", "what is not excluded is not said", "(excluded and not steps)", "True",
+        ("feet/test_memory_of_others.py",),
+    ),
+    Mutant(
+        "feet/imu_of_steps.py", "the IMU's turn has no prior", "np.eye(3) / mount**2", "np.eye(3) * mount**2",
+        ("feet/test_imu_of_steps.py",),
+    ),
+    Mutant(
+        "feet/imu_of_steps.py", "the IMU's turn is put right twice", "np.array(shown.angles) - ready.imu_turn.angles",
+        "np.array(shown.angles)", ("feet/test_imu_of_steps.py",),
+    ),
+    Mutant(
+        "feet/imu_of_steps.py", "no turn is worth it", "(apart > SURE *", "(apart > 1e9 * SURE *",
+        ("feet/test_imu_of_steps.py",),
+    ),
+    Mutant(
+        "feet/recording.py", "rates stay where angles are put right", "rate=state.rate + rates", "rate=state.rate",
+        ("feet/test_imu_of_steps.py",),
+    ),
+    Mutant(
+        "feet/interval_width/imu_turn.py", "an unknown mount widens nothing", "np.square(effects)",
+        "0 * np.square(effects)",
+        ("feet/test_imu_of_steps.py",),
+    ),
+    Mutant(
+        "feet/fit/regression_data.py", "a sensor that steps is not turned", "np.inf, 0.006, 0.02",
+        "np.inf, 0.006, 1e-9",
+        ("feet/test_steps.py",),
+    ),
+    Mutant(
+        "feet/prepare.py", "a log stays when it is checked", "                del log  #",
+        "                # del log  #",
+        ("feet/test_prepare.py",),
+    ),
+    Mutant(
+        "sensors/delays/lagged_log.py", "the stillest stretch is searched", "np.argmax(until[most:]",
+        "np.argmin(until[most:]",
+        ("sensors/delays/test_lagged_log.py",),
     ),
     Mutant(
         "model_selection/selection.py", "what hardly slips need not gain", "score.refused or score.held_out_rms <",
@@ -240,8 +281,8 @@ DATA_FAULTS = (
     ),
     Mutant(
         "signals/thinning.py", "quick signals pass for slow ones",
-        "low_pass(values, log.period, BAND * rate / 2)[::step]",
-        "values[::step]", ("signals/test_thinning.py",),
+        "low_pass(np.column_stack([read[name] for name in names]), log.period, cutoff)[::step]",
+        "np.column_stack([read[name] for name in names])[::step]", ("signals/test_thinning.py",),
     ),
     Mutant(
         "estimation/least_squares.py", "nuisances stay in the rows",

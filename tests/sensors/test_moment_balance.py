@@ -15,7 +15,7 @@ from plantar.robot.uncertainty import EXACT
 from plantar.sensors.moment_balance import TorqueGain, torque_gain_notes, torque_gains
 from plantar.sensors.moment_errors import moment_errors, prior_deviations
 from plantar.sensors.moment_fit import MomentFit, Part, fit_moments, solved
-from plantar.sensors.newton_euler import newton_euler_residual
+from plantar.sensors.newton_euler import EDGE, SHORTEST, newton_euler_residual
 from plantar.signals.resampling import shifted
 from plantar.twin import PAPER, play_all
 from plantar.twin.robots import hrp2
@@ -187,3 +187,18 @@ def test_one_foot_that_is_off_about_both_axes_shows_in_both_together(
     known = np.kron(np.eye(2), deviation**2 / 2 * same + other)
     part = Part(known - twin.uncertainty.wrench_gain**2 * np.eye(4), 1e6)
     assert set(torque_gains(twin, MomentFit(values, [part]))) == axes
+
+
+@pytest.mark.parametrize("stretch", [1.0, 1.0 - 1e-12, 1.0 + 1e-12])
+def test_the_shortest_log_is_told_by_its_samples(twin: RobotModel, sweep: MotionLog, stretch: float) -> None:
+    """Seconds that are added up from periods are never just as many."""
+    start = len(sweep) // 2
+
+    def lasting(seconds: float) -> MotionLog:
+        part = sweep.select(slice(start, start + round((seconds + 2 * EDGE + 0.1) / sweep.period)))
+        return replace(part, time=stretch * part.time)
+
+    residual = newton_euler_residual(twin, lasting(SHORTEST))
+    assert residual is not None
+    assert len(residual.pair.predicted) * residual.pair.period == pytest.approx(SHORTEST)
+    assert newton_euler_residual(twin, lasting(SHORTEST - 1.0)) is None

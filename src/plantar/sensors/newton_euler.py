@@ -135,7 +135,7 @@ def newton_euler_residual(robot: RobotModel, log: MotionLog) -> NewtonEulerResid
     calm = _longest_closed(measured.sum(axis=0), rates.sum(axis=0), moving[-2], period)
     measured, rates, predicted, by_encoders = (part[..., calm, :] for part in (measured, rates, *moving[-2:]))
     pair = Pair(log.name, measured.sum(axis=0), rates.sum(axis=0), predicted, period)
-    if len(predicted) * period < SHORTEST or not closes(pair):
+    if len(predicted) < round(SHORTEST / period) or not closes(pair):
         return None
     motion = motion.select(calm)
     pair = replace(pair, model_errors=predicted_errors(robot, motion, DELAY_DRAWS))
