@@ -48,3 +48,17 @@ def test_effects_are_those_of_another_mount(axis: int) -> None:
 def test_a_robot_without_imu_has_none() -> None:
     robot = replace(hrp2.robot(), imu=None)
     assert imu_turn_effects(robot, np.zeros((3, len(robot.joint_names))), np.ones((3, 4)), 0.02) == {}
+
+
+def test_a_hole_in_the_attitude_does_not_spread() -> None:
+    """Effects are found at a lower rate: between two of their moments a hole would take whole ones with it."""
+    robot = hrp2.robot()
+    still = np.zeros((SAMPLES, len(robot.joint_names)))
+    orientation = np.array([1.0, 0.1, -0.1, 0.3]) + np.zeros((SAMPLES, 1))
+    whole = imu_turn_effects(robot, still, orientation, 0.005)
+    holed = orientation.copy()
+    holed[4] = np.nan
+    for foot, effects in imu_turn_effects(robot, still, holed, 0.005).items():
+        np.testing.assert_allclose(effects, whole[foot], atol=1e-9)
+    for effects in imu_turn_effects(robot, still, np.nan * orientation, 0.005).values():
+        assert not effects.any()

@@ -39,9 +39,14 @@ def imu_turn_effects(
             foot_motion(path, angles, still[0], attitudes, still[1]).deflection, len(ways)
         )
         changes = np.stack([(one - read) / STEP for one in moved], axis=2).reshape(len(places), -1)
-        found[name] = np.column_stack([np.interp(every, places, change) for change in changes.T]).reshape(
-            -1, *moved[0].shape[1:], len(moved)
-        )
+        known = np.isfinite(changes).all(
+            axis=1
+        )  # a hole in the attitude must not spread to the samples beside it
+        if not known.any():
+            changes, known = np.zeros_like(changes), ~known
+        found[name] = np.column_stack(
+            [np.interp(every, places[known], change) for change in changes[known].T]
+        ).reshape(-1, *moved[0].shape[1:], len(moved))
     return found
 
 
