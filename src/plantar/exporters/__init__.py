@@ -67,9 +67,9 @@ def export(
         out: the file to write.
         model: an existing robot model of that format to extend (MJCF, SDFormat, URDF, USD; a URDF works for MJCF and
             SDFormat too); the result's own URDF where left out, for USD a layer to reference.
+        with_offset: the springs rest at -offset/K; else at 0, since the offset is mostly the sensors' zero.
         swing: for rubber that slips and a target that holds no slip, the amplitude of the motions it is for [rad]: the
             slip becomes their spring and damper. Where left out, K and C are the nearest to the identified motions.
-        with_offset: the springs rest at -offset/K; else at 0, since the offset is mostly the sensors' zero.
 
     Returns:
         What the target could not hold, as notes.
