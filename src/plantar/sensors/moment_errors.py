@@ -12,7 +12,8 @@ from plantar.dynamics import Contact, Equation
 from plantar.dynamics.inertial_motion import inertial_motion, turned_motions
 from plantar.dynamics.motion import Motion
 from plantar.robot.model import Foot, RobotModel
-from plantar.sensors.newton_euler import BASE_ROWS, CUTOFF, SLOW, NewtonEulerResidual, predicted_errors
+from plantar.sensors.newton_euler import BASE_ROWS, CUTOFF, NewtonEulerResidual, predicted_errors
+from plantar.sensors.newton_sides import SLOW
 from plantar.signals.filters import gain, low_pass
 
 LOOSE = 0.3  # share: deviation of a torque's gain before the moments are asked
@@ -62,7 +63,7 @@ def moment_errors(robot: RobotModel, residual: NewtonEulerResidual, steps: bool)
     pair, period, count = residual.pair, residual.pair.period, len(readings) + len(slopes)
     noisy = 6 * (1 + len(readings))
     errors = predicted_errors(robot, inertial_motion(robot, residual.signals, residual.kept))
-    every = np.hstack([pair.predicted - pair.measured, *readings, *slopes, *errors])
+    every = np.hstack([pair.predicted - pair.measured - residual.taken, *readings, *slopes, *errors])
     del readings, slopes, errors
     for first in range(
         6, every.shape[1], TOGETHER

@@ -2,31 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from plantar.contact.phases import shaken
-from plantar.conventions import FORCE, GRAVITY, Array, Mask
+from plantar.conventions import GRAVITY, Array, Mask
 from plantar.dynamics import Contact, Equation, model_parameters
 from plantar.dynamics.inertial_motion import InertialSignals, inertial_motion, inertial_signals
 from plantar.dynamics.motion import Motion
-from plantar.estimation.delays.delay import LEAST_CLOSED, Pair, closes, unexplained
+from plantar.estimation.delays.delay import Pair, closes
 from plantar.estimation.delays.sensor_delays import Balance
 from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.robot.model import RobotModel
 from plantar.sensors.below_sensor import below_sensors
+from plantar.sensors.load_errors import FootLoads
 from plantar.sensors.model_errors import drawn_parameter_errors
+from plantar.sensors.newton_sides import NewtonSides, moving
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.orientation import attitude
 from plantar.signals.segments import longest_run
 
 CUTOFF = 8.0  # Hz: above it differentiated encoders are noise
 KEPT_RATE = 40.0  # Hz of the samples that are kept: the cutoff is far below
-SLOW = 0.05  # Hz: below it both sides differ by postures and drifting zeros
 BASE_ROWS = slice(0, 6)
-WINDOW = 2.0  # s, in which the forces must follow from the prediction
 SHORTEST = 8.0  # s that a log must offer without a push or a blow
 DELAY_DRAWS = 16  # of a wrong URDF that take part in delays: these are filtered in every band
 EDGE = 0.3  # s at both ends of a run, where the filter is unsure
@@ -38,14 +37,16 @@ class NewtonEulerResidual:
 
     `pair`: all feet together; `measured` and `rates` (feet, n, 6): each foot's wrench, and how it changes with the
     moment at which its sensor is read; `by_encoders` (n, 6): how the prediction changes with the moment at which the
-    encoders are. `readings` (n, 6 feet), the sensors' own without the zeros that swings show, and the samples `kept` of
-    `signals` are what both sides come from; `parameters` (10 n_links,): of what moves above the force sensors.
+    encoders are. `taken` (n, 6) is what `load_errors` took off all feet together. `readings` (n, 6 feet), the sensors'
+    own without the zeros that swings show, and the samples `kept` of `signals` are what both sides come from;
+    `parameters` (10 n_links,): of what moves above the force sensors.
     """
 
     pair: Pair
     measured: Array
     rates: Array
     by_encoders: Array
+    taken: Array
     readings: Array
     signals: InertialSignals
     kept: slice
@@ -61,6 +62,7 @@ class NewtonEulerResidual:
             self.measured[:, rows],
             self.rates[:, rows],
             self.by_encoders[rows],
+            self.taken[rows],
             self.readings[rows],
             replace(self.signals),
             kept,
@@ -96,55 +98,55 @@ def newton_euler_residual(robot: RobotModel, log: MotionLog) -> NewtonEulerResid
         return None
     signals = inertial_signals(robot, complete, CUTOFF)
     wrenches = np.hstack([foot.wrench.sign * log.wrench(foot.wrench.name) for foot in robot.feet.values()])
-    whole = np.asarray(
-        np.isfinite(np.hstack([signals.positions, signals.rate, signals.proper, wrenches])).all(axis=1)
-    )
-    edge = round(EDGE / log.period)
-    longest = longest_run(whole & ~_struck(robot, wrenches, log.period))
-    if (longest.stop - longest.start) * log.period < SHORTEST + 2 * EDGE:
-        longest = longest_run(whole)
+    longest, edge = _longest_known(robot, signals, wrenches), round(EDGE / log.period)
     if longest.stop - longest.start < 4 * edge + 400:
         return None
     equation = Equation(robot.floating_model)
-    contacts = [Contact(*robot.frame(foot.wrench.placement)) for foot in robot.feet.values()]
     stride = max(1, round(1 / (KEPT_RATE * log.period)))
     period, inner = stride * log.period, slice(edge, longest.stop - longest.start - edge, stride)
     kept = slice(longest.start + edge, longest.stop - edge, stride)
     motion = inertial_motion(robot, signals, kept)
-
-    def carried(readings: Array) -> list[Array]:
-        split = [np.ascontiguousarray(readings[:, 6 * i : 6 * i + 6]) for i in range(len(contacts))]
-        return [
-            -equation.inverse_dynamics(motion, None, [contact], [own])[BASE_ROWS].T
-            for contact, own in zip(contacts, split, strict=True)
-        ]
+    readings = low_pass(wrenches[longest], log.period, CUTOFF)
+    below = below_sensors(robot, equation, motion, readings[inner], period)
+    parameters, readings = model_parameters(robot.floating_model) - below.parameters, readings - below.zeros
+    loads = FootLoads.of(readings[inner], differentiate(readings, log.period)[inner])
 
     def predicted_by(motion: Motion) -> Array:
         return equation.inverse_dynamics(motion, parameters)[BASE_ROWS].T
 
-    readings = low_pass(wrenches[longest], log.period, CUTOFF)
-    below = below_sensors(robot, equation, motion, readings[inner], period)
-    parameters, readings = model_parameters(robot.floating_model) - below.parameters, readings - below.zeros
-    changes = differentiate(readings, log.period)[inner]
-    sides = [*carried(readings[inner]), *carried(changes), predicted_by(motion)]
     step = log.period
     late, early = (inertial_motion(robot, signals, kept, encoders_late=by) for by in (step, -step))
-    sides.append((predicted_by(late) - predicted_by(early)) / (2 * step))
-    moving = _moving(sides, period)
-    measured, rates = moving[: len(contacts)], moving[len(contacts) : -2]
-    calm = _longest_closed(measured.sum(axis=0), rates.sum(axis=0), moving[-2], period)
-    measured, rates, predicted, by_encoders = (part[..., calm, :] for part in (measured, rates, *moving[-2:]))
-    pair = Pair(log.name, measured.sum(axis=0), rates.sum(axis=0), predicted, period)
-    if len(predicted) < round(SHORTEST / period) or not closes(pair):
+    by_encoders = (predicted_by(late) - predicted_by(early)) / (2 * step)
+    contacts = [Contact(*robot.frame(foot.wrench.placement)) for foot in robot.feet.values()]
+    transfers = [equation.base_transfer(motion.positions, contact) for contact in contacts]
+    predicted, by_encoders = moving([predicted_by(motion), by_encoders], period)
+    sides = NewtonSides(loads, transfers, predicted, by_encoders, period)
+    found = sides.closed(robot.uncertainty, log.name, round(SHORTEST / period))
+    if found is None or not closes(found.pair):
         return None
-    motion = motion.select(calm)
-    pair = replace(pair, model_errors=predicted_errors(robot, motion, DELAY_DRAWS))
+    calm = found.calm
+    pair = replace(found.pair, model_errors=predicted_errors(robot, motion.select(calm), DELAY_DRAWS))
     # A copy of the signals holds no differences yet: of all logs together these are large.
     start, stop, _ = calm.indices(len(range(*kept.indices(len(log)))))
-    own = slice(kept.start + start * stride, kept.start + stop * stride, stride)
     return NewtonEulerResidual(
-        pair, measured, rates, by_encoders, readings[inner][calm], replace(signals), own, parameters
+        pair,
+        found.measured,
+        found.rates,
+        by_encoders[calm],
+        found.taken,
+        loads.readings[calm],
+        replace(signals),
+        slice(kept.start + start * stride, kept.start + stop * stride, stride),
+        parameters,
     )
+
+
+def _longest_known(robot: RobotModel, signals: InertialSignals, wrenches: Array) -> slice:
+    """The longest run in which all is known and no sole slaps the floor, or, were it short, in which all is known."""
+    sides = np.hstack([signals.positions, signals.rate, signals.proper, wrenches])
+    whole, period = np.asarray(np.isfinite(sides).all(axis=1)), signals.period
+    longest = longest_run(whole & ~_struck(robot, wrenches, period))
+    return longest if (longest.stop - longest.start) * period >= SHORTEST + 2 * EDGE else longest_run(whole)
 
 
 def predicted_errors(robot: RobotModel, motion: Motion, draws: int | None = None) -> Array:
@@ -154,27 +156,8 @@ def predicted_errors(robot: RobotModel, motion: Motion, draws: int | None = None
     return np.array(errors).reshape(len(errors), len(motion.positions), 6)
 
 
-def _moving(sides: Sequence[Array], period: float) -> Array:
-    """Sides (k, n, 6) without what postures and drifting zeros do to them."""
-    rows = np.hstack(sides)
-    return (rows - low_pass(rows, period, SLOW)).reshape(len(rows), -1, 6).transpose(1, 0, 2)
-
-
 def _struck(robot: RobotModel, wrenches: Array, period: float) -> Mask:
     """Samples in which a sole slaps the floor: faster than the samples resolve, so that nothing follows from them."""
     weight, feet = robot.mass * GRAVITY, range(len(robot.feet))
     shocks = [shaken(wrenches[:, 6 * place : 6 * place + 3], weight, period) for place in feet]
     return np.asarray(np.any(shocks, axis=0))
-
-
-def _longest_closed(measured: Array, rate: Array, predicted: Array, period: float) -> slice:
-    """The longest segment in which nobody pushes and nothing strikes: there the forces follow from the prediction."""
-    width = round(WINDOW / period)
-    measured, rate, predicted = measured[:, FORCE], rate[:, FORCE], predicted[:, FORCE]
-    usual = float(np.mean(np.sum(measured**2, axis=1)))
-    closed = np.zeros(len(measured), dtype=bool)
-    for window in (slice(i * width, (i + 1) * width) for i in range(len(measured) // width)):
-        power = float(np.mean(np.sum(measured[window] ** 2, axis=1)))
-        missing = unexplained(measured[window], rate[window], predicted[window]) / width
-        closed[window] = missing < (1 - LEAST_CLOSED) * max(power, usual)
-    return longest_run(closed)

@@ -10,7 +10,8 @@ from plantar.dynamics.inertial_motion import inertial_motion, inertial_signals
 from plantar.estimation.delays.lag_search import WINDOW, LagGrid
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
-from plantar.sensors.newton_euler import BASE_ROWS, SLOW, with_gyroscope
+from plantar.sensors.newton_euler import BASE_ROWS, with_gyroscope
+from plantar.sensors.newton_sides import SLOW
 from plantar.signals.filters import low_pass
 from plantar.signals.segments import longest_run
 

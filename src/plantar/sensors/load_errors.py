@@ -1,0 +1,111 @@
+"""What gains, crosstalk and turned mounts of force sensors make of a foot's load.
+
+A sensor that is turned by a degree reads a fiftieth of the load sideways. Of a robot that steps this jumps with every
+step, as large as the forces of its motion: Newton's law would not close, as if somebody pushed. It is proportional to
+the load, and no larger than sensors and mounts usually are off, so that it can be told from a push and taken off.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from plantar.conventions import FORCE, TORQUE, Array
+from plantar.estimation.delays.delay import LONGEST
+from plantar.robot.uncertainty import Uncertainty
+
+TURN = 0.02  # rad: deviation of a force sensor's mount, an honest one's
+LEAST_GAIN = 0.01  # share of the load: nuisances need a finite prior
+LEAST_BETWEEN = (
+    0.003  # N.m/N, likewise, for crosstalk and millimetres between a sensor and where the file has it
+)
+APART = 1.0  # s, after which what the law misses is missed anew: a step's time
+ROUNDS = 2  # the first one's misses still hold the errors themselves
+
+
+@dataclass(frozen=True)
+class FootLoads:
+    """What all feet read, `readings` (n, 6 feet), and how that changes, `changes` (n, 6 feet) [1/s], with the size of
+    each foot's force, `loads` (n, feet) [N], and its changes, `steps` (n, feet) [N/s].
+    """
+
+    readings: Array
+    changes: Array
+    loads: Array
+    steps: Array
+
+    @classmethod
+    def of(cls, readings: Array, changes: Array) -> FootLoads:
+        forces, slopes = (each.reshape(len(each), -1, 6)[..., FORCE] for each in (readings, changes))
+        loads = np.linalg.norm(forces, axis=2)
+        steps = np.sum(forces * slopes, axis=2) / np.maximum(loads, np.finfo(float).tiny)
+        return cls(readings, changes, loads, steps)
+
+    @property
+    def directions(self) -> Array:
+        """Of each foot's force where it carries most, in its sensor's frame, (feet, 3)."""
+        forces = self.readings.reshape(len(self.readings), -1, 6)[..., FORCE]
+        mean = np.einsum("nf,nfx->fx", self.loads, forces)
+        size = np.linalg.norm(mean, axis=1, keepdims=True)
+        return np.asarray(mean / np.maximum(size, np.finfo(float).tiny))
+
+    def columns(self, transfers: Sequence[Array]) -> list[Array]:
+        """What one newton for each newton of load, in each of a sensor's channels, adds to the law's rows: of each
+        foot (6, n, 6). transfers: (n, 6, 6) of each foot, from its sensor's frame.
+        """
+        pairs = zip(transfers, self.loads.T, strict=True)
+        return [(transfer * load[:, None, None]).transpose(2, 0, 1) for transfer, load in pairs]
+
+    def without(self, errors: Array) -> tuple[Array, Array]:
+        """Readings and changes without `errors` (feet, 6) for each newton of load."""
+        pairs = ((self.readings, self.loads), (self.changes, self.steps))
+        read, changing = (rows - (load[..., None] * errors).reshape(rows.shape) for rows, load in pairs)
+        return read, changing
+
+
+def load_errors(
+    uncertainty: Uncertainty,
+    directions: Array,
+    columns: Array,
+    late: Sequence[Array],
+    missing: Array,
+    period: float,
+) -> Array:
+    """What each foot's sensor reads for one newton of load, (feet, 6) [N/N, N.m/N], drawn towards nothing.
+
+    directions (feet, 3): of each foot's mean force in its sensor's frame; columns (feet, 6, n, 6): what the law's rows
+    gain from each of these errors; late (k, n, 6): what they gain from delays, as large as they like; missing (n, 6):
+    the rows as measured, without the prediction; period [s] of the samples.
+    """
+    feet = len(columns)
+    rows = np.concatenate([columns.reshape(6 * feet, *missing.shape), np.asarray(late)])
+    precision = np.zeros((len(rows), len(rows)))
+    for foot, direction in enumerate(directions):
+        own = slice(6 * foot, 6 * foot + 6)
+        precision[own, own] = np.linalg.inv(_prior(uncertainty, direction))
+    precision[6 * feet :, 6 * feet :] = np.eye(len(late)) / LONGEST**2
+    left, found = missing, np.zeros(len(rows))
+    for _ in range(ROUNDS):
+        weights = period / APART / np.maximum(np.mean(left**2, axis=0), np.finfo(float).tiny)
+        weighted = (rows * weights).reshape(len(rows), -1)
+        flat = rows.reshape(len(rows), -1)
+        found = np.linalg.solve(weighted @ flat.T + precision, weighted @ missing.ravel())
+        left = missing - np.einsum("k,knr->nr", found, rows)
+    return found[: 6 * feet].reshape(feet, 6)
+
+
+def _prior(uncertainty: Uncertainty, direction: Array) -> Array:
+    """Covariance (6, 6) of what a sensor reads wrongly for one newton along `direction` (3,): a gain along it, a turn
+    across it, and crosstalk.
+    """
+    across = TURN**2 + uncertainty.wrench_crosstalk**2
+    along, between = (
+        max(uncertainty.wrench_gain, LEAST_GAIN),
+        max(uncertainty.wrench_crosstalk, LEAST_BETWEEN),
+    )
+    covariance = np.zeros((6, 6))
+    covariance[FORCE, FORCE] = across * np.eye(3) + (along**2 - across) * np.outer(direction, direction)
+    covariance[TORQUE, TORQUE] = between**2 * np.eye(3)
+    return covariance
