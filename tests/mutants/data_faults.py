@@ -332,4 +332,17 @@ DATA_FAULTS = (
         "if any(log.vertical_only(foot.wrench.name) for log in logs for foot in robot.feet.values()):\n        return",
         "if False:\n        return", ("sensors/delays/test_sensor_delay.py",),
     ),
+    Mutant(
+        "sensors/newton_sides.py", "sensors' errors stay in Newton's law", "loads.without(errors)",
+        "loads.without(0 * errors)", ("sensors/test_load_errors.py",),
+    ),
+    Mutant(
+        "sensors/load_errors.py", "a sensor may be turned as far as a push asks for", "linalg.inv(_prior(",
+        "linalg.inv(1e4 * _prior(", ("sensors/test_load_errors.py",),
+    ),
+    Mutant(
+        "sensors/moment_errors.py", "what was taken off before is missed for good",
+        "pair.predicted - pair.measured - residual.taken", "pair.predicted - pair.measured",
+        ("sensors/test_sensor_turns.py",),
+    ),
 )  # fmt: skip

@@ -106,6 +106,15 @@ def test_feet_that_nothing_tells_apart_are_not_told_against_each_other(twin: Rob
     assert torque_gains(twin, MomentFit(np.array([0.6, -0.6, 0.0, 0.0]), [part])) == {}
 
 
+def test_feet_that_are_told_apart_are_judged_each_by_itself(twin: RobotModel) -> None:
+    """One foot's torques too small and the other's too large by as much leave their mean right."""
+    part = Part(0.02**2 * np.eye(4), 1e6)
+    found = torque_gains(twin, MomentFit(np.array([0.25, -0.25, 0.0, 0.0]), [part]))
+    assert set(found) == {"pitch"}
+    assert found["pitch"].mean == pytest.approx(0.0, abs=1e-9)
+    assert [*found["pitch"].shares.values()] == pytest.approx([-0.2, 1 / 3])
+
+
 def test_no_log_shows_no_gain(twin: RobotModel) -> None:
     assert torque_gains(twin, fit_moments(twin, [], ())) == {}
 

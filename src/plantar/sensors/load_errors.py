@@ -21,6 +21,7 @@ LEAST_GAIN = 0.01  # share of the load: nuisances need a finite prior
 LEAST_BETWEEN = (
     0.003  # N.m/N, likewise, for crosstalk and millimetres between a sensor and where the file has it
 )
+LEAST = 1e-4  # N/N: what no sensor is better than, and what then the law misses by
 APART = 1.0  # s, after which what the law misses is missed anew: a step's time
 ROUNDS = 2  # the first one's misses still hold the errors themselves
 
@@ -87,8 +88,9 @@ def load_errors(
         precision[own, own] = np.linalg.inv(_prior(uncertainty, direction))
     precision[6 * feet :, 6 * feet :] = np.eye(len(late)) / LONGEST**2
     left, found = missing, np.zeros(len(rows))
+    least = LEAST**2 * float(np.mean(columns**2)) + np.finfo(float).eps
     for _ in range(ROUNDS):
-        weights = period / APART / np.maximum(np.mean(left**2, axis=0), np.finfo(float).tiny)
+        weights = period / APART / (np.mean(left**2, axis=0) + least)
         weighted = (rows * weights).reshape(len(rows), -1)
         flat = rows.reshape(len(rows), -1)
         found = np.linalg.solve(weighted @ flat.T + precision, weighted @ missing.ravel())
