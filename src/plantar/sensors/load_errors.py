@@ -59,11 +59,9 @@ class FootLoads:
         pairs = zip(transfers, self.loads.T, strict=True)
         return [(transfer * load[:, None, None]).transpose(2, 0, 1) for transfer, load in pairs]
 
-    def without(self, errors: Array) -> tuple[Array, Array]:
-        """Readings and changes without `errors` (feet, 6) for each newton of load."""
-        pairs = ((self.readings, self.loads), (self.changes, self.steps))
-        read, changing = (rows - (load[..., None] * errors).reshape(rows.shape) for rows, load in pairs)
-        return read, changing
+    def changes_without(self, errors: Array) -> Array:
+        """The changes without those of `errors` (feet, 6) for each newton of load."""
+        return self.changes - (self.steps[..., None] * errors).reshape(self.changes.shape)
 
 
 def load_errors(

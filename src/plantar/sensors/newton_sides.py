@@ -53,18 +53,17 @@ class NewtonSides:
         measured = moving(carried(transfers, loads.readings), period)
         rates = moving(carried(transfers, loads.changes), period)
         by_load = np.array([moving([*columns], period) for columns in loads.columns(transfers)])
-        calm, own, own_rates = slice(0, len(self.predicted)), measured, rates
+        calm, taken = slice(0, len(self.predicted)), np.zeros_like(measured)
         for _ in range(ROUNDS):
             missing = measured[:, calm].sum(axis=0) - self.predicted[calm]
             late = [rates[:, calm].sum(axis=0), self.by_encoders[calm]]
             errors = load_errors(uncertainty, loads.directions, by_load[..., calm, :], late, missing, period)
-            read, changes = loads.without(errors)
-            own, own_rates = (moving(carried(transfers, each), period) for each in (read, changes))
-            calm = longest_closed(own.sum(axis=0), own_rates.sum(axis=0), self.predicted, period)
+            taken = np.einsum("fk,fknr->fnr", errors, by_load)
+            calm = longest_closed((measured - taken).sum(axis=0), rates.sum(axis=0), self.predicted, period)
             if calm.stop - calm.start < shortest:
                 return None
-        taken = (measured - own)[:, calm].sum(axis=0)
-        own, own_rates = own[:, calm], own_rates[:, calm]
+        own, taken = (measured - taken)[:, calm], taken[:, calm].sum(axis=0)
+        own_rates = moving(carried(transfers, loads.changes_without(errors)), period)[:, calm]
         pair = Pair(label, own.sum(axis=0), own_rates.sum(axis=0), self.predicted[calm], period)
         return Closed(calm, pair, own, own_rates, taken)
 
