@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import ast
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,6 +12,7 @@ import pytest
 from plantar.feet.assess.data_faults import ADVICE
 from plantar.feet.assess.diagnosis import REMEDY, advised, diagnose_axis, mend_first
 from plantar.feet.fit.axis import AxisFit
+from plantar.feet.interval_width import systematic
 from plantar.feet.interval_width.systematic import Cause
 from plantar.models import KelvinVoigt
 from plantar.notes import Note
@@ -89,3 +92,23 @@ def test_a_wrong_gain_scales_a_number_and_hides_none() -> None:
 def test_a_number_without_a_width_is_not_diagnosed() -> None:
     nothing = axis_fit((0.0, 0.0))
     assert diagnose_axis(nothing, nothing, [], rows()) == []
+
+
+def test_every_cause_of_a_width_has_its_remedy() -> None:
+    """A cause is the largest in some log: one without a remedy would end that axis in an error of plantar's own."""
+    named = set[str]()
+    for path in Path(systematic.__file__).parent.glob("*.py"):
+        tree = ast.parse(path.read_text())
+        constants = {
+            node.targets[0].id: node.value.value
+            for node in tree.body
+            if isinstance(node, ast.Assign)
+            and isinstance(node.targets[0], ast.Name)
+            and isinstance(node.value, ast.Constant)
+        }
+        for call in ast.walk(tree):
+            if isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id == "Cause":
+                name = call.args[0]
+                named.add(name.value if isinstance(name, ast.Constant) else constants[name.id])  # type: ignore[attr-defined]
+    assert {"delay", "imu turn", "between recordings"} <= named
+    assert named <= set(REMEDY)
