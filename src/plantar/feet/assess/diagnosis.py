@@ -30,8 +30,8 @@ REMEDY = {
     "between walks": "add walks: five or more show by themselves how much they differ",
     "ends of stances": "walk with longer stances, or stand and sway: landing and lifting disturb the fit",
     ZEROS_OF_STANCES: "keep the foot on the floor through a recording: put down again, it lands with another zero",
-    "imu turn": "add walks that turn: a robot that walks curves shows how its IMU is turned in its mount; or measure that "
-    "and write it into the robot file (imu: rpy, and uncertainty: imu_mount)",
+    "imu turn": "add walks along curves: they show how the IMU is turned in its mount; or measure it and write it into "
+    "the robot file (imu: rpy, and uncertainty: imu_mount)",
     "memory in stances": "add a recording of standing and swaying: short steps hardly separate spring and hysteresis",
     "hardening": "record larger motions, or use --model hardening: the stiffness changes with the angle",
     "model": "more of the same will not help: the model does not fit the rubber; try --model auto or other motions",
