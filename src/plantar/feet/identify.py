@@ -183,6 +183,7 @@ def _axis_model(fit: AxisFit, turn: ImuTurn) -> AxisModel:
         linear,
         fit.moment_arms,
         turned=fit.turned,
+        leans=fit.leans,
         imu_turned=(x, y, z),
     )
     if fit.choice is None:

@@ -134,5 +134,6 @@ def _stored_model(result: FeetResult, foot: str, axis: Axis) -> FittedModel | No
         shape=values[count:],
         moment_arms=(0.0, 0.0) if entry is None else entry.moment_arms,
         turned=0.0 if entry is None else entry.turned,
+        leans=0.0 if entry is None else entry.leans,
         imu_turned=(0.0, 0.0, 0.0) if entry is None else entry.imu_turned,
     )

@@ -18,8 +18,9 @@ class FittedModel:
     """What a fit predicts one axis of one foot by: `values` (k,) as `model.terms`, `shape` (s,) as `model.shape_terms`.
 
     `moment_arms` [m]: by how much the bush's centre is aside and above its place; `turned` [rad]: by how much the
-    force sensor is turned about the vertical, so that the other axis' torque shows in this one; `imu_turned` [rad]: by
-    how much the IMU is turned about each of its axes, as far as that shows while joints between it and the foot move.
+    force sensor is turned about the vertical, so that the other axis' torque shows in this one; `leans` [rad]: about
+    the other axis, so that the yaw torque does; `imu_turned` [rad]: by how much the IMU is turned about each of its
+    axes, as far as that shows while joints between it and the foot move.
     Of the recordings that were fitted: `offsets` [N.m], and `initial_states` of the model's memory in each recording's
     runs.
     """
@@ -31,6 +32,7 @@ class FittedModel:
     shape: Array
     moment_arms: tuple[float, float] = (0.0, 0.0)
     turned: float = 0.0
+    leans: float = 0.0
     imu_turned: tuple[float, float, float] = (0.0, 0.0, 0.0)
     offsets: Mapping[str, float] = field(default_factory=dict)
     initial_states: Mapping[str, Array] = field(default_factory=dict)

@@ -175,7 +175,7 @@ def _about_its_centre(
     """A fit of stances whose memory is found about the bush's centre; where that is, the linear parameters tell."""
     found = over_stances(_with_model(linear, fit), recordings)
     for _ in range(CENTRE_ROUNDS):
-        place = (found.moment_arms[1], found.turned)
+        place = (found.moment_arms[1], found.turned, found.leans)
         data_sets = [data_set_of(each, linear.foot, linear.axis, share, *place) for each in recordings]
         fit = fit_again(fit, data_sets)
         found = over_stances(_with_model(linear, fit), recordings)
@@ -215,7 +215,7 @@ def _remembers(data_sets: Sequence[DataSet]) -> bool:
 
 def _of_linear(foot: str, axis: Axis, fit: LinearFit, choice: ModelChoice | None, reason: str) -> AxisFit:
     size = len(fit.values)
-    aside, above, turned = _place(fit)
+    aside, above, turned, leans = _place(fit)
     return AxisFit(
         foot=foot,
         axis=axis,
@@ -224,6 +224,7 @@ def _of_linear(foot: str, axis: Axis, fit: LinearFit, choice: ModelChoice | None
         shape=np.zeros(0),
         moment_arms=(aside, above),
         turned=turned,
+        leans=leans,
         offsets=fit.offsets,
         covariance=fit.covariance[:size, :size],
         freedom=fit.freedom[:size],
@@ -252,6 +253,6 @@ def _with_model(linear: AxisFit, fit: ModelFit) -> AxisFit:
 
 
 def _place(fit: LinearFit) -> list[float]:
-    """Where a fit of stances found the bush's centre, aside and above, and its sensor turned; zeros of others."""
+    """Where a fit of stances found the bush's centre, aside and above, its sensor turned and leaning; else zeros."""
     found: list[float] = fit.common_nuisance.tolist()
-    return found or [0.0, 0.0, 0.0]
+    return found or [0.0, 0.0, 0.0, 0.0]

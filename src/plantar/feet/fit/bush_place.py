@@ -219,11 +219,12 @@ def _others_torque(fit: AxisFit, recordings: Sequence[Recording], shared: bool) 
 
 
 def _without_the_other(block: Block) -> Block:
-    """The block of a foot that steps without the other axis' torque among its nuisances, their last column."""
+    """The block of a foot that steps without the other axis' torque among its nuisances, their third column."""
     assert block.common_nuisance is not None, "a block of a foot that steps"
     assert block.common_spread is not None, "a block of a foot that steps"
+    kept = [0, 1, 3]
     return replace(
-        block, common_nuisance=block.common_nuisance[:, :-1], common_spread=block.common_spread[:-1]
+        block, common_nuisance=block.common_nuisance[:, kept], common_spread=block.common_spread[kept]
     )
 
 

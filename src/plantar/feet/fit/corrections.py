@@ -37,6 +37,7 @@ def over_stances(fit: AxisFit, recordings: Sequence[Recording]) -> AxisFit:
         freedom=freedom,
         moment_arms=(float(found.common_nuisance[0]), float(found.common_nuisance[1])),
         turned=float(found.common_nuisance[2]),
+        leans=float(found.common_nuisance[3]),
         offsets=found.offsets,
         offset_std={label: found.offset_std(label) for label in found.offsets},
     )

@@ -38,12 +38,31 @@ def place_columns(recording: Recording, foot: str, axis: Axis) -> Array:
     return np.column_stack([moment_columns(recording, foot, axis), np.nan_to_num(other)])
 
 
+def step_columns(recording: Recording, foot: str, axis: Axis) -> Array:
+    """`place_columns`, and the yaw torque, which shows where a sensor leans about the other axis, (N, 4).
+
+    A foot that steps turns the robot: its yaw torque is as large as the others.
+    """
+    yaw = _filtered_as_torque(recording, foot, yaw_torque(recording, foot))
+    return np.column_stack([place_columns(recording, foot, axis), yaw])
+
+
 def load_torque(recording: Recording, fitted: FittedModel) -> Array:
     """The torque (N,) that is not the bush's: of the load on a centre beside its place, of a sensor that is turned."""
     place = np.array([*fitted.moment_arms, fitted.turned])
-    if not place.any():
+    if not place.any() and not fitted.leans:
         return np.zeros(len(recording.time))
-    return np.asarray(place_columns(recording, fitted.foot, fitted.axis) @ place)
+    found = place_columns(recording, fitted.foot, fitted.axis) @ place
+    if fitted.leans:
+        found += fitted.leans * _filtered_as_torque(
+            recording, fitted.foot, yaw_torque(recording, fitted.foot)
+        )
+    return np.asarray(found)
+
+
+def yaw_torque(recording: Recording, foot: str) -> Array:
+    """The torque about the bush's third axis, (N,) [N·m]."""
+    return np.asarray(recording.bushes[foot].wrench[:, 5])
 
 
 def across_force(recording: Recording, foot: str, column: int) -> Array:

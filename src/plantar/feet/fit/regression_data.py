@@ -13,7 +13,7 @@ from plantar.estimation.blocks import StanceRows
 from plantar.estimation.orthonormal import orthonormal
 from plantar.estimation.slow_drift import drift_beside
 from plantar.feet.fit.axis import AxisFit, FittedModel
-from plantar.feet.fit.load_torque import across_force, load_of, load_torque, place_columns
+from plantar.feet.fit.load_torque import across_force, load_of, load_torque, step_columns, yaw_torque
 from plantar.feet.recording import SHORTEST_STANCE_RUN, Recording
 from plantar.model_selection.data_sets import DataSet, StepColumns
 from plantar.models import BushMotion, KelvinVoigt
@@ -22,8 +22,8 @@ from plantar.signals.filters import SHORTEST_RUN, differentiate, low_pass
 PATH_BAND = 4.0  # times the fit's cutoff, of the path that a memory follows through short stances
 # Before any data, of where steps find the centre [m] and how far the force sensor is turned about the vertical [rad]:
 # aside anything (the torque of the load is its own), in height some millimetres of the robot file's and of the slide
-# under load, turned by a degree, as a mount that nobody measured.
-PLACE_SPREAD = np.array([np.inf, 0.006, 0.02])
+# under load, turned or leaning by a degree, as a mount that nobody measured.
+PLACE_SPREAD = np.array([np.inf, 0.006, 0.02, 0.02])
 Turn = tuple[float, float, float]
 UNTURNED: Turn = (0.0, 0.0, 0.0)
 SHAPE_STEP = 0.01  # share of a nonlinear parameter, of the differences that stand for derivatives
@@ -67,7 +67,7 @@ def blocks_of(
                 nuisance=_nuisance(recording, foot, column, fit) if drift else None,
                 noise=noise,
                 stances=_stance_rows(recording, foot) if steps else None,
-                common_nuisance=place_columns(recording, foot, axis)[rows] if steps else None,
+                common_nuisance=step_columns(recording, foot, axis)[rows] if steps else None,
                 common_spread=PLACE_SPREAD if steps else None,
             )
         )
@@ -202,12 +202,14 @@ def data_set_of(
     own_share: float = 0.0,
     above: float = 0.0,
     turned: float = 0.0,
+    leans: float = 0.0,
     imu_turned: Turn = UNTURNED,
 ) -> DataSet:
     """One recording of one axis, as the models take it.
 
     `imu_turned`: as in `motion_of`. Of a foot that steps: `own_share` of the offsets of stances is their own; the
-    bush's centre is `above` its place in the robot file [m], the force sensor `turned` about the vertical [rad].
+    bush's centre is `above` its place in the robot file [m], the force sensor `turned` about the vertical, and `leans`
+    about the other axis [rad].
     """
     column, stances = ROTATIONAL_AXES.index(axis), recording.stances[foot]
     torque, used = recording.bushes[foot].torque[:, column], recording.used(foot)
@@ -216,4 +218,5 @@ def data_set_of(
     steps = StepColumns(stances.number, load_of(recording, foot)[:, None], own_share)
     raw = recording.raw[foot].torque
     measured = raw[:, column] - above * across_force(recording, foot, column) - turned * raw[:, 1 - column]
+    measured -= leans * yaw_torque(recording, foot)
     return DataSet(recording.name, path_of(recording, foot, axis), measured, used, steps)
