@@ -145,7 +145,10 @@ def kept(rotation: Callable[..., np.ndarray]) -> Callable[..., np.ndarray]:
         if key not in answers:
             found = rotation(motion, *foot_and_times)
             found.flags.writeable = False
-            answers[key] = motion, found  # the motion, too: its id is not given to another as long as it is here
+            answers[key] = (
+                motion,
+                found,
+            )  # the motion, too: its id is not given to another as long as it is here
             if len(answers) > KEPT:
                 del answers[next(iter(answers))]
         return answers[key][1]
