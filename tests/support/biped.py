@@ -136,7 +136,7 @@ def turned(axis: str, angle: np.ndarray) -> np.ndarray:
 
 
 def kept(rotation: Callable[..., np.ndarray]) -> Callable[..., np.ndarray]:
-    """`rotation` of (motion, ..., times) with its latest answers kept: a recording asks for the same ones many times."""
+    """`rotation` of (motion, ..., times) with its latest answers kept: a log asks for each many times."""
     answers: dict[tuple[object, ...], tuple[Motion, np.ndarray]] = {}
 
     def look_up(motion: Motion, *foot_and_times: object) -> np.ndarray:
