@@ -119,8 +119,24 @@ def test_a_short_burst_is_an_outlier_and_another_motion_is_not() -> None:
     assert not outliers(np.where(motion, 20 * missed, missed), 5.0, PERIOD, 0.2).any(), (
         "4 s are no bad sample"
     )
+    longer = (TIME > 10) & (TIME < 12)  # less than a tenth of the recording, but more than a second
+    assert not outliers(np.where(longer, missed + 1.0, missed), 5.0, PERIOD, 0.2).any()
     small = np.where(burst, missed + 0.12, missed)
     assert not outliers(small, 5.0, PERIOD, 0.2).any(), "too small to matter"
+
+
+def test_what_the_filter_spreads_of_a_burst_goes_along() -> None:
+    missed = 0.02 * np.random.default_rng(4).standard_normal(6000)
+    found = outliers(np.where(stretches((8.0,)), missed + 1.0, missed), 5.0, PERIOD, 0.4)
+    assert found[(TIME > 7.65) & (TIME < 8.55)].all()
+    assert not found[(TIME < 7.4) | (TIME > 8.8)].any()
+
+
+def test_where_a_tenth_of_a_recording_is_off_it_is_no_lone_fault() -> None:
+    missed = 0.02 * np.random.default_rng(5).standard_normal(6000)
+    few, many = (stretches(tuple(np.arange(1.0, 29.0, apart))) for apart in (7.0, 2.0))
+    assert outliers(np.where(few, missed + 1.0, missed), 5.0, PERIOD, 0.05)[few].all()
+    assert not outliers(np.where(many, missed + 1.0, missed), 5.0, PERIOD, 0.05).any()
 
 
 def test_clean_logs_are_fitted_once_and_untouched(robot: RobotModel, clean: list[MotionLog]) -> None:
