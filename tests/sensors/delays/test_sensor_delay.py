@@ -114,7 +114,7 @@ def test_encoders_that_seem_late_are_looked_for_on_the_grid(
 ) -> None:
     """Gentle motions close well enough at no delay, and say of the encoders' only that there is one."""
     gentle = checked(
-        twin, play_all([short(plan("Myrand4"), 0.0, 25.0)], twin, PAPER, "sensors", [0])[0][0].log
+        twin, play_all([short(plan("Myrand4"), 0.0, 40.0)], twin, PAPER, "sensors", [0])[0][0].log
     )
     still = np.zeros(3)
     seen, timely = (
