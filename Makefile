@@ -13,6 +13,8 @@ DOCUMENTING := .venv/.documenting
 # Small problems on few cores: threads inside threads only get in each other's way.
 export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
+# Compiled once, not by each process of the tests anew.
+unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: demo test mutants check docs docs-test docs-outputs wheel format clean
 

@@ -5,8 +5,10 @@ from __future__ import annotations
 import ast
 import re
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from functools import cache
 from pathlib import Path
+from typing import Any
 
 ROOT = Path(__file__).resolve().parents[1]
 SOURCE = ROOT / "src" / "plantar"
@@ -73,17 +75,27 @@ def room(path: Path) -> str:
     return path.relative_to(SOURCE).parts[0].removesuffix(".py")
 
 
-def imports(path: Path) -> Iterator[tuple[str, int]]:
+@cache
+def nodes(path: Path) -> tuple[Any, ...]:
+    """Everything that a file says."""
+    return tuple(ast.walk(ast.parse(path.read_text())))
+
+
+@cache
+def imports(path: Path) -> tuple[tuple[str, int], ...]:
     """Dotted names that a file imports, wherever in it, with their lines; of plantar's own, the files' modules."""
-    for node in ast.walk(ast.parse(path.read_text())):
+    found = []
+    for node in nodes(path):
         if isinstance(node, ast.Import):
-            yield from ((alias.name, node.lineno) for alias in node.names)
+            found += [(alias.name, node.lineno) for alias in node.names]
         elif isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{path}:{node.lineno}: relative import"
             module = node.module or ""
-            for alias in node.names:
-                inner = f"{module}.{alias.name}"
-                yield (inner if module == "plantar" or inner in MODULES else module), node.lineno
+            inner = [f"{module}.{alias.name}" for alias in node.names]
+            found += [
+                (name if module == "plantar" or name in MODULES else module, node.lineno) for name in inner
+            ]
+    return tuple(found)
 
 
 def module_of(path: Path) -> str:
@@ -189,7 +201,7 @@ def test_only_the_command_line_prints_or_exits() -> None:
     forbidden = {"print", "input", "exit", "quit", "sys.exit", "os._exit", "eval", "exec"}
     wrong = []
     for path in FILES:
-        for node in ast.walk(ast.parse(path.read_text())):
+        for node in nodes(path):
             if isinstance(node, ast.Call) and ast.unparse(node.func) in forbidden and room(path) != "cli":
                 wrong.append(f"{where(path, node.lineno)} calls {ast.unparse(node.func)}")
     assert wrong == []
@@ -203,7 +215,7 @@ def test_files_are_short_say_what_they_are_and_are_well_named() -> None:
             wrong.append(f"{path.relative_to(ROOT)} has more than {LONGEST} lines")
         if re.search(r"util|helper|common|misc", path.stem):
             wrong.append(f"{path.relative_to(ROOT)}: a name that says nothing")
-        if text.strip() and not ast.get_docstring(ast.parse(text)):
+        if text.strip() and not ast.get_docstring(nodes(path)[0]):
             wrong.append(f"{path.relative_to(ROOT)} has no docstring")
     assert wrong == []
 
@@ -213,7 +225,7 @@ def test_errors_are_caught_by_name() -> None:
     wrong = []
     assert (ROOT / CATCHES_ALL).is_file()
     for path in set(FILES) - {ROOT / CATCHES_ALL}:
-        for node in ast.walk(ast.parse(path.read_text())):
+        for node in nodes(path):
             if isinstance(node, ast.ExceptHandler):
                 kind = ast.unparse(node.type) if node.type else "everything"
                 raises = any(isinstance(inner, ast.Raise) for inner in ast.walk(node))

@@ -48,14 +48,12 @@ def run(*arguments: object) -> tuple[int, str, str]:
 
 
 @pytest.fixture(scope="module")
-def demo(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Path, str, str]]:
-    """Folder, stdout and stderr of a quick demo that found nothing in its cache."""
+def demo(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str, str]:
+    """Folder, stdout and stderr of a quick demo."""
     folder = tmp_path_factory.mktemp("demo")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("PLANTAR_CACHE", str(folder / "cache"))
-        code, out, error = run("demo", "--quick", "--out", folder / "out", "--preset", "sensors", "--seed", 1)
-        assert code == 0, error
-        yield folder / "out", out, error
+    code, out, error = run("demo", "--quick", "--out", folder / "out", "--preset", "sensors", "--seed", 1)
+    assert code == 0, error
+    return folder / "out", out, error
 
 
 @pytest.fixture(scope="module")

@@ -10,7 +10,8 @@ import pytest
 
 import example_robots
 from plantar import _core
-from plantar.contact.deflection import BushState, bush_states, relative_pose
+from plantar.contact.deflection import BushState, bush_states
+from plantar.contact.relative_pose import relative_pose
 from plantar.conventions import Array, rotation_from_rpy
 from plantar.errors import DataError, RobotError
 from plantar.robot.model import Foot, Imu, Placement, RobotModel, Sole, WrenchSensor

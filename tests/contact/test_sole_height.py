@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from biped import record, sway
-from plantar.contact.deflection import bush_states, relative_pose
+from plantar.contact.deflection import bush_states
+from plantar.contact.relative_pose import relative_pose
 from plantar.contact.sole_height import height_changes
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel

@@ -55,6 +55,17 @@ def test_noise_is_measured_above_the_motion_and_followed_through_the_filter() ->
     assert not measured(white, every=10).any(), "too slow to tell"
 
 
+def test_what_rings_at_one_frequency_is_no_white_noise() -> None:
+    """Of two bands, just below and above 20 Hz, the quieter one tells."""
+    random = np.random.default_rng(6)
+    white, torque = 0.01 * random.standard_normal((100_000, 1)), random.standard_normal((100_000, 1))
+    plain = noise_after_filter(white, torque, PERIOD, CUTOFF)
+    for frequency in (15.0, 45.0):
+        ringing = 0.05 * np.sin(2 * np.pi * frequency * PERIOD * np.arange(len(white)))[:, None]
+        rung = noise_after_filter(white + ringing, torque, PERIOD, CUTOFF)
+        np.testing.assert_allclose(rung, plain, rtol=0.2, err_msg=f"{frequency} Hz")
+
+
 def test_a_foot_that_shakes_with_its_torque_is_no_noise() -> None:
     random = np.random.default_rng(7)
     shaking = low_pass(random.standard_normal((40_000, 1)), PERIOD, 30.0)

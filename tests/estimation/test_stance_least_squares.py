@@ -103,6 +103,21 @@ def test_offsets_that_do_not_scatter_are_drawn_together() -> None:
     assert StanceProblem.drawn_together(apart).prior < 0.02 * weight
 
 
+def test_recordings_that_differ_tell_with_as_much_freedom_as_they_are_many() -> None:
+    """Six recordings of other springs and dampers each: their scatter widens, and has five degrees of freedom."""
+    alike = [walk(seed, noise=0.2) for seed in range(6)]
+    differing = [
+        replace(block, response=block.response + block.regressor @ (share * VALUES))
+        for block, share in zip(alike, np.linspace(-0.2, 0.2, 6), strict=True)
+    ]
+    sure, unsure = fit_stances(alike), fit_stances(differing)
+    assert unsure.freedom[:2].tolist() == [5.0, 5.0]
+    assert unsure.std[0] > 3 * sure.std[0]
+    assert unsure.std[0] == pytest.approx(
+        VALUES[0] * np.std(np.linspace(-0.2, 0.2, 6), ddof=1) / 6**0.5, rel=0.3
+    )
+
+
 @pytest.mark.parametrize("recordings", [1, 4])
 def test_intervals_cover_the_truth(recordings: int) -> None:
     hits = np.zeros(2)

@@ -172,7 +172,7 @@ def test_the_file_that_a_user_gets_turns_as_identified(
     # The robot's own inertia swings on the foot: friction of its own lets it come to rest, and is taken off C again.
     swing = 6.0
     model.dof_damping[3:6] = 60.0
-    times = np.arange(round(8.0 / step)) * step
+    times = np.arange(round(5.0 / step)) * step  # it is at rest in its swing after some tenths of a second
     angles = np.array([pushed(torque * np.cos(swing * time)) for time in times])
     last = times > times[-1] - 3 * 2 * np.pi / swing
     late = times[last] + step
@@ -184,7 +184,7 @@ def test_the_file_that_a_user_gets_turns_as_identified(
     for sign in (1, -1):
         mujoco.mj_resetData(model, data)
         mujoco.mj_kinematics(model, data)
-        ends.append(np.mean([pushed(sign * torque) for _ in range(round(6.0 / step))][-200:]))
+        ends.append(np.mean([pushed(sign * torque) for _ in range(round(2.5 / step))][-200:]))
     assert 2 * torque / (ends[0] - ends[1]) == pytest.approx(k, rel=0.05)
 
 
@@ -289,7 +289,7 @@ def test_an_offset_turns_the_points(tmp_path: Path) -> None:
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     ankle, pelvis = model.body("right_ankle").id, model.body("pelvis").id
-    for _ in range(6000):
+    for _ in range(2500):
         at = data.xpos[ankle] + data.xmat[ankle].reshape(3, 3) @ CENTRE
         data.xfrc_applied[pelvis, 2] = -load
         data.xfrc_applied[pelvis, 3:] = np.cross(at - data.xipos[pelvis], [0, 0, -load])

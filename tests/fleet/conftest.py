@@ -1,4 +1,5 @@
-"""One worker for all tests of a fleet: to start it takes longer than most of what they give it."""
+"""One worker for all tests of a file: to start it takes longer than most of what they give it, and it is never idle
+for free, so that it does not live on through the rest of the session."""
 
 from __future__ import annotations
 
@@ -10,7 +11,7 @@ import pytest
 from plantar.fleet.cluster import connected
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def client() -> Iterator[Any]:
     with connected(1, None, None) as found:
         yield found

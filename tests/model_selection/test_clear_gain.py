@@ -12,8 +12,8 @@ from plantar.conventions import Array
 from plantar.model_selection.cross_validation import folds_of
 from plantar.model_selection.data_sets import FilteredDataSet, prepare_data_sets
 from plantar.model_selection.model_fit import ModelFit, fit_model
-from plantar.model_selection.selection import LEAST_GAIN, ModelScore, _adds, _caution, _clear
-from plantar.models import Elastoplastic, HardeningElastoplastic, KelvinVoigt
+from plantar.model_selection.selection import LEAST_GAIN, ModelScore, _adds, _caution, _clear, _winner
+from plantar.models import Elastoplastic, Hardening, HardeningElastoplastic, KelvinVoigt
 
 
 @pytest.fixture(scope="module")
@@ -68,6 +68,22 @@ def test_a_refused_model_is_told_of_where_it_is_far_better(fit: ModelFit) -> Non
     assert "not told from nothing" in said
 
 
+@pytest.mark.parametrize(("share", "winner"), [(0.95, 1), (0.7, 0)])
+def test_a_refused_model_that_is_clearly_better_leaves_spring_and_damper(
+    fit: ModelFit, share: float, winner: int
+) -> None:
+    """It shows that the one allowed is wrong as well; a refused one that is hardly better shows nothing."""
+    even = 10.0 + np.linspace(-1.0, 1.0, 8)
+    errors = [even, 0.5 * even, share**2 * 0.5 * even]
+    roots = [float(np.sqrt(one.sum() / 800)) for one in errors]
+    scores = [
+        ModelScore(KelvinVoigt(), roots[0], fit, None),
+        ModelScore(Elastoplastic(), roots[1], fit, None),
+        ModelScore(Hardening(), roots[2], fit, "is not passive"),
+    ]
+    assert _winner(scores, errors, 0, LEAST_GAIN) == winner
+
+
 def test_a_model_that_gains_much_but_less_than_is_asked_for_in_short_stances_is_told_of(
     fit: ModelFit,
 ) -> None:
@@ -108,6 +124,7 @@ def test_a_recording_with_most_of_the_motion_is_not_held_out_as_a_whole() -> Non
     folds, whole = folds_of(alike)
     assert whole
     assert [np.unique(fold).tolist() for fold in folds] == [[0], [1], [2], [3]]
+    assert not folds_of(prepared(2))[1], "one recording tells nothing of how another differs"
     loud = prepared(4)
     motion = loud[0].motion
     loud[0] = replace(loud[0], motion=replace(motion, deflection=3 * motion.deflection, rate=3 * motion.rate))

@@ -45,6 +45,13 @@ def test_each_run_has_a_state_of_its_own_and_all_one_offset() -> None:
     assert found(motion, torque, first) == pytest.approx([0.6, -0.8], abs=0.15)
 
 
+def test_what_comes_after_the_state_has_faded_does_not_tell_of_it() -> None:
+    motion, torque = filtered(sway(np.random.default_rng(4), 0.08, 0.5), [0.5], 1.0)
+    drifting = torque + np.linspace(0.0, 4.0, len(torque)) * (np.arange(len(torque)) > len(torque) // 3)
+    first = np.arange(len(torque)) < FIRST
+    assert found(motion, drifting, first) == pytest.approx([0.5], abs=1.01 * (TRIED[1] - TRIED[0]))
+
+
 def test_without_samples_that_show_it_the_offset_is_taken_as_zero() -> None:
     motion, torque = filtered(sway(np.random.default_rng(6), 0.08, 0.5), [0.5], 0.0)
     assert found(motion, torque, np.zeros(len(torque), dtype=bool)) == pytest.approx([0.5], abs=0.15)

@@ -27,6 +27,7 @@ from typing import TypeVar
 from data_faults import DATA_FAULTS
 from designed_motions import DESIGNED_MOTIONS
 from drawn import DRAWN
+from drawn_again import DRAWN_AGAIN
 from engine_exports import ENGINE_EXPORTS
 from fleet_statistics import FLEET
 from handed_on import HANDED_ON
@@ -41,6 +42,7 @@ Tests = tuple[str, ...]  # folders and files below `tests`
 ROOT = Path(__file__).resolve().parents[2]
 LISTS = {
     "drawn": DRAWN,
+    "drawn_again": DRAWN_AGAIN,
     "once_unnoticed": ONCE_UNNOTICED,
     "made_cheaper": MADE_CHEAPER,
     "data_faults": DATA_FAULTS,

@@ -8,6 +8,7 @@ import pytest
 from data_faults import DATA_FAULTS
 from designed_motions import DESIGNED_MOTIONS
 from drawn import DRAWN
+from drawn_again import DRAWN_AGAIN
 from fleet_statistics import FLEET
 from handed_on import HANDED_ON
 from made_cheaper import MADE_CHEAPER
@@ -20,7 +21,16 @@ SOURCE = TESTS.parent / "src" / "plantar"
 
 @pytest.mark.parametrize(
     "mutant",
-    [*DRAWN, *MADE_CHEAPER, *ONCE_UNNOTICED, *DATA_FAULTS, *DESIGNED_MOTIONS, *FLEET, *HANDED_ON],
+    [
+        *DRAWN,
+        *DRAWN_AGAIN,
+        *MADE_CHEAPER,
+        *ONCE_UNNOTICED,
+        *DATA_FAULTS,
+        *DESIGNED_MOTIONS,
+        *FLEET,
+        *HANDED_ON,
+    ],
     ids=lambda each: each.name,
 )
 def test_no_mutant_is_stale(mutant: Mutant) -> None:

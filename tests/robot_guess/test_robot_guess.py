@@ -29,6 +29,7 @@ from example_robots import (
     UR5,
     model,
 )
+from feet_trials import LINEAR
 from plantar.checks.log_checks import check_log
 from plantar.errors import LogError, RobotError
 from plantar.exporters.urdf.tree import UrdfTree
@@ -235,13 +236,14 @@ def test_a_prefix_of_the_joints_is_written_down(tmp_path: Path) -> None:
 
 
 def test_numbered_joints_are_written_down_as_a_guess_that_takes_usable_away(tmp_path: Path) -> None:
-    logs = [record(sway(f"sway_{seed}", seed=seed, duration=40.0)) for seed in (3, 4)]
+    logs = [record(sway(f"sway_{seed}", seed=seed)) for seed in (3, 4)]
     joints = list(pin.buildModelFromXML(URDF).names)[1:]
     numbers = {joint: f"motor_{place}" for place, joint in enumerate(joints)}
     robot, text = guessed(tmp_path, *(renamed(log, numbers) for log in logs))
     assert robot.joint_names_in_logs.in_log(joints[-1]) == f"motor_{len(joints) - 1}"
     assert "joint_names" in {guess.key for guess in robot.guesses}
-    result = identify_feet(robot, [open_log(tmp_path / f"{log.name}.csv", robot) for log in logs])
+    read = [open_log(tmp_path / f"{log.name}.csv", robot) for log in logs]
+    result = identify_feet(robot, read, settings=LINEAR)
     assert "guessed_joint_names" in {note.code for note in result.notes}
     assert not [row for row in result.parameters if row.verdict == "usable" and row.axis != "z"]
     # The test's robot obeys no Newton: from its balance no axes of sensors follow.
@@ -250,7 +252,8 @@ def test_numbered_joints_are_written_down_as_a_guess_that_takes_usable_away(tmp_
     )
     (tmp_path / "robot.yaml").write_text(told)
     sure = load_robot(tmp_path / "robot.yaml")
-    result = identify_feet(sure, [open_log(tmp_path / f"{log.name}.csv", sure) for log in logs])
+    read = [open_log(tmp_path / f"{log.name}.csv", sure) for log in logs]
+    result = identify_feet(sure, read, settings=LINEAR)
     assert result.parameter("left", "pitch", "stiffness").verdict == "usable"
 
 

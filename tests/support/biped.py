@@ -61,6 +61,7 @@ TRUTH = {
 SLIPPING = {key: Slipping(law.stiffness, law.damping, law.offset) for key, law in TRUTH.items()}
 VERTICAL = 45e3  # N/m, of both bushes
 HEIGHT = 0.7  # m of the torso's origin above the ground
+KEPT = 24  # answers: of both feet at the times about each sample from which derivatives are taken
 
 
 @dataclass(frozen=True)
@@ -134,12 +135,35 @@ def turned(axis: str, angle: np.ndarray) -> np.ndarray:
     return rotations
 
 
+def kept(rotation: Callable[..., np.ndarray]) -> Callable[..., np.ndarray]:
+    """`rotation` of (motion, ..., times) with its latest answers kept: a log asks for each many times."""
+    answers: dict[tuple[object, ...], tuple[Motion, np.ndarray]] = {}
+
+    def look_up(motion: Motion, *foot_and_times: object) -> np.ndarray:
+        *foot, t = foot_and_times
+        key = (id(motion), *foot, t.tobytes())
+        if key not in answers:
+            found = rotation(motion, *foot_and_times)
+            found.flags.writeable = False
+            answers[key] = (
+                motion,
+                found,
+            )  # the motion, too: its id is not given to another as long as it is here
+            if len(answers) > KEPT:
+                del answers[next(iter(answers))]
+        return answers[key][1]
+
+    return look_up
+
+
+@kept
 def torso_rotation(motion: Motion, t: np.ndarray) -> np.ndarray:
     """Torso to world, (N, 3, 3)."""
     roll, pitch, yaw = (angle(t) for angle in motion.torso)
     return turned("z", yaw) @ turned("y", pitch) @ turned("x", roll)
 
 
+@kept
 def foot_rotation(motion: Motion, foot: str, t: np.ndarray) -> np.ndarray:
     """Foot link to world, (N, 3, 3)."""
     pitch, roll = motion.ankles[foot]

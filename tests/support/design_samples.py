@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cache
 from unittest.mock import patch
@@ -19,6 +19,7 @@ from plantar.design.search import best_motion
 from plantar.design.soft_feet import Softness
 from plantar.design.story import Design, DesignSettings, design_motion
 from plantar.motions.plan import Plan
+from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
 from plantar.twin.robots import hrp2
 
@@ -68,17 +69,35 @@ def rehearsed_once(
     return [replace(one, factor=factor) for factor in factors]
 
 
+def identified_once(found: dict[int, FeetResult | None]) -> Callable[[Rehearsal, RobotModel], Rehearsal]:
+    """Rehearsals with one recording have one result: what is in their log is identified once, and kept in `found`."""
+    identified = Rehearsal.identified
+
+    def identify(own: Rehearsal, robot: RobotModel) -> Rehearsal:
+        key = id(own.log)
+        if key not in found:
+            found[key] = identified(own, robot).result
+        return replace(own, result=found[key])
+
+    return identify
+
+
 @cache
 def designed() -> Design:
     """Rehearsed on the twin, too."""
-    with patch.object(story, "best_motion", gentle_motion), patch.object(story, "rehearse", rehearsed_once):
+    with (
+        patch.object(story, "best_motion", gentle_motion),
+        patch.object(story, "rehearse", rehearsed_once),
+        patch.object(Rehearsal, "identified", identified_once({})),
+    ):
         return design_motion(hrp2.robot(), DesignSettings(STIFFNESS, duration=20.0, seed=1))
 
 
 def designed_again() -> Design:
-    """The same, with the rehearsals of the first."""
+    """The same, with the rehearsals of the first and what was identified from them."""
     with (
         patch.object(story, "best_motion", gentle_motion),
         patch.object(story, "rehearse", lambda *_: list(designed().rehearsals)),
+        patch.object(Rehearsal, "identified", lambda own, _: own),
     ):
         return design_motion(hrp2.robot(), DesignSettings(STIFFNESS, duration=20.0, seed=1))

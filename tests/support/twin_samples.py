@@ -75,4 +75,4 @@ def walked() -> MotionLog:
     robot = hrp2.robot()
     body, gait = Body(robot), Gait(step=0.15, period=0.9, turn=0.0, steps=10, trial=1)
     played = walk_plan(body, "Walk15", stand(body, hrp2.postures().standing, {}), gait)
-    return record(roll(played), robot, Physics(), preset_named("sensors"), 0).log
+    return record(rolled(played, robot, Physics()), robot, Physics(), preset_named("sensors"), 0).log

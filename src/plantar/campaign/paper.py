@@ -58,32 +58,13 @@ TABLE_2: Final[Mapping[Place, PublishedError]] = MappingProxyType(
     }
 )
 
-# Mean error of the reconstructed torque [N·m], by motion.
+# Mean error of the reconstructed torque [N·m], by motion; right pitch, left pitch, right roll, left roll.
+_ERRORS: Final = {
+    "Tilt1": (0.79, 0.49, 0.95, 2.47),
+    "Squat": (0.38, 0.78, 0.65, 2.39),
+    "Myrand4": (2.16, 0.83, 1.08, 1.10),
+    "Manual_both_pitch": (1.99, 1.33, 1.35, 2.03),
+}
 TABLE_3: Final[Mapping[str, Mapping[Place, float]]] = MappingProxyType(
-    {
-        "Tilt1": {
-            ("right", "pitch"): 0.79,
-            ("left", "pitch"): 0.49,
-            ("right", "roll"): 0.95,
-            ("left", "roll"): 2.47,
-        },
-        "Squat": {
-            ("right", "pitch"): 0.38,
-            ("left", "pitch"): 0.78,
-            ("right", "roll"): 0.65,
-            ("left", "roll"): 2.39,
-        },
-        "Myrand4": {
-            ("right", "pitch"): 2.16,
-            ("left", "pitch"): 0.83,
-            ("right", "roll"): 1.08,
-            ("left", "roll"): 1.10,
-        },
-        "Manual_both_pitch": {
-            ("right", "pitch"): 1.99,
-            ("left", "pitch"): 1.33,
-            ("right", "roll"): 1.35,
-            ("left", "roll"): 2.03,
-        },
-    }
+    {motion: dict(zip(TABLE_2, errors, strict=True)) for motion, errors in _ERRORS.items()}
 )

@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plantar.checks.joints import legs
-from plantar.contact.deflection import BushState, bush_states, relative_pose
+from plantar.contact.deflection import BushState, bush_states
+from plantar.contact.relative_pose import relative_pose
 from plantar.conventions import GRAVITY, Array, Mask
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding

@@ -71,14 +71,14 @@ def compare(
     found: list[Replayed] = []
     for log in logs:
         plan = plan_of(robot, log)
+        record = record_of(robot, log, plan)  # before anything is played: a log may hold no attitude
         made = scenes(result, robot, plan, swing)
         played = _played(robot, plan, made)
         fell = {kind: one.fell for kind, one in played.items() if isinstance(one, MotionError)}
         falls = [time for time in fell.values() if time is not None]
         if falls and (until := min(falls) - BEFORE) > SHORTEST:
             plan = _cut(plan, until)
-            played = _played(robot, plan, made)
-        record = record_of(robot, log, plan)
+            record, played = record_of(robot, log, plan), _played(robot, plan, made)
         for kind, one in played.items():
             if isinstance(one, MotionError):
                 scores.append(KindScore(log.name, kind, None, None, None, 0.0, one.fell))

@@ -210,26 +210,6 @@ def bush_state(motion: FootMotion, wrench: Array, sole: pin.SE3, least: float) -
     )
 
 
-@dataclass(frozen=True)
-class RelativePose:
-    """The right sole seen from the left one's levelled heading frame: constant while both stand without slip.
-
-    position: (N, 3) [m]; its z is the difference of the soles' heights: the z deflections of both bushes;
-    yaw: (N,) [rad], in (-pi, pi].
-    """
-
-    position: Array
-    yaw: Array
-
-
-def relative_pose(left: BushState, right: BushState) -> RelativePose:
-    """How two soles stand to each other; the IMU's yaw and position cancel."""
-    x, y, z = (right.sole_position - left.sole_position).T
-    c, s = np.cos(left.heading), np.sin(left.heading)
-    yaw = np.pi - np.mod(np.pi - (right.heading - left.heading), 2 * np.pi)
-    return RelativePose(np.column_stack([c * x + s * y, c * y - s * x, z]), yaw)
-
-
 def _centre_of_pressure(
     force: Array, torque: Array, pitch: Array, roll: Array, sole: pin.SE3, least: float
 ) -> Array:

@@ -35,18 +35,17 @@ def share_between(sets: Sequence[Differences], usual: float) -> ShareBetween:
     leave (A. Gelman, Bayesian Analysis 1, 2006). So few differences may be small by chance, which a moment estimate
     takes for none at all.
     """
-    weights = []
-    for share in TRIED:
-        prior = -0.5 * (HEAVY + 1) * np.log1p((share / usual) ** 2 / HEAVY)
-        # Tried in even steps of the logarithm.
-        weights.append(prior + np.log(share) + sum(_likelihood(each, share) for each in sets))
-    weight = np.exp(np.array(weights) - max(weights))
+    prior = -0.5 * (HEAVY + 1) * np.log1p((TRIED / usual) ** 2 / HEAVY)
+    # Tried in even steps of the logarithm.
+    logarithm = prior + np.log(TRIED) + sum(_likelihood(each) for each in sets)
+    weight = np.exp(logarithm - logarithm.max())
     below = np.cumsum(weight) / np.sum(weight)
     low, high = np.interp([0.025, 0.975], below, TRIED)
     return ShareBetween(float(np.sqrt(np.sum(weight * TRIED**2) / np.sum(weight))), float(low), float(high))
 
 
-def _likelihood(found: Differences, share: float) -> float:
-    """Logarithm of the density of differences from a first group that differs by `share` like all others."""
-    spread = found.covariance + share**2 * (np.eye(len(found.shares)) + 1.0)
-    return float(-0.5 * (np.linalg.slogdet(spread)[1] + found.shares @ np.linalg.solve(spread, found.shares)))
+def _likelihood(found: Differences) -> Array:
+    """Logarithm of the density of differences from a first group that differs by each of `TRIED` like all others."""
+    spread = found.covariance + np.multiply.outer(TRIED**2, np.eye(len(found.shares)) + 1.0)
+    distance = found.shares @ np.linalg.solve(spread, found.shares[:, None])
+    return np.asarray(-0.5 * (np.linalg.slogdet(spread)[1] + distance[:, 0]))

@@ -75,16 +75,19 @@ def configurations(body: Body, plan: Plan) -> tuple[Array, Array, Array, Array]:
     time = np.arange(0.0, plan.time[-1] + 1e-9, 1 / CHECK_RATE)
     rows = _rows(plan, time)
     spline = CubicSpline(plan.time, plan.positions)
+    positions, speeds, accelerations = (spline(time, derivative) for derivative in range(3))
     q = np.tile(pin.neutral(body.model), (time.size, 1))
     v, a = np.zeros((time.size, body.model.nv)), np.zeros((time.size, body.model.nv))
     for place, name in enumerate(plan.joints):
         joint = body.model.joints[body.model.getJointId(name)]
-        values = spline(time)[:, place]
+        values = positions[:, place]
         q[:, joint.idx_q : joint.idx_q + joint.nq] = (
             values[:, None] if joint.nq == 1 else np.column_stack([np.cos(values), np.sin(values)])
         )
-        v[:, joint.idx_v], a[:, joint.idx_v] = spline(time, 1)[:, place], spline(time, 2)[:, place]
-    bases = [pin.SE3(pose) for pose in (plan.base if plan.hand is None else _led(body, plan))[rows]]
+        v[:, joint.idx_v], a[:, joint.idx_v] = speeds[:, place], accelerations[:, place]
+    bases = [pin.SE3(pose) for pose in plan.base[rows]]
+    if plan.hand is not None:
+        bases = _led(plan, plan.hand.path[rows], bases)
     q[:, :7] = [pin.SE3ToXYZQUAT(base) for base in bases]
     if plan.hand is None:
         twist = np.zeros((time.size, 6))
@@ -95,18 +98,14 @@ def configurations(body: Body, plan: Plan) -> tuple[Array, Array, Array, Array]:
     return q, v, a, time
 
 
-def _led(body: Body, plan: Plan) -> Array:
-    """Base poses (N, 4, 4) of a robot that leans as a whole after the hand."""
+def _led(plan: Plan, hand: Array, bases: list[pin.SE3]) -> list[pin.SE3]:
+    """The bases of a robot that leans as a whole after the hand, (N, 3) [m]."""
     assert plan.hand is not None
     pivot = np.mean([pose[:3, 3] for pose in plan.stance.values()], axis=0)
-    start = plan.hand.path[0] - pivot
-    led = np.empty_like(plan.base)
-    for row, point in enumerate(plan.hand.path - pivot):
-        axis = np.cross(start, point)
-        lean = pin.exp3(axis / (np.linalg.norm(start) * np.linalg.norm(point)))
-        about = pin.SE3(lean, pivot - lean @ pivot)
-        led[row] = (about * pin.SE3(plan.base[row])).homogeneous
-    return led
+    start, points = plan.hand.path[0] - pivot, hand - pivot
+    lengths = np.linalg.norm(start) * np.linalg.norm(points, axis=1)
+    leans = [pin.exp3(turn) for turn in np.cross(start, points) / lengths[:, None]]
+    return [pin.SE3(lean, pivot - lean @ pivot) * base for lean, base in zip(leans, bases, strict=True)]
 
 
 def _check_limits(body: Body, plan: Plan) -> None:

@@ -10,17 +10,16 @@ from pathlib import Path
 from typing import Any, Final
 
 import pyarrow as pa
-import pyarrow.parquet as pa_parquet
 
 from plantar import __version__
 from plantar.errors import PlantarError, located
-from plantar.files import atomic_write, read_bounded, write_text
+from plantar.files import read_bounded, write_text
 from plantar.notes import Note
 from plantar.results import dynamics_text, text
 from plantar.results.dynamics_rows import BaseParameter, DynamicsScore, InertialParameter, JointParameter
 from plantar.results.feet_rows import Input
 from plantar.results.io import RESULT_LIMIT, dump_json, finite, read_result, result_path
-from plantar.results.residuals import read_table, residuals_path
+from plantar.results.residuals import read_table, residuals_path, write_table
 from plantar.results.stored import rows_of, value_of
 
 __all__ = [
@@ -163,9 +162,7 @@ class DynamicsResult:
         Raises PlantarError where the folder cannot be written.
         """
         folder = Path(directory)
-        if self.residuals is not None:
-            with atomic_write(folder / "residuals.parquet") as handle:
-                pa_parquet.write_table(self.residuals, handle, compression="zstd")
+        write_table(self.residuals, folder)
         write_text(folder / URDF, self.urdf)
         path = folder / "result.json"
         write_text(path, dump_json(self.to_dict()))

@@ -10,11 +10,10 @@ from pathlib import Path
 from typing import Any, Final
 
 import pyarrow as pa
-import pyarrow.parquet as pa_parquet
 
 import plantar
 from plantar.contact.phases import Phase
-from plantar.files import atomic_write, write_text
+from plantar.files import write_text
 from plantar.notes import Note
 from plantar.results import feet_text, text
 from plantar.results.feet_rows import (
@@ -29,7 +28,7 @@ from plantar.results.feet_rows import (
     Verdict,
 )
 from plantar.results.io import dump_json, finite, read_result, result_path
-from plantar.results.residuals import read_table, residuals_path
+from plantar.results.residuals import read_table, residuals_path, write_table
 from plantar.results.stored import row_of, rows_of, value_of
 from plantar.results.walk_rows import StanceStiffness, SwingZero, WalkStiffness
 
@@ -39,7 +38,12 @@ __all__ = [
 ]  # fmt: skip
 
 FEET_SCHEMA: Final = "plantar.feet/1"
-_WALKING: Final = ("stances", "walks", "swing_zeros")  # keys of the file only where a foot steps
+_IF_ANY: Final = (
+    "comparisons",
+    "stances",
+    "walks",
+    "swing_zeros",
+)  # keys of the file only where there are rows
 
 _TABLE: Final = pa.schema(
     [(name, pa.string()) for name in ("foot", "axis", "name", "unit")]
@@ -143,14 +147,10 @@ class FeetResult:
     @property
     def soles(self) -> dict[str, tuple[tuple[float, float], ...]]:
         """Each foot's sole outline, x forward and y left in the sole's frame [m], where the result knows it."""
-        feet = value_of(dict[str, dict[str, Any]], {"feet": {}, **self.robot_model}, "feet", None)
-        found = {
-            name: value_of(dict[str, Any], {"sole": {}, **foot}, "sole", None) for name, foot in feet.items()
-        }
+        feet = value_of(dict[str, dict[str, Any]], self.robot_model, "feet", None, {})
+        soles = {name: value_of(dict[str, Any], foot, "sole", None, {}) for name, foot in feet.items()}
         kind = tuple[tuple[float, float], ...]
-        return {
-            name: value_of(kind, sole, "polygon", None) for name, sole in found.items() if "polygon" in sole
-        }
+        return {name: value_of(kind, own, "polygon", None) for name, own in soles.items() if "polygon" in own}
 
     def to_table(self) -> pa.Table:
         """The parameters as an Arrow table, one row each; `.to_pandas()` where pandas is installed.
@@ -194,16 +194,15 @@ class FeetResult:
             "robot_model": dict(self.robot_model),
             "laws": [row.to_dict() for row in self.models],
         }
-        content |= {} if self.sensor_delay is None else {"latency": asdict(self.sensor_delay)}
-        content |= {
-            "compliance": dict(self.compliance),
-            "diagnosis": [asdict(row) for row in self.diagnosis],
-        }
-        content |= {"comparisons": [asdict(row) for row in self.comparisons]} if self.comparisons else {}
-        content |= {} if self.campaign is None else {"campaign": dict(self.campaign)}
-        for key in _WALKING:
-            rows = getattr(self, key)
-            content |= {key: [asdict(row) for row in rows]} if rows else {}
+        if self.sensor_delay is not None:
+            content["latency"] = asdict(self.sensor_delay)
+        content["compliance"] = dict(self.compliance)
+        content["diagnosis"] = [asdict(row) for row in self.diagnosis]
+        for key in _IF_ANY:
+            if rows := getattr(self, key):
+                content[key] = [asdict(row) for row in rows]
+        if self.campaign is not None:
+            content["campaign"] = dict(self.campaign)
         plain: dict[str, Any] = finite(content)
         return plain
 
@@ -213,11 +212,7 @@ class FeetResult:
         Returns the path of `result.json`. Raises PlantarError where the folder cannot be written.
         """
         folder = Path(directory)
-        if self.residuals is not None:
-            with atomic_write(folder / "residuals.parquet") as handle:
-                # Measured numbers hardly repeat: a dictionary of them costs time and room.
-                text = ["motion", "role", "foot", "support"]
-                pa_parquet.write_table(self.residuals, handle, compression="zstd", use_dictionary=text)
+        write_table(self.residuals, folder)
         path = folder / "result.json"
         write_text(path, dump_json(self.to_dict()))
         return path
@@ -248,8 +243,7 @@ class FeetResult:
 
     @classmethod
     def _from_dict(cls, content: Mapping[str, Any], path: Path) -> FeetResult:
-        lists = {"comparisons": [], "laws": [], **content}
-        comparisons, laws = (value_of(list[Any], lists, key, path) for key in ("comparisons", "laws"))
+        comparisons, laws = (value_of(list[Any], content, key, path, []) for key in ("comparisons", "laws"))
         delay = content.get("latency")
         return cls(
             robot=value_of(str, content, "robot", path),
@@ -261,10 +255,10 @@ class FeetResult:
             phases=rows_of(Phase, content, "phases", path),
             validation=rows_of(ValidationRow, content, "validation", path),
             notes=rows_of(Note, content, "notes", path),
-            robot_model=value_of(dict[str, Any], {"robot_model": {}, **content}, "robot_model", path),
+            robot_model=value_of(dict[str, Any], content, "robot_model", path, {}),
             models=tuple(AxisModel.from_dict(row, f"laws.{k}", path) for k, row in enumerate(laws)),
             sensor_delay=None if delay is None else row_of(DelayEstimate, delay, "latency", path),
-            compliance=value_of(dict[str, float], {"compliance": {}, **content}, "compliance", path),
+            compliance=value_of(dict[str, float], content, "compliance", path, {}),
             diagnosis=rows_of(Diagnosis, content, "diagnosis", path),
             comparisons=tuple(
                 Comparison.from_dict(row, f"comparisons.{k}", path) for k, row in enumerate(comparisons)

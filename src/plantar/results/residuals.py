@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from plantar.conventions import AXES, Array, Mask
 from plantar.errors import PlantarError, located
+from plantar.files import atomic_write
 
 FILE_NAMES: Final = ("residuals.parquet", "residuals.csv", "residuals.csv.gz")
 SIZE_LIMIT: Final = 2_000_000_000
@@ -120,6 +121,19 @@ def tracks_of(table: Any, path: Path | None = None) -> tuple[Track, ...]:
             for own, rows in zip(columns, rows_of, strict=True):
                 own[name] = values[rows]
     return tuple(replace(track, values=own) for track, own in zip(tracks, columns, strict=True))
+
+
+def write_table(table: Any, folder: Path) -> None:
+    """Write a residual table (Arrow) as `residuals.parquet` into a folder, whole or not at all; nothing where None."""
+    import pyarrow as pa
+    import pyarrow.parquet
+
+    if table is None:
+        return
+    # Measured numbers hardly repeat: a dictionary of them costs time and room.
+    text = [column.name for column in table.schema if pa.types.is_dictionary(column.type)]
+    with atomic_write(folder / FILE_NAMES[0]) as handle:
+        pyarrow.parquet.write_table(table, handle, compression="zstd", use_dictionary=text)
 
 
 def read_table(path: Path) -> Any:

@@ -23,7 +23,7 @@ def rows_of(
 
     Raises PlantarError that names the row and its key where one does not fit. Keys that `kind` lacks are left out.
     """
-    entries = value_of(list[Any], content if required else {key: [], **content}, key, path)
+    entries = value_of(list[Any], content, key, path, None if required else [])
     return tuple(row_of(kind, entry, f"{key}.{place}", path) for place, entry in enumerate(entries))
 
 
@@ -35,9 +35,16 @@ def row_of(kind: type[Row], entry: object, place: str, path: Path | None) -> Row
     return _checked(kind, entry, place, path)
 
 
-def value_of(kind: type[Row], content: Mapping[str, Any], key: str, path: Path | None) -> Row:
-    """The value under `key` as a plain type, such as str or dict[str, float]; PlantarError where it does not fit."""
+def value_of(
+    kind: type[Row], content: Mapping[str, Any], key: str, path: Path | None, missing: Row | None = None
+) -> Row:
+    """The value under `key` as a plain type, such as str or dict[str, float]; PlantarError where it does not fit.
+
+    missing: what stands where there is no such key; None: that is an error.
+    """
     if key not in content:
+        if missing is not None:
+            return missing
         raise PlantarError(located("is missing", path=path, column=key, valid="a whole result.json"))
     return _checked(kind, _infinite(content[key], kind), key, path)
 

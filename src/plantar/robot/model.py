@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import difflib
 import os
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -16,16 +15,14 @@ import pinocchio as pin
 
 from plantar.conventions import Array, rotation_from_rpy
 from plantar.errors import RobotError, located
-from plantar.files import read_bounded
 from plantar.notes import Note
 from plantar.robot.guesses import Guess
 from plantar.robot.joint_names import JointNames
 from plantar.robot.kinematics import KinematicTree
 from plantar.robot.schema import FootEntry, FrameEntry, JointEntry, read_robot_file
 from plantar.robot.uncertainty import Uncertainty
+from plantar.robot.urdf import parse_urdf, read_urdf, unknown_link
 from plantar.robot.weighed import check_weight, of_mass, weight_notes, weight_of
-
-URDF_LIMIT = 64 * 2**20  # bytes
 
 
 @dataclass(frozen=True)
@@ -149,11 +146,9 @@ class RobotModel:
     @cached_property
     def urdf_mass(self) -> float:
         """Total mass of the URDF's links [kg]."""
-        return (
-            self.mass
-            if self.weighed is None
-            else weight_of(parse_urdf(self.urdf, self.urdf_path, floating=False))
-        )
+        if self.weighed is None:
+            return self.mass
+        return weight_of(parse_urdf(self.urdf, self.urdf_path, floating=False))
 
     @property
     def weight_notes(self) -> list[Note]:
@@ -199,19 +194,14 @@ def load_robot(path: str | os.PathLike[str]) -> RobotModel:
     path = Path(path)
     entry, guesses = read_robot_file(path)
     urdf_path = path.parent / entry.urdf
-    content = read_bounded(urdf_path, URDF_LIMIT, RobotError)
-    try:
-        urdf = content.decode()
-    except UnicodeDecodeError as error:
-        raise RobotError(located("is not UTF-8 text", path=urdf_path, valid="a URDF")) from error
-    imu = entry.imu and Imu(entry.imu.name, _placement(entry.imu, entry.imu.link or ""))
+    imu = Imu(entry.imu.name, _placement(entry.imu, entry.imu.link or "")) if entry.imu else None
     robot = RobotModel(
         name=entry.name,
         path=path,
         urdf_path=urdf_path,
-        urdf=urdf,
+        urdf=read_urdf(urdf_path),
         base=entry.base,
-        imu=imu or None,
+        imu=imu,
         feet={name: _foot(name, foot) for name, foot in entry.feet.items()},
         joints={name: JointTerms(_terms(joint), joint.passive) for name, joint in entry.joints.items()},
         topics=dict(entry.topics),
@@ -225,14 +215,6 @@ def load_robot(path: str | os.PathLike[str]) -> RobotModel:
     )
     _check(robot)
     return robot
-
-
-def unknown_link(link: str, model: pin.Model, path: Path) -> str:
-    """One line that names an unknown link and what may have been meant."""
-    names = [frame.name for frame in model.frames]
-    near = difflib.get_close_matches(link, names, n=3)
-    valid = "one of " + ", ".join(near) if near else f"a frame of the URDF, such as {', '.join(names[1:4])}"
-    return located(f"link '{link}' is not in the URDF", path=path, valid=valid)
 
 
 def _placement(entry: FrameEntry, default_link: str) -> Placement:
@@ -252,40 +234,15 @@ def _terms(entry: JointEntry) -> tuple[str, ...]:
     return ("stiffness", "viscous", "offset") if entry.passive else ("viscous", "coulomb", "offset")
 
 
-def parse_urdf(urdf: str, path: Path, *, floating: bool) -> pin.Model:
-    """Pinocchio's model of a URDF's text, with a free-flyer above the root link where `floating`.
-
-    Raises RobotError, with `path` for the file, where it declares an entity or Pinocchio cannot read it.
-    """
-    if re.search(r"<!(DOCTYPE|ENTITY)", urdf, re.IGNORECASE):
-        raise RobotError(located("declares a DOCTYPE or an entity", path=path, valid="plain URDF"))
-    try:
-        return (
-            pin.buildModelFromXML(urdf, pin.JointModelFreeFlyer())
-            if floating
-            else pin.buildModelFromXML(urdf)
-        )
-    except (ValueError, RuntimeError, IndexError) as error:
-        reason = str(error).splitlines()[0] if str(error) else "unreadable"
-        raise RobotError(located(f"is not a readable URDF: {reason}", path=path)) from error
-
-
 def _check(robot: RobotModel) -> None:
     check_weight(robot.path, robot.weighed, robot.urdf_mass)
     if robot.imu is not None:
         robot.frame(robot.imu.placement)
     for foot in robot.feet.values():
-        carriers = {
-            part: robot.frame(placement)[0]
-            for part, placement in (
-                ("ankle", Placement(foot.ankle, np.zeros(3), np.zeros(3))),
-                ("bush", foot.bush),
-                ("wrench", foot.wrench.placement),
-                ("sole", foot.sole.placement),
-            )
-        }
-        for part, carrier in carriers.items():
-            if carrier != carriers["ankle"]:
+        ankle, _ = robot.frame(Placement(foot.ankle, np.zeros(3), np.zeros(3)))
+        parts = {"bush": foot.bush, "wrench": foot.wrench.placement, "sole": foot.sole.placement}
+        for part, placement in parts.items():
+            if robot.frame(placement)[0] != ankle:
                 message = f"feet.{foot.name}.{part} is not rigidly fixed to the ankle link '{foot.ankle}'"
                 raise RobotError(located(message, path=robot.path, valid="a link without a joint in between"))
     keys = [("joints", name) for name in robot.joints]

@@ -17,13 +17,14 @@ import pinocchio as pin
 from plantar.checks.joints import recorded_joints
 from plantar.checks.log_checks import check_log
 from plantar.conventions import GRAVITY, Array
-from plantar.errors import LogError, RobotError, located
+from plantar.errors import LogError, located
 from plantar.exporters.urdf.tree import UrdfTree
-from plantar.files import read_bounded, write_text
+from plantar.files import write_text
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers.urdf_names import with_urdf_names
 from plantar.robot.joint_names import JointNames, propose_names, propose_order
-from plantar.robot.model import RobotModel, load_robot, parse_urdf
+from plantar.robot.model import RobotModel, load_robot
+from plantar.robot.urdf import parse_urdf, read_urdf
 from plantar.robot_guess.biped import find_biped
 from plantar.robot_guess.bush import bush_shift
 from plantar.robot_guess.column_map import read_column_map
@@ -38,7 +39,6 @@ from plantar.robot_guess.wrench import seats_by_log
 from plantar.robot_guess.zeros import without_zeros
 
 THIN = 0.02  # m: rubber bushes sit about so far above the sole
-URDF_LIMIT = 64 * 2**20  # bytes
 WITHOUT_LOG = "imu"  # what an IMU is called before there is a log
 
 
@@ -47,7 +47,7 @@ def guess_robot_file(urdf: Path, logs: Sequence[Path], out: Path, columns: Path 
 
     Raises RobotError where the URDF is unreadable or no biped, LogError where a log is, or is of another robot.
     """
-    model = _model(urdf)
+    model = parse_urdf(read_urdf(urdf), urdf, floating=False)
     tree = UrdfTree.load(urdf)
     biped = find_biped(tree, model)
     soles = [find_sole(tree, model, biped, leg) for leg in biped.legs]
@@ -212,11 +212,6 @@ def _loaded(draft: Draft, urdf: Path, mapped: str = "") -> RobotModel:
         path = Path(folder) / "robot.yaml"
         write_text(path, draft.text(str(urdf.resolve())) + mapped)
         return load_robot(path)
-
-
-def _model(urdf: Path) -> pin.Model:
-    text = read_bounded(urdf, URDF_LIMIT, RobotError).decode("utf-8", "replace")
-    return parse_urdf(text, urdf, floating=False)
 
 
 def _relative(path: Path, out: Path) -> str:

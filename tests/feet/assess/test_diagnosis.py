@@ -46,6 +46,8 @@ def test_shares_are_of_variances_and_the_largest_limits() -> None:
     alone, _ = diagnose_axis(narrow, wide, [delay], unbounded)
     assert alone.half_width_percent == pytest.approx(196 * 5.0 / 400.0)
     assert "64 % of its variance from delay" in stiffness.text
+    assert "pitch stiffness: ±0.12 %" in stiffness.text
+    assert "without it ±0.075 %" in stiffness.text, "the root of what is left of the variance"
     assert "nearly all of it from delay" in damping.text
     assert stiffness.advice == REMEDY["delay"]
     assert stiffness.advice in stiffness.text
@@ -54,6 +56,8 @@ def test_shares_are_of_variances_and_the_largest_limits() -> None:
 def test_coloured_residuals_are_the_models_and_an_interval_over_zero_is_the_motions() -> None:
     coloured = axis_fit((3.0, 0.1), white=0.01)
     assert {row.limit for row in diagnose_axis(coloured, coloured, [], rows())} == {"model"}
+    hardly = axis_fit((3.0, 0.1), white=0.2)  # filtered noise is as coloured
+    assert {row.limit for row in diagnose_axis(hardly, hardly, [], rows())} == {"noise"}
     assert {row.limit for row in diagnose_axis(coloured, coloured, [], rows("unidentifiable"))} == {
         "excitation"
     }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,9 +11,12 @@ import pytest
 from biped import TRUTH, record, sway
 from biped_robot import make_robot
 from feet_trials import LINEAR
-from plantar.feet.exclusion.outliers import outliers
+from made_recording import FOOT, made_recording, swayed
+from plantar.feet.exclusion.outliers import outlier_masks, outliers
+from plantar.feet.fit.axis import FittedModel
 from plantar.feet.identify import identify_feet
 from plantar.logs.motion_log import MotionLog
+from plantar.models import KelvinVoigt
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
 from plantar.signals.spikes import lone_spikes, without_spikes
@@ -119,8 +123,47 @@ def test_a_short_burst_is_an_outlier_and_another_motion_is_not() -> None:
     assert not outliers(np.where(motion, 20 * missed, missed), 5.0, PERIOD, 0.2).any(), (
         "4 s are no bad sample"
     )
+    longer = (TIME > 10) & (TIME < 12)  # less than a tenth of the recording, but more than a second
+    assert not outliers(np.where(longer, missed + 1.0, missed), 5.0, PERIOD, 0.2).any()
     small = np.where(burst, missed + 0.12, missed)
     assert not outliers(small, 5.0, PERIOD, 0.2).any(), "too small to matter"
+
+
+def test_what_the_filter_spreads_of_a_burst_goes_along() -> None:
+    missed = 0.02 * np.random.default_rng(4).standard_normal(6000)
+    found = outliers(np.where(stretches((8.0,)), missed + 1.0, missed), 5.0, PERIOD, 0.4)
+    assert found[(TIME > 7.65) & (TIME < 8.55)].all()
+    assert not found[(TIME < 7.4) | (TIME > 8.8)].any()
+
+
+def test_where_a_tenth_of_a_recording_is_off_it_is_no_lone_fault() -> None:
+    missed = 0.02 * np.random.default_rng(5).standard_normal(6000)
+    few, many = (stretches(tuple(np.arange(1.0, 29.0, apart))) for apart in (7.0, 2.0))
+    assert outliers(np.where(few, missed + 1.0, missed), 5.0, PERIOD, 0.05)[few].all()
+    assert not outliers(np.where(many, missed + 1.0, missed), 5.0, PERIOD, 0.05).any()
+
+
+def test_a_stretch_that_one_axis_consists_of_is_no_outlier_of_the_other() -> None:
+    """Roll leaves its model for half a second; pitch moves then and nowhere else, or throughout."""
+    roll, burst = swayed(3000), (np.arange(3000) > 1500) & (np.arange(3000) < 1550)
+    noise = 0.02 * np.random.default_rng(8).standard_normal(3000)
+    known = FittedModel(
+        foot=FOOT, axis="roll", model=KelvinVoigt(), values=np.array([400.0, 20.0]), shape=np.zeros(0),
+        offsets={"sway": 0.0},
+    )  # fmt: skip
+    plain = made_recording("sway", roll, 400.0 * roll)
+    bush = plain.bushes[FOOT]
+    law = 400.0 * roll + 20.0 * bush.rate[:, 1]
+    torque = law + noise + np.where(burst, 3.0, 0.0)
+    for pitch, found in ((np.where(burst, 0.03, 0.0), False), (swayed(3000, seed=1), True)):
+        moved = replace(
+            bush,
+            deflection=np.column_stack([pitch, roll]),
+            torque=np.column_stack([400.0 * pitch, torque]),
+        )
+        masks = outlier_masks([replace(plain, bushes={FOOT: moved})], known)
+        assert bool(masks) == found
+        assert not found or masks["sway"][burst].all()
 
 
 def test_clean_logs_are_fitted_once_and_untouched(robot: RobotModel, clean: list[MotionLog]) -> None:

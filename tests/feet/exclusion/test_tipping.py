@@ -34,10 +34,16 @@ class Tipping(BushModel):
         return np.clip(super().torque(deflection, rate), self.low, self.high)
 
 
-def pitching(angle: Callable[[np.ndarray], np.ndarray], low: float = -np.inf, high: float = np.inf) -> Motion:
-    """Both feet pitch by one angle, and roll a little; no weight moves, no sensor has a zero."""
+def pitching(
+    angle: Callable[[np.ndarray], np.ndarray],
+    low: float = -np.inf,
+    high: float = np.inf,
+    zero: float = 0.0,
+) -> Motion:
+    """Both feet pitch by one angle, and roll a little; no weight moves; the sensors' torque in pitch reads `zero`
+    [N·m] too much."""
     truth = {
-        key: Tipping(law.stiffness, law.damping, 0.0, 0.0, low, high)
+        key: Tipping(law.stiffness, law.damping, zero, 0.0, low + zero, high + zero)
         if key[1] == "pitch"
         else replace(law, offset=0.0)
         for key, law in TRUTH.items()
@@ -84,6 +90,17 @@ def test_an_outline_that_is_a_guess_may_be_too_large(tmp_path: Path, guessed: bo
         row, truth = found.parameter(foot, "pitch", "stiffness"), TRUTH[foot, "pitch"].stiffness
         assert (len(tips(found, foot)) > 10) == guessed
         assert (row.value == pytest.approx(truth, rel=0.03)) == guessed
+
+
+@pytest.mark.parametrize("zero", [1.0, -1.0])
+def test_a_torque_that_reads_wrong_moves_the_edge(tmp_path: Path, zero: float) -> None:
+    """By 3 mm: on one side the sole tips that far inside of where the centre of pressure seems to be at its edge."""
+    motion = pitching(sines((np.radians(2.5), 0.25, 0.3)), -LIMIT, LIMIT, zero)
+    found = identify_feet(short_soled(tmp_path, 0.03), [noisy(record(motion), 1)], settings=LINEAR)
+    for foot in FEET:
+        row = found.parameter(foot, "pitch", "stiffness")
+        assert row.value == pytest.approx(TRUTH[foot, "pitch"].stiffness, rel=0.02)
+        assert row.half_width_percent < 1.0
 
 
 def test_what_lies_beside_a_lean_is_left_out_with_it(tmp_path: Path) -> None:

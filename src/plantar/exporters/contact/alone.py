@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, Final
 
 import numpy as np
@@ -54,6 +55,7 @@ def contact_attributes(point: Point, inverse_mass: float) -> dict[str, str]:
     }
 
 
+@lru_cache(maxsize=512)  # seconds for each foot, and one export's feet are mostly the next one's
 def measured(foot: PointFoot, axis: Axis, load: float, step: float, share: float = MARKED) -> Measured:
     """Turn a foot about one axis under a load and read K from where it stands, C from how it follows a swing.
 

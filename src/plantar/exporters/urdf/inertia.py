@@ -14,7 +14,7 @@ from plantar.errors import ExportError, PlantarError, located
 from plantar.exporters.xml_file import load_xml, to_text
 from plantar.notes import Note
 from plantar.robot.identified_urdf import write_inertias
-from plantar.robot.model import parse_urdf
+from plantar.robot.urdf import parse_urdf
 
 
 def with_inertial_parameters(result: Mapping[str, Any], model: Path) -> tuple[str, tuple[Note, ...]]:

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from plantar.contact.deflection import relative_pose
 from plantar.contact.phases import DOUBLE, SUPPORTS, FootContact, widened
 from plantar.contact.reasons import EDGES, Reason
+from plantar.contact.relative_pose import relative_pose
 from plantar.contact.slip_indicator import (
     SlipIndicator,
     apart_speed,

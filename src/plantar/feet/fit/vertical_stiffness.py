@@ -16,8 +16,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from plantar.contact.deflection import relative_pose
 from plantar.contact.phases import DOUBLE, SUPPORTS
+from plantar.contact.relative_pose import relative_pose
 from plantar.contact.sole_height import height_changes
 from plantar.conventions import STIFFNESS_UNIT, Array, Mask
 from plantar.estimation import Block, effect_of, fit_linear, interval95, relative_std_percent

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from io import BytesIO
-from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
-from plantar.conventions import ROTATIONAL_AXES, Array
+from plantar.conventions import ROTATIONAL_AXES, Array, Mask
 from plantar.errors import DataError
 from plantar.files import atomic_write
 from plantar.report.content import Figure, MediaType
@@ -128,17 +128,19 @@ def envelope(time: Array, values: Array, columns: int = COLUMNS) -> tuple[Array,
     if time.size <= 4 * columns:
         return time, values
     edges = np.linspace(0, time.size, columns + 1).astype(np.intp)
-    kept: list[int] = []
-    for low, high in pairwise(edges):
-        part = values[low:high]
-        gaps = np.flatnonzero(np.isnan(part))
-        chosen = {0, part.size - 1}
-        if gaps.size:
-            chosen.add(int(gaps[0]))
-        if gaps.size < part.size:
-            chosen |= {int(np.nanargmin(part)), int(np.nanargmax(part))}
-        kept += sorted(int(low) + index for index in chosen)
-    return time[kept], values[kept]
+    bins, gaps = np.repeat(np.arange(columns), np.diff(edges)), np.isnan(values)
+    kept = [edges[:-1], edges[1:] - 1, _first_of_each(bins, gaps)]
+    for extreme, none in ((np.minimum, np.inf), (np.maximum, -np.inf)):
+        least = extreme.reduceat(np.where(gaps, none, values), edges[:-1])
+        kept.append(_first_of_each(bins, values == least[bins]))
+    rows = np.unique(np.concatenate(kept))
+    return time[rows], values[rows]
+
+
+def _first_of_each(bins: NDArray[np.intp], chosen: Mask) -> NDArray[np.intp]:
+    """The first of the `chosen` rows (N,) in each bin that has one; `bins` (N,) rise."""
+    rows = np.flatnonzero(chosen)
+    return np.asarray(rows[np.unique(bins[rows], return_index=True)[1]])
 
 
 def picture(drawing: Drawing, title: str, caption: str, media: MediaType = "image/png") -> Figure:

@@ -9,20 +9,16 @@ import struct
 import zlib
 from pathlib import Path
 
-import numpy as np
-
 from plantar.errors import LogError, located
 from plantar.logs.readers.read_limit import ReadLimit
 from plantar.logs.readers.ros.compressed import BrokenChunk, unpack_chunk
-from plantar.logs.readers.ros.layouts import IMU, JOINT_STATE, WRENCH, Encoding
+from plantar.logs.readers.ros.layouts import Encoding
+from plantar.logs.readers.ros.scan import BLOCK, MESSAGES, Found, Scan
 from plantar.logs.readers.ros.topics import Topic
 from plantar.notes import Note
 
 MAGIC = b"\x89MCAP0\r\n"
-BLOCK = 4 * 2**20  # bytes read at a time
-MESSAGES = 2**16  # messages of a topic decoded at a time
 FOOTER, SCHEMA, CHANNEL, MESSAGE, CHUNK, DATA_END = 0x02, 0x03, 0x04, 0x05, 0x06, 0x0F
-READ = {JOINT_STATE, IMU, WRENCH}
 
 _RECORD = struct.Struct("<BQ")
 _MESSAGE = struct.Struct("<HIQQ")
@@ -46,23 +42,19 @@ def read_mcap(path: Path, topics: dict[str, Topic], limit: ReadLimit, notes: lis
             rest = data[used:]
             if not done and (not block or scan.needed > size):
                 scan.cut(rest)
-                notes.append(Note("file_cut", "warning", f"{path.name} is cut; what is whole was read"))
+                scan.note_cut()
                 return
 
 
-class _Scan:
-    """Walks over records: learns schemas and channels, hands messages to their topics."""
-
+class _Scan(Scan):
     def __init__(self, path: Path, topics: dict[str, Topic], limit: ReadLimit, notes: list[Note]) -> None:
-        self.path, self.topics, self.limit, self.notes = path, topics, limit, notes
-        self.needed = 0  # bytes that the record at the end of a block wants
+        super().__init__(path, topics, limit, notes)
         self._schemas: dict[int, str] = {}
-        self._channels: dict[int, Topic | None] = {}
 
     def records(self, data: bytes, *, inside_chunk: bool = False) -> tuple[int, bool]:
         """Read whole records; returns the bytes used and whether the data section has ended."""
         at, total, done = 0, len(data), False
-        found: dict[int, tuple[list[int], list[int], list[int]]] = {}
+        found: Found = {}
         record, message, channels = _RECORD.unpack_from, _MESSAGE.unpack_from, self._channels
         self.needed = _RECORD.size
         while at + _RECORD.size <= total:
@@ -104,22 +96,6 @@ class _Scan:
         self._flush(data, found)
         return at, done
 
-    def _lost(self) -> bool:
-        """A record that cannot stand here: what follows is not in step either."""
-        self.notes.append(
-            Note("file_damaged", "warning", f"{self.path.name} is damaged; what comes before was read")
-        )
-        return True
-
-    def _flush(self, data: bytes, found: dict[int, tuple[list[int], list[int], list[int]]]) -> None:
-        buffer = np.frombuffer(data, np.uint8)
-        for channel, (starts, ends, received) in found.items():
-            topic = self._channels.get(channel)
-            if topic is not None:
-                self.limit.hold(sum(ends) - sum(starts))
-                topic.add(buffer, starts, ends, received)
-        found.clear()
-
     def cut(self, rest: bytes) -> None:
         """What is whole in a chunk that the file's end cuts."""
         if rest[:1] == bytes([CHUNK]):
@@ -135,9 +111,7 @@ class _Scan:
             if whole and (len(content) != size or (checksum and zlib.crc32(content) != checksum)):
                 raise BrokenChunk("its checksum or length does not agree")
         except (BrokenChunk, struct.error, UnicodeDecodeError) as error:
-            self.notes.append(
-                Note("chunk_broken", "warning", f"{self.path.name}: a chunk is left out: {error}")
-            )
+            self._broken(error)
             return
         self.records(content, inside_chunk=True)
 
@@ -158,13 +132,7 @@ class _Scan:
             return
         kind = self._schemas.get(schema, "")
         known: dict[str, Encoding] = {"cdr": "cdr", "ros1": "ros1"}
-        if kind not in READ or encoding not in known:
-            self._channels[identity] = None
-            return
-        topic = self.topics.get(name)
-        if topic is None or topic.kind != kind or topic.encoding != encoding:
-            topic = self.topics[name] = Topic(name, kind, known[encoding])
-        self._channels[identity] = topic
+        self._open(identity, name, kind if encoding in known else "", known.get(encoding, "cdr"))
 
 
 def _string(body: bytes, at: int) -> tuple[str, int]:

@@ -8,12 +8,10 @@ from __future__ import annotations
 import struct
 from pathlib import Path
 
-import numpy as np
-
 from plantar.errors import LogError, located
 from plantar.logs.readers.read_limit import ReadLimit
 from plantar.logs.readers.ros.compressed import BrokenChunk, unpack_chunk
-from plantar.logs.readers.ros.mcap_file import BLOCK, MESSAGES, READ
+from plantar.logs.readers.ros.scan import BLOCK, MESSAGES, Found, Scan
 from plantar.logs.readers.ros.topics import Topic
 from plantar.notes import Note
 
@@ -38,21 +36,18 @@ def read_ros1(path: Path, topics: dict[str, Topic], limit: ReadLimit, notes: lis
             ended = not block or scan.needed > size
             if ended and rest and not scan.lost:
                 scan.cut(rest)
-                notes.append(Note("file_cut", "warning", f"{path.name} is cut; what is whole was read"))
+                scan.note_cut()
             if ended or scan.lost:
                 return
 
 
-class _Scan:
-    def __init__(self, path: Path, topics: dict[str, Topic], limit: ReadLimit, notes: list[Note]) -> None:
-        self.path, self.topics, self.limit, self.notes = path, topics, limit, notes
-        self.needed, self.lost = 0, False
-        self._channels: dict[int, Topic | None] = {}
+class _Scan(Scan):
+    lost = False
 
     def records(self, data: bytes, *, inside_chunk: bool = False) -> int:
         """Read whole records; returns the bytes used."""
         at, total = 0, len(data)
-        found: dict[int, tuple[list[int], list[int], list[int]]] = {}
+        found: Found = {}
         self.needed = 8
         while at + 8 <= total:
             (header_size,) = _SIZE.unpack_from(data, at)
@@ -67,12 +62,7 @@ class _Scan:
                 break
             header = _fields(data[at + 4 : start])
             if b"op" not in header:  # no record: what follows is not in step either
-                self.notes.append(
-                    Note(
-                        "file_damaged", "warning", f"{self.path.name} is damaged; what comes before was read"
-                    )
-                )
-                self.lost = True
+                self.lost = self._lost()
                 break
             at = end
             code = header.get(b"op", b"\0")[:1]
@@ -89,13 +79,7 @@ class _Scan:
         self._flush(data, found)
         return at
 
-    def _message(
-        self,
-        header: dict[bytes, bytes],
-        start: int,
-        end: int,
-        found: dict[int, tuple[list[int], list[int], list[int]]],
-    ) -> None:
+    def _message(self, header: dict[bytes, bytes], start: int, end: int, found: Found) -> None:
         try:
             (channel,) = _SIZE.unpack(header[b"conn"])
             seconds, nanoseconds = struct.unpack("<II", header[b"time"])
@@ -107,28 +91,13 @@ class _Scan:
             ends.append(end)
             received.append(seconds * 1_000_000_000 + nanoseconds)
 
-    def _flush(self, data: bytes, found: dict[int, tuple[list[int], list[int], list[int]]]) -> None:
-        buffer = np.frombuffer(data, np.uint8)
-        for channel, (starts, ends, received) in found.items():
-            topic = self._channels.get(channel)
-            if topic is not None:
-                self.limit.hold(sum(ends) - sum(starts))
-                topic.add(buffer, starts, ends, received)
-        found.clear()
-
     def _connection(self, header: dict[bytes, bytes], body: dict[bytes, bytes]) -> None:
         try:
             (channel,) = _SIZE.unpack(header[b"conn"])
             name, kind = header[b"topic"].decode(), body[b"type"].decode()
         except (KeyError, struct.error, UnicodeDecodeError):
             return
-        if kind not in READ:
-            self._channels[channel] = None
-            return
-        topic = self.topics.get(name)
-        if topic is None or topic.kind != kind:
-            topic = self.topics[name] = Topic(name, kind, "ros1")
-        self._channels[channel] = topic
+        self._open(channel, name, kind, "ros1")
 
     def cut(self, rest: bytes) -> None:
         """What is whole in a chunk that the file's end cuts."""
@@ -145,9 +114,7 @@ class _Scan:
             if whole and len(content) != size:
                 raise BrokenChunk("its length does not agree")
         except (KeyError, struct.error, UnicodeDecodeError, BrokenChunk) as error:
-            self.notes.append(
-                Note("chunk_broken", "warning", f"{self.path.name}: a chunk is left out: {error}")
-            )
+            self._broken(error)
             return
         self.records(content, inside_chunk=True)
 

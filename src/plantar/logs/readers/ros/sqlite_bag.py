@@ -9,7 +9,7 @@ import numpy as np
 
 from plantar.errors import LogError, located
 from plantar.logs.readers.read_limit import ReadLimit
-from plantar.logs.readers.ros.mcap_file import READ
+from plantar.logs.readers.ros.scan import READ
 from plantar.logs.readers.ros.topics import Topic
 from plantar.notes import Note
 
