@@ -12,20 +12,26 @@ online` calls it weak), is not scored, but counted. `--motions campaign` plays t
 from __future__ import annotations
 
 import argparse
+import tempfile
 from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
+import talos
 from plantar.conventions import ROTATIONAL_AXES
 from plantar.motions.campaign import CAMPAIGN
 from plantar.online.estimator import FootEstimator
 from plantar.online.replay import USABLE
 from plantar.results.feet import FeetResult
 from plantar.results.feet_rows import Parameter
+from plantar.robot.model import RobotModel
 from plantar.robot.uncertainty import EXACT
 from plantar.twin import PAPER, play_all
+from plantar.twin.bush import Feet
 from plantar.twin.presets import Preset, preset_named
 from plantar.twin.recording import TwinRecording
 from plantar.twin.robots import hrp2
@@ -38,6 +44,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
+    parser.add_argument("--robot", default="hrp2", choices=("hrp2", "talos"))
     parser.add_argument("--preset", default="sensors")
     parser.add_argument("--motions", nargs="+", default=["Tilt1", "Tilt3"])
     parser.add_argument("--seeds", type=int, default=20)
@@ -55,15 +62,20 @@ def main() -> None:
     unknown: dict[str, int] = defaultdict(int)
     deflections: dict[str, list[float]] = defaultdict(list)
     latency: list[float] = []
-    everything = play_all(told.motions, None, PAPER, told.preset, range(told.first, told.first + told.seeds))
+    twin = twin_of(told.robot)
+    everything = play_all(
+        told.motions, twin.robot, twin.bushes, told.preset, range(told.first, told.first + told.seeds)
+    )
     for seed, recordings in enumerate(everything, told.first):
-        _score(preset, seed, recordings, told.after, scores, unknown, deflections, latency)
-    print(f"{told.preset}, {', '.join(told.motions)}, {told.seeds} seeds, every 5 s from {told.after:g} s on")
+        _score(twin, preset, seed, recordings, told.after, scores, unknown, deflections, latency)
+    motions = ", ".join(told.motions)
+    print(f"{told.robot}, {told.preset}, {motions}, {told.seeds} seeds, every 5 s from {told.after:g} s on")
     for key in sorted({*scores, *unknown}):
         error, half = np.array(scores[key]).reshape(-1, 2).T * 100
         inside = np.abs(error) <= half
         print(
-            f"  {key:16} {len(error)} scored, {unknown[key]} not known: error rms {_rms(error):.2f} %, largest "
+            f"  {key:16} {len(error)} scored, {unknown[key]} not known: error rms {_rms(error):.2f} %, mean "
+            f"{error.mean() if len(error) else 0:.2f} %, largest "
             f"{np.abs(error).max(initial=0):.2f} %, half width {np.median(half) if len(half) else 0:.2f} %, "
             f"covers {100 * inside.mean() if len(half) else 0:.0f} %"
         )
@@ -75,7 +87,22 @@ def main() -> None:
     print(f"  a step: median {1e6 * median:.1f} µs, 99.9 % {1e6 * p999:.1f} µs")
 
 
+class Twin(NamedTuple):
+    """A robot whose file is exact, and the bushes under it."""
+
+    robot: RobotModel
+    bushes: Feet
+
+
+def twin_of(name: str) -> Twin:
+    if name == "hrp2":
+        return Twin(replace(hrp2.robot(), uncertainty=EXACT), PAPER)
+    with tempfile.TemporaryDirectory() as folder:
+        return Twin(replace(talos.robot(Path(folder)), uncertainty=EXACT), talos.BUSHES)
+
+
 def _score(
+    twin: Twin,
     preset: Preset,
     seed: int,
     recordings: Sequence[TwinRecording],
@@ -85,8 +112,7 @@ def _score(
     deflections: dict[str, list[float]],
     latency: list[float],
 ) -> None:
-    robot = replace(hrp2.robot(), uncertainty=EXACT)
-    estimator = FootEstimator(robot, law(preset, seed), wrench_delay=preset.sensors.wrench_delay)
+    estimator = FootEstimator(twin.robot, law(preset, seed, twin), wrench_delay=preset.sensors.wrench_delay)
     begun = 0.0
     for one in recordings:
         replay = estimator.replay(one.log)
@@ -103,7 +129,7 @@ def _score(
                         continue
                     found = getattr(replay.estimate(foot, sample), axis)
                     for name, short in NAMES.items():
-                        right, key = getattr(PAPER[foot], f"{axis}_{name}"), f"{axis} {short}"
+                        right, key = getattr(twin.bushes[foot], f"{axis}_{name}"), f"{axis} {short}"
                         value = getattr(found, name)
                         if found.identified and value.half_width <= USABLE * abs(value.value):
                             scores[key].append((value.value / right - 1, value.half_width / right))
@@ -112,10 +138,11 @@ def _score(
         begun += one.log.duration
 
 
-def law(preset: Preset, seed: int) -> FeetResult:
+def law(preset: Preset, seed: int, twin: Twin | None = None) -> FeetResult:
     """A batch result that knows the bushes' elements, or that they have none."""
     rows, random = [], np.random.default_rng([seed, 7])
-    for foot, bush in preset.physics(PAPER).bushes.items():
+    robot, bushes = twin or (None, PAPER)
+    for foot, bush in (preset.physics(bushes, robot).bushes or {}).items():
         for axis in ROTATIONAL_AXES:
             rows.append(_row(foot, axis, "stiffness", getattr(bush, f"{axis}_stiffness"), 0.0))
             torque, angle = getattr(bush, f"{axis}_slip_torque"), getattr(bush, f"{axis}_slip_angle")
