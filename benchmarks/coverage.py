@@ -87,7 +87,7 @@ def main() -> None:
                 campaigns = play_all(
                     [*chosen.motions, *chosen.others], robot, bushes, preset, range(chosen.seeds)
                 )
-                truth = _on_the_floor(robot, bushes, preset)
+                truth = on_the_floor(robot, bushes, preset)
                 played = time.perf_counter() - started
                 models: Counter[str] = Counter()
                 table: Table = defaultdict(list)
@@ -105,7 +105,7 @@ def main() -> None:
     _print(every)
 
 
-def _on_the_floor(robot: RobotModel, bushes: Feet, preset: str) -> Feet:
+def on_the_floor(robot: RobotModel, bushes: Feet, preset: str) -> Feet:
     """Each bush in series with the floor under its sole; the floor's damping is left out."""
     physics = preset_named(preset).physics(bushes, robot)
     found = {}

@@ -1,24 +1,31 @@
 """The twin walks with what its stabiliser believes of its feet: rigid, half, double, true stiffness, or learnt online.
 
-    python benchmarks/online_in_the_loop.py [MOTION | Sway]
+    python benchmarks/online_in_the_loop.py --motion Walk12
+    python benchmarks/online_in_the_loop.py --motion Sway --preset realistic
+    python benchmarks/online_in_the_loop.py --motion Sway --stiffer 8 --cases rigid true online
 
 The physics is the same; only the compliance differs by which the stabiliser turns a wanted torque into an angle. `Sway`
 stands and moves its weight. Prints how far chest attitude and zero-moment point are from their plans, from 12 s on.
-"online" begins with double the stiffness and takes each foot's numbers from the estimator once they are identified; its
-sensors are the stabiliser's own, exact at 200 Hz.
+"online" begins with double the stiffness and takes each foot's numbers from the estimator once they are known for
+motions like those made; "identified" waits until a memory of the rubber is excluded; "told" is the same with a batch
+result that knows the rubber's element or that it has none. The estimator's sensors are the stabiliser's own, exact at
+200 Hz. When each number is believed first is told in seconds of control, which begins 3 s before the motion.
+`--stiffer`: times the paper's feet, on which a robot that believes them rigid falls at once.
 """
 
 from __future__ import annotations
 
-import sys
+import argparse
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import ClassVar
 from unittest.mock import patch
 
 import mujoco
 import numpy as np
 import pinocchio as pin
 
+from online import Twin, law
 from plantar.conventions import ROTATIONAL_AXES, Array, rotation_from_quaternion
 from plantar.errors import MotionError
 from plantar.motions import walk
@@ -27,10 +34,13 @@ from plantar.motions.footsteps import Footsteps, footsteps
 from plantar.motions.gait import Gait
 from plantar.motions.plan import RATE, Plan
 from plantar.motions.stance import stand
+from plantar.online.estimates import Flag
 from plantar.online.estimator import FootEstimator
+from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
 from plantar.robot.uncertainty import EXACT
 from plantar.twin import PAPER
+from plantar.twin.bush import Feet
 from plantar.twin.play import planned
 from plantar.twin.presets import preset_named
 from plantar.twin.robots import hrp2
@@ -44,13 +54,18 @@ from plantar.twin.walking.control import WalkingControl
 
 SETTLED = 12.0  # s of a motion, before which nothing is scored
 ALONG, ACROSS = 0.02, 0.06  # m: half of how far the ZMP of `Sway` moves
-CASES = ("rigid", "half", "double", "true", "online")
+CASES = ("rigid", "half", "double", "true", "online", "identified", "told")
+ONLINE = ("online", "identified", "told")
+UNKNOWN = {"pitch": Flag.PITCH_UNKNOWN | Flag.PITCH_MEMORY, "roll": Flag.ROLL_UNKNOWN | Flag.ROLL_MEMORY}
 
 
 class Believing(WalkingControl):
     """The twin's controller with another belief about its feet."""
 
     case = "true"
+    bushes: Feet = PAPER
+    batch: FeetResult | None = None
+    believed: ClassVar[dict[str, float]] = {}
 
     def __init__(
         self, model: mujoco.MjModel, robot: RobotModel, plan: Plan, physics: Physics, joints: tuple[str, ...]
@@ -59,10 +74,10 @@ class Believing(WalkingControl):
         self.model, self.robot, self.tick = model, robot, 0
         limits = self.estimator.model.upperEffortLimit
         self.servo = {foot: limits[self.feet.legs[foot]][-2:].min() / SERVO_ANGLE for foot in robot.feet}
-        factor = {"half": 0.5, "double": 2.0, "online": 2.0}.get(self.case, 1.0)
-        for foot, bush in PAPER.items():
+        factor = {"half": 0.5, "double": 2.0} | dict.fromkeys(ONLINE, 2.0)
+        for foot, bush in self.bushes.items():
             for place, axis in enumerate(("roll", "pitch")):
-                stiffness = factor * getattr(bush, f"{axis}_stiffness")
+                stiffness = factor.get(self.case, 1.0) * getattr(bush, f"{axis}_stiffness")
                 if self.case == "rigid":
                     stiffness = np.inf
                 self.believe(foot, place, stiffness, getattr(bush, f"{axis}_damping"))
@@ -71,7 +86,9 @@ class Believing(WalkingControl):
             for name, foot in robot.feet.items()
         }
         sensing = replace(robot, feet=feet, uncertainty=EXACT)
-        self.online = FootEstimator(sensing, wrench_delay=0.0) if self.case == "online" else None
+        batch = self.batch if self.case == "told" else None
+        self.online = FootEstimator(sensing, batch, wrench_delay=0.0) if self.case in ONLINE else None
+        self.believed.clear()
         self.columns = [robot.joint_names.index(name) for name in joints]
 
     def believe(self, foot: str, place: int, stiffness: float, damping: float) -> None:
@@ -98,7 +115,9 @@ class Believing(WalkingControl):
         for foot, now in found.items():
             for place, axis in enumerate(("roll", "pitch")):
                 one = getattr(now, axis)
-                if one.identified:
+                known = one.identified if self.case != "online" else not now.flags & UNKNOWN[axis]
+                if known:
+                    self.believed.setdefault(f"{foot} {axis}", self.tick / RATE)
                     self.believe(foot, place, one.stiffness.value, max(one.damping.value, 0.0))
 
     def sensor(self, data: mujoco.MjData, name: str) -> Array:
@@ -166,22 +185,34 @@ def zmp_error(robot: RobotModel, plan: Plan, played: rollout.Rollout) -> float:
     return float(np.sqrt(np.mean(np.sum(away**2, axis=1))))
 
 
-def main(motion: str = "Walk12") -> None:
-    robot = hrp2.robot()
-    physics = preset_named("sensors").physics(PAPER)
-    plan = sway() if motion == "Sway" else planned(motion, robot)
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--motion", default="Walk12")
+    parser.add_argument("--preset", default="sensors", help="whose rubber; the sensors are exact")
+    parser.add_argument("--stiffer", type=float, default=1.0)
+    parser.add_argument("--cases", nargs="+", default=list(CASES), choices=CASES)
+    chosen = parser.parse_args()
+    robot, preset = hrp2.robot(), preset_named(chosen.preset)
+    bushes = Physics().stiffened(chosen.stiffer - 1).bushes or {}
+    Believing.bushes, Believing.batch = bushes, law(preset, 0, Twin(robot, bushes))
+    physics = preset.physics(bushes)
+    plan = sway() if chosen.motion == "Sway" else planned(chosen.motion, robot)
     xml = rollout.scene_xml(robot, plan, physics)
-    for case in CASES:
+    print(f"{chosen.motion}, {chosen.preset}, feet {chosen.stiffer:g} times as stiff as the paper's")
+    for case in chosen.cases:
         Believing.case = case
         with patch.object(rollout, "WalkingControl", Believing):
             try:
                 played = rollout.roll_out(robot, plan, physics, xml)
             except MotionError as error:
-                print(f"{case:7} {error}", flush=True)
+                print(f"{case:10} {error}", flush=True)
                 continue
         lean, away = chest_lean(robot, plan, played), zmp_error(robot, plan, played)
-        print(f"{case:7} chest {1e3 * lean:.2f} mrad rms, ZMP {1e3 * away:.1f} mm rms", flush=True)
+        first = ", ".join(f"{what} {time:.1f} s" for what, time in Believing.believed.items())
+        print(f"{case:10} chest {1e3 * lean:.2f} mrad rms, ZMP {1e3 * away:.2f} mm rms  {first}", flush=True)
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    main()

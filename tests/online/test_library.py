@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -16,9 +18,11 @@ import example_robots
 from biped import record, sway
 from biped_robot import make_robot
 from plantar.online.estimator import FootEstimator
+from plantar.online.replay import Replay
 
 ROOT = Path(__file__).resolve().parents[2]
 CONTROLLER = ROOT / "examples" / "controller"
+MESSAGES = ROOT / "examples" / "ros_messages"
 TICKS = 200_000
 
 pytestmark = [
@@ -80,26 +84,62 @@ def test_a_controller_outside_the_tree_finds_it(outside: Path, talos_model: Path
     )
 
 
-def test_ticks_of_a_log_give_the_numbers_that_python_gives(outside: Path, tmp_path: Path) -> None:
-    """As docs/tutorials/controller.md does it: a model file, a file of ticks, and the last estimates of both."""
-    robot, log = make_robot(tmp_path), record(sway("sway", 1, duration=20.0))
+@dataclass(frozen=True)
+class Ticks:
+    """A log as a file of ticks, the estimator's model file, and what Python says at the log's end."""
+
+    model: Path
+    ticks: Path
+    replay: Replay
+
+
+@pytest.fixture(scope="module")
+def ticks(tmp_path_factory: pytest.TempPathFactory) -> Ticks:
+    """As docs/tutorials/controller.md does it."""
+    folder = tmp_path_factory.mktemp("ticks")
+    robot, log = make_robot(folder), record(sway("sway", 1, duration=20.0))
     estimator = FootEstimator(robot, wrench_delay=0.0)
-    model = estimator.write_model(tmp_path / "robot.estimator")
+    model = estimator.write_model(folder / "robot.estimator")
     assert robot.imu is not None
     columns = (log.positions(robot), log.orientation(robot.imu.name), log.angular_velocity(robot.imu.name))
     wrenches = [log.wrench(foot.wrench.name) for foot in robot.feet.values()]
-    np.savetxt(tmp_path / "ticks.txt", np.column_stack([log.time, *columns, *wrenches]), fmt="%.17g")
-    said = run(outside / "replay", model, tmp_path / "ticks.txt", where=outside).splitlines()
-    replay = estimator.replay(log)
+    np.savetxt(folder / "ticks.txt", np.column_stack([log.time, *columns, *wrenches]), fmt="%.17g")
+    return Ticks(model, folder / "ticks.txt", estimator.replay(log))
+
+
+def test_ticks_of_a_log_give_the_numbers_that_python_gives(outside: Path, ticks: Ticks) -> None:
+    said = run(outside / "replay", ticks.model, ticks.ticks, where=outside).splitlines()
     expected = []
-    for foot in robot.feet:
-        last = replay.estimate(foot)
+    for foot in ticks.replay.feet:
+        last = ticks.replay.estimate(foot)
         for axis, now in (("pitch", last.pitch), ("roll", last.roll)):
             known = "identified" if now.identified else "not known yet"
             stiffness = f"{now.stiffness.value:.3f} ± {now.stiffness.half_width:.3f} N·m/rad"
             expected.append(f"{foot} {axis}: {1e3 * now.deflection:.2f} mrad, K {stiffness}, {known}")
     assert said == expected
     assert "identified" in said[0]
+
+
+@pytest.mark.skipif(
+    shutil.which("pkg-config") is None
+    or subprocess.run(["pkg-config", "--exists", "sensor_msgs", "geometry_msgs"], check=False).returncode
+    != 0,
+    reason="needs the C++ headers of ROS 1's sensor_msgs (on Debian libsensor-msgs-dev)",
+)
+def test_ros_messages_give_the_numbers_that_their_ticks_give(
+    built: Path, outside: Path, ticks: Ticks
+) -> None:
+    """Stamps of messages are whole nanoseconds: the last digits may differ."""
+    run("cmake", "-S", MESSAGES, "-B", "messages", f"-DCMAKE_PREFIX_PATH={built / 'prefix'}", where=built)
+    run("cmake", "--build", "messages", where=built)
+    said, wanted = (
+        run(program, ticks.model, ticks.ticks, where=built)
+        for program in (built / "messages" / "feet_of_messages", outside / "replay")
+    )
+    number = r"-?\d+\.\d+"
+    assert re.sub(number, "", said) == re.sub(number, "", wanted)
+    found, expected = (np.array(re.findall(number, text), float) for text in (said, wanted))
+    np.testing.assert_allclose(found, expected, rtol=1e-5, atol=2e-3)
 
 
 @pytest.mark.skipif(shutil.which("pkg-config") is None, reason="needs pkg-config")

@@ -12,7 +12,6 @@ constexpr double LEAST_LEFT = 1e-3;   // share of what is known that must stay w
 constexpr double MOST_NOISE = 0.9;    // of a square: beyond, nothing of it is known
 constexpr int GROUPS_TO_WATCH = 6;
 constexpr double SETTLED = 0.1;       // deviation over stiffness, from which jumps are looked for
-constexpr double USUAL_LOAD = 0.5;    // of the weight, on one foot
 constexpr double DRIFT = 3e-5;        // rad/s, of the attitude: a tenth of a degree in a minute
 constexpr double ANYWHERE = 0.6;      // deviation of what is anywhere between -1 and 1; an element is as stiff as the rest
 constexpr double FIRST_NOISE = 1e-3;  // of the weight, as torque at 1 m, before any residual is known
@@ -47,13 +46,13 @@ AxisRegression::AxisRegression(const RegressionPrior& prior) noexcept : prior_(p
 
 void AxisRegression::Part::add(const Part& other) noexcept {
   triangle.add(other.triangle);
-  for (int i = 0; i < NOISE_SOURCES; ++i) noise[i] += other.noise[i];
+  for (int i = 0; i < NOISE_SUMS; ++i) noise[i] += other.noise[i];
   rows += other.rows;
 }
 
 void AxisRegression::restart() noexcept {
   open_ = {}, open_rows_ = 0, open_time_ = 0.0;
-  std::fill(open_noise_, open_noise_ + NOISE_SOURCES, 0.0);
+  std::fill(open_noise_, open_noise_ + NOISE_SUMS, 0.0);
   groups_ = {}, used_ = 1, current_ = 0, full_ = false, group_time_ = FIRST_GROUP;
   total_ = {};
   noise_ = FIRST_NOISE * prior_.scale[ASIDE];
@@ -104,6 +103,9 @@ void AxisRegression::add(const RegressionRow& row, double dt) noexcept {
   last_time_ = row.own[SLOPE];
   open_.add(line);
   for (int i = 0; i < NOISE_SOURCES; ++i) open_noise_[i] += row.noise[i];
+  const double load = row.columns[ASIDE];
+  open_noise_[BY_LOAD] += row.noise[OF_HORIZONTAL] * load;
+  open_noise_[BY_LOAD_SQUARED] += row.noise[OF_HORIZONTAL] * load * load;
   ++open_rows_, open_time_ += dt, fresh_ = true;
   if (open_time_ >= std::min(BLOCK * group_time_, LONGEST_BLOCK)) close();
 }
@@ -129,7 +131,7 @@ AxisRegression::Part AxisRegression::open_part() const noexcept {
   const auto block = pinned();
   for (int i = 0; i <= UNKNOWNS; ++i)
     for (int j = i; j <= UNKNOWNS; ++j) part.triangle.r[i][j] = block.r[OWN + i][OWN + j];
-  for (int i = 0; i < NOISE_SOURCES; ++i) part.noise[i] = open_noise_[i];
+  for (int i = 0; i < NOISE_SUMS; ++i) part.noise[i] = open_noise_[i];
   part.rows = open_rows_ - 1;
   return part;
 }
@@ -138,7 +140,7 @@ void AxisRegression::close() noexcept {
   end_probe();  // of a short stance
   if (open_rows_ >= FEWEST_ROWS) take(open_part());
   open_ = {}, open_rows_ = 0, open_time_ = 0.0;
-  std::fill(open_noise_, open_noise_ + NOISE_SOURCES, 0.0);
+  std::fill(open_noise_, open_noise_ + NOISE_SUMS, 0.0);
 }
 
 void AxisRegression::take(const Part& part) noexcept {
@@ -152,13 +154,25 @@ void AxisRegression::take(const Part& part) noexcept {
   Group& group = groups_[current_];
   if (full_) {
     const double share = std::min(1.0, open_time_ / (MEMORY * group_time_));
-    for (int i = 0; i < UNKNOWNS; ++i) group.triangle.forget(part.triangle.r[i], share);
-    for (double& noise : group.noise) noise *= 1.0 - share;
-    group.rows *= 1.0 - share;
+    const double known = group.excitation(prior_.scale[STIFFNESS]), news = part.excitation(prior_.scale[STIFFNESS]);
+    group.fade(1.0 - share * (news < known ? news / known : 1.0));
   }
   group.add(part);
   group.time += open_time_;
   changed_ = true;
+}
+
+// How far the deflection moved in some rows, beside its noise; squares, a row.
+double AxisRegression::Part::excitation(double scale) const noexcept {
+  const double square = triangle.r[0][0] * triangle.r[0][0] * scale * scale;
+  return rows > 0.0 ? std::max(square - noise[OF_ANGLE] - noise[OF_ANGLE_AND_ELEMENT], 0.0) / rows : 0.0;
+}
+
+// All of it alike, so that the noise in it fades with it.
+void AxisRegression::Part::fade(double left) noexcept {
+  triangle.scale(std::sqrt(left));
+  for (double& sum : noise) sum *= left;
+  rows *= left;
 }
 
 void AxisRegression::merge_pairs() noexcept {
@@ -185,18 +199,27 @@ AxisRegression::Shared AxisRegression::completed(const Part& data) const noexcep
     line[UNKNOWNS] = line[i] * prior_.mean[i] * prior_.scale[i];
     whole.add(line, i);
   }
-  for (int source = 0; source < NOISE_SOURCES; ++source) {
-    double line[UNKNOWNS + 1] = {};
-    const auto along = direction(source);
-    for (int i = 0; i <= UNKNOWNS; ++i) line[i] = std::sqrt(data.noise[source]) * along[i];
-    whole.remove(line, MOST_NOISE);
-  }
+  for (Line& line : noise_lines(data)) whole.remove(line.data(), MOST_NOISE);
   return whole;
 }
 
-// What one unit of a source's noise adds to the columns, and to the torque.
-std::array<double, UNKNOWNS + 1> AxisRegression::direction(int source) const noexcept {
-  std::array<double, UNKNOWNS + 1> along = {};
+std::array<AxisRegression::Line, NOISE_LINES> AxisRegression::noise_lines(const Part& data) const noexcept {
+  std::array<Line, NOISE_LINES> lines;
+  const double* sums = data.noise;
+  const double load = data.mean_load();
+  for (int source = 0; source < NOISE_SOURCES; ++source) {
+    lines[source] = direction(source, load);
+    for (double& part : lines[source]) part *= std::sqrt(sums[source]);
+  }
+  Line& changes = lines[NOISE_SOURCES] = {};
+  const double variance = std::max(sums[BY_LOAD_SQUARED] - load * sums[BY_LOAD], 0.0);
+  changes[COMPLIANCE] = std::sqrt(variance) / prior_.scale[COMPLIANCE];
+  return lines;
+}
+
+// What one unit of a source's noise adds to the columns, and to the torque, under a load.
+AxisRegression::Line AxisRegression::direction(int source, double load) const noexcept {
+  Line along = {};
   switch (source) {
     case OF_ANGLE_AND_ELEMENT:
       along[SLIP_TORQUE] = prior_.element_slope * prior_.element_share;
@@ -214,7 +237,7 @@ std::array<double, UNKNOWNS + 1> AxisRegression::direction(int source) const noe
       along[ASIDE] = 1.0, along[UNKNOWNS] = prior_.load_arm;
       break;
     default:
-      along[ABOVE] = 1.0, along[COMPLIANCE] = USUAL_LOAD * prior_.scale[ASIDE], along[UNKNOWNS] = prior_.horizontal_arm;
+      along[ABOVE] = 1.0, along[COMPLIANCE] = load, along[UNKNOWNS] = prior_.horizontal_arm;
   }
   for (int i = 0; i < UNKNOWNS; ++i) along[i] /= prior_.scale[i];
   return along;
@@ -258,13 +281,11 @@ void AxisRegression::find_deviations() noexcept {
     const Shared& part = groups_[g].triangle;
     double own[UNKNOWNS][UNKNOWNS], m[UNKNOWNS][UNKNOWNS], b[UNKNOWNS] = {};
     squares_of(part, own);
-    for (int source = 0; source < NOISE_SOURCES; ++source) {
-      const auto along = direction(source);
+    for (const Line& line : noise_lines(groups_[g]))
       for (int i = 0; i < UNKNOWNS; ++i) {
-        for (int j = 0; j < UNKNOWNS; ++j) own[i][j] -= groups_[g].noise[source] * along[i] * along[j];
-        b[i] += groups_[g].noise[source] * along[i] * along[UNKNOWNS];
+        for (int j = 0; j < UNKNOWNS; ++j) own[i][j] -= line[i] * line[j];
+        b[i] += line[i] * line[UNKNOWNS];
       }
-    }
     for (int i = 0; i < UNKNOWNS; ++i) {
       for (int j = 0; j <= i; ++j) b[i] -= part.r[j][i] * part.r[j][UNKNOWNS];
       for (int j = 0; j < UNKNOWNS; ++j) b[i] += own[i][j] * x[j], m[i][j] = normal[i][j] - own[i][j];

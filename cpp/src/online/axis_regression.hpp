@@ -31,13 +31,17 @@ constexpr int BLOCK_UNKNOWNS = OWN + UNKNOWNS;
 // horizontal force.
 enum NoiseSource : int { OF_ANGLE, OF_RATE, OF_ANGLE_AND_ELEMENT, OF_RATE_AND_ELEMENT, OF_LOAD, OF_HORIZONTAL };
 constexpr int NOISE_SOURCES = 6;
+// Sums over rows: each source's variance; the horizontal force's times the load, and times its square.
+enum NoiseSum : int { BY_LOAD = NOISE_SOURCES, BY_LOAD_SQUARED, NOISE_SUMS };
+// One line a source, and one for what the load's changes add to the horizontal force's.
+constexpr int NOISE_LINES = NOISE_SOURCES + 1;
 
 constexpr int MOST_GROUPS = 12;
-constexpr int FEWEST_GROUPS = 3;       // that say how they differ
-constexpr double FIRST_GROUP = 1.0;    // s of rows in one group, in the beginning
-constexpr double LARGEST_GROUP = 8.0;  // s: errors hang together for less
-constexpr double MEMORY = 2.0;         // fillings of each group that are remembered
-constexpr double BLOCK = 2.5;          // groups with one offset, of a foot that stands
+constexpr int FEWEST_GROUPS = 3;        // that say how they differ
+constexpr double FIRST_GROUP = 1.0;     // s of rows in one group, in the beginning
+constexpr double LARGEST_GROUP = 8.0;   // s: errors hang together for less
+constexpr double MEMORY = 2.0;          // fillings of each group that are remembered
+constexpr double BLOCK = 2.5;           // groups with one offset, of a foot that stands
 constexpr double LONGEST_BLOCK = 10.0;  // s
 constexpr int FEWEST_ROWS = 8;          // of a block: with fewer its offset takes most of it
 
@@ -97,9 +101,14 @@ class AxisRegression {
   using Shared = RootTriangle<UNKNOWNS>;
   struct Part {
     Shared triangle;
-    double noise[NOISE_SOURCES] = {};
+    double noise[NOISE_SUMS] = {};
     double rows = 0.0;
     void add(const Part& other) noexcept;
+    void fade(double left) noexcept;
+    double excitation(double scale) const noexcept;
+    double mean_load() const noexcept {
+      return noise[OF_HORIZONTAL] > 0.0 ? noise[BY_LOAD] / noise[OF_HORIZONTAL] : 0.0;
+    }
   };
   struct Group : Part {
     double time = 0.0;
@@ -112,7 +121,10 @@ class AxisRegression {
   void sum_up() noexcept;
   // With the prior, without the noise: the triangle that the values are solved from.
   Shared completed(const Part& data) const noexcept;
-  std::array<double, UNKNOWNS + 1> direction(int source) const noexcept;
+  using Line = std::array<double, UNKNOWNS + 1>;
+  Line direction(int source, double load) const noexcept;
+  // What noise has added to the squares of some rows is the squares of these.
+  std::array<Line, NOISE_LINES> noise_lines(const Part& data) const noexcept;
   void solve() noexcept;
   void find_deviations() noexcept;
   void watch(const RegressionRow& row, double dt) noexcept;
@@ -121,7 +133,7 @@ class AxisRegression {
   RegressionPrior prior_;
   RootTriangle<BLOCK_UNKNOWNS> open_;  // its own first
   int open_rows_ = 0;
-  double open_time_ = 0.0, open_noise_[NOISE_SOURCES] = {}, last_time_ = 0.0;
+  double open_time_ = 0.0, open_noise_[NOISE_SUMS] = {}, last_time_ = 0.0;
   std::array<Group, MOST_GROUPS> groups_;
   int used_ = 0, current_ = 0;
   bool full_ = false;

@@ -11,6 +11,14 @@ namespace plantar {
 
 constexpr double LEAN = 0.005;  // rad: how far an attitude may lean, two deviations of a usual one
 
+// Between two samples an angle may turn round: the element has gone as far as it, and the samples have not. An angle is
+// the mean of both ends of its period, and so an eighth of its curvature nearer than the middle.
+inline bool turned(double rate_before, double rate) noexcept { return rate_before * rate < 0.0; }
+inline double turning_angle(double before, double rate_before, double rate, double dt) noexcept {
+  const double bends = rate - rate_before;
+  return before - (bends / 8.0 + rate_before * rate_before / (2.0 * bends)) * dt;
+}
+
 class ElementState {
  public:
   double state() const noexcept { return 0.5 * (low_.state + high_.state); }

@@ -170,7 +170,7 @@ void FootTracker::filter(const FootKinematics& motion, double time, double dt, d
   for (int a = 0; a < 2; ++a) angles[4 + a] = smooth_[a].pass(angle[a], rate[a], dt);
   const bool reaches = angles_.pass(time, angles, delay_, angles) && forces_.pass(time, mean, -delay_, forces);
   if (!reaches) return;
-  follow_elements(angles.data() + 4, time);
+  follow_elements(angles.data() + 4, angles.data() + 2, time, dt);
   const bool paused = pause_ > 0.0;
   pause_ -= std::min(pause_, dt);
   if (estimate_.contact != ContactState::stance) return;
@@ -202,17 +202,20 @@ void FootTracker::filter(const FootKinematics& motion, double time, double dt, d
 // rows' offset changes; where little is unknown, the rows carry it. A sole that rolls over its edge turns with the
 // ankle, and the bush stays about as it is. What a foot lands with is known from how it lifted; it is loaded from there
 // until the sole lies flat.
-void FootTracker::follow_elements(const double* angles, double time) noexcept {
+void FootTracker::follow_elements(const double* angles, const double* rates, double time, double dt) noexcept {
   const bool stands = estimate_.contact == ContactState::stance, rolls = stands && (estimate_.flags & EDGE);
   if (stood_ && !stands) unload_elements();
-  const bool lands = lifted_ && flat_ && estimate_.contact == ContactState::landing;
+  const bool lands = flat_ && estimate_.contact == ContactState::landing;
   stood_ = stands;
   bool known = false, suspected = false;
   for (int a = 0; a < 2 && !rolls; ++a) {
     ElementState& element = element_[a];
-    if (stands || lands) {
+    if (begun_elements_ && (stands || lands)) {
       if (rolled_) element.hold(angles[a]), opened_[a] = element.gap();
+      if (turned(rates_before_[a], rates[a]))
+        element.load(turning_angle(angles_before_[a], rates_before_[a], rates[a], dt));
       element.load(angles[a]);
+      if (lands) opened_[a] = element.gap();
       const bool wide = opened_[a] > LEAN / slip_angle_[a];
       if (wide && opened_[a] - element.gap() > NEWLY_KNOWN) (has_element(*foot_, a) ? known : suspected) = true;
     } else if (lifted_) {
@@ -223,6 +226,8 @@ void FootTracker::follow_elements(const double* angles, double time) noexcept {
       element.begin(slip_angle_[a], angles[a]), opened_[a] = element.gap();
     }
   }
+  begun_elements_ = true;
+  std::copy_n(angles, 2, angles_before_), std::copy_n(rates, 2, rates_before_);
   rolled_ = rolls;
   if (!known && !suspected) return;
   commit(time);
@@ -318,6 +323,7 @@ void FootTracker::miss(std::uint32_t reason) noexcept {
   if (reason & TIME_FAULT)  // who knows what has passed: zeros and offsets may be others
     close_blocks();
   if (reason & TIME_FAULT) stood_ = lifted_ = false;
+  begun_elements_ = lifted_;
   gate_.restart();  // what is told of the contact stays, until readings say otherwise
   shaking_.restart();
   noise_.restart();

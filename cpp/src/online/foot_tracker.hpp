@@ -74,7 +74,7 @@ class FootTracker {
 
   void restart_filter() noexcept;
   void filter(const FootKinematics& motion, double time, double dt, double period) noexcept;
-  void follow_elements(const double* angles, double time) noexcept;
+  void follow_elements(const double* angles, const double* rates, double time, double dt) noexcept;
   void unload_elements() noexcept;
   void hold(double time, double dt, const double* channels) noexcept;
   void commit(double before) noexcept;
@@ -107,6 +107,8 @@ class FootTracker {
   bool stood_ = false;        // it stood at the last tick
   bool lifted_ = false;       // its elements are followed from its last stance, through the air
   bool rolled_ = false;       // the sole was rolling over its edge at the last tick
+  double angles_before_[2] = {}, rates_before_[2] = {};  // of the last tick that the elements have followed
+  bool begun_elements_ = false;  // their bounds are those of a bush somewhere on its way
   bool running_ = false;      // the filter has begun
   double begun_ = 0.0;        // at this time
   double pause_ = 0.0;        // s for which the lines still hold ticks that were left out

@@ -35,32 +35,10 @@ struct RootTriangle {
     }
   }
 
-  // Forgets along one row what that row brings, and no more: at most a `share` of what is known in its direction, and
-  // never more than the row's own information. So nothing is forgotten where nothing new is learnt (after L. Cao and
-  // H. Schwartz, A directional forgetting algorithm based on the decomposition of the information matrix, 2000).
-  void forget(const double* row, double share) noexcept {
-    double u[N], known = 0.0, own = 0.0;
-    for (int i = 0; i < N; ++i) {
-      u[i] = 0.0;
-      for (int j = i; j < N; ++j) u[i] += r[i][j] * row[j];
-      known += u[i] * u[i];
-      own += row[i] * row[i];
-    }
-    if (!(known > 0.0) || !(own > 0.0)) return;
-    const double taken = std::min(share, own * own / known);
-    const double k = (1.0 - std::sqrt(1.0 - taken)) / known;
-    // R becomes (1 - k u uᵀ) R, which is no triangle any more.
-    RootTriangle changed;
-    changed.r[N][N] = r[N][N] * std::sqrt(1.0 - taken);
-    double w[N + 1] = {};
-    for (int j = 0; j <= N; ++j)
-      for (int i = 0; i < N; ++i) w[j] += u[i] * r[i][j];
-    for (int i = 0; i < N; ++i) {
-      double line[N + 1];
-      for (int j = 0; j <= N; ++j) line[j] = r[i][j] - k * u[i] * w[j];
-      changed.add(line);
-    }
-    *this = changed;
+  // All rows weigh `factor` of what they did.
+  void scale(double factor) noexcept {
+    for (auto& row : r)
+      for (double& value : row) value *= factor;
   }
 
   // Takes a row off again; at most a `share` of what the triangle has along it may go. The row is used up.

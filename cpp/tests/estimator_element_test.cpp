@@ -1,0 +1,99 @@
+// The estimator on rubber with hysteresis whose element it was told: between samples, from the first landing on, and of
+// feet that always stand.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "check.hpp"
+#include "plantar/foot_estimator.hpp"
+
+using namespace plantar;
+
+namespace {
+
+constexpr double STIFFNESS = 900.0, DAMPING = 20.0, SLIP_ANGLE = 0.01, SLIP_TORQUE = 8.0, WEIGHT = 1500.0;
+constexpr Frame HERE = {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
+constexpr int FINE = 20;  // steps of the rubber in one sample
+
+// One foot beside another one that carries the rest; the IMU sits on the ankle.
+EstimatorModel model(bool always) {
+  EstimatorModel model;
+  model.weight = WEIGHT, model.joints = {"free"};
+  for (const char* name : {"left", "right"}) {
+    FootModel foot;
+    foot.name = name, foot.always = always;
+    foot.bush = foot.sole = foot.sensor = HERE;
+    foot.polygon = {{0.1, 0.06}, {-0.1, 0.06}, {-0.1, -0.06}, {0.1, -0.06}};
+    foot.place_std = {0.003, 0.003};
+    foot.slip_angle = {SLIP_ANGLE, 0.0}, foot.slip_torque = {SLIP_TORQUE, 0.0}, foot.slip_torque_std = {1e-6, 0.0};
+    foot.linear = {false, true};
+    model.feet.push_back(foot);
+  }
+  return model;
+}
+
+// `angle(t)` and `load(t)` of the left foot, sampled at `rate_hz` for `seconds`; what is known of its pitch at the end.
+template <class Angle, class Load>
+FootEstimate after(double seconds, double rate_hz, bool always, double first_state, Angle angle, Load load) {
+  FootEstimator estimator(model(always));
+  FootEstimate last;
+  double state = first_state, position = 0.0;
+  for (int i = 0; i < static_cast<int>(seconds * rate_hz); ++i) {
+    const double t = i / rate_hz, step = 1.0 / (FINE * rate_hz);
+    for (int k = 0; i > 0 && k < FINE; ++k) {
+      const double now = t - (FINE - 1 - k) * step;
+      state = std::clamp(state + (angle(now) - angle(now - step)) / SLIP_ANGLE, -1.0, 1.0);
+    }
+    const double p = angle(t), rate = (angle(t + 1e-6) - angle(t - 1e-6)) / 2e-6, noise = 1e-9 * std::sin(1e5 * t);
+    const double carried = load(t), stands = carried > 0.1 * WEIGHT ? 1.0 : 0.0;
+    const double torque = stands * (STIFFNESS * p + DAMPING * rate + SLIP_TORQUE * state);
+    const double attitude[4] = {std::cos(p / 2), noise, -std::sin(p / 2), noise}, gyroscope[3] = {noise, -rate, noise};
+    const std::array<double, 6> wrench[2] = {{0.0, noise, carried + noise, noise, torque + noise, 0.0},
+                                             {0.0, noise, WEIGHT - carried + noise, noise, noise, 0.0}};
+    last = estimator.step({t, {&position, 1}, {}, attitude, gyroscope, {}, wrench})[0];
+  }
+  return last;
+}
+
+double quick(double t) { return 0.02 * std::sin(8.0 * t) + 0.01 * std::sin(21.0 * t); }
+double all(double) { return 0.5 * WEIGHT; }
+
+// At 100 Hz an angle goes 0.1 mrad beyond its samples, and the element with it.
+void follows_what_turns_between_samples() {
+  const FootEstimate found = after(60.0, 100.0, false, 0.0, quick, all);
+  check::near(found.pitch.stiffness.value, STIFFNESS, 5e-4 * STIFFNESS, "stiffness beside an element, 100 Hz");
+  check::near(found.pitch.damping.value, DAMPING, 5e-3 * DAMPING, "damping beside an element, 100 Hz");
+}
+
+// A foot that stands throughout began somewhere on its way, too.
+void knows_nothing_of_a_foot_that_always_stands() {
+  const auto slow = [](double t) { return 0.004 * std::sin(2.0 * t) + 0.0006 * t; };
+  const FootEstimate found = after(20.0, 200.0, true, 1.0, slow, all);
+  check::near(found.pitch.stiffness.value, STIFFNESS, 5e-3 * STIFFNESS, "stiffness of a foot that always stands");
+}
+
+// Each landing swings the element from one end to the other while the sole lies flat; the stance itself moves little.
+void is_known_from_the_first_landing_on() {
+  constexpr double STEP = 1.3, AIR = 0.4, LANDS = 0.25, TURN = 2.0 * std::numbers::pi;
+  const auto since = [](double t) { return std::fmod(t, STEP) - AIR; };
+  const auto swings = [since](double t) {
+    const double s = since(t);
+    if (s < 0.0) return 0.0;
+    if (s < LANDS) return 0.03 * std::sin(TURN * s / LANDS) * std::sin(0.5 * TURN * s / LANDS);
+    return 0.006 * std::pow(std::sin(TURN * (s - LANDS) / (STEP - AIR - LANDS)), 3);
+  };
+  const auto load = [since](double t) { return since(t) < 0.0 ? 0.0 : 0.8 * WEIGHT; };
+  const FootEstimate found = after(6.0 * STEP, 1000.0, false, 0.0, swings, load);
+  check::near(found.pitch.stiffness.value, STIFFNESS, 1e-4 * STIFFNESS, "stiffness from the first steps");
+  check::near(found.pitch.damping.value, DAMPING, 1e-3 * DAMPING, "damping from the first steps");
+}
+
+}  // namespace
+
+int main() {
+  follows_what_turns_between_samples();
+  knows_nothing_of_a_foot_that_always_stands();
+  is_known_from_the_first_landing_on();
+  return check::result();
+}
