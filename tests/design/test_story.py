@@ -32,7 +32,7 @@ from plantar.twin.robots import hrp2
 @pytest.fixture(scope="module")
 def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("design") / "motion.csv"
-    write_design(design_samples.designed(), path, 100.0, ("ros", "openhrp", "mcap"), approach=True)
+    write_design(design_samples.designed(), path, 100.0, ("ros", "openhrp", "mcap", "mc_rtc"), approach=True)
     return path
 
 
@@ -184,7 +184,7 @@ def test_the_command_refuses_before_it_works(tmp_path: Path, capsys: pytest.Capt
     line = command_line.refused(capsys, "design", robot, "--stiffness", 500, "--rate", 1e6, "--out", out)
     assert "rate is not valid" in line
     line = command_line.refused(capsys, "design", robot, "--stiffness", 500, "--to", "abb", "--out", out)
-    assert "valid: ros, mcap, openhrp" in line
+    assert "valid: ros, mcap, openhrp, mc_rtc" in line
     line = command_line.refused(capsys, "design", robot, "--stiffness", 100, "--out", out)
     assert "feet of 100 N·m/rad cannot hold the robot upright" in line
     assert command_line.run("design", robot, "--out", out) == 2

@@ -12,12 +12,13 @@ from plantar.conventions import ROTATIONAL_AXES
 from plantar.design.information import WANTED, WANTED_DELAY, WANTED_VERTICAL
 from plantar.design.rehearsal import Rehearsal
 from plantar.design.story import EFFORT, FRICTION, KEPT, Design
-from plantar.design.writing.controllers import TARGETS
+from plantar.design.writing.controllers import TARGETS, ordered_joints
 from plantar.design.writing.sheet import sheet
 from plantar.files import write_text
 from plantar.logs.save import save_log
 from plantar.models import KelvinVoigt
 from plantar.results.io import dump_json
+from plantar.robot.model import RobotModel
 
 SCHEMA = "plantar.design/1"
 SLOWEST, FASTEST = 20.0, 2000.0  # Hz
@@ -25,11 +26,13 @@ FAR: Final = 1.5  # times its half width: a number that is so far off is wrong
 APPROACH: Final = (0.25, 0.5)  # of the amplitude, to be played before the whole
 
 
-def check_outputs(rate: float, targets: Sequence[str]) -> None:
-    """Raise SettingsError for a rate that no controller has, or a target that is unknown."""
+def check_outputs(robot: RobotModel, rate: float, targets: Sequence[str]) -> None:
+    """Raise SettingsError for a rate that no controller has, a target that is unknown, or joints in an order that
+    cannot be."""
     number_in("rate", rate, SLOWEST, FASTEST, "Hz")
     for target in targets:
         one_of("--to", target, TARGETS)
+    ordered_joints(robot)
 
 
 def write_design(
@@ -40,15 +43,15 @@ def write_design(
 
     Raises SettingsError for a rate that no controller has, or a target that is unknown.
     """
-    check_outputs(rate, targets)
+    check_outputs(found.robot, rate, targets)
     content = content_of(found, path, rate)
     for share in (1.0, *(APPROACH if approach else ())):
         motion = path if share == 1.0 else path.with_stem(f"{path.stem}_{round(100 * share)}")
-        log = found.trajectory(share).log(rate)
-        save_log(log, motion)
+        trajectory = found.trajectory(share)
+        save_log(trajectory.log(rate), motion)
         for target in targets:
             ending, write = TARGETS[target]
-            write(log, motion.with_suffix(ending))
+            write(trajectory, rate, motion.with_suffix(ending))
     write_text(path.with_suffix(".json"), dump_json(content))
     write_text(path.with_suffix(".md"), sheet(content, approach))
     return content
