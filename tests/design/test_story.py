@@ -20,6 +20,7 @@ from plantar.design import story
 from plantar.design.rehearsal import Rehearsal
 from plantar.design.story import FRICTION, KEPT, SPARE, DesignSettings, design_motion
 from plantar.design.writing.outputs import content_of, write_design
+from plantar.design.writing.sheet import sheet
 from plantar.errors import MotionError, SettingsError
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import open_log
@@ -79,6 +80,11 @@ def test_it_says_what_it_promises_and_what_it_kept(written: Path) -> None:
     assert "The search wanted: stiffness within 1 %" in page
     assert "holds from 250 to 1000 N·m/rad" in page
     assert "25 % and 50 %" in page
+    needed = content["one_foot"]["least_stiffness"]
+    assert needed == pytest.approx(2 * content["least_stiffness"])
+    assert f"stiffer than {needed:.4g} N·m/rad to hold it alone, and may be as soft as 250" in page
+    stiff = sheet(content | {"stiffness_range": [600.0, 2400.0]}, approach=False)
+    assert "feet of 600 N·m/rad could hold it, but" in stiff
 
 
 def test_a_number_that_rehearsals_do_not_find_is_said(written: Path) -> None:

@@ -29,6 +29,9 @@ SEEN_FORCE: Final = (
     6.0  # N rms that the motion adds to the weight: beside less, sensors' noise looks like a hand's push
 )
 USUAL_DELAY: Final = 0.0075  # s: deviation of a delay of which nothing is known, as robot files have it
+HOPELESS: Final = 30.0  # times what is wanted: a number that is not known to a third is not known
+BEYOND: Final = 0.1  # share of what is wider still
+OTHERS: Final = 0.2  # share of all numbers beside the widest
 UNEVEN: Final = (
     1e-4  # m: what encoders and the legs' lengths may be wrong by moves the soles' heights so much
 )
@@ -97,14 +100,19 @@ def vertical_half_width(reach: Reach, coefficients: Array) -> Array:
 
 def badness(reach: Reach, coefficients: Array, criterion: Criterion, known: Array | float = 0.0) -> float:
     """What is minimised, the mean over the range of stiffness: the logarithm of the widest interval, each as a multiple
-    of what is wanted of it, of the volume of all (D) or of their mean square (A)."""
+    of what is wanted of it, of the volume of all (D) or of their mean square (A).
+
+    Small soles cannot bend stiff feet far enough for every number. One that is out of reach must not be all that
+    counts: beyond HOPELESS a width counts for little, and to the widest a share of all others is added.
+    """
     count = len(reach.bushes)
     feet = (half_widths(reach, coefficients, known) / WANTED).reshape(count, -1)
     delay = np.full((count, 1), delay_half_width(reach, coefficients) / WANTED_DELAY)
     vertical = vertical_half_width(reach, coefficients)[:, None] / WANTED_VERTICAL
-    widths = np.hstack([feet, delay, vertical])
+    widths = np.log(np.hstack([feet, delay, vertical]))
+    widths = np.minimum(widths, np.log(HOPELESS)) + BEYOND * np.maximum(widths - np.log(HOPELESS), 0.0)
     if criterion == "widest":
-        return float(np.log(widths.max(axis=1)).mean())
+        return float(((1 - OTHERS) * widths.max(axis=1) + OTHERS * widths.mean(axis=1)).mean())
     if criterion == "D":
-        return float(np.log(widths).mean())
-    return float(np.log(np.mean(widths**2, axis=1)).mean() / 2)
+        return float(widths.mean())
+    return float(np.log(np.mean(np.exp(2 * widths), axis=1)).mean() / 2)

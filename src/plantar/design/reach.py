@@ -23,7 +23,7 @@ BEND: Final = 0.1  # rad of the bush: less than the paper's largest, where rubbe
 # Of each channel: share of the centre of mass' height, rad, swings. Far enough for the bushes, near enough to standing
 # for what is linear here.
 LARGEST: Final = {
-    "centre.x": 0.07, "centre.y": 0.07, "centre.z": 0.02, "trunk.roll": 0.08, "trunk.pitch": 0.08, "arms": 1.0,
+    "centre.x": 0.07, "centre.y": 0.1, "centre.z": 0.02, "trunk.roll": 0.08, "trunk.pitch": 0.08, "arms": 1.0,
     "left.roll": 0.1, "left.pitch": 0.1, "right.roll": 0.1, "right.pitch": 0.1,
 }  # fmt: skip
 ROOM: Final = 0.8  # of the way to a joint's limit, and of its speed

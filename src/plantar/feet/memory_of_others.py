@@ -9,12 +9,15 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import replace
 
+import numpy as np
+
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.foot_fit import FittedFoot
 from plantar.feet.internal_error import gives_up
 from plantar.model_selection.selection import ModelChoice, ModelScore
 from plantar.models import KelvinVoigt
+from plantar.models.hysteresis import SURE_SLIP_ANGLE, Hysteretic
 
 NOT_EXCLUDED = (
     "other axes of this robot show a memory, which these motions neither show nor exclude here: with one, stiffness is "
@@ -29,6 +32,7 @@ def with_memory_of_others(feet: Mapping[str, FittedFoot]) -> dict[str, FittedFoo
     """
     every = [fit for one in feet.values() for fit in one.fits.values()]
     shown = {fit.model.name for fit in every if fit.model.remembers}
+    slips = min((_slip_angle(fit) for fit in every), default=np.inf)
     found = {}
     for foot, one in feet.items():
         fits = dict(one.fits)
@@ -42,7 +46,7 @@ def with_memory_of_others(feet: Mapping[str, FittedFoot]) -> dict[str, FittedFoo
                 continue
             score = _nearer(fit.choice, shown, steps=_steps(one))
             if score is None:
-                fits[axis] = _cautioned(fit, fit.choice, shown, steps=_steps(one))
+                fits[axis] = _cautioned(fit, fit.choice, shown, slips, steps=_steps(one))
                 continue
             with gives_up(axis, one.given_up):
                 own = fit_axis(one.thin.fitted, one.foot, axis, one.ready.settings, score.model, one.place)
@@ -64,10 +68,24 @@ def _nearer(choice: ModelChoice, shown: Collection[str], *, steps: bool) -> Mode
     return found if found.held_out_rms < spring.held_out_rms else None
 
 
-def _cautioned(fit: AxisFit, choice: ModelChoice, shown: Collection[str], *, steps: bool) -> AxisFit:
-    """The fit with a caution, unless a memory was identified in motions that show one, and predicts no better there."""
+def _slip_angle(fit: AxisFit) -> float:
+    """The angle at which the element of a fit slips [rad]; infinite where it has none."""
+    if fit.choice is None or not isinstance(fit.model, Hysteretic):
+        return np.inf
+    return float(fit.choice.fit.shape[0])
+
+
+def _cautioned(
+    fit: AxisFit, choice: ModelChoice, shown: Collection[str], slips: float, *, steps: bool
+) -> AxisFit:
+    """The fit with a caution, unless a memory was identified in motions that show one, and predicts no better there.
+
+    Motions that bend this axis by less than it takes an element elsewhere to slip, `slips` [rad], show none: what is
+    identified in them is the noise's.
+    """
     excluded = any(score.refused is None and score.model.name in shown for score in choice.ranking)
-    if choice.caution is not None or (excluded and not steps):
+    small = np.isfinite(slips) and choice.reach * SURE_SLIP_ANGLE < slips
+    if choice.caution is not None or (excluded and not steps and not small):
         return fit
     return replace(fit, choice=replace(choice, caution=NOT_EXCLUDED))
 
