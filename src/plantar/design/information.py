@@ -9,14 +9,16 @@ import numpy as np
 from plantar.conventions import NORMAL95, Array
 from plantar.design.reach import RATE, Reach
 from plantar.design.rubber import NEARBY, SLIP_ANGLE, remembered
+from plantar.models.hysteresis import SURE_SLIP_ANGLE
 
 Criterion = Literal["widest", "D", "A"]
 CRITERIA: Final = get_args(Criterion)
 # N·m that a model of real rubber misses by, per independent sample of 0.1 s: sensors of a careful lab are better.
 MISSED: Final = 0.1
-# With this power of what is missing widths grow: at 0.8 of TOLD_APART rubber that slips came out as a stiffer spring.
+# Bend to either side [rad] beyond which `identify feet` believes in an element that slips; with this power of what is
+# missing to it widths grow.
+TOLD_APART: Final = SLIP_ANGLE / SURE_SLIP_ANGLE
 STEEP: Final = 8
-TOLD_APART: Final = 1.7 * SLIP_ANGLE  # rad that a bush bends to either side
 # Half widths that are wanted: of stiffness and damping [share], delay [s], vertical compliance [share]. The widest is
 # the one that is farthest above.
 WANTED: Final = (0.01, 0.04)

@@ -39,6 +39,12 @@ UNTIMED = (
     "sensors may be late by any time, which looks like a memory of the rubber: none was looked for, and with one "
     "stiffness is smaller"
 )
+# Rubber of published feet slips inside from about this angle on [rad]; until then what slips later is a spring, too.
+SMALL = 0.01
+TOO_SMALL = (
+    "bent by {:.2g} rad at most: a memory of the rubber that shows only beyond counts as stiffness; in larger motions "
+    "stiffness may be smaller (record larger motions)"
+)
 CANDIDATES = (
     "kelvin_voigt", "hardening", "coulomb", "elastoplastic", "hardening_elastoplastic", "bouc_wen",
     "standard_linear_solid",
@@ -115,9 +121,11 @@ def _fitted(
     choice = choose_model(data_sets, models, cutoff, shared_offset=shared, least_gain=gain)
     if not timed and choice.caution is None:
         choice = replace(choice, caution=UNTIMED)
-    if choice.fit.model.name == KelvinVoigt.name:
-        return _of_linear(foot, axis, linear, choice, choice.reason)
-    return found(choice.fit, choice, choice.reason)
+    if choice.fit.model.name != KelvinVoigt.name:
+        return found(choice.fit, choice, choice.reason)
+    if not steps and choice.caution is None and choice.reach < SMALL:
+        choice = replace(choice, caution=TOO_SMALL.format(choice.reach))
+    return _of_linear(foot, axis, linear, choice, choice.reason)
 
 
 def _where_a_spring_turns(
