@@ -72,7 +72,7 @@ def test_motions_so_small_that_rubber_may_not_slip_are_no_proof_of_a_spring() ->
     assert fit.values[0] == pytest.approx(420.0 + 4.2 / 0.012, rel=0.02)
     assert fit.choice is not None
     assert fit.choice.caution is not None
-    assert "bent by 0.007 rad at most" in fit.choice.caution
+    assert "bent by 0.0077 rad at most" in fit.choice.caution
     larger = fitted(recordings(LINEAR, noise=0.05, amplitude=0.015)).choice
     assert larger is not None
     assert larger.caution is None
