@@ -95,6 +95,10 @@ def test_a_number_that_rehearsals_do_not_find_is_said(written: Path) -> None:
     assert "left pitch stiffness is not found at 0.5, 0.707, 1, 1.41, 2 times the stiffness told" in " ".join(
         content["notes"]
     )
+    assert "not found at 0.5" in content["notes"][0]
+    assert all("--after that result" in note for note in content["notes"])
+    with patch.object(Rehearsal, "usable", lambda *_: True):
+        assert all("do not use it" in note for note in content_of(blind, written, 100.0)["notes"])
     for row in content_of(found, written, 100.0)["parameters"]:
         for one in row["at"]:
             assert (one["half_width_percent"] is None) == (one["error_percent"] is None)

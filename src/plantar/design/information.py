@@ -8,7 +8,7 @@ import numpy as np
 
 from plantar.conventions import NORMAL95, Array
 from plantar.design.reach import RATE, Reach
-from plantar.design.rubber import NEARBY, SLIP_ANGLE, remembered
+from plantar.design.rubber import NEARBY, SECANT, SLIP_ANGLE, remembered
 from plantar.models.hysteresis import SURE_SLIP_ANGLE
 
 Criterion = Literal["widest", "D", "A"]
@@ -68,7 +68,7 @@ def half_widths(reach: Reach, coefficients: Array, known: Array | float = 0.0) -
 
     `known`: information (feet, 2, 2, 2) from before. Where a bush bends less than TOLD_APART, `identify feet` may take
     a spring that slips for a part of the stiffness: the motion's own widths grow steeply. What the delay of the
-    sensors is unsure by, times the stiffness, the damping is unsure by as well.
+    sensors is unsure by, times the stiffness of spring and element, the damping is unsure by as well.
     """
     bend = np.ptp(reach.of(reach.firm_deflection, coefficients), axis=-1) / 2
     missing = np.maximum(TOLD_APART / np.maximum(bend, 1e-6), 1.0)[..., None, None]
@@ -78,8 +78,9 @@ def half_widths(reach: Reach, coefficients: Array, known: Array | float = 0.0) -
     deviations = np.sqrt(np.einsum("...ii->...i", np.linalg.inv(scaled))) / scale
     values = np.column_stack([reach.stiffness, reach.damping])[:, None, None]
     widths = np.asarray(NORMAL95 * deviations / values)
-    by_delay = delay_half_width(reach, coefficients) * reach.stiffness / reach.damping
-    widths[..., 1] = np.hypot(widths[..., 1], by_delay[:, None, None])
+    firm = reach.stiffness[:, None] + SECANT * reach.element
+    by_delay = delay_half_width(reach, coefficients) * firm / reach.damping[:, None]
+    widths[..., 1] = np.hypot(widths[..., 1], by_delay[:, None])
     return widths
 
 

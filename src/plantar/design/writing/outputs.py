@@ -23,6 +23,11 @@ from plantar.robot.model import RobotModel
 SCHEMA = "plantar.design/1"
 SLOWEST, FASTEST = 20.0, 2000.0  # Hz
 FAR: Final = 1.5  # times its half width: a number that is so far off is wrong
+# What follows where a number came out wrong, and its verdict says so or not.
+SAID: Final = (
+    "`identify feet` calls it weak: make the next motion with --after that result, which may be larger"
+)
+UNSAID: Final = "`identify feet` may not say so: do not use it"
 APPROACH: Final = (0.25, 0.5)  # of the amplitude, to be played before the whole
 
 
@@ -67,7 +72,8 @@ def content_of(found: Design, path: Path, rate: float) -> dict[str, Any]:
             "half_width_percent": found.nominal.percent(foot, axis, name),
             "at": [
                 {"factor": one.factor, "half_width_percent": one.percent(foot, axis, name),
-                 "error_percent": one.error(foot, axis, name, values[name])}
+                 "error_percent": one.error(foot, axis, name, values[name]),
+                 "usable": one.usable(foot, axis, name)}
                 for one in found.rehearsals
             ],
         }
@@ -149,6 +155,7 @@ def _notes(parameters: Sequence[Mapping[str, Any]]) -> list[str]:
             worst = max((abs(one["error_percent"] or 0.0) for one in wrong), default=0.0)
             notes.append(
                 f"{where} is not found at {at} times the stiffness told (off by {worst:.0f} %): the rehearsal's rubber "
-                "has hysteresis, and this motion bends it too little to tell that apart"
+                "has hysteresis, and this motion bends it too little to tell that apart; "
+                + (SAID if not any(one["usable"] for one in wrong) else UNSAID)
             )
     return notes
