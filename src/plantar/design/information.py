@@ -15,9 +15,9 @@ Criterion = Literal["widest", "D", "A"]
 CRITERIA: Final = get_args(Criterion)
 # N·m that a model of real rubber misses by, per independent sample of 0.1 s: sensors of a careful lab are better.
 MISSED: Final = 0.1
-# Bend to either side [rad] beyond which `identify feet` believes in an element that slips; with this power of what is
-# missing to it widths grow.
-TOLD_APART: Final = SLIP_ANGLE / SURE_SLIP_ANGLE
+# Bend to either side [rad] beyond which `identify feet` believes in an element that slips, and a tenth more since
+# rehearsals make motions smaller; with this power of what is missing to it widths grow.
+TOLD_APART: Final = 1.1 * SLIP_ANGLE / SURE_SLIP_ANGLE
 STEEP: Final = 8
 # Half widths that are wanted: of stiffness and damping [share], delay [s], vertical compliance [share]. The widest is
 # the one that is farthest above.
