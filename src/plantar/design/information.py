@@ -9,15 +9,14 @@ import numpy as np
 from plantar.conventions import NORMAL95, Array
 from plantar.design.reach import RATE, Reach
 from plantar.design.rubber import NEARBY, SECANT, SLIP_ANGLE, remembered
-from plantar.models.hysteresis import SURE_SLIP_ANGLE
 
 Criterion = Literal["widest", "D", "A"]
 CRITERIA: Final = get_args(Criterion)
 # N·m that a model of real rubber misses by, per independent sample of 0.1 s: sensors of a careful lab are better.
 MISSED: Final = 0.1
-# Bend to either side [rad] beyond which `identify feet` believes in an element that slips, and a tenth more since
-# rehearsals make motions smaller; with this power of what is missing to it widths grow.
-TOLD_APART: Final = 1.1 * SLIP_ANGLE / SURE_SLIP_ANGLE
+# Bend to either side [rad] at which `identify feet` surely tells an element that slips from the spring: it asks for
+# 1.25 times the slip angle, and rehearsals make motions smaller. With this power of what is missing widths grow.
+TOLD_APART: Final = 1.7 * SLIP_ANGLE
 STEEP: Final = 8
 # Half widths that are wanted: of stiffness and damping [share], delay [s], vertical compliance [share]. The widest is
 # the one that is farthest above.
@@ -31,9 +30,9 @@ SEEN_FORCE: Final = (
     6.0  # N rms that the motion adds to the weight: beside less, sensors' noise looks like a hand's push
 )
 USUAL_DELAY: Final = 0.0075  # s: deviation of a delay of which nothing is known, as robot files have it
-HOPELESS: Final = 30.0  # times what is wanted: a number that is not known to a third is not known
+HOPELESS: Final = 300.0  # times what is wanted: three times the stiffness is no knowledge of it
 BEYOND: Final = 0.1  # share of what is wider still
-OTHERS: Final = 0.2  # share of all numbers beside the widest
+OTHERS: Final = 0.5  # share of all numbers beside the widest
 UNEVEN: Final = (
     1e-4  # m: what encoders and the legs' lengths may be wrong by moves the soles' heights so much
 )
