@@ -65,15 +65,15 @@ def robot_file(name: str, folder: Path) -> RobotModel:
 
 
 def plantar(*arguments: object) -> float:
-    """Run a command, in this process; the seconds it took. Raises RuntimeError with its last line where it fails."""
-    begin, said = time.monotonic(), io.StringIO()
+    """Run a command, in this process; the CPU seconds it took. Raises RuntimeError with its last line where it fails."""
+    begin, said = time.process_time(), io.StringIO()
     try:
         with redirect_stdout(io.StringIO()), redirect_stderr(said):
             command_line([*map(str, arguments), "-q"])
     except SystemExit as done:
         if done.code:
             raise RuntimeError(said.getvalue().strip().splitlines()[-1]) from None
-    return time.monotonic() - begin
+    return time.process_time() - begin
 
 
 def told_of(robot: RobotModel) -> float:
@@ -146,7 +146,7 @@ def second_round(robot: RobotModel, folder: Path, preset: str, factor: float) ->
     if not motion.exists():
         result = folder / f"design_{preset}_{factor:g}_1" / "result.json"
         seconds = plantar("design", robot.path, "--after", result, "--out", motion)
-        print(f"{robot.name}: designed after {result} in {seconds:.0f} s", flush=True)
+        print(f"{robot.name}: designed after {result} in {seconds:.0f} s of CPU", flush=True)
     return str(motion), json.loads(motion.with_suffix(".json").read_text())
 
 
@@ -237,7 +237,7 @@ def play_robot(name: str, given: argparse.Namespace, table: Path) -> None:
         motion = str(folder / "motion.csv")
         if not Path(motion).exists():
             seconds = plantar("design", robot.path, "--stiffness", told, "--out", motion)
-            print(f"{name}: designed for {told:g} N·m/rad in {seconds:.0f} s", flush=True)
+            print(f"{name}: designed for {told:g} N·m/rad in {seconds:.0f} s of CPU", flush=True)
         promised = json.loads(Path(motion).with_suffix(".json").read_text())
     kind = "paper" if given.paper else "second" if given.second else "design"
     name_of_kind = kind + (", exact" if given.exact else "")
