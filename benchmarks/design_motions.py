@@ -65,7 +65,7 @@ def robot_file(name: str, folder: Path) -> RobotModel:
 
 
 def plantar(*arguments: object) -> float:
-    """Run a command, in this process; the CPU seconds it took. Raises RuntimeError with its last line where it fails."""
+    """Run a command, in this process; the seconds of CPU it took. Raises RuntimeError with its last line where not."""
     begin, said = time.process_time(), io.StringIO()
     try:
         with redirect_stdout(io.StringIO()), redirect_stderr(said):
