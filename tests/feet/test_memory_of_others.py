@@ -18,7 +18,7 @@ from plantar.feet.foot_fit import FittedFoot
 from plantar.feet.memory_of_others import with_memory_of_others
 from plantar.feet.recording import Recording
 from plantar.feet.settings import FeetSettings
-from plantar.models import KelvinVoigt
+from plantar.models import Hardening, KelvinVoigt
 
 RUBBER = Rubber(stiffness=420.0, damping=18.0, slip_torque=4.0, slip_angle=0.006)
 STEPPING = Stances(np.arange(4000) // 1000, np.ones(4000))
@@ -140,3 +140,8 @@ def test_motions_too_small_to_make_the_others_slip_exclude_nothing(
     assert found.choice.caution is not None
     assert "neither show nor exclude" in found.choice.caution
     assert of(small, spring, recordings) is small  # nobody shows one
+    doubted = replace(spring, choice=replace(spring.choice, reach=slips)) if spring.choice else spring
+    assert of(doubted, clear, recordings).model.name == "kelvin_voigt"  # nor is one taken from there
+    harder = of(replace(small, model=Hardening()), clear, recordings)  # nor does it of a spring that hardens
+    assert harder.choice is not None
+    assert harder.choice.caution is not None

@@ -105,14 +105,16 @@ def badness(reach: Reach, coefficients: Array, criterion: Criterion, known: Arra
     of what is wanted of it, of the volume of all (D) or of their mean square (A).
 
     Small soles cannot bend stiff feet far enough for every number. One that is out of reach must not be all that
-    counts: beyond HOPELESS a width counts for little, and to the widest a share of all others is added.
+    counts: beyond HOPELESS a width counts for little, and to the widest a share of all others is added. Where others
+    are `known` from before, what is weak comes first.
     """
     count = len(reach.bushes)
     feet = (half_widths(reach, coefficients, known) / WANTED).reshape(count, -1)
     delay = np.full((count, 1), delay_half_width(reach, coefficients) / WANTED_DELAY)
     vertical = vertical_half_width(reach, coefficients)[:, None] / WANTED_VERTICAL
     widths = np.log(np.hstack([feet, delay, vertical]))
-    widths = np.minimum(widths, np.log(HOPELESS)) + BEYOND * np.maximum(widths - np.log(HOPELESS), 0.0)
+    hopeless = np.inf if np.any(known) else np.log(HOPELESS)
+    widths = np.minimum(widths, hopeless) + BEYOND * np.maximum(widths - hopeless, 0.0)
     if criterion == "widest":
         return float(((1 - OTHERS) * widths.max(axis=1) + OTHERS * widths.mean(axis=1)).mean())
     if criterion == "D":

@@ -28,7 +28,7 @@ NOT_EXCLUDED = (
 def with_memory_of_others(feet: Mapping[str, FittedFoot]) -> dict[str, FittedFoot]:
     """The feet with a memory that another axis has in each axis that is nearer to it than to spring and damper.
 
-    An axis that neither shows nor excludes it keeps spring and damper, with a caution.
+    An axis that neither shows nor excludes it keeps what it has, with a caution.
     """
     every = [fit for one in feet.values() for fit in one.fits.values()]
     shown = {fit.model.name for fit in every if fit.model.remembers}
@@ -37,16 +37,14 @@ def with_memory_of_others(feet: Mapping[str, FittedFoot]) -> dict[str, FittedFoo
     for foot, one in feet.items():
         fits = dict(one.fits)
         for axis, fit in one.fits.items():
-            if (
-                fit.choice is None
-                or not isinstance(fit.model, KelvinVoigt)
-                or axis in one.given_up
-                or not shown
-            ):
+            if fit.choice is None or isinstance(fit.model, Hysteretic) or axis in one.given_up or not shown:
                 continue
-            score = _nearer(fit.choice, shown, steps=_steps(one))
+            steps, small = _steps(one), fit.choice.reach * SURE_SLIP_ANGLE < slips < np.inf
+            score = None
+            if isinstance(fit.model, KelvinVoigt) and (steps or not small):
+                score = _nearer(fit.choice, shown, steps=steps)
             if score is None:
-                fits[axis] = _cautioned(fit, fit.choice, shown, slips, steps=_steps(one))
+                fits[axis] = _cautioned(fit, fit.choice, shown, steps=steps, small=small)
                 continue
             with gives_up(axis, one.given_up):
                 own = fit_axis(one.thin.fitted, one.foot, axis, one.ready.settings, score.model, one.place)
@@ -76,15 +74,16 @@ def _slip_angle(fit: AxisFit) -> float:
 
 
 def _cautioned(
-    fit: AxisFit, choice: ModelChoice, shown: Collection[str], slips: float, *, steps: bool
+    fit: AxisFit, choice: ModelChoice, shown: Collection[str], *, steps: bool, small: bool
 ) -> AxisFit:
     """The fit with a caution, unless a memory was identified in motions that show one, and predicts no better there.
 
-    Motions that bend this axis by less than it takes an element elsewhere to slip, `slips` [rad], show none: what is
-    identified in them is the noise's.
+    Motions too `small` to bend this axis as far as it takes an element elsewhere to slip show none: what is identified
+    in them is the noise's.
     """
-    excluded = any(score.refused is None and score.model.name in shown for score in choice.ranking)
-    small = np.isfinite(slips) and choice.reach * SURE_SLIP_ANGLE < slips
+    excluded = not isinstance(fit.model, KelvinVoigt) or any(
+        score.refused is None and score.model.name in shown for score in choice.ranking
+    )
     if choice.caution is not None or (excluded and not steps and not small):
         return fit
     return replace(fit, choice=replace(choice, caution=NOT_EXCLUDED))

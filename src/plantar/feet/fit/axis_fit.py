@@ -21,6 +21,7 @@ from plantar.model_selection.data_sets import DataSet
 from plantar.model_selection.model_fit import ModelFit, fit_again, fit_model
 from plantar.model_selection.selection import LEAST_GAIN, ModelChoice, choose_model
 from plantar.models import MODELS, BushModel, KelvinVoigt, reach
+from plantar.models.hysteresis import Hysteretic
 
 LEAST_EXPLAINED = (
     0.5  # of the torque's variance by spring and damper: below it no model of the bush will help
@@ -123,11 +124,16 @@ def _fitted(
     choice = choose_model(data_sets, models, cutoff, shared_offset=shared, least_gain=gain)
     if not timed and choice.caution is None:
         choice = replace(choice, caution=UNTIMED)
-    if choice.fit.model.name != KelvinVoigt.name:
-        return found(choice.fit, choice, choice.reason)
-    if not steps and choice.caution is None and choice.reach < SMALL:
+    if (
+        not isinstance(choice.fit.model, Hysteretic)
+        and not steps
+        and choice.caution is None
+        and choice.reach < SMALL
+    ):
         choice = replace(choice, caution=TOO_SMALL.format(choice.reach))
-    return _of_linear(foot, axis, linear, choice, choice.reason)
+    if choice.fit.model.name == KelvinVoigt.name:
+        return _of_linear(foot, axis, linear, choice, choice.reason)
+    return found(choice.fit, choice, choice.reason)
 
 
 def _where_a_spring_turns(
