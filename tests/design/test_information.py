@@ -71,9 +71,9 @@ def test_a_number_out_of_reach_is_not_all_that_counts(monkeypatch: pytest.Monkey
     widths = np.full((3, 2, 2, 2), 0.02)
     widths[:, 0, 1, 0] = 50.0  # of a roll that small soles cannot bend
 
-    def of(changed: np.ndarray) -> float:
+    def of(changed: np.ndarray, known: float = 0.0) -> float:
         monkeypatch.setattr(objective, "half_widths", lambda *_: changed)
-        return badness(reach, coefficients, "widest")
+        return badness(reach, coefficients, "widest", known)
 
     hopeless = of(widths)
     told, less = widths.copy(), widths.copy()
@@ -81,6 +81,9 @@ def test_a_number_out_of_reach_is_not_all_that_counts(monkeypatch: pytest.Monkey
     less[:, 0, 1, 0] /= 2
     assert of(told) < hopeless - 0.05
     assert hopeless - 0.1 < of(less) < hopeless
+    assert of(widths, 1.0) - of(less, 1.0) > 0.5 * np.log(
+        2
+    )  # after an earlier motion it is what is left to do
     reached = np.full_like(widths, 0.02)
     half = reached.copy()
     half[:, 0, 1, 0] *= 2

@@ -49,6 +49,9 @@ DESIGNED_MOTIONS = (
         "BEYOND * np.maximum", "1.0 * np.maximum", QUICK,
     ),
     Mutant(
+        "design/information.py", "a second motion gives up as the first did", "np.inf if np.any(known) else", "", QUICK,
+    ),
+    Mutant(
         "design/family.py", "small robots move as slowly as large ones", "np.sqrt(TALL / height)", "0.0", QUICK,
     ),
     Mutant(
