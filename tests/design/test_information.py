@@ -9,7 +9,7 @@ import design_samples
 from plantar.contact.polygon import inside_distance
 from plantar.conventions import NORMAL95
 from plantar.design import information as objective
-from plantar.design.family import CHANNELS
+from plantar.design.family import CHANNELS, Lines
 from plantar.design.information import (
     MISSED,
     UNCLOSED,
@@ -19,9 +19,11 @@ from plantar.design.information import (
     information,
     vertical_half_width,
 )
-from plantar.design.reach import BEND, RATE, margin_kept
+from plantar.design.reach import BEND, RATE, Reach, margin_kept
 from plantar.design.rubber import NEARBY, SECANT, SHARE, SLIP_ANGLE, remembered
 from plantar.design.search import best_motion
+from plantar.design.soft_feet import Softness
+from plantar.twin.presets import SLIP_TORQUE
 from plantar.twin.robots import hrp2
 
 
@@ -155,3 +157,14 @@ def test_the_same_seed_gives_the_same_motion_and_another_another() -> None:
 
     assert np.array_equal(found(2), found(2))
     assert not np.array_equal(found(2), found(3))
+
+
+def test_the_element_is_at_least_the_rubber_of_the_rehearsals() -> None:
+    """Of a robot of this weight, however soft its springs were told: limits would be passed in rehearsals."""
+    lines = Lines.drawn(20.0, np.random.default_rng(1))
+    soft = Softness.told(hrp2.robot(), 300.0, None)
+    found = Reach(design_samples.legs(), design_samples.linear(), lines, soft, [soft]).element
+    assert found == pytest.approx(np.array(SLIP_TORQUE) / SLIP_ANGLE)
+    stiff = Softness.told(hrp2.robot(), 800.0, None)
+    more = Reach(design_samples.legs(), design_samples.linear(), lines, stiff, [stiff]).element
+    assert more == pytest.approx(800.0 * np.array(SHARE))

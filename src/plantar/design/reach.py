@@ -14,6 +14,7 @@ from plantar.design.legs import Legs
 from plantar.design.linear import LinearRobot
 from plantar.design.rubber import SECANT, SHARE, SLIP_ANGLE, remembered
 from plantar.design.soft_feet import Softness, respond
+from plantar.twin.presets import DEFAULT, preset_named
 
 RATE: Final = 20.0  # Hz: sixteen samples in the quickest sine
 EDGE: Final = 0.007  # m, of the centre of pressure from each sole's border; `identify feet` drops 5 mm
@@ -55,7 +56,9 @@ class Reach:
             foot: self._basis[:, [CHANNELS.index(f"{foot}.roll"), CHANNELS.index(f"{foot}.pitch")]]
             for foot in self.feet
         }
-        self.element = told.stiffness * np.array(SHARE)  # of what slips beside every spring, by axis
+        # Of what slips beside every spring, by axis: at least the rubber of the rehearsals, which goes with the weight.
+        rubber = np.array(preset_named(DEFAULT).slip_torques(legs.body.robot)) / SLIP_ANGLE
+        self.element = np.maximum(told.stiffness * np.array(SHARE), rubber)
 
         def parts(beside: Array, *names: str) -> list[Array]:
             pitch, roll = (float(value) for value in beside)
