@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from plantar.design.family import BANDS, CHANNELS, LINES, MIRRORED, RAMP, REST, TALL, Lines, pace
+from plantar.design.family import CHANNELS, LINES, MIRRORED, RAMP, REST, Lines
 
 LINES_OF = Lines.drawn(40.0, np.random.default_rng(3))
 
@@ -46,15 +46,3 @@ def test_no_two_lines_share_a_frequency() -> None:
 def test_the_same_draw_gives_the_same_lines() -> None:
     again = Lines.drawn(40.0, np.random.default_rng(3))
     assert np.array_equal(again.frequencies, LINES_OF.frequencies)
-
-
-def test_a_small_robot_moves_quicker_as_a_short_pendulum_does() -> None:
-    assert pace(TALL) == pace(2 * TALL) == 1.0
-    assert pace(TALL / 4) == pytest.approx(2.0)
-    quick = Lines.drawn(40.0, np.random.default_rng(3), 2.0).frequencies
-    grid = 1 / (20.0 - REST)
-    for row, channel in enumerate(CHANNELS):
-        low, high = BANDS[channel]
-        assert 2 * low - grid <= quick[row].min()
-        assert quick[row].max() <= 2 * high + 8 * grid
-    assert np.median(quick / LINES_OF.frequencies) == pytest.approx(2.0, abs=0.4)

@@ -52,9 +52,6 @@ DESIGNED_MOTIONS = (
         "design/information.py", "a second motion gives up as the first did", "np.inf if np.any(known) else", "", QUICK,
     ),
     Mutant(
-        "design/family.py", "small robots move as slowly as large ones", "np.sqrt(TALL / height)", "0.0", QUICK,
-    ),
-    Mutant(
         "design/known.py", "a weak stiffness is no softer", "else SPRING * low", "else low", ("design/test_known.py",),
     ),
     Mutant(

@@ -33,20 +33,12 @@ SHAPES: Final = 1 + 2 * LINES  # of each channel: a place to be at, and the sine
 # Hz, lowest and highest line of a channel. A foot is told its damping by what is quick, its stiffness by what is large;
 # above 1.2 Hz joints and servos of large robots follow badly, and `identify feet` listens up to 5 Hz. The load is led
 # from foot to foot slowly. Arms and trunk swing at 0.3 to 1 Hz, and the body goes up and down: from that the delay of
-# the sensors shows. Smaller robots fall and sway faster, and their joints are quicker: see `pace`.
+# the sensors shows.
 BANDS: Final = {
     "centre.x": (0.1, 0.6), "centre.y": (0.1, 0.6), "centre.z": (0.3, 1.2), "trunk.roll": (0.3, 1.0),
     "trunk.pitch": (0.3, 1.0), "arms": (0.3, 1.0), "left.roll": (0.1, 1.2), "left.pitch": (0.1, 1.2),
     "right.roll": (0.1, 1.2), "right.pitch": (0.1, 1.2),
 }  # fmt: skip
-TALL: Final = (
-    0.78  # m: with its centre of mass so high above its feet, or higher, a robot moves in these bands
-)
-
-
-def pace(height: float) -> float:
-    """How many times as quick a robot may move whose centre of mass is `height` [m] above its feet: as pendulums do."""
-    return max(1.0, float(np.sqrt(TALL / height)))
 
 
 @dataclass(frozen=True)
@@ -57,17 +49,16 @@ class Lines:
     frequencies: Array
 
     @classmethod
-    def drawn(cls, duration: float, random: np.random.Generator, quicker: float = 1.0) -> Lines:
+    def drawn(cls, duration: float, random: np.random.Generator) -> Lines:
         """One frequency in each part of a channel's band, on a grid on which no two channels share one.
 
-        The bands' frequencies are `quicker` times as high. Sines of different frequencies, whole periods each, are
-        orthogonal: no channel hides behind another.
+        Sines of different frequencies, whole periods each, are orthogonal: no channel hides behind another.
         """
         step = 1.0 / (duration / 2 - REST)
         taken: set[int] = set()
         rows = []
         for channel in CHANNELS:
-            low, high = (quicker * edge for edge in BANDS[channel])
+            low, high = BANDS[channel]
             edges = np.geomspace(low, high, LINES + 1)
             row = []
             for place in range(LINES):

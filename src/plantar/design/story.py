@@ -11,7 +11,7 @@ import numpy as np
 from plantar.choices import number_in, one_of
 from plantar.conventions import Array
 from plantar.design.collision import self_collision
-from plantar.design.family import Lines, pace
+from plantar.design.family import Lines
 from plantar.design.information import CRITERIA, Criterion
 from plantar.design.known import Known
 from plantar.design.legs import Legs
@@ -136,7 +136,7 @@ def design_motion(
     damping = settings.damping if settings.damping is not None or known is None else known.damping
     told = Softness.told(robot, stiffness, damping)
     random = np.random.default_rng(settings.seed)
-    lines = Lines.drawn(settings.duration, random, pace(linear.pendulum.height))
+    lines = Lines.drawn(settings.duration, random)
     bushes = [told.times(factor) for factor in np.geomspace(*factors, STIFFNESSES)]
     reach = Reach(legs, linear, lines, told, bushes)
     before = 0.0 if known is None else known.precision(reach.feet)
