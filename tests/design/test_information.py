@@ -9,7 +9,7 @@ import design_samples
 from plantar.contact.polygon import inside_distance
 from plantar.conventions import NORMAL95
 from plantar.design import information as objective
-from plantar.design.family import CHANNELS
+from plantar.design.family import CHANNELS, Lines
 from plantar.design.information import (
     MISSED,
     UNCLOSED,
@@ -19,9 +19,11 @@ from plantar.design.information import (
     information,
     vertical_half_width,
 )
-from plantar.design.reach import BEND, RATE, margin_kept
-from plantar.design.rubber import NEARBY, SHARE, SLIP_ANGLE, remembered
+from plantar.design.reach import BEND, RATE, Reach, margin_kept
+from plantar.design.rubber import NEARBY, SECANT, SHARE, SLIP_ANGLE, remembered
 from plantar.design.search import best_motion
+from plantar.design.soft_feet import Softness
+from plantar.twin.presets import SLIP_TORQUE
 from plantar.twin.robots import hrp2
 
 
@@ -63,6 +65,33 @@ def test_a_smaller_motion_promises_less_and_what_is_known_promises_more() -> Non
     assert badness(reach, coefficients, "D") < badness(reach, 0.5 * coefficients, "D")
 
 
+def test_a_number_out_of_reach_is_not_all_that_counts(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where one width is hopeless the others still count; none of them is bought by it."""
+    reach, coefficients = design_samples.reach(), design_samples.coefficients()
+    monkeypatch.setattr(objective, "delay_half_width", lambda *_: objective.WANTED_DELAY)
+    monkeypatch.setattr(objective, "vertical_half_width", lambda *_: np.full(3, objective.WANTED_VERTICAL))
+    widths = np.full((3, 2, 2, 2), 0.02)
+    widths[:, 0, 1, 0] = 50.0  # of a roll that small soles cannot bend
+
+    def of(changed: np.ndarray, known: float = 0.0) -> float:
+        monkeypatch.setattr(objective, "half_widths", lambda *_: changed)
+        return badness(reach, coefficients, "widest", known)
+
+    hopeless = of(widths)
+    told, less = widths.copy(), widths.copy()
+    told[:, :, 0] /= 2
+    less[:, 0, 1, 0] /= 2
+    assert of(told) < hopeless - 0.05
+    assert hopeless - 0.1 < of(less) < hopeless
+    assert of(widths, 1.0) - of(less, 1.0) > 0.5 * np.log(
+        2
+    )  # after an earlier motion it is what is left to do
+    reached = np.full_like(widths, 0.02)
+    half = reached.copy()
+    half[:, 0, 1, 0] *= 2
+    assert of(half) - of(reached) > 0.5 * np.log(2)  # of what is in reach the widest counts
+
+
 def test_a_delay_shows_where_the_moments_change_and_costs_damping(monkeypatch: pytest.MonkeyPatch) -> None:
     """What a late sensor misses at each moment is the rate times the delay; C is off by K times the delay."""
     reach, coefficients = design_samples.reach(), design_samples.coefficients()
@@ -84,7 +113,9 @@ def test_a_delay_shows_where_the_moments_change_and_costs_damping(monkeypatch: p
     known = half_widths(reach, coefficients)
     assert unsure[..., 0] == pytest.approx(known[..., 0])
     added = np.sqrt(unsure[..., 1] ** 2 - known[..., 1] ** 2) / wide
-    assert added == pytest.approx(25.0, rel=1e-6)  # K/C of the stiffness and damping told
+    firm = reach.stiffness[:, None] + SECANT * design_samples.STIFFNESS * np.array(SHARE)
+    late = np.broadcast_to((firm / reach.damping[:, None])[:, None], added.shape)
+    assert added == pytest.approx(late, rel=1e-6)
 
 
 def test_vertical_compliance_shows_where_load_goes_from_foot_to_foot() -> None:
@@ -126,3 +157,14 @@ def test_the_same_seed_gives_the_same_motion_and_another_another() -> None:
 
     assert np.array_equal(found(2), found(2))
     assert not np.array_equal(found(2), found(3))
+
+
+def test_the_element_is_at_least_the_rubber_of_the_rehearsals() -> None:
+    """Of a robot of this weight, however soft its springs were told: limits would be passed in rehearsals."""
+    lines = Lines.drawn(20.0, np.random.default_rng(1))
+    soft = Softness.told(hrp2.robot(), 300.0, None)
+    found = Reach(design_samples.legs(), design_samples.linear(), lines, soft, [soft]).element
+    assert found == pytest.approx(np.array(SLIP_TORQUE) / SLIP_ANGLE)
+    stiff = Softness.told(hrp2.robot(), 800.0, None)
+    more = Reach(design_samples.legs(), design_samples.linear(), lines, stiff, [stiff]).element
+    assert more == pytest.approx(800.0 * np.array(SHARE))

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from plantar.conventions import NORMAL95
-from plantar.design.known import WIDER, Known
+from plantar.design.known import SPRING, WIDER, Known
 from plantar.errors import DataError
 from plantar.results.feet import FeetResult, Parameter
 
@@ -38,6 +38,23 @@ def test_range_and_deviations_come_from_the_intervals() -> None:
     precision = known.precision((row.foot, "other"))
     assert precision[0, ("pitch", "roll").index(row.axis), 0, 0] == pytest.approx(deviation**-2)
     assert not precision[1].any()
+
+
+def test_a_weak_stiffness_widens_the_range_and_is_not_believed() -> None:
+    """What it misses may be an element that did not slip: the spring alone is softer."""
+    result, known = found(), Known.of(found())
+    weak = tuple(
+        replace(row, verdict="weak") if (row.foot, row.axis) == ("right", "pitch") else row
+        for row in result.parameters
+    )
+    less = Known.of(replace(result, parameters=weak))
+    assert less.stiffness == pytest.approx(np.sqrt(400.0 * 300.0))
+    assert less.damping == pytest.approx(0.04 * less.stiffness)
+    assert (less.low, less.high) == pytest.approx((SPRING * 490.0 / WIDER, known.high))
+    assert np.isinf(less.deviations["right", "pitch"]).all()
+    assert np.isfinite(less.deviations["left", "pitch"]).all()
+    nothing = tuple(replace(row, verdict="weak") for row in result.parameters)
+    assert Known.of(replace(result, parameters=nothing)).stiffness == pytest.approx(known.stiffness)
 
 
 def test_a_result_without_numbers_is_refused() -> None:

@@ -20,6 +20,7 @@ from plantar.design import story
 from plantar.design.rehearsal import Rehearsal
 from plantar.design.story import FRICTION, KEPT, SPARE, DesignSettings, design_motion
 from plantar.design.writing.outputs import content_of, write_design
+from plantar.design.writing.sheet import sheet
 from plantar.errors import MotionError, SettingsError
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import open_log
@@ -32,7 +33,7 @@ from plantar.twin.robots import hrp2
 @pytest.fixture(scope="module")
 def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("design") / "motion.csv"
-    write_design(design_samples.designed(), path, 100.0, ("ros", "openhrp", "mcap"), approach=True)
+    write_design(design_samples.designed(), path, 100.0, ("ros", "openhrp", "mcap", "mc_rtc"), approach=True)
     return path
 
 
@@ -79,6 +80,11 @@ def test_it_says_what_it_promises_and_what_it_kept(written: Path) -> None:
     assert "The search wanted: stiffness within 1 %" in page
     assert "holds from 250 to 1000 N·m/rad" in page
     assert "25 % and 50 %" in page
+    needed = content["one_foot"]["least_stiffness"]
+    assert needed == pytest.approx(2 * content["least_stiffness"])
+    assert f"stiffer than {needed:.4g} N·m/rad to hold it alone, and may be as soft as 250" in page
+    stiff = sheet(content | {"stiffness_range": [600.0, 2400.0]}, approach=False)
+    assert "feet of 600 N·m/rad could hold it, but" in stiff
 
 
 def test_a_number_that_rehearsals_do_not_find_is_said(written: Path) -> None:
@@ -89,6 +95,10 @@ def test_a_number_that_rehearsals_do_not_find_is_said(written: Path) -> None:
     assert "left pitch stiffness is not found at 0.5, 0.707, 1, 1.41, 2 times the stiffness told" in " ".join(
         content["notes"]
     )
+    assert "not found at 0.5" in content["notes"][0]
+    assert all("--after that result" in note for note in content["notes"])
+    with patch.object(Rehearsal, "usable", lambda *_: True):
+        assert all("do not use it" in note for note in content_of(blind, written, 100.0)["notes"])
     for row in content_of(found, written, 100.0)["parameters"]:
         for one in row["at"]:
             assert (one["half_width_percent"] is None) == (one["error_percent"] is None)
@@ -136,24 +146,38 @@ def test_the_twin_plays_a_table_from_where_its_first_row_stands(written: Path) -
 
 
 def test_a_motion_that_is_too_large_is_made_smaller_by_as_much() -> None:
-    """Of 50 mm to the border 48 are used where 44.5 may be: by half of that, as soles that roll exaggerate."""
-    margins, tried = iter((0.002, 0.02)), []
+    """Of 50 mm to the border 48 are used where 44.5 may be: by half of that, as soles that roll exaggerate.
+
+    The ends of the range come first, then what did not hold; all hold in the end with the motion as it is.
+    """
+    played: list[tuple[list[float], np.ndarray]] = []
 
     def rehearse(
         _: object, plan: Plan, told: object, factors: Sequence[float], *__: object
     ) -> list[Rehearsal]:
-        tried.append(plan.positions - plan.positions[0])
-        margin = next(margins)
-        return [Rehearsal(factor, sole_margin=margin, standing_margin=0.05) for factor in factors]
+        moved = plan.positions - plan.positions[0]
+        first = not played or moved is played[0][1] or np.array_equal(moved, played[0][1])
+        played.append((list(factors), moved))
+        return [
+            Rehearsal(factor, sole_margin=0.002 if first and factor > 1.9 else 0.02, standing_margin=0.05)
+            for factor in factors
+        ]
 
     with (
         patch.object(story, "best_motion", design_samples.gentle_motion),
         patch.object(story, "rehearse", rehearse),
     ):
-        design_motion(hrp2.robot(), DesignSettings(500.0, duration=20.0, seed=1))
-    whole, less = tried
+        found = design_motion(hrp2.robot(), DesignSettings(500.0, duration=20.0, seed=1))
+    assert [factors for factors, _ in played] == [
+        [0.5, 2.0],
+        [2.0],
+        pytest.approx([0.5, 0.5**0.5, 1.0, 2**0.5]),
+    ]
+    whole, less = played[0][1], played[1][1]
     allowed = (1 - SPARE) * np.sqrt((0.05 - KEPT) / (0.05 - 0.002))
     assert less == pytest.approx(allowed * whole, abs=0.01 * np.abs(whole).max())
+    assert np.array_equal(played[2][1], less)
+    assert [one.factor for one in found.rehearsals] == pytest.approx([0.5, 0.5**0.5, 1.0, 2**0.5, 2.0])
 
 
 def test_feet_that_are_too_soft_are_refused_with_what_is_needed() -> None:
@@ -184,7 +208,7 @@ def test_the_command_refuses_before_it_works(tmp_path: Path, capsys: pytest.Capt
     line = command_line.refused(capsys, "design", robot, "--stiffness", 500, "--rate", 1e6, "--out", out)
     assert "rate is not valid" in line
     line = command_line.refused(capsys, "design", robot, "--stiffness", 500, "--to", "abb", "--out", out)
-    assert "valid: ros, mcap, openhrp" in line
+    assert "valid: ros, mcap, openhrp, mc_rtc" in line
     line = command_line.refused(capsys, "design", robot, "--stiffness", 100, "--out", out)
     assert "feet of 100 N·m/rad cannot hold the robot upright" in line
     assert command_line.run("design", robot, "--out", out) == 2

@@ -18,7 +18,7 @@ from plantar.feet.foot_fit import FittedFoot
 from plantar.feet.memory_of_others import with_memory_of_others
 from plantar.feet.recording import Recording
 from plantar.feet.settings import FeetSettings
-from plantar.models import KelvinVoigt
+from plantar.models import Hardening, KelvinVoigt
 
 RUBBER = Rubber(stiffness=420.0, damping=18.0, slip_torque=4.0, slip_angle=0.006)
 STEPPING = Stances(np.arange(4000) // 1000, np.ones(4000))
@@ -122,3 +122,26 @@ def test_a_memory_that_is_neither_shown_nor_excluded_makes_a_caution(
     assert "neither show nor exclude" in (found.choice.caution or "")
     alone = of(unsure, unsure, recordings, steps=steps)
     assert alone is unsure
+
+
+def test_motions_too_small_to_make_the_others_slip_exclude_nothing(
+    recordings: list[Recording], clear: AxisFit, spring: AxisFit
+) -> None:
+    """A memory that predicts no better excludes one, unless the axis bends by less than others need to slip."""
+    assert clear.choice is not None
+    slips = float(clear.choice.fit.shape[0])
+    assert slips == pytest.approx(RUBBER.slip_angle, rel=0.1)
+    excluded = changed(spring, held_out_rms=9e9, refused=None)
+    assert excluded.choice is not None
+    assert of(excluded, clear, recordings) is excluded
+    small = replace(excluded, choice=replace(excluded.choice, reach=slips))
+    found = of(small, clear, recordings)
+    assert found.choice is not None
+    assert found.choice.caution is not None
+    assert "neither show nor exclude" in found.choice.caution
+    assert of(small, spring, recordings) is small  # nobody shows one
+    doubted = replace(spring, choice=replace(spring.choice, reach=slips)) if spring.choice else spring
+    assert of(doubted, clear, recordings).model.name == "kelvin_voigt"  # nor is one taken from there
+    harder = of(replace(small, model=Hardening()), clear, recordings)  # nor does it of a spring that hardens
+    assert harder.choice is not None
+    assert harder.choice.caution is not None

@@ -223,8 +223,21 @@ DATA_FAULTS = (
         ("feet/test_memory_of_others.py",),
     ),
     Mutant(
-        "feet/memory_of_others.py", "what is not excluded is not said", "(excluded and not steps)", "True",
+        "feet/memory_of_others.py", "what is not excluded is not said",
+        "(excluded and not steps and not small)", "True", ("feet/test_memory_of_others.py",),
+    ),
+    Mutant(
+        "feet/memory_of_others.py", "small motions exclude a memory", "and not steps and not small", "and not steps",
         ("feet/test_memory_of_others.py",),
+    ),
+    Mutant(
+        "feet/fit/worth.py", "a sure spring stands in for an unsure model",
+        "bool(far and not low", "bool(False and not low",
+        ("feet/fit/test_worth.py",),
+    ),
+    Mutant(
+        "feet/fit/axis_fit.py", "a spring is believed in small motions", "choice.reach < SMALL", "choice.reach < 0.0",
+        ("feet/fit/test_axis_fit.py",),
     ),
     Mutant(
         "feet/imu_of_steps.py", "the IMU's turn has no prior", "np.eye(3) / mount**2", "np.eye(3) * mount**2",

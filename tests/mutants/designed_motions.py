@@ -44,4 +44,18 @@ DESIGNED_MOTIONS = (
     Mutant(
         "design/family.py", "the mirror image keeps the sign", "+= sign * halves[1][row]", "+= halves[1][row]", QUICK,
     ),
+    Mutant(
+        "design/information.py", "a number out of reach is all that counts",
+        "BEYOND * np.maximum", "1.0 * np.maximum", QUICK,
+    ),
+    Mutant(
+        "design/information.py", "a second motion gives up as the first did", "np.inf if np.any(known) else", "", QUICK,
+    ),
+    Mutant(
+        "design/known.py", "a weak stiffness is no softer", "else SPRING * low", "else low", ("design/test_known.py",),
+    ),
+    Mutant(
+        "logs/save_mc_rtc.py", "the base turned the other way", "np.swapaxes(base[:, :3, :3], 1, 2)", "base[:, :3, :3]",
+        ("design/test_controllers.py",),
+    ),
 )  # fmt: skip

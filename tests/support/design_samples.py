@@ -61,12 +61,18 @@ def gentle_motion(*told: object) -> np.ndarray:
         return 0.4 * best_motion(*told)  # type: ignore[arg-type]
 
 
-def rehearsed_once(
-    robot: RobotModel, plan: Plan, told: Softness, factors: Sequence[float], *_: object
-) -> list[Rehearsal]:
-    """On the stiffness told; the ends of the range are taken to be like it."""
-    (one,) = rehearse(robot, plan, told, [1.0])
-    return [replace(one, factor=factor) for factor in factors]
+class RehearsedOnce:
+    """On the stiffness told; the others of the range are taken to be like it."""
+
+    def __init__(self) -> None:
+        self.one: Rehearsal | None = None
+
+    def __call__(
+        self, robot: RobotModel, plan: Plan, told: Softness, factors: Sequence[float], *_: object
+    ) -> list[Rehearsal]:
+        if self.one is None:
+            (self.one,) = rehearse(robot, plan, told, [1.0])
+        return [replace(self.one, factor=factor) for factor in factors]
 
 
 def identified_once(found: dict[int, FeetResult | None]) -> Callable[[Rehearsal, RobotModel], Rehearsal]:
@@ -87,7 +93,7 @@ def designed() -> Design:
     """Rehearsed on the twin, too."""
     with (
         patch.object(story, "best_motion", gentle_motion),
-        patch.object(story, "rehearse", rehearsed_once),
+        patch.object(story, "rehearse", RehearsedOnce()),
         patch.object(Rehearsal, "identified", identified_once({})),
     ):
         return design_motion(hrp2.robot(), DesignSettings(STIFFNESS, duration=20.0, seed=1))

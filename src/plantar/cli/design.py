@@ -54,7 +54,8 @@ def run(
     to: Annotated[
         list[str] | None,
         typer.Option(
-            help="Also for a controller: ros (JointTrajectory as YAML), mcap (in a bag), openhrp (.pos)."
+            help="Also for a controller: ros (JointTrajectory as YAML), mcap (in a bag), openhrp (.pos), "
+            "mc_rtc (.bin, for its Replay plugin)."
         ),
     ] = None,
     approach: Annotated[
@@ -84,7 +85,8 @@ def run(
         raise MissingExtra(error.name or "mujoco", "twin", "plantar design") from error
     if out.suffix.lower() != ".csv":
         raise PlantarError(located("has an unknown ending", path=out, valid=".csv"))
-    check_outputs(rate, to or ())
+    model = load_robot(robot)
+    check_outputs(model, rate, to or ())
     settings = DesignSettings(stiffness, damping, duration, criterion, seed)  # type: ignore[arg-type]
     step = progress(quiet)
     if stiffness is None and (after is None or like is not None):
@@ -92,10 +94,10 @@ def run(
     earlier = None if after is None else FeetResult.load(after, residuals=False)
     if like is not None:
         one_of("--like", like, ("campaign",))
-        _of_the_paper(load_robot(robot), stiffness, damping, out, rate, json, step)
+        _of_the_paper(model, stiffness, damping, out, rate, json, step)
         end_progress(quiet)
         return
-    found = design_motion(load_robot(robot), settings, earlier, step)
+    found = design_motion(model, settings, earlier, step)
     step("write")
     content = write_design(found, out, rate, to or (), approach)
     write_plan_scene(found.robot, found.trajectory().plan(), found.nominal.bushes, out.with_suffix(".html"))

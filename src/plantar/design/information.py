@@ -8,15 +8,16 @@ import numpy as np
 
 from plantar.conventions import NORMAL95, Array
 from plantar.design.reach import RATE, Reach
-from plantar.design.rubber import NEARBY, SLIP_ANGLE, remembered
+from plantar.design.rubber import NEARBY, SECANT, SLIP_ANGLE, remembered
 
 Criterion = Literal["widest", "D", "A"]
 CRITERIA: Final = get_args(Criterion)
 # N·m that a model of real rubber misses by, per independent sample of 0.1 s: sensors of a careful lab are better.
 MISSED: Final = 0.1
-# With this power of what is missing widths grow: at 0.8 of TOLD_APART rubber that slips came out as a stiffer spring.
+# Bend to either side [rad] at which `identify feet` surely tells an element that slips from the spring: it asks for
+# 1.25 times the slip angle, and rehearsals make motions smaller. With this power of what is missing widths grow.
+TOLD_APART: Final = 1.7 * SLIP_ANGLE
 STEEP: Final = 8
-TOLD_APART: Final = 1.7 * SLIP_ANGLE  # rad that a bush bends to either side
 # Half widths that are wanted: of stiffness and damping [share], delay [s], vertical compliance [share]. The widest is
 # the one that is farthest above.
 WANTED: Final = (0.01, 0.04)
@@ -29,6 +30,9 @@ SEEN_FORCE: Final = (
     6.0  # N rms that the motion adds to the weight: beside less, sensors' noise looks like a hand's push
 )
 USUAL_DELAY: Final = 0.0075  # s: deviation of a delay of which nothing is known, as robot files have it
+HOPELESS: Final = 300.0  # times what is wanted: three times the stiffness is no knowledge of it
+BEYOND: Final = 0.1  # share of what is wider still
+OTHERS: Final = 0.5  # share of all numbers beside the widest
 UNEVEN: Final = (
     1e-4  # m: what encoders and the legs' lengths may be wrong by moves the soles' heights so much
 )
@@ -63,7 +67,7 @@ def half_widths(reach: Reach, coefficients: Array, known: Array | float = 0.0) -
 
     `known`: information (feet, 2, 2, 2) from before. Where a bush bends less than TOLD_APART, `identify feet` may take
     a spring that slips for a part of the stiffness: the motion's own widths grow steeply. What the delay of the
-    sensors is unsure by, times the stiffness, the damping is unsure by as well.
+    sensors is unsure by, times the stiffness of spring and element, the damping is unsure by as well.
     """
     bend = np.ptp(reach.of(reach.firm_deflection, coefficients), axis=-1) / 2
     missing = np.maximum(TOLD_APART / np.maximum(bend, 1e-6), 1.0)[..., None, None]
@@ -73,8 +77,9 @@ def half_widths(reach: Reach, coefficients: Array, known: Array | float = 0.0) -
     deviations = np.sqrt(np.einsum("...ii->...i", np.linalg.inv(scaled))) / scale
     values = np.column_stack([reach.stiffness, reach.damping])[:, None, None]
     widths = np.asarray(NORMAL95 * deviations / values)
-    by_delay = delay_half_width(reach, coefficients) * reach.stiffness / reach.damping
-    widths[..., 1] = np.hypot(widths[..., 1], by_delay[:, None, None])
+    firm = reach.stiffness[:, None] + SECANT * reach.element
+    by_delay = delay_half_width(reach, coefficients) * firm / reach.damping[:, None]
+    widths[..., 1] = np.hypot(widths[..., 1], by_delay[:, None])
     return widths
 
 
@@ -97,14 +102,21 @@ def vertical_half_width(reach: Reach, coefficients: Array) -> Array:
 
 def badness(reach: Reach, coefficients: Array, criterion: Criterion, known: Array | float = 0.0) -> float:
     """What is minimised, the mean over the range of stiffness: the logarithm of the widest interval, each as a multiple
-    of what is wanted of it, of the volume of all (D) or of their mean square (A)."""
+    of what is wanted of it, of the volume of all (D) or of their mean square (A).
+
+    Small soles cannot bend stiff feet far enough for every number. One that is out of reach must not be all that
+    counts: beyond HOPELESS a width counts for little, and to the widest a share of all others is added. Where others
+    are `known` from before, what is weak comes first.
+    """
     count = len(reach.bushes)
     feet = (half_widths(reach, coefficients, known) / WANTED).reshape(count, -1)
     delay = np.full((count, 1), delay_half_width(reach, coefficients) / WANTED_DELAY)
     vertical = vertical_half_width(reach, coefficients)[:, None] / WANTED_VERTICAL
-    widths = np.hstack([feet, delay, vertical])
+    widths = np.log(np.hstack([feet, delay, vertical]))
+    hopeless = np.inf if np.any(known) else np.log(HOPELESS)
+    widths = np.minimum(widths, hopeless) + BEYOND * np.maximum(widths - hopeless, 0.0)
     if criterion == "widest":
-        return float(np.log(widths.max(axis=1)).mean())
+        return float(((1 - OTHERS) * widths.max(axis=1) + OTHERS * widths.mean(axis=1)).mean())
     if criterion == "D":
-        return float(np.log(widths).mean())
-    return float(np.log(np.mean(widths**2, axis=1)).mean() / 2)
+        return float(widths.mean())
+    return float(np.log(np.mean(np.exp(2 * widths), axis=1)).mean() / 2)

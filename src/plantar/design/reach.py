@@ -14,6 +14,7 @@ from plantar.design.legs import Legs
 from plantar.design.linear import LinearRobot
 from plantar.design.rubber import SECANT, SHARE, SLIP_ANGLE, remembered
 from plantar.design.soft_feet import Softness, respond
+from plantar.twin.presets import DEFAULT, preset_named
 
 RATE: Final = 20.0  # Hz: sixteen samples in the quickest sine
 EDGE: Final = 0.007  # m, of the centre of pressure from each sole's border; `identify feet` drops 5 mm
@@ -23,7 +24,7 @@ BEND: Final = 0.1  # rad of the bush: less than the paper's largest, where rubbe
 # Of each channel: share of the centre of mass' height, rad, swings. Far enough for the bushes, near enough to standing
 # for what is linear here.
 LARGEST: Final = {
-    "centre.x": 0.07, "centre.y": 0.07, "centre.z": 0.02, "trunk.roll": 0.08, "trunk.pitch": 0.08, "arms": 1.0,
+    "centre.x": 0.07, "centre.y": 0.1, "centre.z": 0.02, "trunk.roll": 0.08, "trunk.pitch": 0.08, "arms": 1.0,
     "left.roll": 0.1, "left.pitch": 0.1, "right.roll": 0.1, "right.pitch": 0.1,
 }  # fmt: skip
 ROOM: Final = 0.8  # of the way to a joint's limit, and of its speed
@@ -55,7 +56,9 @@ class Reach:
             foot: self._basis[:, [CHANNELS.index(f"{foot}.roll"), CHANNELS.index(f"{foot}.pitch")]]
             for foot in self.feet
         }
-        self.element = told.stiffness * np.array(SHARE)  # of what slips beside every spring, by axis
+        # Of what slips beside every spring, by axis: at least the rubber of the rehearsals, which goes with the weight.
+        rubber = np.array(preset_named(DEFAULT).slip_torques(legs.body.robot)) / SLIP_ANGLE
+        self.element = np.maximum(told.stiffness * np.array(SHARE), rubber)
 
         def parts(beside: Array, *names: str) -> list[Array]:
             pitch, roll = (float(value) for value in beside)

@@ -72,6 +72,11 @@ class Rehearsal:
         row = self._row(foot, axis, name)
         return None if row is None or row.value is None else 100 * (row.value / (self.factor * truth) - 1)
 
+    def usable(self, foot: str, axis: str, name: str) -> bool:
+        """Whether the result calls a parameter usable."""
+        row = self._row(foot, axis, name)
+        return row is not None and row.verdict == "usable"
+
     def delay(self) -> tuple[float, float] | None:
         """Half width of the force sensors' delay and its error [s]; None where the recording does not show it."""
         found = None if self.result is None else self.result.sensor_delay

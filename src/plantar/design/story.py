@@ -164,8 +164,12 @@ def _rehearsed(
     factors: tuple[float, ...],
     progress: Callable[[str], None],
 ) -> tuple[Array, list[Rehearsal], int]:
-    """The motion, smaller until it holds at every stiffness. Raises MotionError where none does."""
-    reason = ""
+    """The motion, smaller until it holds at every stiffness. Raises MotionError where none does.
+
+    A rehearsal takes seconds: the ends of the range come first, and after a motion was made smaller those at which it
+    did not hold. In the end all hold with the motion as it is.
+    """
+    reason, tight = "", [factors[0], factors[-1]]
     for _ in range(ROUNDS):
         try:
             trajectory = Trajectory.of("design", legs, lines, coefficients)
@@ -181,11 +185,18 @@ def _rehearsed(
             progress(f"{'without arms' if quiet else 'smaller'}: {reason}")
             coefficients = still if quiet else SMALLER * coefficients
             continue
-        rehearsals = rehearse(robot, trajectory.plan(), told, factors, progress)
-        used, reason = max((_used(one) for one in rehearsals), key=lambda each: each[0])
+        plan, held, used = trajectory.plan(), dict[float, Rehearsal](), 0.0
+        while used <= 1.0 and len(held) < len(factors):
+            asked = [each for each in tight if each not in held] or [
+                each for each in factors if each not in held
+            ]
+            found = {one.factor: one for one in rehearse(robot, plan, told, asked, progress)}
+            used, reason = max((_used(one) for one in found.values()), key=lambda each: each[0])
+            held |= found
         if used <= 1.0:
             progress("identify the feet from the rehearsals")
-            return coefficients, [one.identified(robot) for one in rehearsals], watched.pairs
+            return coefficients, [held[factor].identified(robot) for factor in factors], watched.pairs
+        tight = [factor for factor, one in held.items() if _used(one)[0] > 1.0]
         progress(f"smaller: {reason}")
         coefficients = max((1 - SPARE) / np.sqrt(used), SMALLER) * coefficients
     raise MotionError(located(f"no motion holds over the range of stiffness: {reason}", path=robot.name))

@@ -14,7 +14,7 @@ from plantar.design.legs import Legs
 from plantar.logs.motion_log import MotionLog
 from plantar.motions.plan import Plan
 from plantar.motions.stance import Stance
-from plantar.motions.track import splined
+from plantar.motions.track import base_poses, splined
 
 KNOTS: Final = 50.0  # Hz: forty in the quickest sine
 
@@ -40,13 +40,21 @@ class Trajectory:
 
     def log(self, rate: float) -> MotionLog:
         """Positions of every joint of the URDF, `rate` [Hz]."""
-        time = np.arange(round(self.knots[-1] * rate) + 1) / rate
+        time = self.time(rate)
         values = self._splines()(time)
         columns = {
             f"joint.{name}.position": np.ascontiguousarray(values[:, place])
             for place, name in enumerate(self.legs.body.joints)
         }
         return MotionLog(self.name, time, columns)
+
+    def time(self, rate: float) -> Array:
+        """Times (N,) [s] from 0 to the end, `rate` [Hz]."""
+        return np.arange(round(self.knots[-1] * rate) + 1) / rate
+
+    def base(self, rate: float) -> Array:
+        """Poses of the floating base, (N, 4, 4), as if the feet were rigid."""
+        return base_poses(self.knots, self.configurations, self.time(rate))
 
     def plan(self) -> Plan:
         """The same on rigid feet, for a simulation."""

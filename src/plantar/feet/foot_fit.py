@@ -20,7 +20,7 @@ from plantar.feet.exclusion.outliers import outlier_masks
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.fit.bush_place import PlaceSpread, turned_bush_note
-from plantar.feet.fit.worth import hardly_matters, in_place_of
+from plantar.feet.fit.worth import hardly_matters, in_place_of, too_sure
 from plantar.feet.internal_error import gives_up, internal_errors
 from plantar.feet.interval_width.between_recordings import (
     Apart,
@@ -120,17 +120,25 @@ def between_all(feet: Sequence[FittedFoot]) -> Apart:
 def without_needless(fitted: FittedFoot) -> FittedFoot:
     """The foot with spring and damper alone where a richer model hardly matters."""
     ready, recordings = fitted.ready, fitted.thin.fitted
-    shared, fits = ready.settings.offset == "shared", dict(fitted.fits)
+    fits = dict(fitted.fits)
     for axis, fit in fitted.fits.items():
         if fit.choice is None or isinstance(fit.model, KelvinVoigt) or axis in fitted.given_up:
             continue
         with gives_up(axis, fitted.given_up):
-            causes = systematic_causes(fit, recordings, ready.sensor_delay, ready.vertical, shared)
-            causes += robot_causes(fit, recordings, ready.robot.uncertainty, shared)
             spring = fit_axis(recordings, fit.foot, axis, ready.settings, KelvinVoigt(), fitted.place)
-            if spring is not None and hardly_matters(inflated(fit, causes), spring):
+            if spring is None or not hardly_matters(unsure := _with_causes(fit, fitted), spring):
+                continue
+            if not too_sure(unsure, _with_causes(spring, fitted)):
                 fits[axis] = in_place_of(fit, spring)
     return replace(fitted, fits=fits)
+
+
+def _with_causes(fit: AxisFit, fitted: FittedFoot) -> AxisFit:
+    """The fit with the deviations of all that is unsure about robot and sensors."""
+    ready, recordings = fitted.ready, fitted.thin.fitted
+    shared = ready.settings.offset == "shared"
+    causes = systematic_causes(fit, recordings, ready.sensor_delay, ready.vertical, shared)
+    return inflated(fit, causes + robot_causes(fit, recordings, ready.robot.uncertainty, shared))
 
 
 def assess_foot(fitted: FittedFoot) -> FootFit:

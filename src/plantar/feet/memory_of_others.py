@@ -9,12 +9,15 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import replace
 
+import numpy as np
+
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.foot_fit import FittedFoot
 from plantar.feet.internal_error import gives_up
 from plantar.model_selection.selection import ModelChoice, ModelScore
 from plantar.models import KelvinVoigt
+from plantar.models.hysteresis import SURE_SLIP_ANGLE, Hysteretic
 
 NOT_EXCLUDED = (
     "other axes of this robot show a memory, which these motions neither show nor exclude here: with one, stiffness is "
@@ -25,24 +28,23 @@ NOT_EXCLUDED = (
 def with_memory_of_others(feet: Mapping[str, FittedFoot]) -> dict[str, FittedFoot]:
     """The feet with a memory that another axis has in each axis that is nearer to it than to spring and damper.
 
-    An axis that neither shows nor excludes it keeps spring and damper, with a caution.
+    An axis that neither shows nor excludes it keeps what it has, with a caution.
     """
     every = [fit for one in feet.values() for fit in one.fits.values()]
     shown = {fit.model.name for fit in every if fit.model.remembers}
+    slips = min((_slip_angle(fit) for fit in every), default=np.inf)
     found = {}
     for foot, one in feet.items():
         fits = dict(one.fits)
         for axis, fit in one.fits.items():
-            if (
-                fit.choice is None
-                or not isinstance(fit.model, KelvinVoigt)
-                or axis in one.given_up
-                or not shown
-            ):
+            if fit.choice is None or isinstance(fit.model, Hysteretic) or axis in one.given_up or not shown:
                 continue
-            score = _nearer(fit.choice, shown, steps=_steps(one))
+            steps, small = _steps(one), fit.choice.reach * SURE_SLIP_ANGLE < slips < np.inf
+            score = None
+            if isinstance(fit.model, KelvinVoigt) and (steps or not small):
+                score = _nearer(fit.choice, shown, steps=steps)
             if score is None:
-                fits[axis] = _cautioned(fit, fit.choice, shown, steps=_steps(one))
+                fits[axis] = _cautioned(fit, fit.choice, shown, steps=steps, small=small)
                 continue
             with gives_up(axis, one.given_up):
                 own = fit_axis(one.thin.fitted, one.foot, axis, one.ready.settings, score.model, one.place)
@@ -64,10 +66,25 @@ def _nearer(choice: ModelChoice, shown: Collection[str], *, steps: bool) -> Mode
     return found if found.held_out_rms < spring.held_out_rms else None
 
 
-def _cautioned(fit: AxisFit, choice: ModelChoice, shown: Collection[str], *, steps: bool) -> AxisFit:
-    """The fit with a caution, unless a memory was identified in motions that show one, and predicts no better there."""
-    excluded = any(score.refused is None and score.model.name in shown for score in choice.ranking)
-    if choice.caution is not None or (excluded and not steps):
+def _slip_angle(fit: AxisFit) -> float:
+    """The angle at which the element of a fit slips [rad]; infinite where it has none."""
+    if fit.choice is None or not isinstance(fit.model, Hysteretic):
+        return np.inf
+    return float(fit.choice.fit.shape[0])
+
+
+def _cautioned(
+    fit: AxisFit, choice: ModelChoice, shown: Collection[str], *, steps: bool, small: bool
+) -> AxisFit:
+    """The fit with a caution, unless a memory was identified in motions that show one, and predicts no better there.
+
+    Motions too `small` to bend this axis as far as it takes an element elsewhere to slip show none: what is identified
+    in them is the noise's.
+    """
+    excluded = not isinstance(fit.model, KelvinVoigt) or any(
+        score.refused is None and score.model.name in shown for score in choice.ranking
+    )
+    if choice.caution is not None or (excluded and not steps and not small):
         return fit
     return replace(fit, choice=replace(choice, caution=NOT_EXCLUDED))
 

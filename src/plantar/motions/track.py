@@ -60,15 +60,19 @@ def splined(
     time = np.arange(round(knots[-1] * RATE) + 1) / RATE
     positions = np.unwrap(np.array([body.positions(q) for q in found]), axis=0)
     joints = _through(knots, positions, time)
-    if np.ptp(found[:, :7], axis=0).max() < 1e-12:
-        base = np.tile(pin.XYZQUATToSE3(found[0, :7]).homogeneous, (time.size, 1, 1))
-    else:
-        alike = np.sign(np.sum(found[1:, 3:7] * found[:-1, 3:7], axis=1))  # q and -q are one attitude
-        quaternions = found[:, 3:7] * np.cumprod([1.0, *alike])[:, None]
-        floating = _through(knots, np.column_stack([found[:, :3], quaternions]), time)
-        floating[:, 3:] /= np.linalg.norm(floating[:, 3:], axis=1, keepdims=True)
-        base = np.array([pin.XYZQUATToSE3(row).homogeneous for row in floating])
+    base = base_poses(knots, found, time)
     return Plan(name, time, body.joints, joints, base, start.standing, start.outline, hand)
+
+
+def base_poses(knots: Array, found: Array, time: Array) -> Array:
+    """Poses of the floating base, (N, 4, 4), at `time` (N,) [s], between configurations (K, nq) at `knots` (K,) [s]."""
+    if np.ptp(found[:, :7], axis=0).max() < 1e-12:
+        return np.tile(pin.XYZQUATToSE3(found[0, :7]).homogeneous, (time.size, 1, 1))
+    alike = np.sign(np.sum(found[1:, 3:7] * found[:-1, 3:7], axis=1))  # q and -q are one attitude
+    quaternions = found[:, 3:7] * np.cumprod([1.0, *alike])[:, None]
+    floating = _through(knots, np.column_stack([found[:, :3], quaternions]), time)
+    floating[:, 3:] /= np.linalg.norm(floating[:, 3:], axis=1, keepdims=True)
+    return np.array([pin.XYZQUATToSE3(row).homogeneous for row in floating])
 
 
 def _through(knots: Array, values: Array, time: Array) -> Array:

@@ -19,11 +19,13 @@ LINEAR = Rubber(stiffness=420.0, damping=18.0)
 SLIPPING = Rubber(stiffness=420.0, damping=18.0, slip_torque=4.0, slip_angle=0.006)
 
 
-def recordings(rubber: Rubber, noise: float = 0.15, disturbed: float = 0.0) -> list[Recording]:
-    """Two sways; `disturbed` [N·m] is a torque that is none of the bush's."""
+def recordings(
+    rubber: Rubber, noise: float = 0.15, disturbed: float = 0.0, amplitude: float = 0.03
+) -> list[Recording]:
+    """Two sways by `amplitude` [rad]; `disturbed` [N·m] is a torque that is none of the bush's."""
     made = []
     for seed, offset in enumerate(OFFSETS):
-        angle, random = swayed(6000, seed=seed), np.random.default_rng(seed)
+        angle, random = swayed(6000, amplitude, seed=seed), np.random.default_rng(seed)
         torque = (
             rubber.torque(angle, np.gradient(angle, PERIOD)) + offset + noise * random.standard_normal(6000)
         )
@@ -60,6 +62,21 @@ def test_hysteresis_is_chosen_by_held_out_motions_and_the_linear_fit_is_kept_bes
     assert fit.equivalent[0] > 430.0
     assert fit.choice is not None
     assert "held-out" in fit.reason
+
+
+@pytest.mark.parametrize("noise", [0.05, 0.01])  # with little noise a spring explains all there is
+def test_motions_so_small_that_rubber_may_not_slip_are_no_proof_of_a_spring(noise: float) -> None:
+    """An element that never slips is a spring like any other, and stiffness comes out larger by it."""
+    hidden = Rubber(stiffness=420.0, damping=18.0, slip_torque=4.2, slip_angle=0.012)
+    fit = fitted(recordings(hidden, noise=noise, amplitude=0.006))
+    assert fit.model.name == "kelvin_voigt"
+    assert fit.values[0] == pytest.approx(420.0 + 4.2 / 0.012, rel=0.02)
+    assert fit.choice is not None
+    assert fit.choice.caution is not None
+    assert "bent by 0.0077 rad at most" in fit.choice.caution
+    larger = fitted(recordings(LINEAR, noise=0.05, amplitude=0.015)).choice
+    assert larger is not None
+    assert larger.caution is None
 
 
 def test_where_timing_is_in_doubt_no_memory_is_tried() -> None:

@@ -10,7 +10,7 @@ import pytest
 from biped import SLIPPING, record, sway
 from feet_trials import PUNCTUAL, noisy
 from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.worth import hardly_matters, in_place_of
+from plantar.feet.fit.worth import hardly_matters, in_place_of, too_sure
 from plantar.feet.identify import identify_feet
 from plantar.models import Elastoplastic, KelvinVoigt
 from plantar.robot.model import RobotModel
@@ -42,6 +42,22 @@ def test_both_numbers_have_to_agree(stiffness: float, damping: float, needless: 
     assert hardly_matters(rich(stiffness, damping), spring) == needless
     reason = in_place_of(rich(stiffness, damping), spring).reason
     assert f"stiffness by {100 * abs(stiffness / 400 - 1):.2g} %" in reason
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "variance", "sure"), [(345.0, 4.0, False), (335.0, 4.0, True), (335.0, 1600.0, False)]
+)
+def test_a_spring_that_is_sure_and_far_off_does_not_stand_in_for_a_model_that_is_unsure(
+    stiffness: float, variance: float, sure: bool
+) -> None:
+    """Rubber that hardly slips: spring and element cannot be told apart, and a spring alone would not say so."""
+    spring = replace(
+        rich(400.0, 20.0), model=KelvinVoigt(), values=np.array([400.0, 20.0]), shape=np.zeros(0),
+        covariance=np.diag([variance, 1.0]), freedom=np.full(2, 1e6),
+    )  # fmt: skip
+    unsure = replace(rich(stiffness, 20.0), covariance=np.diag([1e4, 1.0, 1.0, 1e-6]))
+    assert hardly_matters(unsure, spring)
+    assert too_sure(unsure, spring) == sure
 
 
 def models(robot: RobotModel, gain: float) -> dict[tuple[str, str], tuple[str, str]]:

@@ -12,24 +12,32 @@ from plantar.conventions import ROTATIONAL_AXES
 from plantar.design.information import WANTED, WANTED_DELAY, WANTED_VERTICAL
 from plantar.design.rehearsal import Rehearsal
 from plantar.design.story import EFFORT, FRICTION, KEPT, Design
-from plantar.design.writing.controllers import TARGETS
+from plantar.design.writing.controllers import TARGETS, ordered_joints
 from plantar.design.writing.sheet import sheet
 from plantar.files import write_text
 from plantar.logs.save import save_log
 from plantar.models import KelvinVoigt
 from plantar.results.io import dump_json
+from plantar.robot.model import RobotModel
 
 SCHEMA = "plantar.design/1"
 SLOWEST, FASTEST = 20.0, 2000.0  # Hz
 FAR: Final = 1.5  # times its half width: a number that is so far off is wrong
+# What follows where a number came out wrong, and its verdict says so or not.
+SAID: Final = (
+    "`identify feet` calls it weak: make the next motion with --after that result, which may be larger"
+)
+UNSAID: Final = "`identify feet` may not say so: do not use it"
 APPROACH: Final = (0.25, 0.5)  # of the amplitude, to be played before the whole
 
 
-def check_outputs(rate: float, targets: Sequence[str]) -> None:
-    """Raise SettingsError for a rate that no controller has, or a target that is unknown."""
+def check_outputs(robot: RobotModel, rate: float, targets: Sequence[str]) -> None:
+    """Raise SettingsError for a rate that no controller has, a target that is unknown, or joints in an order that
+    cannot be."""
     number_in("rate", rate, SLOWEST, FASTEST, "Hz")
     for target in targets:
         one_of("--to", target, TARGETS)
+    ordered_joints(robot)
 
 
 def write_design(
@@ -40,15 +48,15 @@ def write_design(
 
     Raises SettingsError for a rate that no controller has, or a target that is unknown.
     """
-    check_outputs(rate, targets)
+    check_outputs(found.robot, rate, targets)
     content = content_of(found, path, rate)
     for share in (1.0, *(APPROACH if approach else ())):
         motion = path if share == 1.0 else path.with_stem(f"{path.stem}_{round(100 * share)}")
-        log = found.trajectory(share).log(rate)
-        save_log(log, motion)
+        trajectory = found.trajectory(share)
+        save_log(trajectory.log(rate), motion)
         for target in targets:
             ending, write = TARGETS[target]
-            write(log, motion.with_suffix(ending))
+            write(trajectory, rate, motion.with_suffix(ending))
     write_text(path.with_suffix(".json"), dump_json(content))
     write_text(path.with_suffix(".md"), sheet(content, approach))
     return content
@@ -64,7 +72,8 @@ def content_of(found: Design, path: Path, rate: float) -> dict[str, Any]:
             "half_width_percent": found.nominal.percent(foot, axis, name),
             "at": [
                 {"factor": one.factor, "half_width_percent": one.percent(foot, axis, name),
-                 "error_percent": one.error(foot, axis, name, values[name])}
+                 "error_percent": one.error(foot, axis, name, values[name]),
+                 "usable": one.usable(foot, axis, name)}
                 for one in found.rehearsals
             ],
         }
@@ -80,6 +89,7 @@ def content_of(found: Design, path: Path, rate: float) -> dict[str, Any]:
         "settings": asdict(found.settings) | {"stiffness": told.stiffness, "damping": told.damping, "rate": rate},
         "stiffness_range": [factor * told.stiffness for factor in found.factors],
         "least_stiffness": found.least_stiffness,
+        "one_foot": {"stands": False, "least_stiffness": len(found.robot.feet) * found.least_stiffness},
         "parameters": parameters,
         "wanted": {
             "stiffness_percent": 100 * WANTED[0],
@@ -145,6 +155,7 @@ def _notes(parameters: Sequence[Mapping[str, Any]]) -> list[str]:
             worst = max((abs(one["error_percent"] or 0.0) for one in wrong), default=0.0)
             notes.append(
                 f"{where} is not found at {at} times the stiffness told (off by {worst:.0f} %): the rehearsal's rubber "
-                "has hysteresis, and this motion bends it too little to tell that apart"
+                "has hysteresis, and this motion bends it too little to tell that apart; "
+                + (SAID if not any(one["usable"] for one in wrong) else UNSAID)
             )
     return notes

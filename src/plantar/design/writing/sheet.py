@@ -47,6 +47,8 @@ def sheet(content: Mapping[str, Any], approach: bool) -> str:
             "does the same over the other foot. The "
             "soles stay flat: what an ankle turns is what the rubber bends.",
             "",
+            _one_foot(content),
+            "",
             "## Before",
             "",
             "- Move slowly to the first row. Both soles stand flat on a hard, level floor, placed as in that row.",
@@ -82,6 +84,18 @@ def sheet(content: Mapping[str, Any], approach: bool) -> str:
             "",
         ]
     )
+
+
+def _one_foot(content: Mapping[str, Any]) -> str:
+    """Why it does not stand on one foot."""
+    needed, soft = content["one_foot"]["least_stiffness"], content["stiffness_range"][0]
+    most = 100 * (1 - min(one["least_load"] for one in content["rehearsals"]) / 2)
+    why = (
+        f"one foot has to be stiffer than {needed:.4g} N·m/rad to hold it alone, and may be as soft as {soft:.4g}"
+        if soft < needed
+        else f"feet of {soft:.4g} N·m/rad could hold it, but a foot that lands could slip or step"
+    )
+    return f"It does not stand on one foot: {why}. A foot carries up to {most:.0f} % of the weight."
 
 
 def _common(content: Mapping[str, Any]) -> list[str]:

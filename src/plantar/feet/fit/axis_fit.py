@@ -20,7 +20,8 @@ from plantar.feet.settings import AUTOMATIC, FeetSettings
 from plantar.model_selection.data_sets import DataSet
 from plantar.model_selection.model_fit import ModelFit, fit_again, fit_model
 from plantar.model_selection.selection import LEAST_GAIN, ModelChoice, choose_model
-from plantar.models import MODELS, BushModel, KelvinVoigt
+from plantar.models import MODELS, BushModel, KelvinVoigt, reach
+from plantar.models.hysteresis import Hysteretic
 
 LEAST_EXPLAINED = (
     0.5  # of the torque's variance by spring and damper: below it no model of the bush will help
@@ -38,6 +39,13 @@ PLACE_EXPLAINS = 0.5  # of the squares that spring and damper miss: what is left
 UNTIMED = (
     "sensors may be late by any time, which looks like a memory of the rubber: none was looked for, and with one "
     "stiffness is smaller"
+)
+# Rubber of published feet slips inside from about this angle on [rad]; until then what slips later is a spring, too.
+SMALL = 0.01
+ALL_SHOWN = 2.0  # times this angle: a spring that explains everything so far is all there is
+TOO_SMALL = (
+    "bent by {:.2g} rad at most: a memory of the rubber that shows only beyond counts as stiffness; in larger motions "
+    "stiffness may be smaller (record larger motions)"
 )
 CANDIDATES = (
     "kelvin_voigt", "hardening", "coulomb", "elastoplastic", "hardening_elastoplastic", "bouc_wen",
@@ -106,7 +114,8 @@ def _fitted(
     if asked is not None:
         return found(fit_model(asked, data_sets, cutoff, shared_offset=shared), None, "asked for")
     explained = _explained(linear, blocks)
-    if not LEAST_EXPLAINED < explained < FULLY_EXPLAINED:
+    small = reach([data_set.motion for data_set in data_sets]) < ALL_SHOWN * SMALL and not steps
+    if explained <= LEAST_EXPLAINED or (explained >= FULLY_EXPLAINED and not small):
         return _of_linear(foot, axis, linear, None, _untried(explained))
     names = CANDIDATES_IN_STANCES if steps else CANDIDATES
     memory = timed and (steps or _remembers(data_sets))
@@ -115,6 +124,13 @@ def _fitted(
     choice = choose_model(data_sets, models, cutoff, shared_offset=shared, least_gain=gain)
     if not timed and choice.caution is None:
         choice = replace(choice, caution=UNTIMED)
+    if (
+        not isinstance(choice.fit.model, Hysteretic)
+        and not steps
+        and choice.caution is None
+        and choice.reach < SMALL
+    ):
+        choice = replace(choice, caution=TOO_SMALL.format(choice.reach))
     if choice.fit.model.name == KelvinVoigt.name:
         return _of_linear(foot, axis, linear, choice, choice.reason)
     return found(choice.fit, choice, choice.reason)

@@ -7,12 +7,15 @@ little of. It then predicts unseen motions better, and its terms mean nothing.
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Final
 
 import numpy as np
 
 from plantar.estimation import interval95
 from plantar.feet.fit.axis import AxisFit
 from plantar.models import KelvinVoigt
+
+FAR: Final = 0.15  # of the stiffness: with an interval as wide to either side a number is no longer usable
 
 
 def hardly_matters(fit: AxisFit, spring: AxisFit) -> bool:
@@ -25,6 +28,18 @@ def hardly_matters(fit: AxisFit, spring: AxisFit) -> bool:
         for place in range(2)
     ]
     return all(low < alone < high for (low, high), alone in zip(ends, spring.numbers, strict=True))
+
+
+def too_sure(fit: AxisFit, spring: AxisFit) -> bool:
+    """Whether `spring` leaves a richer model's stiffness outside its own interval, and far away.
+
+    The richer model then cannot be told well, but the spring alone is not as sure as it claims.
+
+    fit, spring: with the deviations of all that is unsure about robot and sensors.
+    """
+    low, high = interval95(float(spring.numbers[0]), float(spring.std[0]), float(spring.freedom[0]))
+    far = abs(fit.numbers[0] - spring.numbers[0]) > FAR * abs(spring.numbers[0])
+    return bool(far and not low < fit.numbers[0] < high)
 
 
 def in_place_of(fit: AxisFit, spring: AxisFit) -> AxisFit:
