@@ -13,6 +13,7 @@ import numpy as np
 
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.axis_fit import fit_axis
+from plantar.feet.fit.half_turns import cautioned_if_hardly_turned
 from plantar.feet.foot_fit import FittedFoot
 from plantar.feet.internal_error import gives_up
 from plantar.model_selection.selection import ModelChoice, ModelScore
@@ -28,7 +29,8 @@ NOT_EXCLUDED = (
 def with_memory_of_others(feet: Mapping[str, FittedFoot]) -> dict[str, FittedFoot]:
     """The feet with a memory that another axis has in each axis that is nearer to it than to spring and damper.
 
-    An axis that neither shows nor excludes it keeps what it has, with a caution.
+    An axis that neither shows nor excludes it keeps what it has, with a caution, and so does one whose steps are too
+    small for its memory.
     """
     every = [fit for one in feet.values() for fit in one.fits.values()]
     shown = {fit.model.name for fit in every if fit.model.remembers}
@@ -49,6 +51,9 @@ def with_memory_of_others(feet: Mapping[str, FittedFoot]) -> dict[str, FittedFoo
             with gives_up(axis, one.given_up):
                 own = fit_axis(one.thin.fitted, one.foot, axis, one.ready.settings, score.model, one.place)
                 fits[axis] = fit if own is None else _in_place_of(fit, own)
+        for axis, fit in fits.items():
+            with gives_up(axis, one.given_up):
+                fits[axis] = cautioned_if_hardly_turned(fit, one.thin.fitted)
         found[foot] = replace(one, fits=fits)
     return found
 

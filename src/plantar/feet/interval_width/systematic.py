@@ -13,6 +13,7 @@ from plantar.estimation import Block, effect_of, fit_blocks
 from plantar.estimation.residual_covariance import pooled_freedom
 from plantar.estimation.stance_least_squares import FEWEST_RECORDINGS
 from plantar.feet.fit.axis import AxisFit
+from plantar.feet.fit.half_turns import ROUND, slip_angles_spanned
 from plantar.feet.fit.regression_data import beside, tangent_blocks
 from plantar.feet.fit.vertical_stiffness import VerticalStiffness
 from plantar.feet.recording import Recording, moment_arm_effect
@@ -83,7 +84,12 @@ def systematic_causes(
     ]
     if blocks[0].stances is not None:
         # The zeros were read in the air, and within a stance no cube is told from how a sole lands and lifts.
-        return [*causes, _ends_of_stances(blocks), *_between_walks(fit, len(blocks)), *_shared_slope(fit)]
+        return [
+            *causes,
+            _ends_of_stances(blocks),
+            *_between_walks(fit, len(blocks)),
+            *_shared_slope(fit, recordings),
+        ]
     causes += _suspected_hardening(fit, blocks, shared)
     causes += _zeros_of_stances(
         blocks, [run_numbers(one.contacts[foot].loaded)[used] for one, used in parts], shared
@@ -144,11 +150,12 @@ def _between_walks(fit: AxisFit, recordings: int) -> list[Cause]:
     return [Cause("between walks", effect, WALKS_DIFFER / np.sqrt(recordings))]
 
 
-def _shared_slope(fit: AxisFit) -> list[Cause]:
+def _shared_slope(fit: AxisFit, recordings: Sequence[Recording]) -> list[Cause]:
     """What a memory that was found in short stances may have taken from the spring, or left to it.
 
     Until it slips, an element is a spring; each stance begins with a state that nobody knows. On walks of a simulated
-    robot whose feet are known, K is off by about a per cent of the element's slope.
+    robot whose feet are known, K is off by about a per cent of the element's slope; by any part of it where no stance
+    turns the element round.
     """
     if "slip_torque" not in fit.model.terms:
         return []
@@ -156,7 +163,9 @@ def _shared_slope(fit: AxisFit) -> list[Cause]:
     slope = abs(float(slip_torque / fit.shape[fit.model.shape_terms.index("slip_angle")]))
     effect = np.zeros(len(fit.values))
     effect[[0, fit.model.terms.index("slip_torque")]] = slope, -slip_torque
-    return [Cause("memory in stances", effect, SLOPE_UNSURE)]
+    spanned = slip_angles_spanned(fit, recordings)
+    unsure = SLOPE_UNSURE if spanned is None or spanned >= ROUND else UNIFORM
+    return [Cause("memory in stances", effect, unsure)]
 
 
 def _zeros_of_stances(
