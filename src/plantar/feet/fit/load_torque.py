@@ -34,8 +34,7 @@ def moment_columns(recording: Recording, foot: str, axis: Axis) -> Array:
 
 def place_columns(recording: Recording, foot: str, axis: Axis) -> Array:
     """`moment_columns`, and the other axis' torque, which shows in this one where a sensor is turned, (N, 3)."""
-    other = recording.bushes[foot].torque[:, 1 - ROTATIONAL_AXES.index(axis)]
-    return np.column_stack([moment_columns(recording, foot, axis), np.nan_to_num(other)])
+    return np.column_stack([moment_columns(recording, foot, axis), _others_torque(recording, foot, axis)])
 
 
 def step_columns(recording: Recording, foot: str, axis: Axis) -> Array:
@@ -43,8 +42,13 @@ def step_columns(recording: Recording, foot: str, axis: Axis) -> Array:
 
     A foot that steps turns the robot: its yaw torque is as large as the others.
     """
+    moments, other = moment_columns(recording, foot, axis), _others_torque(recording, foot, axis)
     yaw = _filtered_as_torque(recording, foot, yaw_torque(recording, foot))
-    return np.column_stack([place_columns(recording, foot, axis), yaw])
+    return np.column_stack([moments, other, yaw])
+
+
+def _others_torque(recording: Recording, foot: str, axis: Axis) -> Array:
+    return np.asarray(np.nan_to_num(recording.bushes[foot].torque[:, 1 - ROTATIONAL_AXES.index(axis)]))
 
 
 def load_torque(recording: Recording, fitted: FittedModel) -> Array:
