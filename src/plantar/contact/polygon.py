@@ -45,7 +45,9 @@ def edge_normals(polygon: Array) -> Array:
     """Unit normals of those edges, (n, 2), that point inwards."""
     corners = convex_hull(polygon)
     edges = np.roll(corners, -1, axis=0) - corners
-    return np.column_stack([-edges[:, 1], edges[:, 0]]) / np.linalg.norm(edges, axis=1, keepdims=True)
+    return np.asarray(
+        np.column_stack([-edges[:, 1], edges[:, 0]]) / np.linalg.norm(edges, axis=1, keepdims=True)
+    )
 
 
 def inside_distance(points: Array, polygon: Array) -> Array:
