@@ -74,7 +74,7 @@ EXCLUSION = (
     ),
     Mutant(
         "feet/exclusion/edge_rolling.py", "a zero of the torque does not move the edge",
-        "border < margin + zero / load", "border < margin",
+        "border < margin + np.maximum(zero / load, inward)", "border < margin + inward",
     ),
     Mutant(
         "feet/exclusion/edge_rolling.py", "guessed outlines are as good as measured ones",

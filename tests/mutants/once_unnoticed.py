@@ -60,6 +60,14 @@ GUARDS = (
         "beside & contact.standing, Reason.BESIDE_TIPPING", "beside & False, Reason.BESIDE_TIPPING",
     ),
     Mutant(
+        "feet/exclusion/moved_edges.py", "an edge beside a passed one stays where it is",
+        "np.where(beyond > 0, 0.0, inwards)", "np.zeros_like(inwards)",
+    ),
+    Mutant(
+        "feet/exclusion/moved_edges.py", "friction is taken for an edge",
+        "if _spread(held[:, edge]) < ", "if 0 * _spread(held[:, edge]) < ",
+    ),
+    Mutant(
         "whole_body/sensor_faults.py", "a mended channel may spoil other rows",
         "and np.all(after < HARMLESS * before)", "",
     ),

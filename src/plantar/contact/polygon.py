@@ -37,10 +37,17 @@ def edge_distances(points: Array, polygon: Array) -> Array:
 
     The edges are those of `convex_hull`, each from one corner to the next.
     """
+    normals = edge_normals(polygon)
+    return np.asarray(points @ normals.T - np.sum(convex_hull(polygon) * normals, axis=1))
+
+
+def edge_normals(polygon: Array) -> Array:
+    """Unit normals of those edges, (n, 2), that point inwards."""
     corners = convex_hull(polygon)
     edges = np.roll(corners, -1, axis=0) - corners
-    normals = np.column_stack([-edges[:, 1], edges[:, 0]]) / np.linalg.norm(edges, axis=1, keepdims=True)
-    return np.asarray(points @ normals.T - np.sum(corners * normals, axis=1))
+    return np.asarray(
+        np.column_stack([-edges[:, 1], edges[:, 0]]) / np.linalg.norm(edges, axis=1, keepdims=True)
+    )
 
 
 def inside_distance(points: Array, polygon: Array) -> Array:

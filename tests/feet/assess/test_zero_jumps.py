@@ -50,6 +50,13 @@ def test_a_jump_is_told_with_its_log_and_time(rubber: Rubber, model: str) -> Non
     assert abs(float(text.split()[3]) - 33.0) < 0.3
 
 
+@pytest.mark.parametrize("size", [1.0, 3.0])
+def test_a_jump_has_its_size_beside_the_drift_that_follows_it(size: float) -> None:
+    """Slow columns take most of a step; what is left of it between the means is a tenth."""
+    (text,) = said(swaying(PLAIN, size * LATER))
+    assert abs(float(text.split()[3]) - 33.0) < 0.3
+
+
 @pytest.mark.parametrize(
     "recordings",
     [

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from biped import TRUTH, BushModel, Motion, record, sines, sway
+from biped import TRUTH, BushModel, Motion, Slipping, record, sines, sway
 from biped_robot import FEET, make_robot, robot_entry
 from feet_trials import LINEAR, noisy
 from plantar.feet.identify import identify_feet
@@ -79,8 +79,9 @@ def tips(found: FeetResult, foot: str) -> list[tuple[float, float]]:
 
 @pytest.mark.parametrize("guessed", [True, False])
 def test_an_outline_that_is_a_guess_may_be_too_large(tmp_path: Path, guessed: bool) -> None:
-    """The sole tips 7 mm inside of the edge that the robot file draws: looked for where the file calls it a guess."""
-    motion = pitching(sines((np.radians(2.5), 0.25, 0.3)), -LIMIT, LIMIT)
+    """The sole tips 7 mm inside of the edge that the robot file draws, and by too little for the torque's end to show:
+    looked for where the file calls it a guess."""
+    motion = pitching(sines((np.radians(1.6), 0.25, 0.3)), -LIMIT, LIMIT)
     robot = short_soled(tmp_path, 0.036)
     if guessed:
         marks = tuple(Guess(f"feet.{foot}.sole", "the lowest points of its shape", 0.005) for foot in FEET)
@@ -92,15 +93,53 @@ def test_an_outline_that_is_a_guess_may_be_too_large(tmp_path: Path, guessed: bo
         assert (row.value == pytest.approx(truth, rel=0.03)) == guessed
 
 
-@pytest.mark.parametrize("zero", [1.0, -1.0])
+@pytest.mark.parametrize("zero", [1.0, -1.0, 2.0, -3.0, 5.0])
 def test_a_torque_that_reads_wrong_moves_the_edge(tmp_path: Path, zero: float) -> None:
-    """By 3 mm: on one side the sole tips that far inside of where the centre of pressure seems to be at its edge."""
+    """By 3 to 17 mm: on one side the sole tips that far inside of where the centre of pressure seems to be at its edge,
+    on the other the centre of pressure reads outside of the sole."""
     motion = pitching(sines((np.radians(2.5), 0.25, 0.3)), -LIMIT, LIMIT, zero)
     found = identify_feet(short_soled(tmp_path, 0.03), [noisy(record(motion), 1)], settings=LINEAR)
     for foot in FEET:
         row = found.parameter(foot, "pitch", "stiffness")
         assert row.value == pytest.approx(TRUTH[foot, "pitch"].stiffness, rel=0.02)
         assert row.half_width_percent < 1.0
+
+
+@pytest.mark.parametrize(
+    ("middle", "reach", "zero"), [(1.0, 1.6, 0.0), (1.0, 1.6, 2.0), (1.0, 1.6, 5.0), (0.5, 1.3, 1.5)]
+)
+def test_a_sole_that_tips_over_one_edge_shows_where_it_is(
+    tmp_path: Path, middle: float, reach: float, zero: float
+) -> None:
+    """Up to 18 mm inside of the outline, and never outside of another edge: there the torque stops growing. The last
+    one leans too little for that, but the torque's own offset says how far inside it may lean."""
+
+    def forwards(t: np.ndarray) -> np.ndarray:
+        return np.radians(middle) + sines((np.radians(reach), 0.25, 0.3))(t)
+
+    motion = pitching(forwards, -LIMIT, LIMIT, zero)
+    found = identify_feet(short_soled(tmp_path, 0.03), [noisy(record(motion), 1)], settings=LINEAR)
+    for foot in FEET:
+        row = found.parameter(foot, "pitch", "stiffness")
+        assert row.value == pytest.approx(TRUTH[foot, "pitch"].stiffness, rel=0.02)
+        assert columns(found, foot)["used"].mean() > 0.4
+
+
+def sticking(t: np.ndarray) -> np.ndarray:
+    return sines((np.radians(1.2), 0.29, 0.4), (np.radians(0.5), 0.83, 2.0))(t)
+
+
+@pytest.mark.parametrize("share", [0.25, 0.1])
+def test_friction_that_ends_the_torque_on_the_way_out_is_no_edge(tmp_path: Path, share: float) -> None:
+    """Its torque falls on the way back."""
+    truth = {
+        key: Slipping(share * law.stiffness, law.damping, 0.0, slip=8.0, angle=0.012)
+        for key, law in TRUTH.items()
+    }
+    ankles = {foot: (sticking, sines((np.radians(0.8), 0.31, 0.0))) for foot in FEET}
+    motion = sway("stick", 1, duration=30.0, torso=(STILL,) * 3, ankles=ankles, shift=0.0, truth=truth)
+    found = identify_feet(short_soled(tmp_path, 0.13), [noisy(record(motion), 1)], settings=LINEAR)
+    assert [tips(found, foot) for foot in FEET] == [[], []]
 
 
 def test_what_lies_beside_a_lean_is_left_out_with_it(tmp_path: Path) -> None:

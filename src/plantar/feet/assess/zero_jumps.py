@@ -17,7 +17,7 @@ from plantar.contact.reasons import TIPPING
 from plantar.conventions import Array
 from plantar.estimation import Block, LinearFit, fit_blocks
 from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.regression_data import blocks_of, tangent_blocks
+from plantar.feet.fit.regression_data import beside, blocks_of, tangent_blocks
 from plantar.feet.recording import Recording
 from plantar.models import KelvinVoigt
 from plantar.notes import Note
@@ -106,8 +106,8 @@ def _left_beside(missed: Array, row: int, block: Block) -> float | None:
     """What a step at this row leaves of the squares that are `missed` (n,), beside the block's own columns; None where
     it is not most of them, or small."""
     step = np.where(np.arange(len(missed)) >= row, 1.0, 0.0)[:, None]
-    own = replace(block, response=missed, noise=None)
-    left = fit_blocks([own.with_nuisance(step)]).residuals[block.label]
-    size = abs(float(missed[row:].mean() - missed[:row].mean()))
+    fit = fit_blocks([beside(replace(block, response=missed, noise=None), step)])
+    # The drift has taken most of the step: only beside it does the step have its size.
+    left, size = fit.residuals[block.label], abs(float(fit.values[-1]))
     most = left @ left < (1 - EXPLAINS) * float(missed @ missed)
     return float(left @ left) if most and size > WORTH * float(np.std(block.response)) else None

@@ -3,7 +3,8 @@
 A sole tips only while the centre of pressure is at its edge. There the angle is the bush's and the sole's lean
 together: what it exceeds torque over stiffness by is the lean. Hysteresis and hardening make that excess wander as
 well, so it is counted from where it was just before the edge and just behind it; and the zeros of force and torque move
-the edge, so it is looked for where the centre of pressure stopped while the lean was beyond doubt.
+the edge, so it is looked for where the centre of pressure stopped while the lean was beyond doubt, and further inside
+where the centre of pressure reads outside of the edge on the other side.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from plantar.contact.polygon import edge_distances
 from plantar.contact.reasons import Reason
 from plantar.conventions import ROTATIONAL_AXES, Array, Mask
 from plantar.estimation import fit_blocks
+from plantar.feet.exclusion.moved_edges import moved_inwards
 from plantar.feet.fit.regression_data import blocks_of
 from plantar.feet.recording import Recording, filtered
 from plantar.feet.settings import FeetSettings
@@ -68,16 +70,22 @@ def _flat(
         edge_distances(low_pass(recording.bushes[name].cop, recording.period, QUICK_CUTOFF), polygon)
         for recording in recordings
     ]
-    near = [
-        recording.contacts[name].standing & (depth < margin).any(axis=1) & (recording.stances[name] is None)
+    moved = [
+        moved_inwards(recording, name, depth, polygon)
         for recording, depth in zip(recordings, depths, strict=True)
+    ]
+    near = [
+        recording.contacts[name].standing
+        & (depth < margin + inwards).any(axis=1)
+        & (recording.stances[name] is None)
+        for recording, depth, inwards in zip(recordings, depths, moved, strict=True)
     ]
     if not any(edge.any() for edge in near):
         return list(recordings)
     model, rest = _bush_model(recordings, name, near), []
     if model is None and margin > beyond:  # nothing is clear of so wide a border
         return _flat(recordings, name, polygon, beyond, beyond)
-    for recording, depth, edge in zip(recordings, depths, near, strict=True):
+    for recording, depth, inwards, edge in zip(recordings, depths, moved, near, strict=True):
         contact = recording.contacts[name]
         if not edge.any():
             rest.append(recording)
@@ -98,8 +106,8 @@ def _flat(
         outside = (depth < -beyond - (zero / load)[:, None]).any(axis=1)
         recording = recording.without(name, contact.standing & outside, Reason.OUTSIDE_THE_SOLE)
         used, leans = recording.used(name), np.zeros(len(load), dtype=bool)
-        for border in depth.T:
-            visits = contact.standing & (border < margin + zero / load)
+        for border, inward in zip(depth.T, inwards.T, strict=True):
+            visits = contact.standing & (border < margin + np.maximum(zero / load, inward))
             leans |= leaning(excess, border, load, visits, used, recording.period)
         beside = widened(leans | (contact.standing & outside), reach)
         rest.append(
