@@ -118,7 +118,11 @@ def with_everything(robot: RobotModel, logs: Sequence[MotionLog], others: Sequen
     ready = prepare_all(robot, logs, others, settings, lambda _: None)
     for recording in ready.fitted:
         for contact in recording.contacts.values():
-            back = [k for k, reason in enumerate(contact.reasons) if (reason or "").startswith(PUT_BACK)]
+            back = [
+                k
+                for k, reason in enumerate(contact.reasons)
+                if reason is not None and reason.text.startswith(PUT_BACK)
+            ]
             contact.code[np.isin(contact.code, back)] = 0
     found: Errors = {"K": [], "C": []}
     for foot in robot.feet:
