@@ -40,7 +40,8 @@ UNTIMED = (
     "sensors may be late by any time, which looks like a memory of the rubber: none was looked for, and with one "
     "stiffness is smaller"
 )
-# Rubber of published feet slips inside from about this angle on [rad]; until then what slips later is a spring, too.
+# From about this angle on [rad] the twin's rubber slips inside; nobody has measured a real one. Until it slips, an
+# element is a spring, too.
 SMALL = 0.01
 ALL_SHOWN = 2.0  # times this angle: a spring that explains everything so far is all there is
 TOO_SMALL = (
