@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import subprocess
 from pathlib import Path
 from typing import Any
@@ -242,3 +243,14 @@ def test_physx_gives_stiffness_and_damping_back(kind: str, tmp_path: Path) -> No
     assert done.returncode == 0, done.stderr[-2000:]
     for (foot, axis), answer in zip(cases, json.loads(done.stdout.splitlines()[-1]), strict=True):
         check(foot, axis, LOAD[axis], answer["settled"], np.array(answer["times"]), np.array(answer["decay"]))
+
+
+def test_usd_opens_with_openusd(feet: dict[str, Any], tmp_path: Path) -> None:
+    from pxr import UsdPhysics
+
+    export(feet, "usd", tmp_path / "f.usda")
+    stage = stage_of(tmp_path / "f.usda")
+    joints = [prim for prim in stage.Traverse() if prim.IsA(UsdPhysics.Joint)]
+    assert len(joints) == 5
+    drive = UsdPhysics.DriveAPI(stage.GetPrimAtPath("/feet/right/RLEG_BUSH_ROLL"), "angular")
+    assert drive.GetStiffnessAttr().Get() == pytest.approx(323 * math.pi / 180, rel=1e-6)

@@ -75,7 +75,7 @@ ENGINE_EXPORTS = (
     Mutant(
         "exporters/kinetics_observer.py", "roll and pitch change places on the way back",
         '("roll", "ang", 0), ("pitch", "ang", 1)', '("roll", "ang", 1), ("pitch", "ang", 0)',
-        ("exporters/test_export.py",),
+        ("exporters/test_controller_files.py",),
     ),
     Mutant(
         "twin/replay.py", "a sole starts in the ground",

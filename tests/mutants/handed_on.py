@@ -7,11 +7,11 @@ from mutant import Mutant
 HANDED_ON = (
     Mutant(
         "exporters/spring.py", "an unidentifiable damping goes over as it is",
-        'if verdict == "unidentifiable":', 'if verdict == "unknown":', ("exporters/test_export.py",),
+        'if verdict == "unidentifiable":', 'if verdict == "unknown":', ("exporters/test_not_identified.py",),
     ),
     Mutant(
         "exporters/spring.py", "an assumed damping that the logs exclude",
-        "if low > damping:", "if low > 1e9 * damping:", ("exporters/test_export.py",),
+        "if low > damping:", "if low > 1e9 * damping:", ("exporters/test_not_identified.py",),
     ),
     Mutant(
         "exporters/randomization.py", "an offset's range leaves the IMU's mount out",

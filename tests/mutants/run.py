@@ -24,33 +24,14 @@ from pathlib import Path
 from queue import SimpleQueue
 from typing import TypeVar
 
-from data_faults import DATA_FAULTS
-from designed_motions import DESIGNED_MOTIONS
-from drawn import DRAWN
-from drawn_again import DRAWN_AGAIN
-from engine_exports import ENGINE_EXPORTS
-from fleet_statistics import FLEET
-from handed_on import HANDED_ON
-from made_cheaper import MADE_CHEAPER
+from lists import LISTS
 from mutant import Mutant, StaleMutant
-from once_unnoticed import ONCE_UNNOTICED
 
 Item = TypeVar("Item")
 Found = TypeVar("Found")
 Tests = tuple[str, ...]  # folders and files below `tests`
 
 ROOT = Path(__file__).resolve().parents[2]
-LISTS = {
-    "drawn": DRAWN,
-    "drawn_again": DRAWN_AGAIN,
-    "once_unnoticed": ONCE_UNNOTICED,
-    "made_cheaper": MADE_CHEAPER,
-    "data_faults": DATA_FAULTS,
-    "designed_motions": DESIGNED_MOTIONS,
-    "fleet": FLEET,
-    "engine_exports": ENGINE_EXPORTS,
-    "handed_on": HANDED_ON,
-}
 LEAST_CAUGHT = 0.85
 PATIENCE, LEAST_PATIENCE = 20.0, 300.0  # usual seconds of the tests, and seconds: beyond, a mutant hangs
 PASSED, NOTICED = 0, (1, 2, None)  # pytest's codes: a test failed, one could not be imported; None: it hangs

@@ -5,15 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from data_faults import DATA_FAULTS
-from designed_motions import DESIGNED_MOTIONS
-from drawn import DRAWN
-from drawn_again import DRAWN_AGAIN
-from fleet_statistics import FLEET
-from handed_on import HANDED_ON
-from made_cheaper import MADE_CHEAPER
+from lists import LISTS
 from mutant import Mutant
-from once_unnoticed import ONCE_UNNOTICED
 
 TESTS = Path(__file__).resolve().parents[1]
 SOURCE = TESTS.parent / "src" / "plantar"
@@ -21,16 +14,7 @@ SOURCE = TESTS.parent / "src" / "plantar"
 
 @pytest.mark.parametrize(
     "mutant",
-    [
-        *DRAWN,
-        *DRAWN_AGAIN,
-        *MADE_CHEAPER,
-        *ONCE_UNNOTICED,
-        *DATA_FAULTS,
-        *DESIGNED_MOTIONS,
-        *FLEET,
-        *HANDED_ON,
-    ],
+    [each for some in LISTS.values() for each in some],
     ids=lambda each: each.name,
 )
 def test_no_mutant_is_stale(mutant: Mutant) -> None:

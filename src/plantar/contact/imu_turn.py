@@ -39,9 +39,8 @@ def imu_turn_effects(
             foot_motion(path, angles, still[0], attitudes, still[1]).deflection, len(ways)
         )
         changes = np.stack([(one - read) / STEP for one in moved], axis=2).reshape(len(places), -1)
-        known = np.isfinite(changes).all(
-            axis=1
-        )  # a hole in the attitude must not spread to the samples beside it
+        # A hole in the attitude must not spread to the samples beside it.
+        known = np.isfinite(changes).all(axis=1)
         if not known.any():
             changes, known = np.zeros_like(changes), ~known
         found[name] = np.column_stack(

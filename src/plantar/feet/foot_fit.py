@@ -134,7 +134,7 @@ def without_needless(fitted: FittedFoot) -> FittedFoot:
 
 
 def _with_causes(fit: AxisFit, fitted: FittedFoot) -> AxisFit:
-    """The fit with the deviations of all that is unsure about robot and sensors."""
+    """The fit with the deviations of what is unsure, but for gains and mounts that other logs and feet tell of."""
     ready, recordings = fitted.ready, fitted.thin.fitted
     shared = ready.settings.offset == "shared"
     causes = systematic_causes(fit, recordings, ready.sensor_delay, ready.vertical, shared)

@@ -16,8 +16,8 @@ from plantar.conventions import FORCE, TORQUE, Array
 from plantar.estimation.delays.delay import LONGEST
 from plantar.robot.uncertainty import Uncertainty
 
-TURN = 0.02  # rad: deviation of a force sensor's mount, an honest one's
-LEAST_GAIN = 0.01  # share of the load: nuisances need a finite prior
+TURN = 0.02  # rad: deviation of a force sensor's mount; crosstalk makes as much
+LEAST_GAIN = 0.01  # share, of the forces' gains and of what their places add: nuisances need a finite prior
 LEAST_BETWEEN = (
     0.003  # N.m/N, likewise, for crosstalk and millimetres between a sensor and where the file has it
 )

@@ -15,7 +15,7 @@ from plantar.conventions import NORMAL95, ROTATIONAL_AXES, Array, Axis
 from plantar.estimation.quantiles import MOST_FREEDOM
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
-from plantar.sensors.moment_errors import LEAST_GAIN
+from plantar.sensors.load_errors import LEAST_GAIN
 from plantar.sensors.moment_fit import MomentFit, Part, is_wrong
 
 APART = 2.0  # times the deviation of the feet's mean: a foot's gain known so well is judged by itself

@@ -12,13 +12,13 @@ from plantar.dynamics import Contact, Equation
 from plantar.dynamics.inertial_motion import inertial_motion, turned_motions
 from plantar.dynamics.motion import Motion
 from plantar.robot.model import Foot, RobotModel
+from plantar.sensors.load_errors import LEAST_GAIN
 from plantar.sensors.newton_euler import BASE_ROWS, CUTOFF, NewtonEulerResidual, predicted_errors
 from plantar.sensors.newton_sides import SLOW
 from plantar.signals.filters import gain, low_pass
 
 LOOSE = 0.3  # share: deviation of a torque's gain before the moments are asked
-LEAST_GAIN = 0.01  # share, of the forces' gains and of what their places add: nuisances need a finite prior
-LEAST_ARM = 0.003  # m, likewise
+LEAST_ARM = 0.003  # m, likewise as LEAST_GAIN
 LEAST_BETWEEN = 0.001  # N.m/N, likewise
 RATE = 20.0  # Hz of the samples that take part: above it nothing has passed the filter
 BAND = 2.0  # Hz: the robot moves below it, and most of the sensors' noise is above
@@ -65,9 +65,8 @@ def moment_errors(robot: RobotModel, residual: NewtonEulerResidual, steps: bool)
     errors = predicted_errors(robot, inertial_motion(robot, residual.signals, residual.kept))
     every = np.hstack([pair.predicted - pair.measured - residual.taken, *readings, *slopes, *errors])
     del readings, slopes, errors
-    for first in range(
-        6, every.shape[1], TOGETHER
-    ):  # a copy of all at once would be the largest array of any log
+    # One group of columns after the other: a copy of all at once would be the largest array of any log.
+    for first in range(6, every.shape[1], TOGETHER):
         some = every[:, first : first + TOGETHER]
         some -= low_pass(some, period, SLOW)  # what postures and drifting zeros do to them
     if steps:

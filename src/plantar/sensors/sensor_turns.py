@@ -8,12 +8,12 @@ from plantar.conventions import NORMAL95
 from plantar.estimation.quantiles import MOST_FREEDOM
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
+from plantar.sensors.load_errors import TURN
 from plantar.sensors.moment_errors import turn_columns
 from plantar.sensors.moment_fit import MomentFit, Part, is_wrong
 
 TURNED = "wrench_turned"
 LEAST = 0.05  # rad: damping is off by some percent; one that is known less well may be chance
-USUAL = 0.02  # rad, of a mount; crosstalk makes as much
 
 
 def sensor_turn_notes(robot: RobotModel, fit: MomentFit | None) -> dict[str, Note]:
@@ -21,7 +21,7 @@ def sensor_turn_notes(robot: RobotModel, fit: MomentFit | None) -> dict[str, Not
     notes: dict[str, Note] = {}
     if fit is None:
         return notes
-    parts = [*fit.parts, Part(USUAL**2 * np.eye(len(fit.values)), MOST_FREEDOM)]
+    parts = [*fit.parts, Part(TURN**2 * np.eye(len(fit.values)), MOST_FREEDOM)]
     deviations = np.sqrt(np.sum([np.diag(part.covariance) for part in fit.parts], axis=0))
     for foot, columns in turn_columns(robot).items():
         turn, std = fit.values[columns], deviations[columns]

@@ -13,7 +13,7 @@ from plantar.feet.recording import Recording
 from plantar.feet.settings import AUTOMATIC, FeetSettings
 from plantar.results.feet import Diagnosis, Parameter
 from plantar.robot.model import RobotModel
-from plantar.sensors.delays.sensor_delay import SensorDelay
+from plantar.sensors.delays.sensor_delay import SensorDelay, on_force_cells
 
 SHOWS_DELAY: Final = {"linear_acceleration": "accelerometer", "angular_velocity": "gyroscope"}
 LEAST_TOGETHER: Final = 30.0  # s, as long as the shift of the weight that is advised
@@ -33,7 +33,7 @@ def remedies(
     if robot.weighed is not None:
         found["force gain"] = "calibrate the force sensors, which the number follows: the robot was weighed"
     missing = _missing(robot, recordings)
-    if any(each.log.vertical_only(foot.wrench.name) for each in recordings for foot in robot.feet.values()):
+    if on_force_cells(robot, [each.log for each in recordings]):
         found["delay"] = "measure how late the force cells are, and give it with --wrench-delay"
     elif missing:
         known = "or give a delay that is known with --wrench-delay"

@@ -77,8 +77,7 @@ def _slope(block: Block, rows: NDArray[np.intp], fit: AxisFit) -> tuple[float, f
     weight, regressor = block.stances.weight[rows], block.regressor[rows]
     if not weight.sum() > 0:
         return 0.0, 0.0
-    place = np.array([*fit.moment_arms, fit.turned, fit.leans])
-    others = regressor[:, 1:] @ fit.values[1:] + block.common_nuisance[rows] @ place
+    others = regressor[:, 1:] @ fit.values[1:] + block.common_nuisance[rows] @ fit.place
     angle = _centred(regressor[:, 0], weight)
     torque = _centred(block.response[rows] - others, weight)
     information = float(np.sum(weight * angle**2))

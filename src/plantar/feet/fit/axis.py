@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import Self
 
 import numpy as np
 
@@ -40,6 +41,16 @@ class FittedModel:
     @property
     def names(self) -> tuple[str, ...]:
         return (*self.model.terms, *self.model.shape_terms)
+
+    @property
+    def place(self) -> Array:
+        """`moment_arms`, `turned` and `leans`, as the columns of steps take them, (4,)."""
+        return np.array([*self.moment_arms, self.turned, self.leans])
+
+    def at_place(self, place: Array) -> Self:
+        """The same about another `place` (4,)."""
+        aside, above, turned, leans = place.tolist()
+        return replace(self, moment_arms=(aside, above), turned=turned, leans=leans)
 
     @property
     def numbers(self) -> Array:

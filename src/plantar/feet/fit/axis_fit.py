@@ -12,6 +12,7 @@ from plantar.estimation import Block, LinearFit, fit_blocks
 from plantar.estimation.stance_problem import StanceProblem
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.bush_place import PlaceSpread, about_its_place
+from plantar.feet.fit.cautions import cautioned, may_hide_a_memory
 from plantar.feet.fit.corrections import about_true_zero, over_stances, unattenuated, with_best_offsets
 from plantar.feet.fit.load_torque import load_torque
 from plantar.feet.fit.regression_data import blocks_of, data_set_of
@@ -20,8 +21,7 @@ from plantar.feet.settings import AUTOMATIC, FeetSettings
 from plantar.model_selection.data_sets import DataSet
 from plantar.model_selection.model_fit import ModelFit, fit_again, fit_model
 from plantar.model_selection.selection import LEAST_GAIN, ModelChoice, choose_model
-from plantar.models import MODELS, BushModel, KelvinVoigt, reach
-from plantar.models.hysteresis import Hysteretic
+from plantar.models import MODELS, BushModel, KelvinVoigt
 
 LEAST_EXPLAINED = (
     0.5  # of the torque's variance by spring and damper: below it no model of the bush will help
@@ -36,18 +36,6 @@ LEAST_GAIN_IN_STANCES = (
 )
 CENTRE_ROUNDS = 2  # of finding memory and centre in turn
 PLACE_EXPLAINS = 0.5  # of the squares that spring and damper miss: what is left of them about another place
-UNTIMED = (
-    "sensors may be late by any time, which looks like a memory of the rubber: none was looked for, and with one "
-    "stiffness is smaller"
-)
-# From about this angle on [rad] the twin's rubber slips inside; nobody has measured a real one. Until it slips, an
-# element is a spring, too.
-SMALL = 0.01
-ALL_SHOWN = 2.0  # times this angle: a spring that explains everything so far is all there is
-TOO_SMALL = (
-    "bent by {:.2g} rad at most: a memory of the rubber that shows only beyond counts as stiffness; in larger motions "
-    "stiffness may be smaller (record larger motions)"
-)
 CANDIDATES = (
     "kelvin_voigt", "hardening", "coulomb", "elastoplastic", "hardening_elastoplastic", "bouc_wen",
     "standard_linear_solid",
@@ -115,7 +103,7 @@ def _fitted(
     if asked is not None:
         return found(fit_model(asked, data_sets, cutoff, shared_offset=shared), None, "asked for")
     explained = _explained(linear, blocks)
-    small = reach([data_set.motion for data_set in data_sets]) < ALL_SHOWN * SMALL and not steps
+    small = not steps and may_hide_a_memory([data_set.motion for data_set in data_sets])
     if explained <= LEAST_EXPLAINED or (explained >= FULLY_EXPLAINED and not small):
         return _of_linear(foot, axis, linear, None, _untried(explained))
     names = CANDIDATES_IN_STANCES if steps else CANDIDATES
@@ -123,15 +111,7 @@ def _fitted(
     models = [MODELS[name] for name in names if memory or not MODELS[name].remembers]
     gain = LEAST_GAIN_IN_STANCES if steps else LEAST_GAIN
     choice = choose_model(data_sets, models, cutoff, shared_offset=shared, least_gain=gain)
-    if not timed and choice.caution is None:
-        choice = replace(choice, caution=UNTIMED)
-    if (
-        not isinstance(choice.fit.model, Hysteretic)
-        and not steps
-        and choice.caution is None
-        and choice.reach < SMALL
-    ):
-        choice = replace(choice, caution=TOO_SMALL.format(choice.reach))
+    choice = cautioned(choice, timed=timed, steps=steps)
     if choice.fit.model.name == KelvinVoigt.name:
         return _of_linear(foot, axis, linear, choice, choice.reason)
     return found(choice.fit, choice, choice.reason)
@@ -192,7 +172,7 @@ def _about_its_centre(
     """A fit of stances whose memory is found about the bush's centre; where that is, the linear parameters tell."""
     found = over_stances(_with_model(linear, fit), recordings)
     for _ in range(CENTRE_ROUNDS):
-        place = (found.moment_arms[1], found.turned, found.leans)
+        place = found.place[1:]
         data_sets = [data_set_of(each, linear.foot, linear.axis, share, *place) for each in recordings]
         fit = fit_again(fit, data_sets)
         found = over_stances(_with_model(linear, fit), recordings)
@@ -232,16 +212,12 @@ def _remembers(data_sets: Sequence[DataSet]) -> bool:
 
 def _of_linear(foot: str, axis: Axis, fit: LinearFit, choice: ModelChoice | None, reason: str) -> AxisFit:
     size = len(fit.values)
-    aside, above, turned, leans = _place(fit)
-    return AxisFit(
+    spring = AxisFit(
         foot=foot,
         axis=axis,
         model=KelvinVoigt(),
         values=fit.values,
         shape=np.zeros(0),
-        moment_arms=(aside, above),
-        turned=turned,
-        leans=leans,
         offsets=fit.offsets,
         covariance=fit.covariance[:size, :size],
         freedom=fit.freedom[:size],
@@ -251,6 +227,7 @@ def _of_linear(foot: str, axis: Axis, fit: LinearFit, choice: ModelChoice | None
         choice=choice,
         reason=reason,
     )
+    return spring.at_place(fit.common_nuisance) if fit.common_nuisance.size else spring
 
 
 def _with_model(linear: AxisFit, fit: ModelFit) -> AxisFit:
@@ -267,9 +244,3 @@ def _with_model(linear: AxisFit, fit: ModelFit) -> AxisFit:
         white_std=fit.white_std,
         offset_std=fit.offset_std,
     )
-
-
-def _place(fit: LinearFit) -> list[float]:
-    """Where a fit of stances found the bush's centre, aside and above, its sensor turned and leaning; else zeros."""
-    found: list[float] = fit.common_nuisance.tolist()
-    return found or [0.0, 0.0, 0.0, 0.0]

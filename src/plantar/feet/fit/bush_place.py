@@ -18,7 +18,7 @@ from plantar.conventions import ROTATIONAL_AXES, UNIFORM, Array, Axis, Mask
 from plantar.estimation import Block, LinearFit, effect_of, fit_blocks
 from plantar.estimation.errors_in_variables import attenuation
 from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.load_torque import place_columns
+from plantar.feet.fit.load_torque import others_torque, place_columns
 from plantar.feet.fit.place_notes import (
     BUSH_WORTH_SAYING,
     CLEAR,
@@ -207,7 +207,7 @@ def _others_torque(fit: AxisFit, recordings: Sequence[Recording], shared: bool) 
     blocks = [_without_the_other(block) for block in blocks]
     by_name = {recording.name: recording for recording in recordings}
     chosen = [by_name[block.label] for block in blocks]
-    other = [place_columns(one, fit.foot, fit.axis)[one.rows(fit.foot)][:, 2:] for one in chosen]
+    other = [others_torque(one, fit.foot, fit.axis)[one.rows(fit.foot), None] for one in chosen]
     wider = [beside(block, own) for block, own in zip(blocks, other, strict=True)]
     fits = [fit_blocks(each, shared_offset=shared) for each in (blocks, wider)]
     before, left = (

@@ -31,13 +31,10 @@ def over_stances(fit: AxisFit, recordings: Sequence[Recording]) -> AxisFit:
     freedom = fit.freedom.copy()
     freedom[:size] = np.where(wider[:size] > 1, found.freedom[:size], freedom[:size])
     return replace(
-        fit,
+        fit.at_place(found.common_nuisance),
         values=found.values,
         covariance=fit.covariance * np.outer(wider, wider),
         freedom=freedom,
-        moment_arms=(float(found.common_nuisance[0]), float(found.common_nuisance[1])),
-        turned=float(found.common_nuisance[2]),
-        leans=float(found.common_nuisance[3]),
         offsets=found.offsets,
         offset_std={label: found.offset_std(label) for label in found.offsets},
     )

@@ -34,7 +34,7 @@ def moment_columns(recording: Recording, foot: str, axis: Axis) -> Array:
 
 def place_columns(recording: Recording, foot: str, axis: Axis) -> Array:
     """`moment_columns`, and the other axis' torque, which shows in this one where a sensor is turned, (N, 3)."""
-    return np.column_stack([moment_columns(recording, foot, axis), _others_torque(recording, foot, axis)])
+    return np.column_stack([moment_columns(recording, foot, axis), others_torque(recording, foot, axis)])
 
 
 def step_columns(recording: Recording, foot: str, axis: Axis) -> Array:
@@ -42,26 +42,24 @@ def step_columns(recording: Recording, foot: str, axis: Axis) -> Array:
 
     A foot that steps turns the robot: its yaw torque is as large as the others.
     """
-    moments, other = moment_columns(recording, foot, axis), _others_torque(recording, foot, axis)
+    moments, other = moment_columns(recording, foot, axis), others_torque(recording, foot, axis)
     yaw = _filtered_as_torque(recording, foot, yaw_torque(recording, foot))
     return np.column_stack([moments, other, yaw])
 
 
-def _others_torque(recording: Recording, foot: str, axis: Axis) -> Array:
+def others_torque(recording: Recording, foot: str, axis: Axis) -> Array:
+    """The torque about the other axis, (N,) [N·m], 0 where it is not known."""
     return np.asarray(np.nan_to_num(recording.bushes[foot].torque[:, 1 - ROTATIONAL_AXES.index(axis)]))
 
 
 def load_torque(recording: Recording, fitted: FittedModel) -> Array:
     """The torque (N,) that is not the bush's: of the load on a centre beside its place, of a sensor that is turned."""
-    place = np.array([*fitted.moment_arms, fitted.turned])
-    if not place.any() and not fitted.leans:
+    place = fitted.place
+    if not place.any():
         return np.zeros(len(recording.time))
-    found = place_columns(recording, fitted.foot, fitted.axis) @ place
-    if fitted.leans:
-        found += fitted.leans * _filtered_as_torque(
-            recording, fitted.foot, yaw_torque(recording, fitted.foot)
-        )
-    return np.asarray(found)
+    if not fitted.leans:  # as where a foot stands
+        return np.asarray(place_columns(recording, fitted.foot, fitted.axis) @ place[:3])
+    return np.asarray(step_columns(recording, fitted.foot, fitted.axis) @ place)
 
 
 def yaw_torque(recording: Recording, foot: str) -> Array:

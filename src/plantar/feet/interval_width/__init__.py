@@ -1,5 +1,5 @@
 """Where the width of an interval comes from: the residuals of the fit, and causes that no residual shows.
 
-`systematic` adds them up; `robot_causes`, `between_recordings` and `force_gain` hold one kind of cause each. What the
-residuals themselves say, autocorrelated as they are, is computed in `estimation.residual_covariance`.
+`systematic` adds them up; `robot_causes`, `between_recordings`, `force_gain` and `imu_turn` hold one kind of cause
+each. What the residuals themselves say, autocorrelated as they are, is in `estimation.residual_covariance`.
 """

@@ -8,7 +8,7 @@ their own, each gets its own.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 
@@ -66,6 +66,11 @@ def in_time(robot: RobotModel, log: MotionLog, sensor_delay: SensorDelay) -> Mot
     return read_in_time(robot, log, np.array([*feet, sensor_delay.encoders]))
 
 
+def on_force_cells(robot: RobotModel, logs: Iterable[MotionLog]) -> bool:
+    """Whether a foot of some log stands on vertical force cells: without horizontal forces no log shows a delay."""
+    return any(log.vertical_only(foot.wrench.name) for log in logs for foot in robot.feet.values())
+
+
 def known_delay(delay: float) -> SensorDelay:
     """A delay that the user knows."""
     text = f"wrenches taken as {1e3 * delay:+.1f} ms late, as given in the settings"
@@ -78,7 +83,7 @@ def estimate_wrench_delay(robot: RobotModel, logs: Sequence[MotionLog], each: Ea
 
     `each` maps a function over logs: a pool's map uses all cores.
     """
-    if any(log.vertical_only(foot.wrench.name) for log in logs for foot in robot.feet.values()):
+    if on_force_cells(robot, logs):
         return _unseen(robot, logs)
     still = np.zeros(len(robot.feet) + 1)
     found = refined_delays(robot, logs, each, still)
@@ -143,11 +148,10 @@ def _doubtful(robot: RobotModel, lags: Lags) -> SensorDelay:
 def _unseen(robot: RobotModel, logs: Sequence[MotionLog]) -> SensorDelay:
     """What the robot file says of a delay that no log shows."""
     imu, prior = robot.imu, robot.uncertainty.wrench_delay
-    cells = any(log.vertical_only(foot.wrench.name) for log in logs for foot in robot.feet.values())
     blind = imu is not None and not any(log.has_imu(imu.name, "linear_acceleration") for log in logs)
     why = "no log in which the ground's wrench follows from IMU, encoders and URDF"
     todo = "Record the accelerometer" if blind else "Record arm sweeps of 0.3 to 1 Hz without an operator"
-    if cells:
+    if on_force_cells(robot, logs):
         why = "vertical force cells read no horizontal force, by which it would show"
         todo = "Measure how late they are and give it with --wrench-delay"
     text = (

@@ -15,9 +15,8 @@ BLOCK = 4 * 2**20  # bytes read at a time
 MESSAGES = 2**16  # messages of a topic decoded at a time
 READ = {JOINT_STATE, IMU, WRENCH}
 
-Found = dict[
-    int, tuple[list[int], list[int], list[int]]
-]  # by channel: where messages start, end, when they came
+# By channel: where its messages start and end, and when they came.
+Found = dict[int, tuple[list[int], list[int], list[int]]]
 
 
 class Scan:

@@ -1,0 +1,136 @@
+"""Exports into a robot's URDF or SDFormat model: what moves to the sole, and what stays."""
+
+from __future__ import annotations
+
+import copy
+import json
+import math
+import re
+import xml.etree.ElementTree as ET
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from export_robots import CENTRE, SOLE_Z, bush_rotation, result, write_sdf
+from plantar.exporters import export
+
+
+def test_urdf_moves_what_stands_on_the_ground(feet: dict[str, Any], urdf: Path, tmp_path: Path) -> None:
+    export(feet, "urdf", tmp_path / "out.urdf")
+    root = ET.parse(tmp_path / "out.urdf").getroot()
+    links = {link.get("name"): link for link in root.findall("link")}
+    joints = {joint.get("name"): joint for joint in root.findall("joint")}
+    assert [c.get("name") for c in links["left_ankle"].findall("collision")] == ["cover"]
+    assert [c.get("name") for c in links["left_bush_sole"].findall("collision")] == ["foot"]
+    assert joints["left_sole_fix"].find("parent").get("link") == "left_bush_sole"  # type: ignore[union-attr]
+    assert joints["left_sensor_fix"].find("parent").get("link") == "left_ankle"  # type: ignore[union-attr]
+    spring = next(e for e in root.findall("gazebo") if e.get("reference") == "RLEG_BUSH_PITCH")
+    assert float(spring.findtext("springStiffness", "")) == 434
+    assert float(spring.findtext("springReference", "")) == 0
+    assert float(joints["RLEG_BUSH_PITCH"].find("dynamics").get("damping")) == 15.89  # type: ignore[union-attr,arg-type]
+
+
+def test_urdf_export_twice_updates_instead_of_stacking(feet: dict[str, Any], tmp_path: Path) -> None:
+    export(feet, "urdf", tmp_path / "one.urdf")
+    softer = copy.deepcopy(feet)
+    softer["parameters"][2]["value"] = 300.0  # left pitch stiffness
+    notes = export(softer, "urdf", tmp_path / "two.urdf", model=tmp_path / "one.urdf")
+    text = (tmp_path / "two.urdf").read_text()
+    assert text.count('<joint name="LLEG_BUSH_PITCH"') == 1
+    assert "<springStiffness>300</springStiffness>" in text
+    assert text.count("<springStiffness>") == 5
+    assert "export_updated" in {note.code for note in notes}
+
+
+@pytest.mark.parametrize("version", ["1.5", "1.6", "1.9"])
+def test_sdf_models_of_both_pose_grammars(version: str, feet: dict[str, Any], tmp_path: Path) -> None:
+    model = write_sdf(tmp_path / "robot.sdf", version)
+    export(feet, "sdf", tmp_path / "out.sdf", model=model, with_offset=True)
+    from plantar.exporters.sdf.tree import SdfTree, relative
+
+    tree = SdfTree.load(tmp_path / "out.sdf", ("left_ankle",))
+    place = relative(tree, "left_bush_sole", "left_ankle")
+    np.testing.assert_allclose(place[:3, 3], CENTRE, atol=1e-9)
+    np.testing.assert_allclose(place[:3, :3], bush_rotation("left"), atol=1e-9)
+    np.testing.assert_allclose(relative(tree, "left_sole", "left_ankle")[:3, 3], [0, 0, SOLE_Z], atol=1e-9)
+    assert tree.joints["left_sole_fix"].findtext("parent") == "left_bush_sole"
+    assert [c.get("name") for c in tree.links["left_bush_sole"].findall("collision")] == ["foot"]
+    dynamics = tree.joints["LLEG_BUSH_ROLL"].find("axis/dynamics")
+    assert dynamics is not None
+    assert float(dynamics.findtext("spring_stiffness", "")) == 352
+    assert float(dynamics.findtext("damping", "")) == 28.15
+    assert float(dynamics.findtext("spring_reference", "")) == pytest.approx(4.12 / 352)
+
+
+def test_identified_urdf_gives_pinocchio_the_parameters(urdf: Path, tmp_path: Path) -> None:
+    import pinocchio as pin
+
+    from plantar.conventions import INERTIAL_NAMES
+
+    inertia = "<inertia ixx='.01' ixy='0' ixz='0' iyy='.01' iyz='0' izz='.01'/>"
+    sensor = f'<link name="left_sensor"><inertial><mass value="0.7"/>{inertia}</inertial></link>'
+    urdf.write_text(urdf.read_text().replace('<link name="left_sensor"/>', sensor))
+    model = pin.buildModelFromUrdf(str(urdf), pin.JointModelFreeFlyer())
+    pin.seed(1)
+    wanted, rows = {}, []
+    for joint in range(1, model.njoints):
+        link = next(f.name for f in model.frames if f.parentJoint == joint and f.type == pin.FrameType.BODY)
+        values = (model.inertias[joint] + pin.Inertia.Random()).toDynamicParameters()
+        wanted[joint] = values
+        rows += [{"link": link, "name": name, "unit": "", "value": float(value), "cad": 0.0}
+                 for name, value in zip(INERTIAL_NAMES, values, strict=True)]  # fmt: skip
+    made = {"schema": "plantar.inertia/1", "robot": "biped", "plantar": "0.1.0", "inertial_parameters": rows}
+    export(made, "urdf", tmp_path / "identified.urdf", model=urdf)
+    again = pin.buildModelFromUrdf(str(tmp_path / "identified.urdf"), pin.JointModelFreeFlyer())
+    for joint, values in wanted.items():
+        np.testing.assert_allclose(again.inertias[joint].toDynamicParameters(), values, rtol=1e-9, atol=1e-9)
+
+
+def test_a_foot_of_another_name_and_no_sole_shape(tmp_path: Path, urdf: Path) -> None:
+    text = re.sub(r'<collision name="foot">.*?</collision>', "", urdf.read_text())
+    urdf.write_text(text)
+    made = result(urdf)
+    made["robot_model"]["feet"]["hoof"] = made["robot_model"]["feet"].pop("left")
+    for row in (*made["parameters"], *made["offsets"]):
+        row["foot"] = "hoof" if row["foot"] == "left" else row["foot"]
+    notes = export(made, "urdf", tmp_path / "o.urdf")
+    assert "export_plate" in {note.code for note in notes}
+    root = ET.parse(tmp_path / "o.urdf").getroot()
+    assert any(joint.get("name") == "hoof_bush_pitch" for joint in root.findall("joint"))
+    sole = next(link for link in root.findall("link") if link.get("name") == "hoof_bush_sole")
+    size = [float(v) for v in sole.find("collision/geometry/box").get("size").split()]  # type: ignore[union-attr]
+    # The outline, turned by the bush's 0.3 rad of yaw, in its own bounding box.
+    c, s = math.cos(0.3), math.sin(0.3)
+    assert size[:2] == pytest.approx([0.2 * c + 0.12 * s, 0.2 * s + 0.12 * c], abs=1e-6)
+
+
+@pytest.mark.parametrize("target", ["urdf", "sdf", "mjcf"])
+def test_a_bush_in_the_soles_plane_takes_the_foot_along(target: str, urdf: Path, tmp_path: Path) -> None:
+    if target == "mjcf":
+        pytest.importorskip("mujoco")
+    made = result(urdf)
+    for entry in made["robot_model"]["feet"].values():
+        entry["bush"]["xyz"] = [0.0, 0.0, SOLE_Z]
+    notes = export(made, target, tmp_path / "out")
+    moved = [note.text for note in notes if note.code == "export_moved"]
+    assert len(moved) == 2
+    assert all("_sole" in text.split("sole:")[1] for text in moved)
+    assert "export_plate" not in {note.code for note in notes}
+
+
+def test_the_urdf_is_found_from_the_folder_in_which_identify_ran(
+    feet: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A result in out/feet names the URDF as seen from where the command ran."""
+    urdf = Path(feet["robot_model"]["urdf"]).read_text()
+    (tmp_path / "robots").mkdir()
+    (tmp_path / "robots" / "robot.urdf").write_text(urdf)
+    folder = tmp_path / "out" / "feet"
+    folder.mkdir(parents=True)
+    content = {**feet, "robot_model": {**feet["robot_model"], "urdf": "robots/robot.urdf"}}
+    (folder / "result.json").write_text(json.dumps(content))
+    monkeypatch.chdir(folder)
+    export("result.json", "urdf", "robot.urdf")
+    assert "LLEG_BUSH_PITCH" in Path("robot.urdf").read_text()

@@ -1,0 +1,27 @@
+"""Every list of mutants, by the name that `run.py --list` takes."""
+
+from __future__ import annotations
+
+from data_faults import DATA_FAULTS
+from designed_motions import DESIGNED_MOTIONS
+from drawn import DRAWN
+from drawn_again import DRAWN_AGAIN
+from engine_exports import ENGINE_EXPORTS
+from fleet_statistics import FLEET
+from handed_on import HANDED_ON
+from made_cheaper import MADE_CHEAPER
+from once_unnoticed import ONCE_UNNOTICED
+from sensor_faults import SENSOR_FAULTS
+
+LISTS = {
+    "drawn": DRAWN,
+    "drawn_again": DRAWN_AGAIN,
+    "once_unnoticed": ONCE_UNNOTICED,
+    "made_cheaper": MADE_CHEAPER,
+    "data_faults": DATA_FAULTS,
+    "sensor_faults": SENSOR_FAULTS,
+    "designed_motions": DESIGNED_MOTIONS,
+    "fleet": FLEET,
+    "engine_exports": ENGINE_EXPORTS,
+    "handed_on": HANDED_ON,
+}

@@ -1,0 +1,193 @@
+"""Changes by which a fault of sensors, signals or files, seen before, would go unseen, or be seen in a healthy log."""
+
+from __future__ import annotations
+
+from mutant import Mutant
+
+SENSOR_FAULTS = (
+    Mutant(
+        "signals/dropouts.py", "a coarse encoder near zero drops out", "LEAST = 0.01", "LEAST = 0.0",
+        ("signals/test_dropouts.py",),
+    ),
+    Mutant(
+        "signals/dropouts.py", "one stretch of zeros is enough", "FEWEST = 2", "FEWEST = 1",
+        ("signals/test_dropouts.py",),
+    ),
+    Mutant(
+        "checks/bush_axes.py", "feet beside each other are before each other",
+        "if x > BEFORE * y", "if y > BEFORE * x", ("checks/test_bush_axes.py",),
+    ),
+    Mutant(
+        "checks/log_checks.py", "rows that got lost are bursts",
+        "log.period < QUICK * (mean", "log.period < 4 * (mean", ("checks/test_log_checks.py",),
+    ),
+    Mutant(
+        "sensors/moment_fit.py", "another unit hides behind its prior",
+        "STRAINED = 2.0", "STRAINED = 200.0", ("sensors/test_moment_balance.py",),
+    ),
+    Mutant(
+        "sensors/moment_balance.py", "a foot is judged by itself where nothing tells it from the other", "APART = 2.0",
+        "APART = 200.0", ("sensors/test_moment_balance.py",),
+    ),
+    Mutant(
+        "sensors/moment_balance.py", "no foot is judged by itself", "APART = 2.0", "APART = 0.0",
+        ("sensors/test_moment_balance.py",),
+    ),
+    Mutant(
+        "sensors/moment_errors.py", "a walk is as slow as a sway", "    if steps:", "    if False:",
+        ("sensors/test_moment_balance.py",),
+    ),
+    Mutant(
+        "sensors/moment_errors.py", "the noise of readings is arms", "share * (noise", "0 * share * (noise",
+        ("sensors/test_moment_balance.py",),
+    ),
+    Mutant(
+        "robot_guess/passive.py", "a foot may push the way it tilts",
+        "max(float(moment @ tilt) / power, 0.0)", "float(moment @ tilt) / power", ("robot_guess/test_passive.py",),
+    ),
+    Mutant(
+        "estimation/stance_problem.py", "a stance that is left out stays",
+        "drawn.sum(axis=0) - drawn)", "drawn.sum(axis=0) - 0 * drawn)", ("estimation/test_stance_least_squares.py",),
+    ),
+    Mutant(
+        "logs/readers/read_limit.py", "a small file may unpack to anything", "RATIO = 100", "RATIO = 10**6",
+        ("logs/readers/test_read_limit.py",),
+    ),
+    Mutant(
+        "logs/readers/column_map.py", "the line for all joints beats a joint's own",
+        "return spread | {key: entry for key, entry in entries.items() if ANY_JOINT not in key}",
+        "return {key: entry for key, entry in entries.items() if ANY_JOINT not in key} | spread",
+        ("logs/readers/test_column_map.py",),
+    ),
+    Mutant(
+        "logs/readers/column_map.py", "the line for all joints has no unit",
+        '{**made, "from": before + joint + after}', '{"from": before + joint + after}',
+        ("logs/readers/test_column_map.py",),
+    ),
+    Mutant(
+        "checks/stepping_joints.py", "one landing is a step", "FEWEST = 2 ", "FEWEST = 1 ",
+        ("checks/test_stepping_joints.py",),
+    ),
+    Mutant(
+        "checks/stepping_joints.py", "the other leg may stand as well", "if turned[same] > TURNED:",
+        "if turned[same] >= 0:", ("checks/test_stepping_joints.py",),
+    ),
+    Mutant(
+        "checks/gyroscope.py", "a gyroscope's bias turns", "integral = _centred(total[ends] - total[starts])",
+        "integral = total[ends] - total[starts]", ("checks/test_gyroscope.py",),
+    ),
+    Mutant(
+        "checks/gyroscope.py", "small turns never tell", "min(LEAST_TURN, ABOVE_NOISE * float(noise))", "LEAST_TURN",
+        ("checks/test_gyroscope.py",),
+    ),
+    Mutant(
+        "signals/footfalls.py", "a lone sample lands a foot", "LONE = 5 ", "LONE = 1 ", ("signals/test_footfalls.py",),
+    ),
+    Mutant(
+        "signals/spikes.py", "landings are spikes", "usual[at] = np.maximum(usual[at], ",
+        "usual[at] = np.minimum(usual[at], ", ("signals/test_spikes.py",),
+    ),
+    Mutant(
+        "sensors/below_sensor.py", "landings count as air", "touching, round(LANDING / period)", "touching, 0",
+        ("sensors/test_below_sensor.py",),
+    ),
+    Mutant(
+        "sensors/below_sensor.py", "no prior holds what nothing shows", "+ np.eye(len(sizes))",
+        "+ 1e-9 * np.eye(len(sizes))", ("sensors/test_below_sensor.py",),
+    ),
+    Mutant(
+        "sensors/newton_euler.py", "what hangs below the sensors moves with the robot",
+        "model_parameters(robot.floating_model) - below.parameters", "model_parameters(robot.floating_model)",
+        ("sensors/test_newton_euler.py", "sensors/test_below_sensor.py", "sensors/test_moment_balance.py"),
+    ),
+    Mutant(
+        "sensors/bandwidth.py", "any slope is a filter", "abs(found.slope) < SURE * found.std", "False",
+        ("sensors/test_bandwidth.py",),
+    ),
+    Mutant(
+        "sensors/bandwidth.py", "the other side fades", "1 if found.slope < 0 else -1", "1 if found.slope > 0 else -1",
+        ("sensors/test_bandwidth.py",),
+    ),
+    Mutant(
+        "sensors/sensor_turns.py", "a turn that is hardly known is told", "and is_wrong(", "and not is_wrong(",
+        ("sensors/test_sensor_turns.py",),
+    ),
+    Mutant(
+        "sensors/moment_errors.py", "a sensor's place is its turn", "place * own + 4 for", "place * own + 1 for",
+        ("sensors/test_sensor_turns.py",),
+    ),
+    Mutant(
+        "checks/bush_link.py", "joints that stand still turn soles", "if moved > TURNED:", "if moved > 0:",
+        ("checks/test_bush_link.py",),
+    ),
+    Mutant(
+        "sensors/attitude_scale.py", "a tilt too small is one too large", "-found[0],", "found[0],",
+        ("sensors/test_attitude_scale.py",),
+    ),
+    Mutant(
+        "sensors/attitude_scale.py", "each stance keeps its zero",
+        "signals = signals - signals.mean(axis=0)", "signals = signals",
+        ("sensors/test_attitude_scale.py",),
+    ),
+    Mutant(
+        "sensors/delays/delays_by_log.py", "logs never differ", "if not (apart >", "if True or not (apart >",
+        ("sensors/delays/test_clock_drift.py", "sensors/delays/test_sensor_delay.py"),
+    ),
+    Mutant(
+        "sensors/delays/sensor_delay.py", "encoders that seem late are let be", " and not found.suspect:", ":",
+        ("sensors/delays/test_sensor_delay.py",),
+    ),
+    Mutant(
+        "estimation/slow_drift.py", "drift takes a slow motion", "< (1 - QUICK) * beside_line", "< 2 * beside_line",
+        ("estimation/test_slow_drift.py",),
+    ),
+    Mutant(
+        "sensors/delays/lagged_log.py", "the stillest stretch is searched", "np.argmax(until[most:]",
+        "np.argmin(until[most:]",
+        ("sensors/delays/test_lagged_log.py",),
+    ),
+    Mutant(
+        "signals/thinning.py", "quick signals pass for slow ones",
+        "low_pass(np.column_stack([read[name] for name in names]), log.period, cutoff)[::step]",
+        "np.column_stack([read[name] for name in names])[::step]", ("signals/test_thinning.py",),
+    ),
+    Mutant(
+        "estimation/least_squares.py", "nuisances stay in the rows",
+        "return rows if block.nuisance is None else without(block.nuisance, rows)", "return rows",
+        ("estimation/test_least_squares.py",),
+    ),
+    Mutant(
+        "signals/gyroscope_delay.py", "the gyroscope is read later still", "log.period, found.late)",
+        "log.period, -found.late)", ("signals/test_gyroscope_delay.py",),
+    ),
+    Mutant(
+        "estimation/slow_drift.py", "what is quicker than drift passes for drift", "DRIFT_PERIOD = 20.0",
+        "DRIFT_PERIOD = 5.0", ("feet/assess/test_contradiction.py",),
+    ),
+    Mutant(
+        "logs/readers/force_cells.py", "a cell in front of the frame turns the foot the other way",
+        "-values @ at[:, 0]", "values @ at[:, 0]", ("logs/readers/test_force_cells.py",),
+    ),
+    Mutant(
+        "robot/weighed.py", "a weighed robot keeps the URDF's moments of inertia",
+        "share * inertia.inertia", "inertia.inertia", ("robot/test_weighed.py",),
+    ),
+    Mutant(
+        "sensors/delays/sensor_delay.py", "the delay of force cells is searched for",
+        "if on_force_cells(robot, logs):\n        return",
+        "if False:\n        return", ("sensors/delays/test_sensor_delay.py",),
+    ),
+    Mutant(
+        "sensors/newton_sides.py", "sensors' errors stay in Newton's law", "(measured - taken)[:, calm]",
+        "measured[:, calm]", ("sensors/test_load_errors.py",),
+    ),
+    Mutant(
+        "sensors/load_errors.py", "a sensor may be turned as far as a push asks for", "linalg.inv(_prior(",
+        "linalg.inv(1e4 * _prior(", ("sensors/test_load_errors.py",),
+    ),
+    Mutant(
+        "sensors/moment_errors.py", "what was taken off before is missed for good",
+        "pair.predicted - pair.measured - residual.taken", "pair.predicted - pair.measured",
+        ("sensors/test_sensor_turns.py",),
+    ),
+)  # fmt: skip
