@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import xml.etree.ElementTree as ET
+from dataclasses import replace
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+from plantar.robot.model import load_robot
 from plantar.twin.robots import hrp2
 from plantar.twin.robots.true_robot import RobotSpread, true_robot
 
@@ -52,3 +57,18 @@ def test_without_spread_it_is_the_file() -> None:
     for true, told in zip(robot.model.inertias, file.model.inertias, strict=True):
         assert true.isApprox(told, 1e-9)
     np.testing.assert_allclose(robot.imu.placement.rotation, file.imu.placement.rotation, atol=1e-12)
+
+
+def test_an_inertia_that_no_body_can_have_is_drawn_about_too(tmp_path: Path) -> None:
+    """Files in use hold some: a hollow shell's moments that are not those of any mass."""
+    file = load_robot(hrp2.write(tmp_path))
+    link = next(link for link in ET.fromstring(file.urdf).iter("link") if link.find("inertial") is not None)
+    name = str(link.get("name"))
+    urdf = ET.fromstring(file.urdf)
+    inertia = urdf.find(f"link[@name='{name}']/inertial/inertia")
+    assert inertia is not None
+    inertia.set("ixx", "-0.001")
+    told = replace(file, urdf=ET.tostring(urdf, encoding="unicode"))
+    robot, drawn = true_robot(told, RobotSpread(), 7)
+    assert name in drawn["links"]
+    assert robot.mass != told.mass

@@ -54,7 +54,9 @@ def true_robot(robot: RobotModel, spread: RobotSpread, seed: int) -> tuple[Robot
         moved = spread.link_com * random.standard_normal(3)
         own = frame.actInv(model.inertias[joint])
         mass, scale = max(1 + share, 0.0) * own.mass, max((1 + share) * (1 + more), 0.0)
-        bodies[name] = pin.Inertia(mass, own.lever + moved, scale * own.inertia).toDynamicParameters()
+        # Part by part: a constructor refuses a file's inertia that no body can have, and such files are in use.
+        own.mass, own.lever, own.inertia = mass, own.lever + moved, scale * own.inertia
+        bodies[name] = own.toDynamicParameters()
         drawn["links"][name] = {"mass": share, "com": moved.tolist(), "inertia": more}
     write_inertias(root, model, bodies)
 
