@@ -23,6 +23,7 @@ FARTHEST = 1.5  # m: no posture and no mass is that far off
 LEANING = np.radians(
     3.5
 )  # between the ground's usual force and the IMU's up: more than zeros of sensors make
+PUSHED = 2.0  # times LEANING: more than who holds a robot leans on it
 TURNED = np.radians(10)  # accelerations turn the force by some degrees too
 IMPOSSIBLE = np.radians(30)  # no mounting, zero or push is that far off
 MOST_NAMED = 3
@@ -74,7 +75,8 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         text = f"columns 'imu.{stance.imu.name}.*': the ground's force leans {np.degrees(sides.lean):.1f} deg from up"
         where = "check the IMU's rpy, the joints above the feet, the wrenches' zeros"
         valid = f"valid: below {np.degrees(LEANING):.1f} deg; {where}"
-        yield Finding("force_leans", f"{text} ({valid})", bool(sides.lean > IMPOSSIBLE))
+        code = "force_leans" if sides.lean > PUSHED * LEANING else "force_leans_little"
+        yield Finding(code, f"{text} ({valid})", bool(sides.lean > IMPOSSIBLE))
     elif as_is > UNEXPLAINED:
         text = f"columns 'wrench.*': balance gravity only to {100 * as_is:.1f} cm about the URDF's centre of mass"
         where = "check the encoders' zeros, where the wrenches are measured, and the masses"

@@ -14,6 +14,7 @@ import numpy as np
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.fit.half_turns import cautioned_if_hardly_turned
+from plantar.feet.fit.hidden_memory import slope_share
 from plantar.feet.foot_fit import FittedFoot
 from plantar.feet.internal_error import gives_up
 from plantar.model_selection.selection import ModelChoice, ModelScore
@@ -34,6 +35,7 @@ def with_memory_of_others(feet: Mapping[str, FittedFoot]) -> dict[str, FittedFoo
     """
     every = [fit for one in feet.values() for fit in one.fits.values()]
     shown = {fit.model.name for fit in every if fit.model.remembers}
+    share = max((slope_share(fit) for fit in every), default=0.0)
     slips = min((_slip_angle(fit) for fit in every), default=np.inf)
     found = {}
     for foot, one in feet.items():
@@ -46,7 +48,8 @@ def with_memory_of_others(feet: Mapping[str, FittedFoot]) -> dict[str, FittedFoo
             if isinstance(fit.model, KelvinVoigt) and (steps or not small):
                 score = _nearer(fit.choice, shown, steps=steps)
             if score is None:
-                fits[axis] = _cautioned(fit, fit.choice, shown, steps=steps, small=small)
+                cautioned = _cautioned(fit, fit.choice, shown, steps=steps, small=small)
+                fits[axis] = fit if cautioned is None else replace(cautioned, hidden_share=share)
                 continue
             with gives_up(axis, one.given_up):
                 own = fit_axis(one.thin.fitted, one.foot, axis, one.ready.settings, score.model, one.place)
@@ -80,8 +83,8 @@ def _slip_angle(fit: AxisFit) -> float:
 
 def _cautioned(
     fit: AxisFit, choice: ModelChoice, shown: Collection[str], *, steps: bool, small: bool
-) -> AxisFit:
-    """The fit with a caution, unless a memory was identified in motions that show one, and predicts no better there.
+) -> AxisFit | None:
+    """The fit with a caution; None where a memory was identified in motions that show one, and gains nothing there.
 
     Motions too `small` to bend this axis as far as it takes an element elsewhere to slip show none: what is identified
     in them is the noise's.
@@ -89,8 +92,10 @@ def _cautioned(
     excluded = not isinstance(fit.model, KelvinVoigt) or any(
         score.refused is None and score.model.name in shown for score in choice.ranking
     )
-    if choice.caution is not None or (excluded and not steps and not small):
+    if choice.caution is not None:
         return fit
+    if excluded and not steps and not small:
+        return None
     return replace(fit, choice=replace(choice, caution=NOT_EXCLUDED))
 
 

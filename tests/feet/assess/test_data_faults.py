@@ -65,3 +65,18 @@ def test_sensors_that_read_at_other_moments_leave_the_stiffness(
     after = {(row.foot, row.axis, row.name): row for row in faded.parameters}
     assert all((after[key].verdict == "usable") == (key[2] == "stiffness") for key in usable)
     assert all("torques fade" in after[key].reason for key in usable if key[2] == "damping")
+
+
+def test_a_force_that_leans_in_some_logs_is_somebodys_push(ready: PreparedLogs) -> None:
+    fit = fit_axis(ready.fitted, "left", "pitch", LINEAR)
+    assert fit is not None
+    (stands,) = ready.fitted
+    leans, far = (
+        replace(stands, notes=(Note(code, "warning", "leans"),))
+        for code in ("force_leans_little", "force_leans")
+    )
+    steps = replace(stands, stances=dict.fromkeys(stands.stances, object()))
+    assert data_faults([leans, stands], fit) == []
+    assert len(data_faults([leans, leans], fit)) == 2
+    assert len(data_faults([leans, steps], fit)) == 1  # of a walk nobody can tell
+    assert len(data_faults([far, stands], fit)) == 1

@@ -13,10 +13,11 @@ from plantar.results.feet import Parameter
 from plantar.sensors.bandwidth import FILTERED
 from plantar.sensors.delays.sensor_delay import BEYOND_SEARCH
 
+LEANS, LEANS_LITTLE = "force_leans", "force_leans_little"
 # Codes of warnings on a log's signs, frames, times, full scales and load, and on a bush far from its place.
 UNMENDED = frozenset(
     {
-        "sign", "force_leans", "imu_turned", "imu_late", "gyroscope_frame", "gyroscope_scale",
+        "sign", LEANS, LEANS_LITTLE, "imu_turned", "imu_late", "gyroscope_frame", "gyroscope_scale",
         "path_joint_missing", "stuck_channel", "vertical_only", "weight", "bush_axes", "bush_link", "sparse_stances",
         FAR, BUSH_TURNED,
     }
@@ -27,8 +28,19 @@ ADVICE = "mend what the warning names, or leave this log out"
 
 
 def data_faults(recordings: Sequence[Recording], fit: AxisFit) -> list[Note]:
-    """The warnings on logs in which this foot has used samples, and on its fit."""
-    seen = [note for recording in recordings if recording.used(fit.foot).any() for note in recording.notes]
+    """The warnings on logs in which this foot has used samples, and on its fit.
+
+    Where the ground's force leans a little in some logs and not in others, somebody holds or pushes the robot in those:
+    a turned IMU or a wrong mass would show in all of them.
+    """
+    used = [recording for recording in recordings if recording.used(fit.foot).any()]
+    stands = [recording for recording in used if recording.stances[fit.foot] is None]
+    upright = any(
+        all(note.code not in (LEANS_LITTLE, LEANS) for note in recording.notes) for recording in stands
+    )
+    seen = [
+        note for recording in used for note in recording.notes if not (upright and note.code == LEANS_LITTLE)
+    ]
     return [note for note in (*seen, *fit.notes) if note.severity == "warning" and note.code in UNMENDED]
 
 

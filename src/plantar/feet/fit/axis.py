@@ -61,7 +61,8 @@ class FittedModel:
 @dataclass(frozen=True, kw_only=True)
 class AxisFit(FittedModel):
     """A fitted model and how well it is known: `covariance`, `freedom` and `white_std` run over values and shape.
-    `equivalent`: K and C of spring and damper over the same motions."""
+    `equivalent`: K and C of spring and damper over the same motions; `hidden_share`: of the stiffness, that a memory
+    would make which other axes of the robot show and this one's motions do not exclude."""
 
     covariance: Array
     freedom: Array
@@ -71,6 +72,7 @@ class AxisFit(FittedModel):
     choice: ModelChoice | None
     reason: str
     notes: tuple[Note, ...] = ()
+    hidden_share: float = 0.0
 
     @property
     def std(self) -> Array:

@@ -14,6 +14,7 @@ from plantar.estimation.residual_covariance import pooled_freedom
 from plantar.estimation.stance_least_squares import FEWEST_RECORDINGS
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.half_turns import ROUND, slip_angles_spanned
+from plantar.feet.fit.hidden_memory import moved_by_memory
 from plantar.feet.fit.regression_data import beside, tangent_blocks
 from plantar.feet.fit.vertical_stiffness import VerticalStiffness
 from plantar.feet.recording import Recording, moment_arm_effect
@@ -81,6 +82,7 @@ def systematic_causes(
             sensor_delay.freedom,
         ),
         Cause("moment arm", moved_by(moment_arms), vertical.compliance_std[foot], vertical.freedom),
+        *_hidden_memory(fit),
     ]
     if blocks[0].stances is not None:
         # The zeros were read in the air, and within a stance no cube is told from how a sole lands and lifts.
@@ -166,6 +168,16 @@ def _shared_slope(fit: AxisFit, recordings: Sequence[Recording]) -> list[Cause]:
     spanned = slip_angles_spanned(fit, recordings)
     unsure = SLOPE_UNSURE if spanned is None or spanned >= ROUND else UNIFORM
     return [Cause("memory in stances", effect, unsure)]
+
+
+def _hidden_memory(fit: AxisFit) -> list[Cause]:
+    """What spring and damper may have taken from a memory that the motions do not show well enough."""
+    moved = moved_by_memory(fit)
+    if not moved.any():
+        return []
+    effect = np.zeros(len(fit.values))
+    effect[: len(moved)] = moved
+    return [Cause("hidden memory", effect, UNIFORM)]
 
 
 def _zeros_of_stances(

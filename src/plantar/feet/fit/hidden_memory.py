@@ -1,0 +1,54 @@
+"""A memory of the rubber that motions show too little of to be identified, where spring and damper are kept instead."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from plantar.conventions import Array
+from plantar.feet.fit.axis import AxisFit
+from plantar.model_selection.selection import ModelScore
+from plantar.models import BESIDE, BushModel, KelvinVoigt
+
+
+def rival(fit: AxisFit) -> ModelScore | None:
+    """The best model of a passive bush with a memory that predicts held-out motion better than spring and damper, which
+    were kept."""
+    if fit.choice is None or _has_memory(fit.model):
+        return None
+    spring = next(score for score in fit.choice.ranking if isinstance(score.model, KelvinVoigt))
+    better = (score for score in fit.choice.ranking if score.held_out_rms < spring.held_out_rms)
+    remembering = (score for score in better if _has_memory(score.model))
+    return next((score for score in remembering if score.model.possible(score.fit.values)), None)
+
+
+def slope_share(fit: AxisFit) -> float:
+    """Share of stiffness that a fit's element makes in motions too small for it to slip, and spring and damper would
+    take for the spring's; 0 of a model without one."""
+    if "slip_torque" not in fit.model.terms:
+        return 0.0
+    slope = abs(float(fit.values[fit.model.terms.index("slip_torque")]))
+    slope /= float(fit.shape[fit.model.shape_terms.index("slip_angle")])
+    return slope / (slope + abs(float(fit.values[0])))
+
+
+def moved_by_memory(fit: AxisFit) -> Array:
+    """How far stiffness and damping may be off (2,), where a caution says that a memory may be hidden.
+
+    By as much as they are others beside the rival, as far as that is known; without one, stiffness by the share that
+    other axes' elements would make.
+    """
+    moved = np.zeros(len(BESIDE))
+    if fit.choice is None or fit.choice.caution is None or _has_memory(fit.model):
+        return moved
+    if (found := rival(fit)) is not None:
+        both = slice(len(BESIDE))
+        return np.asarray(
+            np.hypot(fit.choice.equivalent.values[both] - found.fit.values[both], found.fit.std[both])
+        )
+    moved[0] = fit.hidden_share * abs(float(fit.values[0]))
+    return moved
+
+
+def _has_memory(model: BushModel) -> bool:
+    """Whether the torque depends on where the bush came from; what a spring that hardens does not know is a zero."""
+    return model.remembers and model.fading_memory
