@@ -88,7 +88,7 @@ DATA_FAULTS = (
     ),
     Mutant(
         "feet/memory_of_others.py", "what is not excluded is not said",
-        "(excluded and not steps and not small)", "True", ("feet/test_memory_of_others.py",),
+        "if excluded and not steps and not small:", "if True:", ("feet/test_memory_of_others.py",),
     ),
     Mutant(
         "feet/memory_of_others.py", "small motions exclude a memory", "and not steps and not small", "and not steps",

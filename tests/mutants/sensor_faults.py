@@ -38,7 +38,7 @@ SENSOR_FAULTS = (
         ("sensors/test_moment_balance.py",),
     ),
     Mutant(
-        "sensors/moment_errors.py", "the noise of readings is arms", "share * (noise", "0 * share * (noise",
+        "sensors/moment_errors.py", "the noise of readings is arms", "share * _products(noise", "0 * share * _products(noise",
         ("sensors/test_moment_balance.py",),
     ),
     Mutant(
@@ -186,8 +186,21 @@ SENSOR_FAULTS = (
         "linalg.inv(1e4 * _prior(", ("sensors/test_load_errors.py",),
     ),
     Mutant(
-        "sensors/moment_errors.py", "what was taken off before is missed for good",
-        "pair.predicted - pair.measured - residual.taken", "pair.predicted - pair.measured",
-        ("sensors/test_sensor_turns.py",),
+        "sensors/moment_errors.py", "what is missing lost other slow parts than its columns",
+        "np.hstack([predicted - measured,", "np.hstack([residual.pair.predicted - residual.pair.measured,",
+        ("sensors/test_moment_fit.py",),
+    ),
+    Mutant(
+        "sensors/moment_fit.py", "parts that are left out are as good as all", "(len(own) - 1) / len(own) * (apart",
+        "1 / len(own) * (apart", ("sensors/test_moment_fit.py",),
+    ),
+    Mutant(
+        "feet/fit/hidden_memory.py", "a memory that is hardly known hides nothing",
+        "        both = slice(len(BESIDE))", "        return moved\n        both = slice(len(BESIDE))",
+        ("feet/fit/test_hidden_memory.py",),
+    ),
+    Mutant(
+        "feet/assess/data_faults.py", "a push in one log is a fault of all", "(upright and note", "(False and note",
+        ("feet/assess/test_data_faults.py",),
     ),
 )  # fmt: skip

@@ -26,6 +26,7 @@ LATE = 0.02  # s, of feet's sensors, encoders and gyroscope behind the accelerom
 MOUNT = 0.1  # rad, by which sensors and IMU may be turned: wide, so that no turned mount passes for a gain
 KEPT_PER_BAND = 5.0  # samples for each period of BAND: far above what has passed the filter
 TOGETHER = 96  # columns that are filtered at once
+PARTS = 8  # of a log, as long as each other: what fits without one of them says how well it is known
 TURN = 0.01  # rad, of the IMU, for the slope of what it predicts
 
 
@@ -37,9 +38,9 @@ class MomentErrors:
 
     The columns are, in this order: torques about pitch of each foot, torques about roll of each foot, what else each
     foot's sensor may get wrong, the IMU's turn about its three axes, and the delays of each foot, of the encoders and
-    of the gyroscope. `products` (6, k + 1, k + 1) are those of missing and columns, without what the sensors' noise
-    adds to them; `drawn` (6, k, draws) those of columns and what a wrong URDF adds; `independent` is the share of
-    samples [each `period` s] that are.
+    of the gyroscope. `products` (parts, 6, k + 1, k + 1) are those of missing and columns in each part of the log,
+    without what the sensors' noise adds to them; `drawn` (6, k, draws) those of columns and what a wrong URDF adds;
+    `independent` is the share of samples [each `period` s] that are.
     """
 
     columns: Array
@@ -57,18 +58,23 @@ def moment_errors(robot: RobotModel, residual: NewtonEulerResidual, steps: bool)
     so strongly that noise is small beside it.
     """
     residual = residual.thinned(max(1, round(1 / (RATE * residual.pair.period))))
-    readings = _reading_columns(robot, residual)
+    motion = inertial_motion(robot, residual.signals, residual.kept)
+    readings, measured = _reading_columns(robot, residual)
+    predicted = Equation(robot.floating_model).inverse_dynamics(motion, residual.parameters)[BASE_ROWS].T
     by_gyroscope, by_mount = _imu_slopes(robot, residual)
     slopes = [*-by_mount, *residual.rates, residual.by_encoders, -by_gyroscope]
-    pair, period, count = residual.pair, residual.pair.period, len(readings) + len(slopes)
+    period, count = residual.pair.period, len(readings) + len(slopes)
     noisy = 6 * (1 + len(readings))
-    errors = predicted_errors(robot, inertial_motion(robot, residual.signals, residual.kept))
-    every = np.hstack([pair.predicted - pair.measured - residual.taken, *readings, *slopes, *errors])
+    errors = predicted_errors(robot, motion)
+    # Both sides anew: those of the residual lost slow parts over all of the log, what an end of it then shows of them
+    # would be no column's.
+    every = np.hstack([predicted - measured, *readings, *slopes, *errors])
     del readings, slopes, errors
+    slow = _slow_cosines(len(every), period)  # what postures and drifting zeros do to the two sides
     # One group of columns after the other: a copy of all at once would be the largest array of any log.
-    for first in range(6, every.shape[1], TOGETHER):
+    for first in range(0, every.shape[1], TOGETHER):
         some = every[:, first : first + TOGETHER]
-        some -= low_pass(some, period, SLOW)  # what postures and drifting zeros do to them
+        some -= slow @ (slow.T @ some)
     if steps:
         return _errors(_by_row(every), count, period, CUTOFF)
     # Slopes are smooth: their noise is not white, and small below BAND.
@@ -79,16 +85,32 @@ def moment_errors(robot: RobotModel, residual: NewtonEulerResidual, steps: bool)
     del every, read
     found = _errors(_by_row(slow), count, stride * period, BAND)
     share = _below_to_above(period) / stride
-    found.products[:, : noisy // 6, : noisy // 6] -= share * (noise @ noise.transpose(0, 2, 1))
+    found.products[..., : noisy // 6, : noisy // 6] -= share * _products(noise)
     return found
 
 
 def _errors(rows: Array, count: int, period: float, band: float) -> MomentErrors:
     """Of what is missing, `count` columns and drawn URDFs, (6, k, n), that hold what is slower than `band` [Hz]."""
     columns, drawn = rows[:, : count + 1].copy(), rows[:, count + 1 :]
-    products, wrong = columns @ columns.transpose(0, 2, 1), columns[:, 1:] @ drawn.transpose(0, 2, 1)
+    products, wrong = _products(columns), columns[:, 1:] @ drawn.transpose(0, 2, 1)
     # A filtered signal has two independent samples in a period of its cutoff.
     return MomentErrors(columns[:, 1:], columns[:, 0], products, wrong, period, 2 * band * period)
+
+
+def _slow_cosines(count: int, period: float) -> Array:
+    """Orthonormal cosines (count, k) of `count` samples, down from those of a frequency SLOW.
+
+    A projection: a filter would hang all of a short segment on what its two ends happen to be.
+    """
+    order = np.arange(round(2 * SLOW * count * period) + 1)
+    cosines = np.cos(np.pi * order * (np.arange(count)[:, None] + 0.5) / count)
+    return np.asarray(cosines / np.linalg.norm(cosines, axis=0))
+
+
+def _products(columns: Array) -> Array:
+    """Of columns (6, k, n) with each other, in each part of the log, (parts, 6, k, k)."""
+    parts = np.array_split(columns, PARTS, axis=2)
+    return np.array([part @ part.transpose(0, 2, 1) for part in parts])
 
 
 def _by_row(signals: Array) -> Array:
@@ -112,12 +134,12 @@ def turn_columns(robot: RobotModel) -> dict[str, slice]:
     return {foot: slice(start, start + 3) for foot, start in starts.items()}
 
 
-def _reading_columns(robot: RobotModel, residual: NewtonEulerResidual) -> list[Array]:
-    """What gains of torques and other errors of the feet's sensors add to the measured side, (n, 6) each."""
+def _reading_columns(robot: RobotModel, residual: NewtonEulerResidual) -> tuple[list[Array], Array]:
+    """What gains of torques and other errors of the feet's sensors add to the measured side, (n, 6) each, and that."""
     equation, positions = Equation(robot.floating_model), residual.signals.positions[residual.kept]
     matrices = _sensor_errors(robot)[0]
     gains: list[list[Array]] = [[], []]
-    others: list[Array] = []
+    others, measured = list[Array](), np.zeros(())
     for place, foot in enumerate(robot.feet.values()):
         wrench = residual.readings[:, 6 * place : 6 * place + 6]
         contact = Contact(*robot.frame(foot.wrench.placement))
@@ -129,7 +151,8 @@ def _reading_columns(robot: RobotModel, residual: NewtonEulerResidual) -> list[A
         for own, column in zip(gains, carried[:2], strict=True):
             own.append(column)
         others += [*carried[2:]]
-    return [*gains[0], *gains[1], *others]
+        measured = measured + carried[2]  # the gain of all channels
+    return [*gains[0], *gains[1], *others], measured
 
 
 def _sensor_errors(robot: RobotModel) -> tuple[Array, Array]:

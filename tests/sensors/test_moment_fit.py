@@ -1,0 +1,77 @@
+"""What the moments' balance says of its own deviations, and of a log of which a part is used."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from plantar.conventions import Array
+from plantar.feet.prepare_log import checked
+from plantar.sensors.moment_errors import PARTS, MomentErrors, moment_errors
+from plantar.sensors.moment_fit import fit_moments, solved
+from plantar.sensors.newton_euler import newton_euler_residual
+from plantar.signals.filters import low_pass
+from plantar.twin.robots import hrp2
+from twin_samples import walked
+
+COLUMNS, SAMPLES, PERIOD = 24, 400, 0.1  # as of a log of 40 s below 2 Hz
+
+
+def swaying(random: np.random.Generator) -> Array:
+    """Columns (k, n) of a robot that sways at three frequencies: mixtures of six signals and a little else."""
+    time = PERIOD * np.arange(SAMPLES)
+    tones = np.array(
+        [wave(2 * np.pi * hertz * time) for hertz in (0.2, 0.33, 0.5) for wave in (np.sin, np.cos)]
+    )
+    slow = low_pass(random.normal(size=(SAMPLES, COLUMNS)), PERIOD, 1.0).T
+    return random.normal(size=(COLUMNS, len(tones))) @ tones + 0.3 * slow
+
+
+def log_of(columns: Array, missing: Array) -> MomentErrors:
+    """One row of Newton's law, the other five without a signal."""
+    both = np.concatenate([missing[None], columns])
+    rows = np.array([both, *(np.zeros((5, *both.shape)) + 1e-9 * both)])
+    products = np.array([part @ part.transpose(0, 2, 1) for part in np.array_split(rows, PARTS, axis=2)])
+    return MomentErrors(rows[:, 1:], rows[:, 0], products, np.zeros((6, COLUMNS, 0)), PERIOD, 0.4)
+
+
+def test_deviations_are_as_large_as_errors_where_many_columns_follow_few_frequencies() -> None:
+    """What such columns leave of the noise at those frequencies is a fraction of it: deviations from it were halved."""
+    random = np.random.default_rng(0)
+    columns, prior = swaying(random), np.full(COLUMNS, 3.0)
+    told = []
+    for _ in range(60):
+        noise = low_pass(random.normal(size=SAMPLES), PERIOD, 1.0)
+        values, parts = solved([log_of(columns, noise)], prior)
+        told.append(values / np.sqrt(np.diag(parts[0].covariance + parts[1].covariance)))
+    assert 0.6 < np.sqrt(np.mean(np.square(told))) < 1.2
+
+
+def test_a_walk_of_which_a_part_is_used_misses_what_its_columns_say() -> None:
+    """Two per cent more torque adds two per cent of the torques' own columns, and nothing at the ends of the part."""
+    robot, log = hrp2.robot(), checked(hrp2.robot(), walked())
+    names = [name for name in log.columns if name.startswith("wrench.") and ".torque." in name]
+    more = log.with_columns({name: 1.02 * log.column(name) for name in names})
+    found = []
+    for each in (log, more):
+        residual = newton_euler_residual(robot, each)
+        assert residual is not None
+        assert residual.kept.stop - residual.kept.start < len(log)
+        found.append((residual.kept, moment_errors(robot, residual, True)))
+    (kept, before), (same, after) = found
+    assert kept == same
+    channels = [pair for pair in np.ndindex(6, 6) if pair[0] >= 3 or pair[1] < 3]
+    own = 7 + len(channels)  # errors of one foot's sensor: gain, place, turn, channels
+    singles = [4 + foot * own + 7 + channels.index((k, k)) for foot in range(2) for k in (3, 4, 5)]
+    added = before.missing - after.missing - 0.02 * before.columns[:, singles].sum(axis=1)
+    assert np.sqrt(np.mean(added**2)) < 0.02 * np.sqrt(np.mean((before.missing - after.missing) ** 2))
+
+
+def test_steps_add_what_all_landings_share() -> None:
+    robot, log = hrp2.robot(), checked(hrp2.robot(), walked())
+    residual = newton_euler_residual(robot, log)
+    assert residual is not None
+    stood, stepped = (fit_moments(robot, [residual], names) for names in ((), (log.name,)))
+    assert stood is not None
+    assert stepped is not None
+    assert len(stepped.parts) == len(stood.parts) + 1
+    np.testing.assert_allclose(np.diag(stepped.parts[-1].covariance)[:5], [0.015**2] * 4 + [0.0])
