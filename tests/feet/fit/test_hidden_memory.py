@@ -77,16 +77,25 @@ def test_the_share_of_an_element_that_does_not_slip() -> None:
     assert slope_share(axis_of()) == 0.0
 
 
-def test_numbers_move_by_what_the_rival_makes_of_them_and_by_what_it_does_not_know() -> None:
+@pytest.mark.parametrize("steps", [False, True])
+def test_numbers_move_by_what_the_rival_makes_of_them_and_by_what_it_does_not_know(steps: bool) -> None:
     """100 N.m/rad and 6 N.m.s/rad apart, and the rival knows each to one."""
-    moved = moved_by_memory(replace(axis_of(("elastoplastic", OTHER, 0.6)), hidden_share=0.3))
+    moved = moved_by_memory(replace(axis_of(("elastoplastic", OTHER, 0.6)), hidden_share=0.3), steps=steps)
     np.testing.assert_allclose(moved, [np.hypot(100.0, 1.0), np.hypot(6.0, 1.0)])
 
 
 def test_without_a_rival_stiffness_moves_by_what_other_axes_show() -> None:
-    np.testing.assert_allclose(moved_by_memory(replace(axis_of(), hidden_share=0.3)), [150.0, 0.0])
+    np.testing.assert_allclose(
+        moved_by_memory(replace(axis_of(), hidden_share=0.3), steps=False), [150.0, 0.0]
+    )
 
 
 def test_without_a_caution_nothing_moves() -> None:
     fit = axis_of(("elastoplastic", OTHER, 0.95), caution=None)
-    np.testing.assert_array_equal(moved_by_memory(replace(fit, hidden_share=0.3)), [0.0, 0.0])
+    np.testing.assert_array_equal(moved_by_memory(replace(fit, hidden_share=0.3), steps=False), [0.0, 0.0])
+
+
+def test_in_short_stances_a_rival_counts_only_where_another_axis_shows_a_memory() -> None:
+    fit = axis_of(("elastoplastic", OTHER, 0.6))
+    assert moved_by_memory(fit, steps=False).all()
+    np.testing.assert_array_equal(moved_by_memory(fit, steps=True), [0.0, 0.0])

@@ -31,14 +31,17 @@ def slope_share(fit: AxisFit) -> float:
     return slope / (slope + abs(float(fit.values[0])))
 
 
-def moved_by_memory(fit: AxisFit) -> Array:
+def moved_by_memory(fit: AxisFit, *, steps: bool) -> Array:
     """How far stiffness and damping may be off (2,), where a caution says that a memory may be hidden.
 
     By as much as they are others beside the rival, as far as that is known; without one, stiffness by the share that
-    other axes' elements would make.
+    other axes' elements would make. Of a foot that `steps` only where other axes show a memory: in short stances, whose
+    first states nobody knows, some rival always comes near.
     """
     moved = np.zeros(len(BESIDE))
     if fit.choice is None or fit.choice.caution is None or _has_memory(fit.model):
+        return moved
+    if steps and not fit.hidden_share:
         return moved
     if (found := rival(fit)) is not None:
         both = slice(len(BESIDE))

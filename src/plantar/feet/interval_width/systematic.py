@@ -82,7 +82,7 @@ def systematic_causes(
             sensor_delay.freedom,
         ),
         Cause("moment arm", moved_by(moment_arms), vertical.compliance_std[foot], vertical.freedom),
-        *_hidden_memory(fit),
+        *_hidden_memory(fit, steps=blocks[0].stances is not None),
     ]
     if blocks[0].stances is not None:
         # The zeros were read in the air, and within a stance no cube is told from how a sole lands and lifts.
@@ -170,9 +170,9 @@ def _shared_slope(fit: AxisFit, recordings: Sequence[Recording]) -> list[Cause]:
     return [Cause("memory in stances", effect, unsure)]
 
 
-def _hidden_memory(fit: AxisFit) -> list[Cause]:
+def _hidden_memory(fit: AxisFit, *, steps: bool) -> list[Cause]:
     """What spring and damper may have taken from a memory that the motions do not show well enough."""
-    moved = moved_by_memory(fit)
+    moved = moved_by_memory(fit, steps=steps)
     if not moved.any():
         return []
     effect = np.zeros(len(fit.values))
