@@ -38,8 +38,8 @@ SENSOR_FAULTS = (
         ("sensors/test_moment_balance.py",),
     ),
     Mutant(
-        "sensors/moment_errors.py", "the noise of readings is arms", "share * _products(noise", "0 * share * _products(noise",
-        ("sensors/test_moment_balance.py",),
+        "sensors/moment_errors.py", "the noise of readings is arms", "share * _products(noise",
+        "0 * share * _products(noise", ("sensors/test_moment_balance.py",),
     ),
     Mutant(
         "robot_guess/passive.py", "a foot may push the way it tilts",
