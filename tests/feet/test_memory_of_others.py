@@ -145,3 +145,11 @@ def test_motions_too_small_to_make_the_others_slip_exclude_nothing(
     harder = of(replace(small, model=Hardening()), clear, recordings)  # nor does it of a spring that hardens
     assert harder.choice is not None
     assert harder.choice.caution is not None
+
+
+def test_a_spring_that_hardens_elsewhere_is_no_memory(
+    recordings: list[Recording], clear: AxisFit, spring: AxisFit
+) -> None:
+    hardens = replace(clear, model=Hardening())
+    unsure = changed(spring, refused="is hardly reached")
+    assert of(unsure, hardens, recordings) is unsure

@@ -14,7 +14,7 @@ import numpy as np
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.fit.half_turns import cautioned_if_hardly_turned
-from plantar.feet.fit.hidden_memory import slope_share
+from plantar.feet.fit.hidden_memory import has_memory, slope_share
 from plantar.feet.foot_fit import FittedFoot
 from plantar.feet.internal_error import gives_up
 from plantar.model_selection.selection import ModelChoice, ModelScore
@@ -34,7 +34,7 @@ def with_memory_of_others(feet: Mapping[str, FittedFoot]) -> dict[str, FittedFoo
     small for its memory.
     """
     every = [fit for one in feet.values() for fit in one.fits.values()]
-    shown = {fit.model.name for fit in every if fit.model.remembers}
+    shown = {fit.model.name for fit in every if has_memory(fit.model)}
     share = max((slope_share(fit) for fit in every), default=0.0)
     slips = min((_slip_angle(fit) for fit in every), default=np.inf)
     found = {}

@@ -14,6 +14,7 @@ from plantar.feet.assess.left_out import why_unseen
 from plantar.feet.assess.residual_table import Predictions
 from plantar.feet.assess.verdicts import Evidence, judge, judge_term
 from plantar.feet.fit.axis import AxisFit
+from plantar.feet.fit.hidden_memory import has_memory
 from plantar.feet.recording import Recording
 from plantar.models import KelvinVoigt
 from plantar.results.feet import Parameter, ValidationRow
@@ -90,5 +91,5 @@ def _evidence(fit: AxisFit, recordings: Sequence[Recording], predictions: Predic
         float(np.sqrt(moved / max(samples, 1))),
         1 - missed / varied if varied else 0.0,
         damping < 0,
-        leaning=leans / loaded if fit.model.remembers and fit.model.fading_memory and loaded else 0.0,
+        leaning=leans / loaded if has_memory(fit.model) and loaded else 0.0,
     )

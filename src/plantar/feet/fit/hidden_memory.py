@@ -10,14 +10,19 @@ from plantar.model_selection.selection import ModelScore
 from plantar.models import BESIDE, BushModel, KelvinVoigt
 
 
+def has_memory(model: BushModel) -> bool:
+    """Whether the torque depends on where the bush came from; what a spring that hardens does not know is a zero."""
+    return model.remembers and model.fading_memory
+
+
 def rival(fit: AxisFit) -> ModelScore | None:
     """The best model of a passive bush with a memory that predicts held-out motion better than spring and damper, which
     were kept."""
-    if fit.choice is None or _has_memory(fit.model):
+    if fit.choice is None or has_memory(fit.model):
         return None
     spring = next(score for score in fit.choice.ranking if isinstance(score.model, KelvinVoigt))
     better = (score for score in fit.choice.ranking if score.held_out_rms < spring.held_out_rms)
-    remembering = (score for score in better if _has_memory(score.model))
+    remembering = (score for score in better if has_memory(score.model))
     return next((score for score in remembering if score.model.possible(score.fit.values)), None)
 
 
@@ -39,7 +44,7 @@ def moved_by_memory(fit: AxisFit, *, steps: bool) -> Array:
     first states nobody knows, some rival always comes near.
     """
     moved = np.zeros(len(BESIDE))
-    if fit.choice is None or fit.choice.caution is None or _has_memory(fit.model):
+    if fit.choice is None or fit.choice.caution is None or has_memory(fit.model):
         return moved
     if steps and not fit.hidden_share:
         return moved
@@ -50,8 +55,3 @@ def moved_by_memory(fit: AxisFit, *, steps: bool) -> Array:
         )
     moved[0] = fit.hidden_share * abs(float(fit.values[0]))
     return moved
-
-
-def _has_memory(model: BushModel) -> bool:
-    """Whether the torque depends on where the bush came from; what a spring that hardens does not know is a zero."""
-    return model.remembers and model.fading_memory
