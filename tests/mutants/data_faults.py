@@ -78,8 +78,8 @@ DATA_FAULTS = (
         "0.0 * float(np.mean(fit.residuals", ("feet/fit/test_bush_place.py",),
     ),
     Mutant(
-        "feet/fit/regression_data.py", "drift is a line", "drift = drift_beside(deflection, recording.drift(foot))",
-        "drift = drift_beside(deflection, recording.drift(foot))[:, :1]", ("feet/fit/test_regression_data.py",),
+        "feet/fit/regression_data.py", "drift is a line", "return drift_beside(deflection, recording.drift(foot))",
+        "return drift_beside(deflection, recording.drift(foot))[:, :1]", ("feet/fit/test_regression_data.py",),
     ),
     Mutant(
         "feet/memory_of_others.py", "a memory is made up", "s.refused is None and s.model.name in shown), None)",
@@ -100,8 +100,16 @@ DATA_FAULTS = (
         ("feet/fit/test_worth.py",),
     ),
     Mutant(
-        "feet/fit/cautions.py", "a spring is believed in small motions", "choice.reach >= SMALL", "choice.reach >= 0.0",
-        ("feet/fit/test_cautions.py",),
+        "feet/fit/angle_drift.py", "a drift is the other way round", "-(slow @", "(slow @",
+        ("feet/fit/test_angle_drift.py",),
+    ),
+    Mutant(
+        "model_selection/data_sets.py", "a drift stays on the path", "path.deflection - data_set.drift",
+        "path.deflection", ("feet/fit/test_angle_drift.py",),
+    ),
+    Mutant(
+        "feet/fit/hidden_memory.py", "a spring is believed in small motions", "choice.reach >= SMALL",
+        "choice.reach >= 0.0", ("feet/fit/test_cautions.py",),
     ),
     Mutant(
         "feet/imu_of_steps.py", "the IMU's turn has no prior", "np.eye(3) / mount**2", "np.eye(3) * mount**2",

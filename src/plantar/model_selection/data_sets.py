@@ -51,7 +51,8 @@ class StepColumns:
 class DataSet:
     """One axis of one foot over one recording: wide-band `motion` and `torque` (N,), and the used samples.
 
-    Both sides unfiltered, or filtered alike well above the fit's cutoff.
+    Both sides unfiltered, or filtered alike well above the fit's cutoff. `drift` (N,) is taken off the path that a
+    memory follows, and off nothing else.
     """
 
     label: str
@@ -59,6 +60,7 @@ class DataSet:
     torque: Array
     used: Mask
     steps: StepColumns | None = None
+    drift: Array | None = None
 
     @property
     def shortest_run(self) -> int:
@@ -84,7 +86,8 @@ class DataSet:
         thin = BushMotion(path[::stride, 0], path[::stride, 1], period * stride, across, across_rate)
         smooth = low_pass(torque, period, band, self.shortest_run)[::stride]
         steps = None if self.steps is None else self.steps.thinned(stride)
-        return DataSet(self.label, thin, smooth, self.used[::stride], steps)
+        drift = None if self.drift is None else self.drift[::stride]
+        return DataSet(self.label, thin, smooth, self.used[::stride], steps, drift)
 
 
 @dataclass(frozen=True)
@@ -127,6 +130,8 @@ class FilteredDataSet:
         away = np.where(known, 0.0, np.nan)
         quick = replace(motion, deflection=motion.deflection + away, rate=motion.rate + away)
         path = slow if data_set.steps is None else quick
+        if data_set.drift is not None:
+            path = replace(path, deflection=path.deflection - data_set.drift)
         used = data_set.used & known
         own = None
         if drift and data_set.steps is None:

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from plantar.feet.fit.cautions import SMALL, UNTIMED, cautioned, may_hide_a_memory
+from plantar.feet.fit.hidden_memory import SMALL, UNTIMED, cautioned, may_hide_a_memory
 from plantar.model_selection.selection import ModelChoice
 from plantar.models import MODELS, BushMotion
 

@@ -7,7 +7,7 @@ import pytest
 
 from made_recording import FOOT, PERIOD, made_recording, swayed
 from plantar.feet.fit.axis import FittedModel
-from plantar.feet.fit.initial_state import unseen_initial_states
+from plantar.feet.fit.prediction import unseen_initial_states
 from plantar.feet.recording import Recording
 from plantar.models import BushMotion, Elastoplastic, KelvinVoigt
 

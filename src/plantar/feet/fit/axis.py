@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Self
+from typing import NamedTuple, Self
 
 import numpy as np
 
@@ -12,6 +12,17 @@ from plantar.conventions import Array, Axis
 from plantar.model_selection.selection import ModelChoice
 from plantar.models import BushModel
 from plantar.notes import Note
+
+
+class AngleDrift(NamedTuple):
+    """What is off a memory's path, `angle` (n,) [rad] at times `time` (n,) [s] of a recording: see `angle_drift`."""
+
+    time: Array
+    angle: Array
+
+    def at(self, time: Array) -> Array:
+        """The angle at other times (N,)."""
+        return np.interp(time, self.time, self.angle)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -22,8 +33,8 @@ class FittedModel:
     force sensor is turned about the vertical, so that the other axis' torque shows in this one; `leans` [rad]: about
     the other axis, so that the yaw torque does; `imu_turned` [rad]: by how much the IMU is turned about each of its
     axes, as far as that shows while joints between it and the foot move.
-    Of the recordings that were fitted: `offsets` [N.m], and `initial_states` of the model's memory in each recording's
-    runs.
+    Of the recordings that were fitted: `offsets` [N.m], `initial_states` of the model's memory in each recording's
+    runs, and the `drifts` that its path is without.
     """
 
     foot: str
@@ -37,6 +48,7 @@ class FittedModel:
     imu_turned: tuple[float, float, float] = (0.0, 0.0, 0.0)
     offsets: Mapping[str, float] = field(default_factory=dict)
     initial_states: Mapping[str, Array] = field(default_factory=dict)
+    drifts: Mapping[str, AngleDrift] = field(default_factory=dict)
 
     @property
     def names(self) -> tuple[str, ...]:

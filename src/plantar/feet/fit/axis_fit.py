@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -12,14 +11,14 @@ from plantar.estimation import Block, LinearFit, fit_blocks
 from plantar.estimation.stance_problem import StanceProblem
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.bush_place import PlaceSpread, about_its_place
-from plantar.feet.fit.cautions import cautioned, may_hide_a_memory
-from plantar.feet.fit.corrections import about_true_zero, over_stances, unattenuated, with_best_offsets
-from plantar.feet.fit.load_torque import load_torque
+from plantar.feet.fit.corrections import about_true_zero, unattenuated, with_best_offsets
+from plantar.feet.fit.hidden_memory import cautioned, may_hide_a_memory
+from plantar.feet.fit.memory_fit import about_its_centre, data_sets_about, placed_as, standing
 from plantar.feet.fit.regression_data import blocks_of, data_set_of
 from plantar.feet.recording import Recording
 from plantar.feet.settings import AUTOMATIC, FeetSettings
 from plantar.model_selection.data_sets import DataSet
-from plantar.model_selection.model_fit import ModelFit, fit_again, fit_model
+from plantar.model_selection.model_fit import ModelFit, fit_model
 from plantar.model_selection.selection import LEAST_GAIN, ModelChoice, choose_model
 from plantar.models import MODELS, BushModel, KelvinVoigt
 
@@ -34,7 +33,6 @@ CANDIDATES_IN_STANCES = ("kelvin_voigt", "elastoplastic")
 LEAST_GAIN_IN_STANCES = (
     0.5  # of the held-out rms error: states that are free in every stance take up much by themselves
 )
-CENTRE_ROUNDS = 2  # of finding memory and centre in turn
 PLACE_EXPLAINS = 0.5  # of the squares that spring and damper miss: what is left of them about another place
 CANDIDATES = (
     "kelvin_voigt", "hardening", "coulomb", "elastoplastic", "hardening_elastoplastic", "bouc_wen",
@@ -90,15 +88,14 @@ def _fitted(
     placed = _of_linear(foot, axis, linear, None, "")
     if place is not None and not steps:
         placed = _where_a_spring_turns(placed, fitted, place, shared)
-        data_sets = _about(fitted, placed)
+        data_sets = data_sets_about(fitted, placed)
     cutoff = fitted[0].cutoff
 
     def found(fit: ModelFit, choice: ModelChoice | None, reason: str) -> AxisFit:
         spring = _of_linear(foot, axis, linear, choice, reason)
         if steps:
-            return _about_its_centre(spring, fit, fitted, share)
-        begun = _placed_as(spring, placed)
-        return _with_model(begun, fit) if place is None else _with_place(begun, fit, fitted, place, shared)
+            return about_its_centre(spring, fit, fitted, share)
+        return standing(placed_as(spring, placed), fit, fitted, place, shared)
 
     if asked is not None:
         return found(fit_model(asked, data_sets, cutoff, shared_offset=shared), None, "asked for")
@@ -137,46 +134,6 @@ def _where_a_spring_turns(
         )
     ]
     return moved if missed[1] < PLACE_EXPLAINS * missed[0] else spring
-
-
-def _about(recordings: Sequence[Recording], fit: AxisFit) -> list[DataSet]:
-    """The data sets with the IMU's turn put right, and without the torque that a fit found not to be the bush's."""
-    found = []
-    for recording in recordings:
-        data_set = data_set_of(recording, fit.foot, fit.axis, imu_turned=fit.imu_turned)
-        found.append(replace(data_set, torque=data_set.torque - load_torque(recording, fit)))
-    return found
-
-
-def _placed_as(fit: AxisFit, other: AxisFit) -> AxisFit:
-    """A fit about the place that another one found."""
-    return replace(fit, moment_arms=other.moment_arms, turned=other.turned, imu_turned=other.imu_turned)
-
-
-def _with_place(
-    linear: AxisFit, fit: ModelFit, recordings: Sequence[Recording], place: PlaceSpread, shared: bool
-) -> AxisFit:
-    """A richer model of a standing foot and the bush's place, found in turn: each changes with the other."""
-    found = _with_model(linear, fit)
-    for _ in range(CENTRE_ROUNDS):
-        moved = about_its_place(found, recordings, place, shared)
-        fit = fit_again(fit, _about(recordings, moved))
-        linear = _placed_as(linear, moved)
-        found = _with_model(linear, fit)
-    return found
-
-
-def _about_its_centre(
-    linear: AxisFit, fit: ModelFit, recordings: Sequence[Recording], share: float
-) -> AxisFit:
-    """A fit of stances whose memory is found about the bush's centre; where that is, the linear parameters tell."""
-    found = over_stances(_with_model(linear, fit), recordings)
-    for _ in range(CENTRE_ROUNDS):
-        place = found.place[1:]
-        data_sets = [data_set_of(each, linear.foot, linear.axis, share, *place) for each in recordings]
-        fit = fit_again(fit, data_sets)
-        found = over_stances(_with_model(linear, fit), recordings)
-    return found
 
 
 def _explained(fit: LinearFit, blocks: Sequence[Block]) -> float:
@@ -228,19 +185,3 @@ def _of_linear(foot: str, axis: Axis, fit: LinearFit, choice: ModelChoice | None
         reason=reason,
     )
     return spring.at_place(fit.common_nuisance) if fit.common_nuisance.size else spring
-
-
-def _with_model(linear: AxisFit, fit: ModelFit) -> AxisFit:
-    """The fit of a richer model in place of the linear one, whose stiffness and damping stay as its equivalent."""
-    return replace(
-        linear,
-        model=fit.model,
-        values=fit.values,
-        shape=fit.shape,
-        offsets=fit.offsets,
-        initial_states=fit.initial_states,
-        covariance=fit.covariance,
-        freedom=fit.freedom,
-        white_std=fit.white_std,
-        offset_std=fit.offset_std,
-    )

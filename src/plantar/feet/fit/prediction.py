@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from plantar.conventions import ROTATIONAL_AXES, Array, Mask
 from plantar.feet.fit.axis import FittedModel
-from plantar.feet.fit.initial_state import unseen_initial_states
 from plantar.feet.fit.load_torque import load_torque
-from plantar.feet.fit.regression_data import model_columns
+from plantar.feet.fit.regression_data import model_columns, motion_of
 from plantar.feet.recording import Recording
+from plantar.model_selection.initial_state import initial_states_of
 from plantar.results.scores import first_second
 
 
@@ -70,3 +70,20 @@ def _by_stance(values: Array, used: Mask, number: NDArray[np.intp]) -> Array:
         own = number == stance
         means[own] = np.mean(values[own & used])
     return means
+
+
+def unseen_initial_states(fitted: FittedModel, recording: Recording, first: Mask) -> Array | None:
+    """The state (runs,) at the start of each run of an unseen recording; None for models without memory.
+
+    first: (N,), the samples that show the recording's offset.
+    """
+    foot, axis = fitted.foot, fitted.axis
+    motion = motion_of(recording, foot, axis, fitted.imu_turned)
+    if not fitted.model.remembers or not motion.runs or not first.any():
+        return None
+    measured = recording.bushes[foot].torque[:, ROTATIONAL_AXES.index(axis)]
+    torque = measured - load_torque(recording, fitted)
+    used = recording.used(foot)
+    return initial_states_of(
+        fitted.model, fitted.values, fitted.shape, motion, torque, used, first, recording.cutoff
+    )

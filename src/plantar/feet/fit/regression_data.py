@@ -12,7 +12,7 @@ from plantar.estimation import Block
 from plantar.estimation.blocks import StanceRows
 from plantar.estimation.orthonormal import orthonormal
 from plantar.estimation.slow_drift import drift_beside
-from plantar.feet.fit.axis import AxisFit, FittedModel
+from plantar.feet.fit.axis import AngleDrift, AxisFit, FittedModel
 from plantar.feet.fit.load_torque import across_force, load_of, load_torque, step_columns, yaw_torque
 from plantar.feet.recording import SHORTEST_STANCE_RUN, Recording
 from plantar.model_selection.data_sets import DataSet, StepColumns
@@ -116,13 +116,18 @@ def _nuisance(recording: Recording, foot: str, column: int, fit: AxisFit | None)
     """Orthonormal columns (n, m) of one recording alone; None where a foot steps: its offsets follow any drift."""
     if recording.stances[foot] is not None:
         return None
-    used = recording.rows(foot)
-    deflection = recording.bushes[foot].deflection[used, column]
-    drift = drift_beside(deflection, recording.drift(foot))
+    drift = drift_columns(recording, foot, column)
+    deflection = recording.bushes[foot].deflection[recording.rows(foot), column]
     if fit is None or not fit.model.zero_matters:
         return drift
     square = deflection**2
     return np.hstack([drift, orthonormal((square - square.mean())[:, None], drift)])
+
+
+def drift_columns(recording: Recording, foot: str, column: int) -> Array:
+    """Orthonormal columns (n, m) of what drifts slowly, at the used samples of a foot that stands."""
+    deflection = recording.bushes[foot].deflection[recording.rows(foot), column]
+    return drift_beside(deflection, recording.drift(foot))
 
 
 def _stance_rows(recording: Recording, foot: str) -> StanceRows:
@@ -143,6 +148,8 @@ def model_columns(
     if fit is None or isinstance(fit.model, KelvinVoigt):
         return linear
     path = path_of(recording, foot, axis, imu_turned)
+    if (drift := fit.drifts.get(recording.name)) is not None:
+        path = replace(path, deflection=path.deflection - drift.at(recording.time))
     initial_states = fit.initial_states.get(recording.name) if initial_states is None else initial_states
     if initial_states is None or len(initial_states) != len(path.runs):
         initial_states = fit.model.initial_states(path, fit.shape)
@@ -204,17 +211,20 @@ def data_set_of(
     turned: float = 0.0,
     leans: float = 0.0,
     imu_turned: Turn = UNTURNED,
+    drift: AngleDrift | None = None,
 ) -> DataSet:
     """One recording of one axis, as the models take it.
 
-    `imu_turned`: as in `motion_of`. Of a foot that steps: `own_share` of the offsets of stances is their own; the
-    bush's centre is `above` its place in the robot file [m], the force sensor `turned` about the vertical, and `leans`
-    about the other axis [rad].
+    `imu_turned`: as in `motion_of`; of a foot that stands: the `drift` of its angle. Of a foot that steps: `own_share`
+    of the offsets of stances is their own; the bush's centre is `above` its place in the robot file [m], the force
+    sensor `turned` about the vertical, and `leans` about the other axis [rad].
     """
     column, stances = ROTATIONAL_AXES.index(axis), recording.stances[foot]
     torque, used = recording.bushes[foot].torque[:, column], recording.used(foot)
     if stances is None:
-        return DataSet(recording.name, motion_of(recording, foot, axis, imu_turned), torque, used)
+        drifted = None if drift is None else drift.at(recording.time)
+        motion = motion_of(recording, foot, axis, imu_turned)
+        return DataSet(recording.name, motion, torque, used, drift=drifted)
     steps = StepColumns(stances.number, load_of(recording, foot)[:, None], own_share)
     raw = recording.raw[foot].torque
     measured = raw[:, column] - above * across_force(recording, foot, column) - turned * raw[:, 1 - column]

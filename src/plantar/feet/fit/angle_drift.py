@@ -1,0 +1,73 @@
+"""How an attitude drifts, as a memory feels it.
+
+An angle that drifts by d adds -K d to a spring's torque, which slow columns of each recording take up. An element slips
+by the angle itself: where motions hardly make it slip, half a milliradian moves a tenth of the stiffness from the
+spring to the element or back. So the slow torque that a fit leaves is read as a drift of the angle, and the fit made
+again with it off the path that the memory follows. A torque whose zero drifts looks the same and is read the same way:
+attitudes drift by far more.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from plantar.conventions import ROTATIONAL_AXES, Array
+from plantar.estimation import effect_of
+from plantar.feet.fit.axis import AngleDrift, AxisFit
+from plantar.feet.fit.regression_data import blocks_of, drift_columns, model_columns, tangent_blocks
+from plantar.feet.recording import Recording
+
+ROUNDS = 6
+HALFWAY = 0.5  # from one round's drift to the next: fit and drift answer each other with the opposite, nearly as large
+NEGLIGIBLE = 0.1  # of a deviation
+
+
+def beside_drift(
+    fit: AxisFit, recordings: Sequence[Recording], again: Callable[[AxisFit], AxisFit]
+) -> AxisFit:
+    """A memory's fit to a foot that stands, the drifts off its path where they matter; `again` fits beside them."""
+    for _ in range(ROUNDS):
+        drifts = {
+            name: _halfway(fit.drifts.get(name), drift) for name, drift in _drifts(fit, recordings).items()
+        }
+        if not _matters(fit, recordings, drifts):
+            break
+        fit = again(replace(fit, drifts=drifts))
+    return fit
+
+
+def _halfway(before: AngleDrift | None, now: AngleDrift) -> AngleDrift:
+    angle = 0.0 if before is None else before.angle
+    return now._replace(angle=angle + HALFWAY * (now.angle - angle))
+
+
+def _drifts(fit: AxisFit, recordings: Sequence[Recording]) -> dict[str, AngleDrift]:
+    """By recording, the drift of the angle that would add the slow torque which a fit leaves."""
+    by_name = {recording.name: recording for recording in recordings}
+    found = {}
+    for block in blocks_of(recordings, fit.foot, fit.axis, fit=fit):
+        recording = by_name[block.label]
+        missed = block.response - block.regressor @ fit.values
+        slow = drift_columns(recording, fit.foot, ROTATIONAL_AXES.index(fit.axis))
+        times = recording.time[recording.rows(fit.foot)]
+        found[block.label] = AngleDrift(times, -(slow @ (slow.T @ missed)) / fit.values[0])
+    return found
+
+
+def _matters(fit: AxisFit, recordings: Sequence[Recording], drifts: Mapping[str, AngleDrift]) -> bool:
+    """Whether a number of the fit would move by a share of its deviation with other drifts."""
+    by_name = {recording.name: recording for recording in recordings}
+    other, blocks = replace(fit, drifts=drifts), tangent_blocks(recordings, fit)
+
+    def torque(recording: Recording, one: AxisFit) -> Array:
+        columns = model_columns(recording, fit.foot, fit.axis, one)
+        return np.asarray((columns @ fit.values)[recording.rows(fit.foot)])
+
+    changes = [
+        np.nan_to_num(torque(by_name[block.label], other) - torque(by_name[block.label], fit))
+        for block in blocks
+    ]
+    return bool((np.abs(effect_of(blocks, changes)) > NEGLIGIBLE * fit.std).any())
