@@ -346,5 +346,5 @@ NB_MODULE(_core, m) {
   m.def("stacked", &stacked, nb::arg("factors"), nb::arg("onto"), nb::arg("weights"), nb::arg("n"));
   m.def("inverse_upper", &inverse_upper, nb::arg("upper"));
   bind_drift(m), bind_estimator(m), bind_low_pass(m);
-  bind_stepping(m);
+  bind_stepping(m), bind_stop_operator(m);
 }

@@ -2,6 +2,9 @@
 
 from collections.abc import Sequence
 
+import numpy as np
+from numpy.typing import NDArray
+
 from plantar.conventions import Array
 
 def instruction_sets() -> list[str]: ...
@@ -106,7 +109,10 @@ class FootEstimator:
         latency: Array,
     ) -> None: ...
 
-def low_pass(values: Array, cutoff: float, padding: int) -> Array: ...
+def low_pass(values: Array, cutoff: float, padding: int, every: int = 1) -> Array: ...
+def stop_operator(
+    direction: Array, length: Array, branch: NDArray[np.int64], travelled: Array, slip: Array, start: Array
+) -> Array: ...
 def inverse_upper(upper: Array) -> Array: ...
 
 STEPPING_SOURCE: str

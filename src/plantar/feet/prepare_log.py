@@ -16,6 +16,7 @@ from plantar.conventions import FORCE, GRAVITY, Array
 from plantar.errors import RobotError, located
 from plantar.feet.recording import Recording, Role
 from plantar.feet.settings import DEFAULT_CUTOFF
+from plantar.logs.freed_memory import return_freed
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding, Note
 from plantar.robot.model import Imu, RobotModel
@@ -49,6 +50,7 @@ def checked(robot: RobotModel, log: MotionLog, findings: Sequence[Finding] | Non
     findings = check_log(robot, log) if findings is None else findings
     refuse_impossible(log, findings)
     odd = finding_notes(log, findings)
+    return_freed()
     even = without_spikes(without_holes(without_held(without_dropouts(evenly_sampled(log)))))
     on_time = thinned(with_gyroscope_on_time(even, imu.name))
     return on_time.with_columns({}, *log.joint_notes(robot), *odd)

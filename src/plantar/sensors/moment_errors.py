@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from itertools import chain, islice
 
 import numpy as np
 import pinocchio as pin
@@ -13,7 +15,8 @@ from plantar.dynamics.inertial_motion import inertial_motion, turned_motions
 from plantar.dynamics.motion import Motion
 from plantar.robot.model import Foot, RobotModel
 from plantar.sensors.load_errors import LEAST_GAIN
-from plantar.sensors.newton_euler import BASE_ROWS, CUTOFF, NewtonEulerResidual, predicted_errors
+from plantar.sensors.model_errors import drawn_parameter_errors
+from plantar.sensors.newton_euler import BASE_ROWS, CUTOFF, NewtonEulerResidual, each_predicted_error
 from plantar.sensors.newton_sides import SLOW
 from plantar.signals.filters import gain, low_pass
 
@@ -25,7 +28,7 @@ BAND = 2.0  # Hz: the robot moves below it, and most of the sensors' noise is ab
 LATE = 0.02  # s, of feet's sensors, encoders and gyroscope behind the accelerometer
 MOUNT = 0.1  # rad, by which sensors and IMU may be turned: wide, so that no turned mount passes for a gain
 KEPT_PER_BAND = 5.0  # samples for each period of BAND: far above what has passed the filter
-TOGETHER = 96  # columns that are filtered at once
+TOGETHER = 8  # signals that are filtered at once
 TURN = 0.01  # rad, of the IMU, for the slope of what it predicts
 
 
@@ -61,26 +64,45 @@ def moment_errors(robot: RobotModel, residual: NewtonEulerResidual, steps: bool)
     by_gyroscope, by_mount = _imu_slopes(robot, residual)
     slopes = [*-by_mount, *residual.rates, residual.by_encoders, -by_gyroscope]
     pair, period, count = residual.pair, residual.pair.period, len(readings) + len(slopes)
-    noisy = 6 * (1 + len(readings))
-    errors = predicted_errors(robot, inertial_motion(robot, residual.signals, residual.kept))
-    every = np.hstack([pair.predicted - pair.measured - residual.taken, *readings, *slopes, *errors])
-    del readings, slopes, errors
-    # One group of columns after the other: a copy of all at once would be the largest array of any log.
-    for first in range(6, every.shape[1], TOGETHER):
-        some = every[:, first : first + TOGETHER]
-        some -= low_pass(some, period, SLOW)  # what postures and drifting zeros do to them
+    missing = pair.predicted - pair.measured - residual.taken
+    motion, drawn = inertial_motion(robot, residual.signals, residual.kept), drawn_parameter_errors(robot)
+    del residual  # and the motion of all samples that it came from
+    every = _quick(chain([missing], readings, slopes, each_predicted_error(robot, motion, drawn)), period)
+    samples, signals = len(missing), 1 + count + len(drawn)
     if steps:
-        return _errors(_by_row(every), count, period, CUTOFF)
+        rows = np.empty((6, signals, samples))
+        for first, some in every:
+            _put(rows, first, some)
+        return _errors(rows, count, period, CUTOFF)
     # Slopes are smooth: their noise is not white, and small below BAND.
-    stride = max(1, round(1 / (KEPT_PER_BAND * BAND * period)))
-    read = low_pass(every[:, :noisy], period, BAND)
-    noise = _by_row(every[:, :noisy] - read)
-    slow = np.hstack([read[::stride], low_pass(every[:, noisy:], period, BAND)[::stride]])
-    del every, read
-    found = _errors(_by_row(slow), count, stride * period, BAND)
+    stride, noisy = max(1, round(1 / (KEPT_PER_BAND * BAND * period))), 1 + len(readings)
+    slow, noise = np.empty((6, signals, -(-samples // stride))), np.empty((6, noisy, samples))
+    for first, some in every:
+        read = low_pass(some, period, BAND)
+        _put(slow, first, read[::stride])
+        if first < noisy:
+            _put(noise, first, (some - read)[:, : 6 * (noisy - first)])
+    found = _errors(slow, count, stride * period, BAND)
     share = _below_to_above(period) / stride
-    found.products[:, : noisy // 6, : noisy // 6] -= share * (noise @ noise.transpose(0, 2, 1))
+    found.products[:, :noisy, :noisy] -= share * (noise @ noise.transpose(0, 2, 1))
     return found
+
+
+def _quick(signals: Iterable[Array], period: float) -> Iterator[tuple[int, Array]]:
+    """Signals (n, 6) without what postures and drifting zeros do to them, but for the first: some at a time, (n, 6 s),
+    with the number of the first of these. All at once they would be the largest array of any log.
+    """
+    rest, first = iter(signals), 1
+    yield 0, next(rest)
+    while some := [*islice(rest, TOGETHER)]:
+        rows = np.hstack(some)
+        yield first, rows - low_pass(rows, period, SLOW)
+        first += len(some)
+
+
+def _put(rows: Array, first: int, some: Array) -> None:
+    """Write signals (n, 6 s) into (6, k, n), the rows of Newton's law apart, from the `first` of the k on."""
+    rows[:, first : first + some.shape[1] // 6] = some.reshape(len(some), -1, 6).transpose(2, 1, 0)
 
 
 def _errors(rows: Array, count: int, period: float, band: float) -> MomentErrors:
@@ -89,11 +111,6 @@ def _errors(rows: Array, count: int, period: float, band: float) -> MomentErrors
     products, wrong = columns @ columns.transpose(0, 2, 1), columns[:, 1:] @ drawn.transpose(0, 2, 1)
     # A filtered signal has two independent samples in a period of its cutoff.
     return MomentErrors(columns[:, 1:], columns[:, 0], products, wrong, period, 2 * band * period)
-
-
-def _by_row(signals: Array) -> Array:
-    """Signals (n, 6 k) as (6, k, n): the rows of Newton's law apart."""
-    return np.ascontiguousarray(signals.reshape(len(signals), -1, 6).transpose(2, 1, 0))
 
 
 def prior_deviations(robot: RobotModel) -> Array:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -115,8 +116,11 @@ def newton_euler_residual(robot: RobotModel, log: MotionLog) -> NewtonEulerResid
         return equation.inverse_dynamics(motion, parameters)[BASE_ROWS].T
 
     step = log.period
-    late, early = (inertial_motion(robot, signals, kept, encoders_late=by) for by in (step, -step))
-    by_encoders = (predicted_by(late) - predicted_by(early)) / (2 * step)
+    ends = [predicted_by(inertial_motion(robot, signals, kept, encoders_late=by)) for by in (step, -step)]
+    by_encoders = (ends[0] - ends[1]) / (2 * step)
+    signals = replace(
+        signals
+    )  # a copy holds no differences yet: of long logs, and of all together, these are large
     contacts = [Contact(*robot.frame(foot.wrench.placement)) for foot in robot.feet.values()]
     transfers = [equation.base_transfer(motion.positions, contact) for contact in contacts]
     predicted, by_encoders = moving([predicted_by(motion), by_encoders], period)
@@ -126,7 +130,6 @@ def newton_euler_residual(robot: RobotModel, log: MotionLog) -> NewtonEulerResid
         return None
     calm = found.calm
     pair = replace(found.pair, model_errors=predicted_errors(robot, motion.select(calm), DELAY_DRAWS))
-    # A copy of the signals holds no differences yet: of all logs together these are large.
     start, stop, _ = calm.indices(len(range(*kept.indices(len(log)))))
     return NewtonEulerResidual(
         pair,
@@ -135,7 +138,7 @@ def newton_euler_residual(robot: RobotModel, log: MotionLog) -> NewtonEulerResid
         by_encoders[calm],
         found.taken,
         loads.readings[calm],
-        replace(signals),
+        signals,
         slice(kept.start + start * stride, kept.start + stop * stride, stride),
         parameters,
     )
@@ -151,9 +154,20 @@ def _longest_known(robot: RobotModel, signals: InertialSignals, wrenches: Array)
 
 def predicted_errors(robot: RobotModel, motion: Motion, draws: int | None = None) -> Array:
     """What inertial parameters as wrong as the robot file allows would add to the prediction, (draws, n, 6)."""
-    equation, drawn = Equation(robot.floating_model), drawn_parameter_errors(robot)[:draws]
-    errors = [equation.inverse_dynamics(motion, one)[BASE_ROWS].T for one in drawn]
-    return np.array(errors).reshape(len(errors), len(motion.positions), 6)
+    drawn = drawn_parameter_errors(robot)[:draws]
+    errors = np.empty((len(drawn), len(motion.positions), 6))
+    for own, error in zip(errors, each_predicted_error(robot, motion, drawn), strict=True):
+        own[:] = error
+    return errors
+
+
+def each_predicted_error(robot: RobotModel, motion: Motion, drawn: Iterable[Array]) -> Iterator[Array]:
+    """What each of `drawn` errors of inertial parameters would add to the prediction, one after the other, (n, 6)."""
+    equation = Equation(robot.floating_model)
+    for parameters in drawn:
+        yield np.ascontiguousarray(
+            equation.inverse_dynamics(motion, parameters)[BASE_ROWS].T
+        )  # no view of all rows
 
 
 def _struck(robot: RobotModel, wrenches: Array, period: float) -> Mask:
