@@ -234,6 +234,28 @@ nb::ndarray<nb::numpy, double> inverse_dynamics(const TreeObject& object, const 
   return owned(data.release(), {rows, n});
 }
 
+// (sets, N, 6) of a floating base; parameters: (sets, 10 links).
+nb::ndarray<nb::numpy, double> base_wrenches(
+    const TreeObject& object, const nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>& parameters,
+    const Matrix& base, const Matrix& q, const Matrix& v, const Matrix& a, unsigned threads, const std::string& isa) {
+  const Tree& tree = object.tree();
+  const BoundMotion bound(object, base, q, v, a);
+  const std::size_t n = bound.samples, sets = parameters.shape(0);
+  if (!tree.floating) throw std::invalid_argument("a floating base");
+  if (parameters.shape(1) != static_cast<std::size_t>(PARAMETERS * tree.n_links))
+    throw std::invalid_argument("ten parameters a link");
+  std::unique_ptr<double[]> data(new double[std::max<std::size_t>(sets * n * BASE_ROWS, 1)]);
+  const Kernels& table = kernels(isa);
+  {
+    nb::gil_scoped_release release;
+    parallel_parts(n, 64, worthwhile_threads(n, 512, threads), [&](unsigned, std::size_t begin, std::size_t end) {
+      Aligned work = aligned_bytes(table.link_work * tree.n_links);
+      table.base_wrenches(tree, bound.motion, parameters.data(), sets, begin, end, n, data.get(), work.get());
+    });
+  }
+  return owned(data.release(), {sets, n, static_cast<std::size_t>(BASE_ROWS)});
+}
+
 class StreamObject {
  public:
   StreamObject(const TreeObject& tree, const std::vector<unsigned>& kept, const std::vector<std::size_t>& extras,
@@ -335,6 +357,8 @@ NB_MODULE(_core, m) {
   m.def("inverse_dynamics", &inverse_dynamics, nb::arg("tree"), nb::arg("parameters").none(), nb::arg("links"),
         nb::arg("frames"), nb::arg("wrenches"), nb::arg("base"), nb::arg("q"), nb::arg("v"), nb::arg("a"),
         nb::arg("threads") = 0, nb::arg("isa") = "");
+  m.def("base_wrenches", &base_wrenches, nb::arg("tree"), nb::arg("parameters"), nb::arg("base"), nb::arg("q"),
+        nb::arg("v"), nb::arg("a"), nb::arg("threads") = 0, nb::arg("isa") = "");
   nb::class_<StreamObject>(m, "Stream")
       .def(nb::init<const TreeObject&, const std::vector<unsigned>&, const std::vector<std::size_t>&,
                     const std::vector<std::size_t>&>(),

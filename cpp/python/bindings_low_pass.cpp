@@ -9,11 +9,14 @@
 #include <stdexcept>
 
 #include "kernels.hpp"
+#include "parallel.hpp"
 
 namespace nb = nanobind;
 using namespace plantar;
 
 namespace {
+
+constexpr std::size_t NUMBERS_PER_THREAD = 100'000;  // half a millisecond's: ten times what starting a thread takes
 
 // values (n, k) through a Butterworth low-pass of fourth order at `cutoff` (a share of the rate), forth and back; every
 // nth sample of it.
@@ -38,9 +41,14 @@ nb::ndarray<nb::numpy, double> low_pass(
   std::unique_ptr<double[]> data(new double[std::max<std::size_t>(kept * k, 1)]);
   {
     nb::gil_scoped_release release;
-    const std::unique_ptr<double[]> work(new double[(n + 2 * padding) * table.lanes]);
-    for (std::size_t column = 0; column < k; column += table.lanes)
-      table.low_pass(filter, values.data(), n, k, column, work.get(), data.get());
+    const std::size_t groups = (k + table.lanes - 1) / table.lanes;
+    const std::size_t wanted = std::min<std::size_t>(groups, worthwhile_threads(n * k, NUMBERS_PER_THREAD, 0));
+    const unsigned threads = static_cast<unsigned>(std::max<std::size_t>(wanted, 1));
+    parallel_parts(k, table.lanes, threads, [&](unsigned, std::size_t begin, std::size_t end) {
+      const std::unique_ptr<double[]> work(new double[(n + 2 * padding) * table.lanes]);
+      for (std::size_t column = begin; column < end; column += table.lanes)
+        table.low_pass(filter, values.data(), n, k, column, work.get(), data.get());
+    });
   }
   double* found = data.release();
   nb::capsule owner(found, [](void* p) noexcept { delete[] static_cast<double*>(p); });

@@ -73,6 +73,9 @@ def inverse_dynamics(
     threads: int = 0,
     isa: str = "",
 ) -> Array: ...
+def base_wrenches(
+    tree: Tree, parameters: Array, base: Array, q: Array, v: Array, a: Array, threads: int = 0, isa: str = ""
+) -> Array: ...
 def stacked(
     factors: Sequence[Array], onto: Sequence[Sequence[int]], weights: Sequence[float], n: int
 ) -> Array: ...

@@ -41,7 +41,7 @@ def check_log(robot: RobotModel, log: MotionLog) -> list[Finding]:
     if any(finding.fatal for finding in time):
         return [*names, *time]
     imu = list(check_imu(robot.imu.name, log)) if robot.imu is not None else ()
-    return_freed()
+    return_freed(log.size)
     channels = [*check_gaps(robot, log), *check_channels(robot, log), *check_stepping_joints(robot, log)]
     few = picked(log)
     chain, wrenches = list(check_closed_chain(robot, few)), list(_wrenches(robot, few))

@@ -16,7 +16,7 @@ from plantar.dynamics.motion import Motion
 from plantar.robot.model import Foot, RobotModel
 from plantar.sensors.load_errors import LEAST_GAIN
 from plantar.sensors.model_errors import drawn_parameter_errors
-from plantar.sensors.newton_euler import BASE_ROWS, CUTOFF, NewtonEulerResidual, each_predicted_error
+from plantar.sensors.newton_euler import CUTOFF, NewtonEulerResidual
 from plantar.sensors.newton_sides import SLOW
 from plantar.signals.filters import gain, low_pass
 
@@ -67,7 +67,12 @@ def moment_errors(robot: RobotModel, residual: NewtonEulerResidual, steps: bool)
     missing = pair.predicted - pair.measured - residual.taken
     motion, drawn = inertial_motion(robot, residual.signals, residual.kept), drawn_parameter_errors(robot)
     del residual  # and the motion of all samples that it came from
-    every = _quick(chain([missing], readings, slopes, each_predicted_error(robot, motion, drawn)), period)
+    equation = Equation(robot.floating_model)
+    errors = chain.from_iterable(
+        equation.base_wrenches(motion, drawn[first : first + TOGETHER])
+        for first in range(0, len(drawn), TOGETHER)
+    )
+    every = _quick(chain([missing], readings, slopes, errors), period)
     samples, signals = len(missing), 1 + count + len(drawn)
     if steps:
         rows = np.empty((6, signals, samples))
@@ -186,8 +191,8 @@ def _imu_slopes(robot: RobotModel, residual: NewtonEulerResidual) -> tuple[Array
     signals, kept, step = residual.signals, residual.kept, residual.signals.period
 
     def slope(late: Motion, early: Motion, apart: float) -> Array:
-        ends = [equation.inverse_dynamics(motion, parameters)[BASE_ROWS].T for motion in (late, early)]
-        return (ends[0] - ends[1]) / apart
+        ends = [equation.base_wrenches(motion, parameters[None])[0] for motion in (late, early)]
+        return np.asarray((ends[0] - ends[1]) / apart)
 
     late, early = (inertial_motion(robot, signals, kept, gyroscope_late=by) for by in (step, -step))
     turns = [pin.exp3(by * axis) for by in (TURN, -TURN) for axis in np.eye(3)]

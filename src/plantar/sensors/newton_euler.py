@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -26,7 +25,6 @@ from plantar.signals.segments import longest_run
 
 CUTOFF = 8.0  # Hz: above it differentiated encoders are noise
 KEPT_RATE = 40.0  # Hz of the samples that are kept: the cutoff is far below
-BASE_ROWS = slice(0, 6)
 SHORTEST = 8.0  # s that a log must offer without a push or a blow
 DELAY_DRAWS = 16  # of a wrong URDF that take part in delays: these are filtered in every band
 EDGE = 0.3  # s at both ends of a run, where the filter is unsure
@@ -113,7 +111,7 @@ def newton_euler_residual(robot: RobotModel, log: MotionLog) -> NewtonEulerResid
     loads = FootLoads.of(readings[inner], differentiate(readings, log.period)[inner])
 
     def predicted_by(motion: Motion) -> Array:
-        return equation.inverse_dynamics(motion, parameters)[BASE_ROWS].T
+        return np.asarray(equation.base_wrenches(motion, parameters[None])[0])
 
     step = log.period
     ends = [predicted_by(inertial_motion(robot, signals, kept, encoders_late=by)) for by in (step, -step)]
@@ -154,20 +152,7 @@ def _longest_known(robot: RobotModel, signals: InertialSignals, wrenches: Array)
 
 def predicted_errors(robot: RobotModel, motion: Motion, draws: int | None = None) -> Array:
     """What inertial parameters as wrong as the robot file allows would add to the prediction, (draws, n, 6)."""
-    drawn = drawn_parameter_errors(robot)[:draws]
-    errors = np.empty((len(drawn), len(motion.positions), 6))
-    for own, error in zip(errors, each_predicted_error(robot, motion, drawn), strict=True):
-        own[:] = error
-    return errors
-
-
-def each_predicted_error(robot: RobotModel, motion: Motion, drawn: Iterable[Array]) -> Iterator[Array]:
-    """What each of `drawn` errors of inertial parameters would add to the prediction, one after the other, (n, 6)."""
-    equation = Equation(robot.floating_model)
-    for parameters in drawn:
-        yield np.ascontiguousarray(
-            equation.inverse_dynamics(motion, parameters)[BASE_ROWS].T
-        )  # no view of all rows
+    return Equation(robot.floating_model).base_wrenches(motion, drawn_parameter_errors(robot)[:draws])
 
 
 def _struck(robot: RobotModel, wrenches: Array, period: float) -> Mask:

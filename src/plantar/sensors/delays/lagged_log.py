@@ -10,7 +10,7 @@ from plantar.dynamics.inertial_motion import inertial_motion, inertial_signals
 from plantar.estimation.delays.lag_search import WINDOW, LagGrid
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
-from plantar.sensors.newton_euler import BASE_ROWS, with_gyroscope
+from plantar.sensors.newton_euler import with_gyroscope
 from plantar.sensors.newton_sides import SLOW
 from plantar.signals.filters import low_pass
 from plantar.signals.segments import longest_run
@@ -35,10 +35,10 @@ def lagged_log(robot: RobotModel, log: MotionLog) -> LagGrid | None:
     steps = np.arange(-round(SEARCHED / thin.period), round(SEARCHED / thin.period) + 1)
     lags: Array = thin.period * steps.astype(np.float64)
     signals = inertial_signals(robot, thin, CUTOFF)
-    known = np.isfinite(readings).all(axis=(0, 2))
-    for late in lags:
-        known = known & inertial_motion(robot, signals, encoders_late=late).finite
-    longest = longest_run(known)
+    known = [np.asarray(np.isfinite(readings).all(axis=(0, 2)))]
+    # One motion after the other, here and below: all of them at once would be the largest array of any log.
+    known += [inertial_motion(robot, signals, encoders_late=late).finite for late in lags]
+    longest = longest_run(np.all(known, axis=0))
     inner = slice(longest.start + steps[-1], longest.stop - steps[-1])
     if (inner.stop - inner.start) * thin.period < 2 * WINDOW:
         return None
@@ -51,7 +51,7 @@ def lagged_log(robot: RobotModel, log: MotionLog) -> LagGrid | None:
         transfer = [equation.base_transfer(motion.positions, one) for one in contacts]
         carried = np.stack([(one @ own[..., None])[..., 0] for one, own in zip(transfer, late, strict=True)])
         measured.append(_moving(carried, thin.period))
-        predicted.append(_moving(equation.inverse_dynamics(motion, parameters)[BASE_ROWS].T, thin.period))
+        predicted.append(_moving(equation.base_wrenches(motion, parameters[None])[0], thin.period))
     together = measured[len(lags) // 2][:, len(lags) // 2, :, FORCE].sum(axis=0)
     if np.sum(np.var(together, axis=0)) < (LEAST_MOVED * GRAVITY * robot.mass) ** 2:
         return None
