@@ -230,10 +230,12 @@ def _best_state(pieces: Pieces, mine: Mask, total: Array, initial_states: Number
     shapes = np.arange(total.shape[0])
     grams = pieces.grams[mine]
     current = sum(gram[shapes, start] for gram, start in zip(grams, initial_states, strict=True))
-    alternatives = (total - current)[:, None] + grams.sum(axis=0)
-    centred = _without_offset(alternatives)
-    vector = np.column_stack([values, -np.ones(len(values))])
-    return np.asarray(np.argmin(np.einsum("gi,gcij,gj->gc", vector, centred, vector), axis=1))
+    rest, own = total - current, grams.sum(axis=0)
+    vector = np.column_stack([values, np.zeros(len(values)), -np.ones(len(values))])
+    left = (rest @ vector[:, :, None])[:, None, :, 0] + (own @ vector[:, None, :, None])[..., 0]
+    count = np.maximum(rest[:, None, -2, -2] + own[..., -2, -2], 1e-300)
+    squares = np.einsum("gci,gi->gc", left, vector) - left[..., -2] ** 2 / count
+    return np.asarray(np.argmin(squares, axis=1))
 
 
 def _profiled(gram: Array, values: Array) -> float:
