@@ -3,6 +3,7 @@
 Prints seconds, CPU seconds and peak memory of each, and how many times faster plantar is, best of several turns.
 
     python benchmarks/feet_end_to_end.py [--preset sensors] [--times 3]
+    python benchmarks/feet_end_to_end.py --walks             nine walks instead of tilts and sways
     python benchmarks/feet_end_to_end.py --long 600          one Parquet log of 600 s at 1 kHz
 """
 
@@ -22,6 +23,7 @@ import numpy as np
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.save import save_log
 from plantar.motions import CAMPAIGN
+from plantar.motions.gait import WALKS
 from plantar.robot.model import load_robot
 from plantar.twin import play_all, write_campaign
 from plantar.twin.cache import folder
@@ -54,13 +56,14 @@ def spent(command: Sequence[str]) -> Spent:
     return Spent(time.perf_counter() - start, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024)
 
 
-def kept(preset: str, long: float) -> tuple[Path, list[Path]]:
+def kept(preset: str, walks: bool, long: float) -> tuple[Path, list[Path]]:
     """Robot file and logs, played once and kept in the cache's folder."""
-    out = folder() / f"feet_end_to_end_{preset}"
+    names = WALKS[: len(LOGS)] if walks else LOGS
+    out = folder() / f"feet_end_to_end_{'walks_' * walks}{preset}"
     robot = out / "robot.yaml"
-    logs = [out / f"{name}.csv" for name in LOGS]
+    logs = [out / f"{name}.csv" for name in names]
     if not all(path.exists() for path in (robot, *logs)):
-        (recordings,) = play_all(LOGS, preset=preset)
+        (recordings,) = play_all(names, preset=preset)
         write_campaign(out, recordings, None, preset)
         for recording, path in zip(recordings, logs, strict=True):
             save_log(_short(recording.log), path)
@@ -93,9 +96,10 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--preset", default="sensors")
     parser.add_argument("--times", type=int, default=3)
+    parser.add_argument("--walks", action="store_true", help="walks instead of tilts and sways")
     parser.add_argument("--long", type=float, default=0.0, help="seconds of one Parquet log at 1 kHz instead")
     chosen = parser.parse_args()
-    robot, logs = kept(chosen.preset, chosen.long)
+    robot, logs = kept(chosen.preset, chosen.walks, chosen.long)
     files = [str(robot), *map(str, logs)]
     out = str(robot.parent / "result")
     ways = {

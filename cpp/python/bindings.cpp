@@ -19,7 +19,6 @@
 #include "kernels.hpp"
 #include "parallel.hpp"
 #include "stream.hpp"
-#include "triangular.hpp"
 
 namespace nb = nanobind;
 using namespace plantar;
@@ -234,6 +233,28 @@ nb::ndarray<nb::numpy, double> inverse_dynamics(const TreeObject& object, const 
   return owned(data.release(), {rows, n});
 }
 
+// (sets, N, 6) of a floating base; parameters: (sets, 10 links).
+nb::ndarray<nb::numpy, double> base_wrenches(
+    const TreeObject& object, const nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>& parameters,
+    const Matrix& base, const Matrix& q, const Matrix& v, const Matrix& a, unsigned threads, const std::string& isa) {
+  const Tree& tree = object.tree();
+  const BoundMotion bound(object, base, q, v, a);
+  const std::size_t n = bound.samples, sets = parameters.shape(0);
+  if (!tree.floating) throw std::invalid_argument("a floating base");
+  if (parameters.shape(1) != static_cast<std::size_t>(PARAMETERS * tree.n_links))
+    throw std::invalid_argument("ten parameters a link");
+  std::unique_ptr<double[]> data(new double[std::max<std::size_t>(sets * n * BASE_ROWS, 1)]);
+  const Kernels& table = kernels(isa);
+  {
+    nb::gil_scoped_release release;
+    parallel_parts(n, 64, worthwhile_threads(n, 512, threads), [&](unsigned, std::size_t begin, std::size_t end) {
+      Aligned work = aligned_bytes(table.link_work * tree.n_links);
+      table.base_wrenches(tree, bound.motion, parameters.data(), sets, begin, end, n, data.get(), work.get());
+    });
+  }
+  return owned(data.release(), {sets, n, static_cast<std::size_t>(BASE_ROWS)});
+}
+
 class StreamObject {
  public:
   StreamObject(const TreeObject& tree, const std::vector<unsigned>& kept, const std::vector<std::size_t>& extras,
@@ -283,41 +304,6 @@ class StreamObject {
   Stream stream_;
 };
 
-// R of all factors' rows, each times its weight: upper (n, n). onto[k]: where the factor's columns stand, increasing.
-nb::ndarray<nb::numpy, double> stacked(
-    const std::vector<nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>>& factors,
-    const std::vector<std::vector<int>>& onto, const std::vector<double>& weights, std::size_t n) {
-  Factor all(n);
-  if (onto.size() != factors.size() || weights.size() != factors.size())
-    throw std::invalid_argument("every factor needs its columns and its weight");
-  const Kernels& table = kernels("");
-  for (std::size_t k = 0; k < factors.size(); ++k) {
-    const std::size_t size = factors[k].shape(0);
-    const std::vector<std::int32_t> columns(onto[k].begin(), onto[k].end());
-    const bool valid = factors[k].shape(1) == size && columns.size() == size &&
-                       std::adjacent_find(columns.begin(), columns.end(), std::greater_equal<>()) == columns.end() &&
-                       (columns.empty() || (columns.front() >= 0 && columns.back() < static_cast<int>(n)));
-    if (!valid) throw std::invalid_argument("a factor's columns must increase and be as many as its own");
-    nb::gil_scoped_release release;
-    all.take(table, factors[k].data(), size, columns.data(), weights[k]);
-  }
-  std::unique_ptr<double[]> data(new double[std::max<std::size_t>(n * n, 1)]);
-  all.copy_upper(data.get());
-  return owned(data.release(), {n, n});
-}
-
-nb::ndarray<nb::numpy, double> inverse_upper(
-    const nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>& upper) {
-  const std::size_t n = upper.shape(0);
-  if (upper.shape(1) != n) throw std::invalid_argument("a square matrix");
-  std::unique_ptr<double[]> data(new double[std::max<std::size_t>(n * n, 1)]);
-  {
-    nb::gil_scoped_release release;
-    invert_upper(upper.data(), data.get(), n);
-  }
-  return owned(data.release(), {n, n});
-}
-
 }  // namespace
 
 NB_MODULE(_core, m) {
@@ -335,6 +321,8 @@ NB_MODULE(_core, m) {
   m.def("inverse_dynamics", &inverse_dynamics, nb::arg("tree"), nb::arg("parameters").none(), nb::arg("links"),
         nb::arg("frames"), nb::arg("wrenches"), nb::arg("base"), nb::arg("q"), nb::arg("v"), nb::arg("a"),
         nb::arg("threads") = 0, nb::arg("isa") = "");
+  m.def("base_wrenches", &base_wrenches, nb::arg("tree"), nb::arg("parameters"), nb::arg("base"), nb::arg("q"),
+        nb::arg("v"), nb::arg("a"), nb::arg("threads") = 0, nb::arg("isa") = "");
   nb::class_<StreamObject>(m, "Stream")
       .def(nb::init<const TreeObject&, const std::vector<unsigned>&, const std::vector<std::size_t>&,
                     const std::vector<std::size_t>&>(),
@@ -343,8 +331,6 @@ NB_MODULE(_core, m) {
            nb::arg("threads") = 0, nb::arg("isa") = "")
       .def("factor", &StreamObject::factor, nb::arg("group"))
       .def("parameters", &StreamObject::parameters, nb::arg("group"));
-  m.def("stacked", &stacked, nb::arg("factors"), nb::arg("onto"), nb::arg("weights"), nb::arg("n"));
-  m.def("inverse_upper", &inverse_upper, nb::arg("upper"));
-  bind_drift(m), bind_estimator(m), bind_low_pass(m);
-  bind_stepping(m);
+  bind_drift(m), bind_estimator(m), bind_factor(m), bind_low_pass(m);
+  bind_stepping(m), bind_stop_operator(m);
 }

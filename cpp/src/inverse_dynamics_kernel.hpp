@@ -64,4 +64,29 @@ inline void inverse_dynamics(const Tree& tree, const Motion& motion, const doubl
   }
 }
 
+// What several sets of parameters, ten a link each, take at the root frame of a floating base, without contacts: the links'
+// motion is found once for all. out: (sets, samples, 6).
+inline void base_wrenches(const Tree& tree, const Motion& motion, const double* parameters, std::size_t sets,
+                          std::size_t begin, std::size_t end, std::size_t samples, double* out, double* work) {
+  LinkState* states = reinterpret_cast<LinkState*>(work);
+  const std::size_t size = static_cast<std::size_t>(PARAMETERS * tree.n_links);
+  for (std::size_t first = begin; first < end; first += LANES) {
+    const std::size_t count = end - first < LANES ? end - first : LANES;
+    forward(tree, motion, first, end, states);
+    for (std::size_t set = 0; set < sets; ++set) {
+      Wrench base = {};
+      for (std::int32_t i = 0; i < tree.n_links; ++i) {
+        const Wrench own = link_wrench(states[i], parameters + set * size + PARAMETERS * i);
+        base.force = base.force + own.force;
+        base.torque = base.torque + own.torque;
+      }
+      const Lanes six[BASE_ROWS] = {base.force.x,  base.force.y,  base.force.z,
+                                    base.torque.x, base.torque.y, base.torque.z};
+      double* rows = out + (set * samples + first) * BASE_ROWS;
+      for (std::size_t l = 0; l < count; ++l)
+        for (int i = 0; i < BASE_ROWS; ++i) rows[l * BASE_ROWS + i] = six[i][l];
+    }
+  }
+}
+
 }  // namespace plantar::PLANTAR_ISA

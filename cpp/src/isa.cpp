@@ -14,7 +14,7 @@ namespace plantar::PLANTAR_ISA {
 
 extern const Kernels kernels;
 const Kernels kernels = {
-    PLANTAR_STRING(PLANTAR_ISA), sizeof(LinkState) + sizeof(Wrench), qr_work, chain, regressor, inverse_dynamics,
+    PLANTAR_STRING(PLANTAR_ISA), sizeof(LinkState) + sizeof(Wrench), qr_work, chain, regressor, inverse_dynamics, base_wrenches,
     qr_update, gram_update, cholesky, LANES, low_pass};
 
 }  // namespace plantar::PLANTAR_ISA

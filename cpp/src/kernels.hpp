@@ -22,6 +22,8 @@ struct Kernels {
   void (*inverse_dynamics)(const Tree&, const Motion&, const double* parameters, const Contact* contacts,
                            std::size_t n_contacts, std::size_t begin, std::size_t end, double* const* rows,
                            double* work);
+  void (*base_wrenches)(const Tree&, const Motion&, const double* parameters, std::size_t sets, std::size_t begin,
+                        std::size_t end, std::size_t samples, double* out, double* work);
   void (*qr_update)(const Triangle&, const Block&, void* work);
   void (*gram_update)(double* gram, std::size_t gram_stride, const double* block, std::size_t stride, std::size_t rows,
                       std::size_t columns);

@@ -10,10 +10,10 @@ struct Section {
   double b, a1, a2;
 };
 
-// Two sections in series, run forth and back over `padding` samples more at each end.
+// Two sections in series, run forth and back over `padding` samples more at each end; every nth sample is kept.
 struct LowPass {
   Section sections[2];
-  std::size_t padding;
+  std::size_t padding, every;
 };
 
 }  // namespace plantar

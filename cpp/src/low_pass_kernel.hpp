@@ -23,7 +23,8 @@ PLANTAR_INLINE Lanes advance(const Section& section, SectionState& state, Lanes 
   return y;
 }
 
-// Columns [column, column + LANES) of the signal; `work` holds LANES doubles for each of n + 2 padding samples.
+// Columns [column, column + LANES) of the signal; `work` holds LANES doubles for each of n + 2 padding samples. `out` has a
+// row for each sample that is kept.
 inline void low_pass(const LowPass& filter, const double* values, std::size_t n, std::size_t k, std::size_t column,
                      double* work, double* out) {
   const std::size_t count = k - column < LANES ? k - column : LANES;
@@ -57,9 +58,11 @@ inline void low_pass(const LowPass& filter, const double* values, std::size_t n,
     store(work + (i + padding) * LANES, x);
   }
   first = settled(one, x), second = settled(two, x);
+  const std::ptrdiff_t every = static_cast<std::ptrdiff_t>(filter.every);
+  std::ptrdiff_t row = last / every;  // of the next sample to keep
   for (std::ptrdiff_t i = last + padding; i >= 0; --i) {
     x = advance(two, second, advance(one, first, load(work + (i + padding) * LANES)));
-    if (i <= last) scatter(out + i * k + column, x, count);
+    if (i == row * every) scatter(out + row-- * k + column, x, count);
   }
 }
 

@@ -2,6 +2,9 @@
 
 from collections.abc import Sequence
 
+import numpy as np
+from numpy.typing import NDArray
+
 from plantar.conventions import Array
 
 def instruction_sets() -> list[str]: ...
@@ -70,6 +73,9 @@ def inverse_dynamics(
     threads: int = 0,
     isa: str = "",
 ) -> Array: ...
+def base_wrenches(
+    tree: Tree, parameters: Array, base: Array, q: Array, v: Array, a: Array, threads: int = 0, isa: str = ""
+) -> Array: ...
 def stacked(
     factors: Sequence[Array], onto: Sequence[Sequence[int]], weights: Sequence[float], n: int
 ) -> Array: ...
@@ -106,7 +112,10 @@ class FootEstimator:
         latency: Array,
     ) -> None: ...
 
-def low_pass(values: Array, cutoff: float, padding: int) -> Array: ...
+def low_pass(values: Array, cutoff: float, padding: int, every: int = 1) -> Array: ...
+def stop_operator(
+    direction: Array, length: Array, branch: NDArray[np.int64], travelled: Array, slip: Array, start: Array
+) -> Array: ...
 def inverse_upper(upper: Array) -> Array: ...
 
 STEPPING_SOURCE: str

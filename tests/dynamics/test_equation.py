@@ -52,6 +52,26 @@ def test_regressor_times_parameters_and_inverse_dynamics_are_rnea(urdf: object, 
     assert relative(found.T, expected) < 1e-10
 
 
+@pytest.mark.parametrize("urdf", [urdf for urdf, floating in ROBOTS if floating])
+def test_base_wrenches_of_several_robots_at_once_are_rneas_first_rows(urdf: object) -> None:
+    model = example_robots.model(urdf, floating=True)  # type: ignore[arg-type]
+    motion, random = random_motion(model, 19, 3), np.random.default_rng(3)
+    heavier, expected = model.copy(), []
+    for body in list(heavier.inertias)[1:]:
+        body.mass *= random.uniform(0.5, 2.0)
+        body.lever = body.lever + random.normal(0.0, 0.02, 3)
+    for each in (model, heavier):
+        data = each.createData()
+        expected.append([pin.rnea(each, data, *sample)[:6].copy() for sample in zip(*motion, strict=True)])
+    equation = Equation(model)
+    parameters = np.array([model_parameters(model), model_parameters(heavier)])
+    given = pinocchio_motion(model, equation.tree, *motion)
+    assert relative(equation.base_wrenches(given, parameters), np.array(expected)) < 1e-10
+    for isa in _core.instruction_sets():
+        found = _core.base_wrenches(equation.core, parameters, *vars(given).values(), threads=2, isa=isa)
+        assert relative(found, np.array(expected)) < 1e-10
+
+
 @pytest.mark.parametrize(("urdf", "floating"), ROBOTS[:1] + ROBOTS[4:], ids=NAMES[:1] + NAMES[4:])
 def test_contact_transfer_is_the_transposed_jacobian(urdf: object, floating: bool) -> None:
     model = example_robots.model(urdf, floating=floating)  # type: ignore[arg-type]

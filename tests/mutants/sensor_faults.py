@@ -148,7 +148,7 @@ SENSOR_FAULTS = (
     ),
     Mutant(
         "signals/thinning.py", "quick signals pass for slow ones",
-        "low_pass(np.column_stack([read[name] for name in names]), log.period, cutoff)[::step]",
+        "low_pass(np.column_stack([read[name] for name in names]), log.period, cutoff, every=step)",
         "np.column_stack([read[name] for name in names])[::step]", ("signals/test_thinning.py",),
     ),
     Mutant(
@@ -187,7 +187,7 @@ SENSOR_FAULTS = (
     ),
     Mutant(
         "sensors/moment_errors.py", "what is missing lost other slow parts than its columns",
-        "np.hstack([predicted - measured,", "np.hstack([residual.pair.predicted - residual.pair.measured,",
+        "missing = predicted - measured", "missing = residual.pair.predicted - residual.pair.measured",
         ("sensors/test_moment_fit.py",),
     ),
     Mutant(

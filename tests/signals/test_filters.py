@@ -102,3 +102,15 @@ def test_differences_of_a_parabola() -> None:
     slope = differentiate(TIME**2, PERIOD)
     np.testing.assert_allclose(slope[1:-1], 2 * TIME[1:-1], atol=1e-10)
     assert differentiate(np.array([1.0]), PERIOD).shape == (1,)
+
+
+@pytest.mark.parametrize("every", [1, 2, 7, 400, 5000])
+@pytest.mark.parametrize("holes", [False, True])
+def test_every_nth_sample_is_that_of_the_whole_signal(every: int, holes: bool) -> None:
+    values = np.random.default_rng(3).standard_normal((4001, 5))
+    if holes:
+        values[1000:1040] = np.nan
+    whole = low_pass(values, PERIOD, 5.0)
+    np.testing.assert_array_equal(low_pass(values, PERIOD, 5.0, every=every), whole[::every])
+    np.testing.assert_array_equal(low_pass(values[:, 0], PERIOD, 5.0, every=every), whole[::every, 0])
+    np.testing.assert_array_equal(low_pass(values, PERIOD, 1e6, every=every), values[::every])

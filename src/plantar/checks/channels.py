@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from plantar.conventions import GRAVITY, Array
-from plantar.logs.motion_log import MotionLog
+from plantar.conventions import FORCE, GRAVITY, Array
+from plantar.logs.motion_log import MotionLog, wrench_columns
 from plantar.notes import Finding
 from plantar.robot.model import Foot, RobotModel
 from plantar.signals.held import FEWEST, SHORTEST, can_be_held, held_in
@@ -58,7 +58,7 @@ def named(columns: Sequence[str], sensor: str | None = None, of: int = 0) -> str
 
 def _carries(robot: RobotModel, foot: Foot, log: MotionLog) -> bool:
     """Whether this foot carries a tenth of the weight or more, at least half of the time."""
-    force = np.linalg.norm(log.wrench(foot.wrench.name)[:, :3], axis=1)
+    force = np.linalg.norm(log.stack(wrench_columns(foot.wrench.name)[FORCE]), axis=1)
     return bool(np.mean(force > 0.1 * robot.mass * GRAVITY) > 0.5)
 
 

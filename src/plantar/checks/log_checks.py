@@ -19,6 +19,7 @@ from plantar.checks.standing import check_balance
 from plantar.checks.stepping_joints import check_stepping_joints
 from plantar.conventions import GRAVITY
 from plantar.errors import DataError, located
+from plantar.logs.freed_memory import return_freed
 from plantar.logs.motion_log import MotionLog, wrench_columns
 from plantar.notes import Finding, Note
 from plantar.robot.model import RobotModel
@@ -39,7 +40,8 @@ def check_log(robot: RobotModel, log: MotionLog) -> list[Finding]:
     names, time = check_joint_names(robot, log), list(_time(log))
     if any(finding.fatal for finding in time):
         return [*names, *time]
-    imu = check_imu(robot.imu.name, log) if robot.imu is not None else ()
+    imu = list(check_imu(robot.imu.name, log)) if robot.imu is not None else ()
+    return_freed(log.size)
     channels = [*check_gaps(robot, log), *check_channels(robot, log), *check_stepping_joints(robot, log)]
     few = picked(log)
     chain, wrenches = list(check_closed_chain(robot, few)), list(_wrenches(robot, few))

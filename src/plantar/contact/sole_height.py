@@ -14,6 +14,9 @@ from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import Placement, RobotModel
 
 RATE = 20.0  # Hz, at which heights are computed: a standing robot moves below 2 Hz
+TOGETHER = (
+    50_000  # samples of motions that are computed at once: all of a long log's would be its largest array
+)
 STEP = 1e-3  # rad or m, of the differences that stand for derivatives
 
 
@@ -45,20 +48,31 @@ def height_changes(
     path = frozenset().union(
         *(robot.joints_between(imu.placement, foot.bush) for foot in robot.feet.values())
     )
-    # All motions that differ from the recorded one, in one batch.
-    causes, angles, attitudes = list[tuple[str, float]](), [positions], [attitude]
+    # All motions that differ from the recorded one: by a joint's angle, or in attitude.
+    causes, joints, attitudes = list[tuple[str, float]](), list[int | None]([None]), [attitude]
     for column, joint in enumerate(robot.joint_names):
         if joint in path and known.encoder_zero:
             causes.append((joint, known.encoder_zero))
-            angles.append(positions + STEP * (np.arange(positions.shape[1]) == column))
+            joints.append(column)
             attitudes.append(attitude)
     for axis in range(3 if known.imu_mount else 0):
         causes.append((f"imu {'xyz'[axis]}", known.imu_mount))
-        angles.append(positions)
+        joints.append(None)
         attitudes.append(turned(attitude, STEP * np.eye(3)[axis]))
-    soles = [
-        np.split(sole(name, np.vstack(angles), np.vstack(attitudes)), len(angles)) for name in robot.feet
-    ]
+    soles: list[list[Array]] = [[] for _ in robot.feet]
+    together = max(1, TOGETHER // len(positions))
+    for first in range(0, len(joints), together):
+        some = joints[first : first + together]
+        angles = np.tile(positions, (len(some), 1, 1))
+        for own, moved_joint in zip(angles, some, strict=True):
+            if moved_joint is not None:
+                own[:, moved_joint] += STEP
+        flat, quaternions = (
+            angles.reshape(-1, positions.shape[1]),
+            np.vstack(attitudes[first : first + together]),
+        )
+        for found, name in zip(soles, robot.feet, strict=True):
+            found += np.split(sole(name, flat, quaternions), len(some))
     before, *others = (right - left for left, right in zip(*soles, strict=True))
     for (cause, deviation), after in zip(causes, others, strict=True):
         yield cause, change(after - before, deviation)

@@ -111,6 +111,16 @@ class Equation:
             threads,
         )
 
+    def base_wrenches(self, motion: Motion, parameters: Array, threads: int = 0) -> Array:
+        """The first six rows of Y phi_I of a floating base for several sets of parameters at once, (sets, N, 6).
+
+        parameters: (sets, 10 n_links).
+        """
+        m, given = motion, np.ascontiguousarray(parameters, dtype=np.float64)
+        return _core.base_wrenches(
+            self.core, given, m.base, m.positions, m.velocities, m.accelerations, threads
+        )
+
     def contact_transfer(self, positions: Array, contact: Contact, threads: int = 0) -> Array:
         """K_B and K_J of one contact, (N, n_rows, 6): contact wrench to base wrench and joint torques."""
         samples = len(positions)

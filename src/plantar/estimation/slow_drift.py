@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from plantar.conventions import Array
@@ -9,19 +11,29 @@ from plantar.estimation.orthonormal import orthonormal
 
 DRIFT_PERIOD = 20.0  # s: attitudes wander more slowly, motions that were asked for are twice as quick or more
 MOST_COSINES = 60  # of ten minutes: a longer recording's drift is followed less closely, at bounded cost
+KEPT = 4  # bases of the samples that were last asked about
 QUICK = 0.5  # of a motion's squares about its line: where cosines leave less, the motion itself is slow
 
 
 def drift_basis(time: Array) -> Array:
     """Orthonormal columns (n, m) of mean zero over the times (n,) [s] of samples: of a line, which is first, and of
     cosines down to `DRIFT_PERIOD`."""
+    return _basis(np.asarray(time - time[:1], dtype=np.float64).tobytes())
+
+
+@lru_cache(maxsize=KEPT)
+def _basis(since: bytes) -> Array:
+    """The columns over times since the first sample: both axes of a foot, and often both feet, ask for the same."""
+    time = np.frombuffer(since)
     if not time.size:
         return np.zeros((0, 1))
-    length = float(np.ptp(time))
-    share = (time - time[0]) / max(length, 1e-9)
+    length = float(time[-1])
+    share = time / max(length, 1e-9)
     orders = np.arange(1, min(int(2 * length / DRIFT_PERIOD), MOST_COSINES) + 1)
-    columns = np.column_stack([time - time[0], np.cos(np.pi * np.outer(share, orders))])
-    return orthonormal(columns - columns.mean(axis=0))
+    columns = np.column_stack([time, np.cos(np.pi * np.outer(share, orders))])
+    basis = orthonormal(columns - columns.mean(axis=0))
+    basis.setflags(write=False)
+    return basis
 
 
 def drift_beside(motion: Array, basis: Array) -> Array:

@@ -21,6 +21,7 @@ from plantar.feet.interval_width.force_gain import GainError, force_gain_errors,
 from plantar.feet.prepare_log import checked, prepare
 from plantar.feet.recording import Recording, Role, filtered_recording, moved_centre
 from plantar.feet.settings import FeetSettings
+from plantar.logs.freed_memory import return_freed
 from plantar.logs.inputs import check_names
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note, unique
@@ -109,6 +110,7 @@ def checked_in_turn(robot: RobotModel, logs: Iterable[MotionLog]) -> list[Motion
         finally:  # also where the next one cannot be read: what is wrong with this one is told first
             if pending is not None:
                 even.append(pending.result())
+    return_freed()
     return even
 
 
@@ -127,16 +129,22 @@ def prepare_checked(
             delay = estimate_wrench_delay(robot, even, each)
     else:
         delay = known_delay(settings.wrench_delay)
+    return_freed()
     recordings, settings = _recordings(robot, even, len(logs), settings, delay, progress)
+    return_freed()
     progress("fit z")
     vertical = fit_vertical_stiffness(recordings[: len(logs)], robot)
     moved = [moved_centre(recording, vertical.compliance) for recording in recordings]
     forces = force_gain_errors(robot, recordings)
+    return_freed()
     with over_logs(even) as each:
         stepping = {
             one.name for one in recordings if any(found is not None for found in one.stances.values())
         }
         moments = fit_moments(robot, delay.residuals, stepping, each)
+    fades = fading_notes(fading(delay.residuals))
+    delay = replace(delay, residuals=())  # both sides of Newton's law in every log: no fit reads them
+    return_freed()
     torques, turned = torque_gains(robot, moments), sensor_turn_notes(robot, moments)
     file = robot.path.name
     odd = [
@@ -146,7 +154,7 @@ def prepare_checked(
         *force_gain_notes(robot, forces),
         *torque_gain_notes(torques).values(),
         *turned.values(),
-        *fading_notes(fading(delay.residuals)),
+        *fades,
         *attitude_scale_notes(sum((one.attitude_scale for one in recordings), AttitudeScale())),
     ]
     notes = [*odd, *(note for one in recordings for note in one.notes), delay.note, *vertical.notes]

@@ -16,6 +16,7 @@ from plantar.conventions import FORCE, GRAVITY, Array
 from plantar.errors import RobotError, located
 from plantar.feet.recording import Recording, Role
 from plantar.feet.settings import DEFAULT_CUTOFF
+from plantar.logs.freed_memory import return_freed
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding, Note
 from plantar.robot.model import Imu, RobotModel
@@ -49,6 +50,7 @@ def checked(robot: RobotModel, log: MotionLog, findings: Sequence[Finding] | Non
     findings = check_log(robot, log) if findings is None else findings
     refuse_impossible(log, findings)
     odd = finding_notes(log, findings)
+    return_freed(log.size)
     even = without_spikes(without_holes(without_held(without_dropouts(evenly_sampled(log)))))
     on_time = thinned(with_gyroscope_on_time(even, imu.name))
     return on_time.with_columns({}, *log.joint_notes(robot), *odd)
@@ -134,18 +136,24 @@ def _velocities(robot: RobotModel, log: MotionLog, band: float, notes: list[Note
     goes straight into the damping; coarse steps make small ones vanish.
     """
     velocities = np.zeros((len(log), len(robot.joint_names)))
-    missing = []
+    missing, whole = [], dict[int, Array]()
     needed = _path_joints(robot)
     for place, name in enumerate(robot.joint_names):
         if name not in needed:
             continue
         position, recorded = log.joint(name, "position"), log.joint(name, "velocity")
-        if position is not None:
+        if position is not None and np.isfinite(position.sum()):
+            whole[place] = position
+            continue
+        if position is not None:  # it has its own holes
             velocities[:, place] = differentiate(low_pass(position, log.period, band), log.period)
             continue
         missing.append(name)
         if recorded is not None:
             velocities[:, place] = recorded
+    if whole:
+        smooth = low_pass(np.column_stack([*whole.values()]), log.period, band)
+        velocities[:, [*whole]] = differentiate(smooth, log.period)
     if missing:
         names = ", ".join(missing)
         where = f"{log.name}: between IMU and feet, but not recorded: {names}"

@@ -112,7 +112,7 @@ class Recording:
             return self
         rows = slice(None, None, stride)
         loads = np.column_stack([bush.wrench, bush.force_z])
-        loads = low_pass(loads, self.period, WIDE_BAND * self.cutoff)[rows]
+        loads = low_pass(loads, self.period, WIDE_BAND * self.cutoff, every=stride)
         kept = BushState(*(np.ascontiguousarray(values[rows]) for values in vars(bush).values()))
         kept = replace(kept, wrench=loads[:, :6], force_z=loads[:, 6])
         return replace(

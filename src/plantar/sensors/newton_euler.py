@@ -25,7 +25,6 @@ from plantar.signals.segments import longest_run
 
 CUTOFF = 8.0  # Hz: above it differentiated encoders are noise
 KEPT_RATE = 40.0  # Hz of the samples that are kept: the cutoff is far below
-BASE_ROWS = slice(0, 6)
 SHORTEST = 8.0  # s that a log must offer without a push or a blow
 DELAY_DRAWS = 16  # of a wrong URDF that take part in delays: these are filtered in every band
 EDGE = 0.3  # s at both ends of a run, where the filter is unsure
@@ -112,11 +111,14 @@ def newton_euler_residual(robot: RobotModel, log: MotionLog) -> NewtonEulerResid
     loads = FootLoads.of(readings[inner], differentiate(readings, log.period)[inner])
 
     def predicted_by(motion: Motion) -> Array:
-        return equation.inverse_dynamics(motion, parameters)[BASE_ROWS].T
+        return np.asarray(equation.base_wrenches(motion, parameters[None])[0])
 
     step = log.period
-    late, early = (inertial_motion(robot, signals, kept, encoders_late=by) for by in (step, -step))
-    by_encoders = (predicted_by(late) - predicted_by(early)) / (2 * step)
+    ends = [predicted_by(inertial_motion(robot, signals, kept, encoders_late=by)) for by in (step, -step)]
+    by_encoders = (ends[0] - ends[1]) / (2 * step)
+    signals = replace(
+        signals
+    )  # a copy holds no differences yet: of long logs, and of all together, these are large
     contacts = [Contact(*robot.frame(foot.wrench.placement)) for foot in robot.feet.values()]
     transfers = [equation.base_transfer(motion.positions, contact) for contact in contacts]
     predicted, by_encoders = moving([predicted_by(motion), by_encoders], period)
@@ -126,7 +128,6 @@ def newton_euler_residual(robot: RobotModel, log: MotionLog) -> NewtonEulerResid
         return None
     calm = found.calm
     pair = replace(found.pair, model_errors=predicted_errors(robot, motion.select(calm), DELAY_DRAWS))
-    # A copy of the signals holds no differences yet: of all logs together these are large.
     start, stop, _ = calm.indices(len(range(*kept.indices(len(log)))))
     return NewtonEulerResidual(
         pair,
@@ -135,7 +136,7 @@ def newton_euler_residual(robot: RobotModel, log: MotionLog) -> NewtonEulerResid
         by_encoders[calm],
         found.taken,
         loads.readings[calm],
-        replace(signals),
+        signals,
         slice(kept.start + start * stride, kept.start + stop * stride, stride),
         parameters,
     )
@@ -151,9 +152,7 @@ def _longest_known(robot: RobotModel, signals: InertialSignals, wrenches: Array)
 
 def predicted_errors(robot: RobotModel, motion: Motion, draws: int | None = None) -> Array:
     """What inertial parameters as wrong as the robot file allows would add to the prediction, (draws, n, 6)."""
-    equation, drawn = Equation(robot.floating_model), drawn_parameter_errors(robot)[:draws]
-    errors = [equation.inverse_dynamics(motion, one)[BASE_ROWS].T for one in drawn]
-    return np.array(errors).reshape(len(errors), len(motion.positions), 6)
+    return Equation(robot.floating_model).base_wrenches(motion, drawn_parameter_errors(robot)[:draws])
 
 
 def _struck(robot: RobotModel, wrenches: Array, period: float) -> Mask:

@@ -33,22 +33,23 @@ def without_spikes(log: MotionLog) -> MotionLog:
     ]
     if not names:
         return log
-    values = log.stack(names)
-    spikes = lone_spikes(values, log.period, _landings(log))
-    if not spikes.any():
+    landings = _landings(log)
+    spikes = {name: lone_spikes(log.column(name), log.period, landings) for name in names}
+    spikes = {name: places for name, places in spikes.items() if places.size}
+    if not spikes:
         return log
     place, bridged, told = np.arange(len(log)), {}, []
-    for name, column, mask in zip(names, values.T, spikes.T, strict=True):
-        if mask.any():
-            fine = ~mask & np.isfinite(column)
-            bridged[name] = np.where(mask, np.interp(place, place[fine], column[fine]), column)
-            first = int(np.flatnonzero(mask)[0])
-            told.append(
-                f"{name} ({int(mask.sum())}, first at t = {log.time[first]:g} s: {column[first]:.4g})"
-            )
+    for name, places in spikes.items():
+        column = log.column(name)
+        fine = np.isfinite(column)
+        fine[places] = False
+        bridged[name] = column.copy()
+        bridged[name][places] = np.interp(places, place[fine], column[fine])
+        first = int(places[0])
+        told.append(f"{name} ({places.size}, first at t = {log.time[first]:g} s: {column[first]:.4g})")
     more = f" and {len(told) - 3} more columns" if len(told) > 3 else ""
     text = f"{log.name}: lone samples far from their neighbours bridged: {', '.join(told[:3])}{more}"
-    severity: Severity = "warning" if spikes.mean(axis=0).max() > SERIOUS else "info"
+    severity: Severity = "warning" if max(map(len, spikes.values())) > SERIOUS * len(log) else "info"
     return log.with_columns(bridged, Note("spikes", severity, text))
 
 
@@ -64,21 +65,13 @@ def _landings(log: MotionLog) -> Mask:
     return around
 
 
-def lone_spikes(values: Array, period: float, landings: Mask | None = None) -> Mask:
-    """Samples of `values` (N, k) that one or two alone stand out from those around them by far, (N, k).
+def lone_spikes(values: Array, period: float, landings: Mask | None = None) -> NDArray[np.intp]:
+    """Samples (k,) of a column `values` (N,) that one or two alone stand out from those around them by far.
 
     landings: samples (N,) at which steps are compared with those at all landings.
     """
-    found = np.zeros(values.shape, dtype=bool)
     if len(values) < 2 * NEIGHBOURS + 2:
-        return found
-    for column, own in enumerate(values.T):  # one by one: of a long log all at once take a gigabyte
-        found[_spiked(np.ascontiguousarray(own), period, landings), column] = True
-    return found
-
-
-def _spiked(values: Array, period: float, landings: Mask | None) -> NDArray[np.intp]:
-    """Those samples of one column (N,)."""
+        return np.zeros(0, dtype=np.intp)
     steps = np.abs(np.diff(values))
     usual = _usual(steps, period)
     if landings is not None and landings.any():

@@ -12,7 +12,7 @@ from plantar.signals.resampling import with_continuous_quaternions
 
 LOWEST_RATE = 200.0  # Hz, that is kept: landings last some samples, delays are interpolated between two
 BAND = 0.8  # of half the rate that is kept: faster changes are filtered out first, or they would pass for slow ones
-TOGETHER = 8  # columns: the filter takes hardly longer for as many as for one
+TOGETHER = 4  # columns: the filter takes hardly longer for as many as for one, and more take memory
 
 
 def step_of(log: MotionLog) -> int:
@@ -41,6 +41,7 @@ def picked(log: MotionLog) -> MotionLog:
                 break
             rest = values[later::step]
             first[: len(rest)] = np.where(missing[: len(rest)], rest, first[: len(rest)])
+        first.setflags(write=False)  # handed over, not copied
         columns[name] = first
     return MotionLog(log.name, log.time[::step], columns, log.path, log.sha256, log.notes)
 
@@ -60,9 +61,11 @@ def thinned(log: MotionLog) -> MotionLog:
     groups += [[name] for name in read if name not in set(whole)]  # each has its own holes
     columns: dict[str, Array] = {}
     for names in groups:
-        smooth = low_pass(np.column_stack([read[name] for name in names]), log.period, cutoff)[::step]
+        smooth = low_pass(np.column_stack([read[name] for name in names]), log.period, cutoff, every=step)
         columns |= dict(zip(names, np.ascontiguousarray(smooth.T), strict=True))
     columns = {name: columns[name] for name in read}
+    for values in columns.values():
+        values.setflags(write=False)  # handed over, not copied
     text = f"{log.name}: {1 / log.period:.4g} Hz; every {step}th sample of the filtered signals is used ({rate:.4g} Hz)"
     note = Note("thinned", "info", text)
     return MotionLog(log.name, log.time[::step], columns, log.path, log.sha256, (*log.notes, note))

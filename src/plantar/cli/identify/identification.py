@@ -11,6 +11,7 @@ from rich.console import Console
 
 from plantar.cli.console.terminal import console, end_progress, progress
 from plantar.files import refuse_file
+from plantar.logs.freed_memory import return_freed
 from plantar.logs.inputs import open_together
 from plantar.logs.motion_log import MotionLog
 from plantar.results.io import dump_json
@@ -69,6 +70,7 @@ def keep(
 ) -> None:
     """Save, report, print; `beside`: names of files worth naming that the result saves beside result.json."""
     progress(quiet)("write")
+    return_freed()
     path = result.save(out)
     written = [path, *(out / name for name in beside), report(path)]
     end_progress(quiet)

@@ -7,7 +7,8 @@ disagree, and their disagreement goes into the deviation: a fit over everything 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -53,6 +54,16 @@ class Pair:
     period: float
     model_errors: Array = field(default_factory=lambda: np.zeros((0, 0, 6)))
 
+    @cached_property
+    def bands(self) -> list[_Band]:
+        """The pair in each band of frequencies, once it was asked for."""
+        return _bands(self)
+
+    @property
+    def slim(self) -> Pair:
+        """A copy without bands and draws of wrong models, which together are far larger than the rest."""
+        return replace(self, model_errors=np.zeros((0, 0, 6)))
+
 
 @dataclass(frozen=True)
 class Delay:
@@ -67,7 +78,7 @@ class Delay:
 def estimate_delay(pairs: Sequence[Pair]) -> Delay | None:
     """Delay common to all pairs, or None where in none the prediction closes, or what it says is no delay."""
     value, found = 0.0, None
-    bands = [_bands(pair) for pair in pairs if closes(pair)]
+    bands = [pair.bands for pair in pairs if closes(pair)]
     for _ in range(ROUNDS):
         cells = [cell for own in bands for band in own for cell in _cells(band, value)]
         if not cells:
@@ -101,8 +112,11 @@ class _Band:
         return self.measured + delay * self.rate + 0.5 * delay**2 * self.bend, self.rate + delay * self.bend
 
 
-def banded(signals: Array, period: float) -> Iterator[tuple[float, Array, slice]]:
-    """Signals (n, k) in each band: its width [Hz], the filtered signals (n, k), and the samples to keep of them.
+def banded(
+    signals: Array, period: float, rated: slice = slice(0)
+) -> Iterator[tuple[float, Array, Array, int]]:
+    """Signals (n, k) in each band: its width [Hz], the filtered signals (m, k) at every nth sample, the rates of those
+    columns that are `rated`, and n.
 
     The ends are left out: a filter answers to the end of a recording, and that is never late. Of slow signals the fast
     bands hold nothing else.
@@ -113,7 +127,9 @@ def banded(signals: Array, period: float) -> Iterator[tuple[float, Array, slice]
         below, above = above, low_pass(signals, period, edge)
         end = round(min(END_CYCLES / edges[place] / period, MOST_ENDS / 2 * len(signals)))
         stride = max(1, int(1 / (SAMPLES_PER_CYCLE * edge * period)))
-        yield edge - edges[place], above - below, slice(end, len(signals) - end, stride)
+        kept = slice(end, len(signals) - end, stride)
+        rates = differentiate(above[:, rated] - below[:, rated], period)[kept]
+        yield edge - edges[place], above[kept] - below[kept], rates, stride
 
 
 def _bands(pair: Pair) -> list[_Band]:
@@ -122,16 +138,13 @@ def _bands(pair: Pair) -> list[_Band]:
     together = np.hstack([pair.measured, pair.rate, pair.predicted, *pair.model_errors])
     whole = np.var(pair.measured, axis=0)
     found = []
-    for width, band, kept in banded(together, period):
-        rates = differentiate(band[:, 6:18], period)[
-            kept
-        ]  # of the measured rate, and of the predicted signal
-        thin = band[kept].copy()  # no view, which would hold the whole band
+    # Rates: of the measured rate, and of the predicted signal.
+    for width, thin, rates, stride in banded(together, period, slice(6, 18)):
         measured, rate, predicted = thin[:, :6], thin[:, 6:12], thin[:, 12:18]
         drawn = thin[:, 18:].reshape(len(thin), draws, 6).transpose(1, 0, 2)
         enough = LEAST_SHARE * whole * len(thin)
         parts = (measured, rate, rates[:, :6], predicted, rates[:, 6:], drawn, enough)
-        found.append(_Band(*parts, width, len(thin) * (kept.step or 1) * period))
+        found.append(_Band(*parts, width, len(thin) * stride * period))
     return found
 
 

@@ -104,8 +104,8 @@ def _cells(balance: Balance) -> list[_Cell]:
     sensors, delays, found = len(balance.measured), len(balance.by_delay), []
     flat = np.ascontiguousarray(stacked.transpose(1, 0, 2).reshape(stacked.shape[1], -1))
     enough = LEAST_SHARE * np.var(balance.measured.sum(axis=0), axis=0)
-    for _, filtered, kept in banded(flat, balance.period):
-        band = filtered[kept].reshape(-1, *stacked.shape[::2])
+    for _, filtered, _, _ in banded(flat, balance.period):
+        band = filtered.reshape(-1, *stacked.shape[::2])
         for axis, least in zip(band.transpose(2, 0, 1), enough, strict=True):
             predicted, measured, others = axis[:, 0], axis[:, 1 : 1 + sensors], axis[:, 1 + sensors :]
             total = measured.sum(axis=1)

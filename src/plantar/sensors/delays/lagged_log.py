@@ -10,7 +10,7 @@ from plantar.dynamics.inertial_motion import inertial_motion, inertial_signals
 from plantar.estimation.delays.lag_search import WINDOW, LagGrid
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
-from plantar.sensors.newton_euler import BASE_ROWS, with_gyroscope
+from plantar.sensors.newton_euler import with_gyroscope
 from plantar.sensors.newton_sides import SLOW
 from plantar.signals.filters import low_pass
 from plantar.signals.segments import longest_run
@@ -35,9 +35,10 @@ def lagged_log(robot: RobotModel, log: MotionLog) -> LagGrid | None:
     steps = np.arange(-round(SEARCHED / thin.period), round(SEARCHED / thin.period) + 1)
     lags: Array = thin.period * steps.astype(np.float64)
     signals = inertial_signals(robot, thin, CUTOFF)
-    motions = [inertial_motion(robot, signals, encoders_late=late) for late in lags]
-    known = np.isfinite(readings).all(axis=(0, 2)) & np.all([motion.finite for motion in motions], axis=0)
-    longest = longest_run(known)
+    known = [np.asarray(np.isfinite(readings).all(axis=(0, 2)))]
+    # One motion after the other, here and below: all of them at once would be the largest array of any log.
+    known += [inertial_motion(robot, signals, encoders_late=late).finite for late in lags]
+    longest = longest_run(np.all(known, axis=0))
     inner = slice(longest.start + steps[-1], longest.stop - steps[-1])
     if (inner.stop - inner.start) * thin.period < 2 * WINDOW:
         return None
@@ -46,11 +47,11 @@ def lagged_log(robot: RobotModel, log: MotionLog) -> LagGrid | None:
     contacts = [Contact(*robot.frame(foot.wrench.placement)) for foot in robot.feet.values()]
     late = np.stack([readings[:, inner.start + step : inner.stop + step] for step in steps], axis=1)
     predicted, measured = [], []
-    for motion in (whole.select(inner) for whole in motions):
+    for motion in (inertial_motion(robot, signals, inner, encoders_late=late) for late in lags):
         transfer = [equation.base_transfer(motion.positions, one) for one in contacts]
         carried = np.stack([(one @ own[..., None])[..., 0] for one, own in zip(transfer, late, strict=True)])
         measured.append(_moving(carried, thin.period))
-        predicted.append(_moving(equation.inverse_dynamics(motion, parameters)[BASE_ROWS].T, thin.period))
+        predicted.append(_moving(equation.base_wrenches(motion, parameters[None])[0], thin.period))
     together = measured[len(lags) // 2][:, len(lags) // 2, :, FORCE].sum(axis=0)
     if np.sum(np.var(together, axis=0)) < (LEAST_MOVED * GRAVITY * robot.mass) ** 2:
         return None
@@ -72,7 +73,7 @@ def _thinned(robot: RobotModel, log: MotionLog) -> MotionLog:
     wanted = ("imu.", "wrench.", "joint.")
     names = [name for name in log.columns if name.startswith(wanted) and ".orientation." not in name]
     stride = max(1, round(1 / (KEPT_RATE * log.period)))
-    slow = [low_pass(log.column(name), log.period, CUTOFF)[::stride] for name in names]
+    slow = [low_pass(log.column(name), log.period, CUTOFF, every=stride) for name in names]
     return MotionLog(log.name, log.time[::stride], dict(zip(names, slow, strict=True)), log.path)
 
 

@@ -15,6 +15,7 @@ import numpy as np
 from plantar.conventions import Array, Mask
 from plantar.estimation.delays.delay import LONGEST, estimate_delay
 from plantar.estimation.delays.sensor_delays import estimate_delays
+from plantar.logs.freed_memory import return_freed
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
 from plantar.sensors.delays.clock_drift import ClockDrift, clock_drift
@@ -78,6 +79,7 @@ def refined_delays(
         tried = list(
             each(lambda log, at=at: newton_euler_residual(robot, read_in_time(robot, log, at)), logs)
         )
+        return_freed()
         step = _step(logs, tried, at)
         if step is None:
             return None
@@ -86,6 +88,7 @@ def refined_delays(
             residuals = tuple(residual for residual in tried if residual is not None)
             pairs, common = [one.pair for one in residuals], float(np.mean(read_at[:-1]))
             unsteady = clock_drift(pairs) or delays_by_log(pairs, common)
+            residuals = tuple(replace(one, pair=one.pair.slim) for one in residuals)
             return replace(step, unsteady=unsteady, residuals=residuals)
     return None
 

@@ -17,6 +17,7 @@ import numpy as np
 from plantar.conventions import NORMAL95, Mask
 from plantar.estimation.delays.delay import LEAST_CLOSED
 from plantar.estimation.delays.lag_search import Lags, search_lags
+from plantar.logs.freed_memory import return_freed
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
@@ -89,6 +90,7 @@ def estimate_wrench_delay(robot: RobotModel, logs: Sequence[MotionLog], each: Ea
     found = refined_delays(robot, logs, each, still)
     if found is not None and found.std <= KNOWN_STD and not found.suspect:
         return replace(_told(robot, found), residuals=found.residuals)
+    return_freed()
     grids = list(each(partial(lagged_log, robot), logs))
     shown = [grid for grid in grids if grid is not None]
     if not shown:

@@ -39,11 +39,14 @@ def survey(path: Path, limit: ReadLimit) -> Survey:
     head, size, rows, end, tail = b"", 0, 0, 0, b""
     names: list[str] | None = None
     first = 0
+    whole = True  # no character waits for its end in the next block
     text = _Text(path)
     for block in text.blocks():
         limit.unpack(len(block))
         try:
-            check.decode(block)
+            if not (block.isascii() and whole):
+                check.decode(block)
+                whole = not check.getstate()[0]
         except UnicodeDecodeError as error:
             line = 1 + rows + (0 if names is None else 1) + block.count(b"\n", 0, error.start)
             raise LogError(located(f"is not UTF-8 text at line {line}", path=path, valid="a CSV")) from error
