@@ -42,13 +42,10 @@ def height_changes(
     def change(by: Array, deviation: float) -> Array:
         return np.asarray(np.interp(log.time[rows], log.time[::stride], by * deviation / STEP))
 
-    path = frozenset().union(
-        *(robot.joints_between(imu.placement, foot.bush) for foot in robot.feet.values())
-    )
     # All motions that differ from the recorded one, in one batch.
     causes, angles, attitudes = list[tuple[str, float]](), [positions], [attitude]
     for column, joint in enumerate(robot.joint_names):
-        if joint in path and known.encoder_zero:
+        if joint in robot.path_joints and known.encoder_zero:
             causes.append((joint, known.encoder_zero))
             angles.append(positions + STEP * (np.arange(positions.shape[1]) == column))
             attitudes.append(attitude)

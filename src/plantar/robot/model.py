@@ -172,6 +172,14 @@ class RobotModel:
         supports = [set(model.supports[self.frame(placement)[0]]) - {0} for placement in (first, second)]
         return frozenset(model.names[joint] for joint in supports[0] ^ supports[1])
 
+    @cached_property
+    def path_joints(self) -> frozenset[str]:
+        """Names of the joints between the IMU and any foot, which its angles need; none without IMU."""
+        if self.imu is None:
+            return frozenset()
+        imu = self.imu.placement
+        return frozenset().union(*(self.joints_between(imu, foot.bush) for foot in self.feet.values()))
+
 
 def load_robot(path: str | os.PathLike[str]) -> RobotModel:
     """Read a robot file (YAML) and its URDF.

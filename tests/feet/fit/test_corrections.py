@@ -53,9 +53,10 @@ def test_a_cube_is_found_about_its_own_zero(robot: RobotModel) -> None:
             assert stiffness == pytest.approx(TRUTH[foot, axis].stiffness, rel=0.02)
 
 
-def noisy_angles(size: float) -> tuple[list[Recording], AxisFit]:
-    """A sway whose angle and rate are read with white noise of `size` [rad] and ten times that [rad/s]; its fit."""
-    random, angle = np.random.default_rng(0), swayed(6000)
+def noisy_angles(size: float, middle: float = 0.0) -> tuple[list[Recording], AxisFit]:
+    """A sway about `middle` [rad] whose angle and rate are read with white noise of `size` [rad] and ten times that
+    [rad/s]; its fit. The bush's torque has no offset."""
+    random, angle = np.random.default_rng(0), middle + swayed(6000)
     rate = np.gradient(angle, PERIOD)
     torque = 400.0 * angle + 20.0 * rate
     read = made_recording(
@@ -84,6 +85,15 @@ def test_what_noise_in_the_angles_takes_off_is_given_back_and_widens() -> None:
     assert right.equivalent == pytest.approx(right.values)
     assert np.all(right.std > fit.std)
     assert [(note.code, note.severity) for note in right.notes] == [("noisy_regressors", "info")]
+
+
+def test_the_offset_follows_what_noise_had_taken_off_the_stiffness() -> None:
+    """A spring that is too soft needs a constant to reach the torque about the middle of the sway."""
+    recordings, fit = noisy_angles(0.004, middle=0.05)
+    assert fit.offsets["sway"] > 0.5
+    right = unattenuated(fit, recordings, shared=False)
+    assert abs(right.offsets["sway"]) < 0.2 * fit.offsets["sway"]
+    assert right.offset_std["sway"] > fit.offset_std["sway"]
 
 
 def test_a_clean_angle_is_left_alone_and_one_of_mostly_noise_is_told() -> None:

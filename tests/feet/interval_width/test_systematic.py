@@ -15,7 +15,13 @@ from plantar.conventions import NORMAL95
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.fit.regression_data import blocks_of
 from plantar.feet.identify import identify_feet
-from plantar.feet.interval_width.systematic import _by_delay, _suspected_hardening
+from plantar.feet.interval_width.systematic import (
+    Cause,
+    _between_walks,
+    _by_delay,
+    _suspected_hardening,
+    inflated,
+)
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.results.feet import FeetResult
@@ -119,3 +125,25 @@ def test_a_delay_in_doubt_is_allowed_for_as_far_as_it_may_be_off() -> None:
         assert reach * (change[inner] @ wave) / (wave @ wave) == pytest.approx(
             np.cos(2 * np.pi * reach) - 1, abs=0.01
         )
+
+
+def test_more_walks_are_surer_until_their_own_scatter_says_it() -> None:
+    """What differs from walk to walk by chance is, in their mean, smaller by the root of their number."""
+    angle = swayed(2000)
+    fit = fit_axis([made_recording("sway", angle, 400.0 * angle)], FOOT, "pitch", LINEAR)
+    assert fit is not None
+    (one,), (four,), (many,) = (_between_walks(fit, count) for count in (1, 4, 25))
+    assert one.share[0] == pytest.approx(0.03 * 400.0, rel=1e-3)
+    assert four.share == pytest.approx(one.share / 2)
+    assert not many.share.any()
+
+
+def test_a_cause_adds_its_variance_and_brings_its_few_degrees_of_freedom() -> None:
+    """Welch and Satterthwaite, by hand: (1 + 9)² / (1²/10 + 9²/2) of the stiffness; the damping is not moved."""
+    angle = swayed(2000)
+    fit = fit_axis([made_recording("sway", angle, 400.0 * angle)], FOOT, "pitch", LINEAR)
+    assert fit is not None
+    fit = replace(fit, covariance=np.eye(2), freedom=np.full(2, 10.0))
+    wide = inflated(fit, [Cause("delay", np.array([-6.0, 0.0]), 0.5, 2.0)])
+    np.testing.assert_allclose(wide.covariance, np.diag([10.0, 1.0]))
+    np.testing.assert_allclose(wide.freedom, [100 / 40.6, 10.0])
