@@ -172,6 +172,13 @@ class RobotModel:
         supports = [set(model.supports[self.frame(placement)[0]]) - {0} for placement in (first, second)]
         return frozenset(model.names[joint] for joint in supports[0] ^ supports[1])
 
+    @property
+    def required_imu(self) -> Imu:
+        """The IMU. Raises RobotError where the robot file names none."""
+        if self.imu is None:
+            raise RobotError(located("names no imu", path=self.path, valid="imu: {name: ..., link: ...}"))
+        return self.imu
+
     @cached_property
     def path_joints(self) -> frozenset[str]:
         """Names of the joints between the IMU and any foot, which its angles need; none without IMU."""
