@@ -60,6 +60,14 @@ def test_the_level_is_that_since_the_step(summary: FleetSummary) -> None:
     assert level.sure_high / level.value == pytest.approx(1.02, abs=0.002)
 
 
+def test_the_trend_is_told_with_its_interval(summary: FleetSummary) -> None:
+    for level in summary.levels:
+        assert level.trend_low < level.trend < level.trend_high
+        true = 2.0 if level.unit == "ageing" else 0.0  # percent a month
+        assert level.trend_low - 0.1 < true < level.trend_high + 0.1, level
+        assert (level.trend_low > 0) == (level.unit == "ageing")
+
+
 def test_plain_data_say_the_same(summary: FleetSummary) -> None:
     content = json.loads(json.dumps(summary.to_dict()))
     assert content["schema"] == "plantar.fleet/1"
