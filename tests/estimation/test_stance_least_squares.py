@@ -167,3 +167,13 @@ def test_one_lone_stance_promises_nothing() -> None:
     fit = fit_stances([walk(0, stances=1)])
     low, high = interval95(float(fit.values[0]), float(fit.std[0]), float(fit.freedom[0]))
     assert low < 0 < high
+
+
+def test_an_offset_is_a_mean_over_stances() -> None:
+    """Of four times as many stances that scatter alike it is twice as well known, as the scatter says."""
+    few, many = (
+        np.mean([fit_stances([walk(seed, stances)]).offset_std(f"walk_{seed}") for seed in range(12)])
+        for stances in (8, 32)
+    )
+    assert many == pytest.approx(few / 2, rel=0.3)
+    assert many == pytest.approx(3.0 / np.sqrt(32), rel=0.5), "3 N·m from stance to stance"

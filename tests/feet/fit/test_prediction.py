@@ -79,3 +79,7 @@ def test_each_stance_of_a_walk_has_its_offset(robot: RobotModel) -> None:
     assert np.ptp(offset) == pytest.approx(7.0, abs=CLOSE)
     scored = predicted.trivial[predicted.scored & (number == 1)]
     assert np.ptp(scored) == 0, "one trivial offset a stance"
+    torque, used = stepped.bushes["left"].torque[:, 0], stepped.used("left")
+    for stance in (0, 1):
+        own = used & (number == stance)
+        assert predicted.trivial[own] == pytest.approx(np.full(own.sum(), torque[own].mean())), "its own"
