@@ -166,6 +166,17 @@ class RobotModel:
         frame = model.frames[model.getFrameId(placement.link)]
         return int(frame.parentJoint), frame.placement * pin.SE3(placement.rotation, placement.xyz)
 
+    def configuration(self, positions: Array) -> Array:
+        """Pinocchio's configuration (nq,) of `model` at joint positions (n,) in the order of `joint_names`."""
+        q = pin.neutral(self.model)
+        for name, value in zip(self.joint_names, positions, strict=True):
+            joint = self.model.joints[self.model.getJointId(name)]
+            # A continuous joint is its cosine and sine.
+            q[joint.idx_q : joint.idx_q + joint.nq] = (
+                value if joint.nq == 1 else (np.cos(value), np.sin(value))
+            )
+        return np.asarray(q)
+
     def joints_between(self, first: Placement, second: Placement) -> frozenset[str]:
         """Names of the joints on the chain from one placement's link to another's."""
         model = self.model
