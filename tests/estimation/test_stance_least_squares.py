@@ -177,3 +177,20 @@ def test_an_offset_is_a_mean_over_stances() -> None:
     )
     assert many == pytest.approx(few / 2, rel=0.3)
     assert many == pytest.approx(3.0 / np.sqrt(32), rel=0.5), "3 N·m from stance to stance"
+
+
+def test_a_common_column_without_anything_in_it_is_as_if_it_were_not_there() -> None:
+    """Vertical force cells read no horizontal force, by which a bush's height would show."""
+    blocks = [walk(seed) for seed in range(3)]
+    empty = [
+        replace(
+            block,
+            common_nuisance=np.hstack([block.common_nuisance, np.zeros((block.rows, 1))]),
+            common_spread=np.array([np.inf, 0.006]),
+        )
+        for block in blocks
+    ]
+    plain, found = fit_stances(blocks), fit_stances(empty)
+    assert found.values == pytest.approx(plain.values)
+    assert found.std[:2] == pytest.approx(plain.std[:2])
+    assert found.common_nuisance[1] == 0.0

@@ -12,9 +12,10 @@ from biped import TRUTH, record, sway
 from biped_robot import FEET
 from feet_trials import AXES, PUNCTUAL, noisy
 from made_recording import FOOT, PERIOD, made_recording, swayed
+from plantar.contact.stances import Stances
 from plantar.estimation import fit_blocks
 from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.corrections import about_true_zero, unattenuated
+from plantar.feet.fit.corrections import about_true_zero, over_stances, unattenuated
 from plantar.feet.fit.regression_data import blocks_of
 from plantar.feet.identify import identify_feet
 from plantar.feet.recording import Recording
@@ -107,3 +108,29 @@ def test_a_clean_angle_is_left_alone_and_one_of_mostly_noise_is_told() -> None:
 def test_a_zero_matters_to_a_cube_alone() -> None:
     recordings, fit = noisy_angles(1e-5)
     assert about_true_zero(fit, recordings, shared=False) is fit
+
+
+def test_stances_tell_how_well_a_number_is_known_where_they_know_less() -> None:
+    """Deviations are the larger ones of both fits, each with its own degrees of freedom."""
+    count, random = 6000, np.random.default_rng(1)
+    number = np.repeat(np.arange(12), count // 12)
+    angle = swayed(count)
+    torque = (
+        400.0 * angle + random.normal(0, 2.0, 12)[number] + 0.5 * np.cumsum(random.normal(0, 0.05, count))
+    )
+    recording = made_recording("walk", angle, torque, stances=Stances(number, np.ones(count)))
+    state = recording.bushes[FOOT]
+    state = replace(state, torque=np.column_stack([torque, 50.0 * swayed(count, seed=5)]))
+    recording = replace(recording, bushes={FOOT: state}, raw={FOOT: state})
+    found = fit_blocks(blocks_of([recording], FOOT, "pitch"))
+    for size, kept in ((1e4, True), (1e-12, False)):
+        fit = AxisFit(
+            foot=FOOT, axis="pitch", model=KelvinVoigt(), values=np.array([400.0, 0.0]), shape=np.zeros(0),
+            offsets={"walk": 0.0}, covariance=size * np.eye(2), freedom=np.full(2, 99.0), white_std=np.ones(2),
+            offset_std={"walk": 0.1}, equivalent=(400.0, 0.0), choice=None, reason="",
+        )  # fmt: skip
+        moved = over_stances(fit, [recording])
+        assert moved.values == pytest.approx(found.values)
+        assert moved.std == pytest.approx(fit.std if kept else found.std[:2])
+        assert moved.freedom == pytest.approx(fit.freedom if kept else found.freedom[:2])
+        assert found.freedom[0] == 11.0, "one less than there are stances"
