@@ -185,7 +185,7 @@ def test_a_common_column_without_anything_in_it_is_as_if_it_were_not_there() -> 
     empty = [
         replace(
             block,
-            common_nuisance=np.hstack([block.common_nuisance, np.zeros((block.rows, 1))]),
+            common_nuisance=np.hstack([block.common_nuisance, np.zeros((len(block.response), 1))]),
             common_spread=np.array([np.inf, 0.006]),
         )
         for block in blocks
