@@ -20,7 +20,7 @@ from plantar.feet.fit.regression_data import blocks_of
 from plantar.feet.identify import identify_feet
 from plantar.feet.recording import Recording
 from plantar.logs.motion_log import MotionLog
-from plantar.models import KelvinVoigt
+from plantar.models import MODELS, KelvinVoigt
 from plantar.robot.model import RobotModel
 
 HARDENING = 30000.0  # N·m/rad³
@@ -134,3 +134,20 @@ def test_stances_tell_how_well_a_number_is_known_where_they_know_less() -> None:
         assert moved.std == pytest.approx(fit.std if kept else found.std[:2])
         assert moved.freedom == pytest.approx(fit.freedom if kept else found.freedom[:2])
         assert found.freedom[0] == 11.0, "one less than there are stances"
+
+
+def test_an_offset_about_an_unknown_zero_is_no_better_known() -> None:
+    """Of two fits the larger deviation counts, for the offset as for the values."""
+    angle = swayed(6000)
+    noise = np.random.default_rng(0).normal(0, 0.5, 6000)
+    recording = made_recording("sway", angle, 400.0 * angle + 3e4 * angle**3 + noise)
+    model = MODELS["hardening_elastoplastic"]
+    known = {"stiffness": 400.0, "hardening": 3e4}
+    fit = AxisFit(
+        foot=FOOT, axis="pitch", model=model, values=np.array([known.get(term, 0.0) for term in model.terms]),
+        shape=np.array([0.01]), offsets={"sway": 0.0}, covariance=np.eye(5), freedom=np.full(5, 20.0),
+        white_std=np.ones(5), offset_std={"sway": 1e-9}, equivalent=(400.0, 0.0), choice=None, reason="",
+    )  # fmt: skip
+    assert about_true_zero(fit, [recording], shared=False).offset_std["sway"] > 1e-4
+    sure = about_true_zero(replace(fit, offset_std={"sway": 5.0}), [recording], shared=False)
+    assert sure.offset_std["sway"] == 5.0
