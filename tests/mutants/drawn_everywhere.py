@@ -208,32 +208,4 @@ DRAWN_EVERYWHERE = (
         "sensors.attitude_walk",
         ("twin/sensing/test_sensors.py",),
     ),
-    Mutant(
-        "whole_body/dataset.py",
-        "the sole's normal turned the other way into the sensor",
-        "sensor.rotation.T @ sole.rotation[:, 2]",
-        "sensor.rotation @ sole.rotation[:, 2]",
-        ("whole_body/test_dataset.py",),
-    ),
-    Mutant(
-        "whole_body/covariance.py",
-        "as many degrees of freedom as the last recording has",
-        "freedom += cosines",
-        "freedom = cosines",
-        ("whole_body/test_covariance.py",),
-    ),
-    Mutant(
-        "sensors/delays/sensor_delay.py",
-        "a delay that is not corrected widens nothing",
-        "SensorDelay(0.0, float(np.hypot(delay, std)), found.freedom",
-        "SensorDelay(0.0, std, found.freedom",
-        ("sensors/delays/test_told_delay.py",),
-    ),
-    Mutant(
-        "estimation/stance_least_squares.py",
-        "an offset as unsure as one stance",
-        "float(np.var(means, ddof=1)) / len(means)",
-        "float(np.var(means, ddof=1))",
-        ("estimation/test_stance_least_squares.py",),
-    ),
 )
