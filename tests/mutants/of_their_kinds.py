@@ -194,4 +194,25 @@ OF_THEIR_KINDS = (
         "min(largest.get(side, 1e9)",
         ("robot_guess/test_zeros.py",),
     ),
+    Mutant(
+        "checks/joints.py",
+        "joints that legs share are each leg's own",
+        "uses[joint] == 1]",
+        "uses[joint] >= 1]",
+        ("checks/test_joints.py",),
+    ),
+    Mutant(
+        "models/bush_model.py",
+        "a tenth of the swing cut off",
+        "[0.5, 99.5]",
+        "[5.0, 95.0]",
+        ("models/test_models.py",),
+    ),
+    Mutant(
+        "logs/readers/streams.py",
+        "stamps of an epoch lose their digits",
+        "if first > 1e6 else",
+        "if first > 1e12 else",
+        ("logs/readers/test_streams.py",),
+    ),
 )
