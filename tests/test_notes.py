@@ -7,7 +7,7 @@ import io
 from rich.console import Console
 
 from plantar.cli.console.terminal import SCREENFUL, print_notes
-from plantar.notes import Note, NoteKind, joined, kinds
+from plantar.notes import Note, NoteKind, joined, kinds, listing
 
 LOGS = ["walk_1", "walk_2", "walk_3", "walk_4"]
 
@@ -70,3 +70,9 @@ def test_notes_of_one_kind_are_one_and_rare_kinds_come_first() -> None:
         NoteKind("spikes", "warning", "walk_1: one sample bridged", ("walk_2: two samples bridged",)),
     )
     assert kinds((), "info") == ()
+
+
+def test_a_long_list_is_cut_and_counted() -> None:
+    assert listing(["a", "b", "c"], 3) == "a, b, c"
+    assert listing(["a", "b", "c", "d", "e"], 3) == "a, b, c and 2 more"
+    assert listing([]) == ""

@@ -32,6 +32,11 @@ class Finding:
     severity: Severity = "warning"
 
 
+def listing(names: Sequence[str], most: int = 8) -> str:
+    """Names in a message: `a, b and 3 more` beyond so many."""
+    return ", ".join(names[:most]) + (f" and {len(names) - most} more" if len(names) > most else "")
+
+
 @dataclass(frozen=True)
 class NoteKind:
     """Notes with one code and severity: the first one's text, and those of the others."""

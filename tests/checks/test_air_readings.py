@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -49,3 +50,9 @@ def test_a_foot_that_stands_has_a_load(robot: RobotModel) -> None:
     assert found(robot, wrench, hanging=0.0) == []
     assert found(robot, wrench, hanging=0.8 * LONG / (SAMPLES * PERIOD)) == []  # a step
     assert len(found(robot, wrench, hanging=1.2 * LONG / (SAMPLES * PERIOD))) == 1
+
+
+def test_a_foot_zeroed_under_load_is_not_in_the_air(robot: RobotModel) -> None:
+    left = replace(robot.feet["left"], contact="always")
+    zeroed = replace(robot, feet={**robot.feet, "left": left})
+    assert found(zeroed, 0.05 * WEIGHT * np.eye(6)[2]) == []

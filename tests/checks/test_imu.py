@@ -95,6 +95,12 @@ def test_a_sound_imu_is_left_alone_whatever_it_lacks(log: MotionLog) -> None:
         assert list(check_imu("chest", each)) == []
 
 
+def test_a_gyroscope_that_reads_one_value_on_a_robot_that_stands_still_is_not_dead(log: MotionLog) -> None:
+    still = {name: np.full(len(log), log.column(name)[0]) for name in (*ORIENTATION, *ACCELEROMETER)}
+    resting = log.with_columns(still | {name: np.zeros(len(log)) for name in GYROSCOPE})
+    assert not [finding for finding in check_imu("chest", resting) if finding.code == "dead_channel"]
+
+
 def test_an_accelerometer_alone_cannot_be_dead(log: MotionLog) -> None:
     """Without an orientation it is what tells gravity's direction."""
     (finding,) = check_imu("chest", scaled(ACCELEROMETER, 0.0)(without(ORIENTATION)(log)))

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from biped import record, sway
 from biped_robot import make_robot, write_robot
-from plantar.checks.joints import check_joint_names, recorded_joints
+from plantar.checks.joints import check_joint_names, legs, recorded_joints
 from plantar.checks.log_checks import check_log
 from plantar.cli import main
 from plantar.errors import DataError
@@ -72,3 +73,15 @@ def test_inspect_prints_one_line_and_fails(
 def test_a_joint_without_any_value_is_not_recorded(log: MotionLog) -> None:
     empty = log.with_columns({"joint.neck.position": np.full(len(log), np.nan)})
     assert recorded_joints(log) - recorded_joints(empty) == {"neck"}
+
+
+def test_a_joint_that_both_feet_hang_from_is_no_legs_own() -> None:
+    """A waist lies between a chest's IMU and either foot."""
+    paths = {"left": {"waist", "left_knee", "left_hip"}, "right": {"waist", "right_knee"}}
+    robot = SimpleNamespace(
+        imu=SimpleNamespace(placement=None),
+        feet={name: SimpleNamespace(bush=name) for name in paths},
+        joints_between=lambda _, bush: paths[bush],
+        joint_names=("waist", "left_hip", "left_knee", "right_knee", "arm"),
+    )
+    assert legs(robot) == {"left": ["left_hip", "left_knee"], "right": ["right_knee"]}  # type: ignore[arg-type]

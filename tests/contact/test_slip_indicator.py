@@ -111,3 +111,5 @@ def test_a_sole_that_turns_is_seen_whatever_the_other_does() -> None:
     assert not found[(TIME < 7.85) | (TIME > 8.45)].any()
     elastic = twist_speed(apart(np.radians(0.8)) + drift, BOTH, PERIOD)
     assert not turning(elastic, PERIOD).any(), "a bush's own twist"
+    to_and_fro = apart(np.radians(0.8), 8.0, 8.15) - apart(np.radians(0.8), 8.15, 8.3)
+    assert not turning(twist_speed(to_and_fro + drift, BOTH, PERIOD), PERIOD).any(), "a bush that turns back"

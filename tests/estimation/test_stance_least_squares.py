@@ -167,3 +167,30 @@ def test_one_lone_stance_promises_nothing() -> None:
     fit = fit_stances([walk(0, stances=1)])
     low, high = interval95(float(fit.values[0]), float(fit.std[0]), float(fit.freedom[0]))
     assert low < 0 < high
+
+
+def test_an_offset_is_a_mean_over_stances() -> None:
+    """Of four times as many stances that scatter alike it is twice as well known, as the scatter says."""
+    few, many = (
+        np.mean([fit_stances([walk(seed, stances)]).offset_std(f"walk_{seed}") for seed in range(12)])
+        for stances in (8, 32)
+    )
+    assert many == pytest.approx(few / 2, rel=0.3)
+    assert many == pytest.approx(3.0 / np.sqrt(32), rel=0.5), "3 N·m from stance to stance"
+
+
+def test_a_common_column_without_anything_in_it_is_as_if_it_were_not_there() -> None:
+    """Vertical force cells read no horizontal force, by which a bush's height would show."""
+    blocks = [walk(seed) for seed in range(3)]
+    empty = [
+        replace(
+            block,
+            common_nuisance=np.hstack([block.common_nuisance, np.zeros((len(block.response), 1))]),
+            common_spread=np.array([np.inf, 0.006]),
+        )
+        for block in blocks
+    ]
+    plain, found = fit_stances(blocks), fit_stances(empty)
+    assert found.values == pytest.approx(plain.values)
+    assert found.std[:2] == pytest.approx(plain.std[:2])
+    assert found.common_nuisance[1] == 0.0

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from plantar.contact.stances import Stances
-from plantar.feet.coherent_band import coherent_band
+from plantar.feet.coherent_band import _coherence, coherent_band
 from plantar.signals.filters import low_pass
 
 PERIOD, STANCES, ROWS = 0.01, 60, 160
@@ -56,3 +56,15 @@ def test_the_unit_of_the_torque_does_not_matter() -> None:
     one, other = walk(4.0), walk(4.0)
     other.raw["left"].torque = 1e-3 * other.raw["left"].torque
     assert coherent_band([other]) == pytest.approx(coherent_band([one]))
+
+
+def test_chance_alone_is_no_coherence() -> None:
+    """Of twelve windows without any relation the squared coherence is one twelfth on average: that is taken off."""
+    random = np.random.default_rng(0)
+    windows, frequencies = 12, 4000
+    spectra = random.normal(size=(windows, 2, 2, frequencies)) + 1j * random.normal(
+        size=(windows, 2, 2, frequencies)
+    )
+    assert abs(_coherence(spectra).mean()) < 0.01
+    spectra[:, :, 1] = (3.0 - 1j) * spectra[:, :, 0]
+    assert _coherence(spectra) == pytest.approx(np.ones(frequencies))

@@ -15,6 +15,7 @@ from biped import VERTICAL, record, sway
 from feet_trials import PUNCTUAL
 from plantar.errors import DataError, LogError
 from plantar.feet.prepare import PreparedLogs, checked_in_turn, prepare_all, prepare_unseen
+from plantar.feet.recording import Recording
 from plantar.feet.settings import FeetSettings
 from plantar.logs.inputs import logs_of
 from plantar.logs.motion_log import MotionLog, imu_columns
@@ -128,3 +129,19 @@ def test_the_first_log_with_an_error_is_named(robot: RobotModel, logs: list[Moti
         checked_in_turn(robot, [logs[0], degrees("second"), degrees("third"), logs[1]])
     with pytest.raises(LogError, match="does not exist"):
         checked_in_turn(robot, logs_of([logs[0], "nowhere.csv", degrees("third")], robot))
+
+
+def test_the_logs_to_fit_alone_choose_the_filter(
+    robot: RobotModel, logs: list[MotionLog], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What is only scored must not tell what it is scored by."""
+    asked: list[str] = []
+
+    def band(recordings: list[Recording]) -> float:
+        asked.extend(recording.name for recording in recordings)
+        return 3.0
+
+    monkeypatch.setattr("plantar.feet.prepare.coherent_band", band)
+    found = prepared(robot, logs, replace(PUNCTUAL, cutoff=None))
+    assert asked == ["first", "second"]
+    assert {one.cutoff for one in found.recordings} == {found.settings.cutoff} == {3.0}

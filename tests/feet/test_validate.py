@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from biped import record, sway
@@ -79,15 +80,27 @@ def test_the_results_delays_are_taken_off_unseen_logs(robot: RobotModel) -> None
         assert len(wrong) == len(right) == 4
 
 
-def test_the_results_moment_arm_of_the_load_is_predicted_with(robot: RobotModel) -> None:
-    """A spring and damper alone predict exact logs; torque of the load beside them spoils its own axis only."""
+def test_where_the_result_has_found_the_bush_is_predicted_with(robot: RobotModel) -> None:
+    """A spring and damper alone predict exact logs; another place of the bush, or turned sensors, spoil their own axis
+    only, and another compliance its own foot."""
     log = record(sway("a", 1, duration=10.0))
+    yaw = 10.0 * np.sin(2 * np.pi * 0.5 * log.time)  # which no bush feels
+    log = log.with_columns({f"wrench.{foot}.torque.z": yaw for foot in ("left", "right")})
     found = identify_feet(robot, [log], settings=LINEAR)
     right = {(row.foot, row.axis): row.mean_abs_error for row in validate_feet(found, robot, log)}
-    first = replace(found.models[0], moment_arms=(0.02, 0.0))
-    rows = validate_feet(replace(found, models=(first, *found.models[1:])), robot, log)
-    worse = [(row.foot, row.axis) for row in rows if row.mean_abs_error > 10 * right[row.foot, row.axis]]
-    assert worse == [(first.foot, first.axis)]
+
+    def worse(**changed: object) -> list[tuple[str, str]]:
+        rows = validate_feet(replace(found, **changed), robot, log)
+        return [(row.foot, row.axis) for row in rows if row.mean_abs_error > 1.2 * right[row.foot, row.axis]]
+
+    first = found.models[0]
+    for place in (
+        {"moment_arms": (0.02, 0.0)}, {"moment_arms": (0.0, 0.1)}, {"turned": 0.2}, {"leans": 0.2},
+        {"imu_turned": (0.1, 0.1, 0.1)},
+    ):  # fmt: skip
+        moved = replace(first, **place)
+        assert worse(models=(moved, *found.models[1:])) == [(first.foot, first.axis)], place
+    assert {foot for foot, _ in worse(compliance={**found.compliance, "left": 1e-4})} == {"left"}
 
 
 def test_every_delay_that_was_corrected_stands_in_the_result() -> None:

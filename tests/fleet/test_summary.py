@@ -60,6 +60,14 @@ def test_the_level_is_that_since_the_step(summary: FleetSummary) -> None:
     assert level.sure_high / level.value == pytest.approx(1.02, abs=0.002)
 
 
+def test_the_trend_is_told_with_its_interval(summary: FleetSummary) -> None:
+    for level in summary.levels:
+        assert level.trend_low < level.trend < level.trend_high
+        true = 2.0 if level.unit == "ageing" else 0.0  # percent a month
+        assert level.trend_low - 0.1 < true < level.trend_high + 0.1, level
+        assert (level.trend_low > 0) == (level.unit == "ageing")
+
+
 def test_plain_data_say_the_same(summary: FleetSummary) -> None:
     content = json.loads(json.dumps(summary.to_dict()))
     assert content["schema"] == "plantar.fleet/1"
@@ -116,3 +124,23 @@ def test_failures_are_counted_by_what_they_say() -> None:
 def test_a_rate_that_cannot_be_is_refused() -> None:
     with pytest.raises(SettingsError, match="false alarms"):
         summary_of(results([]), failures(), 0.0)
+
+
+def test_effects_are_told_in_percent() -> None:
+    """Robots that differ by 3 %, days by 1 %, recordings by 0.5 %."""
+    random = np.random.default_rng(4)
+    rows = []
+    for unit in range(20):
+        own = 0.03 * random.normal()
+        for day in range(10):
+            mine = own + 0.01 * random.normal()
+            for _ in range(3):
+                value = 400 * np.exp(mine + 0.005 * random.normal())
+                rows.append(row(f"u{unit}", day, "left", "pitch", value))
+    (effect,) = summary_of(results(rows), failures()).effects
+    assert (effect.units, effect.recordings) == (20, 600)
+    assert effect.recordings_percent == pytest.approx(0.5, rel=0.15)
+    assert effect.days_percent == pytest.approx(1.0, rel=0.2)
+    assert effect.units_percent == pytest.approx(3.0, rel=0.4)
+    assert effect.low < 400 * 1.02
+    assert effect.high > 400 * 0.98

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,11 @@ import pytest
 
 from biped import MASS, WEIGHT, record, sway, times
 from biped_robot import FEET, make_robot
+from made_recording import FOOT, PERIOD, made_recording
+from plantar.contact.phases import SINGLE, SUPPORTS
+from plantar.contact.reasons import Reason
 from plantar.inspection import inspect_log
+from plantar.inspection.log_summary import _foot
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import open_log
 from plantar.results.io import dump_json
@@ -134,3 +139,20 @@ def test_real_recordings(shared_data: Path) -> None:
         assert foot.double > 10.0
     for row in summary.parameters:
         assert row.value is None or row.value > 0 or row.verdict != "usable"
+
+
+def test_a_foots_angles_are_those_of_its_used_samples() -> None:
+    """A sine of 0.02 rad about a lean of 0.1 rad; what is left out swings far more, and stands alone."""
+    time = PERIOD * np.arange(4000)
+    wild = time > 20.0
+    angle = 0.1 + np.where(wild, 0.5, 0.02) * np.sin(2 * np.pi * time)
+    made = made_recording("sway", angle, 400.0 * angle)
+    support = np.where(wild, SUPPORTS.index(SINGLE), made.contacts[FOOT].support).astype(np.int8)
+    contact = replace(made.contacts[FOOT], support=support).without(time > 19.9, Reason.ON_THE_EDGE)
+    found = _foot(replace(made, contacts={FOOT: contact}), FOOT)
+    assert found.deflection_rms == pytest.approx(
+        dict.fromkeys(("pitch", "roll"), 0.02 / np.sqrt(2)), rel=0.01
+    )
+    rate = 0.02 * 2 * np.pi / np.sqrt(2)
+    assert found.rate_rms == pytest.approx(dict.fromkeys(("pitch", "roll"), rate), rel=0.05)
+    assert (found.double, found.single, found.serving) == pytest.approx((20.0, 20.0, 19.9), abs=0.02)

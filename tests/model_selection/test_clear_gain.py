@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,7 +13,15 @@ from plantar.conventions import Array
 from plantar.model_selection.cross_validation import folds_of
 from plantar.model_selection.data_sets import FilteredDataSet, prepare_data_sets
 from plantar.model_selection.model_fit import ModelFit, fit_model
-from plantar.model_selection.selection import LEAST_GAIN, ModelScore, _adds, _caution, _clear, _winner
+from plantar.model_selection.selection import (
+    LEAST_GAIN,
+    ModelScore,
+    _adds,
+    _caution,
+    _clear,
+    _reason,
+    _winner,
+)
 from plantar.models import Elastoplastic, Hardening, HardeningElastoplastic, KelvinVoigt
 
 
@@ -132,3 +141,12 @@ def test_a_recording_with_most_of_the_motion_is_not_held_out_as_a_whole() -> Non
     assert not whole
     assert all(np.unique(fold).tolist() == [0, 1, 2, 3, 4] for fold in folds)
     assert all((np.diff(fold) >= 0).all() for fold in folds)
+
+
+def test_the_gain_is_told_in_percent() -> None:
+    linear, rich = (
+        SimpleNamespace(model=SimpleNamespace(name=name), held_out_rms=rms)
+        for name, rms in (("kelvin_voigt", 0.4), ("hardening", 0.3))
+    )
+    told = _reason(rich, linear, "whole recordings")  # type: ignore[arg-type]
+    assert told.endswith("it misses by 0.3 N·m rms, spring and damper by 0.4 (25 % less)")

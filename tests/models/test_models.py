@@ -247,3 +247,10 @@ def test_the_coupled_law_asks_for_the_other_axis() -> None:
     assert not MODELS["coupled"].applies([alone])
     with pytest.raises(DataError, match="other axis"):
         MODELS["coupled"].columns(alone)
+
+
+def test_the_reach_is_half_of_the_widest_swing_less_a_hundredth() -> None:
+    """Half of a per cent of the samples at either end may be noise."""
+    ramp, still = np.linspace(-1.0, 3.0, 1001), np.zeros(1001)
+    motion = BushMotion(np.concatenate([ramp, [np.nan], 0.1 * ramp]), np.zeros(2003), 0.01)
+    assert reach([BushMotion(still, still, 0.01), motion]) == pytest.approx(0.99 * 2.0)

@@ -6,16 +6,20 @@ from data_faults import DATA_FAULTS
 from designed_motions import DESIGNED_MOTIONS
 from drawn import DRAWN
 from drawn_again import DRAWN_AGAIN
+from drawn_everywhere import DRAWN_EVERYWHERE
 from engine_exports import ENGINE_EXPORTS
 from fleet_statistics import FLEET
 from handed_on import HANDED_ON
 from made_cheaper import MADE_CHEAPER
+from of_their_kinds import OF_THEIR_KINDS
 from once_unnoticed import ONCE_UNNOTICED
 from sensor_faults import SENSOR_FAULTS
 
 LISTS = {
     "drawn": DRAWN,
     "drawn_again": DRAWN_AGAIN,
+    "drawn_everywhere": DRAWN_EVERYWHERE,
+    "of_their_kinds": OF_THEIR_KINDS,
     "once_unnoticed": ONCE_UNNOTICED,
     "made_cheaper": MADE_CHEAPER,
     "data_faults": DATA_FAULTS,

@@ -75,6 +75,26 @@ def test_each_tick_is_what_the_batch_tool_computes(tmp_path: Path) -> None:
                 assert now.centre_of_pressure == pytest.approx(state.cop[i], abs=1e-10)
 
 
+def test_a_known_compliance_moves_the_torques_to_the_loaded_centre(robot: RobotModel) -> None:
+    """A slide of 40 kN/m that carries F_z lifts the centre by z, about which F_x and F_y turn."""
+    log, compliance = record(sway(duration=2.0)), 1 / 40e3
+    result = FeetResult(
+        "biped", (), {}, "kelvin_voigt", (), (), (), (), (), compliance=dict.fromkeys(robot.feet, compliance)
+    )
+    plain, moved = (FootEstimator(robot, one, wrench_delay=0.0).replay(log) for one in (None, result))
+    assert robot.imu is not None
+    for foot in robot.feet:
+        x, y, z = log.wrench(robot.feet[foot].wrench.name)[:, :3].T  # in the bush's axes
+        lift = compliance * z
+        pitch = plain.column(foot, "pitch.deflection")
+        changes = {"pitch": -lift * x, "roll": np.cos(pitch) * lift * y}
+        for axis, change in changes.items():
+            name = f"{axis}.torque"
+            found = moved.column(foot, name) - plain.column(foot, name)
+            np.testing.assert_allclose(found, change, atol=1e-9)
+            assert np.abs(change).max() > 0.01
+
+
 def test_known_feet_are_found(robot: RobotModel) -> None:
     replay = FootEstimator(robot, wrench_delay=0.0).replay(record(sway(duration=60.0)))
     expect_truth(replay, 1e-3, 2e-3)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -10,6 +11,8 @@ from biped_robot import write_robot
 from plantar import _core
 from plantar.online.estimator import FootEstimator
 from plantar.online.estimator_model import Element, estimator_model
+from plantar.results.feet import FeetResult
+from plantar.results.feet_rows import DelayEstimate, Parameter
 from plantar.robot.model import load_robot
 
 
@@ -32,13 +35,36 @@ def test_it_says_what_the_robot_file_says(tmp_path: Path) -> None:
 
 
 def test_a_foot_zeroed_under_load_has_no_torque_that_grows_with_it(tmp_path: Path) -> None:
-    robot = load_robot(write_robot(tmp_path))
-    feet = {name: {"contact": "always"} for name in robot.feet}
-    assert feet
-    uncertainty = {"bush_position": 0.003}
-    text = model_of(tmp_path / "auto", uncertainty=uncertainty)
-    spread = [float(line.split()[1]) for line in text.splitlines() if line.startswith("place_std")]
-    assert spread == [pytest.approx(0.005)] * 2
+    robot = load_robot(write_robot(tmp_path, uncertainty={"bush_position": 0.003}))
+    always = replace(robot, feet={**robot.feet, "left": replace(robot.feet["left"], contact="always")})
+    for model, aside in ((robot, 0.005), (always, 0.0)):
+        text = estimator_model(model, cutoff=5.0, wrench_delay=(0.0, 0.0), elements={}, compliance={})
+        left, right = (line.split()[1:] for line in text.splitlines() if line.startswith("place_std"))
+        assert [float(value) for value in left] == pytest.approx([aside, 0.005]), "aside, and above"
+        assert [float(value) for value in right] == pytest.approx([0.005, 0.005])
+
+
+def test_a_batch_result_is_handed_on(tmp_path: Path) -> None:
+    """Cutoff, delay and its deviation, compliance, elements, and where no memory was found."""
+    rows = [
+        Parameter("left", "pitch", "slip_angle", "rad", 0.01, 0.001, None, None, "usable", ""),
+        Parameter("left", "pitch", "slip_torque", "N.m", -2.0, None, None, None, "weak", ""),
+        Parameter("left", "roll", "stiffness", "N.m/rad", 400.0, 1.0, None, None, "usable", ""),
+        Parameter("right", "roll", "stiffness", "N.m/rad", 400.0, 1.0, None, None, "weak", ""),
+    ]
+    result = FeetResult(
+        "biped", (), {"cutoff": 3.0}, "elastoplastic", tuple(rows), (), (), (), (),
+        sensor_delay=DelayEstimate(0.004, 0.001, True), compliance={"left": 4e-6, "right": 0.0},
+    )  # fmt: skip
+    path = FootEstimator(write_robot(tmp_path), result).write_model(tmp_path / "robot.estimator")
+    lines = path.read_text().splitlines()
+    assert {"cutoff 3.0", "wrench_delay 0.004 0.001"} <= set(lines)
+    # All is unsure of a torque whose deviation nobody knows.
+    told = sorted(line for line in lines if line.startswith(("element", "linear")))
+    assert told == ["element 0 0.01 -2.0 2.0", "linear 1"], "of a weak stiffness nobody knows"
+    known, unknown = (line.split()[1:] for line in lines if line.startswith("compliance"))
+    assert [float(value) for value in known] == [4e-6, 0.0]
+    assert float(unknown[0]) == 0.0 < float(unknown[1])
 
 
 def test_the_written_file_makes_the_same_estimator(tmp_path: Path) -> None:

@@ -24,6 +24,7 @@ def test_the_vertical_stiffness_is_one_over_the_compliance() -> None:
     row = z_row(4e-6, 1e-6)
     assert row.value == pytest.approx(250e3)
     assert row.interval95 == pytest.approx((200e3, 1 / 3e-6))
+    assert row.std == pytest.approx(250e3 * 0.5e-6 / 4e-6), "the same share of the value"
     assert (row.unit, row.verdict) == ("N/m", "weak")
     assert z_row(4e-6, 2e-7).verdict == "usable"
 

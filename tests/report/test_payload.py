@@ -28,7 +28,8 @@ def decoded(track: Track) -> dict[str, np.ndarray]:
         return (part * 256 ** np.arange(width)[:, None]).sum(axis=0)
 
     out = {"time": header["t0"] + np.cumsum(planes(4)) * header["tick"]}
-    out["used"] = planes(1) & 1
+    flags = planes(1)
+    out["used"], out["support"] = flags & 1, np.array(payload.header["supports"])[flags >> 1]
     for channel in header["channels"]:
         zigzag = planes(2)
         code = np.cumsum(np.where(zigzag % 2, -(zigzag + 1) // 2, zigzag // 2)) % 65536
@@ -44,7 +45,11 @@ def test_every_sample_reaches_the_browser(tmp_path: Path) -> None:
     out = decoded(track)
     np.testing.assert_allclose(out["time"], track.time, atol=1e-6)
     np.testing.assert_array_equal(out["used"], track.used)
-    for key, unit in (("pitch.torque", 1.0), ("roll.predicted", 1.0), ("pitch.deflection", 1e3)):
+    np.testing.assert_array_equal(out["support"], track.support)
+    for key, unit in (
+        ("pitch.torque", 1.0), ("roll.predicted", 1.0), ("pitch.deflection", 1e3), ("roll.deflection", 1e3),
+        ("force_z", 1.0), ("cop_x", 1e3), ("cop_y", 1e3),
+    ):  # fmt: skip
         truth = unit * track.values[key]
         np.testing.assert_array_equal(np.isnan(out[key]), np.isnan(truth))
         change = np.nanmedian(np.abs(np.diff(truth)))

@@ -22,7 +22,7 @@ from plantar.feet.identify import identify_feet
 from plantar.feet.settings import FeetSettings
 from plantar.notes import Note
 from plantar.results.feet import Comparison, FeetResult
-from plantar.results.feet_rows import AxisModel, Candidate, LinearEquivalent, Parameter
+from plantar.results.feet_rows import AxisModel, Candidate, DelayEstimate, LinearEquivalent, Parameter
 from plantar.results.feet_text import (
     advice,
     delay_line,
@@ -186,6 +186,8 @@ def test_prediction_is_the_mean_over_samples_and_says_where_nothing_was_learnt(r
     expected = ("2 fitted", "left", "pitch", "1.25", "3.50", "no better than the offset alone: short")
     assert cells == expected
     assert delay_line(None) == []
+    measured = DelayEstimate(0.004, 0.0005, measured=True)
+    assert delay_line(measured) == ["Force sensors 4.0 ± 1.0 ms late, measured"]  # 1.96 deviations
 
 
 def test_columns_are_aligned_and_markup_is_text() -> None:

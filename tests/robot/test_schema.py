@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -59,6 +60,8 @@ def test_joints_between_imu_and_foot(tmp_path: Path) -> None:
     assert robot.imu is not None
     between = robot.joints_between(robot.imu.placement, robot.feet["left"].bush)
     assert between == {f"left_{joint}" for joint in ("leg_x", "leg_y", "leg_z", "ankle_pitch", "ankle_roll")}
+    assert robot.path_joints == between | {name.replace("left", "right") for name in between}
+    assert replace(robot, imu=None).path_joints == frozenset()
 
 
 def test_paths_are_relative_to_the_robot_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from example_robots import TALOS
-from plantar.logs.motion_log import MotionLog
+from plantar.logs.motion_log import MotionLog, wrench_columns
 from plantar.logs.save import save_log
 from plantar.robot_guess import guess_robot_file
 from plantar.robot_guess.zeros import without_zeros
@@ -61,3 +61,19 @@ def test_a_zero_does_not_speak_against_the_outline(tmp_path: Path) -> None:
     assert "leaves its outline" not in text
     assert "balance gravity to 0.0 cm" in text
     assert "taken off as their zeros" in text
+
+
+def test_the_largest_zero_of_all_logs_is_told() -> None:
+    time = np.arange(0, 17.0, 0.02)
+    stands = np.mod(time, 2.0) < 1.0
+    logs = []
+    for number, zero in enumerate((20.0, 45.0, 30.0)):
+        columns = {name: np.zeros(time.size) for name in wrench_columns("left")}
+        columns["wrench.left.force.z"] = np.where(stands, WEIGHT, 0.0) + zero
+        logs.append(MotionLog(f"walk_{number}", time, columns))
+    tared, (remark,) = without_zeros(logs, {"left": "left"}, WEIGHT)
+    assert "left 45 N" in remark.text
+    for log in tared:
+        np.testing.assert_allclose(
+            log.column("wrench.left.force.z"), np.where(stands, WEIGHT, 0.0), atol=1e-9
+        )

@@ -91,3 +91,13 @@ def test_nothing_is_said_of_a_foot_that_does_not_step(kind: str) -> None:
     if kind == "nothing known":
         wrench[:] = np.nan
     assert air_zero(time, wrench, wrench[:, 2], WEIGHT) is None
+
+
+def test_how_much_swings_differ_is_their_deviation_and_told() -> None:
+    time, wrench = walked(200, noise=0.0)
+    number = np.floor(time / 2.0).astype(int)
+    wrench += np.random.default_rng(2).normal(0, 4.0, (number.max() + 1, 6))[number]
+    zero = air_zero(time, wrench, wrench[:, 2], WEIGHT)
+    assert zero is not None
+    assert zero.scatter == pytest.approx(np.full(6, 4.0), rel=0.2)
+    assert f"(200 swings, which differ by {zero.scatter[:3].max():.2g} N)" in zero.text

@@ -4,12 +4,17 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
+from biped import record, sway
 from plantar.errors import PlantarError
 from plantar.results.feet import AxisModel, FeetResult, Parameter
 from plantar.results.feet_rows import LinearEquivalent
-from plantar.twin.replay import feet_of
+from plantar.robot.model import RobotModel
+from plantar.twin.replay import feet_of, plan_of
+from plantar.twin.robots.from_robot import describe
+from plantar.twin.simulation.mjcf import SERVO_ANGLE
 
 VALUES = {
     ("pitch", "stiffness"): 480.0,
@@ -57,3 +62,16 @@ def test_a_missing_number_is_named() -> None:
     less = tuple(row for row in result.parameters if (row.axis, row.name) != ("roll", "damping"))
     with pytest.raises(PlantarError, match="no roll_damping of the left foot"):
         feet_of(replace(result, parameters=less))
+
+
+def test_a_servo_that_gives_is_told_to_go_further(robot: RobotModel) -> None:
+    """So that under the recorded effort it stands where the recorded joint did: at its limit, by SERVO_ANGLE."""
+    log, joint = record(sway(duration=2.0)), "left_ankle_pitch"
+    limit = next(body.effort for body in describe(robot).bodies[1:] if body.joint == joint)
+    plans = [
+        plan_of(robot, log.with_columns({f"joint.{joint}.effort": np.full(len(log), effort)})).positions
+        for effort in (0.0, 0.5 * limit)
+    ]
+    place = robot.joint_names.index(joint)
+    np.testing.assert_allclose((plans[1] - plans[0])[:, place], 0.5 * SERVO_ANGLE, rtol=1e-6)
+    assert not np.delete(plans[1] - plans[0], place, axis=1).any()

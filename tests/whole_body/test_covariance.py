@@ -76,3 +76,12 @@ def test_the_cad_is_scored_against_what_was_measured(robot: RobotModel, log: Mot
         missed = np.array(table[f"{row.axis}.measured"]) - np.array(table[f"{row.axis}.predicted"])
         assert row.rms_error == pytest.approx(np.sqrt(np.mean(missed**2)), rel=1e-9)
         assert row.cad_rms_error == pytest.approx(row.rms_error, rel=0.2)
+
+
+def test_recordings_add_up(fit: RegularisedFit, samples: Samples) -> None:
+    """The same one twice: twice the variance of the scores, and twice the cosines that it rests on."""
+    once, twice = (uncertainty(fit, [samples] * count) for count in (1, 2))
+    assert twice.freedom == 2 * once.freedom
+    assert (twice.base >= once.base).all()
+    assert (twice.base <= np.sqrt(2) * once.base * (1 + 1e-9)).all()
+    assert (twice.base > 1.1 * once.base).any()

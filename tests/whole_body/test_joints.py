@@ -19,7 +19,7 @@ from plantar.logs.readers import open_log
 from plantar.results.dynamics import DynamicsResult
 from plantar.robot.model import RobotModel, load_robot
 from plantar.whole_body.dataset import COULOMB_SPEED
-from plantar.whole_body.joints import Inertia, identify_joints
+from plantar.whole_body.joints import Inertia, _judge, identify_joints
 
 VISCOUS, COULOMB, OFFSET = 3.0, 2.0, 0.5
 TERMS = "".join(
@@ -227,3 +227,11 @@ def test_kuka_predicts_its_second_recording(shared_data: Path) -> None:
     quickly = extrapolated.score("quick", "all").relative_error_percent
     assert quickly is not None
     assert quickly < 4.0
+
+
+def test_a_wide_interval_is_told_by_its_half() -> None:
+    assert _judge("viscous", 1.0, (0.6, 1.4), 10.0, False) == (
+        "weak", "the interval is 40 % of the value to each side",
+    )  # fmt: skip
+    assert _judge("viscous", -1.0, (-1.4, -0.6), 10.0, False)[1] == "negative, which is impossible"
+    assert _judge("offset", 0.1, (-0.3, 0.5), 10.0, True)[0] == "usable", "near zero beside the torque"

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
 
-from plantar.campaign.replay import CHEST, IDENTIFIED, RIGID, best_guess
+from plantar.campaign.replay import IDENTIFIED, RIGID, best_guess
 from plantar.campaign.run import Campaign
 from plantar.contact.balance import measured_balance
-from plantar.conventions import Array
 from plantar.motions import Plan, planned_balance
 from plantar.report.figures.paper import Plate
 from plantar.report.figures.plots import zmp
 from plantar.report.figures.robot_drawing import Box, stances
-from plantar.report.figures.simulation import MotionReplayed, replays, zmp_planned
+from plantar.report.figures.simulation import replays, zmp_planned
 from plantar.robot.model import RobotModel
 from plantar.twin.play import planned
 from plantar.twin.replay import Replayed
@@ -107,24 +106,10 @@ def _locus(campaign: Campaign, motion: str, number: int, letter: str) -> Plate:
 
 def _simulated(found: Sequence[Replayed], guess: str | None) -> Plate:
     shown = [name for name in (IDENTIFIED, RIGID, guess) if name]
-    motions = []
-    for motion in dict.fromkeys(one.motion for one in found):
-        group = [one for one in found if one.motion == motion and one.feet in shown]
-        recorded = _labelled(group[0].recorded_chest, group[0].recorded_torque)
-        simulated = {one.feet: _labelled(one.chest, one.torque) for one in group}
-        motions.append(MotionReplayed(motion, group[0].time, recorded, simulated))
-    rows = [(name, f"{name}\n[mrad]", MILLI) for name in CHEST]
-    rows += [(f"{foot} {axis}", f"{foot} {axis}\ntorque [N·m]", 1.0) for foot, axis in found[0].torque]
     caption = (
         "Recorded, and the same joint motion in the simulator on identified feet, rigid feet and "
         f"the best of the guesses{f' ({guess})' if guess else ''}. A recorded attitude's bias and slow drift, a "
         "straight line in time, are taken out of each; zeros of the torques from the first second."
     )
-    return Plate(
-        "simulator", None, "The campaign in a simulator.", caption, replays(motions, rows, IDENTIFIED)
-    )
-
-
-def _labelled(chest: Array, torque: Mapping[tuple[str, str], Array]) -> dict[str, Array]:
-    named = dict(zip(CHEST, chest.T, strict=True))
-    return named | {f"{foot} {axis}": values for (foot, axis), values in torque.items()}
+    drawing = replays([one for one in found if one.feet in shown], IDENTIFIED)
+    return Plate("simulator", None, "The campaign in a simulator.", caption, drawing)

@@ -63,8 +63,5 @@ def _sensors(robot: RobotModel) -> dict[str, Sequence[str]]:
     }
     if robot.imu is not None:
         found[f"columns 'imu.{robot.imu.name}.*'"] = imu_columns(robot.imu.name, "angular_velocity")
-        path = frozenset().union(
-            *(robot.joints_between(robot.imu.placement, foot.bush) for foot in robot.feet.values())
-        )
-        found[JOINTS] = [f"joint.{name}.position" for name in sorted(path)]
+        found[JOINTS] = [f"joint.{name}.position" for name in sorted(robot.path_joints)]
     return found

@@ -8,7 +8,7 @@ from collections.abc import Collection, Iterator
 import numpy as np
 
 from plantar.logs.motion_log import MotionLog
-from plantar.notes import Finding
+from plantar.notes import Finding, listing
 from plantar.robot.joint_names import propose_names, propose_order
 from plantar.robot.model import RobotModel
 
@@ -79,5 +79,4 @@ def legs(robot: RobotModel) -> dict[str, list[str]]:
 
 
 def _listing(names: Collection[str]) -> str:
-    shown = sorted(names)[:MOST_NAMED]
-    return ", ".join(shown) + (f" and {len(names) - len(shown)} more" if len(names) > len(shown) else "")
+    return listing(sorted(names), MOST_NAMED)

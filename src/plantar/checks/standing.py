@@ -107,13 +107,10 @@ def _reversed_joints(stance: Stance, sides: StanceSides) -> dict[str, float]:
     Where the force then leans from up still, the joint does not explain what is wrong.
     """
     robot = stance.robot
-    path = frozenset().union(
-        *(robot.joints_between(stance.imu.placement, foot.bush) for foot in robot.feet.values())
-    )
     tried = {
         f"column 'joint.{name}.position'": stance.reversed_joint(k).sides()
         for k, name in enumerate(robot.joint_names)
-        if name in path and np.any(stance.positions[:, k])
+        if name in robot.path_joints and np.any(stance.positions[:, k])
     }
     for first, second in _mirrored(stance):
         names = (f"'joint.{robot.joint_names[place]}.position'" for place in (first, second))

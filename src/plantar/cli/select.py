@@ -12,6 +12,7 @@ from plantar.cli.console.memory import Memory
 from plantar.cli.console.terminal import console, end_progress, number, progress, table
 from plantar.feet.select_motions import UNKNOWN, Choice, Selection, select_motions
 from plantar.logs.inputs import open_together
+from plantar.results.feet_text import SYMBOLS
 from plantar.results.io import dump_json
 from plantar.robot.model import load_robot
 
@@ -53,10 +54,7 @@ def run(
 
 def _table(title: str, choices: Any) -> object:
     keys = list(choices[0].half_width_percent)
-    heads = [
-        f"{foot[:5]} {axis} {term[0].upper()}".replace("S", "K").replace("D", "C")
-        for foot, axis, term in keys
-    ]
+    heads = [f"{foot[:5]} {axis} {SYMBOLS[term]}" for foot, axis, term in keys]
     rows = [
         (" + ".join(choice.motions), *(_percent(choice.half_width_percent[key]) for key in keys),
          number(choice.usual, 3), number(choice.condition_number, 3))

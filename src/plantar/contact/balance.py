@@ -142,11 +142,7 @@ def flat_soles(robot: RobotModel, positions: Array) -> dict[str, Array]:
 def soles_in_root(robot: RobotModel, positions: Array) -> dict[str, Array]:
     """Poses of the soles in the root link's frame, (4, 4) each, at joint positions (n,) in the robot's order."""
     model, data = robot.model, robot.model.createData()
-    q = pin.neutral(model)
-    for name, value in zip(robot.joint_names, positions, strict=True):
-        joint = model.joints[model.getJointId(name)]
-        q[joint.idx_q : joint.idx_q + joint.nq] = value if joint.nq == 1 else (np.cos(value), np.sin(value))
-    pin.forwardKinematics(model, data, q)
+    pin.forwardKinematics(model, data, robot.configuration(positions))
     found = {}
     for name, foot in robot.feet.items():
         joint, placement = robot.frame(foot.sole.placement)

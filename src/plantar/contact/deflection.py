@@ -19,8 +19,8 @@ import pinocchio as pin
 
 from plantar import _core
 from plantar.conventions import FORCE, GRAVITY, TORQUE, Array, skew
-from plantar.errors import DataError, RobotError, located
-from plantar.robot.kinematics import KinematicTree
+from plantar.errors import DataError
+from plantar.robot.kinematics import KinematicTree, packed_frame
 from plantar.robot.model import Placement, RobotModel
 
 LEAST_LOAD = 0.02  # of the robot's weight: a foot that carries less has no centre of pressure
@@ -93,8 +93,6 @@ def bush_states(
 
     Raises RobotError when the robot file has no IMU, DataError when an array has the wrong shape.
     """
-    if robot.imu is None:
-        raise RobotError(located("names no imu", path=robot.path, valid="imu: {name: ..., link: ...}"))
     samples, joints = len(orientation), len(robot.joint_names)
     _expect("positions", positions, (samples, joints))
     _expect("velocities", velocities, (samples, joints))
@@ -117,12 +115,11 @@ def path_to(
     """The chain from a robot's IMU to one foot's bush, the sole's placement in the bush frame, and what takes a
     placement in the ankle's joint there. `place`: of the bush, where it is not the robot file's.
     """
-    assert robot.imu is not None, "checked"
-    foot = robot.feet[name]
+    imu, foot = robot.required_imu, robot.feet[name]
     bush = robot.frame(place or foot.bush)
     to_bush = bush[1].inverse()
     sole = to_bush * robot.frame(foot.sole.placement)[1]
-    return foot_path(robot.tree, robot.frame(robot.imu.placement), bush, sole), sole, to_bush
+    return foot_path(robot.tree, robot.frame(imu.placement), bush, sole), sole, to_bush
 
 
 def foot_path(
@@ -142,18 +139,18 @@ def foot_path(
         placement = pin.SE3(tree.rotations[joint], tree.translations[joint])
         to_axis = pin.SE3(_rotation_from_z(*tree.axes[joint].tolist()), np.zeros(3))
         if sign > 0:
-            frames.append(_packed(onward * placement * to_axis))
+            frames.append(packed_frame(onward * placement * to_axis))
             onward = to_axis.inverse()
         else:
-            frames.append(_packed(onward * to_axis))
+            frames.append(packed_frame(onward * to_axis))
             onward = (placement * to_axis).inverse()
     return FootPath(
         joints=tuple(joint for joint, _ in path),
         frames=tuple(frames),
         slides=tuple(bool(tree.slides[joint]) for joint, _ in path),
         signs=tuple(float(sign) for _, sign in path),
-        bush=_packed(onward * bush[1]),
-        sole=_packed(sole),
+        bush=packed_frame(onward * bush[1]),
+        sole=packed_frame(sole),
     )
 
 
@@ -242,8 +239,3 @@ def _rotation_from_z(x: float, y: float, z: float) -> Array:
     first = -turned[:, np.argmin(np.abs(axis))]
     first /= np.sqrt(first @ first)
     return np.array([first, turned @ first, axis]).T
-
-
-def _packed(placement: pin.SE3) -> Array:
-    """A frame as the core takes it: rotation, row-major, then origin, (12,)."""
-    return np.concatenate([placement.rotation.ravel(), placement.translation])

@@ -45,13 +45,10 @@ def height_changes(
     def change(by: Array, deviation: float) -> Array:
         return np.asarray(np.interp(log.time[rows], log.time[::stride], by * deviation / STEP))
 
-    path = frozenset().union(
-        *(robot.joints_between(imu.placement, foot.bush) for foot in robot.feet.values())
-    )
     # All motions that differ from the recorded one: by a joint's angle, or in attitude.
     causes, joints, attitudes = list[tuple[str, float]](), list[int | None]([None]), [attitude]
     for column, joint in enumerate(robot.joint_names):
-        if joint in path and known.encoder_zero:
+        if joint in robot.path_joints and known.encoder_zero:
             causes.append((joint, known.encoder_zero))
             joints.append(column)
             attitudes.append(attitude)

@@ -19,7 +19,7 @@ import pinocchio as pin
 from plantar import _core
 from plantar.conventions import INERTIAL_NAMES, Array
 from plantar.dynamics.motion import Motion
-from plantar.robot.kinematics import KinematicTree
+from plantar.robot.kinematics import KinematicTree, packed_frame
 
 BASE_ROWS: Final = 6
 PER_LINK: Final = len(INERTIAL_NAMES)
@@ -102,7 +102,7 @@ class Equation:
             self.core,
             None if parameters is None else np.ascontiguousarray(parameters, dtype=np.float64),
             [contact.link for contact in contacts],
-            [_packed(contact.placement) for contact in contacts],
+            [packed_frame(contact.placement) for contact in contacts],
             list(wrenches),
             m.base,
             m.positions,
@@ -159,7 +159,3 @@ def model_parameters(model: pin.Model) -> Array:
     """The inertial parameters that a model's links have, (10 n_links,), in Pinocchio's order."""
     parameters = [inertia.toDynamicParameters() for inertia in list(model.inertias)[1:]]
     return np.concatenate(parameters) if parameters else np.zeros(0)
-
-
-def _packed(placement: pin.SE3) -> Array:
-    return np.concatenate([placement.rotation.ravel(), placement.translation])

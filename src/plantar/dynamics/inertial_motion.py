@@ -9,9 +9,8 @@ from functools import cached_property
 from plantar.conventions import Array
 from plantar.dynamics.base_motion import RelativeMotion, relative_motion, root_motion
 from plantar.dynamics.motion import Motion
-from plantar.errors import RobotError, located
 from plantar.logs.motion_log import MotionLog
-from plantar.robot.model import Imu, RobotModel
+from plantar.robot.model import RobotModel
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.resampling import shifted
 
@@ -44,7 +43,7 @@ def inertial_signals(robot: RobotModel, log: MotionLog, cutoff: float) -> Inerti
 
     Raises RobotError without an IMU, LogError where its columns are missing.
     """
-    imu = _imu(robot).name
+    imu = robot.required_imu.name
     positions = low_pass(log.positions(robot), log.period, cutoff)
     rate = low_pass(log.angular_velocity(imu), log.period, cutoff)
     proper = low_pass(log.linear_acceleration(imu), log.period, cutoff)
@@ -86,7 +85,7 @@ def _joint_motion(signals: InertialSignals, kept: slice, late: float = 0.0) -> t
 
 def _imu_motion(robot: RobotModel, joints: tuple[Array, Array, Array]) -> RelativeMotion:
     """The IMU seen from the root link."""
-    carrier, placement = robot.frame(_imu(robot).placement)
+    carrier, placement = robot.frame(robot.required_imu.placement)
     return relative_motion(robot.tree, carrier - 1, placement, *joints)
 
 
@@ -99,9 +98,3 @@ def _with_base(
 ) -> Motion:
     rate, slope = (shifted(values, signals.period, late, kept) for values in signals.turning)
     return Motion(root_motion(seen, signals.proper[kept], rate, slope), *joints)
-
-
-def _imu(robot: RobotModel) -> Imu:
-    if robot.imu is None:
-        raise RobotError(located("names no imu", path=robot.path, valid="imu: {name: ..., link: ...}"))
-    return robot.imu

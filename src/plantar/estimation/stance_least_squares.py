@@ -90,7 +90,9 @@ class _Prior:
         for place in known:
             prior = float(spread[place - first]) ** 2 if spread is not None else 0.0
             keep = prior / (prior + variance[place])
-            along = solution.inverse[:, place] / max(solution.inverse[place, place], np.finfo(float).tiny)
+            own = float(solution.inverse[place, place])
+            # A column without anything in it, as vertical force cells leave, is followed by nothing.
+            along = solution.inverse[:, place] / own if own > 0 else np.zeros(size)
             keeps.append(keep)
             follows.append(along)
             unsure += keep * (1 - keep) * variance[place] * np.outer(along, along)

@@ -148,7 +148,8 @@ def _solved(total: Array) -> tuple[Array, Array]:
 def _scaled_inverse(square: Array) -> Array:
     """Pseudo-inverse of positive semidefinite matrices (..., k, k), their rows scaled alike first: newtons and radians
     meet here."""
-    scale = np.sqrt(np.diagonal(square, axis1=-2, axis2=-1))
+    # Of a column that hardly changes within stances rounding leaves less than nothing.
+    scale = np.sqrt(np.maximum(np.diagonal(square, axis1=-2, axis2=-1), 0.0))
     scale = np.where(scale > 0, scale, 1.0)
     outer = scale[..., :, None] * scale[..., None, :]
     return np.asarray(np.linalg.pinv(square / outer, rcond=RANK_TOLERANCE, hermitian=True) / outer)

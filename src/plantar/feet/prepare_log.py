@@ -137,9 +137,8 @@ def _velocities(robot: RobotModel, log: MotionLog, band: float, notes: list[Note
     """
     velocities = np.zeros((len(log), len(robot.joint_names)))
     missing, whole = [], dict[int, Array]()
-    needed = _path_joints(robot)
     for place, name in enumerate(robot.joint_names):
-        if name not in needed:
+        if name not in robot.path_joints:
             continue
         position, recorded = log.joint(name, "position"), log.joint(name, "velocity")
         if position is not None and np.isfinite(position.sum()):
@@ -160,12 +159,6 @@ def _velocities(robot: RobotModel, log: MotionLog, band: float, notes: list[Note
         text = f"{where}; angles are right only if these joints stayed at 0"
         notes.append(Note("path_joint_missing", "warning", text))
     return velocities
-
-
-def _path_joints(robot: RobotModel) -> frozenset[str]:
-    """The joints between the IMU and any foot."""
-    imu = _require(robot).placement
-    return frozenset().union(*(robot.joints_between(imu, foot.bush) for foot in robot.feet.values()))
 
 
 def _contacts(

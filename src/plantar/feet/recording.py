@@ -20,13 +20,12 @@ from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.results.walk_rows import SwingZero
 from plantar.sensors.attitude_scale import AttitudeScale
-from plantar.signals.filters import differentiate, low_pass
+from plantar.signals.filters import SHORTEST_STANCE_RUN, differentiate, low_pass
 from plantar.signals.segments import run_ends
 
 FILTER_EDGE = 1.0  # of the filter's period, left out where a run of samples begins or ends
 SAMPLES_PER_CYCLE = 8  # of the cutoff, that a fit takes
 WIDE_BAND = 3.0  # cutoffs: at that of a fit nothing is lost, and nothing beyond twice as far is left
-SHORTEST_STANCE_RUN = 8  # samples of a stance, for it to be filtered by itself
 
 Role = Literal["fit", "validate"]
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from plantar.conventions import Array, Mask
 from plantar.errors import LogError, located
-from plantar.notes import Note
+from plantar.notes import Note, listing
 
 if TYPE_CHECKING:
     from plantar.robot.model import RobotModel
@@ -80,7 +80,7 @@ class MotionLog:
             columns[name] = _frozen(np.where(np.abs(columns[name]) > LARGEST, np.nan, columns[name]))
         if absurd:
             text = (
-                f"{self.name}: infinite or impossible values are treated as not recorded: {_listing(absurd)}"
+                f"{self.name}: infinite or impossible values are treated as not recorded: {listing(absurd)}"
             )
             object.__setattr__(self, "notes", (*self.notes, Note("absurd_values", "warning", text)))
         for name, values in columns.items():
@@ -190,7 +190,7 @@ class MotionLog:
                 (missing, Note("joint_missing", "info", f"{self.name}: not recorded, held at the neutral position: "
                                + _missing(robot, missing))),
                 (unknown, Note("joint_unknown", "info", f"{self.name}: recorded, but not in the URDF, not used: "
-                               + _listing(unknown))),
+                               + listing(unknown))),
             )
             if names
         )  # fmt: skip
@@ -208,16 +208,10 @@ class MotionLog:
 def _missing(robot: RobotModel, names: list[str]) -> str:
     """The names; in short where no foot's angles need them."""
     if robot.imu is None or not robot.feet:
-        return _listing(names)
-    way = frozenset[str]().union(
-        *(robot.joints_between(robot.imu.placement, foot.bush) for foot in robot.feet.values())
-    )
-    if way & set(names):
-        return _listing(names)
-    some = ", ".join(names[:HARMLESS]) + (
-        f" and {len(names) - HARMLESS} more" if len(names) > HARMLESS else ""
-    )
-    return f"{some}; none lies between IMU and feet"
+        return listing(names)
+    if robot.path_joints & set(names):
+        return listing(names)
+    return f"{listing(names, HARMLESS)}; none lies between IMU and feet"
 
 
 def _frozen(values: Array) -> Array:
@@ -226,7 +220,3 @@ def _frozen(values: Array) -> Array:
         array = array.copy()
     array.setflags(write=False)
     return array
-
-
-def _listing(names: list[str], most: int = 8) -> str:
-    return ", ".join(names[:most]) + (f" and {len(names) - most} more" if len(names) > most else "")

@@ -13,12 +13,11 @@ from plantar.conventions import Array, Mask
 from plantar.estimation.orthonormal import orthonormal, without
 from plantar.estimation.slow_drift import drift_basis, drift_beside
 from plantar.models import BushModel, BushMotion
-from plantar.signals.filters import SHORTEST_RUN, low_pass
+from plantar.signals.filters import SHORTEST_RUN, SHORTEST_STANCE_RUN, low_pass
 
 SAMPLES_PER_CYCLE = 7  # of the filter's cutoff, that thinning keeps
 THIN_BAND = 4.0  # cutoffs, that survive thinning
 SAMPLES_PER_CYCLE_IN_STANCES = 16  # so that the path keeps the band that survives thinning
-SHORTEST_STANCE_RUN = 8  # samples of a stance, for it to be filtered by itself
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ import pinocchio as pin
 
 from plantar.conventions import Array, skew
 from plantar.errors import PlantarError, located
-from plantar.notes import Note
+from plantar.notes import Note, listing
 
 ROUNDING: Final = (
     1e-12  # kg·m²: principal moments may break the triangle inequality by what arithmetic leaves
@@ -66,10 +66,9 @@ def write_inertias(root: ET.Element, model: pin.Model, bodies: Mapping[str, Arra
             text = f"'{carrier.name}': no body can have the identified inertia; simulators may refuse it"
             notes.append(Note("export_inertia", "warning", text))
     if emptied:
-        names = ", ".join(emptied[:NAMED]) + (
-            f" and {len(emptied) - NAMED} more" if len(emptied) > NAMED else ""
+        text = (
+            f"links whose inertia is now in a heavier link that they are fixed to: {listing(emptied, NAMED)}"
         )
-        text = f"links whose inertia is now in a heavier link that they are fixed to: {names}"
         notes.append(Note("export_lumped", "info", text))
     return tuple(notes)
 

@@ -160,6 +160,11 @@ def rotations_about(axis: Array, angle: Array) -> Array:
     return np.asarray(np.eye(3) + s * k + (1 - c) * (k @ k))
 
 
+def packed_frame(placement: pin.SE3) -> Array:
+    """A frame as the core takes it: rotation, row-major, then origin, (12,)."""
+    return np.concatenate([placement.rotation.ravel(), placement.translation])
+
+
 def _subspace(model: pin.Model, index: int) -> Array:
     """The joint's motion subspace in its own frame, linear then angular, (6,)."""
     joint = model.joints[index]

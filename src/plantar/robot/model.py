@@ -166,11 +166,37 @@ class RobotModel:
         frame = model.frames[model.getFrameId(placement.link)]
         return int(frame.parentJoint), frame.placement * pin.SE3(placement.rotation, placement.xyz)
 
+    def configuration(self, positions: Array) -> Array:
+        """Pinocchio's configuration (nq,) of `model` at joint positions (n,) in the order of `joint_names`."""
+        q = pin.neutral(self.model)
+        for name, value in zip(self.joint_names, positions, strict=True):
+            joint = self.model.joints[self.model.getJointId(name)]
+            # A continuous joint is its cosine and sine.
+            q[joint.idx_q : joint.idx_q + joint.nq] = (
+                value if joint.nq == 1 else (np.cos(value), np.sin(value))
+            )
+        return np.asarray(q)
+
     def joints_between(self, first: Placement, second: Placement) -> frozenset[str]:
         """Names of the joints on the chain from one placement's link to another's."""
         model = self.model
         supports = [set(model.supports[self.frame(placement)[0]]) - {0} for placement in (first, second)]
         return frozenset(model.names[joint] for joint in supports[0] ^ supports[1])
+
+    @property
+    def required_imu(self) -> Imu:
+        """The IMU. Raises RobotError where the robot file names none."""
+        if self.imu is None:
+            raise RobotError(located("names no imu", path=self.path, valid="imu: {name: ..., link: ...}"))
+        return self.imu
+
+    @cached_property
+    def path_joints(self) -> frozenset[str]:
+        """Names of the joints between the IMU and any foot, which its angles need; none without IMU."""
+        if self.imu is None:
+            return frozenset()
+        imu = self.imu.placement
+        return frozenset().union(*(self.joints_between(imu, foot.bush) for foot in self.feet.values()))
 
 
 def load_robot(path: str | os.PathLike[str]) -> RobotModel:

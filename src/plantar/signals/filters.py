@@ -10,6 +10,7 @@ from plantar.signals.segments import runs
 
 FILTER_ORDER = 4  # Butterworth, run forth and back
 SHORTEST_RUN = 27  # samples
+SHORTEST_STANCE_RUN = 8  # samples of a stance, for it to be filtered by itself
 PADDED = 3.0  # of the cutoff's period, by which a run is continued: its filter has settled by then
 MOST_PADDED = 10_000  # samples
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from plantar.conventions import Array
 from plantar.logs.motion_log import MotionLog
-from plantar.notes import Note
+from plantar.notes import Note, listing
 
 GAP_PERIODS = 3.5  # a step of time longer than this many periods is a gap
 BRIDGED = 0.04  # s: no motion that a fit uses is as short
@@ -77,7 +77,7 @@ def without_holes(log: MotionLog) -> MotionLog:
             filled[name] = there
     if not filled:
         return log
-    some = ", ".join(list(filled)[:3]) + (f" and {len(filled) - 3} more" if len(filled) > 3 else "")
+    some = listing(list(filled), 3)
     text = f"{log.name}: holes of at most {1e3 * longest:.0f} ms filled by straight lines: {some}"
     return log.with_columns(filled, Note("holes_filled", "info", text))
 

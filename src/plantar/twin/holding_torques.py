@@ -37,12 +37,6 @@ def holding_torques(robot: RobotModel, log: MotionLog) -> Array:
         carried.extend(pin.Force.Zero() for _ in range(model.njoints))
         for name, (joint, seat) in seats.items():
             carried[joint] += seat.act(pin.Force(read[name][row]))
-        q = pin.neutral(model)
-        for name, value in zip(robot.joint_names, positions[row], strict=True):
-            found = model.joints[model.getJointId(name)]
-            q[found.idx_q : found.idx_q + found.nq] = (
-                value if found.nq == 1 else (np.cos(value), np.sin(value))
-            )
-        held[place] = pin.rnea(model, data, q, still, still, carried)
+        held[place] = pin.rnea(model, data, robot.configuration(positions[row]), still, still, carried)
     time = log.time
     return np.column_stack([np.interp(time, time[rows], column) for column in held.T])

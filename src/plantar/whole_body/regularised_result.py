@@ -13,7 +13,7 @@ from plantar.dynamics import parameter_name, solve_triangle
 from plantar.dynamics.consistency import is_consistent
 from plantar.dynamics.equation import PER_LINK
 from plantar.estimation.residual_covariance import interval95, relative_std_percent
-from plantar.notes import Note, unique
+from plantar.notes import Note, listing, unique
 from plantar.results.dynamics import BaseParameter, DynamicsResult, InertialParameter, JointParameter
 from plantar.robot.identified_urdf import write_inertias
 from plantar.robot.model import RobotModel
@@ -82,8 +82,7 @@ def excitation_of(fit: RegularisedFit) -> tuple[int, float, list[Note]]:
     n_base, said = len(fit.base), []
     names = [fit.base.names[k] for k in np.flatnonzero(~solution.excited[:n_base])]
     if names:
-        listed = ", ".join(names[:NAMED]) + (f" and {len(names) - NAMED} more" if len(names) > NAMED else "")
-        said.append(f"from the URDF, not from the data: {listed}")
+        said.append(f"from the URDF, not from the data: {listing(names, NAMED)}")
     if terms := int(np.sum(~solution.excited[n_base:])):
         said.append(f"{terms} of the joints' terms cannot be told apart")
     text = f"the motions excite {solution.rank} of {len(solution.values)} directions; {'; '.join(said)}"

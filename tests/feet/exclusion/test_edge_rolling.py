@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from plantar.feet.exclusion.edge_rolling import leaning
+from biped import record, sway
+from plantar.feet.exclusion.edge_rolling import leaning, without_edge_rolling
+from plantar.feet.prepare_log import prepare
+from plantar.feet.recording import filtered_recording
+from plantar.feet.settings import FeetSettings
+from plantar.robot.model import RobotModel
 
 PERIOD = 0.005
 TIME = np.arange(2000) * PERIOD
@@ -70,3 +77,21 @@ def test_without_a_flat_stretch_nothing_is_trusted() -> None:
     excess, depth, _ = swayed(0.16)
     said = leaning(excess, depth, np.full(TIME.size, LOAD), depth < 0.005, depth < 0.005, PERIOD)
     assert said[depth < 0.005].all()
+
+
+@pytest.mark.parametrize("always", [False, True])
+def test_a_foot_zeroed_under_load_has_no_centre_of_pressure_to_be_judged_by(
+    robot: RobotModel, always: bool
+) -> None:
+    left = replace(robot.feet["left"], contact="always" if always else "auto")
+    robot = replace(robot, feet={**robot.feet, "left": left})
+    recording = filtered_recording(prepare(robot, record(sway(duration=12.0)), "fit"), 5.0)
+    state = recording.bushes["left"]
+    outside = (
+        state.cop + 2 * np.ptp(left.sole.polygon, axis=0) * (np.abs(recording.time - 6.0) < 1.0)[:, None]
+    )
+    moved = replace(state, cop=outside)
+    recording = replace(recording, bushes={**recording.bushes, "left": moved})
+    (rest,) = without_edge_rolling(robot, [recording], FeetSettings())
+    assert (rest.used("left").sum() < recording.used("left").sum()) == (not always)
+    assert rest.used("right").sum() == recording.used("right").sum()

@@ -10,7 +10,8 @@ from biped import record, sway
 from biped_robot import FEET, write_robot
 from feet_trials import noisy, without
 from plantar.contact.reasons import Reason
-from plantar.feet.exclusion.slip import without_slip
+from plantar.contact.slip_indicator import SlipIndicator
+from plantar.feet.exclusion.slip import _shared, without_slip
 from plantar.feet.exclusion.sole_velocity import sole_motion
 from plantar.feet.prepare_log import checked, prepare
 from plantar.feet.recording import Recording, filtered_recording
@@ -155,3 +156,13 @@ def test_slow_logs_of_standing_soles_show_no_slide(robot: RobotModel, rate: int)
     """The lag between compared velocities is shorter than a sample there."""
     slow = STANDING.select(slice(None, None, round(1 / rate / PERIOD)))
     assert not any(slips(reason).any() for reason in reasons(robot, slow).values())
+
+
+def test_what_the_other_foot_does_counts_while_both_stand() -> None:
+    """In a step the foot in the air is quick, and the one that stands need not slide for that."""
+    both = np.array([True, True, False, False])
+    left = SlipIndicator(np.array([0.001, 0.03, 0.001, np.nan]), np.full(4, 0.001))
+    right = SlipIndicator(np.array([0.02, 0.01, 0.5, 0.5]), np.full(4, 0.002))
+    shared = _shared({"left": left, "right": right}, "left", both)
+    np.testing.assert_array_equal(shared.speed, [0.02, 0.03, 0.001, np.nan])
+    np.testing.assert_array_equal(shared.deviation, [0.002, 0.001, 0.001, 0.001])

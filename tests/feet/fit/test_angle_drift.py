@@ -10,7 +10,7 @@ import pytest
 from bush_data_sets import Rubber
 from made_recording import FOOT, PERIOD, made_recording, swayed
 from plantar.conventions import Array
-from plantar.feet.fit import angle_drift
+from plantar.feet.fit.angle_drift import beside_drift
 from plantar.feet.fit.axis import AngleDrift, AxisFit
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.fit.regression_data import model_columns
@@ -48,7 +48,7 @@ def test_a_drift_moves_nothing_from_the_spring_to_the_element(
     found = beside.drifts["sway"].at(drifted[0].time)
     np.testing.assert_allclose(np.ptp(found), np.ptp(DRIFT), rtol=0.25)
     assert np.corrcoef(found, DRIFT)[0, 1] > 0.98
-    monkeypatch.setattr(angle_drift, "ROUNDS", 0)
+    monkeypatch.setattr("plantar.feet.fit.angle_drift.ROUNDS", 0)
     without = fitted(drifted).values[0] - fitted(still).values[0]
     assert abs(without) > 1e-3 * RUBBER.stiffness
     assert abs(moved) < 0.5 * abs(without)
@@ -71,3 +71,25 @@ def test_only_the_memory_s_path_is_without_the_drift() -> None:
     )
     np.testing.assert_array_equal(before[:, :2], after[:, :2])
     assert np.abs(before[:, 2] - after[:, 2]).max() > 0.01
+
+
+def test_drifts_that_do_not_matter_are_not_fitted_again() -> None:
+    """A memory that slips far in every sway hardly feels them."""
+    recordings = drifting(2, DRIFT)
+    wide = [made_recording("sway", *_wide_sway())]
+    calls = list[AxisFit]()
+
+    def again(fit: AxisFit) -> AxisFit:
+        calls.append(fit)
+        return fit
+
+    with_wide = fitted(wide)
+    assert beside_drift(with_wide, wide, again) is with_wide
+    assert calls == []
+    assert beside_drift(replace(fitted(recordings), drifts={}), recordings, again) is not with_wide
+    assert calls
+
+
+def _wide_sway() -> tuple[Array, Array]:
+    angle = 5 * REACH * np.sin(2 * np.pi * 0.3 * PERIOD * np.arange(COUNT))
+    return angle + DRIFT, RUBBER.torque(angle, np.gradient(angle, PERIOD))

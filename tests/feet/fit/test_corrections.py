@@ -12,14 +12,15 @@ from biped import TRUTH, record, sway
 from biped_robot import FEET
 from feet_trials import AXES, PUNCTUAL, noisy
 from made_recording import FOOT, PERIOD, made_recording, swayed
+from plantar.contact.stances import Stances
 from plantar.estimation import fit_blocks
 from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.corrections import about_true_zero, unattenuated
+from plantar.feet.fit.corrections import about_true_zero, over_stances, unattenuated
 from plantar.feet.fit.regression_data import blocks_of
 from plantar.feet.identify import identify_feet
 from plantar.feet.recording import Recording
 from plantar.logs.motion_log import MotionLog
-from plantar.models import KelvinVoigt
+from plantar.models import MODELS, KelvinVoigt
 from plantar.robot.model import RobotModel
 
 HARDENING = 30000.0  # N·m/rad³
@@ -53,9 +54,10 @@ def test_a_cube_is_found_about_its_own_zero(robot: RobotModel) -> None:
             assert stiffness == pytest.approx(TRUTH[foot, axis].stiffness, rel=0.02)
 
 
-def noisy_angles(size: float) -> tuple[list[Recording], AxisFit]:
-    """A sway whose angle and rate are read with white noise of `size` [rad] and ten times that [rad/s]; its fit."""
-    random, angle = np.random.default_rng(0), swayed(6000)
+def noisy_angles(size: float, middle: float = 0.0) -> tuple[list[Recording], AxisFit]:
+    """A sway about `middle` [rad] whose angle and rate are read with white noise of `size` [rad] and ten times that
+    [rad/s]; its fit. The bush's torque has no offset."""
+    random, angle = np.random.default_rng(0), middle + swayed(6000)
     rate = np.gradient(angle, PERIOD)
     torque = 400.0 * angle + 20.0 * rate
     read = made_recording(
@@ -86,6 +88,15 @@ def test_what_noise_in_the_angles_takes_off_is_given_back_and_widens() -> None:
     assert [(note.code, note.severity) for note in right.notes] == [("noisy_regressors", "info")]
 
 
+def test_the_offset_follows_what_noise_had_taken_off_the_stiffness() -> None:
+    """A spring that is too soft needs a constant to reach the torque about the middle of the sway."""
+    recordings, fit = noisy_angles(0.004, middle=0.05)
+    assert fit.offsets["sway"] > 0.5
+    right = unattenuated(fit, recordings, shared=False)
+    assert abs(right.offsets["sway"]) < 0.2 * fit.offsets["sway"]
+    assert right.offset_std["sway"] > fit.offset_std["sway"]
+
+
 def test_a_clean_angle_is_left_alone_and_one_of_mostly_noise_is_told() -> None:
     recordings, fit = noisy_angles(1e-5)
     assert unattenuated(fit, recordings, shared=False) is fit
@@ -97,3 +108,46 @@ def test_a_clean_angle_is_left_alone_and_one_of_mostly_noise_is_told() -> None:
 def test_a_zero_matters_to_a_cube_alone() -> None:
     recordings, fit = noisy_angles(1e-5)
     assert about_true_zero(fit, recordings, shared=False) is fit
+
+
+def test_stances_tell_how_well_a_number_is_known_where_they_know_less() -> None:
+    """Deviations are the larger ones of both fits, each with its own degrees of freedom."""
+    count, random = 6000, np.random.default_rng(1)
+    number = np.repeat(np.arange(12), count // 12)
+    angle = swayed(count)
+    torque = (
+        400.0 * angle + random.normal(0, 2.0, 12)[number] + 0.5 * np.cumsum(random.normal(0, 0.05, count))
+    )
+    recording = made_recording("walk", angle, torque, stances=Stances(number, np.ones(count)))
+    state = recording.bushes[FOOT]
+    state = replace(state, torque=np.column_stack([torque, 50.0 * swayed(count, seed=5)]))
+    recording = replace(recording, bushes={FOOT: state}, raw={FOOT: state})
+    found = fit_blocks(blocks_of([recording], FOOT, "pitch"))
+    for size, kept in ((1e4, True), (1e-12, False)):
+        fit = AxisFit(
+            foot=FOOT, axis="pitch", model=KelvinVoigt(), values=np.array([400.0, 0.0]), shape=np.zeros(0),
+            offsets={"walk": 0.0}, covariance=size * np.eye(2), freedom=np.full(2, 99.0), white_std=np.ones(2),
+            offset_std={"walk": 0.1}, equivalent=(400.0, 0.0), choice=None, reason="",
+        )  # fmt: skip
+        moved = over_stances(fit, [recording])
+        assert moved.values == pytest.approx(found.values)
+        assert moved.std == pytest.approx(fit.std if kept else found.std[:2])
+        assert moved.freedom == pytest.approx(fit.freedom if kept else found.freedom[:2])
+        assert found.freedom[0] == 11.0, "one less than there are stances"
+
+
+def test_an_offset_about_an_unknown_zero_is_no_better_known() -> None:
+    """Of two fits the larger deviation counts, for the offset as for the values."""
+    angle = swayed(6000)
+    noise = np.random.default_rng(0).normal(0, 0.5, 6000)
+    recording = made_recording("sway", angle, 400.0 * angle + 3e4 * angle**3 + noise)
+    model = MODELS["hardening_elastoplastic"]
+    known = {"stiffness": 400.0, "hardening": 3e4}
+    fit = AxisFit(
+        foot=FOOT, axis="pitch", model=model, values=np.array([known.get(term, 0.0) for term in model.terms]),
+        shape=np.array([0.01]), offsets={"sway": 0.0}, covariance=np.eye(5), freedom=np.full(5, 20.0),
+        white_std=np.ones(5), offset_std={"sway": 1e-9}, equivalent=(400.0, 0.0), choice=None, reason="",
+    )  # fmt: skip
+    assert about_true_zero(fit, [recording], shared=False).offset_std["sway"] > 1e-4
+    sure = about_true_zero(replace(fit, offset_std={"sway": 5.0}), [recording], shared=False)
+    assert sure.offset_std["sway"] == 5.0

@@ -55,6 +55,10 @@ def test_an_unseen_motion_takes_its_first_seconds_offset_which_is_not_scored(rob
     assert worst(recording, predicted) < CLOSE
     used = recording.time[recording.used("left")]
     assert recording.time[predicted.scored][0] >= used[0] + 1.0
+    first = recording.used("left") & (recording.time < used[0] + 1.0)
+    torque = recording.bushes["left"].torque[:, 0]
+    assert np.unique(predicted.trivial) == pytest.approx([torque[first].mean()]), "it knows no more either"
+    assert abs(torque[first].mean() - torque[recording.used("left")].mean()) > CLOSE
 
 
 def test_each_stance_of_a_walk_has_its_offset(robot: RobotModel) -> None:
@@ -75,3 +79,7 @@ def test_each_stance_of_a_walk_has_its_offset(robot: RobotModel) -> None:
     assert np.ptp(offset) == pytest.approx(7.0, abs=CLOSE)
     scored = predicted.trivial[predicted.scored & (number == 1)]
     assert np.ptp(scored) == 0, "one trivial offset a stance"
+    torque, used = stepped.bushes["left"].torque[:, 0], stepped.used("left")
+    for stance in (0, 1):
+        own = used & (number == stance)
+        assert predicted.trivial[own] == pytest.approx(np.full(own.sum(), torque[own].mean())), "its own"

@@ -7,8 +7,10 @@ import pytest
 
 from feet_trials import LINEAR
 from made_recording import FOOT, PERIOD, made_recording, swayed
+from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.axis_fit import fit_axis
-from plantar.feet.fit.regression_data import blocks_of
+from plantar.feet.fit.regression_data import blocks_of, tangent_blocks
+from plantar.models import MODELS
 
 STIFFNESS, COUNT = 400.0, 4000
 TIME = PERIOD * np.arange(COUNT)
@@ -31,3 +33,20 @@ def test_a_slow_lean_keeps_its_own_information() -> None:
     (quick,) = blocks_of([made_recording("sway", swayed(COUNT), STIFFNESS * swayed(COUNT))], FOOT, "pitch")
     assert quick.nuisance is not None
     assert quick.nuisance.shape[1] == 4
+
+
+def test_a_tangent_is_the_torques_slope_with_the_nonlinear_parameter() -> None:
+    """Of friction·tanh(rate / r) it is -friction·rate / r² / cosh²(rate / r)."""
+    friction, slip_rate, angle = 5.0, 0.1, swayed(COUNT)
+    rate = np.gradient(angle, PERIOD)
+    fit = AxisFit(
+        foot=FOOT, axis="pitch", model=MODELS["coulomb"], values=np.array([400.0, 20.0, friction]),
+        shape=np.array([slip_rate]), offsets={"sway": 0.0}, covariance=np.eye(4), freedom=np.ones(4),
+        white_std=np.ones(4), offset_std={"sway": 0.0}, equivalent=(400.0, 20.0), choice=None, reason="",
+    )  # fmt: skip
+    recording = made_recording("sway", angle, 400.0 * angle, rate=rate)
+    (block,) = tangent_blocks([recording], fit)
+    slope = -friction * rate / slip_rate**2 / np.cosh(rate / slip_rate) ** 2
+    inner = slice(20, -20)  # ends of the filter
+    expected = slope[recording.rows(FOOT)][inner]
+    np.testing.assert_allclose(block.regressor[inner, 3], expected, atol=0.05 * np.abs(expected).max())

@@ -9,9 +9,11 @@ import pytest
 
 from biped import TRUTH, record, sway
 from feet_trials import PUNCTUAL, noisy
+from made_recording import FOOT, made_recording, swayed
 from plantar.estimation.random_effects import Differences
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.interval_width.between_recordings import (
+    Apart,
     AxisDifferences,
     apart_notes,
     between_recordings,
@@ -69,3 +71,19 @@ def test_recordings_that_differ_are_a_result(robot: RobotModel) -> None:
     assert (note.code, note.severity) == ("between_recordings", "info")
     assert "3 recordings" in note.text
     assert apart_notes(alike) == []
+
+
+def test_what_recordings_differ_by_is_told_in_percent() -> None:
+    """A standard deviation from the first and two others."""
+    assert apart_notes(Apart(0.03, 2)) == []
+    (note,) = apart_notes(Apart(0.03, 2, (0.012, 0.061)))
+    assert "by a standard deviation of 1.2 to 6.1 % (95 %; from all axes of 3 recordings)" in note.text
+
+
+def test_a_prior_that_few_recordings_hold_up_is_no_more_sure_than_these() -> None:
+    angle = [swayed(3000, seed=seed) for seed in range(3)]
+    recordings = [made_recording(f"sway_{k}", own, 400.0 * own) for k, own in enumerate(angle)]
+    fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
+    assert fit is not None
+    (cause,) = between_recordings(fit, recordings, 0.05, False)
+    assert (cause.std, cause.freedom) == (0.05, 2.0)

@@ -14,9 +14,19 @@ from made_recording import FOOT, made_recording, swayed
 from plantar.conventions import NORMAL95
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.fit.regression_data import blocks_of
+from plantar.feet.fit.vertical_stiffness import VerticalStiffness
 from plantar.feet.identify import identify_feet
-from plantar.feet.interval_width.systematic import _by_delay, _suspected_hardening
+from plantar.feet.interval_width.systematic import (
+    Cause,
+    _between_walks,
+    _by_delay,
+    _shared_slope,
+    _suspected_hardening,
+    inflated,
+    systematic_causes,
+)
 from plantar.logs.motion_log import MotionLog
+from plantar.models import MODELS
 from plantar.notes import Note
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
@@ -119,3 +129,54 @@ def test_a_delay_in_doubt_is_allowed_for_as_far_as_it_may_be_off() -> None:
         assert reach * (change[inner] @ wave) / (wave @ wave) == pytest.approx(
             np.cos(2 * np.pi * reach) - 1, abs=0.01
         )
+
+
+def test_more_walks_are_surer_until_their_own_scatter_says_it() -> None:
+    """What differs from walk to walk by chance is, in their mean, smaller by the root of their number."""
+    angle = swayed(2000)
+    fit = fit_axis([made_recording("sway", angle, 400.0 * angle)], FOOT, "pitch", LINEAR)
+    assert fit is not None
+    (one,), (four,), (many,) = (_between_walks(fit, count) for count in (1, 4, 25))
+    assert one.share[0] == pytest.approx(0.03 * 400.0, rel=1e-3)
+    assert four.share == pytest.approx(one.share / 2)
+    assert not many.share.any()
+
+
+def test_a_cause_adds_its_variance_and_brings_its_few_degrees_of_freedom() -> None:
+    """Welch and Satterthwaite, by hand: (1 + 9)² / (1²/10 + 9²/2) of the stiffness; the damping is not moved."""
+    angle = swayed(2000)
+    fit = fit_axis([made_recording("sway", angle, 400.0 * angle)], FOOT, "pitch", LINEAR)
+    assert fit is not None
+    fit = replace(fit, covariance=np.eye(2), freedom=np.full(2, 10.0))
+    wide = inflated(fit, [Cause("delay", np.array([-6.0, 0.0]), 0.5, 2.0)])
+    np.testing.assert_allclose(wide.covariance, np.diag([10.0, 1.0]))
+    np.testing.assert_allclose(wide.freedom, [100 / 40.6, 10.0])
+
+
+def test_a_cause_is_as_sure_as_what_it_comes_from() -> None:
+    """The delay's deviation rests on few logs, the compliance's on others."""
+    angle = swayed(2000)
+    recording = made_recording("sway", angle, 400.0 * angle)
+    fit = fit_axis([recording], FOOT, "pitch", LINEAR)
+    assert fit is not None
+    late = SensorDelay(0.0, 0.001, 7.0, True, Note("delay", "info", ""))
+    vertical = VerticalStiffness((), (), {FOOT: 0.0}, {FOOT: 2e-6}, 5.0)
+    found = {cause.name: cause for cause in systematic_causes(fit, [recording], late, vertical, False)}
+    assert (found["delay"].std, found["delay"].freedom) == (0.001, 7.0)
+    assert (found["moment arm"].std, found["moment arm"].freedom) == (2e-6, 5.0)
+    assert found["delay"].share[1] == pytest.approx(0.001 * 400.0, rel=0.02), "K·delay off the damping"
+
+
+def test_what_spring_and_element_take_from_each_other_leaves_their_sum() -> None:
+    """Before it slips, the element is a spring of slip_torque / slip_angle beside the other."""
+    angle = swayed(2000)
+    recording = made_recording("sway", angle, 400.0 * angle)
+    linear = fit_axis([recording], FOOT, "pitch", LINEAR)
+    assert linear is not None
+    assert _shared_slope(linear, [recording]) == []
+    fit = replace(
+        linear, model=MODELS["elastoplastic"], values=np.array([400.0, 20.0, 3.0]), shape=np.array([0.01])
+    )
+    (cause,) = _shared_slope(fit, [recording])
+    assert cause.share == pytest.approx([0.01 * 300.0, 0.0, 0.01 * 3.0])
+    assert cause.effect[0] + cause.effect[2] / 0.01 == pytest.approx(0.0)

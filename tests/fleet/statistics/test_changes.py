@@ -75,6 +75,7 @@ def test_one_bad_day_is_an_outlier_with_its_size() -> None:
     values[60] = 0.2
     (change,) = history_of(np.arange(100.0), values, np.ones(100), RATE).changes
     assert (change.kind, change.first) == ("outlier", 60)
+    assert (change.high - change.low) / 2 == pytest.approx(1.96 * NOISE, rel=0.2), "the others' scatter, 95 %"
     assert change.size == pytest.approx(0.2, abs=0.01)
 
 

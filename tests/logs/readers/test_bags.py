@@ -53,6 +53,21 @@ def test_a_saved_bag_is_read_by_rosbags(original: MotionLog, bag: Path) -> None:
                 break
 
 
+@pytest.mark.parametrize("known", [True, False])
+def test_a_bag_says_whether_an_imu_knows_its_attitude(
+    original: MotionLog, tmp_path: Path, known: bool
+) -> None:
+    """sensor_msgs/Imu: without one, the first number of its covariance is -1."""
+    highlevel = pytest.importorskip("rosbags.highlevel")
+    columns = {name: v for name, v in original.columns.items() if known or ".orientation." not in name}
+    save_log(MotionLog("log", original.time, columns), tmp_path / "log.mcap")
+    with highlevel.AnyReader([tmp_path / "log.mcap"]) as reader:
+        (imu,) = (one for one in reader.connections if one.topic == "/imu/chest")
+        _, _, raw = next(reader.messages([imu]))
+        assert reader.deserialize(raw, imu.msgtype).orientation_covariance[0] == (0.0 if known else -1.0)
+    assert any(".orientation." in name for name in open_log(tmp_path / "log.mcap").columns) == known
+
+
 def test_a_bag_cut_anywhere_gives_its_whole_records(bag: Path, tmp_path: Path, original: MotionLog) -> None:
     content = bag.read_bytes()
     seen = []

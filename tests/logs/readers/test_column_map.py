@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from biped_robot import make_robot
 from plantar.errors import LogError
 from plantar.logs.readers import open_log
+from plantar.logs.readers.column_map import apply
 from plantar.robot.model import RobotModel
 
 
@@ -103,3 +104,19 @@ def test_whatever_stands_in_columns(columns: dict[str, object], tmp_path: Path, 
     (tmp_path / "log.sh_q").write_text("0 1\n1 2\n2 3\n")
     for name in ("log.csv", "log.sh_q"):
         assert "\n" not in refusal(tmp_path / name, replace(robot, columns=columns))
+
+
+def test_units_and_signs_of_a_map_are_taken(tmp_path: Path) -> None:
+    columns = {
+        "time": {"from": "t", "unit": "ms"},
+        "joint.neck.position": {"from": "neck", "unit": "deg", "sign": -1},
+        "imu.chest.angular_velocity": {"from": ["x", "y", "z"], "unit": "deg/s", "sign": -1},
+    }
+    robot = make_robot(tmp_path, columns=columns)
+    values = np.arange(1.0, 11.0)
+    table = {"t": 5.0 * values, "neck": values, "x": values, "y": 2 * values, "z": 3 * values}
+    time, found = apply(table, robot, tmp_path / "log.csv")
+    np.testing.assert_allclose(time, 0.005 * values)
+    np.testing.assert_allclose(found["joint.neck.position"], -np.radians(values))
+    for place, axis in enumerate("xyz", start=1):
+        np.testing.assert_allclose(found[f"imu.chest.angular_velocity.{axis}"], -np.radians(place * values))

@@ -21,12 +21,13 @@ def written(folder: Path, cells: np.ndarray) -> Path:
     return folder / "log.csv"
 
 
-def test_the_wrench_is_the_sum_of_the_cells_moments(tmp_path: Path) -> None:
+@pytest.mark.parametrize("sign", [1, -1])
+def test_the_wrench_is_the_sum_of_the_cells_moments(tmp_path: Path, sign: int) -> None:
     cells = np.random.default_rng(0).uniform(0.0, 0.2, (50, 4))
-    columns = {"wrench.left.cells": {"from": NAMES, "at": AT, "unit": "kN"}}
+    columns = {"wrench.left.cells": {"from": NAMES, "at": AT, "unit": "kN", "sign": sign}}
     log = open_log(written(tmp_path, cells), make_robot(tmp_path / "robot", columns=columns))
     forces = np.zeros((50, 4, 3))
-    forces[:, :, 2] = 1e3 * cells
+    forces[:, :, 2] = sign * 1e3 * cells
     places = np.column_stack([AT, np.zeros(4)])
     expected = np.column_stack([forces.sum(axis=1), np.cross(places, forces).sum(axis=1)])
     np.testing.assert_allclose(log.wrench("left"), expected, rtol=1e-7, atol=1e-9)

@@ -9,7 +9,7 @@ import pytest
 
 from plantar.errors import LogError
 from plantar.logs.readers.read_limit import ReadLimit
-from plantar.logs.readers.streams import Stream, merge, resample
+from plantar.logs.readers.streams import Stream, merge, origin, resample
 from plantar.notes import Note
 
 LIMIT = ReadLimit(Path("x"), files=[])
@@ -84,11 +84,19 @@ def test_stray_stamps_go_with_a_note_and_a_clock_that_jumps_is_refused() -> None
     time = np.arange(0, 10, 0.01)
     time[500] = np.nan
     time[700] = 3.0
+    time[800] = time[799]
     notes: list[Note] = []
     cleaned, _ = merge([stream("j", time, joint__a__position=time)], LIMIT, notes)
-    assert cleaned.size == time.size - 2
+    assert cleaned.size == time.size - 3
+    assert (np.diff(cleaned) > 0).all()
     assert "time_order" in {note.code for note in notes}
     jumped = np.r_[np.arange(0, 10, 0.01), np.arange(5, 15, 0.01)]
     with pytest.raises(LogError, match="steps back") as caught:
         merge([stream("/joint_states", jumped, joint__a__position=jumped)], LIMIT, [])
     assert "/joint_states" in str(caught.value)
+
+
+def test_stamps_of_an_epoch_start_within_their_second() -> None:
+    """As 1.7e9 s they keep a quarter of a microsecond; times of the log's own stay as they are."""
+    assert origin(1_700_000_000.25) == 1_700_000_000.0
+    assert [origin(first) for first in (0.0, 12.3, -4.0, 86400.5)] == [0.0] * 4

@@ -56,6 +56,19 @@ def test_a_stance_that_says_little_does_not_set_the_scale() -> None:
     assert chart.remark == "Stances whose K is beyond the scale of this plot, drawn at its edge: 1."
 
 
+def test_a_walk_that_says_little_does_not_set_the_scale_either() -> None:
+    result = walk_result()
+    wide = replace(result.walks[0], interval95=(STIFFNESS - 9000, STIFFNESS + 9000))
+    chart = strip_charts(replace(result, walks=(wide, *result.walks[1:])))[0]
+    height = chart.panels[0].height
+    assert number_at(chart, height) > STIFFNESS - 60, "as far as stances scatter: by 40 N·m/rad"
+    assert number_at(chart, 0.0) < STIFFNESS + 60
+    bars = [
+        mark.points for mark in chart.panels[0].marks if isinstance(mark, Path) and mark.kind == "walk fit"
+    ]
+    assert bars[0].endswith(f" {height + 9:.1f}V-9.0"), "cut off at both edges"
+
+
 def test_strips_are_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(strips, "MOST_STANCES", 6)
     monkeypatch.setattr(strips, "MOST_WALKS", 2)

@@ -20,7 +20,7 @@ from plantar.twin.robots.foot import cut_feet
 from plantar.twin.robots.from_robot import describe
 from plantar.twin.sensing.attitude_filter import filtered_attitude
 from plantar.twin.sensing.exact import exact_columns
-from plantar.twin.sensing.sensors import DEGREE, Sensors, delayed, sense
+from plantar.twin.sensing.sensors import DEGREE, Sensors, _attitude, delayed, sense
 from plantar.twin.simulation.physics import Physics
 from twin_samples import tilted
 
@@ -110,6 +110,18 @@ def test_attitude_is_biased_by_what_was_drawn(exact, robot) -> None:
         bias, drift = (drawn[f"imu.chest.orientation.{kind}.{axis}"] for kind in ("bias", "drift"))
         assert error[0, place] == pytest.approx(bias, rel=1e-3, abs=1e-9)
         assert error[-1, place] == pytest.approx(bias + drift, rel=1e-3, abs=1e-9)
+
+
+@pytest.mark.parametrize("count", [100, 400])
+def test_roll_and_pitch_wander_as_a_random_walk(count: int) -> None:
+    """However many samples it takes: by `attitude_walk` at the end, by half of it after a quarter; yaw does not."""
+    level = np.tile([1.0, 0.0, 0.0, 0.0], (count, 1))
+    time, random = np.linspace(0.0, 20.0, count), np.random.default_rng(3)
+    walks = [_attitude(level, time, Sensors(attitude_walk=0.01), random)[0] for _ in range(400)]
+    angles = 2 * np.array(walks)[:, :, 1:]
+    assert angles[:, -1, :2].std(axis=0) == pytest.approx([0.01, 0.01], rel=0.1)
+    assert angles[:, count // 4, :2].std(axis=0) == pytest.approx([0.005, 0.005], rel=0.15)
+    assert not angles[:, :, 2].any()
 
 
 def test_a_late_sensor_reads_the_past() -> None:

@@ -7,9 +7,8 @@ from typing import Annotated
 
 import typer
 
-from plantar.cli.console.memory import size_in_bytes
 from plantar.cli.console.terminal import progress
-from plantar.cli.fleet.run import MEMORY_HELP
+from plantar.cli.fleet.run import Scheduler, WorkerMemory, Workers
 from plantar.cli.identify import identification
 from plantar.cli.identify.dynamics_tables import print_inertia
 from plantar.errors import PlantarError, located
@@ -25,15 +24,9 @@ from plantar.whole_body.settings import DynamicsSettings
 def run(
     manifest: Annotated[Path, typer.Argument(help="CSV file as for `fleet run`.", metavar="MANIFEST.csv")],
     out: identification.Out,
-    workers: Annotated[
-        int | None, typer.Option(help="Processes on this machine; one a core if left out.", min=1)
-    ] = None,
-    scheduler: Annotated[
-        str | None, typer.Option(help="Address of a running Dask cluster.", metavar="ADDRESS")
-    ] = None,
-    memory: Annotated[
-        int | None, typer.Option("--memory", parser=size_in_bytes, metavar="SIZE", help=MEMORY_HELP)
-    ] = None,
+    workers: Workers = None,
+    scheduler: Scheduler = None,
+    memory: WorkerMemory = None,
     cutoff: identification.Cutoff = DynamicsSettings.cutoff,
     as_recorded: identification.AsRecorded = False,
     json: identification.Json = False,

@@ -26,6 +26,13 @@ from plantar.results.io import dump_json
 
 OUT_HELP = "Folder, or fsspec URL such as s3://bucket/fleet, for what is finished, the tables and fleet.html."
 MEMORY_HELP = "Memory of each worker of our own, such as 2GB; a worker that takes more is started again."
+Workers = Annotated[
+    int | None, typer.Option(help="Processes on this machine; one a core if left out.", min=1)
+]
+Scheduler = Annotated[str | None, typer.Option(help="Address of a running Dask cluster.", metavar="ADDRESS")]
+WorkerMemory = Annotated[
+    int | None, typer.Option("--memory", parser=size_in_bytes, metavar="SIZE", help=MEMORY_HELP)
+]
 EVERY: Final = 5.0  # s between lines of progress where stderr is no terminal
 
 
@@ -34,15 +41,9 @@ def run(
         Path, typer.Argument(help="CSV file: group, robot, log[, role, time, unit].", metavar="MANIFEST.csv")
     ],
     out: Annotated[str, typer.Option("--out", help=OUT_HELP)],
-    workers: Annotated[
-        int | None, typer.Option(help="Processes on this machine; one a core if left out.", min=1)
-    ] = None,
-    scheduler: Annotated[
-        str | None, typer.Option(help="Address of a running Dask cluster.", metavar="ADDRESS")
-    ] = None,
-    memory: Annotated[
-        int | None, typer.Option("--memory", parser=size_in_bytes, metavar="SIZE", help=MEMORY_HELP)
-    ] = None,
+    workers: Workers = None,
+    scheduler: Scheduler = None,
+    memory: WorkerMemory = None,
     offset: Annotated[OffsetRule, typer.Option(help=OFFSET_HELP)] = "per-motion",
     model: Annotated[str, typer.Option(help=MODEL_HELP, metavar="MODEL")] = AUTOMATIC,
     wrench_delay: WrenchDelay = None,

@@ -14,10 +14,10 @@ from plantar.estimation.orthonormal import orthonormal
 from plantar.estimation.slow_drift import drift_beside
 from plantar.feet.fit.axis import AngleDrift, AxisFit, FittedModel
 from plantar.feet.fit.load_torque import across_force, load_of, load_torque, step_columns, yaw_torque
-from plantar.feet.recording import SHORTEST_STANCE_RUN, Recording
+from plantar.feet.recording import Recording
 from plantar.model_selection.data_sets import DataSet, StepColumns
 from plantar.models import BushMotion, KelvinVoigt
-from plantar.signals.filters import SHORTEST_RUN, differentiate, low_pass
+from plantar.signals.filters import SHORTEST_RUN, SHORTEST_STANCE_RUN, differentiate, low_pass
 
 PATH_BAND = 4.0  # times the fit's cutoff, of the path that a memory follows through short stances
 # Before any data, of where steps find the centre [m] and how far the force sensor is turned about the vertical [rad]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -11,50 +10,44 @@ import numpy as np
 from plantar.conventions import Array
 from plantar.report.figures.panels import panels
 from plantar.report.figures.plots import BLUE, LINE, RED, envelope, zmp
+from plantar.twin.replay import Replayed
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing
 
 GREEN: Final = "#5d7a00"
 VIOLET: Final = "#7b5ea7"
+CHEST: Final = ("chest pitch", "chest roll")
 OTHERS: Final = (GREEN, VIOLET, "#9a6a00", "#3d7ea6", "#a8b0b8")
 
 
-@dataclass(frozen=True)
-class MotionReplayed:
-    """One motion for the figure: quantities over `time` (N,) as `recorded` and, by simulation, as `simulated`."""
+def replays(found: Sequence[Replayed], first: str) -> Drawing:
+    """Simulated over recorded: one column a motion, one row for each angle of the chest and each torque of a foot.
 
-    motion: str
-    time: Array = field(repr=False)
-    recorded: Mapping[str, Array] = field(repr=False)
-    simulated: Mapping[str, Mapping[str, Array]] = field(repr=False)
-
-
-def replays(
-    motions: Sequence[MotionReplayed], quantities: Sequence[tuple[str, str, float]], first: str
-) -> Drawing:
-    """Simulated over recorded: one column a motion, one row a quantity (its name, label and factor).
-
-    Recorded red, the simulation named `first` blue and on top of the others, which may leave the plot.
+    Recorded red, the simulation on the feet named `first` blue and on top of the others, which may leave the plot.
     """
-    figure, rows = panels(len(quantities), len(motions), (3.1 * len(motions), 1.9 * len(quantities)), "col")
-    names = [name for name in dict.fromkeys(n for one in motions for n in one.simulated) if name != first]
+    labels = [f"{name}\n[mrad]" for name in CHEST]
+    labels += [f"{foot} {axis}\ntorque [N·m]" for foot, axis in found[0].torque]
+    motions = list(dict.fromkeys(one.motion for one in found))
+    figure, rows = panels(len(labels), len(motions), (3.1 * len(motions), 1.9 * len(labels)), "col")
+    names = [name for name in dict.fromkeys(one.feet for one in found) if name != first]
     colours = {name: OTHERS[place % len(OTHERS)] for place, name in enumerate(names)} | {first: BLUE}
-    for column, one in enumerate(motions):
-        rows[0, column].set_title(one.motion, fontsize=9)
+    for column, motion in enumerate(motions):
+        rows[0, column].set_title(motion, fontsize=9)
         rows[-1, column].set_xlabel("time [s]")
-        for row, (quantity, label, factor) in enumerate(quantities):
+        group = {one.feet: one for one in found if one.motion == motion}
+        record = next(iter(group.values()))  # the same beside all feet
+        time, recorded = record.time, _quantities(record.recorded_chest, record.recorded_torque)
+        simulated = {name: _quantities(one.chest, one.torque) for name, one in group.items()}
+        for row, label in enumerate(labels):
             panel = rows[row, column]
             for name in names:
-                if name in one.simulated:
-                    way = envelope(one.time, factor * one.simulated[name][quantity])
-                    panel.plot(*way, color=colours[name], linewidth=LINE)
-            panel.plot(*envelope(one.time, factor * one.recorded[quantity]), color=RED, linewidth=1.6)
-            if first in one.simulated:
-                panel.plot(
-                    *envelope(one.time, factor * one.simulated[first][quantity]), color=BLUE, linewidth=LINE
-                )
-            panel.set_ylim(*_range(factor * one.recorded[quantity]))
+                if name in simulated:
+                    panel.plot(*envelope(time, simulated[name][row]), color=colours[name], linewidth=LINE)
+            panel.plot(*envelope(time, recorded[row]), color=RED, linewidth=1.6)
+            if first in simulated:
+                panel.plot(*envelope(time, simulated[first][row]), color=BLUE, linewidth=LINE)
+            panel.set_ylim(*_range(recorded[row]))
             if column == 0:
                 panel.set_ylabel(label)
     handles = [
@@ -64,6 +57,11 @@ def replays(
         handles, ["recorded", first, *names], frameon=False, ncols=len(handles), loc="outside upper right"
     )
     return figure
+
+
+def _quantities(chest: Array, torque: Mapping[tuple[str, str], Array]) -> list[Array]:
+    """Pitch and roll of the chest [mrad], then the feet's torques [N·m], (N,) each."""
+    return [*(1e3 * chest.T), *torque.values()]
 
 
 def _range(recorded: Array) -> tuple[float, float]:

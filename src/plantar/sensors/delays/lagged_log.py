@@ -30,7 +30,7 @@ def lagged_log(robot: RobotModel, log: MotionLog) -> LagGrid | None:
     complete = with_gyroscope(robot, log)
     if complete is None:
         return None
-    thin = _thinned(robot, complete)
+    thin = _thinned(complete)
     readings = np.stack([foot.wrench.sign * thin.wrench(foot.wrench.name) for foot in robot.feet.values()])
     steps = np.arange(-round(SEARCHED / thin.period), round(SEARCHED / thin.period) + 1)
     lags: Array = thin.period * steps.astype(np.float64)
@@ -68,7 +68,7 @@ def _liveliest(force: Array, inner: slice, most: int) -> slice:
     return slice(first, first + most)
 
 
-def _thinned(robot: RobotModel, log: MotionLog) -> MotionLog:
+def _thinned(log: MotionLog) -> MotionLog:
     """The columns of IMU, joints' positions and wrenches, slow parts only and few samples of them."""
     wanted = ("imu.", "wrench.", "joint.")
     names = [name for name in log.columns if name.startswith(wanted) and ".orientation." not in name]

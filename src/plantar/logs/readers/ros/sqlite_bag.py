@@ -27,7 +27,7 @@ def read_sqlite(path: Path, topics: dict[str, Topic], limit: ReadLimit, notes: l
     connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MESSAGE_LIMIT)
     try:
         _plain_tables(connection, path)
-        channels = _channels(connection, path, topics)
+        channels = _channels(connection, topics)
         for identity, topic in channels.items():
             _messages(connection, identity, topic, limit, path, notes)
     except (sqlite3.Error, OverflowError, ValueError, TypeError) as error:
@@ -51,7 +51,7 @@ def _plain_tables(connection: sqlite3.Connection, path: Path) -> None:
             raise LogError(located(f"'{name}' is not a plain table", path=path, valid="a bag of rosbag2"))
 
 
-def _channels(connection: sqlite3.Connection, path: Path, topics: dict[str, Topic]) -> dict[int, Topic]:
+def _channels(connection: sqlite3.Connection, topics: dict[str, Topic]) -> dict[int, Topic]:
     rows = connection.execute(
         "SELECT id, name, type, serialization_format FROM topics LIMIT 10000"
     ).fetchall()

@@ -16,7 +16,7 @@ from plantar.logs.readers import motion_name
 from plantar.logs.readers.read_limit import ReadLimit
 from plantar.logs.readers.tables.csv_file import Choice, read_csv
 from plantar.logs.readers.tables.parquet_file import read_parquet
-from plantar.notes import Note
+from plantar.notes import Note, listing
 from plantar.robot.model import RobotModel
 
 LATEST = 1e20  # in any unit, nanoseconds since 1970 among them: what no clock shows
@@ -38,10 +38,8 @@ def read(path: Path, robot: RobotModel | None, limit: ReadLimit) -> MotionLog:
         raise LogError(located("holds no samples", path=path, valid="a header and one row a sample"))
     ignored = [name for name in header if name not in columns and name != "time"]
     if ignored:
-        shown = ", ".join(ignored[:6]) + (f" and {len(ignored) - 6} more" if len(ignored) > 6 else "")
-        notes.append(
-            Note("columns_ignored", "info", f"{path.name}: columns of no known name, not used: {shown}")
-        )
+        text = f"{path.name}: columns of no known name, not used: {listing(ignored, 6)}"
+        notes.append(Note("columns_ignored", "info", text))
     keep = _increasing(time, path, notes)
     if not keep.all():
         time, columns = time[keep], {name: values[keep] for name, values in columns.items()}

@@ -1,0 +1,87 @@
+"""One log made ready: what its force sensors read in the air is taken off, but of a foot that always stands."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from biped import record, sway
+from plantar.contact.reasons import Reason
+from plantar.feet.prepare_log import prepare
+from plantar.logs.motion_log import MotionLog, wrench_columns
+from plantar.robot.model import RobotModel
+from plantar.sensors.newton_euler import with_gyroscope
+
+ZERO = np.array([4.0, -3.0, 20.0, 0.5, -0.4, 0.2])  # N, N·m
+
+
+def stepping(zero: np.ndarray) -> MotionLog:
+    """Feet that swing in turn for a second, twice as long between; the left force sensor reads `zero` beside."""
+    log = record(sway("steps", duration=24.0))
+    sole = {foot: log.wrench(foot) for foot in ("left", "right")}
+    phase = np.mod(log.time, 6.0)[:, None]
+    left, right = (phase > 1.0) & (phase < 2.0), (phase > 4.0) & (phase < 5.0)
+    both = sole["left"] + sole["right"]
+    read = {
+        "left": np.where(left, 0.0, np.where(right, both, sole["left"])) + zero,
+        "right": np.where(right, 0.0, np.where(left, both, sole["right"])),
+    }
+    columns = {foot: dict(zip(wrench_columns(foot), read[foot].T, strict=True)) for foot in read}
+    return log.with_columns(columns["left"] | columns["right"])
+
+
+def test_what_a_sensor_reads_in_the_air_is_taken_off_and_told(robot: RobotModel) -> None:
+    right, found = (prepare(robot, stepping(zero), "fit") for zero in (0.0 * ZERO, ZERO))
+    for state in ("wrench", "torque", "force_z"):
+        for foot in ("left", "right"):
+            ours, theirs = (getattr(one.raw[foot], state) for one in (found, right))
+            np.testing.assert_allclose(ours, theirs, atol=1e-6)
+    rows = [row for row in found.zeros if row.foot == "left"]
+    assert len(rows) == 4
+    for row in rows:
+        assert (*row.force_zero, *row.torque_zero) == pytest.approx(ZERO)
+    (note,) = [note for note in found.notes if note.code == "air_zero" and "left foot" in note.text]
+    assert note.text.startswith("steps: left foot: in the air its force sensor reads 4, -3, 20 N (4 swings")
+
+
+def always_standing(robot: RobotModel, *feet: str) -> RobotModel:
+    """The robot whose sensors of these feet were zeroed under load."""
+    stand = {name: replace(robot.feet[name], contact="always") for name in feet}
+    return replace(robot, feet={**robot.feet, **stand})
+
+
+def test_a_foot_that_always_stands_has_nothing_taken_off(robot: RobotModel) -> None:
+    """Zeroed under load, it reads next to nothing while it carries, too."""
+    found = prepare(always_standing(robot, "left"), stepping(ZERO), "fit")
+    assert {row.foot for row in found.zeros} == {"right"}
+    assert not any("left foot" in note.text for note in found.notes if note.code == "air_zero")
+
+
+def test_a_robot_zeroed_under_load_is_not_told_its_weight(robot: RobotModel) -> None:
+    log = record(sway("sway", duration=12.0))
+    names = [f"wrench.{foot}.force.z" for foot in ("left", "right")]
+    zeroed = log.with_columns({name: log.column(name) - log.column(name).mean() for name in names})
+    codes = [
+        {note.code for note in prepare(one, zeroed, "fit").notes}
+        for one in (robot, always_standing(robot, "left", "right"))
+    ]
+    assert "weight" in codes[0]
+    assert "weight" not in codes[1]
+
+
+def test_a_foot_zeroed_under_load_is_not_struck(robot: RobotModel) -> None:
+    """Its force is no share of the weight that a blow could be measured by."""
+    log = record(sway("sway", duration=12.0))
+    shaken = 60.0 * np.random.default_rng(0).normal(size=len(log)) * (np.abs(log.time - 6.0) < 0.3)
+    struck = log.with_columns({"wrench.left.force.x": log.column("wrench.left.force.x") + shaken})
+    auto, always = (prepare(one, struck, "fit") for one in (robot, always_standing(robot, "left")))
+    assert auto.contacts["left"].left_out_for([Reason.IMPACT]).any()
+    assert not always.contacts["left"].left_out_for([Reason.IMPACT]).any()
+
+
+def test_newtons_law_needs_sensors_that_know_the_load(robot: RobotModel) -> None:
+    log = record(sway("sway", duration=2.0))
+    assert with_gyroscope(robot, log) is not None
+    assert with_gyroscope(always_standing(robot, "right"), log) is None

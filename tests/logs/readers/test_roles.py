@@ -1,0 +1,54 @@
+"""Units of what a log holds: every one by its definition."""
+
+from __future__ import annotations
+
+from math import pi
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from plantar.errors import LogError
+from plantar.logs.readers.roles import UNITS, factor, role_columns
+
+KILOPOND = 9.80665  # N: a kilogramme's weight by definition
+SI = {
+    "time": {"s": 1, "ms": 1e-3, "us": 1e-6, "ns": 1e-9},
+    "position": {"rad": 1, "deg": pi / 180, "m": 1, "mm": 1e-3},
+    "velocity": {"rad/s": 1, "deg/s": pi / 180, "m/s": 1, "mm/s": 1e-3},
+    "joint acceleration": {"rad/s^2": 1, "deg/s^2": pi / 180},
+    "acceleration": {"m/s^2": 1, "g": 9.80665},
+    "force": {"N": 1, "kN": 1000, "kgf": KILOPOND},
+    "torque": {"N.m": 1, "N.mm": 1e-3, "kN.m": 1000, "kgf.cm": KILOPOND * 0.01},
+    "ratio": {"1": 1},
+}
+
+
+def test_every_unit_is_what_its_definition_says() -> None:
+    assert {unit for units in SI.values() for unit in units} == set(UNITS)
+    for quantity, units in SI.items():
+        for unit, size in units.items():
+            assert factor(unit, quantity, "role", Path("a.csv")) == pytest.approx(size, rel=1e-12), unit
+    for written in ("N·m", "Nm", " N.m "):
+        assert factor(written, "torque", "role", Path("a.csv")) == 1
+
+
+def test_a_unit_of_another_quantity_is_refused_with_those_that_fit() -> None:
+    with pytest.raises(LogError, match=r"no such unit of torque \(valid: N\.m, N\.mm, kN\.m, kgf\.cm\)"):
+        factor("kgf", "torque", "columns.x", Path("robot.yaml"))
+
+
+def test_unit_and_sign_go_into_the_columns_in_their_order() -> None:
+    values = np.arange(1.0, 7.0)[None]
+    path = Path("a.log")
+    moved = role_columns("joints.position", values[:, :2], ["a", "b"], path, unit="deg", sign=-1.0)
+    assert {name: column[0] for name, column in moved.items()} == pytest.approx(
+        {"joint.a.position": -pi / 180, "joint.b.position": -2 * pi / 180}
+    )
+    for role, force, torque in (
+        ("wrench.l", (1, 2, 3), (4, 5, 6)),
+        ("wrench.l.torque_first", (4, 5, 6), (1, 2, 3)),
+    ):
+        found = role_columns(role, values, (), path, sign=-1.0)
+        assert [found[f"wrench.l.force.{axis}"][0] for axis in "xyz"] == [-value for value in force]
+        assert [found[f"wrench.l.torque.{axis}"][0] for axis in "xyz"] == [-value for value in torque]
