@@ -14,7 +14,7 @@ from pathlib import Path
 from plantar.errors import ExportError, located
 from plantar.exporters.bush import check_swing, feet_of_result
 from plantar.exporters.comment import joints_note
-from plantar.exporters.job import Job
+from plantar.exporters.job import Job, asked
 from plantar.exporters.source import ResultInput, open_result, robot_urdf
 from plantar.files import write_text
 from plantar.notes import Note, unique
@@ -57,6 +57,8 @@ def export(
     *,
     with_offset: bool = False,
     swing: float | None = None,
+    hysteresis: bool = False,
+    pivot: str = "ground",
 ) -> tuple[Note, ...]:
     """Hand a result to a simulator or controller: springs and dampers in its own format and units.
 
@@ -70,13 +72,17 @@ def export(
         with_offset: the springs rest at -offset/K; else at 0, since the offset is mostly the sensors' zero.
         swing: for rubber that slips and a target that holds no slip, the amplitude of the motions it is for [rad]: the
             slip becomes their spring and damper. Where left out, K and C are the nearest to the identified motions.
+        hysteresis: mujoco-contact: leave the slip of rubber to `plantar.FootHysteresis` in the simulation's loop. Joints
+            of mjcf hold it anyway.
+        pivot: mujoco-contact: what the foot turns about, the "ground", or the "bush" centre as the robot does, which then
+            stands lower by the height of the bush over the sole.
 
     Returns:
         What the target could not hold, as notes.
 
     Raises:
-        ExportError: an unknown target, a swing that is no angle, a result without what the target needs, a model
-            without the ankle.
+        ExportError: an unknown target, a swing that is no angle, a hysteresis or a pivot that the target does not take,
+            a result without what the target needs, a model without the ankle.
 
     Example:
         >>> import plantar
@@ -103,7 +109,7 @@ def export(
         text, notes = with_inertial_parameters(data, given or robot_urdf(data, base))
     else:
         module = import_module(f"plantar.exporters.{TARGETS[target][0]}")
-        hysteresis = getattr(module, "HYSTERESIS", False)
+        hysteresis = asked(module, target, hysteresis, swing, pivot)
         feet, remarks = feet_of_result(
             data, base, with_offset=with_offset, hysteresis=hysteresis, swing=swing
         )
@@ -112,7 +118,7 @@ def export(
         takes_model = getattr(module, "EXTENDS", False) or getattr(module, "OPTIONAL_MODEL", False)
         if given is not None and not takes_model:
             raise ExportError(located("this target takes no model", value=target, valid="no --model"))
-        text, notes = module.write(Job(data, feet, given, path, with_offset, remarks))
+        text, notes = module.write(Job(data, feet, given, path, with_offset, remarks, pivot))
         named = (joints_note(feet),) if target in WITH_JOINTS else ()
         notes = (*remarks, *notes, *named)
     write_text(path, text)
