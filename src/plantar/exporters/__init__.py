@@ -72,10 +72,10 @@ def export(
         with_offset: the springs rest at -offset/K; else at 0, since the offset is mostly the sensors' zero.
         swing: for rubber that slips and a target that holds no slip, the amplitude of the motions it is for [rad]: the
             slip becomes their spring and damper. Where left out, K and C are the nearest to the identified motions.
-        hysteresis: mujoco-contact: leave the slip of rubber to `plantar.FootHysteresis` in the simulation's loop. Joints
-            of mjcf hold it anyway.
-        pivot: mujoco-contact: what the foot turns about, the "ground", or the "bush" centre as the robot does, which then
-            stands lower by the height of the bush over the sole.
+        hysteresis: for mujoco-contact: leave the slip of rubber to `plantar.FootHysteresis` in the simulation's loop.
+            Joints of mjcf hold it anyway.
+        pivot: for mujoco-contact: what the foot turns about, "ground" or "bush": the bush's centre, as the robot's feet
+            do. The robot then stands lower by the bush's height over the sole.
 
     Returns:
         What the target could not hold, as notes.

@@ -69,7 +69,7 @@ class _Foot:
             self.yielded[place] = angle - elastic
             found[place] = slip.stiffness * elastic
         # The sole turns as Ry(pitch) Rx(roll): roll is about the axis that pitch has turned.
-        return found[1] * np.array([0.0, 1.0, 0.0]) + found[0] * np.array([np.cos(pitch), 0.0, -np.sin(pitch)])
+        return np.array([found[0] * np.cos(pitch), found[1], -found[0] * np.sin(pitch)])
 
 
 class FootHysteresis:
@@ -87,7 +87,9 @@ class FootHysteresis:
 
     Example:
         >>> import mujoco, plantar
-        >>> model = mujoco.MjModel.from_xml_path("out/robot_on_points.xml")
+        >>> result, out = "out/slipping/result.json", "out/robot_on_points.xml"
+        >>> notes = plantar.export(result, "mujoco-contact", out, hysteresis=True)
+        >>> model = mujoco.MjModel.from_xml_path(out)
         >>> data, hysteresis = mujoco.MjData(model), plantar.FootHysteresis(model)
         >>> for _ in range(100):
         ...     mujoco.mj_step1(model, data)

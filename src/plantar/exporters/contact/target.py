@@ -52,7 +52,9 @@ def write(job: Job) -> tuple[str, tuple[Note, ...]]:
         notes += _said(foot, found, float(model.model.opt.timestep))
         if job.pivot == "bush":
             text = f"{foot.name}: the points stand at the bush centre's height, where the foot turns: the robot stands "
-            text += f"{1e3 * foot.sole_depth:.0f} mm lower, with its sole in the ground; start it that much lower"
+            text += (
+                f"{1e3 * foot.sole_depth:.0f} mm lower, with its sole in the ground; start it that much lower"
+            )
             notes.append(Note("export_pivot", "info", text))
     _harden_friction(root, notes)
     Compiled(root, job.model)  # MuJoCo must take what is written

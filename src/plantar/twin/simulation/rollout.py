@@ -63,8 +63,8 @@ def roll_out(
 ) -> Rollout:
     """Play a plan on the scene `xml` (from `scene_xml`). Releases the GIL while it steps.
 
-    `progress` is called once a second of motion with the share done; `force` makes, for the scene's model, what is called
-    in each step to apply a force of its own. Raises MotionError when the robot falls.
+    `progress` is called once a second of motion with the share done; `force` makes, for the scene's model, what each
+    step calls to apply a force of its own. Raises MotionError when the robot falls.
     """
     model = mujoco.MjModel.from_xml_string(xml)
     data = mujoco.MjData(model)

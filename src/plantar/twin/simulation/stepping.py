@@ -46,9 +46,7 @@ class Stepper:
             return
         rubber = _rubber(model, physics, robot)
         step = engine_step()
-        self.steps = (
-            InPython(model, data, rubber) if step is None else native(model, data, rubber, step)
-        )
+        self.steps = InPython(model, data, rubber) if step is None else native(model, data, rubber, step)
 
     def at(self, time: float) -> None:
         """Set the floor's friction for this moment."""
