@@ -20,8 +20,9 @@ from plantar.errors import ExportError
 from plantar.exporters import export
 from plantar.exporters.bush import FootBush
 from plantar.exporters.contact.alone import Measured, measured
-from plantar.exporters.contact.fit import EDGES, LOADS, STEPS, fitted
+from plantar.exporters.contact.fit import LOADS, STEPS, fitted
 from plantar.exporters.contact.points import Sides, points_for, sides_of
+from plantar.exporters.job import LEAST_LOAD as EDGES
 from plantar.exporters.openhrp import read_customizer
 from plantar.exporters.spring import SWAY, Slip, Spring
 

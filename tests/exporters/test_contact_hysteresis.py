@@ -151,6 +151,9 @@ def test_what_cannot_be_asked_for_is_said(tmp_path: Path) -> None:
         export(made, "mjcf", out, pivot="bush")
     with pytest.raises(ExportError, match="valid: ground, bush"):
         export(made, "mujoco-contact", out, pivot="heel")
+    for wrong in (0.0, 0.6, float("nan")):
+        with pytest.raises(ExportError, match=r"valid: 0\.05 to 0\.5"):
+            export(made, "mujoco-contact", out, least_load=wrong)
     with pytest.raises(ExportError, match="one of the two"):
         export(made, "mujoco-contact", out, hysteresis=True, swing=0.01)
     assert not out.exists()

@@ -11,6 +11,7 @@ import typer
 from plantar.cli.console.memory import Memory
 from plantar.cli.console.terminal import console, end_progress, number, progress, table
 from plantar.errors import MissingExtra, PlantarError, located
+from plantar.exporters.job import LEAST_LOAD, Stance
 from plantar.files import refuse_file, write_text
 from plantar.logs.inputs import open_together
 from plantar.results.feet import FeetResult
@@ -39,6 +40,9 @@ def run(
     pivot: Annotated[
         str, typer.Option("--pivot", help="As of `export`, for the contact.", metavar="PIVOT")
     ] = "ground",
+    least_load: Annotated[
+        float, typer.Option("--least-load", help="As of `export`, for the contact.", metavar="SHARE")
+    ] = LEAST_LOAD,
     memory: Memory = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No table, no progress.")] = False,
@@ -59,7 +63,9 @@ def run(
     step = progress(quiet)
     found = FeetResult.load(result, residuals=False)
     known = load_robot(robot)
-    scores, replayed = compare(found, known, open_together(logs, known, memory), step, swing, pivot)
+    scores, replayed = compare(
+        found, known, open_together(logs, known, memory), step, swing, Stance(pivot, least_load)
+    )
     end_progress(quiet)
     content = dump_json({"schema": "plantar.comparison/1", "scores": [asdict(row) for row in scores]})
     if out is not None:

@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from plantar.exporters import TARGETS, export
+from plantar.exporters.job import LEAST_LOAD
 
 TARGET_HELP = "One of: " + ", ".join(TARGETS) + "."
 MODEL_HELP = "Existing robot model to extend: MJCF, SDFormat, URDF or USD; the result's own URDF if left out."
@@ -22,6 +23,10 @@ HYSTERESIS_HELP = (
 PIVOT_HELP = (
     "mujoco-contact: 'ground', or 'bush' for feet that turn about the bush centre as the robot's do; "
     "the robot then stands lower, its soles in the ground."
+)
+LEAST_LOAD_HELP = (
+    "mujoco-contact: the least load that a foot does not give way under along z, of the robot's weight. "
+    "The less, the smaller the angle up to which K holds."
 )
 OFFSET_HELP = "Let each spring rest at -offset/K instead of 0."
 
@@ -37,6 +42,9 @@ def run(
     swing: Annotated[float | None, typer.Option("--swing", help=SWING_HELP, metavar="RAD")] = None,
     hysteresis: Annotated[bool, typer.Option("--hysteresis", help=HYSTERESIS_HELP)] = False,
     pivot: Annotated[str, typer.Option("--pivot", help=PIVOT_HELP, metavar="PIVOT")] = "ground",
+    least_load: Annotated[
+        float, typer.Option("--least-load", help=LEAST_LOAD_HELP, metavar="SHARE")
+    ] = LEAST_LOAD,
     quiet: Annotated[
         bool, typer.Option("--quiet", "-q", help="No notes on what the target cannot hold.")
     ] = False,
@@ -46,7 +54,15 @@ def run(
     Example: plantar export out/feet/result.json --to mjcf --model robot.xml --out robot_on_bushes.xml
     """
     notes = export(
-        result, to, out, model, with_offset=with_offset, swing=swing, hysteresis=hysteresis, pivot=pivot
+        result,
+        to,
+        out,
+        model,
+        with_offset=with_offset,
+        swing=swing,
+        hysteresis=hysteresis,
+        pivot=pivot,
+        least_load=least_load,
     )
     if not quiet:
         for note in notes:

@@ -10,6 +10,7 @@ import numpy as np
 
 from plantar.comparison.scenes import RIGID, Played, scenes
 from plantar.errors import MotionError
+from plantar.exporters.job import USUAL, Stance
 from plantar.logs.motion_log import MotionLog
 from plantar.motions.plan import Plan
 from plantar.results.feet import FeetResult
@@ -55,14 +56,14 @@ def compare(
     logs: Sequence[MotionLog],
     progress: Progress = lambda _: None,
     swing: float | None = None,
-    pivot: str = "ground",
+    stance: Stance = USUAL,
 ) -> tuple[tuple[KindScore, ...], tuple[Replayed, ...]]:
     """Play each log's joints open loop on the model's rigid feet, on exported joints and on exported contact, of rubber
     that slips also with its hysteresis.
 
     Args:
         result: of `identify_feet`. robot: that the logs are of. logs: with an attitude of the IMU.
-        progress: is told each motion that is done. swing [rad], pivot: as of `plantar.export`, for the
+        progress: is told each motion that is done. swing [rad], stance: as of `plantar.export`, for the
             contact.
 
     Returns:
@@ -75,7 +76,7 @@ def compare(
     for log in logs:
         plan = plan_of(robot, log)
         record = record_of(robot, log, plan)  # before anything is played: a log may hold no attitude
-        made = scenes(result, robot, plan, swing, pivot)
+        made = scenes(result, robot, plan, swing, stance)
         played = _played(robot, plan, made)
         fell = {kind: one.fell for kind, one in played.items() if isinstance(one, MotionError)}
         falls = [time for time in fell.values() if time is not None]

@@ -12,7 +12,7 @@ from typing import Any, Final
 from plantar.exporters.bush import FootBush, check_swing, feet_of_result
 from plantar.exporters.contact import target as contact
 from plantar.exporters.contact.hysteresis import FootHysteresis
-from plantar.exporters.job import Job, asked
+from plantar.exporters.job import USUAL, Job, Stance, asked
 from plantar.exporters.mjcf import target as joints
 from plantar.exporters.source import open_result
 from plantar.motions.plan import Plan
@@ -42,14 +42,15 @@ class Played:
 
 
 def scenes(
-    result: FeetResult, robot: RobotModel, plan: Plan, swing: float | None = None, pivot: str = "ground"
+    result: FeetResult, robot: RobotModel, plan: Plan, swing: float | None = None, stance: Stance = USUAL
 ) -> Mapping[str, Played]:
     """By kind of feet, the scene that `plan` is played on; `WITH_SLIP` only of rubber that slips.
 
     The exporters extend the rigid scene as they extend a user's model: what is compared is what they write.
 
     Args:
-        result: of `identify_feet`. robot, plan: that are played. swing, pivot: as of `plantar.export`, for the contact.
+        result: of `identify_feet`. robot, plan: that are played.
+        swing, stance: as of `plantar.export`, for the contact.
     """
     check_swing(swing)
     data, base = open_result(result)
@@ -58,17 +59,17 @@ def scenes(
         model = Path(folder) / "rigid.xml"
         model.write_text(rigid)
 
-        def job(target: ModuleType, hysteresis: bool, swing: float | None, pivot: str) -> Job:
-            kept = asked(target, CONTACT, hysteresis, swing, pivot)
+        def job(target: ModuleType, hysteresis: bool, swing: float | None, stance: Stance) -> Job:
+            kept = asked(target, CONTACT, hysteresis, swing, stance)
             feet, remarks = feet_of_result(data, base, with_offset=False, hysteresis=kept, swing=swing)
             moved = tuple(_on_twin(foot, robot) for foot in feet)
-            return Job(data, moved, model, model.with_name("out.xml"), False, remarks, pivot)
+            return Job(data, moved, model, model.with_name("out.xml"), False, remarks, stance)
 
-        points, slipping = job(contact, False, swing, pivot), job(contact, True, None, pivot)
-        lower = min(foot.sole_depth for foot in points.feet) if pivot == "bush" else 0.0
+        points, slipping = job(contact, False, swing, stance), job(contact, True, None, stance)
+        lower = min(foot.sole_depth for foot in points.feet) if stance.pivot == "bush" else 0.0
         made = {
             AS_IT_WAS: Played(rigid),
-            JOINTS: Played(joints.write(job(joints, False, None, "ground"))[0]),
+            JOINTS: Played(joints.write(job(joints, False, None, USUAL))[0]),
             CONTACT: Played(contact.write(points)[0], lower),
         }
         if any(spring.slip for foot in slipping.feet for spring in foot.springs):

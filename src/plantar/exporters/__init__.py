@@ -14,7 +14,7 @@ from pathlib import Path
 from plantar.errors import ExportError, located
 from plantar.exporters.bush import check_swing, feet_of_result
 from plantar.exporters.comment import joints_note
-from plantar.exporters.job import Job, asked
+from plantar.exporters.job import LEAST_LOAD, Job, Stance, asked
 from plantar.exporters.source import ResultInput, open_result, robot_urdf
 from plantar.files import write_text
 from plantar.notes import Note, unique
@@ -59,6 +59,7 @@ def export(
     swing: float | None = None,
     hysteresis: bool = False,
     pivot: str = "ground",
+    least_load: float = LEAST_LOAD,
 ) -> tuple[Note, ...]:
     """Hand a result to a simulator or controller: springs and dampers in its own format and units.
 
@@ -76,13 +77,15 @@ def export(
             Joints of mjcf hold it anyway.
         pivot: for mujoco-contact: what the foot turns about, "ground" or "bush": the bush's centre, as the robot's feet
             do. The robot then stands lower by the bush's height over the sole.
+        least_load: for mujoco-contact: the least load that a foot does not give way under along z, as a share of the
+            robot's weight, 0.05 to 0.5. The less, the smaller the angle up to which K holds.
 
     Returns:
         What the target could not hold, as notes.
 
     Raises:
-        ExportError: an unknown target, a swing that is no angle, a hysteresis or a pivot that the target does not take,
-            a result without what the target needs, a model without the ankle.
+        ExportError: an unknown target, a swing that is no angle, a hysteresis, pivot or least load that the target does
+            not take, a result without what the target needs, a model without the ankle.
 
     Example:
         >>> import plantar
@@ -92,6 +95,7 @@ def export(
         True
     """
     check_swing(swing)
+    stance = Stance(pivot, least_load)
     if target not in TARGETS:
         raise ExportError(located(f"'{target}' is not a target", valid=", ".join(TARGETS)))
     data, base = open_result(result)
@@ -109,7 +113,7 @@ def export(
         text, notes = with_inertial_parameters(data, given or robot_urdf(data, base))
     else:
         module = import_module(f"plantar.exporters.{TARGETS[target][0]}")
-        hysteresis = asked(module, target, hysteresis, swing, pivot)
+        hysteresis = asked(module, target, hysteresis, swing, stance)
         feet, remarks = feet_of_result(
             data, base, with_offset=with_offset, hysteresis=hysteresis, swing=swing
         )
@@ -118,7 +122,7 @@ def export(
         takes_model = getattr(module, "EXTENDS", False) or getattr(module, "OPTIONAL_MODEL", False)
         if given is not None and not takes_model:
             raise ExportError(located("this target takes no model", value=target, valid="no --model"))
-        text, notes = module.write(Job(data, feet, given, path, with_offset, remarks, pivot))
+        text, notes = module.write(Job(data, feet, given, path, with_offset, remarks, stance))
         named = (joints_note(feet),) if target in WITH_JOINTS else ()
         notes = (*remarks, *notes, *named)
     write_text(path, text)

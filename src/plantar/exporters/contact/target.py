@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 EXTENDS = True
 HYSTERESIS_IN_LOOP = True
-PIVOT = True
+STANCE = True
 TOUCH: Final = ("contype", "conaffinity", "priority", "friction")
 FRICTION: Final = (1.0, 0.005, 0.0001)  # MuJoCo's own, where the model has no shape to take it from
 
@@ -46,11 +46,12 @@ def write(job: Job) -> tuple[str, tuple[Note, ...]]:
     earlier = {foot.name: _taken_out(root, foot) for foot in job.feet}
     model = Compiled(root, job.model)
     weight = float(model.model.body_mass.sum()) * GRAVITY
+    turns_in_bush = job.stance.pivot == "bush"
     for foot in job.feet:
-        found = fitted(raised(foot) if job.pivot == "bush" else foot, weight)
+        found = fitted(raised(foot) if turns_in_bush else foot, weight, job.stance.least_load)
         _insert(root, foot, found, model, earlier[foot.name], notes)
         notes += _said(foot, found, float(model.model.opt.timestep))
-        if job.pivot == "bush":
+        if turns_in_bush:
             text = f"{foot.name}: the points stand at the bush centre's height, where the foot turns: the robot stands "
             text += (
                 f"{1e3 * foot.sole_depth:.0f} mm lower, with its sole in the ground; start it that much lower"
