@@ -6,6 +6,7 @@ The file keeps the slip's numbers and the bush's place; the simulation's own loo
 
 from __future__ import annotations
 
+import math
 import xml.etree.ElementTree as ET
 from dataclasses import dataclass
 from typing import Any, Final
@@ -21,6 +22,9 @@ from plantar.exporters.xml_file import numbers
 
 TURNS: Final[tuple[Axis, ...]] = ("roll", "pitch")  # in the order of the bush's axes x and y
 SITE, NUMBERS = "_contact_bush", "_contact_slip"
+FACING: Final = (
+    0.5  # cosine between a contact's normal and the sole's: what a sole stands on, not what a toe bumps into
+)
 
 
 def take_out(root: ET.Element, foot: str) -> None:
@@ -51,25 +55,25 @@ def carry(root: ET.Element, holder: ET.Element, foot: FootBush, model: Compiled)
 
 @dataclass
 class _Foot:
-    """One foot's slip by axis, and how far it has yielded (2,) [rad]."""
+    """One foot's slip by axis, and how far each has yielded [rad]."""
 
     site: int
     body: int
     slips: tuple[Slip | None, ...]
-    yielded: Array
+    yielded: list[float]
 
     def torque(self, up: Array) -> Array:
         """On the foot, in the bush's axes (3,) [N·m]; `up`: the ground's normal in them. Call once a step."""
-        pitch, roll = np.arctan2(up[0], up[2]), -np.arcsin(np.clip(up[1], -1.0, 1.0))
-        found = np.zeros(2)
-        for place, (angle, slip) in enumerate(zip((roll, pitch), self.slips, strict=True)):
+        x, y, z = up.tolist()
+        pitch, found = math.atan2(x, z), [0.0, 0.0]
+        for place, (angle, slip) in enumerate(zip((-math.asin(y), pitch), self.slips, strict=True)):
             if slip is None:
                 continue
-            elastic = float(np.clip(angle - self.yielded[place], -slip.angle, slip.angle))
+            elastic = max(-slip.angle, min(slip.angle, angle - self.yielded[place]))
             self.yielded[place] = angle - elastic
             found[place] = slip.stiffness * elastic
         # The sole turns as Ry(pitch) Rx(roll): roll is about the axis that pitch has turned.
-        return np.array([found[0] * np.cos(pitch), found[1], -found[0] * np.sin(pitch)])
+        return np.array([found[0] * math.cos(pitch), found[1], -found[0] * math.sin(pitch)])
 
 
 class FootHysteresis:
@@ -106,21 +110,22 @@ class FootHysteresis:
     def __call__(self, model: Any, data: Any) -> None:
         contact = data.contact
         bodies = model.geom_bodyid[contact.geom].reshape(-1, 2)
+        normals = contact.frame.reshape(-1, 9)[:, :3]
         for foot in self._feet:
-            touching = (bodies == foot.body).any(axis=1)
-            if not touching.any():
-                foot.yielded[:] = 0.0
+            turn = data.site_xmat[foot.site].reshape(3, 3)
+            facing = normals @ turn[:, 2]
+            ground = (bodies == foot.body).any(axis=1) & (np.abs(facing) > FACING)
+            if not ground.any():
+                foot.yielded = [0.0, 0.0]
                 data.xfrc_applied[foot.body, 3:] = 0.0
                 continue
-            turn = data.site_xmat[foot.site].reshape(3, 3)
-            normals = contact.frame.reshape(-1, 9)[touching, :3]
-            up = (normals * np.sign(normals @ turn[:, 2])[:, None]).sum(axis=0) @ turn
-            data.xfrc_applied[foot.body, 3:] = turn @ foot.torque(up / np.linalg.norm(up))
+            up = np.sign(facing[ground]) @ normals[ground] @ turn
+            data.xfrc_applied[foot.body, 3:] = turn @ foot.torque(up / math.hypot(*up))
 
     def reset(self) -> None:
         """Forget what has slipped, after `mj_resetData`."""
         for foot in self._feet:
-            foot.yielded[:] = 0.0
+            foot.yielded = [0.0, 0.0]
 
 
 def _feet(model: Any) -> list[_Foot]:
@@ -132,5 +137,5 @@ def _feet(model: Any) -> list[_Foot]:
         pairs = np.asarray(numeric.data).reshape(2, 2)
         slips = tuple(Slip(float(torque), float(angle)) if torque > 0 else None for torque, angle in pairs)
         site = model.site(numeric.name.removesuffix(NUMBERS) + SITE)
-        found.append(_Foot(int(site.id), int(site.bodyid[0]), slips, np.zeros(2)))
+        found.append(_Foot(int(site.id), int(site.bodyid[0]), slips, [0.0, 0.0]))
     return found
