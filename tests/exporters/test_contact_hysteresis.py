@@ -111,19 +111,29 @@ def test_the_torque_follows_the_ground_and_not_the_horizon(tmp_path: Path) -> No
     """Robot and floor turned together by 0.2 rad: the same angles."""
     urdf = write_urdf(tmp_path / "b.urdf", rigid_legs=True)
     export(slipping(urdf, "pitch"), "mujoco-contact", tmp_path / "out.xml", hysteresis=True, pivot="bush")
-    level = Pressed(tmp_path / "out.xml", 0.002)
-    slope = Pressed(tmp_path / "out.xml", 0.002)
-    turn = np.zeros(4)
-    mujoco.mju_axisAngle2Quat(turn, np.array([0.0, 1.0, 0.0]), 0.2)
-    slope.model.geom("floor").quat[:] = turn
-    turned = np.zeros(3)
-    mujoco.mju_rotVecQuat(turned, level.data.qpos[:3], turn)
-    slope.data.qpos[:3], slope.data.qpos[3:7] = turned, turn
-    for one in (level, slope):
-        mujoco.mj_step1(one.model, one.data)
-        one.hysteresis(one.model, one.data)
-    sole = int(level.model.site("left_contact_bush").bodyid[0])
-    np.testing.assert_allclose(slope.data.xfrc_applied[sole], level.data.xfrc_applied[sole], atol=1e-6)
+    slope, lean, at = (
+        np.zeros(4),
+        np.array([1.0, 0.0, 0.0025, 0.0]),
+        np.zeros(3),
+    )  # 5 mrad of the robot to the floor
+    mujoco.mju_axisAngle2Quat(slope, np.array([0.0, 1.0, 0.0]), 0.2)
+    torques = []
+    for floor in (np.array([1.0, 0.0, 0.0, 0.0]), slope):
+        foot = Pressed(tmp_path / "out.xml", 0.002)
+        foot.model.geom("floor").quat[:] = floor
+        foot.model.geom_sameframe[:] = 0  # the floor is no longer in its body's frame
+        mujoco.mju_rotVecQuat(at, foot.data.qpos[:3] - np.array([0, 0, 0.035]), floor)
+        foot.data.qpos[:3] = at
+        mujoco.mju_mulQuat(foot.data.qpos[3:7], floor, lean)
+        mujoco.mj_step1(foot.model, foot.data)
+        foot.hysteresis(foot.model, foot.data)
+        sole = int(foot.model.site("left_contact_bush").bodyid[0])
+        mujoco.mju_rotVecQuat(at, foot.data.xfrc_applied[sole, 3:], floor * np.array([1, -1, -1, -1]))
+        torques.append(at.copy())
+    assert np.linalg.norm(torques[0]) == pytest.approx(
+        BESIDE * 0.005 * np.cos(0.3), rel=1e-3
+    )  # the foot is turned in
+    np.testing.assert_allclose(torques[1], torques[0], atol=1e-6)
 
 
 def test_an_export_without_hysteresis_takes_it_off_again(tmp_path: Path) -> None:
