@@ -25,7 +25,7 @@ PROMISED = {
     "load_robot", "open_log", "identify_feet", "identify_inertia", "identify_joints", "validate_feet", "export",
     "select_motions", "read_residuals", "plot_torque", "FeetSettings", "DynamicsSettings", "FootEstimator",
     "FeetResult", "DynamicsResult", "RobotModel", "MotionLog", "PlantarError", "RobotError", "LogError", "DataError",
-    "SettingsError", "MotionError", "ExportError", "MissingExtra", "dynamics",
+    "SettingsError", "MotionError", "ExportError", "MissingExtra", "FootHysteresis", "dynamics",
 }  # fmt: skip
 KNOWN = FeetSettings(model="kelvin_voigt", wrench_delay=0.0)
 

@@ -31,6 +31,7 @@ _HOMES = {
     "identify_inertia": "whole_body.inertia",
     "identify_joints": "whole_body.joints",
     "export": "exporters",
+    "FootHysteresis": "exporters.contact.hysteresis",
     "plot_torque": "report.figures.loop",
     "read_residuals": "results.residuals",
     "FeetSettings": "feet.settings",
@@ -63,6 +64,7 @@ if TYPE_CHECKING:
     from plantar.errors import RobotError as RobotError
     from plantar.errors import SettingsError as SettingsError
     from plantar.exporters import export as export
+    from plantar.exporters.contact.hysteresis import FootHysteresis as FootHysteresis
     from plantar.feet.identify import identify_feet as identify_feet
     from plantar.feet.select_motions import select_motions as select_motions
     from plantar.feet.settings import FeetSettings as FeetSettings

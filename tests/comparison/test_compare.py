@@ -13,15 +13,16 @@ import pytest
 from command_line import run
 from plantar.comparison.compare import KindScore, compare, pooled
 from plantar.comparison.picture import write_picture
-from plantar.comparison.scenes import AS_IT_WAS, CONTACT, JOINTS, KINDS, scenes
+from plantar.comparison.scenes import AS_IT_WAS, CONTACT, JOINTS, WITH_SLIP, scenes
 from plantar.contact.balance import soles_in_root
 from plantar.conventions import Array, rotation_from_rpy
+from plantar.exporters.job import Stance
 from plantar.logs.motion_log import MotionLog, wrench_columns
 from plantar.logs.save import save_log
 from plantar.motions.plan import Plan
 from plantar.results.feet import FeetResult, Parameter
 from plantar.robot.model import RobotModel, load_robot
-from plantar.twin.bush import PAPER
+from plantar.twin.bush import PAPER, Feet
 from plantar.twin.play import rolled
 from plantar.twin.replay import Replayed, plan_of, record_of
 from plantar.twin.robots import hrp2
@@ -31,13 +32,20 @@ from plantar.twin.sensing.exact import exact_columns
 from plantar.twin.simulation.physics import Physics
 from twin_samples import plan, short
 
+KINDS = (AS_IT_WAS, JOINTS, CONTACT)
+SLIPPING = {foot: replace(bush, pitch_slip_torque=5.0, pitch_slip_angle=0.01) for foot, bush in PAPER.items()}
+
+
+def played(bushes: Feet) -> MotionLog:
+    """Eight seconds from where the robot stands: it leans forward and comes back."""
+    robot = hrp2.robot()
+    rollout = rolled(short(plan("Tilt3"), 0.0, 8.0), robot, Physics(bushes=bushes))
+    return MotionLog("Tilt3", rollout.time, exact_columns(rollout, robot, cut_feet(describe(robot), robot)))
+
 
 @pytest.fixture(scope="module")
 def log() -> MotionLog:
-    """Eight seconds from where the robot stands: it leans forward and comes back."""
-    robot = hrp2.robot()
-    rollout = rolled(short(plan("Tilt3"), 0.0, 8.0), robot, Physics())
-    return MotionLog("Tilt3", rollout.time, exact_columns(rollout, robot, cut_feet(describe(robot), robot)))
+    return played(PAPER)
 
 
 def first(log: MotionLog, seconds: float) -> MotionLog:
@@ -48,13 +56,17 @@ def first(log: MotionLog, seconds: float) -> MotionLog:
 @pytest.fixture(scope="module")
 def result(tmp_path_factory: pytest.TempPathFactory) -> FeetResult:
     """What an identification without any error finds; the twin's robot file stands beside it."""
-    folder = tmp_path_factory.mktemp("result")
+    return identified(PAPER, tmp_path_factory.mktemp("result"))
+
+
+def identified(bushes: Feet, folder: Path) -> FeetResult:
     robot = load_robot(hrp2.write(folder))
     rows = tuple(
         Parameter(foot, axis, name, "", getattr(bush, f"{axis}_{name}"), 1.0, None, None, "usable", "")  # type: ignore[arg-type]
-        for foot, bush in PAPER.items()
+        for foot, bush in bushes.items()
         for axis in ("pitch", "roll", "z")
-        for name in ("stiffness", "damping")
+        for name in ("stiffness", "damping", "slip_torque", "slip_angle")
+        if getattr(bush, f"{axis}_{name}", 0.0) and (bush.pitch_slip_torque or "slip" not in name)
     )
     feet = {
         name: {
@@ -115,11 +127,32 @@ def test_the_picture_and_the_numbers_go_to_a_folder(
 def test_the_scenes_are_what_the_exporters_write(result: FeetResult, log: MotionLog) -> None:
     made = scenes(result, hrp2.robot(), plan_of(hrp2.robot(), log))
     assert tuple(made) == KINDS
-    names = {kind: {e.get("name", "") for e in ET.fromstring(text).iter()} for kind, text in made.items()}
+    names = {kind: {e.get("name", "") for e in ET.fromstring(one.xml).iter()} for kind, one in made.items()}
     assert "LLEG_BUSH_PITCH" in names[JOINTS]
     assert "left_contact_0" in names[CONTACT]
     assert not {"LLEG_BUSH_PITCH", "left_contact_0"} & names[AS_IT_WAS]
     assert "LLEG_BUSH_PITCH" not in names[CONTACT]
+
+
+@pytest.mark.slow
+def test_a_contact_whose_slip_the_loop_applies_moves_as_the_joints_do(tmp_path: Path) -> None:
+    """Rubber that slips at half of the torque of this lean: spring and damper alone are far off."""
+    scores, _ = compare(
+        identified(SLIPPING, tmp_path), hrp2.robot(), [first(played(SLIPPING), 6.0)], stance=Stance("bush")
+    )
+    chest = {one.feet: one.chest for one in scores}
+    assert tuple(chest) == (*KINDS, WITH_SLIP)
+    assert chest[WITH_SLIP] < 1.5 * chest[JOINTS] + 2e-5  # type: ignore[operator]
+    assert chest[WITH_SLIP] < 0.1 * chest[AS_IT_WAS]  # type: ignore[operator]
+    assert chest[CONTACT] > 3 * chest[WITH_SLIP]  # type: ignore[operator]
+
+
+def test_feet_that_turn_about_the_bush_stand_lower(result: FeetResult, log: MotionLog) -> None:
+    made = scenes(result, hrp2.robot(), plan_of(hrp2.robot(), log), stance=Stance("bush"))
+    assert {kind: one.lower for kind, one in made.items()} == pytest.approx(
+        {AS_IT_WAS: 0.0, JOINTS: 0.0, CONTACT: 0.02}
+    )
+    assert all(one.force is None for one in made.values())
 
 
 @pytest.mark.slow

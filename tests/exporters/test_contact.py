@@ -21,7 +21,8 @@ from plantar.exporters import export
 from plantar.exporters.bush import FootBush
 from plantar.exporters.contact.alone import Measured, measured
 from plantar.exporters.contact.fit import LOADS, STEPS, fitted
-from plantar.exporters.contact.points import EDGES, Sides, points_for, sides_of
+from plantar.exporters.contact.points import Sides, points_for, sides_of
+from plantar.exporters.job import LEAST_LOAD as EDGES
 from plantar.exporters.openhrp import read_customizer
 from plantar.exporters.spring import SWAY, Slip, Spring
 
@@ -46,7 +47,7 @@ def bush(axes: dict[Axis, tuple[float, float]], sole: Sides, depth: float) -> Fo
 def test_points_have_the_sums_that_they_were_asked_for_and_balance_about_the_bush(name: str) -> None:
     axes, sole, depth, mass = FEET[name]
     stiffness, damping = ({axis: pair[place] for axis, pair in axes.items()} for place in (0, 1))
-    foot = points_for(stiffness, damping, sole, depth, mass * GRAVITY)
+    foot = points_for(stiffness, damping, sole, depth, mass * GRAVITY, EDGES)
     assert 4 <= len(foot.points) <= 9
     assert all(point.stiffness > 0 and point.damping > 0 for point in foot.points)
     for axis in ROTATIONS:
@@ -63,7 +64,7 @@ def test_points_have_the_sums_that_they_were_asked_for_and_balance_about_the_bus
 
 
 def test_one_axis_alone_stands_on_corners() -> None:
-    foot = points_for({"pitch": 400}, {"pitch": 20}, Sides(0.1, 0.1, 0.05, 0.05), 0.02, 500)
+    foot = points_for({"pitch": 400}, {"pitch": 20}, Sides(0.1, 0.1, 0.05, 0.05), 0.02, 500, EDGES)
     assert foot.turning("pitch") == pytest.approx((400, 20))
     assert sum(point.lower > 0 for point in foot.points) == 4
 
@@ -82,7 +83,7 @@ def test_the_load_takes_its_height_off_the_stiffness(axis: Axis) -> None:
     """About the bush centre the ground's push leans with the sole: K = Σ k x² - load x depth, by statics."""
     axes, sole, depth, mass = FEET["on rubber"]
     stiffness, damping = ({axis: pair[place] for axis, pair in axes.items()} for place in (0, 1))
-    foot = points_for(stiffness, damping, sole, depth, mass * GRAVITY)
+    foot = points_for(stiffness, damping, sole, depth, mass * GRAVITY, EDGES)
     for load in (250.0, 600.0):
         seen = measured(foot, axis, load, 0.001)
         assert seen.stiffness == pytest.approx(axes[axis][0] - load * depth, rel=5e-3)

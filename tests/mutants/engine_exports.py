@@ -51,6 +51,28 @@ ENGINE_EXPORTS = (
         ("exporters/test_usd.py",),
     ),
     Mutant(
+        "exporters/contact/hysteresis.py", "the slip pushes a rolled foot further over",
+        "zip((-math.asin(y), pitch)", "zip((math.asin(y), pitch)", ("exporters/test_contact_hysteresis.py",),
+    ),
+    Mutant(
+        "exporters/contact/hysteresis.py", "a foot in the air remembers how it stood",
+        "                foot.yielded = [0.0, 0.0]\n                data", "                data",
+        ("exporters/test_contact_hysteresis.py",),
+    ),
+    Mutant(
+        "exporters/contact/hysteresis.py", "the horizon instead of the ground",
+        "foot.torque(up / math.hypot(*up))", "foot.torque(turn[2])", ("exporters/test_contact_hysteresis.py",),
+    ),
+    Mutant(
+        "exporters/contact/hysteresis.py", "nothing ever yields",
+        "self.yielded[place] = angle - elastic", "self.yielded[place] = 0.0", ("exporters/test_contact_hysteresis.py",),
+    ),
+    Mutant(
+        "exporters/bush.py", "a pivot as far under the sole as the bush is above it",
+        "sole=foot.sole + foot.sole_depth", "sole=foot.sole - foot.sole_depth",
+        ("exporters/test_contact_hysteresis.py",),
+    ),
+    Mutant(
         "exporters/contact/springs.py", "the ground's push does not lean with the sole",
         "return foot.turning(axis)[0] - sum(", "return foot.turning(axis)[0] - 0 * sum(",
         ("exporters/test_contact_files.py",),

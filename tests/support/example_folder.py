@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -32,6 +33,7 @@ def make_folder(folder: Path) -> Path:
     settings = FeetSettings(model="kelvin_voigt", wrench_delay=0.0)
     feet: FeetResult = identify_feet(robot, [logs["sway_1"], logs["sway_2"]], [logs["squat"]], settings)
     feet.save(folder / "out" / "feet")
+    write_slipping(folder)
     walker = walking_robot(folder)
     real = small_biped.truth(walker.floating_model, 1)
     walk = small_biped.record(walker, real, "walk", 1, 12.0, 0.5)
@@ -40,6 +42,19 @@ def make_folder(folder: Path) -> Path:
     inertia.save(folder / "out" / "inertia")
     write_csv(arm_log(folder), folder)
     return folder
+
+
+def write_slipping(folder: Path) -> None:
+    """The result of the feet as `out/slipping`, on rubber that slips."""
+    made = json.loads((folder / "out" / "feet" / "result.json").read_text())
+    made["parameters"] += [
+        row | {"name": name, "value": value}
+        for row in made["parameters"]
+        if row["name"] == "stiffness" and row["axis"] in ("pitch", "roll")
+        for name, value in (("slip_torque", 3.0), ("slip_angle", 0.01))
+    ]
+    (folder / "out" / "slipping").mkdir()
+    (folder / "out" / "slipping" / "result.json").write_text(json.dumps(made))
 
 
 def walking_robot(folder: Path) -> RobotModel:

@@ -11,6 +11,7 @@ import typer
 from plantar.cli.console.memory import Memory
 from plantar.cli.console.terminal import console, end_progress, number, progress, table
 from plantar.errors import MissingExtra, PlantarError, located
+from plantar.exporters.job import LEAST_LOAD, Stance
 from plantar.files import refuse_file, write_text
 from plantar.logs.inputs import open_together
 from plantar.results.feet import FeetResult
@@ -36,6 +37,12 @@ def run(
     swing: Annotated[
         float | None, typer.Option("--swing", help="As of `export`, for the contact; in rad.", metavar="RAD")
     ] = None,
+    pivot: Annotated[
+        str, typer.Option("--pivot", help="As of `export`, for the contact.", metavar="PIVOT")
+    ] = "ground",
+    least_load: Annotated[
+        float, typer.Option("--least-load", help="As of `export`, for the contact.", metavar="SHARE")
+    ] = LEAST_LOAD,
     memory: Memory = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No table, no progress.")] = False,
@@ -47,7 +54,6 @@ def run(
     try:
         from plantar.comparison.compare import SIMULATORS, compare, pooled
         from plantar.comparison.picture import write_picture
-        from plantar.comparison.scenes import KINDS
     except ImportError as error:
         raise MissingExtra(error.name or "mujoco", "twin", "plantar compare") from error
     if simulator not in SIMULATORS:
@@ -57,7 +63,9 @@ def run(
     step = progress(quiet)
     found = FeetResult.load(result, residuals=False)
     known = load_robot(robot)
-    scores, replayed = compare(found, known, open_together(logs, known, memory), step, swing)
+    scores, replayed = compare(
+        found, known, open_together(logs, known, memory), step, swing, Stance(pivot, least_load)
+    )
     end_progress(quiet)
     content = dump_json({"schema": "plantar.comparison/1", "scores": [asdict(row) for row in scores]})
     if out is not None:
@@ -70,7 +78,7 @@ def run(
         screen = console()
         heads = ("motion", "feet", "chest pitch [mrad]", "chest roll [mrad]", "foot torque [N·m]")
         screen.print(table("Error against the record", heads, [_cells(row) for row in scores]))
-        together = [(kind, pooled(scores, kind)) for kind in KINDS]
+        together = [(kind, pooled(scores, kind)) for kind in dict.fromkeys(one.feet for one in scores)]
         text = ", ".join(
             f"{kind} {'-' if error is None else f'{number(MILLI * error, 3)} mrad'}"
             for kind, error in together

@@ -9,12 +9,24 @@ from typing import Annotated
 import typer
 
 from plantar.exporters import TARGETS, export
+from plantar.exporters.job import LEAST_LOAD
 
 TARGET_HELP = "One of: " + ", ".join(TARGETS) + "."
 MODEL_HELP = "Existing robot model to extend: MJCF, SDFormat, URDF or USD; the result's own URDF if left out."
 SWING_HELP = (
     "Rubber that slips, for a target that holds no slip: amplitude of the motions to be right for, in rad. "
     "If left out: K and C nearest to the identified motions."
+)
+HYSTERESIS_HELP = (
+    "Rubber that slips, mujoco-contact: leave the slip to plantar.FootHysteresis in your simulation's loop."
+)
+PIVOT_HELP = (
+    "mujoco-contact: 'ground', or 'bush' for feet that turn about the bush centre as the robot's do; "
+    "the robot then stands lower, its soles in the ground."
+)
+LEAST_LOAD_HELP = (
+    "mujoco-contact: the least load that a foot does not give way under along z, of the robot's weight. "
+    "The less, the smaller the angle up to which K holds."
 )
 OFFSET_HELP = "Let each spring rest at -offset/K instead of 0."
 
@@ -28,6 +40,11 @@ def run(
     model: Annotated[Path | None, typer.Option("--model", help=MODEL_HELP, metavar="MODEL")] = None,
     with_offset: Annotated[bool, typer.Option("--with-offset", help=OFFSET_HELP)] = False,
     swing: Annotated[float | None, typer.Option("--swing", help=SWING_HELP, metavar="RAD")] = None,
+    hysteresis: Annotated[bool, typer.Option("--hysteresis", help=HYSTERESIS_HELP)] = False,
+    pivot: Annotated[str, typer.Option("--pivot", help=PIVOT_HELP, metavar="PIVOT")] = "ground",
+    least_load: Annotated[
+        float, typer.Option("--least-load", help=LEAST_LOAD_HELP, metavar="SHARE")
+    ] = LEAST_LOAD,
     quiet: Annotated[
         bool, typer.Option("--quiet", "-q", help="No notes on what the target cannot hold.")
     ] = False,
@@ -36,7 +53,17 @@ def run(
 
     Example: plantar export out/feet/result.json --to mjcf --model robot.xml --out robot_on_bushes.xml
     """
-    notes = export(result, to, out, model, with_offset=with_offset, swing=swing)
+    notes = export(
+        result,
+        to,
+        out,
+        model,
+        with_offset=with_offset,
+        swing=swing,
+        hysteresis=hysteresis,
+        pivot=pivot,
+        least_load=least_load,
+    )
     if not quiet:
         for note in notes:
             print(f"{out.name}: {note.severity}: {note.text}", file=sys.stderr)

@@ -1,4 +1,4 @@
-"""Logs played in MuJoCo on three kinds of feet, and how far each is from the record."""
+"""Logs played in MuJoCo on several kinds of feet, and how far each is from the record."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from typing import Final
 
 import numpy as np
 
-from plantar.comparison.scenes import KINDS, RIGID, scenes
+from plantar.comparison.scenes import RIGID, Played, scenes
 from plantar.errors import MotionError
+from plantar.exporters.job import USUAL, Stance
 from plantar.logs.motion_log import MotionLog
 from plantar.motions.plan import Plan
 from plantar.results.feet import FeetResult
@@ -55,12 +56,15 @@ def compare(
     logs: Sequence[MotionLog],
     progress: Progress = lambda _: None,
     swing: float | None = None,
+    stance: Stance = USUAL,
 ) -> tuple[tuple[KindScore, ...], tuple[Replayed, ...]]:
-    """Play each log's joints open loop on the model's rigid feet, on exported joints and on exported contact.
+    """Play each log's joints open loop on the model's rigid feet, on exported joints and on exported contact, of rubber
+    that slips also with its hysteresis.
 
     Args:
         result: of `identify_feet`. robot: that the logs are of. logs: with an attitude of the IMU.
-        progress: is told each motion that is done. swing: as of `plantar.export`, for the contact [rad].
+        progress: is told each motion that is done. swing [rad], stance: as of `plantar.export`, for the
+            contact.
 
     Returns:
         A score for each motion and kind, and what was simulated beside what was recorded, where no robot fell.
@@ -72,7 +76,7 @@ def compare(
     for log in logs:
         plan = plan_of(robot, log)
         record = record_of(robot, log, plan)  # before anything is played: a log may hold no attitude
-        made = scenes(result, robot, plan, swing)
+        made = scenes(result, robot, plan, swing, stance)
         played = _played(robot, plan, made)
         fell = {kind: one.fell for kind, one in played.items() if isinstance(one, MotionError)}
         falls = [time for time in fell.values() if time is not None]
@@ -90,16 +94,18 @@ def compare(
     return tuple(scores), tuple(found)
 
 
-def _played(robot: RobotModel, plan: Plan, made: Mapping[str, str]) -> dict[str, Rollout | MotionError]:
+def _played(robot: RobotModel, plan: Plan, made: Mapping[str, Played]) -> dict[str, Rollout | MotionError]:
     """A rollout for each kind of feet, or how the robot fell."""
 
     def rolled(kind: str) -> Rollout | MotionError:
         try:
-            return roll_out(robot, plan, RIGID, made[kind])
+            one = made[kind]
+            base = plan.base - np.array([[0, 0, 0, 0], [0, 0, 0, 0], [0, 0, 0, one.lower], [0, 0, 0, 0]])
+            return roll_out(robot, replace(plan, base=base), RIGID, one.xml, force=one.force)
         except MotionError as error:
             return error
 
-    return dict(zip(KINDS, on_cores(rolled, KINDS), strict=True))
+    return dict(zip(made, on_cores(rolled, tuple(made)), strict=True))
 
 
 def _cut(plan: Plan, until: float) -> Plan:

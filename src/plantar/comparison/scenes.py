@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Final
+from types import ModuleType
+from typing import Any, Final
 
 from plantar.exporters.bush import FootBush, check_swing, feet_of_result
 from plantar.exporters.contact import target as contact
-from plantar.exporters.job import Job
+from plantar.exporters.contact.hysteresis import FootHysteresis
+from plantar.exporters.job import USUAL, Job, Stance, asked
 from plantar.exporters.mjcf import target as joints
 from plantar.exporters.source import open_result
 from plantar.motions.plan import Plan
@@ -20,20 +22,35 @@ from plantar.twin.robots.foot import cut_feet
 from plantar.twin.robots.from_robot import describe
 from plantar.twin.simulation.physics import Physics
 from plantar.twin.simulation.rollout import scene_xml
+from plantar.twin.simulation.stepping import Force
 
 AS_IT_WAS: Final = "rigid, as the model was"
 JOINTS: Final = "exported joints"
 CONTACT: Final = "exported contact"
-KINDS: Final = (AS_IT_WAS, JOINTS, CONTACT)
+WITH_SLIP: Final = "contact, hysteresis"
 RIGID: Final = Physics(bushes=None)
 
 
+@dataclass(frozen=True)
+class Played:
+    """One kind of feet: its scene as `xml`, how much `lower` the robot stands on it [m], and the `force` that the loop
+    applies, as of `roll_out`."""
+
+    xml: str
+    lower: float = 0.0
+    force: Callable[[Any], Force] | None = None
+
+
 def scenes(
-    result: FeetResult, robot: RobotModel, plan: Plan, swing: float | None = None
-) -> Mapping[str, str]:
-    """MJCF by kind of feet, each of the scene that `plan` is played on.
+    result: FeetResult, robot: RobotModel, plan: Plan, swing: float | None = None, stance: Stance = USUAL
+) -> Mapping[str, Played]:
+    """By kind of feet, the scene that `plan` is played on; `WITH_SLIP` only of rubber that slips.
 
     The exporters extend the rigid scene as they extend a user's model: what is compared is what they write.
+
+    Args:
+        result: of `identify_feet`. robot, plan: that are played.
+        swing, stance: as of `plantar.export`, for the contact.
     """
     check_swing(swing)
     data, base = open_result(result)
@@ -42,16 +59,22 @@ def scenes(
         model = Path(folder) / "rigid.xml"
         model.write_text(rigid)
 
-        def job(hysteresis: bool) -> Job:
-            feet, remarks = feet_of_result(data, base, with_offset=False, hysteresis=hysteresis, swing=swing)
+        def job(target: ModuleType, hysteresis: bool, swing: float | None, stance: Stance) -> Job:
+            kept = asked(target, CONTACT, hysteresis, swing, stance)
+            feet, remarks = feet_of_result(data, base, with_offset=False, hysteresis=kept, swing=swing)
             moved = tuple(_on_twin(foot, robot) for foot in feet)
-            return Job(data, moved, model, model.with_name("out.xml"), False, remarks)
+            return Job(data, moved, model, model.with_name("out.xml"), False, remarks, stance)
 
-        return {
-            AS_IT_WAS: rigid,
-            JOINTS: joints.write(job(joints.HYSTERESIS))[0],
-            CONTACT: contact.write(job(False))[0],
+        points, slipping = job(contact, False, swing, stance), job(contact, True, None, stance)
+        lower = min(foot.sole_depth for foot in points.feet) if stance.pivot == "bush" else 0.0
+        made = {
+            AS_IT_WAS: Played(rigid),
+            JOINTS: Played(joints.write(job(joints, False, None, USUAL))[0]),
+            CONTACT: Played(contact.write(points)[0], lower),
         }
+        if any(spring.slip for foot in slipping.feet for spring in foot.springs):
+            made[WITH_SLIP] = Played(contact.write(slipping)[0], lower, FootHysteresis)
+        return made
 
 
 def _on_twin(foot: FootBush, robot: RobotModel) -> FootBush:

@@ -14,7 +14,7 @@ from pathlib import Path
 from plantar.errors import ExportError, located
 from plantar.exporters.bush import check_swing, feet_of_result
 from plantar.exporters.comment import joints_note
-from plantar.exporters.job import Job
+from plantar.exporters.job import LEAST_LOAD, Job, Stance, asked
 from plantar.exporters.source import ResultInput, open_result, robot_urdf
 from plantar.files import write_text
 from plantar.notes import Note, unique
@@ -57,6 +57,9 @@ def export(
     *,
     with_offset: bool = False,
     swing: float | None = None,
+    hysteresis: bool = False,
+    pivot: str = "ground",
+    least_load: float = LEAST_LOAD,
 ) -> tuple[Note, ...]:
     """Hand a result to a simulator or controller: springs and dampers in its own format and units.
 
@@ -70,13 +73,19 @@ def export(
         with_offset: the springs rest at -offset/K; else at 0, since the offset is mostly the sensors' zero.
         swing: for rubber that slips and a target that holds no slip, the amplitude of the motions it is for [rad]: the
             slip becomes their spring and damper. Where left out, K and C are the nearest to the identified motions.
+        hysteresis: for mujoco-contact: leave the slip of rubber to `plantar.FootHysteresis` in the simulation's loop.
+            Joints of mjcf hold it anyway.
+        pivot: for mujoco-contact: what the foot turns about, "ground" or "bush": the bush's centre, as the robot's feet
+            do. The robot then stands lower by the bush's height over the sole.
+        least_load: for mujoco-contact: the least load that a foot does not give way under along z, as a share of the
+            robot's weight, 0.05 to 0.5. The less, the smaller the angle up to which K holds.
 
     Returns:
         What the target could not hold, as notes.
 
     Raises:
-        ExportError: an unknown target, a swing that is no angle, a result without what the target needs, a model
-            without the ankle.
+        ExportError: an unknown target, a swing that is no angle, a hysteresis, pivot or least load that the target does
+            not take, a result without what the target needs, a model without the ankle.
 
     Example:
         >>> import plantar
@@ -86,6 +95,7 @@ def export(
         True
     """
     check_swing(swing)
+    stance = Stance(pivot, least_load)
     if target not in TARGETS:
         raise ExportError(located(f"'{target}' is not a target", valid=", ".join(TARGETS)))
     data, base = open_result(result)
@@ -103,7 +113,7 @@ def export(
         text, notes = with_inertial_parameters(data, given or robot_urdf(data, base))
     else:
         module = import_module(f"plantar.exporters.{TARGETS[target][0]}")
-        hysteresis = getattr(module, "HYSTERESIS", False)
+        hysteresis = asked(module, target, hysteresis, swing, stance)
         feet, remarks = feet_of_result(
             data, base, with_offset=with_offset, hysteresis=hysteresis, swing=swing
         )
@@ -112,7 +122,7 @@ def export(
         takes_model = getattr(module, "EXTENDS", False) or getattr(module, "OPTIONAL_MODEL", False)
         if given is not None and not takes_model:
             raise ExportError(located("this target takes no model", value=target, valid="no --model"))
-        text, notes = module.write(Job(data, feet, given, path, with_offset, remarks))
+        text, notes = module.write(Job(data, feet, given, path, with_offset, remarks, stance))
         named = (joints_note(feet),) if target in WITH_JOINTS else ()
         notes = (*remarks, *notes, *named)
     write_text(path, text)

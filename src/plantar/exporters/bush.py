@@ -8,7 +8,7 @@ the joint's rest position is -offset/K.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -75,6 +75,11 @@ class FootBush:
     def sole_depth(self) -> float:
         """How far the sole's plane lies below the bush centre [m]."""
         return float(np.mean([self.depth(corner) for corner in self.sole]))
+
+
+def raised(foot: FootBush) -> FootBush:
+    """The same foot with its sole in the plane of the bush centre."""
+    return replace(foot, sole=foot.sole + foot.sole_depth * foot.rotation[:, 2])
 
 
 def check_swing(swing: float | None) -> None:

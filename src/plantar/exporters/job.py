@@ -5,15 +5,33 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
+from plantar.errors import ExportError, located
 from plantar.exporters.bush import FootBush
 from plantar.notes import Note
+
+PIVOTS: Final = ("ground", "bush")
+LEAST_LOAD: Final = 0.42  # of the weight: a little below the half that a foot carries on two feet
+LEAST_LOADS: Final = (0.05, 0.5)
+
+
+@dataclass(frozen=True)
+class Stance:
+    """How a foot on points stands: what it turns about, one of `PIVOTS`, and the least load, as a share of the robot's
+    weight, that it does not give way under along z."""
+
+    pivot: str = "ground"
+    least_load: float = LEAST_LOAD
+
+
+USUAL: Final = Stance()
 
 
 @dataclass(frozen=True)
 class Job:
-    """What a target is given: the feet, the result, the model to extend and where the file will stand."""
+    """What a target is given: the feet, the result, the model to extend, where the file will stand, and for feet on
+    points their `stance`."""
 
     result: Mapping[str, Any]
     feet: tuple[FootBush, ...]
@@ -21,3 +39,31 @@ class Job:
     out: Path
     with_offset: bool
     remarks: tuple[Note, ...]  # what holds for every target, for the comment at the file's head
+    stance: Stance = USUAL
+
+
+def asked(module: object, target: str, hysteresis: bool, swing: float | None, stance: Stance) -> bool:
+    """Whether the feet of a target keep their slip. Raises ExportError where it is asked for what it does not take.
+
+    Args:
+        module: of the target; `HYSTERESIS`: it holds a slip, `HYSTERESIS_IN_LOOP`: if asked, for `FootHysteresis`,
+            `STANCE`: its feet take a stance.
+        hysteresis, swing: as of `plantar.export`. stance: of feet on points.
+    """
+    low, high = LEAST_LOADS
+    if stance.pivot not in PIVOTS:
+        raise ExportError(located("unknown pivot", value=stance.pivot, valid=", ".join(PIVOTS)))
+    if not low <= stance.least_load <= high:
+        valid = f"{low:g} to {high:g} of the weight"
+        raise ExportError(located("the least load is out of range", value=stance.least_load, valid=valid))
+    if stance != USUAL and not getattr(module, "STANCE", False):
+        message = "this target takes no pivot and no least load"
+        raise ExportError(located(message, value=target, valid="mujoco-contact"))
+    holds = bool(getattr(module, "HYSTERESIS", False))
+    if hysteresis and not (holds or getattr(module, "HYSTERESIS_IN_LOOP", False)):
+        valid = "mjcf, mujoco-contact, or a swing"
+        raise ExportError(located("this target holds no hysteresis", value=target, valid=valid))
+    if hysteresis and swing is not None and not holds:
+        message = "a swing makes spring and damper of the slip that the hysteresis would keep"
+        raise ExportError(located(message, valid="one of the two"))
+    return holds or hysteresis

@@ -12,6 +12,7 @@ from plantar.errors import ExportError, located
 from plantar.exporters.bush import FootBush
 from plantar.exporters.contact.alone import MARKED, Measured, measured
 from plantar.exporters.contact.points import PointFoot, points_for, sides_of
+from plantar.exporters.job import LEAST_LOAD
 
 LOADS: Final = (0.5, 0.8, 1.1)  # of the robot's weight: two feet, on the way, one foot that is pushed
 STEPS: Final = (0.0005, 0.001, 0.002, 0.004)  # s
@@ -46,14 +47,14 @@ class Fitted:
     checks: tuple[Check, ...]
 
 
-def fitted(bush: FootBush, weight: float) -> Fitted:
+def fitted(bush: FootBush, weight: float, edges: float = LEAST_LOAD) -> Fitted:
     """Points of a foot that turn as its bush does, found by turning the foot alone in MuJoCo.
 
     About the bush centre the ground's push, which stands under the points, turns with the sole: that takes load times
     depth off K. The points are made as much stiffer, for the smallest of `LOADS`: that of a robot on two feet.
 
     Args:
-        bush: the foot. weight: of the robot [N].
+        bush: the foot. weight: of the robot [N]. edges: of the weight, as of `points_for`.
 
     Raises ExportError where the bush does not stand over the sole, or the foot does not stand in MuJoCo.
     """
@@ -64,7 +65,7 @@ def fitted(bush: FootBush, weight: float) -> Fitted:
     wanted_k, wanted_c = dict(stiffness), dict(damping)
     for axis in axes:
         wanted_k[axis] += load * bush.sole_depth
-    foot = points_for(wanted_k, wanted_c, sole, bush.sole_depth, weight)
+    foot = points_for(wanted_k, wanted_c, sole, bush.sole_depth, weight, edges)
     for _ in range(ROUNDS):
         for axis in axes:
             seen = measured(foot, axis, load, FIT_STEP)
@@ -74,7 +75,7 @@ def fitted(bush: FootBush, weight: float) -> Fitted:
             wanted_k[axis] *= stiffness[axis] / seen.stiffness
             if damping[axis] > 0 and seen.damping > 0:
                 wanted_c[axis] *= damping[axis] / seen.damping
-        foot = points_for(wanted_k, wanted_c, sole, bush.sole_depth, weight)
+        foot = points_for(wanted_k, wanted_c, sole, bush.sole_depth, weight, edges)
     checks = [_check(foot, axis, stiffness[axis], damping[axis], weight) for axis in axes]
     return Fitted(foot, tuple(checks))
 

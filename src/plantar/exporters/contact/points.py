@@ -29,9 +29,6 @@ Pair = tuple[float, float]
 SPREAD: Final = 4.0
 # The points may stand this much wider or longer than the sole, where K of roll and pitch do not suit its shape.
 WIDEST: Final = 1.5
-# Of the robot's weight, what the edges carry before the middle touches: less lets them leave the ground at smaller
-# angles, more leaves a foot in double support, which carries about a half, without its vertical stiffness.
-EDGES: Final = 0.42
 HARD: Final = 0.001  # m: what a foot sinks under the robot's weight where its vertical stiffness is not known
 
 
@@ -118,7 +115,12 @@ def sides_of(foot: FootBush) -> Sides:
 
 
 def points_for(
-    stiffness: Mapping[Axis, float], damping: Mapping[Axis, float], sole: Sides, depth: float, weight: float
+    stiffness: Mapping[Axis, float],
+    damping: Mapping[Axis, float],
+    sole: Sides,
+    depth: float,
+    weight: float,
+    edges: float,
 ) -> PointFoot:
     """Points that turn with these K and C about the bush's axis, and give along z what the edges leave to the middle.
 
@@ -129,6 +131,8 @@ def points_for(
         sole: the rectangle to stand on.
         depth: of the sole's plane below the bush centre [m].
         weight: of the robot [N].
+        edges: of the weight, what the edges carry before the middle touches. Less lets them leave the ground at smaller
+            angles, more leaves a foot that carries less than this without its vertical stiffness.
     """
     axes: list[Axis] = [axis for axis in ("pitch", "roll") if axis in stiffness]
     sole = _suited(sole, stiffness) if len(axes) == 2 else sole
@@ -143,7 +147,7 @@ def points_for(
     rest = stiffness.get("z", weight / HARD) - total
     if rest <= 0:
         return PointFoot(tuple(_placed(sole, first, damper, 0.0)), depth)
-    points = _placed(sole, first, damper, EDGES * weight / total)
+    points = _placed(sole, first, damper, edges * weight / total)
     softest = min(p.damping / p.stiffness for p in points)
     middle = max(damping.get("z", 0.0) - float(damper.sum()), min(DAMPING_TIME, softest) * rest)
     return PointFoot((*points, Point(0.0, 0.0, rest, middle)), depth)

@@ -20,6 +20,7 @@ from plantar.conventions import Array, Axis, rotation_from_rpy
 from plantar.exporters.bush import FootBush
 from plantar.exporters.contact.fit import LOADS, NEAR
 from plantar.exporters.contact.points import Point, PointFoot, points_for, sides_of
+from plantar.exporters.job import LEAST_LOAD
 from plantar.notes import Note
 
 RADIUS: Final = 0.01  # m, of the sphere that is a point: more than any point sinks in
@@ -51,10 +52,10 @@ def spring_foot(foot: FootBush, weight: float) -> PointFoot:
     axes: list[Axis] = [axis for axis in ("pitch", "roll") if axis in stiffness]
     sole, wanted = sides_of(foot), dict(stiffness)
     for _ in range(ROUNDS):
-        made = points_for(wanted, damping, sole, foot.sole_depth, weight)
+        made = points_for(wanted, damping, sole, foot.sole_depth, weight, LEAST_LOAD)
         for axis in axes:
             wanted[axis] += stiffness[axis] - stiffness_under(made, axis, LOADS[0] * weight)
-    return points_for(wanted, damping, sole, foot.sole_depth, weight)
+    return points_for(wanted, damping, sole, foot.sole_depth, weight, LEAST_LOAD)
 
 
 def stiffness_under(foot: PointFoot, axis: Axis, load: float) -> float:

@@ -12,10 +12,11 @@ import numpy as np
 
 from plantar.conventions import GRAVITY, rotation_from_rpy
 from plantar.errors import ExportError, located
-from plantar.exporters.bush import FootBush
+from plantar.exporters.bush import FootBush, raised
 from plantar.exporters.comment import head
 from plantar.exporters.contact.alone import IMPRATIO, RADIUS, contact_attributes
 from plantar.exporters.contact.fit import LOADS, STEPS, Check, Fitted, fitted
+from plantar.exporters.contact.hysteresis import carry, take_out
 from plantar.exporters.contact.springs import vertical_note
 from plantar.exporters.mjcf.file import Compiled, relocate
 from plantar.exporters.mjcf.from_urdf import opened
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
     from plantar.exporters.job import Job
 
 EXTENDS = True
+HYSTERESIS_IN_LOOP = True
+STANCE = True
 TOUCH: Final = ("contype", "conaffinity", "priority", "friction")
 FRICTION: Final = (1.0, 0.005, 0.0001)  # MuJoCo's own, where the model has no shape to take it from
 
@@ -43,10 +46,17 @@ def write(job: Job) -> tuple[str, tuple[Note, ...]]:
     earlier = {foot.name: _taken_out(root, foot) for foot in job.feet}
     model = Compiled(root, job.model)
     weight = float(model.model.body_mass.sum()) * GRAVITY
+    turns_in_bush = job.stance.pivot == "bush"
     for foot in job.feet:
-        found = fitted(foot, weight)
+        found = fitted(raised(foot) if turns_in_bush else foot, weight, job.stance.least_load)
         _insert(root, foot, found, model, earlier[foot.name], notes)
         notes += _said(foot, found, float(model.model.opt.timestep))
+        if turns_in_bush:
+            text = f"{foot.name}: the points stand at the bush centre's height, where the foot turns: the robot stands "
+            text += (
+                f"{1e3 * foot.sole_depth:.0f} mm lower, with its sole in the ground; start it that much lower"
+            )
+            notes.append(Note("export_pivot", "info", text))
     _harden_friction(root, notes)
     Compiled(root, job.model)  # MuJoCo must take what is written
     relocate(root, job.out)
@@ -62,7 +72,8 @@ def _named(foot: FootBush) -> str:
 
 
 def _taken_out(root: ET.Element, foot: FootBush) -> tuple[ET.Element, dict[str, str]] | None:
-    """Take the points of an earlier export out: the body that held them and how they touched."""
+    """Take the points and the slip of an earlier export out: the body that held them and how they touched."""
+    take_out(root, foot.name)
     found = None
     for body in list(root.iter("body")):
         for geom in body.findall("geom"):
@@ -98,6 +109,10 @@ def _insert(
         shape = {"name": f"{_named(foot)}{place}", "type": "sphere", "size": numbers([RADIUS]), "mass": "0"}
         shape |= {"pos": numbers(place_in), "condim": "3", "solmix": "1"}
         ET.SubElement(holder, "geom", shape | touch | contact_attributes(point, inverse_mass))
+    if carry(root, holder, foot, model):
+        text = f"{foot.name}: K and C are those of the rubber without its slip, which the contact cannot hold: call "
+        text += "plantar.FootHysteresis between mj_step1 and mj_step2, else this foot is too soft"
+        notes.append(Note("export_hysteresis", "warning", text))
 
 
 def _silence(

@@ -16,7 +16,7 @@ from plantar.robot.model import RobotModel
 from plantar.twin.robots.description import Description
 from plantar.twin.simulation.mjcf import SERVO_TIME, Scene, mjcf_text, quaternion_from_rotation
 from plantar.twin.simulation.physics import Physics
-from plantar.twin.simulation.stepping import Stepper
+from plantar.twin.simulation.stepping import Force, Stepper
 from plantar.twin.walking.control import WalkingControl
 
 FALLEN = 0.35  # rad: a root this far from its plan is no longer balancing
@@ -59,10 +59,12 @@ def roll_out(
     physics: Physics,
     xml: str,
     progress: Callable[[float], None] | None = None,
+    force: Callable[[mujoco.MjModel], Force] | None = None,
 ) -> Rollout:
     """Play a plan on the scene `xml` (from `scene_xml`). Releases the GIL while it steps.
 
-    `progress` is called once a second of motion with the share done. Raises MotionError when the robot falls.
+    `progress` is called once a second of motion with the share done; `force` makes, for the scene's model, what each
+    step calls to apply a force of its own. Raises MotionError when the robot falls.
     """
     model = mujoco.MjModel.from_xml_string(xml)
     data = mujoco.MjData(model)
@@ -70,7 +72,7 @@ def roll_out(
     joints = tuple(name for name in joints if name in plan.joints)
     control = _targets(plan, joints, physics.timestep)
     _place(data, plan, joints)
-    stepper = Stepper(model, data, physics, robot)
+    stepper = Stepper(model, data, physics, robot, None if force is None else force(model))
     parts = control.shape[0] // plan.time.size
     walking = None if plan.walk is None else WalkingControl(model, robot, plan, physics, joints)
     if walking is None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import Final, Protocol
@@ -19,6 +20,9 @@ from plantar.twin.simulation.rubber import Element, elements
 LIBRARIES: Final = ("libmujoco*.so*", "libmujoco*.dylib", "mujoco*.dll")
 
 
+Force = Callable[[mujoco.MjModel, mujoco.MjData], None]
+
+
 class Steps(Protocol):
     """Steps a model once for each row of actuator inputs (count, nu)."""
 
@@ -29,14 +33,20 @@ class Stepper:
     """Steps one model through a motion: rubber, slippery seconds, sensors only where they are read."""
 
     def __init__(
-        self, model: mujoco.MjModel, data: mujoco.MjData, physics: Physics, robot: RobotModel
+        self,
+        model: mujoco.MjModel,
+        data: mujoco.MjData,
+        physics: Physics,
+        robot: RobotModel,
+        force: Force | None = None,
     ) -> None:
         self.model, self.data, self.physics = model, data, physics
+        if force is not None:
+            self.steps: Steps = InHalves(model, data, force)
+            return
         rubber = _rubber(model, physics, robot)
         step = engine_step()
-        self.steps: Steps = (
-            InPython(model, data, rubber) if step is None else native(model, data, rubber, step)
-        )
+        self.steps = InPython(model, data, rubber) if step is None else native(model, data, rubber, step)
 
     def at(self, time: float) -> None:
         """Set the floor's friction for this moment."""
@@ -87,6 +97,20 @@ class InPython:
             for angle, torque, element in self.rubber:
                 self.data.qfrc_applied[torque] = -element.torque(self.data.qpos[angle])
             mujoco.mj_step(self.model, self.data)
+
+
+class InHalves:
+    """Steps with a force from outside the model, which is told when positions and contacts of the step are known."""
+
+    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, force: Force) -> None:
+        self.model, self.data, self.force = model, data, force
+
+    def run(self, rows: Array) -> None:
+        for row in rows:
+            self.data.ctrl[:] = row
+            mujoco.mj_step1(self.model, self.data)
+            self.force(self.model, self.data)
+            mujoco.mj_step2(self.model, self.data)
 
 
 class _Native:

@@ -1,0 +1,169 @@
+"""Feet on points whose slip the loop applies: pressed, pushed past the slip and let go; lifted, they forget."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import plantar
+from export_robots import CENTRE, TRUTH, bush_rotation, result, write_urdf
+from plantar.conventions import GRAVITY
+from plantar.errors import ExportError
+from plantar.exporters import export
+
+mujoco = pytest.importorskip("mujoco")
+
+TORQUE, ANGLE = 5.0, 0.01  # N·m, rad: where the element beside the spring slips
+BESIDE = TORQUE / ANGLE
+
+
+def slipping(urdf: Path, axis: str) -> dict[str, Any]:
+    """The left foot slips about one axis; its z is not known."""
+    made = result(urdf)
+    made["parameters"] = [row for row in made["parameters"] if row["axis"] != "z"]
+    for name, value in (("slip_torque", TORQUE), ("slip_angle", ANGLE)):
+        row = {"foot": "left", "axis": axis, "name": name, "value": value, "std": 0.01 * value}
+        made["parameters"].append(row | {"unit": "", "interval95": None, "verdict": "usable"})
+    return made
+
+
+class Pressed:
+    """The robot, one piece, on its left foot under a load at the bush centre."""
+
+    def __init__(self, file: Path, step: float) -> None:
+        self.model = model = mujoco.MjModel.from_xml_path(str(file))
+        for geom in range(model.ngeom):
+            if model.geom(geom).name.startswith("right_contact_"):
+                model.geom_contype[geom] = model.geom_conaffinity[geom] = 0
+        self.weight = float(model.body_mass.sum()) * GRAVITY
+        model.opt.gravity[:] = 0
+        model.opt.timestep = step
+        # It comes to rest soon, without yaw about the bush's own axes.
+        model.dof_damping[3:6], model.dof_damping[5] = 60.0, 1e4
+        self.data = mujoco.MjData(model)
+        self.hysteresis = plantar.FootHysteresis(model)
+        mujoco.mj_kinematics(model, self.data)
+        self.ankle, self.pelvis = model.body("left_ankle").id, model.body("pelvis").id
+        self.turn = self.data.xmat[self.ankle].reshape(3, 3) @ bush_rotation("left")
+
+    def deflection(self, axis: str, torque: float, share: float = 0.8, seconds: float = 1.5) -> float:
+        """The sole's angle to the ankle after a torque on the sole's side of the bush [rad], and so the reverse on the
+        robot."""
+        model, data = self.model, self.data
+        place = {"roll": 0, "pitch": 1}[axis]
+        for _ in range(round(seconds / model.opt.timestep)):
+            mujoco.mj_step1(model, data)
+            at = data.xpos[self.ankle] + data.xmat[self.ankle].reshape(3, 3) @ CENTRE
+            force = np.array([0.0, 0.0, -share * self.weight])
+            data.xfrc_applied[self.pelvis, :3] = force
+            data.xfrc_applied[self.pelvis, 3:] = np.cross(at - data.xipos[self.pelvis], force)
+            data.xfrc_applied[self.pelvis, 3:] -= torque * self.turn[:, place]
+            self.hysteresis(model, data)
+            mujoco.mj_step2(model, data)
+        return float(-2 * np.array(data.qpos[4:7]) @ self.turn[:, place])
+
+
+@pytest.mark.parametrize("axis", ["pitch", "roll"])
+@pytest.mark.parametrize("step", [0.001, 0.004])
+def test_a_foot_slips_as_its_law_says(axis: str, step: float, tmp_path: Path) -> None:
+    """By statics of a spring beside an element that slips; with the pivot in the bush at every load the same."""
+    urdf = write_urdf(tmp_path / "b.urdf", rigid_legs=True)
+    out = tmp_path / "out.xml"
+    notes = export(slipping(urdf, axis), "mujoco-contact", out, hysteresis=True, pivot="bush")
+    assert {"export_hysteresis", "export_pivot"} <= {note.code for note in notes}
+    assert "export_terms" not in {note.code for note in notes}, "nothing is left out"
+    k, foot = TRUTH["left"][axis][0], Pressed(out, step)
+    foot.deflection(axis, 0.0)
+    foot.hysteresis.reset()  # of its landing
+    foot.deflection(axis, 0.0)
+    stuck, slipped, let_go, back = (foot.deflection(axis, torque) for torque in (4.0, 12.0, 0.0, -12.0))
+    assert stuck == pytest.approx(4.0 / (k + BESIDE), rel=0.03), "below the slip both springs hold"
+    assert slipped == pytest.approx((12.0 - TORQUE) / k, rel=0.03), (
+        "above it the spring, less the slip's torque"
+    )
+    left = (BESIDE * slipped - TORQUE) / (k + BESIDE)
+    assert let_go == pytest.approx(left, abs=0.03 * ANGLE), "let go, it does not come back"
+    assert back == pytest.approx(-(12.0 - TORQUE) / k, rel=0.03)
+    assert foot.deflection(axis, -12.0, share=0.5) == pytest.approx(back, rel=0.03), "under any load"
+
+
+def test_a_lifted_foot_forgets_and_gets_no_torque(tmp_path: Path) -> None:
+    urdf = write_urdf(tmp_path / "b.urdf", rigid_legs=True)
+    export(slipping(urdf, "pitch"), "mujoco-contact", tmp_path / "out.xml", hysteresis=True, pivot="bush")
+    foot = Pressed(tmp_path / "out.xml", 0.002)
+    foot.deflection("pitch", 12.0)
+    sole = int(foot.model.site("left_contact_bush").bodyid[0])
+    assert 0.8 * TORQUE < np.linalg.norm(foot.data.xfrc_applied[sole, 3:]) <= TORQUE * (1 + 1e-9)
+    assert not foot.data.xfrc_applied[sole, :3].any()
+    foot.data.qpos[2] += 0.1
+    foot.data.qpos[3:7], foot.data.qvel[:] = (1, 0, 0, 0), 0
+    mujoco.mj_step1(foot.model, foot.data)
+    foot.hysteresis(foot.model, foot.data)
+    assert not foot.data.xfrc_applied[sole].any()
+    foot.data.qpos[2] -= 0.1
+    assert abs(foot.deflection("pitch", 0.0)) < 0.1 * ANGLE, "it stands down as it stood first"
+
+
+def test_the_torque_follows_the_ground_and_not_the_horizon(tmp_path: Path) -> None:
+    """Robot and floor turned together by 0.2 rad: the same angles."""
+    urdf = write_urdf(tmp_path / "b.urdf", rigid_legs=True)
+    export(slipping(urdf, "pitch"), "mujoco-contact", tmp_path / "out.xml", hysteresis=True, pivot="bush")
+    slope, lean, at = (
+        np.zeros(4),
+        np.array([1.0, 0.0, 0.0025, 0.0]),
+        np.zeros(3),
+    )  # 5 mrad of the robot to the floor
+    mujoco.mju_axisAngle2Quat(slope, np.array([0.0, 1.0, 0.0]), 0.2)
+    torques = []
+    for floor in (np.array([1.0, 0.0, 0.0, 0.0]), slope):
+        foot = Pressed(tmp_path / "out.xml", 0.002)
+        foot.model.geom("floor").quat[:] = floor
+        foot.model.geom_sameframe[:] = 0  # the floor is no longer in its body's frame
+        mujoco.mju_rotVecQuat(at, foot.data.qpos[:3] - np.array([0, 0, 0.035]), floor)
+        foot.data.qpos[:3] = at
+        mujoco.mju_mulQuat(foot.data.qpos[3:7], floor, lean)
+        mujoco.mj_step1(foot.model, foot.data)
+        foot.hysteresis(foot.model, foot.data)
+        sole = int(foot.model.site("left_contact_bush").bodyid[0])
+        mujoco.mju_rotVecQuat(at, foot.data.xfrc_applied[sole, 3:], floor * np.array([1, -1, -1, -1]))
+        torques.append(at.copy())
+    assert np.linalg.norm(torques[0]) == pytest.approx(
+        BESIDE * 0.005 * np.cos(0.3), rel=1e-3
+    )  # the foot is turned in
+    np.testing.assert_allclose(torques[1], torques[0], atol=1e-6)
+
+
+def test_an_export_without_hysteresis_takes_it_off_again(tmp_path: Path) -> None:
+    made = slipping(write_urdf(tmp_path / "b.urdf"), "roll")
+    export(made, "mujoco-contact", tmp_path / "one.xml", hysteresis=True, pivot="bush")
+    export(
+        made,
+        "mujoco-contact",
+        tmp_path / "two.xml",
+        model=tmp_path / "one.xml",
+        hysteresis=True,
+        pivot="bush",
+    )
+    plantar.FootHysteresis(mujoco.MjModel.from_xml_path(str(tmp_path / "two.xml")))
+    export(made, "mujoco-contact", tmp_path / "three.xml", model=tmp_path / "two.xml", pivot="bush")
+    with pytest.raises(ExportError, match="carries no slip"):
+        plantar.FootHysteresis(mujoco.MjModel.from_xml_path(str(tmp_path / "three.xml")))
+
+
+def test_what_cannot_be_asked_for_is_said(tmp_path: Path) -> None:
+    made, out = slipping(write_urdf(tmp_path / "b.urdf"), "roll"), tmp_path / "no"
+    with pytest.raises(ExportError, match="holds no hysteresis"):
+        export(made, "bullet-contact", out, hysteresis=True)
+    with pytest.raises(ExportError, match="takes no pivot"):
+        export(made, "mjcf", out, pivot="bush")
+    with pytest.raises(ExportError, match="valid: ground, bush"):
+        export(made, "mujoco-contact", out, pivot="heel")
+    for wrong in (0.0, 0.6, float("nan")):
+        with pytest.raises(ExportError, match=r"valid: 0\.05 to 0\.5"):
+            export(made, "mujoco-contact", out, least_load=wrong)
+    with pytest.raises(ExportError, match="one of the two"):
+        export(made, "mujoco-contact", out, hysteresis=True, swing=0.01)
+    assert not out.exists()
