@@ -1,0 +1,57 @@
+"""What a richer model is fitted to: torques and angles as the place and the drift that were found leave them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from bush_data_sets import Rubber
+from made_recording import FOOT, PERIOD, made_recording, swayed
+from plantar.feet.fit.axis import AngleDrift, AxisFit
+from plantar.feet.fit.axis_fit import fit_axis
+from plantar.feet.fit.load_torque import load_torque
+from plantar.feet.fit.memory_fit import data_sets_about, placed_as
+from plantar.feet.recording import Recording
+from plantar.feet.settings import FeetSettings
+
+RUBBER = Rubber(stiffness=420.0, damping=18.0, slip_torque=4.0, slip_angle=0.006)
+
+
+@pytest.fixture(scope="module")
+def recording() -> Recording:
+    angle = swayed(3000, seed=1)
+    return made_recording("sway", angle, RUBBER.torque(angle, np.gradient(angle, PERIOD)))
+
+
+@pytest.fixture(scope="module")
+def fit(recording: Recording) -> AxisFit:
+    found = fit_axis([recording], FOOT, "pitch", FeetSettings(model="elastoplastic"))
+    assert found is not None
+    return found
+
+
+def test_a_fit_is_made_about_the_place_that_another_one_found(fit: AxisFit) -> None:
+    other = replace(fit, moment_arms=(0.001, 0.002), turned=0.03, imu_turned=(0.01, 0.02, 0.03), leans=0.5)
+    placed = placed_as(fit, other)
+    assert (placed.moment_arms, placed.turned, placed.imu_turned) == (
+        (0.001, 0.002),
+        0.03,
+        (0.01, 0.02, 0.03),
+    )
+    assert placed.leans == fit.leans
+    assert placed.values is fit.values
+
+
+def test_what_was_found_is_taken_off_torque_and_path(recording: Recording, fit: AxisFit) -> None:
+    drift = AngleDrift(recording.time, 1e-3 * np.sin(recording.time))
+    about = replace(fit, moment_arms=(0.01, 0.0), drifts={"sway": drift})
+    (as_read,) = data_sets_about([recording], fit)
+    (found,) = data_sets_about([recording], about)
+    load = load_torque(recording, about)
+    assert np.nanmax(np.abs(load)) > 0.1
+    np.testing.assert_allclose(found.torque, as_read.torque - load)
+    np.testing.assert_array_equal(found.drift, drift.angle)
+    assert as_read.drift is None
+    np.testing.assert_array_equal(found.motion.deflection, as_read.motion.deflection)
