@@ -78,8 +78,8 @@ DATA_FAULTS = (
         "0.0 * float(np.mean(fit.residuals", ("feet/fit/test_bush_place.py",),
     ),
     Mutant(
-        "feet/fit/regression_data.py", "drift is a line", "return drift_beside(deflection, recording.drift(foot))",
-        "return drift_beside(deflection, recording.drift(foot))[:, :1]", ("feet/fit/test_regression_data.py",),
+        "feet/fit/regression_data.py", "drift is a line", "drift = drift_beside(deflection, recording.drift(foot))",
+        "drift = drift_beside(deflection, recording.drift(foot))[:, :1]", ("feet/fit/test_regression_data.py",),
     ),
     Mutant(
         "feet/memory_of_others.py", "a memory is made up", "s.refused is None and s.model.name in shown), None)",

@@ -16,8 +16,9 @@ import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES, Array
 from plantar.estimation import effect_of
+from plantar.estimation.slow_drift import drift_beside
 from plantar.feet.fit.axis import AngleDrift, AxisFit
-from plantar.feet.fit.regression_data import blocks_of, drift_columns, model_columns, tangent_blocks
+from plantar.feet.fit.regression_data import blocks_of, model_columns, tangent_blocks
 from plantar.feet.recording import Recording
 
 ROUNDS = 6
@@ -51,9 +52,10 @@ def _drifts(fit: AxisFit, recordings: Sequence[Recording]) -> dict[str, AngleDri
     for block in blocks_of(recordings, fit.foot, fit.axis, fit=fit):
         recording = by_name[block.label]
         missed = block.response - block.regressor @ fit.values
-        slow = drift_columns(recording, fit.foot, ROTATIONAL_AXES.index(fit.axis))
-        times = recording.time[recording.rows(fit.foot)]
-        found[block.label] = AngleDrift(times, -(slow @ (slow.T @ missed)) / fit.values[0])
+        rows = recording.rows(fit.foot)
+        deflection = recording.bushes[fit.foot].deflection[rows, ROTATIONAL_AXES.index(fit.axis)]
+        slow = drift_beside(deflection, recording.drift(fit.foot))
+        found[block.label] = AngleDrift(recording.time[rows], -(slow @ (slow.T @ missed)) / fit.values[0])
     return found
 
 

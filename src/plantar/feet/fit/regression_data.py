@@ -116,18 +116,12 @@ def _nuisance(recording: Recording, foot: str, column: int, fit: AxisFit | None)
     """Orthonormal columns (n, m) of one recording alone; None where a foot steps: its offsets follow any drift."""
     if recording.stances[foot] is not None:
         return None
-    drift = drift_columns(recording, foot, column)
     deflection = recording.bushes[foot].deflection[recording.rows(foot), column]
+    drift = drift_beside(deflection, recording.drift(foot))
     if fit is None or not fit.model.zero_matters:
         return drift
     square = deflection**2
     return np.hstack([drift, orthonormal((square - square.mean())[:, None], drift)])
-
-
-def drift_columns(recording: Recording, foot: str, column: int) -> Array:
-    """Orthonormal columns (n, m) of what drifts slowly, at the used samples of a foot that stands."""
-    deflection = recording.bushes[foot].deflection[recording.rows(foot), column]
-    return drift_beside(deflection, recording.drift(foot))
 
 
 def _stance_rows(recording: Recording, foot: str) -> StanceRows:
