@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from plantar.checks.gyroscope import IMU_LATE, imu_late
 from plantar.checks.log_checks import check_log, finding_notes, refuse_impossible
 from plantar.contact.deflection import BushState, bush_states
 from plantar.contact.imu_turn import imu_turn_effects
@@ -85,6 +86,8 @@ def prepare(
     if (right := right_attitude(log, imu, orientation, tilt_error, raw, contacts)) is not None:
         orientation = right[0]
         raw = bush_states(robot, positions, velocities, orientation, rates, wrenches)
+        if not any(imu_late(imu.name, log, orientation)):  # the soles have mended that
+            notes = [note for note in notes if note.code != IMU_LATE]
         notes.append(right[1])
         scale = AttitudeScale()
     else:
