@@ -8,7 +8,7 @@ import numpy as np
 
 from plantar.checks.gyroscope import IMU_LATE, imu_late
 from plantar.checks.log_checks import check_log, finding_notes, refuse_impossible
-from plantar.contact.deflection import BushState, bush_states
+from plantar.contact.deflection import BushState, bush_states, encoder_rates
 from plantar.contact.imu_turn import imu_turn_effects
 from plantar.contact.phases import FootContact, carried_weight, detect_contact, shaken
 from plantar.contact.reasons import Reason
@@ -104,6 +104,7 @@ def prepare(
         places=places,
         notes=tuple(notes),
         imu_turns=imu_turn_effects(robot, positions, orientation, log.period),
+        encoder_rates=encoder_rates(robot, positions, velocities, orientation),
         attitude_scale=scale,
         zeros=tuple(row for name, zero in zeros.items() for row in zero.rows(log.name, name)),
     )
