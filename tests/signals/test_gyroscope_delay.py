@@ -70,3 +70,13 @@ def test_a_log_without_orientation_or_with_gaps() -> None:
     found = with_gyroscope_on_time(log.with_columns(dict(zip(RATES, holes.T, strict=True))), "chest")
     assert found.notes
     assert np.isnan(found.angular_velocity("chest")).sum() < 45
+
+
+def test_a_gyroscope_that_an_accelerometer_may_explain_is_not_made_late() -> None:
+    """Ahead of an orientation that follows the accelerometer it is right; behind one, its own filter delays it."""
+    for late, left in ((-0.003, True), (0.003, False)):
+        log = log_with(late)
+        still = np.tile([0.0, 0.0, 9.81], (len(TIME), 1))
+        columns = dict(zip(imu_columns("chest", "linear_acceleration"), still.T, strict=True))
+        log = log.with_columns(columns)
+        assert (with_gyroscope_on_time(log, "chest") is log) is left

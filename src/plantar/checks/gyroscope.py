@@ -26,6 +26,7 @@ SCALE_OFF, TURNED = 0.05, 0.1  # share, rad: of a gyroscope, damping is off by a
 SURE = 6.0  # deviations
 FOLLOWED = 0.25  # share of the difference's square that turning one side may leave
 PLANAR = 0.05  # second over first singular value: turns about one axis do not show how the other two lie
+IMU_LATE = "imu_late"
 EXPLAINED = 0.1  # share of the difference of both rates, by a delay between gyroscope and orientation
 MEDIAN = 0.6745  # of absolute values over the deviation, of a normal distribution
 REVERSED = -0.9  # correlation, and slope within a factor of two, of an axis that reads the opposite
@@ -142,7 +143,7 @@ def check_gyroscope(name: str, log: MotionLog, orientation: Array, turns: Turns)
             text += ", or the orientation's quaternion is inverted, world to body" if inverted else ""
             yield Finding("sign", f"{text} (valid: right-handed about the IMU's axes)", True)
             return
-    yield from _late(name, log, orientation)
+    yield from imu_late(name, log, orientation)
     best = min(turns.apart, key=turns.apart.__getitem__)
     if turns.apart[best] < min(RIGHT_TURN, BETTER * turns.apart["as it is"]):
         yield misread(name, "turns another way than the gyroscope", best)
@@ -184,7 +185,7 @@ def _turned_onto(one: Array, other: Array) -> Array:
     return np.asarray(left @ right)
 
 
-def _late(name: str, log: MotionLog, orientation: Array) -> Iterator[Finding]:
+def imu_late(name: str, log: MotionLog, orientation: Array) -> Iterator[Finding]:
     """Whether orientation and gyroscope tell of the same turn at different times: rates and angles then disagree."""
     turning = rates_from(orientation, log.period)
     turning[np.append(False, np.diff(log.time) > 1.5 * log.period)] = np.nan
@@ -196,7 +197,7 @@ def _late(name: str, log: MotionLog, orientation: Array) -> Iterator[Finding]:
         later, other = ("gyroscope", "orientation") if late > 0 else ("orientation", "gyroscope")
         text = f"columns 'imu.{name}.*': the {later} is {1e3 * abs(late):.0f} ms behind the {other} in this motion"
         cause = "late, or filtered towards the accelerometer; damping is less sure"
-        yield Finding("imu_late", f"{text}: {cause} (valid: both of one moment)")
+        yield Finding(IMU_LATE, f"{text}: {cause} (valid: both of one moment)")
 
 
 def _reversed_axes(turns: Turns) -> str:

@@ -109,6 +109,17 @@ def bush_states(
     return states
 
 
+def encoder_rates(
+    robot: RobotModel, positions: Array, velocities: Array, orientation: Array
+) -> dict[str, Array]:
+    """Rate of each foot's deflection as far as joints turn, the IMU held, (N, 2) [rad/s]; see `bush_states`."""
+    held = np.zeros((len(orientation), 3))
+    return {
+        name: foot_motion(path_to(robot, name)[0], positions, velocities, orientation, held).rate
+        for name in robot.feet
+    }
+
+
 def path_to(
     robot: RobotModel, name: str, place: Placement | None = None
 ) -> tuple[FootPath, pin.SE3, pin.SE3]:

@@ -86,11 +86,15 @@ def _cautioned(
 ) -> AxisFit | None:
     """The fit with a caution; None where a memory was identified in motions that show one, and gains nothing there.
 
+    One that gains a little, too little to be chosen, is not excluded: in small motions spring and memory are alike.
+
     Motions too `small` to bend this axis as far as it takes an element elsewhere to slip show none: what is identified
     in them is the noise's.
     """
+    spring = next(score for score in choice.ranking if isinstance(score.model, KelvinVoigt))
     excluded = not isinstance(fit.model, KelvinVoigt) or any(
-        score.refused is None and score.model.name in shown for score in choice.ranking
+        score.refused is None and score.model.name in shown and score.held_out_rms >= spring.held_out_rms
+        for score in choice.ranking
     )
     if choice.caution is not None:
         return fit

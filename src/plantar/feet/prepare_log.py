@@ -6,8 +6,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from plantar.checks.gyroscope import IMU_LATE, imu_late
 from plantar.checks.log_checks import check_log, finding_notes, refuse_impossible
-from plantar.contact.deflection import BushState, bush_states
+from plantar.contact.deflection import BushState, bush_states, encoder_rates
 from plantar.contact.imu_turn import imu_turn_effects
 from plantar.contact.phases import FootContact, carried_weight, detect_contact, shaken
 from plantar.contact.reasons import Reason
@@ -87,6 +88,8 @@ def prepare(
     if (right := right_attitude(log, imu, orientation, tilt_error, raw, contacts)) is not None:
         orientation = right[0]
         raw = bush_states(robot, positions, velocities, orientation, rates, wrenches)
+        if not any(imu_late(imu.name, log, orientation)):  # the soles have mended that
+            notes = [note for note in notes if note.code != IMU_LATE]
         notes.append(right[1])
         scale = AttitudeScale()
     else:
@@ -103,6 +106,7 @@ def prepare(
         places=places,
         notes=tuple(notes),
         imu_turns=imu_turn_effects(robot, positions, orientation, log.period),
+        encoder_rates=encoder_rates(robot, positions, velocities, orientation),
         attitude_scale=scale,
         zeros=tuple(row for name, zero in zeros.items() for row in zero.rows(log.name, name)),
     )

@@ -38,6 +38,7 @@ class Recording:
     `noise` (2, 2) of each foot: variance of white noise that is left in deflection and rate, of pitch and roll.
     `places` (N, 2) of each foot: of the sole from the IMU [m] in the attitude as recorded, which slides are judged by.
     `imu_turns` (N, 2, 3) of each foot: see `imu_turn_effects`; filtered as `bushes`.
+    `encoder_rates` (N, 2) of each foot: of the deflection, as far as joints turn [rad/s]; filtered as `bushes`.
     `zeros`: of force sensors, as read while their foot swings; they are taken off already.
     `attitude_scale`: what its stances tell of the IMU's; nothing of an attitude that was put right.
     `every`: of how many of the log's samples each is one.
@@ -55,6 +56,7 @@ class Recording:
     notes: tuple[Note, ...]
     zeros: tuple[SwingZero, ...] = ()
     imu_turns: Mapping[str, Array] = field(default_factory=dict)
+    encoder_rates: Mapping[str, Array] = field(default_factory=dict)
     attitude_scale: AttitudeScale = field(default_factory=AttitudeScale)
     every: int = 1
 
@@ -123,6 +125,7 @@ class Recording:
             stances={foot: None},
             places={},
             imu_turns={name: turns[rows] for name, turns in self.imu_turns.items()},
+            encoder_rates={foot: self.encoder_rates[foot][rows]} if self.encoder_rates else {},
             every=stride * self.every,
         )
 
@@ -161,7 +164,11 @@ def filtered_recording(recording: Recording, cutoff: float) -> Recording:
         name: within_stances(turns.reshape(-1, 6), period, cutoff, recording.stances[name]).reshape(-1, 2, 3)
         for name, turns in recording.imu_turns.items()
     }
-    return replace(recording, cutoff=cutoff, bushes=smooth, noise=noise, imu_turns=turns)
+    rates = {
+        name: within_stances(own, period, cutoff, recording.stances[name])
+        for name, own in recording.encoder_rates.items()
+    }
+    return replace(recording, cutoff=cutoff, bushes=smooth, noise=noise, imu_turns=turns, encoder_rates=rates)
 
 
 def filtered(state: BushState, period: float, cutoff: float) -> BushState:

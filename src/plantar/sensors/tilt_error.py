@@ -29,7 +29,11 @@ from plantar.signals.segments import runs
 
 BAND = 2.0  # Hz: the accelerometer-induced tilt error shows below it
 LEAST_RATE = 0.01  # 1/s: below it the damping is not affected
-EXPLAINED = 0.3  # share of the disagreement of attitude and gyroscope that it must explain
+EXPLAINED = 0.3  # share of the disagreement of attitude and gyroscope that shows it
+SURE = (
+    6.0  # or so many deviations: beside a noisy gyroscope it explains little, and moves the damping as much
+)
+AXES = 2  # of the horizontal plane, in which the vertical leans
 CORRECTED = 1.5  # Hz, up to which the attitude is put right
 DERIVED = 5.0  # Hz: filter of what is differentiated twice
 SHORTEST_STANCE = 5.0  # s on the same feet
@@ -41,17 +45,21 @@ class TiltError:
     """What attitude and gyroscope disagree about, beside the tilt error that a filter of 1 1/s would
     make: integrals that add up.
 
-    `error` and `predicted`: of both squared [rad²/s]; `product`: of one times the other. A filter belongs to the IMU,
-    so that the sum over recordings tells what a quiet one alone cannot.
+    `error` and `predicted`: of both squared [rad²/s]; `product`: of one times the other; over `duration` [s]. A filter
+    belongs to the IMU, so that the sum over recordings tells what a quiet one alone cannot.
     """
 
     product: float = 0.0
     predicted: float = 0.0
     error: float = 0.0
+    duration: float = 0.0
 
     def __add__(self, other: TiltError) -> TiltError:
         return TiltError(
-            self.product + other.product, self.predicted + other.predicted, self.error + other.error
+            self.product + other.product,
+            self.predicted + other.predicted,
+            self.error + other.error,
+            self.duration + other.duration,
         )
 
     @property
@@ -60,13 +68,22 @@ class TiltError:
         return self.product / self.predicted if self.predicted > 0 else 0.0
 
     @property
+    def std(self) -> float:
+        """Of the rate [1/s], from what it leaves of the disagreement: as many independent values as the band holds."""
+        if self.predicted <= 0 or self.duration <= 0:
+            return float("inf")
+        left = max(self.error - self.rate * self.product, 0.0)
+        return float(np.sqrt(left / self.predicted / (2 * BAND * self.duration * AXES)))
+
+    @property
     def believed(self) -> bool:
-        """Whether it explains enough of the disagreement, and matters.
+        """Whether it explains much of the disagreement or is well told from none, and matters.
 
         A gyroscope that is late by τ beside the attitude looks like a tilt error of about g τ/h [1/s]: it is
         corrected in the same way.
         """
-        return self.rate > LEAST_RATE and self.rate * self.product > EXPLAINED * self.error
+        shown = self.rate * self.product > EXPLAINED * self.error or self.rate > SURE * self.std
+        return self.rate > LEAST_RATE and shown
 
 
 NO_TILT_ERROR = TiltError()
@@ -129,12 +146,10 @@ def tilt_error_of(orientation: Array, rates: Array, acceleration: Array, period:
     if known.sum() * period < SHORTEST_STANCE:
         return NO_TILT_ERROR
     error, predicted = (part[known] - part[known].mean(axis=0) for part in (error, predicted))
-    return TiltError(
-        *(
-            period * float(np.sum(a * b))
-            for a, b in ((error, predicted), (predicted, predicted), (error, error))
-        )
+    product, whole, apart = (
+        period * float(np.sum(a * b)) for a, b in ((error, predicted), (predicted, predicted), (error, error))
     )
+    return TiltError(product, whole, apart, period * len(error))
 
 
 def put_right(

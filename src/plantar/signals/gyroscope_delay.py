@@ -25,7 +25,9 @@ def with_gyroscope_on_time(log: MotionLog, imu: str) -> MotionLog:
     """An evenly sampled log with its gyroscope read at the moments that the orientation tells of, and a note of it.
 
     A device's own filter delays a gyroscope by milliseconds; damping, and the delay of the force sensors beside it,
-    would follow. As it is where the delay is small, not told from none, or larger than such a filter's.
+    would follow. As it is where the delay is small, not told from none, or larger than such a filter's. No filter makes
+    a gyroscope early: ahead of an orientation that follows its accelerometer, it is the orientation that is wrong, and
+    the accelerometer tells by how much (`sensors/tilt_error.py`).
     """
     orientation, columns = log.orientation(imu), imu_columns(imu, "angular_velocity")
     if orientation is None or not log.has(*columns):
@@ -33,6 +35,8 @@ def with_gyroscope_on_time(log: MotionLog, imu: str) -> MotionLog:
     rates = log.angular_velocity(imu)
     found = gyroscope_delay(rates, rates_from(orientation, log.period), log.period)
     if found is None or not max(SURE * found.std, LEAST) < abs(found.late) < USUAL:
+        return log
+    if found.late < 0 and log.has_imu(imu, "linear_acceleration"):
         return log
     late, ahead = ("behind", "earlier") if found.late > 0 else ("ahead of", "later")
     text = f"{log.name}: gyroscope {1e3 * abs(found.late):.1f} ms {late} the orientation, read {ahead} by as much"

@@ -26,6 +26,8 @@ REMEDY = {
     "narrows the interval and hardly moves the number; if it was right, calibrate the force sensors, which the number "
     "follows",
     "torque gain": "check unit and calibration of the torque channels, and correct the logs",
+    "encoders' delay": "add a recording of arm sweeps at 0.3 to 1 Hz without an operator: it shows the encoders' time "
+    "beside the IMU's; or read both at once",
     "yaw torque zero": "before the next recording, zero the force sensors with the feet in the air",
     "between walks": "add walks: five or more show by themselves how much they differ",
     "ends of stances": "walk with longer stances, or stand and sway: landing and lifting disturb the fit",
@@ -40,7 +42,8 @@ REMEDY = {
 }
 # Causes that no more of the same motion makes smaller: the advice against them replaces the axis' own.
 OTHER_MOTION_HELPS = (
-    "delay", "moment arm", "hardening", "yaw torque zero", ZEROS_OF_STANCES, "force gain", "torque gain", "imu turn",
+    "delay", "encoders' delay", "moment arm", "hardening", "yaw torque zero", ZEROS_OF_STANCES, "force gain",
+    "torque gain", "imu turn",
 )  # fmt: skip
 GAINS = ("force_gain", "torque_gain")  # codes of warnings on a sensor's gain
 NEARLY_ALL = 0.9

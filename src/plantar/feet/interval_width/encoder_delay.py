@@ -1,0 +1,52 @@
+"""Encoders that are read at another moment than the IMU: what that makes of spring and damper, where motions show it.
+
+An IMU behind a filter of its own is late by some milliseconds, the encoders are not. Where hips or waist turn several
+times as fast as the bush, the bush's angle is off by several times what the delay makes of its own rate. Newton's law
+shows it in arm sweeps; the fit itself shows it where the joints' motion is not the bush's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from plantar.conventions import ROTATIONAL_AXES, Array
+from plantar.estimation import effect_of, fit_blocks
+from plantar.feet.fit.axis import AxisFit
+from plantar.feet.fit.regression_data import beside, tangent_blocks
+from plantar.feet.interval_width.systematic import SINGULAR, Cause
+from plantar.feet.recording import Recording
+from plantar.signals.filters import differentiate
+
+NAME = "encoders' delay"
+SUSPECTED = 3.0  # deviations from none
+USUAL = 0.005  # s: what a device's own filter delays it by at most; what looks later is something else
+
+
+def encoder_delay_causes(fit: AxisFit, recordings: Sequence[Recording], shared: bool) -> list[Cause]:
+    """By as much as the motions show encoders and IMU to be apart; none of a foot that steps, or where none shows."""
+    blocks = tangent_blocks(recordings, fit, drift=not shared)
+    if blocks[0].stances is not None:
+        return []
+    by_name = {recording.name: recording for recording in recordings}
+    columns = [_column(by_name[block.label], fit) for block in blocks]
+    if not any(column.any() for column in columns):
+        return []
+    wider = [beside(block, column[:, None]) for block, column in zip(blocks, columns, strict=True)]
+    found = fit_blocks(wider, shared_offset=shared)
+    late, std = float(found.values[-1]), float(found.std[-1])
+    if found.condition_number > SINGULAR or abs(late) < SUSPECTED * std:
+        return []
+    return [Cause(NAME, effect_of(blocks, columns, shared_offset=shared), min(abs(late), USUAL))]
+
+
+def _column(recording: Recording, fit: AxisFit) -> Array:
+    """Torque of the used samples for each second by which the encoders are late, (n,)."""
+    rates = recording.encoder_rates.get(fit.foot)
+    rows = recording.rows(fit.foot)
+    if rates is None:
+        return np.zeros(int(rows.sum()))
+    own = rates[:, ROTATIONAL_AXES.index(fit.axis)]
+    torque = fit.values[0] * own + fit.values[1] * differentiate(own, recording.period)
+    return np.asarray(np.nan_to_num(torque)[rows])

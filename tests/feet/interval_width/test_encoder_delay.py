@@ -1,0 +1,64 @@
+"""Encoders read at another moment than the IMU widen the damping where motions show it, and nothing else does."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from biped import TRUTH, record, sway
+from biped_robot import make_robot
+from plantar.feet.identify import identify_feet
+from plantar.feet.interval_width.encoder_delay import NAME
+from plantar.feet.settings import FeetSettings
+from plantar.logs.motion_log import MotionLog
+from plantar.results.feet import FeetResult
+
+KNOWN = FeetSettings(model="kelvin_voigt", wrench_delay=0.0)
+EARLY = 0.0035  # s
+
+
+def early(log: MotionLog) -> MotionLog:
+    """The log with its encoders read before the IMU, as of an IMU and wrenches behind a filter of 60 Hz."""
+    moved = {
+        name: np.interp(log.time + EARLY, log.time, values)
+        for name, values in log.columns.items()
+        if name.startswith("joint.")
+    }
+    return log.with_columns(moved).select(slice(0, -20))
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory: pytest.TempPathFactory) -> tuple[FeetResult, FeetResult]:
+    """From logs whose encoders are on time, and early."""
+    robot = make_robot(tmp_path_factory.mktemp("robot"))
+    logs = [record(sway(f"sway_{seed}", seed=seed, duration=30.0)) for seed in (1, 2)]
+    one, other = (identify_feet(robot, each, settings=KNOWN) for each in (logs, [early(log) for log in logs]))
+    return one, other
+
+
+def shares(result: FeetResult) -> list[float]:
+    return [row.variance_shares.get(NAME, 0.0) for row in result.diagnosis if row.name == "damping"]
+
+
+def test_encoders_on_time_widen_nothing(results: tuple[FeetResult, FeetResult]) -> None:
+    assert max(shares(results[0])) == 0.0
+
+
+def test_early_ones_widen_the_damping_until_it_holds_the_truth(
+    results: tuple[FeetResult, FeetResult],
+) -> None:
+    assert np.median(shares(results[1])) > 0.3
+    missed = []
+    for (foot, axis), law in TRUTH.items():
+        row = results[1].parameter(foot, axis, "damping")
+        assert row.interval95 is not None
+        low, high = row.interval95
+        assert low < law.damping < high
+        share = next(
+            one.variance_shares.get(NAME, 0.0)
+            for one in results[1].diagnosis
+            if (one.foot, one.axis, one.name) == (foot, axis, "damping")
+        )
+        without = (high - low) / 2 * np.sqrt(1 - share)
+        missed.append(abs(row.value - law.damping) > without)
+    assert any(missed), "without it some interval misses"
