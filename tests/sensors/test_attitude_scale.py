@@ -111,3 +111,16 @@ def test_sums_of_logs_add_up_and_a_share_that_is_not_sure_is_not_told() -> None:
     (note,) = attitude_scale_notes(made(-0.05, 0.0, 0.01))
     assert "0.952 times" in note.text
     assert not attitude_scale_notes(made(0.6, 0.8, 0.01)), "the height explains it all"
+
+
+def test_an_attitude_that_wanders_while_the_robot_hardly_tilts_has_no_scale() -> None:
+    """What is believed of a tilt is then the wander itself: it goes with the lean, what the lean leaves does not."""
+    time = np.arange(0, 60, 0.05)
+    tilt, wander = 0.002 * np.sin(2.0 * time), 0.004 * np.sin(0.7 * time)
+    higher = 0.003 * np.sin(3.1 * time)
+    for scale, found in ((1.0, False), (1.1, True)):
+        believed = scale * tilt + (wander if scale == 1 else 0)
+        lean = believed - tilt + 1e-5 * np.random.default_rng(3).standard_normal(len(time))
+        signals = np.column_stack([lean, believed, higher])
+        one = AttitudeScale(np.tile(0.05 * signals.T @ signals, (2, 1, 1)), time[-1])
+        assert bool(attitude_scale_notes(one)) is found

@@ -29,6 +29,10 @@ SCALE_OFF = (
 SURE = 6.0  # deviations
 SINGULAR = 1e4  # condition beyond which one pace of sway does not tell scale and height apart
 EDGE = 1.0  # s, of each stance: the filter's
+WITHOUT_LEAN = np.array([[1.0, 0.0, 0.0], [-1.0, 1.0, 0.0], [0.0, 0.0, 1.0]])  # the tilt as the soles have it
+STAYS = (
+    0.5  # of the share, beside the tilt as the soles have it: less, and most of it is the attitude's wander
+)
 RATE = 1.0  # 1/s, of samples of the lean that tell something new: it is slower than CORRECTED
 
 
@@ -36,6 +40,9 @@ RATE = 1.0  # 1/s, of samples of the lean that tell something new: it is slower 
 class AttitudeScale:
     """Sums over stances, about the world's x and y: `products` (2, 3, 3) of the lean, the tilt, and the lean for each
     metre by which the IMU is higher.
+
+    An attitude that wanders while the robot hardly tilts is what it believes of a tilt: its lean goes with that, and
+    not with the tilt that the lean leaves. A scale shows beside both.
 
     `seconds`: of all stances. Logs of one IMU add up.
     """
@@ -49,8 +56,14 @@ class AttitudeScale:
     @property
     def share(self) -> tuple[Array, Array]:
         """By which share of each tilt the attitude is too small (2,), and its deviations; zero where none shows."""
+        (share, std), (left, _) = (self._beside(reading) for reading in (np.eye(3), WITHOUT_LEAN))
+        return np.where(left * share > STAYS * share**2, share, 0.0), std
+
+    def _beside(self, reading: Array) -> tuple[Array, Array]:
+        """The share beside what `reading` (3, 3) makes of lean, tilt and height, and its deviations."""
         share, std = np.zeros(2), np.zeros(2)
-        for axis, sums in enumerate(self.products):
+        for axis, products in enumerate(self.products):
+            sums = reading @ products @ reading.T
             size = np.sqrt(np.diag(sums))
             if not (size > 0).all() or np.linalg.cond(sums[1:, 1:] / np.outer(size[1:], size[1:])) > SINGULAR:
                 continue
