@@ -187,6 +187,10 @@ def test_the_warning_names_axis_and_size() -> None:
     (note,) = torque_gain_notes({"roll": TorqueGain(1.4, 0.0, {"left": -2.0, "right": 0.0}, True)}).values()
     assert "by left -200 % and right +0 %" in note.text
     assert "Check sign, unit and calibration" in note.text
+    small = {"roll": TorqueGain(0.05, 0.01, {"left": 0.1, "right": 0.0})}
+    assert torque_gain_notes(small)["roll"].severity == "info"
+    told_apart = {"roll": small["roll"]._replace(apart=True)}
+    assert torque_gain_notes(told_apart)["roll"].severity == "warning"
 
 
 @pytest.mark.parametrize(("off", "axes"), [(2.9, set()), (3.2, {"pitch", "roll"}), (3.8, {"pitch", "roll"})])

@@ -186,7 +186,7 @@ def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit) -> FootFit:
         *play,
         *force_gain_notes(ready.robot, gain),
         # Torque channels that are wrong about one axis are trusted about neither.
-        *torque_gain_notes(ready.torque_gains).values(),
+        *(note for note in torque_gain_notes(ready.torque_gains).values() if note.severity == "warning"),
         *naming_notes(ready.robot.path.name, ready.robot.guesses),
         *(note for foot, note in ready.turned.items() if foot == fit.foot),
         *(note for note in ready.notes if note.code in (*OF_MOMENTS, ATTITUDE_SCALE)),

@@ -15,8 +15,9 @@ from plantar.models.hysteresis import Hysteretic
 
 # From about this angle on [rad] the twin's rubber slips inside; nobody has measured a real one. Until it slips, an
 # element is a spring, too.
-SMALL = 0.01
-ALL_SHOWN = 2.0  # times this angle: a spring that explains everything so far is all there is
+SLIPS = 0.01
+SMALL = 1.5 * SLIPS  # motions as large tell an element from a spring
+ALL_SHOWN = 2.0 * SLIPS  # a spring that explains everything so far is all there is
 TOO_SMALL = (
     "bent by {:.2g} rad at most: a memory of the rubber that shows only beyond counts as stiffness; in larger motions "
     "stiffness may be smaller (record larger motions)"
@@ -76,7 +77,7 @@ def moved_by_memory(fit: AxisFit, *, steps: bool) -> Array:
 
 def may_hide_a_memory(motions: Sequence[BushMotion]) -> bool:
     """Whether motions of a standing foot are so small that a spring which explains them all may not be all there is."""
-    return reach(motions) < ALL_SHOWN * SMALL
+    return reach(motions) < ALL_SHOWN
 
 
 def cautioned(choice: ModelChoice, *, timed: bool, steps: bool) -> ModelChoice:
