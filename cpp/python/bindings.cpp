@@ -62,11 +62,6 @@ Frame frame(const Packed& twelve) {
   return out;
 }
 
-nb::ndarray<nb::numpy, double> owned(double* data, std::initializer_list<std::size_t> shape) {
-  nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<double*>(p); });
-  return nb::ndarray<nb::numpy, double>(data, shape, owner);
-}
-
 // frames: per step the joint's frame; slides, signs: per step; positions, velocities: per step one column.
 nb::ndarray<nb::numpy, double> foot_chain(const std::vector<Packed>& frames, const std::vector<bool>& slides,
                                           const std::vector<double>& signs, const Packed& bush, const Packed& sole,

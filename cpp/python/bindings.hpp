@@ -1,8 +1,18 @@
-// Python's views of drift.hpp, the estimator, factor.hpp, low_pass.hpp, stepping.hpp and stop_operator.hpp, which have
-// files of their own.
+// What all of the views from Python share, and those that have files of their own: of drift.hpp, the estimator,
+// factor.hpp, low_pass.hpp, stepping.hpp and stop_operator.hpp.
 #pragma once
 
 #include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+
+#include <cstddef>
+#include <initializer_list>
+
+// An array that frees `data`, which `new[]` made, when Python has done with it.
+inline nanobind::ndarray<nanobind::numpy, double> owned(double* data, std::initializer_list<std::size_t> shape) {
+  nanobind::capsule owner(data, [](void* p) noexcept { delete[] static_cast<double*>(p); });
+  return nanobind::ndarray<nanobind::numpy, double>(data, shape, owner);
+}
 
 void bind_drift(nanobind::module_& m);
 void bind_estimator(nanobind::module_& m);

@@ -23,11 +23,6 @@ DriftChain chain_of(const Series& weight, const Series& jump, double wander, dou
   return {weight.shape(0), weight.data(), jump.data(), wander, period, {first[0], first[1]}};
 }
 
-nb::ndarray<nb::numpy, double> owned(double* data, std::initializer_list<std::size_t> shape) {
-  nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<double*>(p); });
-  return nb::ndarray<nb::numpy, double>(data, shape, owner);
-}
-
 nb::ndarray<nb::numpy, double> smooth(const Series& weight, const Series& jump, double wander, double period,
                                       const std::array<double, 2>& first, const Rows& values) {
   const DriftChain chain = chain_of(weight, jump, wander, period, first);

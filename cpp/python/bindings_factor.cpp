@@ -18,11 +18,6 @@ using namespace plantar;
 
 namespace {
 
-nb::ndarray<nb::numpy, double> owned(double* data, std::initializer_list<std::size_t> shape) {
-  nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<double*>(p); });
-  return nb::ndarray<nb::numpy, double>(data, shape, owner);
-}
-
 // R of all factors' rows, each times its weight: upper (n, n). onto[k]: where the factor's columns stand, increasing.
 nb::ndarray<nb::numpy, double> stacked(
     const std::vector<nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>>& factors,

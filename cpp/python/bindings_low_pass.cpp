@@ -1,5 +1,3 @@
-#include "bindings.hpp"
-
 #include <nanobind/ndarray.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "bindings.hpp"
 #include "kernels.hpp"
 #include "parallel.hpp"
 
@@ -50,9 +49,7 @@ nb::ndarray<nb::numpy, double> low_pass(
         table.low_pass(filter, values.data(), n, k, column, work.get(), data.get());
     });
   }
-  double* found = data.release();
-  nb::capsule owner(found, [](void* p) noexcept { delete[] static_cast<double*>(p); });
-  return nb::ndarray<nb::numpy, double>(found, {kept, k}, owner);
+  return owned(data.release(), {kept, k});
 }
 
 }  // namespace

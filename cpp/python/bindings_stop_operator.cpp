@@ -32,9 +32,7 @@ nb::ndarray<nb::numpy, double> states(const Rows& direction, const Rows& length,
     stop_operator({turns, runs, n, direction.data(), length.data(), branch.data(), travelled.data()}, slip.data(),
                   start.data(), b, data.get());
   }
-  double* found = data.release();
-  nb::capsule owner(found, [](void* p) noexcept { delete[] static_cast<double*>(p); });
-  return nb::ndarray<nb::numpy, double>(found, {n, runs, b}, owner);
+  return owned(data.release(), {n, runs, b});
 }
 
 }  // namespace

@@ -64,8 +64,8 @@ inline void inverse_dynamics(const Tree& tree, const Motion& motion, const doubl
   }
 }
 
-// What several sets of parameters, ten a link each, take at the root frame of a floating base, without contacts: the links'
-// motion is found once for all. out: (sets, samples, 6).
+// What several sets of parameters, ten a link each, take at the root frame of a floating base, without contacts: the
+// links' motion is found once for all. out: (sets, samples, 6).
 inline void base_wrenches(const Tree& tree, const Motion& motion, const double* parameters, std::size_t sets,
                           std::size_t begin, std::size_t end, std::size_t samples, double* out, double* work) {
   LinkState* states = reinterpret_cast<LinkState*>(work);

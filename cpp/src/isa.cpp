@@ -1,9 +1,8 @@
 // Built once per instruction set, with its name, its lanes and its compiler flags set by CMakeLists.txt.
-#include "kernels.hpp"
-
 #include "chain_kernel.hpp"
 #include "gram_kernel.hpp"
 #include "inverse_dynamics_kernel.hpp"
+#include "kernels.hpp"
 #include "low_pass_kernel.hpp"
 #include "qr_kernel.hpp"
 
@@ -13,8 +12,17 @@
 namespace plantar::PLANTAR_ISA {
 
 extern const Kernels kernels;
-const Kernels kernels = {
-    PLANTAR_STRING(PLANTAR_ISA), sizeof(LinkState) + sizeof(Wrench), qr_work, chain, regressor, inverse_dynamics, base_wrenches,
-    qr_update, gram_update, cholesky, LANES, low_pass};
+const Kernels kernels = {PLANTAR_STRING(PLANTAR_ISA),
+                         sizeof(LinkState) + sizeof(Wrench),
+                         qr_work,
+                         chain,
+                         regressor,
+                         inverse_dynamics,
+                         base_wrenches,
+                         qr_update,
+                         gram_update,
+                         cholesky,
+                         LANES,
+                         low_pass};
 
 }  // namespace plantar::PLANTAR_ISA

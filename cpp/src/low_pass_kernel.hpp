@@ -23,8 +23,8 @@ PLANTAR_INLINE Lanes advance(const Section& section, SectionState& state, Lanes 
   return y;
 }
 
-// Columns [column, column + LANES) of the signal; `work` holds LANES doubles for each of n + 2 padding samples. `out` has a
-// row for each sample that is kept.
+// Columns [column, column + LANES) of the signal; `work` holds LANES doubles for each of n + 2 padding samples. `out`
+// has a row for each sample that is kept.
 inline void low_pass(const LowPass& filter, const double* values, std::size_t n, std::size_t k, std::size_t column,
                      double* work, double* out) {
   const std::size_t count = k - column < LANES ? k - column : LANES;

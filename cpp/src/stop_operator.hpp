@@ -8,9 +8,9 @@
 
 namespace plantar {
 
-// r runs of n samples, cut into T branches at most. `direction` (T, r) is ±1, `length` (T, r) the way of each branch, and
-// for each sample `branch` (n, r) its branch and `travelled` (n, r) the way since that began. Within a run branches only
-// go up; samples behind one that goes down are padding.
+// r runs of n samples, cut into T branches at most. `direction` (T, r) is ±1, `length` (T, r) the way of each branch,
+// and for each sample `branch` (n, r) its branch and `travelled` (n, r) the way since that began. Within a run branches
+// only go up; samples behind one that goes down are padding.
 struct BranchedRuns {
   std::size_t turns, runs, samples;
   const double *direction, *length;
@@ -18,7 +18,8 @@ struct BranchedRuns {
   const double* travelled;
 };
 
-// z (n, r, b) in [-1, 1] of b elements that slip at `slip` (b,), from `start` (r, b). On each branch z = direction·(place
+// z (n, r, b) in [-1, 1] of b elements that slip at `slip` (b,), from `start` (r, b). On each branch z =
+// direction·(place
 // - 1): `place` is how far z stands from the end it came from, 0 to 2. Padding is 0.
 inline void stop_operator(const BranchedRuns& given, const double* slip, const double* start, std::size_t b,
                           double* out) {

@@ -109,7 +109,7 @@ DATA_FAULTS = (
     ),
     Mutant(
         "feet/fit/hidden_memory.py", "a spring is believed in small motions", "choice.reach >= SMALL",
-        "choice.reach >= 0.0", ("feet/fit/test_cautions.py",),
+        "choice.reach >= 0.0", ("feet/fit/test_hidden_memory.py",),
     ),
     Mutant(
         "feet/imu_of_steps.py", "the IMU's turn has no prior", "np.eye(3) / mount**2", "np.eye(3) * mount**2",

@@ -27,6 +27,7 @@ PUSHED = 2.0  # times LEANING: more than who holds a robot leans on it
 TURNED = np.radians(10)  # accelerations turn the force by some degrees too
 IMPOSSIBLE = np.radians(30)  # no mounting, zero or push is that far off
 MOST_NAMED = 3
+LEANS, LEANS_LITTLE = "force_leans", "force_leans_little"  # codes
 COMPONENTS = ("force.x", "force.y", None, "torque.x", "torque.y", None)  # force.z is judged by its own sign
 
 
@@ -75,7 +76,7 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         text = f"columns 'imu.{stance.imu.name}.*': the ground's force leans {np.degrees(sides.lean):.1f} deg from up"
         where = "check the IMU's rpy, the joints above the feet, the wrenches' zeros"
         valid = f"valid: below {np.degrees(LEANING):.1f} deg; {where}"
-        code = "force_leans" if sides.lean > PUSHED * LEANING else "force_leans_little"
+        code = LEANS if sides.lean > PUSHED * LEANING else LEANS_LITTLE
         yield Finding(code, f"{text} ({valid})", bool(sides.lean > IMPOSSIBLE))
     elif as_is > UNEXPLAINED:
         text = f"columns 'wrench.*': balance gravity only to {100 * as_is:.1f} cm about the URDF's centre of mass"

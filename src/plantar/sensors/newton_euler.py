@@ -35,17 +35,16 @@ class NewtonEulerResidual:
     """Both sides of Newton's law in the root link's frame over the longest calm segment of a log.
 
     `pair`: all feet together; `measured` and `rates` (feet, n, 6): each foot's wrench, and how it changes with the
-    moment at which its sensor is read; `by_encoders` (n, 6): how the prediction changes with the moment at which the
-    encoders are. `taken` (n, 6) is what `load_errors` took off all feet together. `readings` (n, 6 feet), the sensors'
-    own without the zeros that swings show, and the samples `kept` of `signals` are what both sides come from;
-    `parameters` (10 n_links,): of what moves above the force sensors.
+    moment at which its sensor is read, both without what `load_errors` took off; `by_encoders` (n, 6): how the
+    prediction changes with the moment at which the encoders are. `readings` (n, 6 feet), the sensors' own without the
+    zeros that swings show, and the samples `kept` of `signals` are what both sides come from; `parameters`
+    (10 n_links,): of what moves above the force sensors.
     """
 
     pair: Pair
     measured: Array
     rates: Array
     by_encoders: Array
-    taken: Array
     readings: Array
     signals: InertialSignals
     kept: slice
@@ -61,7 +60,6 @@ class NewtonEulerResidual:
             self.measured[:, rows],
             self.rates[:, rows],
             self.by_encoders[rows],
-            self.taken[rows],
             self.readings[rows],
             replace(self.signals),
             kept,
@@ -116,9 +114,8 @@ def newton_euler_residual(robot: RobotModel, log: MotionLog) -> NewtonEulerResid
     step = log.period
     ends = [predicted_by(inertial_motion(robot, signals, kept, encoders_late=by)) for by in (step, -step)]
     by_encoders = (ends[0] - ends[1]) / (2 * step)
-    signals = replace(
-        signals
-    )  # a copy holds no differences yet: of long logs, and of all together, these are large
+    # A copy holds no differences yet: of long logs, and of all together, these are large.
+    signals = replace(signals)
     contacts = [Contact(*robot.frame(foot.wrench.placement)) for foot in robot.feet.values()]
     transfers = [equation.base_transfer(motion.positions, contact) for contact in contacts]
     predicted, by_encoders = moving([predicted_by(motion), by_encoders], period)
@@ -134,7 +131,6 @@ def newton_euler_residual(robot: RobotModel, log: MotionLog) -> NewtonEulerResid
         found.measured,
         found.rates,
         by_encoders[calm],
-        found.taken,
         loads.readings[calm],
         signals,
         slice(kept.start + start * stride, kept.start + stop * stride, stride),
@@ -150,7 +146,7 @@ def _longest_known(robot: RobotModel, signals: InertialSignals, wrenches: Array)
     return longest if (longest.stop - longest.start) * period >= SHORTEST + 2 * EDGE else longest_run(whole)
 
 
-def predicted_errors(robot: RobotModel, motion: Motion, draws: int | None = None) -> Array:
+def predicted_errors(robot: RobotModel, motion: Motion, draws: int) -> Array:
     """What inertial parameters as wrong as the robot file allows would add to the prediction, (draws, n, 6)."""
     return Equation(robot.floating_model).base_wrenches(motion, drawn_parameter_errors(robot)[:draws])
 

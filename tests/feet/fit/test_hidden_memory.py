@@ -3,15 +3,24 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.hidden_memory import moved_by_memory, rival, slope_share
+from plantar.feet.fit.hidden_memory import (
+    SMALL,
+    UNTIMED,
+    cautioned,
+    may_hide_a_memory,
+    moved_by_memory,
+    rival,
+    slope_share,
+)
 from plantar.model_selection.model_fit import ModelFit
 from plantar.model_selection.selection import ModelChoice, ModelScore
-from plantar.models import MODELS
+from plantar.models import MODELS, BushMotion
 
 SPRING = (500.0, 20.0)
 OTHER = (400.0, 14.0, 2.0)  # with an element of slip torque 2 N.m
@@ -99,3 +108,35 @@ def test_in_short_stances_a_rival_counts_only_where_another_axis_shows_a_memory(
     fit = axis_of(("elastoplastic", OTHER, 0.6))
     assert moved_by_memory(fit, steps=False).all()
     np.testing.assert_array_equal(moved_by_memory(fit, steps=True), [0.0, 0.0])
+
+
+def choice(model: str = "kelvin_voigt", reach: float = 2 * SMALL, caution: str | None = None) -> ModelChoice:
+    fit = SimpleNamespace(model=MODELS[model])
+    return ModelChoice(fit, fit, (), "", "", (), reach, caution)  # type: ignore[arg-type]
+
+
+def test_sensors_that_may_be_late_leave_it_open() -> None:
+    assert cautioned(choice(), timed=False, steps=True).caution == UNTIMED
+    assert cautioned(choice(caution="another"), timed=False, steps=True).caution == "another"
+
+
+@pytest.mark.parametrize(
+    ("model", "reach", "steps", "told"),
+    [
+        ("kelvin_voigt", 0.9 * SMALL, False, True),
+        ("kelvin_voigt", 1.1 * SMALL, False, False),
+        ("kelvin_voigt", 0.9 * SMALL, True, False),
+        ("elastoplastic", 0.9 * SMALL, False, False),
+    ],
+)
+def test_small_motions_leave_it_open(model: str, reach: float, steps: bool, told: bool) -> None:
+    found = cautioned(choice(model, reach), timed=True, steps=steps).caution
+    assert (found is not None) == told
+    if found is not None:
+        assert "bent by 0.013 rad" in found
+
+
+@pytest.mark.parametrize(("amplitude", "hidden"), [(1.2 * SMALL, True), (1.5 * SMALL, False)])
+def test_a_spring_that_explains_small_motions_may_not_be_all(amplitude: float, hidden: bool) -> None:
+    angle = amplitude * np.sin(np.linspace(0, 20, 2000))
+    assert may_hide_a_memory([BushMotion(angle, 0 * angle, 0.01)]) == hidden

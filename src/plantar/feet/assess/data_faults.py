@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from plantar.checks.gyroscope import IMU_LATE
+from plantar.checks.standing import LEANS, LEANS_LITTLE
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.place_notes import BUSH_TURNED, FAR
 from plantar.feet.recording import Recording
@@ -13,11 +15,10 @@ from plantar.results.feet import Parameter
 from plantar.sensors.bandwidth import FILTERED
 from plantar.sensors.delays.sensor_delay import BEYOND_SEARCH
 
-LEANS, LEANS_LITTLE = "force_leans", "force_leans_little"
 # Codes of warnings on a log's signs, frames, times, full scales and load, and on a bush far from its place.
 UNMENDED = frozenset(
     {
-        "sign", LEANS, LEANS_LITTLE, "imu_turned", "imu_late", "gyroscope_frame", "gyroscope_scale",
+        "sign", LEANS, LEANS_LITTLE, "imu_turned", IMU_LATE, "gyroscope_frame", "gyroscope_scale",
         "path_joint_missing", "stuck_channel", "vertical_only", "weight", "bush_axes", "bush_link", "sparse_stances",
         FAR, BUSH_TURNED,
     }

@@ -44,14 +44,19 @@ def rival(fit: AxisFit) -> ModelScore | None:
     return next((score for score in remembering if score.model.possible(score.fit.values)), None)
 
 
+def element_slope(fit: AxisFit) -> float:
+    """Stiffness of a fit's element until it slips [N.m/rad]; 0 of a model without one."""
+    if "slip_torque" not in fit.model.terms:
+        return 0.0
+    slip_torque = fit.values[fit.model.terms.index("slip_torque")]
+    return abs(float(slip_torque / fit.shape[fit.model.shape_terms.index("slip_angle")]))
+
+
 def slope_share(fit: AxisFit) -> float:
     """Share of stiffness that a fit's element makes in motions too small for it to slip, and spring and damper would
     take for the spring's; 0 of a model without one."""
-    if "slip_torque" not in fit.model.terms:
-        return 0.0
-    slope = abs(float(fit.values[fit.model.terms.index("slip_torque")]))
-    slope /= float(fit.shape[fit.model.shape_terms.index("slip_angle")])
-    return slope / (slope + abs(float(fit.values[0])))
+    slope = element_slope(fit)
+    return slope / (slope + abs(float(fit.values[0]))) if slope else 0.0
 
 
 def moved_by_memory(fit: AxisFit, *, steps: bool) -> Array:

@@ -14,7 +14,7 @@ from plantar.estimation.residual_covariance import pooled_freedom
 from plantar.estimation.stance_least_squares import FEWEST_RECORDINGS
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.half_turns import ROUND, slip_angles_spanned
-from plantar.feet.fit.hidden_memory import moved_by_memory
+from plantar.feet.fit.hidden_memory import element_slope, moved_by_memory
 from plantar.feet.fit.regression_data import beside, tangent_blocks
 from plantar.feet.fit.vertical_stiffness import VerticalStiffness
 from plantar.feet.recording import Recording, moment_arm_effect
@@ -161,10 +161,8 @@ def _shared_slope(fit: AxisFit, recordings: Sequence[Recording]) -> list[Cause]:
     """
     if "slip_torque" not in fit.model.terms:
         return []
-    slip_torque = fit.values[fit.model.terms.index("slip_torque")]
-    slope = abs(float(slip_torque / fit.shape[fit.model.shape_terms.index("slip_angle")]))
-    effect = np.zeros(len(fit.values))
-    effect[[0, fit.model.terms.index("slip_torque")]] = slope, -slip_torque
+    place, effect = fit.model.terms.index("slip_torque"), np.zeros(len(fit.values))
+    effect[[0, place]] = element_slope(fit), -fit.values[place]
     spanned = slip_angles_spanned(fit, recordings)
     unsure = SLOPE_UNSURE if spanned is None or spanned >= ROUND else UNIFORM
     return [Cause("memory in stances", effect, unsure)]
