@@ -43,7 +43,7 @@ ESTIMATION = (
     ),
     Mutant(
         "estimation/delays/sensor_delays.py", "cells weighed by their noise, not by their length too",
-        "[len(rest) / float(rest @ rest + cell.floor)", "[1 / float(rest @ rest + cell.floor)",
+        "[cell.freedom / float(rest @ rest + cell.floor)", "[1 / float(rest @ rest + cell.floor)",
     ),
 )  # fmt: skip
 

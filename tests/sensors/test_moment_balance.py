@@ -15,7 +15,7 @@ from plantar.robot.uncertainty import EXACT
 from plantar.sensors.moment_balance import TorqueGain, torque_gain_notes, torque_gains
 from plantar.sensors.moment_errors import moment_errors, prior_deviations
 from plantar.sensors.moment_fit import MomentFit, Part, fit_moments, solved
-from plantar.sensors.newton_euler import EDGE, SHORTEST, newton_euler_residual
+from plantar.sensors.newton_euler import EDGE, SHORTEST, newton_euler_residuals
 from plantar.signals.resampling import shifted
 from plantar.twin import PAPER, play_all
 from plantar.twin.robots import hrp2
@@ -41,8 +41,7 @@ def found(
         for name, values in columns.items()
         if name.startswith("wrench.")
     }
-    residual = newton_euler_residual(twin, log.with_columns(scaled))
-    assert residual is not None
+    [residual] = newton_euler_residuals(twin, log.with_columns(scaled))
     return torque_gains(twin, fit_moments(twin, [residual], [log.name] if steps else ()))
 
 
@@ -124,7 +123,7 @@ def test_one_axis_of_one_foot_is_told_from_the_others(twin: RobotModel, sweep: M
     assert set(gains) == {"pitch"}
     shares = gains["pitch"].shares
     assert shares["left"] > 0.15 > abs(shares["right"])
-    assert gains["pitch"].reach == shares["left"]
+    assert gains["pitch"].reach >= shares["left"]
 
 
 @pytest.mark.parametrize("axis", [0, 1, 2])
@@ -134,8 +133,7 @@ def test_an_imu_that_is_turned_is_told_from_torques(twin: RobotModel, sweep: Mot
     turn, placement = 0.05 * np.eye(3)[axis], twin.imu.placement
     turned = replace(placement, rpy=(np.array(placement.rpy) + turn).tolist())
     told = replace(twin, imu=replace(twin.imu, placement=turned))
-    residual = newton_euler_residual(told, sweep)
-    assert residual is not None
+    [residual] = newton_euler_residuals(told, sweep)
     values, _ = solved([moment_errors(told, residual, False)], prior_deviations(told))
     np.testing.assert_allclose(values[-7:-4], -turn, atol=0.004)
     assert torque_gains(told, fit_moments(told, [residual], ())) == {}
@@ -149,8 +147,7 @@ def test_the_noise_of_the_feet_s_sensors_is_no_gain_and_no_crosstalk(
     along x show in the torque about z by 9 to 12 mm, three times what crosstalk may be."""
     random, names = np.random.default_rng(seed), [name for name in sweep.columns if ".force." in name]
     noisy = {name: sweep.column(name) + 5 * random.normal(size=len(sweep)) for name in names}
-    residual = newton_euler_residual(twin, sweep.with_columns(noisy))
-    assert residual is not None
+    [residual] = newton_euler_residuals(twin, sweep.with_columns(noisy))
     values, parts = solved([moment_errors(twin, residual, False)], prior_deviations(twin))
     np.testing.assert_allclose(values[:4], 0.0, atol=0.2)  # of one foot against the other, which look alike
     mean = np.kron(np.eye(2), [0.5, 0.5])
@@ -166,8 +163,7 @@ def test_a_late_wrench_is_no_gain_of_torques(twin: RobotModel, sweep: MotionLog)
     """Ten milliseconds, told from torques by all six of its channels."""
     names = [name for name in sweep.columns if name.startswith("wrench.")]
     late = shifted(sweep.stack(names), sweep.period, -0.01)
-    residual = newton_euler_residual(twin, sweep.with_columns(dict(zip(names, late.T, strict=True))))
-    assert residual is not None
+    [residual] = newton_euler_residuals(twin, sweep.with_columns(dict(zip(names, late.T, strict=True))))
     values, _ = solved([moment_errors(twin, residual, False)], prior_deviations(twin))
     np.testing.assert_allclose(values[-4:-2], 0.01, atol=0.001)
     assert torque_gains(twin, fit_moments(twin, [residual], ())) == {}
@@ -175,7 +171,9 @@ def test_a_late_wrench_is_no_gain_of_torques(twin: RobotModel, sweep: MotionLog)
 
 def test_an_interval_reaches_as_far_as_one_foot_alone_can_be_off() -> None:
     assert TorqueGain(0.05, 0.01, {"left": 0.6, "right": -0.4}).reach == pytest.approx(2 * (0.05 + 0.0196))
-    assert TorqueGain(-0.05, 0.02, {"left": -0.06, "right": -0.04}).reach == 0.06
+    shares = {"left": -0.06, "right": -0.04}
+    assert TorqueGain(-0.05, 0.02, shares).reach == pytest.approx(2 * (0.05 + 0.0392))
+    assert TorqueGain(-0.05, 0.02, shares, apart=True).reach == 0.06
 
 
 def test_the_warning_names_axis_and_size() -> None:
@@ -183,7 +181,7 @@ def test_the_warning_names_axis_and_size() -> None:
     assert note.severity == "warning"
     assert "roll" in note.text
     assert "+10 ± 4 %" in note.text
-    assert "up to 12 %" in note.text
+    assert "up to 28 %" in note.text
     (note,) = torque_gain_notes({"roll": TorqueGain(1.4, 0.0, {"left": -2.0, "right": 0.0}, True)}).values()
     assert "by left -200 % and right +0 %" in note.text
     assert "Check sign, unit and calibration" in note.text
@@ -206,6 +204,17 @@ def test_one_foot_that_is_off_about_both_axes_shows_in_both_together(
     assert set(torque_gains(twin, MomentFit(values, [part]))) == axes
 
 
+@pytest.mark.parametrize(("roll", "axes"), [(0.4, {"pitch"}), (0.6, {"pitch", "roll"}), (-0.6, {"pitch"})])
+def test_torques_that_are_wrong_about_one_axis_are_in_doubt_about_the_other(
+    twin: RobotModel, roll: float, axes: set[str]
+) -> None:
+    """Unless that one's share, here less sure, is nearer to none."""
+    same, other = np.ones((2, 2)), np.array([[1.0, -1.0], [-1.0, 1.0]])
+    part = Part(np.kron(np.diag([0.01, 0.05]) ** 2, same) + np.kron(np.eye(2), other), 1e6)
+    found = torque_gains(twin, MomentFit(0.1 * np.array([1.0, 1.0, roll, roll]), [part]))
+    assert set(found) == axes
+
+
 @pytest.mark.parametrize("stretch", [1.0, 1.0 - 1e-12, 1.0 + 1e-12])
 def test_the_shortest_log_is_told_by_its_samples(twin: RobotModel, sweep: MotionLog, stretch: float) -> None:
     """Seconds that are added up from periods are never just as many."""
@@ -215,7 +224,6 @@ def test_the_shortest_log_is_told_by_its_samples(twin: RobotModel, sweep: Motion
         part = sweep.select(slice(start, start + round((seconds + 2 * EDGE + 0.1) / sweep.period)))
         return replace(part, time=stretch * part.time)
 
-    residual = newton_euler_residual(twin, lasting(SHORTEST))
-    assert residual is not None
+    [residual] = newton_euler_residuals(twin, lasting(SHORTEST))
     assert len(residual.pair.predicted) * residual.pair.period == pytest.approx(SHORTEST)
-    assert newton_euler_residual(twin, lasting(SHORTEST - 1.0)) is None
+    assert newton_euler_residuals(twin, lasting(SHORTEST - 1.0)) == []

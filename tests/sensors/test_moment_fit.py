@@ -8,7 +8,7 @@ from plantar.conventions import Array
 from plantar.feet.prepare_log import checked
 from plantar.sensors.moment_errors import PARTS, MomentErrors, moment_errors
 from plantar.sensors.moment_fit import fit_moments, solved
-from plantar.sensors.newton_euler import newton_euler_residual
+from plantar.sensors.newton_euler import newton_euler_residuals
 from plantar.signals.filters import low_pass
 from plantar.twin.robots import hrp2
 from twin_samples import walked
@@ -53,8 +53,7 @@ def test_a_walk_of_which_a_part_is_used_misses_what_its_columns_say() -> None:
     more = log.with_columns({name: 1.02 * log.column(name) for name in names})
     found = []
     for each in (log, more):
-        residual = newton_euler_residual(robot, each)
-        assert residual is not None
+        [residual] = newton_euler_residuals(robot, each)
         assert residual.kept.stop - residual.kept.start < len(log)
         found.append((residual.kept, moment_errors(robot, residual, True)))
     (kept, before), (same, after) = found
@@ -68,8 +67,7 @@ def test_a_walk_of_which_a_part_is_used_misses_what_its_columns_say() -> None:
 
 def test_steps_add_what_all_landings_share() -> None:
     robot, log = hrp2.robot(), checked(hrp2.robot(), walked())
-    residual = newton_euler_residual(robot, log)
-    assert residual is not None
+    [residual] = newton_euler_residuals(robot, log)
     stood, stepped = (fit_moments(robot, [residual], names) for names in ((), (log.name,)))
     assert stood is not None
     assert stepped is not None

@@ -14,7 +14,7 @@ from plantar.notes import Note
 from plantar.robot.model import RobotModel
 from plantar.sensors.moment_errors import turn_columns
 from plantar.sensors.moment_fit import MomentFit, Part, fit_moments
-from plantar.sensors.newton_euler import newton_euler_residual
+from plantar.sensors.newton_euler import newton_euler_residuals
 from plantar.sensors.sensor_turns import LEAST, TURNED, sensor_turn_notes
 from plantar.twin.robots import hrp2
 from twin_samples import walked
@@ -38,8 +38,7 @@ def fitted(
     wrong, log = replace(robot, feet=feet), checked(robot, walked())
     torques = [name for name in log.columns if ".torque." in name]
     read: MotionLog = log.with_columns({name: gain * log.column(name) for name in torques})
-    residual = newton_euler_residual(wrong, read)
-    assert residual is not None
+    [residual] = newton_euler_residuals(wrong, read)
     fit = fit_moments(wrong, [residual], [log.name])
     assert fit is not None
     return wrong, fit

@@ -19,6 +19,7 @@ from plantar.sensors.load_errors import LEAST_GAIN
 from plantar.sensors.moment_fit import MomentFit, Part, is_wrong
 
 APART = 2.0  # times the deviation of the feet's mean: a foot's gain known so well is judged by itself
+ALSO = 0.5  # of the share about one axis, from which on the other axis' share is nearer to it than to none
 REVERSED = -1.5  # share: a torque of the wrong sign reads 200 % too little
 WORTH_SAYING = 0.03  # share: what the force sensors' makers promise is seldom better
 # Share up to which numbers are widened by a gain and keep their verdicts: simulated robots with right torques, under
@@ -39,9 +40,9 @@ class TorqueGain(NamedTuple):
 
     @property
     def reach(self) -> float:
-        """By which share any foot's torque may be off: at most all that is missing is one foot's."""
+        """By which share any foot's torque may be off: all that is missing is one foot's, where none is known apart."""
         alone = len(self.shares) * (abs(self.mean) + NORMAL95 * self.std)
-        return min(alone, max(map(abs, self.shares.values())))
+        return max(map(abs, self.shares.values())) if self.apart else alone
 
 
 def torque_gains(robot: RobotModel, fit: MomentFit | None) -> dict[Axis, TorqueGain]:
@@ -64,6 +65,10 @@ def torque_gains(robot: RobotModel, fit: MomentFit | None) -> dict[Axis, TorqueG
     # One foot's torques that are off about both axes show less about each than about both together.
     if not about.any():
         about[:] = large[:axes].any() and is_wrong(shares, parts, list(range(axes)))
+    # An amplifier, a unit or a place is wrong about both axes: the other one is in doubt unless it looks right itself.
+    if about.any():
+        wrong_by = shares[:axes][about].mean()
+        about |= ~apart & (shares[:axes] * wrong_by > ALSO * wrong_by**2)
     return {
         axis: TorqueGain(
             _share(shares[place]),

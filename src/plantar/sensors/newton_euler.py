@@ -21,7 +21,7 @@ from plantar.sensors.model_errors import drawn_parameter_errors
 from plantar.sensors.newton_sides import NewtonSides, moving
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.orientation import attitude
-from plantar.signals.segments import longest_run
+from plantar.signals.segments import longest_run, runs
 
 CUTOFF = 8.0  # Hz: above it differentiated encoders are noise
 KEPT_RATE = 40.0  # Hz of the samples that are kept: the cutoff is far below
@@ -32,7 +32,7 @@ EDGE = 0.3  # s at both ends of a run, where the filter is unsure
 
 @dataclass(frozen=True)
 class NewtonEulerResidual:
-    """Both sides of Newton's law in the root link's frame over the longest calm segment of a log.
+    """Both sides of Newton's law in the root link's frame over the longest calm segment of a run of a log.
 
     `pair`: all feet together; `measured` and `rates` (feet, n, 6): each foot's wrench, and how it changes with the
     moment at which its sensor is read, both without what `load_errors` took off; `by_encoders` (n, 6): how the
@@ -88,22 +88,31 @@ def with_gyroscope(robot: RobotModel, log: MotionLog) -> MotionLog | None:
     return log.with_columns(dict(zip(gyroscope, attitude(log, imu, [])[1].T, strict=True)))
 
 
-def newton_euler_residual(robot: RobotModel, log: MotionLog) -> NewtonEulerResidual | None:
-    """Both sides along an evenly sampled log; None where it lacks what that takes, or does not close."""
+def newton_euler_residuals(robot: RobotModel, log: MotionLog) -> list[NewtonEulerResidual]:
+    """Both sides along an evenly sampled log, in each run without a gap; none where it lacks what that takes, or in
+    none the law closes."""
     complete = with_gyroscope(robot, log)
     if complete is None:
-        return None
+        return []
     signals = inertial_signals(robot, complete, CUTOFF)
     wrenches = np.hstack([foot.wrench.sign * log.wrench(foot.wrench.name) for foot in robot.feet.values()])
-    longest, edge = _longest_known(robot, signals, wrenches), round(EDGE / log.period)
-    if longest.stop - longest.start < 4 * edge + 400:
+    found = [_along(robot, log, signals, wrenches, run) for run in _known_runs(robot, signals, wrenches)]
+    return [one for one in found if one is not None]
+
+
+def _along(
+    robot: RobotModel, log: MotionLog, signals: InertialSignals, wrenches: Array, run: slice
+) -> NewtonEulerResidual | None:
+    """Both sides in the longest segment of a run in which nobody pushes; None where that is too short."""
+    edge = round(EDGE / log.period)
+    if run.stop - run.start < 4 * edge + 400:
         return None
     equation = Equation(robot.floating_model)
     stride = max(1, round(1 / (KEPT_RATE * log.period)))
-    period, inner = stride * log.period, slice(edge, longest.stop - longest.start - edge, stride)
-    kept = slice(longest.start + edge, longest.stop - edge, stride)
+    period, inner = stride * log.period, slice(edge, run.stop - run.start - edge, stride)
+    kept = slice(run.start + edge, run.stop - edge, stride)
     motion = inertial_motion(robot, signals, kept)
-    readings = low_pass(wrenches[longest], log.period, CUTOFF)
+    readings = low_pass(wrenches[run], log.period, CUTOFF)
     below = below_sensors(robot, equation, motion, readings[inner], period)
     parameters, readings = model_parameters(robot.floating_model) - below.parameters, readings - below.zeros
     loads = FootLoads.of(readings[inner], differentiate(readings, log.period)[inner])
@@ -138,12 +147,14 @@ def newton_euler_residual(robot: RobotModel, log: MotionLog) -> NewtonEulerResid
     )
 
 
-def _longest_known(robot: RobotModel, signals: InertialSignals, wrenches: Array) -> slice:
-    """The longest run in which all is known and no sole slaps the floor, or, were it short, in which all is known."""
+def _known_runs(robot: RobotModel, signals: InertialSignals, wrenches: Array) -> list[slice]:
+    """The runs in which all is known and no sole slaps the floor, or, were all short, the longest one in which all is
+    known."""
     sides = np.hstack([signals.positions, signals.rate, signals.proper, wrenches])
     whole, period = np.asarray(np.isfinite(sides).all(axis=1)), signals.period
-    longest = longest_run(whole & ~_struck(robot, wrenches, period))
-    return longest if (longest.stop - longest.start) * period >= SHORTEST + 2 * EDGE else longest_run(whole)
+    calm = runs(whole & ~_struck(robot, wrenches, period))
+    long = [run for run in calm if (run.stop - run.start) * period >= SHORTEST + 2 * EDGE]
+    return long or [longest_run(whole)]
 
 
 def predicted_errors(robot: RobotModel, motion: Motion, draws: int) -> Array:

@@ -13,7 +13,7 @@ from biped_robot import make_robot
 from plantar.conventions import Array
 from plantar.dynamics.inertial_motion import InertialSignals
 from plantar.estimation.delays.delay import Pair
-from plantar.estimation.delays.sensor_delays import estimate_delays
+from plantar.estimation.delays.sensor_delays import Balance, estimate_delays
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
@@ -72,6 +72,18 @@ def test_each_delay_is_found_beside_the_others(delays: tuple[float, float, float
         assert np.sqrt(np.diag(found.covariance)).max() < 5e-4
 
 
+def test_bands_that_hold_fewer_values_than_delays_tell_none() -> None:
+    """Of a few seconds ends take half: gains and delays would explain all of the slow bands, whatever they are."""
+
+    def part(seconds: float) -> Balance:
+        whole, rows = residual((0.0, 0.0, 0.0), 1).balance, slice(round(seconds / PERIOD))
+        measured, by_delay = whole.measured[:, rows], whole.by_delay[:, rows]
+        return Balance(whole.predicted[rows], measured, by_delay, PERIOD)
+
+    assert estimate_delays([part(2.5)]) is None
+    assert estimate_delays([part(30.0)]) is not None
+
+
 def test_what_is_held_is_not_estimated() -> None:
     found = estimate_delays(
         [residual((0.006, 0.006, 0.0), 1).balance], np.array([[1.0, -1.0, 0.0], [0.0, 0.0, 1.0]])
@@ -90,11 +102,11 @@ def sensor_delay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *delays: float
     )
     logs = [MotionLog(str(seed), time, dict(ramps)) for seed in (1, 2)]
 
-    def left(_: RobotModel, log: MotionLog) -> NewtonEulerResidual:
+    def left(_: RobotModel, log: MotionLog) -> list[NewtonEulerResidual]:
         corrected = [log.column(name)[SAMPLES // 2] - time[SAMPLES // 2] for name in ramps]
-        return residual([late - done for late, done in zip(delays, corrected, strict=True)], int(log.name))
+        return [residual([late - done for late, done in zip(delays, corrected, strict=True)], int(log.name))]
 
-    monkeypatch.setattr(refined_delays, "newton_euler_residual", left)
+    monkeypatch.setattr(refined_delays, "newton_euler_residuals", left)
     return estimate_wrench_delay(robot, logs)
 
 

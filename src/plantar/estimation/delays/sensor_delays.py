@@ -39,13 +39,14 @@ class _Cell:
     """One axis in one band, gains of prediction and sensors taken off.
 
     What is `missing` (n,), how it grows with the delays, `columns` (n, delays), what drawn models would make of it,
-    `wrong` (n, draws), and squares of the model's own error.
+    `wrong` (n, draws), and squares of the model's own error. `freedom`: how many independent values are left of n.
     """
 
     missing: Array
     columns: Array
     wrong: Array
     floor: float
+    freedom: float
 
 
 @dataclass(frozen=True)
@@ -68,7 +69,7 @@ def estimate_delays(balances: Sequence[Balance], held: Array | None = None) -> D
     count = len(balances[0].by_delay)
     free = np.eye(count) if held is None or not len(held) else _null_space(held)
     values = np.zeros(count)
-    weights = np.array([len(cell.missing) / float(cell.missing @ cell.missing) for cell in cells])
+    weights = np.array([cell.freedom / float(cell.missing @ cell.missing) for cell in cells])
     for _ in range(ROUNDS):
         information = sum(w * cell.columns.T @ cell.columns for w, cell in zip(weights, cells, strict=True))
         reduced = free.T @ information @ free
@@ -79,7 +80,7 @@ def estimate_delays(balances: Sequence[Balance], held: Array | None = None) -> D
         values = free @ np.linalg.solve(reduced, free.T @ product)
         left = [cell.missing - cell.columns @ values for cell in cells]
         weights = np.array(
-            [len(rest) / float(rest @ rest + cell.floor) for rest, cell in zip(left, cells, strict=True)]
+            [cell.freedom / float(rest @ rest + cell.floor) for rest, cell in zip(left, cells, strict=True)]
         )
     inverse = free @ np.linalg.inv(reduced) @ free.T
     # Cells disagree by more than noise where the robot's model is wrong: each is one draw of that. What a wrong model
@@ -104,7 +105,12 @@ def _cells(balance: Balance) -> list[_Cell]:
     sensors, delays, found = len(balance.measured), len(balance.by_delay), []
     flat = np.ascontiguousarray(stacked.transpose(1, 0, 2).reshape(stacked.shape[1], -1))
     enough = LEAST_SHARE * np.var(balance.measured.sum(axis=0), axis=0)
-    for _, filtered, _, _ in banded(flat, balance.period):
+    for width, filtered, _, stride in banded(flat, balance.period):
+        # Of a few seconds, a slow band holds fewer independent values than there are gains and delays: these explain
+        # all of it, whatever they are.
+        freedom = 2 * width * stride * balance.period * len(filtered) - sensors
+        if freedom <= delays:
+            continue
         band = filtered.reshape(-1, *stacked.shape[::2])
         for axis, least in zip(band.transpose(2, 0, 1), enough, strict=True):
             predicted, measured, others = axis[:, 0], axis[:, 1 : 1 + sensors], axis[:, 1 + sensors :]
@@ -119,5 +125,5 @@ def _cells(balance: Balance) -> list[_Cell]:
             if explains and GAIN_BAND[0] < gain < GAIN_BAND[1] and total @ total > least * len(total):
                 floor = MODEL_ERROR**2 * float(predicted @ predicted)
                 floor += float(np.sum(wrong**2)) / max(wrong.shape[1], 1)
-                found.append(_Cell(missing, columns, wrong, floor))
+                found.append(_Cell(missing, columns, wrong, floor, freedom))
     return found

@@ -40,9 +40,10 @@ class DelaysByLog(NamedTuple):
 def delays_by_log(pairs: Sequence[Pair], common: float) -> DelaysByLog | None:
     """The delay that each log shows by itself; None where no two of them clearly differ.
 
-    pairs: of both sides of Newton's law, the sensors read `common` [s] later.
+    pairs: of both sides of Newton's law, the sensors read `common` [s] later; one or more of each log.
     """
-    own = {pair.label: estimate_delay([pair]) for pair in pairs}
+    labels = dict.fromkeys(pair.label for pair in pairs)
+    own = {label: estimate_delay([pair for pair in pairs if pair.label == label]) for label in labels}
     found = {label: one for label, one in own.items() if one is not None}
     if len(found) < 2:
         return None

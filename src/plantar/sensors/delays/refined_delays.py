@@ -20,7 +20,7 @@ from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
 from plantar.sensors.delays.clock_drift import ClockDrift, clock_drift
 from plantar.sensors.delays.delays_by_log import DelaysByLog, delays_by_log
-from plantar.sensors.newton_euler import NewtonEulerResidual, newton_euler_residual
+from plantar.sensors.newton_euler import NewtonEulerResidual, newton_euler_residuals
 from plantar.signals.resampling import shifted
 
 Each = Callable[..., Iterable[Any]]  # a map over logs, that of a pool or the usual one
@@ -77,7 +77,7 @@ def refined_delays(
     at = start
     for _ in range(ROUNDS):
         tried = list(
-            each(lambda log, at=at: newton_euler_residual(robot, read_in_time(robot, log, at)), logs)
+            each(lambda log, at=at: newton_euler_residuals(robot, read_in_time(robot, log, at)), logs)
         )
         return_freed()
         step = _step(logs, tried, at)
@@ -85,7 +85,7 @@ def refined_delays(
             return None
         moved, at, read_at = float(np.abs(step.values - at).max()), step.values, at
         if moved < SETTLED and step.std < np.inf:
-            residuals = tuple(residual for residual in tried if residual is not None)
+            residuals = tuple(residual for own in tried for residual in own)
             pairs, common = [one.pair for one in residuals], float(np.mean(read_at[:-1]))
             unsteady = clock_drift(pairs) or delays_by_log(pairs, common)
             residuals = tuple(replace(one, pair=one.pair.slim) for one in residuals)
@@ -94,17 +94,17 @@ def refined_delays(
 
 
 def _step(
-    logs: Sequence[MotionLog], tried: Sequence[NewtonEulerResidual | None], at: Array
+    logs: Sequence[MotionLog], tried: Sequence[Sequence[NewtonEulerResidual]], at: Array
 ) -> RefinedDelays | None:
     """One step from the delays `at`, or, with an infinite deviation, to where no delays differ that need not.
 
-    tried: the residual of each log read at these delays.
+    tried: the residuals of each log read at these delays.
     """
-    residuals = [residual for residual in tried if residual is not None]
+    residuals = [residual for own in tried for residual in own]
     if not residuals:
         return None
-    closed = np.array([residual is not None for residual in tried])
-    slowest = max(log.period for log, one in zip(logs, tried, strict=True) if one is not None)
+    closed = np.array([bool(own) for own in tried])
+    slowest = max(log.period for log, own in zip(logs, tried, strict=True) if own)
     balances = [residual.balance for residual in residuals]
     contrasts, differ, suspect = _contrasts(len(at) - 1), np.zeros(len(at), dtype=bool), False
     free = estimate_delays(balances)
