@@ -16,7 +16,7 @@ from plantar.notes import Finding
 from plantar.twin import PAPER, PRESETS
 from plantar.twin.recording import record
 from plantar.twin.robots import hrp2
-from twin_samples import swayed, tilted
+from twin_samples import swayed, tilted, walked
 
 SENSORS = PRESETS["sensors"]
 
@@ -129,6 +129,7 @@ def test_a_reversed_joint_that_explains_as_much_as_swapped_wrenches_is_named_wit
     monkeypatch.setattr(standing, "_reversed_joints", lambda *_: {"column 'joint.ankle.position'": left})
     monkeypatch.setattr(standing, "_reversed_components", lambda *_: {})
     monkeypatch.setattr(standing, "_exchanged_joints", lambda *_: None)
+    monkeypatch.setattr(standing, "_turned_wrench", lambda *_: None)
     (finding,) = check_balance(hrp2.robot(), tilt)
     assert finding.code == "swapped_feet"
     assert ("or column 'joint.ankle.position' is reversed" in finding.text) == told
@@ -156,6 +157,25 @@ def test_a_turned_imu_is_told(sway: MotionLog) -> None:
     wrong = replace(robot, imu=replace(robot.imu, placement=placement))
     (finding,) = [one for one in check_log(wrong, sway) if one.code in ("imu_turned", "force_leans")]
     assert "check the IMU's rpy" in finding.text
+
+
+@pytest.mark.parametrize("degrees", [90, 180, -90])
+@pytest.mark.parametrize("feet", [["right"], ["left", "right"]])
+def test_force_sensors_that_are_turned_are_told_by_as_much(degrees: int, feet: list[str]) -> None:
+    """A turn of all sensors by half a turn is more than the reversed component that it looks like."""
+    robot = hrp2.robot()
+    wrong = dict(robot.feet)
+    for foot in feet:
+        wrench = wrong[foot].wrench
+        rpy = (np.array(wrench.placement.rpy) + [0.0, 0.0, np.radians(degrees)]).tolist()
+        wrong[foot] = replace(
+            wrong[foot], wrench=replace(wrench, placement=replace(wrench.placement, rpy=rpy))
+        )
+    findings = check_log(replace(robot, feet=wrong), walked())
+    (finding,) = [one for one in findings if one.code in ("wrench_turned", "sign", "imu_turned")]
+    assert finding.code == "wrench_turned"
+    which = "'wrench.*'" if len(feet) == 2 else "'wrench.right_foot.*'"
+    assert f"columns {which}: turned by {degrees if degrees == 180 else -degrees:+d} deg" in finding.text
 
 
 @pytest.mark.parametrize(

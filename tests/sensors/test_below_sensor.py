@@ -60,12 +60,15 @@ def readings(
     return np.array(rows)
 
 
-def found(robot: RobotModel, size: float, noise: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
+def found(
+    robot: RobotModel, size: float, noise: float = 0.0, load_zero: float = 0.0
+) -> tuple[np.ndarray, np.ndarray]:
     """The parameters found of each foot's part, (feet, 10), and the part's own (10,)."""
     part = pin.Inertia(0.7, np.array([0.03, 0.01, -0.08]), np.diag([0.003, 0.004, 0.002]))
     motion, equation = moved(robot, size), Equation(robot.floating_model)
     read = readings(robot, motion, part)
     read += noise * np.random.default_rng(1).standard_normal(read.shape)
+    read[:, [2, 8]] += load_zero
     rates: Motion = pinocchio_motion(robot.floating_model, equation.tree, *motion)
     below = below_sensors(robot, equation, rates, read, PERIOD).parameters.reshape(-1, 10)
     links = [robot.frame(foot.wrench.placement)[0] for foot in robot.feet.values()]
@@ -76,6 +79,14 @@ def found(robot: RobotModel, size: float, noise: float = 0.0) -> tuple[np.ndarra
 def test_a_swinging_foot_shows_what_hangs_below_its_sensor(robot: RobotModel) -> None:
     below, part = found(robot, 0.3)
     np.testing.assert_allclose(below, [part, part], atol=1e-5)
+
+
+@pytest.mark.parametrize("load_zero", [-80.0, 80.0])
+def test_a_zero_as_large_as_what_a_foot_in_the_air_may_read_hides_no_swing(
+    robot: RobotModel, load_zero: float
+) -> None:
+    below, part = found(robot, 0.3, load_zero=load_zero)
+    np.testing.assert_allclose(below, [part, part], atol=1e-4)
 
 
 def test_noise_of_the_sensors_moves_it_by_grams(robot: RobotModel) -> None:

@@ -101,6 +101,11 @@ class Stance:
     def exchanged_wrenches(self) -> Stance:
         return replace(self, wrenches=self.wrenches[::-1])
 
+    def turned_wrenches(self, feet: Sequence[int], degrees: int) -> Stance:
+        """What the sensors of some feet read if they sit turned farther about their own z axes."""
+        turn = np.kron(np.eye(2), pin.rpy.rpyToMatrix(0.0, 0.0, np.radians(degrees)))
+        return replace(self, wrenches=[w @ turn.T if k in feet else w for k, w in enumerate(self.wrenches)])
+
     def _poses(self, frames: Sequence[tuple[int, pin.SE3]]) -> tuple[Array, Array, Array]:
         """Centre of mass (n, 3), and rotations (f, n, 3, 3) and translations (f, n, 3) of frames, in the root link."""
         rotations, places = self.robot.tree.poses(self.positions)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
@@ -27,8 +28,17 @@ PUSHED = 2.0  # times LEANING: more than who holds a robot leans on it
 TURNED = np.radians(10)  # accelerations turn the force by some degrees too
 IMPOSSIBLE = np.radians(30)  # no mounting, zero or push is that far off
 MOST_NAMED = 3
+QUARTERS = (90, 180, -90)  # deg: how a sensor is mounted wrongly, or its axes named
 LEANS, LEANS_LITTLE = "force_leans", "force_leans_little"  # codes
 COMPONENTS = ("force.x", "force.y", None, "torque.x", "torque.y", None)  # force.z is judged by its own sign
+
+
+class _TurnedWrench(NamedTuple):
+    """What is left of the misfit [m] with force sensors turned about their own z axes, `columns` names which."""
+
+    misfit: float
+    degrees: int
+    columns: str
 
 
 def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
@@ -58,6 +68,7 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     joints = _reversed_joints(stance, sides) if certain or sides.lean > LEANING else {}
     left = {**joints, **_reversed_components(stance, sides)}
     best = min(left.values(), default=np.inf)
+    turned = _turned_wrench(stance, sides) if as_is > NOTABLE else None
     if certain and (pair := _exchanged_joints(stance, sides, min(best, exchanged))) is not None:
         text = f"columns {pair}: exchanged, the wrenches balance gravity far better"
         yield Finding("joint_names", f"{text} (check the joints' names and order)", True)
@@ -65,6 +76,10 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         text = "the feet's wrenches look swapped: exchanged, they balance gravity far better"
         text += f"; or {_alike(left, as_is)} is reversed" if best < exchanged + ALIKE * as_is else ""
         yield Finding("swapped_feet", f"{text} (check the sensors' names)", True)
+    elif turned is not None and turned.misfit < min(BETTER * as_is, best - ALIKE * as_is):
+        text = f"{turned.columns}: turned by {turned.degrees:+d} deg about the sensors' z axes, the wrenches balance"
+        text += f" gravity to {100 * turned.misfit:.1f} cm instead of {100 * as_is:.1f} cm"
+        yield Finding("wrench_turned", f"{text} (check the sensors' rpy in the robot file)")
     elif as_is > NOTABLE and best < BETTER * as_is:
         alike = _alike(left, as_is)
         text = f"{alike}: reversed, the wrenches balance gravity to {100 * best:.1f} cm"
@@ -100,6 +115,23 @@ def _turned(stance: Stance, sides: StanceSides) -> Iterator[Finding]:
         text = f"columns 'imu.{stance.imu.name}.*': tilts another way than the ground's force in the robot, turned by "
         valid = f"valid: within {np.degrees(TURNED):.0f} deg; check the IMU's rpy"
         yield Finding("imu_turned", f"{text}{np.degrees(turn):.0f} deg about the vertical ({valid})")
+
+
+def _turned_wrench(stance: Stance, sides: StanceSides) -> _TurnedWrench | None:
+    """The quarter turn that leaves least of the misfit; None where none also follows the motion far better."""
+    if not all(wrench[:, :2].any() for wrench in stance.wrenches):
+        return None  # vertical force cells have no x and y that could be turned
+    total = sides.moment_arms.sum(axis=(1, 2))
+    moving = usual(total - np.median(total, axis=0))
+    sensors = [foot.wrench.name for foot in stance.robot.feet.values()]
+    ways = {f"columns 'wrench.{sensor}.*'": [place] for place, sensor in enumerate(sensors)}
+    found = []
+    for columns, places in {**ways, "columns 'wrench.*'": [*range(len(sensors))]}.items():
+        for degrees in QUARTERS:
+            trial = stance.turned_wrenches(places, degrees).sides().moment_arms.sum(axis=(1, 2))
+            if usual(trial - np.median(trial, axis=0)) < BETTER * moving:
+                found.append(_TurnedWrench(usual(trial), degrees, columns))
+    return min(found, default=None)
 
 
 def _reversed_joints(stance: Stance, sides: StanceSides) -> dict[str, float]:

@@ -17,6 +17,7 @@ from plantar.dynamics import Contact, Equation
 from plantar.dynamics.equation import ALL_PARAMETERS, BASE_ROWS, PER_LINK
 from plantar.dynamics.motion import Motion
 from plantar.robot.model import RobotModel
+from plantar.sensors.air_zero import air_zero
 
 IN_AIR = 0.1  # of the weight, that a foot in the air may read
 LANDING = 0.15  # s around contact: the low-pass smears it
@@ -69,8 +70,13 @@ def below_sensors(
 
 
 def _in_air(reading: Array, weight: float, period: float) -> Mask:
-    """Samples (N,) in which a foot's reading (N, 6) is that of a foot in the air, clear of landing and lift-off."""
-    touching = np.linalg.norm(reading[:, FORCE], axis=1) > IN_AIR * weight
+    """Samples (N,) in which a foot's reading (N, 6) is that of a foot in the air, clear of landing and lift-off.
+
+    A sensor whose zero is as large as what a foot in the air may read shows its swings beside that zero.
+    """
+    force = reading[:, FORCE]
+    zero = air_zero(period * np.arange(len(force)), reading, np.linalg.norm(force, axis=1), weight)
+    touching = np.linalg.norm(force - (0.0 if zero is None else zero.middle[FORCE]), axis=1) > IN_AIR * weight
     return np.asarray(~widened(touching, round(LANDING / period)))
 
 

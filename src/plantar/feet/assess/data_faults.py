@@ -18,7 +18,7 @@ from plantar.sensors.delays.sensor_delay import BEYOND_SEARCH
 # Codes of warnings on a log's signs, frames, times, full scales and load, and on a bush far from its place.
 UNMENDED = frozenset(
     {
-        "sign", LEANS, LEANS_LITTLE, "imu_turned", IMU_LATE, "gyroscope_frame", "gyroscope_scale",
+        "sign", LEANS, LEANS_LITTLE, "imu_turned", "wrench_turned", IMU_LATE, "gyroscope_frame", "gyroscope_scale",
         "path_joint_missing", "stuck_channel", "vertical_only", "weight", "bush_axes", "bush_link", "sparse_stances",
         FAR, BUSH_TURNED,
     }
