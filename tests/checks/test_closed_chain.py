@@ -17,7 +17,7 @@ from plantar.twin.play import rolled
 from plantar.twin.recording import record as record_twin
 from plantar.twin.robots import hrp2
 from plantar.twin.simulation.physics import Physics
-from twin_samples import plan, short
+from twin_samples import plan, short, walked
 
 
 @pytest.fixture(scope="module")
@@ -91,3 +91,23 @@ def test_a_sole_that_slides_may_be_a_stuck_encoder(robot: RobotModel) -> None:
     findings = list(check_closed_chain(robot, log.with_columns({"joint.right_leg_x.position": slide})))
     assert {(one.code, one.fatal) for one in findings} == {("stuck_channel", False)}
     assert all("did a sole slide" in one.text for one in findings)
+
+
+@pytest.mark.parametrize("kind", ["joint", "wrench"])
+def test_a_robot_that_stands_on_the_foot_in_the_air_has_its_sides_exchanged(kind: str) -> None:
+    """In a walk's short double supports soles say little; a leg of the other name swings below the one that stands."""
+    twin, walk = hrp2.robot(), walked()
+    assert list(check_closed_chain(twin, walk)) == []
+    if kind == "joint":
+        sides = {"RLEG_": "LLEG_", "LLEG_": "RLEG_"}
+    else:
+        sides = {"right_foot": "left_foot", "left_foot": "right_foot"}
+    exchanged = {
+        name: walk.column(name.replace(mine, other))
+        for name in walk.columns
+        for mine, other in sides.items()
+        if name.startswith(f"{kind}.{mine}")
+    }
+    (found,) = check_closed_chain(twin, walk.with_columns(exchanged))
+    assert (found.code, found.fatal) == ("joint_names", True)
+    assert "cm higher than the one in the air" in found.text

@@ -56,3 +56,13 @@ def test_an_encoder_that_drops_out_is_named(robot: RobotModel, log: MotionLog) -
     assert f"'{column}', t = 4.8" in found.text
     assert "in 3 stretches" in found.text
     assert not list(check_gaps(robot, log.with_columns({"joint.neck.position": angle})))
+
+
+def test_a_sensor_that_drops_out_is_named_as_a_whole(robot: RobotModel, log: MotionLog) -> None:
+    gone = log.time % 5 > 4.8
+    names = [name for name in log.columns if name.startswith("wrench.left.")]
+    silent = {name: np.where(gone, 0.0, log.column(name)) for name in names}
+    (found,) = check_gaps(robot, log.with_columns(silent))
+    assert (found.code, found.severity) == ("dropout", "warning")
+    assert "columns 'wrench.left.*', t = 4.8" in found.text
+    assert "read exactly 0" in found.text

@@ -6,6 +6,26 @@ from mutant import Mutant
 
 SENSOR_FAULTS = (
     Mutant(
+        "signals/dropouts.py", "one channel at zero is a device that dropped out", "np.all([log.column(name) == 0",
+        "np.any([log.column(name) == 0", ("signals/test_dropouts.py",),
+    ),
+    Mutant(
+        "checks/closed_chain.py", "the foot in the air may be lower than the one that carries",
+        "np.where(carrying == 0, 1, -1)", "np.where(carrying == 0, 1, 1)", ("checks/test_closed_chain.py",),
+    ),
+    Mutant(
+        "checks/standing.py", "force sensors are turned one at a time only",
+        "{**ways, \"columns 'wrench.*'\": [*range(len(sensors))]}", "ways", ("checks/test_standing.py",),
+    ),
+    Mutant(
+        "sensors/newton_euler.py", "the first run of a log with gaps is all", "return long or", "return long[:1] or",
+        ("sensors/test_newton_euler.py",),
+    ),
+    Mutant(
+        "sensors/moment_balance.py", "torques wrong about one axis are right about the other", "> ALSO * wrong_by**2",
+        "> 10 * wrong_by**2", ("sensors/test_moment_balance.py",),
+    ),
+    Mutant(
         "signals/dropouts.py", "a coarse encoder near zero drops out", "LEAST = 0.01", "LEAST = 0.0",
         ("signals/test_dropouts.py",),
     ),

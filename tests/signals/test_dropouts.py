@@ -46,9 +46,47 @@ def test_zeros_that_are_the_angle_stay(values: np.ndarray) -> None:
     assert not dropped_samples(values).any()
 
 
-def test_only_positions_of_joints_are_looked_at() -> None:
+def device(kind: str, sizes: np.ndarray) -> dict[str, np.ndarray]:
+    """Columns of an IMU or a force sensor: its gyroscope or torque may rest at zero, gravity or load may not."""
+    if kind == "imu":
+        return {
+            "imu.chest.linear_acceleration.z": sizes,
+            "imu.chest.angular_velocity.z": np.sin(TIME) * (sizes != 0),
+        }
+    return {"wrench.left.force.z": sizes, "wrench.left.torque.x": np.zeros_like(sizes)}
+
+
+@pytest.mark.parametrize("kind", ["imu", "wrench"])
+def test_a_device_drops_out_as_a_whole(kind: str) -> None:
+    read, gone = dropping(9.81 + 0.1 * np.sin(TIME))
+    log = MotionLog("silent", TIME, device(kind, read) | {"joint.knee.position": ANGLE})
+    mended = without_dropouts(log)
+    inner = gone & (TIME < 39.5)
+    for name in device(kind, read):
+        assert np.isnan(mended.column(name)[inner]).all()
+        assert np.isnan(mended.column(name)).sum() <= inner.sum() + 2 * (len(TIME) // 1000)
+    assert np.isfinite(mended.column("joint.knee.position")).all()
+
+
+@pytest.mark.parametrize("kind", ["imu", "wrench"])
+def test_one_channel_at_zero_is_no_device_that_dropped_out(kind: str) -> None:
+    read, _ = dropping(9.81 + 0.1 * np.sin(TIME))
+    columns = device(kind, read)
+    columns[[*columns][1]] = np.full_like(TIME, 0.1)
+    log = MotionLog("one channel", TIME, columns)
+    assert without_dropouts(log) is log
+
+
+def test_a_foot_that_is_put_down_and_lifted_does_not_drop_out() -> None:
+    """Zeroed in the air by its driver: it leaves zero at once, and comes back to it slowly."""
+    load = np.clip(500 * (1 - (TIME % 2) / 1.2), 0, None)
+    log = MotionLog("stepping", TIME, device("wrench", load))
+    assert without_dropouts(log) is log
+
+
+def test_of_joints_only_positions_are_looked_at() -> None:
     read, _ = dropping(ANGLE)
-    names = ["joint.knee.position", "joint.knee.velocity", "wrench.left_foot.force.z"]
+    names = ["joint.knee.position", "joint.knee.velocity", "joint.knee.effort"]
     log = without_dropouts(MotionLog("dropping", TIME, dict.fromkeys(names, read)))
     assert [name for name in names if np.isnan(log.column(name)).any()] == names[:1]
     whole = MotionLog("whole", TIME, dict.fromkeys(names, ANGLE))

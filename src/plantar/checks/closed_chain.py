@@ -22,9 +22,16 @@ from plantar.conventions import GRAVITY, Array, Mask
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding
 from plantar.robot.model import RobotModel
-from plantar.signals.segments import longest_run
+from plantar.signals.segments import longest_run, run_numbers
 
 LOADED = 0.1  # of the weight: a foot that carries more holds its sole still
+CARRIES, IN_AIR = (
+    0.6,
+    0.2,
+)  # of the weight: a foot that carries the robot alone, and the other one, zero included
+LIFTED = 0.005  # m: less is how soles lean and bushes give way; small robots lift their feet by a centimetre
+SURELY = 0.8  # share of the samples
+EACH = 0.2  # of the samples, in which each foot of a robot that steps carries it
 LEAST_ANGLE = 0.01  # rad: less harms no fit of bushes that turn by degrees
 ENCODER_STEPS = 5.0  # of the joint's own encoder, likewise: between two of them it stands
 LEAST_TIME = 3.0  # s at one value, both feet loaded: shorter stands are usual, and do little harm
@@ -62,7 +69,8 @@ class _Stand:
 
 
 def check_closed_chain(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
-    """A finding for legs that are exchanged, and for each encoder that stands while the closed chain moves its joint.
+    """A finding for legs that are exchanged, seen standing or stepping, and for each encoder that stands while the
+    closed chain moves its joint.
 
     The latter is fatal where the torque then follows the bush's angle again; else a sole may have slid.
     """
@@ -72,12 +80,14 @@ def check_closed_chain(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         return
     wrenches = {name: log.wrench(foot.wrench.name) for name, foot in robot.feet.items()}
     positions = log.positions(robot)
-    known = np.isfinite(np.column_stack([orientation, positions, *wrenches.values()])).all(axis=1)
-    known &= np.linalg.norm(np.nan_to_num(orientation), axis=1) > 0.5
-    least = LOADED * robot.mass * GRAVITY
-    for name, each in robot.feet.items():
+    whole = np.isfinite(np.column_stack([orientation, positions, *wrenches.values()])).all(axis=1)
+    whole &= np.linalg.norm(np.nan_to_num(orientation), axis=1) > 0.5
+    loads = np.array([np.linalg.norm(np.nan_to_num(each[:, :3]), axis=1) for each in wrenches.values()])
+    loads /= robot.mass * GRAVITY
+    known = whole.copy()
+    for load, each in zip(loads, robot.feet.values(), strict=True):
         if each.contact != "always":
-            known &= np.linalg.norm(np.nan_to_num(wrenches[name][:, :3]), axis=1) > least
+            known &= load > LOADED
 
     def stand(rows: slice | NDArray[np.intp]) -> _Stand:
         chosen = {name: values[rows] for name, values in wrenches.items()}
@@ -87,8 +97,13 @@ def check_closed_chain(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     joints = [(foot, joint) for foot, leg in legs(robot).items() for joint in leg]
     recorded = [log.has(f"joint.{joint}.position") for _, joint in joints]
     standing = np.flatnonzero(known)
+    alone = np.flatnonzero(whole & (loads.max(axis=0) > CARRIES) & (loads.min(axis=0) < IN_AIR))
+    if all(recorded) and alone.size * log.period > LEAST_TIME:
+        some = alone[:: max(1, alone.size // SAMPLES)]
+        yield from _carried_from_above(stand(some), loads[:, some].argmax(axis=0))
     if all(recorded) and standing.size * log.period > LEAST_TIME:
-        yield from _exchanged_legs(stand(standing[:: max(1, standing.size // SAMPLES)]))
+        some = standing[:: max(1, standing.size // SAMPLES)]
+        yield from _exchanged_legs(stand(some), run_numbers(known)[some])
     stands: dict[tuple[int, int], _Stand] = {}
     for foot, joint in compress(joints, recorded):
         values = positions[:, robot.joint_names.index(joint)]
@@ -115,8 +130,11 @@ def check_closed_chain(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
             yield Finding("stuck_channel", text)
 
 
-def _exchanged_legs(stand: _Stand) -> Iterator[Finding]:
-    """Whether soles that stand move far less with the joints of one leg read as the other's."""
+def _exchanged_legs(stand: _Stand, support: NDArray[np.intp]) -> Iterator[Finding]:
+    """Whether soles that stand move far less with the joints of one leg read as the other's.
+
+    support: (n,), the number of the double support that each sample belongs to; between two of them feet may step.
+    """
     names = stand.robot.joint_names
     left, right = ([names.index(joint) for joint in leg] for leg in legs(stand.robot).values())
     if len(left) != len(right) or not left:
@@ -124,11 +142,29 @@ def _exchanged_legs(stand: _Stand) -> Iterator[Finding]:
     positions = stand.positions.copy()
     positions[:, left], positions[:, right] = stand.positions[:, right], stand.positions[:, left]
     soles = [_soles(one.as_read) for one in (stand, replace(stand, positions=positions))]
-    as_read, exchanged = (float(np.sum((one - np.median(one, axis=0)) ** 2)) for one in soles)
+    supports = [support == number for number in np.unique(support)]
+    as_read, exchanged = (
+        sum(float(np.sum((one[own] - np.median(one[own], axis=0)) ** 2)) for own in supports) for one in soles
+    )
     if exchanged < EXCHANGED**2 * as_read:
         first = ", ".join(repr(f"joint.{names[place]}.position") for place in (left[0], right[0]))
         text = f"columns {first}, ...: the legs look exchanged: so the soles on the floor move far less"
         yield Finding("joint_names", f"{text} (valid: each leg's joints under their own names)", True)
+
+
+def _carried_from_above(stand: _Stand, carrying: NDArray[np.intp]) -> Iterator[Finding]:
+    """Whether the foot that carries the robot alone is above the one in the air; `carrying`: (n,), which it is."""
+    heights = np.array([state.sole_position[:, 2] for state in stand.as_read.values()])
+    above = (heights[0] - heights[1]) * np.where(carrying == 0, 1, -1)
+    steps = EACH < np.mean(carrying) < 1 - EACH  # a robot that a hand tilts on one foot may lower the other
+    if steps and np.median(above) > LIFTED and np.mean(above > 0) > SURELY:
+        text = (
+            f"columns 'joint.*.position': the foot that carries the robot alone is {100 * np.median(above):.1f} cm "
+            "higher than the one in the air; the legs' joints look exchanged, or the force sensors"
+        )
+        yield Finding(
+            "joint_names", f"{text} (valid: each leg's joints and sensor under their own names)", True
+        )
 
 
 def _encoder_step(values: Array) -> float:

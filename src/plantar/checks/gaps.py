@@ -21,16 +21,20 @@ LEAST_LOST = 0.03  # share of a log's time: less costs an interval nothing that 
 def check_gaps(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     """A finding on the time that is lost to gaps, where it is worth knowing: filters and delays need whole pieces.
 
-    One more for each joint between IMU and feet whose encoder drops out.
+    One more for each sensor that drops out, if a foot's fit needs it.
     """
-    needed = _sensors(robot).get(JOINTS, ())
-    for column, mask in dropouts_of(log).items():
-        if column in needed:
+    needed = {name for names in _sensors(robot).values() for name in names}
+    for columns, mask in dropouts_of(log).items():
+        if not needed.isdisjoint(columns):
             first = int(np.flatnonzero(mask)[0])
+            single = len(columns) == 1
+            where = (
+                f"column '{columns[0]}'" if single else f"columns '{'.'.join(columns[0].split('.')[:2])}.*'"
+            )
             text = (
-                f"column '{column}', t = {log.time[first]:g} s, value 0: reads exactly 0 between jumps in "
-                f"{len(runs(mask))} stretches, {100 * np.mean(mask):.2g} % of the log, left out; does the encoder lose "
-                "its connection? (valid: leave such cells empty)"
+                f"{where}, t = {log.time[first]:g} s, value 0: {'reads' if single else 'read'} exactly 0 between jumps "
+                f"in {len(runs(mask))} stretches, {100 * np.mean(mask):.2g} % of the log, left out; does the sensor "
+                "lose its connection? (valid: leave such cells empty)"
             )
             yield Finding("dropout", text)
     gaps = [(start, end, "rows") for start, end in sampling(log).gaps]

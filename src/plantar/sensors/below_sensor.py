@@ -75,7 +75,8 @@ def _in_air(reading: Array, weight: float, period: float) -> Mask:
     A sensor whose zero is as large as what a foot in the air may read shows its swings beside that zero.
     """
     force = reading[:, FORCE]
-    zero = air_zero(period * np.arange(len(force)), reading, np.linalg.norm(force, axis=1), weight)
+    time: Array = period * np.arange(len(force), dtype=np.float64)
+    zero = air_zero(time, reading, np.asarray(np.linalg.norm(force, axis=1)), weight)
     touching = np.linalg.norm(force - (0.0 if zero is None else zero.middle[FORCE]), axis=1) > IN_AIR * weight
     return np.asarray(~widened(touching, round(LANDING / period)))
 

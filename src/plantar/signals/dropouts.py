@@ -1,4 +1,4 @@
-"""Stretches in which an encoder reads exactly zero between jumps: its bus was silent, and the driver wrote zeros."""
+"""Stretches in which a sensor reads exactly zero between jumps: its bus was silent, and the driver wrote zeros."""
 
 from __future__ import annotations
 
@@ -12,11 +12,16 @@ FAR_STEPS = 10.0  # usual steps from sample to sample, by which the angle must j
 FINEST = 1e-7  # rad: smaller steps are rounding, as of a coarse encoder that stands still
 LEAST = 0.01  # rad: several steps of the coarsest encoder, which reads zero wherever its joint is near it
 FEWEST = 2  # stretches: a joint that was switched on has one
+# Of a device all of whose columns read zero: those that jump when it does, gravity's and the load's.
+NEVER_ZERO = {"imu": ".linear_acceleration.", "wrench": ".force."}
 BESIDE = 1  # samples around a stretch, that resampling may have put between the angle and zero
 
 
 def dropped_samples(values: Array) -> Mask:
-    """Samples of joint angles `values` (N,) [rad] in stretches of zeros that a jump leads into and out of, (N,)."""
+    """Samples (N,) of `values` (N,) in stretches of zeros that a jump leads into and out of.
+
+    values: joint angles [rad], or sizes that are zero where a sensor is silent.
+    """
     zero, dropped = values == 0, np.zeros(len(values), dtype=bool)
     inner = [run for run in runs(zero) if run.start > BESIDE and run.stop < len(values) - BESIDE]
     if len(inner) < FEWEST:
@@ -36,15 +41,38 @@ def dropped_samples(values: Array) -> Mask:
     return dropped
 
 
-def dropouts_of(log: MotionLog) -> dict[str, Mask]:
-    """`dropped_samples` (N,) of every joint's position column in which there are any."""
-    columns = [name for name in log.columns if name.startswith("joint.") and name.endswith(".position")]
-    found = {name: dropped_samples(log.column(name)) for name in columns}
-    return {name: mask for name, mask in found.items() if mask.any()}
+def dropouts_of(log: MotionLog) -> dict[tuple[str, ...], Mask]:
+    """`dropped_samples` (N,) of every joint's position, every IMU and every force sensor in which there are any, by the
+    columns that drop out together."""
+    found = dict[tuple[str, ...], Mask]()
+    for name in log.columns:
+        if name.startswith("joint.") and name.endswith(".position"):
+            found[name,] = dropped_samples(log.column(name))
+    for kind, never_zero in NEVER_ZERO.items():
+        for columns in _devices(log, kind):
+            sizes = [np.abs(log.column(name)) for name in columns if never_zero in name]
+            if sizes:
+                silent = np.all([log.column(name) == 0 for name in columns], axis=0)
+                found[columns] = dropped_samples(
+                    np.where(silent, 0.0, np.maximum(np.sum(sizes, axis=0), LEAST))
+                )
+    return {columns: mask for columns, mask in found.items() if mask.any()}
+
+
+def _devices(log: MotionLog, kind: str) -> list[tuple[str, ...]]:
+    """The columns of each sensor of a kind."""
+    by_name = dict[str, list[str]]()
+    for name in log.columns:
+        if name.startswith(f"{kind}."):
+            by_name.setdefault(name.split(".")[1], []).append(name)
+    return [tuple(names) for names in by_name.values()]
 
 
 def without_dropouts(log: MotionLog) -> MotionLog:
     """The log with those samples as NaN; itself where there are none."""
-    found = dropouts_of(log)
-    emptied = {name: np.where(mask, np.nan, log.column(name)) for name, mask in found.items()}
+    emptied = {
+        name: np.where(mask, np.nan, log.column(name))
+        for columns, mask in dropouts_of(log).items()
+        for name in columns
+    }
     return log.with_columns(emptied) if emptied else log
