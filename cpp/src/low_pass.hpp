@@ -16,4 +16,11 @@ struct LowPass {
   std::size_t padding, every;
 };
 
+// A signal of n rows of k columns, of which sample `first` is the first that is kept; `end` of the array that it is
+// part of.
+struct Rows {
+  const double *values, *end;
+  std::size_t n, k, first;
+};
+
 }  // namespace plantar

@@ -25,21 +25,20 @@ PLANTAR_INLINE Lanes advance(const Section& section, SectionState& state, Lanes 
 
 // Columns [column, column + LANES) of the signal; `work` holds LANES doubles for each of n + 2 padding samples. `out`
 // has a row for each sample that is kept.
-inline void low_pass(const LowPass& filter, const double* values, std::size_t n, std::size_t k, std::size_t column,
-                     double* work, double* out) {
-  const std::size_t count = k - column < LANES ? k - column : LANES;
+inline void low_pass(const LowPass& filter, const Rows& rows, std::size_t column, double* work, double* out) {
+  const std::size_t count = rows.k - column < LANES ? rows.k - column : LANES;
+  // Lanes beyond the last column take what stands there, and are dropped at the end.
   const auto read = [&](std::size_t row) {
+    const double* from = rows.values + row * rows.k + column;
+    if (rows.end - from >= LANES) return load(from);
     Lanes x = Lanes{};
-    const double* from = values + row * k + column;
-    if (count == LANES) return load(from);
     for (std::size_t l = 0; l < count; ++l) x[l] = from[l];
     return x;
   };
-  const std::ptrdiff_t last = static_cast<std::ptrdiff_t>(n) - 1, padding = static_cast<std::ptrdiff_t>(filter.padding);
+  const std::ptrdiff_t last = static_cast<std::ptrdiff_t>(rows.n) - 1, padding = static_cast<std::ptrdiff_t>(filter.padding);
   const Lanes rise = 2.0 * (read(last) - read(0));
   // Beyond both ends the signal goes on point-symmetrically, again and again.
   const auto at = [&](std::ptrdiff_t place) {
-    if (place >= 0 && place <= last) return read(place);
     if (place < 0 && place >= -last) return 2.0 * read(0) - read(-place);
     if (place > last && place <= 2 * last) return 2.0 * read(last) - read(2 * last - place);
     std::ptrdiff_t turns = place / (2 * last), rest = place % (2 * last);
@@ -53,16 +52,19 @@ inline void low_pass(const LowPass& filter, const double* values, std::size_t n,
   const Section &one = filter.sections[0], &two = filter.sections[1];
   Lanes x = at(-padding);
   SectionState first = settled(one, x), second = settled(two, x);
-  for (std::ptrdiff_t i = -padding; i <= last + padding; ++i) {
-    x = advance(two, second, advance(one, first, at(i)));
+  const auto forth = [&](std::ptrdiff_t i, Lanes next) {
+    x = advance(two, second, advance(one, first, next));
     store(work + (i + padding) * LANES, x);
-  }
+  };
+  for (std::ptrdiff_t i = -padding; i < 0; ++i) forth(i, at(i));
+  for (std::ptrdiff_t i = 0; i <= last; ++i) forth(i, read(i));
+  for (std::ptrdiff_t i = last + 1; i <= last + padding; ++i) forth(i, at(i));
   first = settled(one, x), second = settled(two, x);
-  const std::ptrdiff_t every = static_cast<std::ptrdiff_t>(filter.every);
-  std::ptrdiff_t row = last / every;  // of the next sample to keep
-  for (std::ptrdiff_t i = last + padding; i >= 0; --i) {
+  const std::ptrdiff_t every = static_cast<std::ptrdiff_t>(filter.every), begin = static_cast<std::ptrdiff_t>(rows.first);
+  std::ptrdiff_t row = last < begin ? -1 : (last - begin) / every;  // of the next sample to keep
+  for (std::ptrdiff_t i = last + padding; i >= begin; --i) {
     x = advance(two, second, advance(one, first, load(work + (i + padding) * LANES)));
-    if (i == row * every) scatter(out + row-- * k + column, x, count);
+    if (i == begin + row * every) scatter(out + row-- * rows.k + column, x, count);
   }
 }
 
