@@ -104,8 +104,8 @@ class Recording:
         return {}
 
     def loads(self, foot: str) -> Array:
-        """Forces along the bush's x and y and the vertical, and the torque about its third axis, through the filter that
-        the torque went through, (N, 4); 0 where they are not known: where nothing is used."""
+        """Forces along the bush's x and y and the vertical, and the torque about its third axis, through the filter of
+        the torque, (N, 4); 0 where they are not known: where nothing is used."""
         if foot not in self._loads:
             bush = self.bushes[foot]
             rows = np.column_stack([bush.wrench[:, :2], bush.force_z, bush.wrench[:, 5]])
