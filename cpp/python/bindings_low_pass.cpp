@@ -66,7 +66,7 @@ nb::ndarray<nb::numpy, double> low_pass(
     const std::size_t wanted = std::min<std::size_t>(groups, worthwhile_threads(covered * k, NUMBERS_PER_THREAD, 0));
     const unsigned threads = static_cast<unsigned>(std::max<std::size_t>(wanted, 1));
     parallel_parts(k, table.lanes, threads, [&](unsigned, std::size_t from, std::size_t to) {
-      const std::unique_ptr<double[]> work(new double[(longest + 2 * padding) * table.lanes]);
+      const std::unique_ptr<double[]> work(new double[low_pass_work(longest, padding) * table.lanes]);
       for (const auto& [first, last] : runs) {
         const std::size_t row = (first + every - 1) / every;  // of the first that is kept
         const Rows rows = {begin + first * k, end, last - first, k, row * every - first};

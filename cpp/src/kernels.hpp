@@ -29,7 +29,7 @@ struct Kernels {
                       std::size_t columns);
   bool (*cholesky)(const double* gram, std::size_t gram_stride, std::size_t n, double safe, double* r,
                    std::size_t stride, double* work);
-  // `work` holds `lanes` doubles for each sample and each of the padding.
+  // `work` holds `lanes` doubles for each of `low_pass_work` rows.
   std::size_t lanes;
   void (*low_pass)(const LowPass&, const Rows&, std::size_t column, double* work, double* out);
 };

@@ -23,4 +23,11 @@ struct Rows {
   std::size_t n, k, first;
 };
 
+constexpr std::size_t LOW_PASS_BLOCK = 1 << 14;  // rows: a megabyte of eight lanes
+
+// Rows of work that a signal of n rows takes: one block, and four for the states at the beginning of each.
+inline std::size_t low_pass_work(std::size_t n, std::size_t padding) {
+  return LOW_PASS_BLOCK + 4 * ((n + 2 * padding) / LOW_PASS_BLOCK + 1);
+}
+
 }  // namespace plantar

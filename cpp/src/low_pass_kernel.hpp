@@ -18,13 +18,23 @@ PLANTAR_INLINE SectionState settled(const Section& section, Lanes x) {
 
 PLANTAR_INLINE Lanes advance(const Section& section, SectionState& state, Lanes x) {
   const Lanes y = section.b * x + state.first;
-  state.first = 2.0 * section.b * x - section.a1 * y + state.second;
+  state.first = (2.0 * section.b * x + state.second) - section.a1 * y;  // y is last: all waits for it
   state.second = section.b * x - section.a2 * y;
   return y;
 }
 
-// Columns [column, column + LANES) of the signal; `work` holds LANES doubles for each of n + 2 padding samples. `out`
-// has a row for each sample that is kept.
+PLANTAR_INLINE void keep(double* at, const SectionState& state) {
+  store(at, state.first);
+  store(at + LANES, state.second);
+}
+
+PLANTAR_INLINE SectionState kept(const double* at) { return {load(at), load(at + LANES)}; }
+
+// Columns [column, column + LANES) of the signal; `work` holds LANES doubles for each of `low_pass_work` rows. `out` has a
+// row for each sample that is kept.
+//
+// Of a long signal only the states at the beginnings of blocks are kept on the way forth, and each block is filtered
+// again on the way back: it stays near the processor, where all of it would go through memory four times.
 inline void low_pass(const LowPass& filter, const Rows& rows, std::size_t column, double* work, double* out) {
   const std::size_t count = rows.k - column < LANES ? rows.k - column : LANES;
   // Lanes beyond the last column take what stands there, and are dropped at the end.
@@ -52,19 +62,33 @@ inline void low_pass(const LowPass& filter, const Rows& rows, std::size_t column
   const Section &one = filter.sections[0], &two = filter.sections[1];
   Lanes x = at(-padding);
   SectionState first = settled(one, x), second = settled(two, x);
-  const auto forth = [&](std::ptrdiff_t i, Lanes next) {
-    x = advance(two, second, advance(one, first, next));
-    store(work + (i + padding) * LANES, x);
+  const auto forth = [&](std::ptrdiff_t from, std::ptrdiff_t to, bool stored) {
+    for (std::ptrdiff_t i = from; i < to; ++i) {
+      x = advance(two, second, advance(one, first, i < 0 || i > last ? at(i) : read(i)));
+      if (stored) store(work + (i - from) * LANES, x);
+    }
   };
-  for (std::ptrdiff_t i = -padding; i < 0; ++i) forth(i, at(i));
-  for (std::ptrdiff_t i = 0; i <= last; ++i) forth(i, read(i));
-  for (std::ptrdiff_t i = last + 1; i <= last + padding; ++i) forth(i, at(i));
-  first = settled(one, x), second = settled(two, x);
+  constexpr std::ptrdiff_t block = LOW_PASS_BLOCK;
+  const std::ptrdiff_t end = last + 1 + padding, blocks = (end + padding + block - 1) / block;
+  double* const states = work + block * LANES;
+  for (std::ptrdiff_t b = 0; b < blocks; ++b) {
+    keep(states + 4 * b * LANES, first), keep(states + (4 * b + 2) * LANES, second);
+    forth(b * block - padding, b + 1 < blocks ? (b + 1) * block - padding : end, b + 1 == blocks);
+  }
+  SectionState back = settled(one, x), again = settled(two, x);
   const std::ptrdiff_t every = static_cast<std::ptrdiff_t>(filter.every), begin = static_cast<std::ptrdiff_t>(rows.first);
   std::ptrdiff_t row = last < begin ? -1 : (last - begin) / every;  // of the next sample to keep
-  for (std::ptrdiff_t i = last + padding; i >= begin; --i) {
-    x = advance(two, second, advance(one, first, load(work + (i + padding) * LANES)));
-    if (i == begin + row * every) scatter(out + row-- * rows.k + column, x, count);
+  for (std::ptrdiff_t b = blocks - 1; b >= 0; --b) {
+    const std::ptrdiff_t from = b * block - padding, to = b + 1 < blocks ? from + block : end;
+    if (to <= begin) break;
+    if (b + 1 < blocks) {
+      first = kept(states + 4 * b * LANES), second = kept(states + (4 * b + 2) * LANES);
+      forth(from, to, true);
+    }
+    for (std::ptrdiff_t i = to - 1; i >= (from > begin ? from : begin); --i) {
+      const Lanes y = advance(two, again, advance(one, back, load(work + (i - from) * LANES)));
+      if (i == begin + row * every) scatter(out + row-- * rows.k + column, y, count);
+    }
   }
 }
 
