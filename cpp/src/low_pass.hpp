@@ -23,11 +23,13 @@ struct Rows {
   std::size_t n, k, first;
 };
 
-constexpr std::size_t LOW_PASS_BLOCK = 1 << 14;  // rows: a megabyte of eight lanes
+// Rows of a signal of k columns that are filtered at a time: a megabyte of them.
+inline std::size_t low_pass_block(std::size_t k) { return (std::size_t{1} << 17) / (k < 8 ? 8 : k) + 1; }
 
-// Rows of work that a signal of n rows takes: one block, and four for the states at the beginning of each.
-inline std::size_t low_pass_work(std::size_t n, std::size_t padding) {
-  return LOW_PASS_BLOCK + 4 * ((n + 2 * padding) / LOW_PASS_BLOCK + 1);
+// Doubles of work that n rows take: the states of every column at both ends of every block, and LANES columns of one.
+inline std::size_t low_pass_work(std::size_t n, std::size_t k, std::size_t padding, std::size_t lanes) {
+  const std::size_t block = low_pass_block(k), rows = n + 2 * padding;
+  return (4 * (rows / block + 2) * ((k + lanes - 1) / lanes) + (rows < block ? rows : block)) * lanes;
 }
 
 }  // namespace plantar

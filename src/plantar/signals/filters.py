@@ -27,7 +27,8 @@ def low_pass(
         return values[::every].copy()
     padding = int(min(PADDED / cutoff / period, MOST_PADDED))
     flat = np.ascontiguousarray(values.reshape(len(values), -1), dtype=np.float64)
-    smooth = _core.low_pass(flat, cutoff * period, padding, shortest, every)
+    smooth = np.empty((-(-len(flat) // every), flat.shape[1]))
+    _core.low_pass(flat, smooth, cutoff * period, padding, shortest, every)
     return smooth.reshape(len(smooth), *values.shape[1:])
 
 
