@@ -223,9 +223,12 @@ def _best_states(own: Array, rest: Array, values: Array) -> Numbers:
     own (r, g, c, k + 2, k + 2): the run's Grams for each state; rest (r, g, k + 2, k + 2): of the rest of its data set.
     """
     vector = np.column_stack([values, np.zeros(len(values)), -np.ones(len(values))])
-    left = (rest @ vector[:, :, None])[:, :, None, :, 0] + (own @ vector[:, None, :, None])[..., 0]
-    count = np.maximum(rest[:, :, None, -2, -2] + own[..., -2, -2], 1e-300)
-    squares = np.einsum("rgci,gi->rgc", left, vector) - left[..., -2] ** 2 / count
+    both = (vector[:, :, None] * vector[:, None, :]).reshape(len(vector), -1)
+    missed = np.einsum("rgcx,gx->rgc", own.reshape(*own.shape[:3], -1), both)
+    missed += np.einsum("rgx,gx->rg", rest.reshape(*rest.shape[:2], -1), both)[:, :, None]
+    sums = np.einsum("rgci,gi->rgc", own[..., -2, :], vector)
+    sums += np.einsum("rgi,gi->rg", rest[..., -2, :], vector)[:, :, None]
+    squares = missed - sums**2 / np.maximum(rest[:, :, None, -2, -2] + own[..., -2, -2], 1e-300)
     return np.asarray(np.argmin(squares, axis=2))
 
 
