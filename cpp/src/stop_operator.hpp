@@ -23,8 +23,7 @@ struct BranchedRuns {
 // - 1): `place` is how far z stands from the end it came from, 0 to 2. Padding is 0.
 inline void stop_operator(const BranchedRuns& given, const double* slip, const double* start, std::size_t b,
                           double* out) {
-  std::vector<double> place(b), stiff(b);
-  for (std::size_t k = 0; k < b; ++k) stiff[k] = 1.0 / slip[k];
+  std::vector<double> place(b);
   for (std::size_t run = 0; run < given.runs; ++run) {
     for (std::size_t k = 0; k < b; ++k)
       place[k] = 1.0 + given.direction[run] * std::clamp(start[run * b + k], -1.0, 1.0);
@@ -35,12 +34,12 @@ inline void stop_operator(const BranchedRuns& given, const double* slip, const d
       if (own < at) break;
       for (; at < own; ++at) {
         const double way = given.length[static_cast<std::size_t>(at) * given.runs + run];
-        for (std::size_t k = 0; k < b; ++k) place[k] = std::max(2.0 - (place[k] + way * stiff[k]), 0.0);
+        for (std::size_t k = 0; k < b; ++k) place[k] = std::max(2.0 - (place[k] + way / slip[k]), 0.0);
       }
       const double direction = given.direction[static_cast<std::size_t>(own) * given.runs + run];
       const double way = given.travelled[i * given.runs + run];
       double* z = out + (i * given.runs + run) * b;
-      for (std::size_t k = 0; k < b; ++k) z[k] = direction * (std::min(place[k] + way * stiff[k], 2.0) - 1.0);
+      for (std::size_t k = 0; k < b; ++k) z[k] = direction * (std::min(place[k] + way / slip[k], 2.0) - 1.0);
     }
     for (; i < given.samples; ++i) std::fill_n(out + (i * given.runs + run) * b, b, 0.0);
   }
