@@ -29,10 +29,9 @@ struct Kernels {
                       std::size_t columns);
   bool (*cholesky)(const double* gram, std::size_t gram_stride, std::size_t n, double safe, double* r,
                    std::size_t stride, double* work);
-  // `work` holds `lanes` doubles for each sample and each of the padding.
+  // Columns [column, to); `work` holds `low_pass_work` doubles.
   std::size_t lanes;
-  void (*low_pass)(const LowPass&, const double* values, std::size_t n, std::size_t k, std::size_t column, double* work,
-                   double* out);
+  void (*low_pass)(const LowPass&, const Rows&, std::size_t column, std::size_t to, double* work, double* out);
 };
 
 // The tables that this build holds and this processor can run, best first; null ends the list.

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from plantar.estimation.blocks import Block, StanceRows
-from plantar.estimation.linear import effect_of, fit_blocks, information_inverse
+from plantar.estimation.linear import effect_of, fit_blocks, influences_of, information_inverse
 from plantar.estimation.residual_covariance import interval95
 from plantar.estimation.stance_least_squares import fit_stances
 from plantar.estimation.stance_problem import StanceProblem
@@ -145,7 +145,7 @@ def test_recordings_that_differ_widen_the_interval() -> None:
 def test_the_effect_of_a_change_is_that_of_fitting_it() -> None:
     blocks = [walk(seed) for seed in range(3)]
     changes = [block.regressor @ np.array([3.0, -0.5]) for block in blocks]
-    assert effect_of(blocks, changes) == pytest.approx([3.0, -0.5], rel=1e-6)
+    assert effect_of(influences_of(blocks), changes) == pytest.approx([3.0, -0.5], rel=1e-6)
 
 
 def test_information_counts_weighted_rows() -> None:

@@ -128,8 +128,8 @@ DATA_FAULTS = (
         ("feet/test_imu_of_steps.py",),
     ),
     Mutant(
-        "feet/interval_width/imu_turn.py", "an unknown mount widens nothing", "np.square(effects)",
-        "0 * np.square(effects)",
+        "feet/interval_width/imu_turn.py", "an unknown mount widens nothing", "np.sum(effects**2, axis=1)",
+        "0 * np.sum(effects**2, axis=1)",
         ("feet/test_imu_of_steps.py",),
     ),
     Mutant(

@@ -23,7 +23,7 @@ ESTIMATION = (
     ),
     Mutant(
         "estimation/delays/delay.py", "the model's error without its square root",
-        "MODEL_ERROR * np.sqrt(power / float(rate_p @ rate_p))", "MODEL_ERROR * (power / float(rate_p @ rate_p))",
+        "MODEL_ERROR * np.sqrt(power / _dots(rate_p, rate_p))", "MODEL_ERROR * (power / _dots(rate_p, rate_p))",
     ),
     Mutant(
         "estimation/delays/delay.py", "no longest delay where a pair is tried for closing",

@@ -7,7 +7,7 @@ from mutant import Mutant
 INTERVALS = (
     Mutant(
         "feet/interval_width/systematic.py", "the moment arm's deviation is zero",
-        "moved_by(moment_arms), vertical.compliance_std[foot]", "moved_by(moment_arms), 0.0",
+        "moment_arms), vertical.compliance_std[foot]", "moment_arms), 0.0",
     ),
     Mutant(
         "feet/interval_width/systematic.py", "no cause for the yaw torque's zero",

@@ -168,7 +168,7 @@ SENSOR_FAULTS = (
     ),
     Mutant(
         "signals/thinning.py", "quick signals pass for slow ones",
-        "low_pass(np.column_stack([read[name] for name in names]), log.period, cutoff, every=step)",
+        "low_pass(np.column_stack([read[name] for name in names]), period, cutoff, every=step)",
         "np.column_stack([read[name] for name in names])[::step]", ("signals/test_thinning.py",),
     ),
     Mutant(

@@ -42,10 +42,13 @@ def test_the_gain_is_what_is_left_of_a_tone(hertz: float) -> None:
     assert left == pytest.approx(float(gain(np.array([hertz]), PERIOD, 5.0)[0]), rel=1e-3, abs=1e-7)
 
 
-@pytest.mark.parametrize(("cutoff", "columns"), [(0.8, 1), (5.0, 3), (40.0, 11)])
-def test_the_filter_is_scipys_of_the_same_name(cutoff: float, columns: int) -> None:
+@pytest.mark.parametrize(
+    ("cutoff", "rows", "columns"),
+    [(0.8, 1500, 1), (5.0, 1500, 3), (40.0, 1500, 11), (5.0, 40_000, 3), (2.0, 9000, 70)],
+)
+def test_the_filter_is_scipys_of_the_same_name(cutoff: float, rows: int, columns: int) -> None:
     """Fourth order forth and back, continued point-symmetrically, each way begun in its settled state."""
-    values = np.cumsum(np.random.default_rng(1).normal(size=(1500, columns)), axis=0)
+    values = np.cumsum(np.random.default_rng(1).normal(size=(rows, columns)), axis=0)
     sections = butter(4, 2 * cutoff * PERIOD, output="sos")
     expected = sosfiltfilt(sections, values, axis=0, padtype="odd", padlen=int(PADDED / cutoff / PERIOD))
     np.testing.assert_allclose(low_pass(values, PERIOD, cutoff), expected, atol=1e-10 * np.ptp(values))

@@ -40,10 +40,10 @@ def check_log(robot: RobotModel, log: MotionLog) -> list[Finding]:
     names, time = check_joint_names(robot, log), list(_time(log))
     if any(finding.fatal for finding in time):
         return [*names, *time]
-    imu = list(check_imu(robot.imu.name, log)) if robot.imu is not None else ()
+    few = picked(log)
+    imu = list(check_imu(robot.imu.name, few)) if robot.imu is not None else ()
     return_freed(log.size)
     channels = [*check_gaps(robot, log), *check_channels(robot, log), *check_stepping_joints(robot, log)]
-    few = picked(log)
     chain, wrenches = list(check_closed_chain(robot, few)), list(_wrenches(robot, few))
     missing = check_path_joints(robot, log) if any(one.fatal for one in (*wrenches, *chain)) else ()
     bushes = [*check_bush_link(robot, few), *check_bush_axes(robot, few)]

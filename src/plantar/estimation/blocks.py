@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +21,13 @@ class StanceRows:
 
     def split(self) -> list[NDArray[np.intp]]:
         """The rows of each stance."""
-        return [np.flatnonzero(self.number == number) for number in np.unique(self.number)]
+        return self._rows
+
+    @cached_property
+    def _rows(self) -> list[NDArray[np.intp]]:
+        order = np.argsort(self.number, kind="stable")
+        ends = np.flatnonzero(np.diff(self.number[order])) + 1
+        return np.split(order, ends) if order.size else []
 
 
 @dataclass(frozen=True)

@@ -48,6 +48,14 @@ def factor_of(blocks: Sequence[Block], shared_offset: bool = False) -> Triangula
     return _factor([_rows(block) for block in blocks], places, size)
 
 
+def influences(blocks: Sequence[Block], shared_offset: bool) -> list[Array]:
+    """How far each row's response moves the parameters, (p, n) of each block."""
+    places, size = _places(blocks, shared_offset)
+    rows = [_rows(block) for block in blocks]
+    inverse = _factor(rows, places, size).information_inverse()
+    return [inverse[:, own] @ part[:, :-1].T for part, own in zip(rows, places, strict=True)]
+
+
 def values_without_each(blocks: Sequence[Block]) -> Array:
     """The values (blocks, k) of fits of all blocks but one each, every recording with an offset of its own."""
     columns = blocks[0].regressor.shape[1]

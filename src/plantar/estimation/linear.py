@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+
+import numpy as np
 
 from plantar.conventions import Array
 from plantar.estimation.blocks import Block, LinearFit
-from plantar.estimation.least_squares import factor_of, fit_linear
+from plantar.estimation.least_squares import factor_of, fit_linear, influences
 from plantar.estimation.stance_least_squares import fit_stances
 from plantar.estimation.stance_problem import StanceProblem
 
@@ -20,14 +21,17 @@ def fit_blocks(blocks: Sequence[Block], *, shared_offset: bool = False) -> Linea
     return fit_linear(blocks, shared_offset=shared_offset)
 
 
-def effect_of(blocks: Sequence[Block], changes: Sequence[Array], *, shared_offset: bool = False) -> Array:
-    """How `values` (k,) move when each block's response changes by `changes` (n,): it is linear in that."""
+def influences_of(blocks: Sequence[Block], *, shared_offset: bool = False) -> list[Array]:
+    """How far each row's response moves `values`, (k, n) of each block."""
     size = blocks[0].regressor.shape[1]
-    changed = [replace(block, response=change) for block, change in zip(blocks, changes, strict=True)]
     if _step(blocks, shared_offset):
-        prior = StanceProblem.drawn_together(blocks).prior
-        return StanceProblem.of(changed, prior).solve().values[:size]
-    return factor_of(changed, shared_offset).solve()[:size]
+        return [own[:size] for own in StanceProblem.drawn_together(blocks).influences(blocks)]
+    return [own[:size] for own in influences(blocks, shared_offset)]
+
+
+def effect_of(influences: Sequence[Array], changes: Sequence[Array]) -> Array:
+    """How `values` (k, ...) move when each block's response changes by `changes` (n, ...): it is linear in that."""
+    return np.asarray(sum(own @ change for own, change in zip(influences, changes, strict=True)))
 
 
 def information_inverse(blocks: Sequence[Block], *, shared_offset: bool = False) -> Array:

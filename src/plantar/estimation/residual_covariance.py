@@ -33,7 +33,10 @@ def score_cosines(scores: Array, duration: float) -> Array:
     # Orthonormal DCT-II, √(2/n) Σ s_t cos(π j (2t + 1) / 2n): every coefficient's variance is the density. As a Fourier
     # transform it is one of the even samples and, turned round, the odd ones.
     order = np.arange(1, min(cosines, count - 1) + 1)
-    turned = np.fft.fft(np.concatenate([scores[::2], scores[1::2][::-1]]), axis=0)[order]
+    turned = np.fft.rfft(np.concatenate([scores[::2], scores[1::2][::-1]]), axis=0)[
+        np.minimum(order, count - order)
+    ]
+    turned.imag[2 * order > count] *= -1
     phases = np.exp(-0.5j * np.pi * order / count)[:, None]
     coefficients = np.sqrt(2 / count) * (phases * turned).real
     return np.asarray(np.sqrt(count / max(len(coefficients), 1)) * coefficients)

@@ -54,9 +54,9 @@ class StanceProblem:
             assert block.stances is not None, "blocks of a foot that steps"
             columns = np.column_stack([design(block, widest), block.response])
             columns *= np.sqrt(block.stances.weight)[:, None]
-            for rows in block.stances.split():
-                products.append(columns[rows].T @ columns[rows])
-                owner.append(place)
+            own = [columns[rows] for rows in block.stances.split()]
+            products += [part.T @ part for part in own]
+            owner += [place] * len(own)
         common = common_columns(blocks[0]).shape[1]
         return cls(np.array(products), np.array(owner, dtype=np.intp), common, prior)
 
@@ -82,6 +82,20 @@ class StanceProblem:
         values, inverse = _solved(total)
         own = np.array([back[:, -1] - back[:, :-1] @ values for _, back in self._parts])
         return Solution(values, own, inverse, float(total[-1, -1] - values @ total[:-1, -1]))
+
+    def influences(self, blocks: Sequence[Block]) -> list[Array]:
+        """How far the response of each row of the problem's blocks moves the values, (k, n) of each block."""
+        found, inverse = [], self.solve().inverse
+        for place, (block, (_, back)) in enumerate(zip(blocks, self._parts, strict=True)):
+            assert block.stances is not None, "blocks of a foot that steps"
+            stances, drawn = self.products[self.recording == place], design(block, len(back) - 1)
+            for rows, ones, share in zip(
+                block.stances.split(), stances[:, -2, :-1], self._shares(stances), strict=True
+            ):
+                drawn[rows] -= share * ones
+            common = drawn[:, : self.common] - drawn[:, self.common :] @ back[:, :-1]
+            found.append(inverse @ (block.stances.weight[:, None] * common).T)
+        return found
 
     def without_each_stance(self) -> Array:
         """Values (S, k) of the fits that lack one stance each."""
@@ -111,9 +125,13 @@ class StanceProblem:
         """Products (s, ...) of each of one recording's stances, their offsets drawn together."""
         sums = self.products[stances]
         ones = sums[:, :, -2]
-        least = NEVER_FREE * float(ones[:, -2].max(initial=0.0)) or 1.0
-        share = 1 / (ones[:, -2] + max(self.prior, least))
-        return np.asarray(sums - share[:, None, None] * ones[:, :, None] * ones[:, None, :])
+        return np.asarray(sums - self._shares(sums)[:, None, None] * ones[:, :, None] * ones[:, None, :])
+
+    def _shares(self, sums: Array) -> Array:
+        """What a unit of each stance's sum (s, ...) moves its offset by, (s,)."""
+        weight = sums[:, -2, -2]
+        least = NEVER_FREE * float(weight.max(initial=0.0)) or 1.0
+        return np.asarray(1 / (weight + max(self.prior, least)))
 
     def _own_eliminated(self, drawn: Array) -> tuple[Array, Array]:
         """Products (..., k + 1, k + 1) of sums (..., n, n) over stances, all that is a recording's own eliminated, and
@@ -169,7 +187,8 @@ def _offset_prior(blocks: Sequence[Block], free: Solution) -> float:
         halves = []
         for rows in block.stances.split():
             if len(rows) >= 2 * SHORTEST_HALF:
-                halves.append([float(part.mean()) for part in np.array_split(left[rows], 2)])
+                half = (len(rows) + 1) // 2
+                halves.append([left[rows[:half]].mean(), left[rows[half:]].mean()])
                 weight += float(block.stances.weight[rows].sum())
         if len(halves) > 1:
             apart = np.array(halves) - np.mean(halves)

@@ -52,8 +52,8 @@ def checked(robot: RobotModel, log: MotionLog, findings: Sequence[Finding] | Non
     refuse_impossible(log, findings)
     odd = finding_notes(log, findings)
     return_freed(log.size)
-    even = without_spikes(without_holes(without_held(without_dropouts(evenly_sampled(log)))))
-    on_time = thinned(with_gyroscope_on_time(even, imu.name))
+    even = thinned(without_spikes(without_holes(without_held(without_dropouts(evenly_sampled(log))))))
+    on_time = with_gyroscope_on_time(even, imu.name)
     return on_time.with_columns({}, *log.joint_notes(robot), *odd)
 
 

@@ -103,6 +103,21 @@ class Recording:
         """Those columns by foot, once they were asked for: every fit of the recording does."""
         return {}
 
+    def loads(self, foot: str) -> Array:
+        """Forces along the bush's x and y and the vertical, and the torque about its third axis, through the filter of
+        the torque, (N, 4); 0 where they are not known: where nothing is used."""
+        if foot not in self._loads:
+            bush = self.bushes[foot]
+            rows = np.column_stack([bush.wrench[:, :2], bush.force_z, bush.wrench[:, 5]])
+            smooth = within_stances(rows, self.period, self.cutoff, self.stances[foot])
+            self._loads[foot] = np.nan_to_num(smooth)
+        return self._loads[foot]
+
+    @cached_property
+    def _loads(self) -> dict[str, Array]:
+        """Those forces by foot, once they were asked for: both axes and every stage of a fit do."""
+        return {}
+
     def decimated(self, foot: str) -> Recording:
         """What a fit of this foot reads, `rows` alone, and nothing else of the log; itself where these are all.
 

@@ -39,11 +39,11 @@ class StepColumns:
     def centred(self, rows: Array, place: NDArray[np.intp]) -> Array:
         """Rows (n, m) of the used samples less that share of their stances' means; the mean of all stays.
 
-        place: (n,), the number of each row's stance.
+        place: (n,), the number of each row's stance, in order.
         """
-        count = np.bincount(place)
-        sums = np.column_stack([np.bincount(place, column) for column in rows.T])
-        return np.asarray(rows - self.share * ((sums / count[:, None])[place] - rows.mean(axis=0)))
+        stances = np.split(rows, np.flatnonzero(np.diff(place)) + 1)
+        means = np.array([stance.mean(axis=0) for stance in stances])
+        return np.asarray(rows - self.share * (means[place] - rows.mean(axis=0)))
 
 
 @dataclass(frozen=True)

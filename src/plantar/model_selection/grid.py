@@ -34,7 +34,8 @@ class Pieces:
     """Grams (pieces, g, c, k + 2, k + 2) of [columns, 1, response], for g candidates of the nonlinear parameters and c
     initial states (c, runs) of each data set.
 
-    `data_set`, `run` and `fold` (pieces,) say what each piece is part of; runs are numbered through all data sets.
+    `data_set`, `run` and `fold` (pieces,) say what each piece is part of; runs are numbered through all data sets, and
+    pieces stand in their order.
     `rows` (pieces,) are the samples in each.
     """
 
@@ -122,22 +123,22 @@ class Fits:
 def fit_pieces(pieces: Pieces, chosen: Mask, *, shared_offset: bool = False) -> Fits:
     """Least squares for every candidate over the `chosen` pieces (pieces,), with the best initial state of each run."""
     shapes, count = pieces.grams.shape[1:3]
-    initial_states = np.full((len(pieces.grams), shapes), count // 2, dtype=np.intp)
-    runs = np.unique(pieces.run[chosen])
+    runs, first = np.unique(pieces.run[chosen], return_index=True)
+    grams, data_set = np.add.reduceat(pieces.grams[chosen], first), pieces.data_set[chosen][first]
+    states = np.full((len(runs), shapes), count // 2, dtype=np.intp)
     for _ in range(ROUNDS if count > 1 else 1):
-        totals = _totals(pieces, chosen, initial_states)
+        current = grams[np.arange(len(runs))[:, None], np.arange(shapes), states]
+        totals = np.zeros((int(pieces.data_set.max()) + 1, *current.shape[1:]))
+        np.add.at(totals, data_set, current)
         values, offsets, squares = _solve(totals, shared_offset)
         if count == 1:
             break
-        before = initial_states.copy()
-        for run in runs:
-            mine = chosen & (pieces.run == run)
-            data_set = int(pieces.data_set[mine][0])
-            initial_states[pieces.run == run] = _best_state(
-                pieces, mine, totals[data_set], before[mine], values
-            )
-        if np.array_equal(before, initial_states):
+        before, states = states, _best_states(grams, totals[data_set] - current, values)
+        if np.array_equal(before, states):
             break
+    initial_states = np.full((len(pieces.grams), shapes), count // 2, dtype=np.intp)
+    known = np.isin(pieces.run, runs)
+    initial_states[known] = states[np.searchsorted(runs, pieces.run[known])]
     return Fits(values, offsets, initial_states, squares)
 
 
@@ -189,15 +190,6 @@ def _gram(common: Array, extra: Array) -> Array:
     return np.ascontiguousarray(np.moveaxis(gram, 2, 0))
 
 
-def _totals(pieces: Pieces, chosen: Mask, initial_states: Numbers) -> Array:
-    """Each data set's Gram (data sets, g, k + 2, k + 2) with the initial states chosen so far."""
-    data_sets, shapes = int(pieces.data_set.max()) + 1, np.arange(pieces.grams.shape[1])
-    totals = np.zeros((data_sets, len(shapes), *pieces.grams.shape[3:]))
-    for piece in np.flatnonzero(chosen):
-        totals[pieces.data_set[piece]] += pieces.grams[piece, shapes, initial_states[piece]]
-    return totals
-
-
 def _without_offset(gram: Array) -> Array:
     """Products (..., k + 1, k + 1) of columns and response about their means."""
     ones = gram[..., -2, :]
@@ -225,17 +217,19 @@ def _solve(totals: Array, shared_offset: bool) -> tuple[Array, Array, Array]:
     return values, np.repeat(offsets.T, len(totals) // len(sums), axis=1), squares
 
 
-def _best_state(pieces: Pieces, mine: Mask, total: Array, initial_states: Numbers, values: Array) -> Numbers:
-    """For every candidate the initial state of one run that fits best, with the data set's best offset, (g,)."""
-    shapes = np.arange(total.shape[0])
-    grams = pieces.grams[mine]
-    current = sum(gram[shapes, start] for gram, start in zip(grams, initial_states, strict=True))
-    rest, own = total - current, grams.sum(axis=0)
+def _best_states(own: Array, rest: Array, values: Array) -> Numbers:
+    """For each of r runs and every candidate the initial state that fits best, with the data set's best offset, (r, g).
+
+    own (r, g, c, k + 2, k + 2): the run's Grams for each state; rest (r, g, k + 2, k + 2): of the rest of its data set.
+    """
     vector = np.column_stack([values, np.zeros(len(values)), -np.ones(len(values))])
-    left = (rest @ vector[:, :, None])[:, None, :, 0] + (own @ vector[:, None, :, None])[..., 0]
-    count = np.maximum(rest[:, None, -2, -2] + own[..., -2, -2], 1e-300)
-    squares = np.einsum("gci,gi->gc", left, vector) - left[..., -2] ** 2 / count
-    return np.asarray(np.argmin(squares, axis=1))
+    both = (vector[:, :, None] * vector[:, None, :]).reshape(len(vector), -1)
+    missed = np.einsum("rgcx,gx->rgc", own.reshape(*own.shape[:3], -1), both)
+    missed += np.einsum("rgx,gx->rg", rest.reshape(*rest.shape[:2], -1), both)[:, :, None]
+    sums = np.einsum("rgci,gi->rgc", own[..., -2, :], vector)
+    sums += np.einsum("rgi,gi->rg", rest[..., -2, :], vector)[:, :, None]
+    squares = missed - sums**2 / np.maximum(rest[:, :, None, -2, -2] + own[..., -2, -2], 1e-300)
+    return np.asarray(np.argmin(squares, axis=2))
 
 
 def _profiled(gram: Array, values: Array) -> float:

@@ -6,7 +6,6 @@ import numpy as np
 
 from plantar import _core
 from plantar.conventions import Array
-from plantar.signals.segments import runs
 
 FILTER_ORDER = 4  # Butterworth, run forth and back
 SHORTEST_RUN = 27  # samples
@@ -28,15 +27,9 @@ def low_pass(
         return values[::every].copy()
     padding = int(min(PADDED / cutoff / period, MOST_PADDED))
     flat = np.ascontiguousarray(values.reshape(len(values), -1), dtype=np.float64)
-    if len(flat) > shortest and np.isfinite(flat.sum()):  # no sample is missing: cheaper to ask of the sum
-        smooth = _core.low_pass(flat, cutoff * period, padding, every)
-        return smooth.reshape(len(smooth), *values.shape[1:])
-    result = np.full_like(flat, np.nan)
-    for run in runs(np.asarray(np.isfinite(flat).all(axis=1))):
-        if run.stop - run.start > shortest:
-            result[run] = _core.low_pass(flat[run], cutoff * period, padding)
-    result = result.reshape(values.shape)
-    return result if every == 1 else result[::every].copy()
+    smooth = np.empty((-(-len(flat) // every), flat.shape[1]))
+    _core.low_pass(flat, smooth, cutoff * period, padding, shortest, every)
+    return smooth.reshape(len(smooth), *values.shape[1:])
 
 
 def gain(frequency: Array, period: float, cutoff: float) -> Array:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from plantar.conventions import Array
@@ -12,7 +14,7 @@ from plantar.signals.resampling import with_continuous_quaternions
 
 LOWEST_RATE = 200.0  # Hz, that is kept: landings last some samples, delays are interpolated between two
 BAND = 0.8  # of half the rate that is kept: faster changes are filtered out first, or they would pass for slow ones
-TOGETHER = 4  # columns: the filter takes hardly longer for as many as for one, and more take memory
+TOGETHER = 8  # columns: the filter takes hardly longer for as many as for one, and more take memory
 
 
 def step_of(log: MotionLog) -> int:
@@ -55,17 +57,21 @@ def thinned(log: MotionLog) -> MotionLog:
     if step < 2:
         return log
     rate = 1 / (log.period * step)
-    cutoff, read = BAND * rate / 2, with_continuous_quaternions(log)
-    whole = [name for name, values in read.items() if not np.isnan(values).any()]
-    groups = [whole[place : place + TOGETHER] for place in range(0, len(whole), TOGETHER)]
-    groups += [[name] for name in read if name not in set(whole)]  # each has its own holes
-    columns: dict[str, Array] = {}
-    for names in groups:
-        smooth = low_pass(np.column_stack([read[name] for name in names]), log.period, cutoff, every=step)
-        columns |= dict(zip(names, np.ascontiguousarray(smooth.T), strict=True))
-    columns = {name: columns[name] for name in read}
-    for values in columns.values():
-        values.setflags(write=False)  # handed over, not copied
+    columns = slow_columns(with_continuous_quaternions(log), log.period, BAND * rate / 2, step)
     text = f"{log.name}: {1 / log.period:.4g} Hz; every {step}th sample of the filtered signals is used ({rate:.4g} Hz)"
     note = Note("thinned", "info", text)
     return MotionLog(log.name, log.time[::step], columns, log.path, log.sha256, (*log.notes, note))
+
+
+def slow_columns(read: Mapping[str, Array], period: float, cutoff: float, step: int) -> dict[str, Array]:
+    """Every `step`th sample of columns (N,) without what is faster than `cutoff` [Hz], each around its own holes."""
+    whole = [name for name, values in read.items() if not np.isnan(values).any()]
+    groups = [whole[place : place + TOGETHER] for place in range(0, len(whole), TOGETHER)]
+    groups += [[name] for name in read if name not in set(whole)]
+    columns: dict[str, Array] = {}
+    for names in groups:
+        smooth = low_pass(np.column_stack([read[name] for name in names]), period, cutoff, every=step)
+        columns |= dict(zip(names, np.ascontiguousarray(smooth.T), strict=True))
+    for values in columns.values():
+        values.setflags(write=False)  # handed over, not copied
+    return {name: columns[name] for name in read}

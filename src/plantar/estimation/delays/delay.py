@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from plantar.conventions import FORCE, Array
-from plantar.estimation.residual_covariance import cosine_covariance
+from plantar.estimation.residual_covariance import score_cosines
 from plantar.signals.filters import differentiate, low_pass
 
 ROUNDS = 4  # the moment equation is linear near its solution: each round shifts and solves again
@@ -94,6 +94,7 @@ def estimate_delay(pairs: Sequence[Pair]) -> Delay | None:
 class _Band:
     """A pair in one band of frequencies of `width` [Hz], thinned, with rates; `bend` is the second one of measured.
 
+    `errors_along`, `errors_by_rate` (draws, 6): products of drawn wrong models with the predicted signal and its rate.
     `enough` (6,): the squares below which an axis holds nothing in this band.
     """
 
@@ -102,7 +103,8 @@ class _Band:
     bend: Array
     predicted: Array
     predicted_rate: Array
-    model_errors: Array
+    errors_along: Array
+    errors_by_rate: Array
     enough: Array
     width: float
     duration: float
@@ -141,9 +143,10 @@ def _bands(pair: Pair) -> list[_Band]:
     # Rates: of the measured rate, and of the predicted signal.
     for width, thin, rates, stride in banded(together, period, slice(6, 18)):
         measured, rate, predicted = thin[:, :6], thin[:, 6:12], thin[:, 12:18]
-        drawn = thin[:, 18:].reshape(len(thin), draws, 6).transpose(1, 0, 2)
+        drawn = thin[:, 18:].reshape(len(thin), draws, 6)
+        along, by_rate = (np.einsum("nda,na->da", drawn, one) for one in (predicted, rates[:, 6:]))
         enough = LEAST_SHARE * whole * len(thin)
-        parts = (measured, rate, rates[:, :6], predicted, rates[:, 6:], drawn, enough)
+        parts = (measured, rate, rates[:, :6], predicted, rates[:, 6:], along, by_rate, enough)
         found.append(_Band(*parts, width, len(thin) * stride * period))
     return found
 
@@ -202,30 +205,33 @@ def _cells(band: _Band, delay: float) -> list[_Cell]:
 
     Noise is nowhere multiplied with itself, only with its own rate, so that it does not bias δ.
     """
-    measured, rates_m = band.at(delay)
-    found = []
-    for axis in range(measured.shape[1]):
-        m, rate_m = measured[:, axis], rates_m[:, axis]
-        p, rate_p, errors = (
-            band.predicted[:, axis],
-            band.predicted_rate[:, axis],
-            band.model_errors[..., axis],
-        )
-        power, slope = float(p @ p), float(rate_m @ rate_p)
-        gain = float(m @ p) / power if power > 0 else 0.0
-        rest = m - gain * p
-        explains = float(rest @ rest) < (1 - LEAST_EXPLAINED) * float(m @ m)
-        if not (explains and GAIN_BAND[0] < gain < GAIN_BAND[1] and slope > 0 and m @ m > band.enough[axis]):
-            continue
-        step = -float(rest @ rate_p) / slope
-        scores = (rest + step * rate_m) * rate_p
-        coloured, freedom = cosine_covariance(scores[:, None], band.duration)
-        # Few cosines are small by chance now and then, and such a cell would outweigh all others: two independent
-        # signals of this band's width have scores with at least so much variance.
-        usual = len(scores) * float(scores @ scores) / (2 * band.width * band.duration)
-        noise = np.sqrt(max(float(coloured[0, 0]), usual)) / slope
-        floor = MODEL_ERROR * np.sqrt(power / float(rate_p @ rate_p))
-        across = errors - np.outer(errors @ p / power, p)  # the gain takes what is along the prediction
-        moved = gain * across @ rate_p / slope
-        found.append(_Cell(step, float(np.hypot(noise, floor)), freedom, moved))
-    return found
+    m, rate_m = band.at(delay)
+    p, rate_p = band.predicted, band.predicted_rate
+    power, slope, squares = _dots(p, p), _dots(rate_m, rate_p), _dots(m, m)
+    gain = _dots(m, p) / np.where(power > 0, power, np.inf)
+    rest = m - gain * p
+    explains = _dots(rest, rest) < (1 - LEAST_EXPLAINED) * squares
+    usable = (gain > GAIN_BAND[0]) & (gain < GAIN_BAND[1]) & (slope > 0) & (squares > band.enough)
+    axes = np.flatnonzero(explains & usable)
+    if not axes.size:
+        return []
+    p, rate_p, rate_m, rest = p[:, axes], rate_p[:, axes], rate_m[:, axes], rest[:, axes]
+    power, slope, gain = power[axes], slope[axes], gain[axes]
+    steps = -_dots(rest, rate_p) / slope
+    scores = (rest + steps * rate_m) * rate_p
+    cosines = score_cosines(scores, band.duration)
+    # Few cosines are small by chance now and then, and such a cell would outweigh all others: two independent
+    # signals of this band's width have scores with at least so much variance.
+    usual = len(scores) * _dots(scores, scores) / (2 * band.width * band.duration)
+    noise = np.sqrt(np.maximum(_dots(cosines, cosines), usual)) / slope
+    floor = MODEL_ERROR * np.sqrt(power / _dots(rate_p, rate_p))
+    # The gain takes what is along the prediction.
+    across = band.errors_by_rate[:, axes] - band.errors_along[:, axes] * _dots(p, rate_p) / power
+    moved = gain * across / slope
+    each = zip(steps, np.hypot(noise, floor), moved.T, strict=True)
+    return [_Cell(float(step), float(std), len(cosines), own) for step, std, own in each]
+
+
+def _dots(one: Array, other: Array) -> Array:
+    """Products of columns (n, k) with those of the other, (k,)."""
+    return np.asarray(np.einsum("nk,nk->k", one, other))

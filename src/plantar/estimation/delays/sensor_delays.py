@@ -14,6 +14,7 @@ import numpy as np
 
 from plantar.conventions import Array
 from plantar.estimation.delays.delay import GAIN_BAND, LEAST_EXPLAINED, LEAST_SHARE, MODEL_ERROR, banded
+from plantar.estimation.orthonormal import orthonormal, without
 
 ROUNDS = 3  # of weighing cells by what the solution leaves of them
 FEWEST_CELLS = 6  # axes in bands that must close
@@ -117,9 +118,9 @@ def _cells(balance: Balance) -> list[_Cell]:
             total = measured.sum(axis=1)
             gains = np.column_stack([predicted, measured[:, 1:] - measured[:, :1]])
             both = np.column_stack([predicted - total, others])
-            clear = both - gains @ np.linalg.lstsq(gains, both, rcond=None)[0]
+            clear = without(orthonormal(gains), both)
             missing, columns, wrong = clear[:, 0], clear[:, 1 : 1 + delays], clear[:, 1 + delays :]
-            rest = missing - columns @ np.linalg.lstsq(columns, missing, rcond=None)[0]
+            rest = without(orthonormal(columns), missing)
             gain = float(total @ predicted) / max(float(predicted @ predicted), 1e-300)
             explains = float(rest @ rest) < (1 - LEAST_EXPLAINED) * float(total @ total)
             if explains and GAIN_BAND[0] < gain < GAIN_BAND[1] and total @ total > least * len(total):

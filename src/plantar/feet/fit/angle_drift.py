@@ -15,7 +15,7 @@ from dataclasses import replace
 import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES, Array
-from plantar.estimation import effect_of
+from plantar.estimation import effect_of, influences_of
 from plantar.estimation.slow_drift import drift_beside
 from plantar.feet.fit.axis import AngleDrift, AxisFit
 from plantar.feet.fit.regression_data import blocks_of, model_columns, tangent_blocks
@@ -72,4 +72,4 @@ def _matters(fit: AxisFit, recordings: Sequence[Recording], drifts: Mapping[str,
         np.nan_to_num(torque(by_name[block.label], other) - torque(by_name[block.label], fit))
         for block in blocks
     ]
-    return bool((np.abs(effect_of(blocks, changes)) > NEGLIGIBLE * fit.std).any())
+    return bool((np.abs(effect_of(influences_of(blocks), changes)) > NEGLIGIBLE * fit.std).any())

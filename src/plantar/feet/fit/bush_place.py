@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES, UNIFORM, Array, Axis, Mask
-from plantar.estimation import Block, LinearFit, effect_of, fit_blocks
+from plantar.estimation import Block, LinearFit, effect_of, fit_blocks, influences_of
 from plantar.estimation.errors_in_variables import attenuation
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.load_torque import others_torque, place_columns
@@ -136,12 +136,7 @@ def about_its_place(
         drawn, left = _drawn(seen, unknown, spreads[tried])
         place[tried] += drawn
         unsure[np.ix_(tried, tried)] = left
-    follows = np.column_stack(
-        [
-            effect_of(blocks, [own[:, row] for own in columns], shared_offset=shared)
-            for row in range(len(spreads))
-        ]
-    )
+    follows = effect_of(influences_of(blocks, shared_offset=shared), columns)
     moved = -follows @ (place - before)
     covariance = fit.covariance.copy()
     covariance[:size, :size] += follows @ unsure @ follows.T

@@ -6,19 +6,17 @@ import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES, Array, Axis
 from plantar.feet.fit.axis import FittedModel
-from plantar.feet.recording import Recording, within_stances
+from plantar.feet.recording import Recording
+
+ACROSS = (
+    1.0,
+    -1.0,
+)  # by which a centre that is higher turns a horizontal force into torque, of pitch and roll
 
 
 def load_of(recording: Recording, foot: str) -> Array:
     """The vertical force through the fit's filter, (N,) [N], 0 where it is not known: where nothing is used."""
-    return _filtered_as_torque(recording, foot, recording.bushes[foot].force_z)
-
-
-def _filtered_as_torque(recording: Recording, foot: str, values: Array) -> Array:
-    """Values (N, ...) through the filter that the torque went through, 0 where they are not known."""
-    rows = values.reshape(len(values), -1)
-    smooth = within_stances(rows, recording.period, recording.cutoff, recording.stances[foot])
-    return np.nan_to_num(smooth).reshape(values.shape)
+    return recording.loads(foot)[:, 2]
 
 
 def moment_columns(recording: Recording, foot: str, axis: Axis) -> Array:
@@ -27,9 +25,8 @@ def moment_columns(recording: Recording, foot: str, axis: Axis) -> Array:
     A centre that is dz higher takes dz·F_x off the pitch torque and adds dz·F_y to the roll torque; the compressed z
     slide is such a height. One that is aside adds a torque as large as the load.
     """
-    column = ROTATIONAL_AXES.index(axis)
-    both = np.column_stack([recording.bushes[foot].force_z, across_force(recording, foot, column)])
-    return _filtered_as_torque(recording, foot, both)
+    column, loads = ROTATIONAL_AXES.index(axis), recording.loads(foot)
+    return np.column_stack([loads[:, 2], ACROSS[column] * loads[:, column]])
 
 
 def place_columns(recording: Recording, foot: str, axis: Axis) -> Array:
@@ -43,8 +40,7 @@ def step_columns(recording: Recording, foot: str, axis: Axis) -> Array:
     A foot that steps turns the robot: its yaw torque is as large as the others.
     """
     moments, other = moment_columns(recording, foot, axis), others_torque(recording, foot, axis)
-    yaw = _filtered_as_torque(recording, foot, yaw_torque(recording, foot))
-    return np.column_stack([moments, other, yaw])
+    return np.column_stack([moments, other, recording.loads(foot)[:, 3]])
 
 
 def others_torque(recording: Recording, foot: str, axis: Axis) -> Array:
@@ -69,4 +65,4 @@ def yaw_torque(recording: Recording, foot: str) -> Array:
 
 def across_force(recording: Recording, foot: str, column: int) -> Array:
     """The horizontal force that a higher centre turns into torque, (N,) [N], unfiltered."""
-    return np.asarray((1.0, -1.0)[column] * recording.bushes[foot].wrench[:, column])
+    return np.asarray(ACROSS[column] * recording.bushes[foot].wrench[:, column])

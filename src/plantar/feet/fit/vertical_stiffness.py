@@ -20,7 +20,7 @@ from plantar.contact.phases import DOUBLE, SUPPORTS
 from plantar.contact.relative_pose import relative_pose
 from plantar.contact.sole_height import height_changes
 from plantar.conventions import STIFFNESS_UNIT, Array, Mask
-from plantar.estimation import Block, effect_of, fit_linear, interval95, relative_std_percent
+from plantar.estimation import Block, effect_of, fit_linear, influences_of, interval95, relative_std_percent
 from plantar.feet.recording import Recording
 from plantar.notes import Note
 from plantar.results.feet import Parameter, Verdict
@@ -146,8 +146,9 @@ def _compliances(blocks: Sequence[Block], errors: Sequence[Sequence[Array]]) -> 
 
 def _moved(blocks: Sequence[Block], errors: Sequence[Sequence[Array]]) -> Array:
     """Covariance (k, k) of the values that errors of the heights make."""
-    effects = [effect_of(blocks, changes) for changes in errors]
-    size = blocks[0].regressor.shape[1]
+    influences = influences_of(blocks)
+    effects = [effect_of(influences, changes) for changes in errors]
+    size = len(influences[0])
     return np.asarray(sum((np.outer(effect, effect) for effect in effects), np.zeros((size, size))))
 
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.estimation import Block, effect_of, fit_blocks
+from plantar.estimation import Block, fit_blocks, influences_of
 from plantar.estimation.least_squares import values_without_each
 from plantar.estimation.random_effects import Differences, share_between
 from plantar.estimation.stance_least_squares import FEWEST_RECORDINGS, jackknife
@@ -91,8 +91,8 @@ def between_recordings(
         beyond = np.diag(covariance) - fit_blocks(blocks).std ** 2
         return [Cause(NAME, np.sqrt(np.maximum(beyond, 0.0)), 1.0, float(freedom[0]))]
     apart = recordings_apart([_differences(fit, blocks)], prior)
-    torques = _torques(fit, blocks)
-    effects = np.array([effect_of(blocks, _alone(torques, own)) for own in range(len(blocks))])
+    each = zip(influences_of(blocks), _torques(fit, blocks), strict=True)
+    effects = np.array([own @ torque for own, torque in each])
     return [Cause(NAME, np.sqrt(np.sum(effects**2, axis=0)), apart.share, float(apart.others))]
 
 

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES, Array
-from plantar.estimation import effect_of, fit_blocks
+from plantar.estimation import effect_of, fit_blocks, influences_of
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.regression_data import beside, tangent_blocks
 from plantar.feet.interval_width.systematic import SINGULAR, Cause
@@ -38,7 +38,9 @@ def encoder_delay_causes(fit: AxisFit, recordings: Sequence[Recording], shared: 
     late, std = float(found.values[-1]), float(found.std[-1])
     if found.condition_number > SINGULAR or abs(late) < SUSPECTED * std:
         return []
-    return [Cause(NAME, effect_of(blocks, columns, shared_offset=shared), min(abs(late), USUAL))]
+    return [
+        Cause(NAME, effect_of(influences_of(blocks, shared_offset=shared), columns), min(abs(late), USUAL))
+    ]
 
 
 def _column(recording: Recording, fit: AxisFit) -> Array:

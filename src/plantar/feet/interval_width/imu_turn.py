@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from plantar.estimation import effect_of
+from plantar.estimation import effect_of, influences_of
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.imu_mount import ImuTurn, turn_columns
 from plantar.feet.fit.regression_data import blocks_of
@@ -22,6 +22,5 @@ def imu_turn_causes(fit: AxisFit, recordings: Sequence[Recording], turn: ImuTurn
     if blocks[0].stances is None or not turn.covariance.any():
         return []
     columns = turn_columns(fit, recordings, [block.label for block in blocks])
-    ways = np.linalg.cholesky(turn.covariance).T
-    effects = [effect_of(blocks, [own @ way for own in columns]) for way in ways]
-    return [Cause(NAME, np.sqrt(np.sum(np.square(effects), axis=0)), 1.0)]
+    effects = effect_of(influences_of(blocks), columns) @ np.linalg.cholesky(turn.covariance)
+    return [Cause(NAME, np.sqrt(np.sum(effects**2, axis=1)), 1.0)]

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plantar.conventions import NORMAL95, ROTATIONAL_AXES, UNIFORM, Array, Mask
-from plantar.estimation import Block, effect_of, fit_blocks
+from plantar.estimation import Block, effect_of, fit_blocks, influences_of
 from plantar.estimation.residual_covariance import pooled_freedom
 from plantar.estimation.stance_least_squares import FEWEST_RECORDINGS
 from plantar.feet.fit.axis import AxisFit
@@ -66,10 +66,7 @@ def systematic_causes(
     blocks = tangent_blocks(recordings, fit, drift=not shared)
     by_name = {recording.name: recording for recording in recordings}
     parts = [(by_name[block.label], by_name[block.label].rows(foot)) for block in blocks]
-
-    def moved_by(changes: Sequence[Array]) -> Array:
-        return effect_of(blocks, changes, shared_offset=shared)
-
+    influences = influences_of(blocks, shared_offset=shared)
     by_delay = _by_delay(
         [(one.bushes[foot].torque[:, column], one.period, used) for one, used in parts], sensor_delay
     )
@@ -77,11 +74,13 @@ def systematic_causes(
     causes = [
         Cause(
             "delay",
-            max((moved_by(changes) for changes in by_delay), key=lambda effect: abs(effect[0])),
+            max((effect_of(influences, changes) for changes in by_delay), key=lambda effect: abs(effect[0])),
             sensor_delay.std,
             sensor_delay.freedom,
         ),
-        Cause("moment arm", moved_by(moment_arms), vertical.compliance_std[foot], vertical.freedom),
+        Cause(
+            "moment arm", effect_of(influences, moment_arms), vertical.compliance_std[foot], vertical.freedom
+        ),
         *_hidden_memory(fit, steps=blocks[0].stances is not None),
     ]
     if blocks[0].stances is not None:
@@ -101,9 +100,7 @@ def systematic_causes(
         # constant. Each recording has its own.
         usual = float(np.sqrt(np.mean(np.square(list(fit.offsets.values())))))
         sines = [np.sin(one.bushes[foot].deflection[used, 0]) for one, used in parts]
-        effects = np.array(
-            [moved_by([s if i == j else 0 * s for j, s in enumerate(sines)]) for i in range(len(sines))]
-        )
+        effects = np.array([own @ sine for own, sine in zip(influences, sines, strict=True)])
         causes.append(Cause("yaw torque zero", np.sqrt(np.sum(effects**2, axis=0)), usual))
     return causes
 

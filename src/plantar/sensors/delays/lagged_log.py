@@ -14,6 +14,7 @@ from plantar.sensors.newton_euler import with_gyroscope
 from plantar.sensors.newton_sides import SLOW
 from plantar.signals.filters import low_pass
 from plantar.signals.segments import longest_run
+from plantar.signals.thinning import slow_columns
 
 SEARCHED = 0.25  # s: later sensors are no sensors of the same motion
 STEP = 0.05  # s: half of it is a small phase of what is fastest below, and within reach of a refinement
@@ -73,8 +74,8 @@ def _thinned(log: MotionLog) -> MotionLog:
     wanted = ("imu.", "wrench.", "joint.")
     names = [name for name in log.columns if name.startswith(wanted) and ".orientation." not in name]
     stride = max(1, round(1 / (KEPT_RATE * log.period)))
-    slow = [low_pass(log.column(name), log.period, CUTOFF, every=stride) for name in names]
-    return MotionLog(log.name, log.time[::stride], dict(zip(names, slow, strict=True)), log.path)
+    slow = slow_columns({name: log.column(name) for name in names}, log.period, CUTOFF, stride)
+    return MotionLog(log.name, log.time[::stride], slow, log.path)
 
 
 def _moving(sides: Array, period: float) -> Array:
