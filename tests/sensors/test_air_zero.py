@@ -101,3 +101,12 @@ def test_how_much_swings_differ_is_their_deviation_and_told() -> None:
     assert zero is not None
     assert zero.scatter == pytest.approx(np.full(6, 4.0), rel=0.2)
     assert f"(200 swings, which differ by {zero.scatter[:3].max():.2g} N)" in zero.text
+
+
+def test_swings_too_short_to_be_flat_leave_no_rest_for_a_zero() -> None:
+    """Weight goes over slowly: a foot hangs for 0.3 s between two ramps of 0.8 s. The robot rests twice."""
+    time, wrench = walked(8)
+    share = np.interp(np.mod(time, 4.0), [0.0, 1.0, 1.8, 2.1, 2.9, 4.0], [1.0, 1.0, 0.0, 0.0, 1.0, 1.0])
+    rest = ((time > 7.0) & (time < 8.0)) | (time > 15.0)
+    wrench[:, 2] = ZERO[2] + WEIGHT * np.where(rest, 0.3, share)
+    assert air_zero(time, wrench, wrench[:, 2], WEIGHT) is None

@@ -27,6 +27,7 @@ from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note, unique
 from plantar.robot.guesses import guess_notes, naming_notes
 from plantar.robot.model import RobotModel
+from plantar.sensors.accelerometer_delay import with_accelerometers_on_time
 from plantar.sensors.attitude_scale import AttitudeScale, attitude_scale_notes
 from plantar.sensors.bandwidth import fading, fading_notes
 from plantar.sensors.delays.refined_delays import Each
@@ -122,8 +123,8 @@ def prepare_checked(
     progress: Progress,
 ) -> PreparedLogs:
     """Correct `checked` logs for delay, leave out what cannot be used, move torques to the loaded centre."""
-    even = [*logs, *validate]
     progress("estimate the sensors' delays")
+    even = with_accelerometers_on_time(robot, [*logs, *validate])
     if settings.wrench_delay is None:
         with over_logs(even) as each:
             delay = estimate_wrench_delay(robot, even, each)

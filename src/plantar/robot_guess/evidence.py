@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from plantar.checks.standing import UNEXPLAINED
 from plantar.conventions import FORCE, GRAVITY, Array
 from plantar.robot_guess.feet import Sole, box
 from plantar.robot_guess.seat import Seat, pressure, sensor_pose
@@ -85,8 +86,10 @@ def check_stance(
     if abs(carried - weight) > WORTH_A_WORD * weight:
         text += ": other masses, a gain, or somebody who holds the robot or leans on it"
     found = [Remark(text, abs(carried - weight) > OFF_WEIGHT * weight)]
+    unbalanced = left > UNEXPLAINED
     text = f"the feet's wrenches balance gravity to {100 * left:.1f} cm about the URDF's centre of mass"
-    found.append(Remark(text))
+    text += ": check how the force sensors are turned, and their signs" if unbalanced else ""
+    found.append(Remark(text, unbalanced))
     both = stance.double
     if len(soles) == 2 and both.sum() >= FEWEST:
         heights = [

@@ -86,8 +86,9 @@ def air_zero(time: Array, wrench: Array, force_z: Array, weight: float) -> AirZe
             places.append(float(np.mean(time[middle])))
             values.append(np.median(wrench[middle], axis=0))
             loads.append(float(np.median(force_z[middle])))
-    # A robot that stands still before its first step and after its last one reads the same for a while, too.
-    swung = np.array(loads) < min(loads, default=0.0) + ALIKE * weight
+    # A robot that stands still before its first step and after its last one reads the same for a while, too: all that
+    # does, where no swing is long enough to be flat. So what counts is what the foot reads at its lightest.
+    swung = np.array(loads) < low + ALIKE * weight
     if np.count_nonzero(swung) < FEWEST_SWINGS:
         return None
     seen, when = np.array(values)[swung], np.array(places)[swung]

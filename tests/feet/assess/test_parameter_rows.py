@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy import stats
@@ -87,3 +89,16 @@ def test_a_foot_without_samples_has_rows_that_say_why() -> None:
         assert [row.name for row in rows] == ["stiffness", "damping"]
         assert {(row.value, row.verdict, row.axis) for row in rows} == {(None, "unidentifiable", "roll")}
         assert words in rows[0].reason
+
+
+@pytest.mark.parametrize(("torque", "verdict"), [(40.0, "usable"), (4.0, "unidentifiable")])
+def test_a_slip_angle_is_worth_no_more_than_its_slip_torque(torque: float, verdict: str) -> None:
+    """Of 4 ± 10 N·m at 10 ± 0.3 mrad nothing is known, of 40 ± 10 N·m all."""
+    fit = fit_of(Elastoplastic(), (400.0, 20.0, torque))
+    places = [fit.names.index(name) for name in ("slip_torque", "slip_angle")]
+    std = np.array([4.0, 1.0, 4.0, 1.0])
+    std[places[1]] = 1.2e-4
+    rows = rows_of(
+        recording(), replace(fit, covariance=np.diag(std**2), freedom=np.full(4, 6.0), white_std=std)
+    )
+    assert [rows[place].verdict for place in places] == [verdict, verdict]

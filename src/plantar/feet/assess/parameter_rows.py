@@ -48,7 +48,17 @@ def axis_rows(
         rows.append(
             Parameter(fit.foot, fit.axis, term, unit, value, std, interval, relative, verdict, reason, advice)
         )
-    return rows
+    return [_beside_its_torque(row, rows) if row.name in fit.model.shape_terms else row for row in rows]
+
+
+def _beside_its_torque(row: Parameter, rows: Sequence[Parameter]) -> Parameter:
+    """An element's angle as unsure as its torque: where none is told from zero, at no angle does anything slip."""
+    told = all(one.verdict != "unidentifiable" for one in rows if one.name == "slip_torque")
+    return (
+        row
+        if told
+        else replace(row, verdict="unidentifiable", reason="its slip torque is not told from zero")
+    )
 
 
 def unseen_rows(foot: str, axis: Axis, recordings: Sequence[Recording]) -> list[Parameter]:

@@ -18,7 +18,7 @@ from plantar.conventions import ROTATIONAL_AXES, UNIFORM, Array, Axis, Mask
 from plantar.estimation import Block, LinearFit, effect_of, fit_blocks, influences_of
 from plantar.estimation.errors_in_variables import attenuation
 from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.load_torque import others_torque, place_columns
+from plantar.feet.fit.load_torque import late_encoder_torque, others_torque, place_columns
 from plantar.feet.fit.place_notes import (
     BUSH_WORTH_SAYING,
     CLEAR,
@@ -38,6 +38,7 @@ TURN_STEP = 1e-3  # rad, of the differences that stand for derivatives
 GUESSED_TURN = 0.02  # rad: of an IMU whose mount nobody measured, about any axis
 ALIKE = 0.5  # of another foot's height above the robot file's place
 UNSEEN = 1e-4  # of the torque's rms: what one deviation of a place adds beside it is as good as nothing
+ENCODERS_LATE = UNIFORM * 0.005  # s: a device's own filter delays an IMU by 5 ms at most, and encoders not
 SURE = 5.0  # deviations of the other axis' share, from which stances show it
 STEPS_LEAVE = 0.75  # of the squares that the model of one axis leaves
 SINGULAR = 1e6  # condition of the fit beyond which the motions do not show the place
@@ -123,19 +124,18 @@ def about_its_place(
     spreads = np.where(that_show(blocks, columns, spread.expected), spread.expected, 0.0)
     size, tried = blocks[0].regressor.shape[1], np.flatnonzero(spreads)
     before = np.array([*fit.moment_arms, fit.turned, *fit.imu_turned])
-    wider = [beside(block, own[:, tried]) for block, own in zip(blocks, columns, strict=True)]
-    found = fit_blocks(wider, shared_offset=shared)
-    # A push bends the foot and turns about the place alike: what noise takes off the one, the other takes up.
-    noisy = attenuation(_with_noise(wider, found), found.values, shared_offset=shared)
+    late = [late_encoder_torque(one, fit)[one.rows(fit.foot), None] for one in chosen]
+    plain = [beside(block, own[:, tried]) for block, own in zip(blocks, columns, strict=True)]
+    found, noisy, apart = _with_late_encoders(plain, late, shared)
     place, unsure = np.zeros(len(spreads)), np.diag(spreads**2)
     place[1] = spread.height
-    if found.condition_number <= SINGULAR and noisy is not None:
-        own, doubt = slice(size, size + len(tried)), UNIFORM * noisy[size:]
-        seen = before[tried] + (found.values + noisy)[own] - place[tried]
-        unknown = found.covariance[own, own] + np.outer(doubt, doubt)
-        drawn, left = _drawn(seen, unknown, spreads[tried])
-        place[tried] += drawn
-        unsure[np.ix_(tried, tried)] = left
+    if noisy is not None:
+        own, priors = slice(size, size + len(tried) + len(apart)), np.append(spreads[tried], apart)
+        doubt = UNIFORM * noisy[own]
+        seen = np.append(before[tried] - place[tried], 0.0 * apart) + (found.values + noisy)[own]
+        drawn, left = _drawn(seen, found.covariance[own, own] + np.outer(doubt, doubt), priors)
+        place[tried] += drawn[: len(tried)]
+        unsure[np.ix_(tried, tried)] = left[: len(tried), : len(tried)]
     follows = effect_of(influences_of(blocks, shared_offset=shared), columns)
     moved = -follows @ (place - before)
     covariance = fit.covariance.copy()
@@ -159,6 +159,25 @@ def about_its_place(
         imu_turned=(float(place[3]), float(place[4]), float(place[5])),
         notes=(*fit.notes, *place_notes(fit, place, np.sqrt(np.diag(unsure)), spread.deviations)),
     )
+
+
+def _with_late_encoders(
+    blocks: Sequence[Block], late: Sequence[Array], shared: bool
+) -> tuple[LinearFit, Array | None, Array]:
+    """The fit of blocks beside encoders that may be read apart from the IMU, what noise takes off its values (None
+    where motions do not show them), and by how much encoders may be apart [s], (0 or 1,).
+
+    Their torque goes with the joints' motion, as horizontal forces do. Where joints alone bend the bush it is damping:
+    then it is left out.
+    """
+    wider = [beside(block, own) for block, own in zip(blocks, late, strict=True)]
+    for tried, apart in ((wider, [ENCODERS_LATE]), (blocks, [])):
+        found = fit_blocks(tried, shared_offset=shared)
+        # A push bends the foot and turns about the place alike: what noise takes off the one, the other takes up.
+        noisy = attenuation(_with_noise(tried, found), found.values, shared_offset=shared)
+        if found.condition_number <= SINGULAR and noisy is not None:
+            return found, noisy, np.array(apart)
+    return found, None, np.zeros(0)
 
 
 def _with_noise(blocks: Sequence[Block], fit: LinearFit) -> list[Block]:

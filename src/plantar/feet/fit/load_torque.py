@@ -5,13 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES, Array, Axis
-from plantar.feet.fit.axis import FittedModel
+from plantar.feet.fit.axis import AxisFit, FittedModel
 from plantar.feet.recording import Recording
+from plantar.signals.filters import differentiate
 
-ACROSS = (
-    1.0,
-    -1.0,
-)  # by which a centre that is higher turns a horizontal force into torque, of pitch and roll
+# By which a centre that is higher turns a horizontal force into torque, of pitch and roll.
+ACROSS = (1.0, -1.0)
 
 
 def load_of(recording: Recording, foot: str) -> Array:
@@ -46,6 +45,17 @@ def step_columns(recording: Recording, foot: str, axis: Axis) -> Array:
 def others_torque(recording: Recording, foot: str, axis: Axis) -> Array:
     """The torque about the other axis, (N,) [N·m], 0 where it is not known."""
     return np.asarray(np.nan_to_num(recording.bushes[foot].torque[:, 1 - ROTATIONAL_AXES.index(axis)]))
+
+
+def late_encoder_torque(recording: Recording, fit: AxisFit) -> Array:
+    """Torque (N,) for each second by which encoders are read later than the IMU, 0 where that is not known."""
+    rates = recording.encoder_rates.get(fit.foot)
+    if rates is None:
+        return np.zeros(len(recording.time))
+    own = rates[:, ROTATIONAL_AXES.index(fit.axis)]
+    return np.asarray(
+        np.nan_to_num(fit.values[0] * own + fit.values[1] * differentiate(own, recording.period))
+    )
 
 
 def load_torque(recording: Recording, fitted: FittedModel) -> Array:

@@ -9,15 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
-from plantar.conventions import ROTATIONAL_AXES, Array
 from plantar.estimation import effect_of, fit_blocks, influences_of
 from plantar.feet.fit.axis import AxisFit
+from plantar.feet.fit.load_torque import late_encoder_torque
 from plantar.feet.fit.regression_data import beside, tangent_blocks
 from plantar.feet.interval_width.systematic import SINGULAR, Cause
 from plantar.feet.recording import Recording
-from plantar.signals.filters import differentiate
 
 NAME = "encoders' delay"
 SUSPECTED = 3.0  # deviations from none
@@ -30,7 +27,8 @@ def encoder_delay_causes(fit: AxisFit, recordings: Sequence[Recording], shared: 
     if blocks[0].stances is not None:
         return []
     by_name = {recording.name: recording for recording in recordings}
-    columns = [_column(by_name[block.label], fit) for block in blocks]
+    chosen = [by_name[block.label] for block in blocks]
+    columns = [late_encoder_torque(one, fit)[one.rows(fit.foot)] for one in chosen]
     if not any(column.any() for column in columns):
         return []
     wider = [beside(block, column[:, None]) for block, column in zip(blocks, columns, strict=True)]
@@ -38,17 +36,5 @@ def encoder_delay_causes(fit: AxisFit, recordings: Sequence[Recording], shared: 
     late, std = float(found.values[-1]), float(found.std[-1])
     if found.condition_number > SINGULAR or abs(late) < SUSPECTED * std:
         return []
-    return [
-        Cause(NAME, effect_of(influences_of(blocks, shared_offset=shared), columns), min(abs(late), USUAL))
-    ]
-
-
-def _column(recording: Recording, fit: AxisFit) -> Array:
-    """Torque of the used samples for each second by which the encoders are late, (n,)."""
-    rates = recording.encoder_rates.get(fit.foot)
-    rows = recording.rows(fit.foot)
-    if rates is None:
-        return np.zeros(int(rows.sum()))
-    own = rates[:, ROTATIONAL_AXES.index(fit.axis)]
-    torque = fit.values[0] * own + fit.values[1] * differentiate(own, recording.period)
-    return np.asarray(np.nan_to_num(torque)[rows])
+    influences = influences_of(blocks, shared_offset=shared)
+    return [Cause(NAME, effect_of(influences, columns), min(abs(late), USUAL))]

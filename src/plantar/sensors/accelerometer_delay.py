@@ -1,0 +1,141 @@
+"""By how much an accelerometer is behind the orientation of its own IMU: what soles that stand tell of both.
+
+Newton's law takes its moments from the accelerometer, a bush its angle from the orientation. Where a device filters
+the one and not the other, delays of force sensors come out against the one and go into damping with the other: 4 ms of
+a 60 Hz filter are 6 to 20 % of it. Over a sole that stands the IMU's acceleration is known (`tilt_error`), and one that
+is read τ late leaves a lean of the believed vertical which goes with the tilt's rate. What else leans with the robot's
+own motion is fitted beside it: a scale of the attitude, an IMU that is higher than the robot file says, or turned.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from plantar.contact.deflection import BushState, bush_states
+from plantar.contact.phases import carried_weight, detect_contact
+from plantar.conventions import GRAVITY, Array, rotation_from_quaternion
+from plantar.logs.motion_log import MotionLog, imu_columns
+from plantar.notes import Note
+from plantar.robot.model import RobotModel
+from plantar.sensors.tilt_error import CORRECTED, DERIVED, lean_of, stance_leans, unit_quaternions
+from plantar.signals.filters import differentiate, low_pass
+from plantar.signals.resampling import shifted
+
+SLOW = 0.15  # Hz: below it an attitude's wander leans more than any delay
+EDGE = 1.0  # s at both ends of a stance: the filters'
+RATE = CORRECTED  # 1/s and axis, of values that tell something new: half of what the band holds, since wander is red
+SURE = 3.0  # deviations
+STRAY = 0.0005  # s: what encoders that are a millisecond off, or legs that are, make of it
+LARGEST = 0.01  # s: a device's own filter; later is a fault, and `sensor_delay` searches for it
+COLUMNS = 8  # the lean, and what goes with it
+SINGULAR = (
+    1e-10  # of the columns' products, scaled to 1: one pace of sway does not tell scale and height apart
+)
+
+
+@dataclass(frozen=True)
+class AccelerometerDelay:
+    """Sums over stances: `products` (8, 8) of the lean and of what goes with it, delay first; `seconds` of all axes."""
+
+    products: Array = field(default_factory=lambda: np.zeros((COLUMNS, COLUMNS)))
+    seconds: float = 0.0
+
+    def __add__(self, other: AccelerometerDelay) -> AccelerometerDelay:
+        return AccelerometerDelay(self.products + other.products, self.seconds + other.seconds)
+
+    @property
+    def late(self) -> tuple[float, float]:
+        """How far the accelerometer is behind the orientation, and its deviation [s]; 0 and inf where none tells."""
+        size = np.sqrt(np.diag(self.products))
+        if size[0] == 0 or size[1] == 0 or self.seconds == 0:
+            return 0.0, np.inf
+        scale = np.where(size > 0, size, 1.0)
+        scaled = self.products / np.outer(scale, scale)
+        inverse = np.linalg.pinv(scaled[1:, 1:], rcond=SINGULAR, hermitian=True)
+        found = inverse @ scaled[1:, 0]
+        left = max(1.0 - float(found @ scaled[1:, 0]), 0.0)
+        unit = float(scale[0] / scale[1])
+        return float(found[0]) * unit, unit * float(np.sqrt(left * inverse[0, 0] / (RATE * self.seconds)))
+
+    @property
+    def sure(self) -> float:
+        """The delay to read it earlier by [s]; 0 where it is not told from none, or larger than a filter's.
+
+        No filter makes it early: ahead of the orientation, that is late, or follows it (`tilt_error`).
+        """
+        late, std = self.late
+        return late if SURE * float(np.hypot(std, STRAY)) < late < LARGEST else 0.0
+
+
+def with_accelerometers_on_time(robot: RobotModel, logs: Sequence[MotionLog]) -> list[MotionLog]:
+    """Checked logs of one IMU with its accelerometer read at the moments of its orientation, and a note of it.
+
+    All logs tell together: a filter belongs to the device. As they are where that is not sure.
+    """
+    found = sum((accelerometer_delay(robot, log) for log in logs), AccelerometerDelay())
+    late = found.sure
+    if robot.imu is None or not late:
+        return [*logs]
+    how = f"{1e3 * late:.1f} ± {2e3 * found.late[1]:.1f} ms behind the IMU's orientation (95 %)"
+    note = Note(
+        "accelerometer_delay", "info", f"accelerometer {how} over soles that stand, read earlier by as much"
+    )
+    columns, read = imu_columns(robot.imu.name, "linear_acceleration"), list[MotionLog]()
+    for log in logs:
+        if log.has(*columns):
+            on_time = shifted(log.linear_acceleration(robot.imu.name), log.period, late)
+            log = log.with_columns(dict(zip(columns, on_time.T, strict=True)), note)
+        read.append(log)
+    return read
+
+
+def accelerometer_delay(robot: RobotModel, log: MotionLog) -> AccelerometerDelay:
+    """What the stances of one evenly sampled log tell; nothing of one without orientation and accelerometer."""
+    imu, found = robot.imu, AccelerometerDelay()
+    orientation = None if imu is None else log.orientation(imu.name)
+    if imu is None or orientation is None or not log.has_imu(imu.name, "linear_acceleration"):
+        return found
+    period, edge = log.period, round(EDGE / log.period)
+    for signals in _leans(robot, log, unit_quaternions(orientation), log.linear_acceleration(imu.name)):
+        if len(signals) > 4 * edge:
+            moved = signals - low_pass(signals.reshape(len(signals), -1), period, SLOW).reshape(signals.shape)
+            rows = np.concatenate([moved[edge:-edge, 0], moved[edge:-edge, 1]])
+            found = found + AccelerometerDelay(period * rows.T @ rows, len(rows) * period)
+    return found
+
+
+def _leans(robot: RobotModel, log: MotionLog, orientation: Array, acceleration: Array) -> Iterator[Array]:
+    """Of each stance the lean about both axes and what goes with it, (n, 2, 8) [rad, and per unit]."""
+    period, bushes = log.period, _bushes(robot, log, orientation)
+    contacts = detect_contact(
+        {name: low_pass(bush.force_z, period, DERIVED) for name, bush in bushes.items()},
+        {name: foot.contact == "always" for name, foot in robot.feet.items()},
+        max(
+            carried_weight({name: bush.force_z for name, bush in bushes.items()}), 0.3 * robot.mass * GRAVITY
+        ),
+        period,
+    )
+    axes = rotation_from_quaternion(orientation)[:, :2]
+    earlier = -differentiate(low_pass(acceleration, period, DERIVED), period)
+    pushed, tilt = np.einsum("nij,nj->ni", axes, earlier), axes[:, :, 2]
+    for run, lean, height in stance_leans(orientation, acceleration, bushes, contacts, period):
+        place = np.mean([bush.sole_position[run, :2] for bush in bushes.values()], axis=0)
+        none = np.zeros_like(place)
+        smooth = low_pass(tilt[run], period, CORRECTED)
+        higher = lean_of(none, tilt[run], height, period)
+        turned = lean_of(none, np.column_stack([-place[:, 1], place[:, 0]]), height, period)
+        about = [np.stack([each[:, 0], none[:, 0]], axis=1) for each in (smooth, higher)]
+        across = [np.stack([none[:, 0], each[:, 1]], axis=1) for each in (smooth, higher)]
+        tilted = np.column_stack([-smooth[:, 1], smooth[:, 0]])
+        late = lean_of(pushed[run], none, height, period)
+        yield np.stack([lean, late, *about, *across, turned, tilted], axis=2)
+
+
+def _bushes(robot: RobotModel, log: MotionLog, orientation: Array) -> dict[str, BushState]:
+    """Where the soles are; no rate is asked for."""
+    positions, still = log.positions(robot), np.zeros((len(log), 3))
+    wrenches = {name: log.wrench(foot.wrench.name) for name, foot in robot.feet.items()}
+    return bush_states(robot, positions, np.zeros_like(positions), orientation, still, wrenches)
