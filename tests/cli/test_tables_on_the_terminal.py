@@ -114,7 +114,8 @@ def test_inertias_are_told_beside_the_urdfs() -> None:
     heads, rows = under(lines, "Inertial parameters of b: 12.00 kg")
     assert heads == ["link", "mass [kg] (URDF)", "m·cx [kg.m]", "m·cy [kg.m]", "m·cz [kg.m]"]
     assert rows == [
-        ["leg", "1 (1.5)", "2 (2.5)", "3 (3.5)", "4 (4.5)"], ["arm", "11 (11.5)", "12 (12.5)", "13 (13.5)", "14 (14.5)"],
+        ["leg", "1 (1.5)", "2 (2.5)", "3 (3.5)", "4 (4.5)"],
+        ["arm", "11 (11.5)", "12 (12.5)", "13 (13.5)", "14 (14.5)"],
     ]  # fmt: skip
     heads, rows = under(lines, "Cross validation")
     assert heads == ["motion", "of", "unit", "rms", "rms by URDF", "mean |error|", "mean alone", "error %"]
