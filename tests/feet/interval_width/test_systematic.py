@@ -180,3 +180,21 @@ def test_what_spring_and_element_take_from_each_other_leaves_their_sum() -> None
     (cause,) = _shared_slope(fit, [recording])
     assert cause.share == pytest.approx([0.01 * 300.0, 0.0, 0.01 * 3.0])
     assert cause.effect[0] + cause.effect[2] / 0.01 == pytest.approx(0.0)
+
+
+def test_the_yaw_torques_zero_is_as_large_as_the_others() -> None:
+    """Their root mean square, whatever their signs; each recording has its own, and moves roll by its own sine."""
+    angle = [swayed(2000, seed=seed) for seed in (0, 1)]
+    recordings = [made_recording(f"sway_{k}", own, 400.0 * own) for k, own in enumerate(angle)]
+    fit = fit_axis(recordings, FOOT, "roll", LINEAR)
+    assert fit is not None
+    fit = replace(fit, offsets={"sway_0": 3.0, "sway_1": -4.0})
+    exact = SensorDelay(0.0, 0.0, np.inf, False, Note("delay", "info", ""))
+    flat = VerticalStiffness((), (), {FOOT: 0.0}, {FOOT: 0.0}, np.inf)
+    causes = {cause.name: cause for cause in systematic_causes(fit, recordings, exact, flat, False)}
+    yaw = causes["yaw torque zero"]
+    assert yaw.std == pytest.approx(np.sqrt((3.0**2 + 4.0**2) / 2))
+    # A torque zero of 1 N·m in one of two alike recordings adds half of the pitch angle's sine to K·roll.
+    assert yaw.effect[0] == pytest.approx(np.hypot(0.5, 0.5), rel=0.05)
+    none = systematic_causes(replace(fit, axis="pitch"), recordings, exact, flat, False)
+    assert "yaw torque zero" not in {cause.name for cause in none}
