@@ -102,6 +102,10 @@ def test_what_is_told_has_its_number(log: MotionLog) -> None:
     assert "about axes 20 deg beside" in finding.text
     for late, said in ((0.03, "the gyroscope is 30 ms behind the orientation"),
                        (-0.03, "the orientation is 30 ms behind the gyroscope")):  # fmt: skip
-        told = [one.text for one in findings(changed(log, np.nan_to_num(shifted(rates, log.period, -late)))) if one.code == "imu_late"]
+        told = [
+            one.text
+            for one in findings(changed(log, np.nan_to_num(shifted(rates, log.period, -late))))
+            if one.code == "imu_late"
+        ]
         assert len(told) == 1
         assert said in told[0]

@@ -83,7 +83,10 @@ def test_verdicts_turn_where_the_page_says(
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_further_terms_may_be_twice_as_wide(sign: float) -> None:
-    ends = [tuple(sorted((sign * 2.0 * (1 - half), sign * 2.0 * (1 + half)))) for half in (0.299, 0.301, 0.99, 1.01)]
+    ends = [
+        tuple(sorted((sign * 2.0 * (1 - half), sign * 2.0 * (1 + half))))
+        for half in (0.299, 0.301, 0.99, 1.01)
+    ]
     verdicts = [judge_term(sign * 2.0, (low, high))[0] for low, high in ends]
     assert verdicts == ["usable", "weak", "weak", "unidentifiable"]
 
