@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from at_their_edges import AT_THEIR_EDGES
 from data_faults import DATA_FAULTS
 from designed_motions import DESIGNED_MOTIONS
 from drawn import DRAWN
@@ -28,4 +29,5 @@ LISTS = {
     "fleet": FLEET,
     "engine_exports": ENGINE_EXPORTS,
     "handed_on": HANDED_ON,
+    "at_their_edges": AT_THEIR_EDGES,
 }
