@@ -10,6 +10,8 @@ import pytest
 
 from plantar.conventions import Axis
 from plantar.exporters.bush import FootBush
+from plantar.exporters.contact import fit
+from plantar.exporters.contact.alone import MARKED, Measured
 from plantar.exporters.contact.fit import LOADS
 from plantar.exporters.contact.points import PointFoot, points_for, sides_of
 from plantar.exporters.contact.springs import (
@@ -120,3 +122,20 @@ def test_outer_points_rub_for_the_one_that_slides() -> None:
     ]
     assert told == pytest.approx([0.8 / 0.5, 0.8 / 1.1], rel=0.02)
     assert FRICTION == 1.0
+
+
+def test_what_a_foot_alone_shows_is_checked_over_loads_steps_and_angles(
+    foot: PointFoot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """K is 4 % off at each load, C 10 %, 20 % at steps of 2 ms; far out K is 30 % off."""
+
+    def shown(_: PointFoot, axis: Axis, load: float, step: float, share: float = MARKED) -> Measured:
+        k = 0.7 if share > 0.6 else 0.96 if load < 1.1 * WEIGHT else 1.04
+        return Measured(k * STIFFNESS[axis], (1.1 if step < 0.002 else 0.8) * DAMPING[axis])
+
+    monkeypatch.setattr(fit, "measured", shown)
+    found = fit._check(foot, "pitch", STIFFNESS["pitch"], DAMPING["pitch"], WEIGHT)
+    assert (found.stiffness_error, found.damping_error) == pytest.approx((0.04, 0.1))
+    assert found.steps == (0.0005, 0.001)
+    assert found.angle == pytest.approx(0.5 * foot.touching_angle("pitch", 0.5 * WEIGHT))
+    assert found.torque == pytest.approx(STIFFNESS["pitch"] * found.angle)
