@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,10 +17,12 @@ from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.fit.regression_data import blocks_of
 from plantar.feet.fit.vertical_stiffness import VerticalStiffness
 from plantar.feet.identify import identify_feet
+from plantar.feet.interval_width import systematic
 from plantar.feet.interval_width.systematic import (
     Cause,
     _between_walks,
     _by_delay,
+    _ends_of_stances,
     _shared_slope,
     _suspected_hardening,
     inflated,
@@ -198,3 +201,27 @@ def test_the_yaw_torques_zero_is_as_large_as_the_others() -> None:
     assert yaw.effect[0] == pytest.approx(np.hypot(0.5, 0.5), rel=0.05)
     none = systematic_causes(replace(fit, axis="pitch"), recordings, exact, flat, False)
     assert "yaw torque zero" not in {cause.name for cause in none}
+
+
+def test_ends_of_stances_move_a_fit_beyond_what_fewer_samples_do_by_chance(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Without a tenth at either end; the deviations of both fits differ by 3, so 3 of 5 may be chance (Hausman)."""
+    kept: list[np.ndarray] = []
+
+    class Rows(SimpleNamespace):
+        def part(self, rows: np.ndarray) -> str:
+            kept.append(rows)
+            return "inner"
+
+    fits = {
+        "inner": SimpleNamespace(values=np.array([405.0, 18.0]), std=np.array([5.0, 5.0])),
+        "whole": SimpleNamespace(values=np.array([400.0, 20.0]), std=np.array([4.0, 4.0])),
+    }
+    monkeypatch.setattr(
+        systematic, "fit_blocks", lambda some: fits["inner" if some[0] == "inner" else "whole"]
+    )
+    stances = SimpleNamespace(split=lambda: [np.arange(20), np.arange(20, 50)])
+    cause = _ends_of_stances([Rows(stances=stances)])  # type: ignore[list-item]
+    assert cause.effect == pytest.approx([4.0, 0.0])
+    assert kept[0].tolist() == [*range(2, 18), *range(23, 47)]
