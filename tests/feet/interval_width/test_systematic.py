@@ -225,3 +225,23 @@ def test_ends_of_stances_move_a_fit_beyond_what_fewer_samples_do_by_chance(
     cause = _ends_of_stances([Rows(stances=stances)])  # type: ignore[list-item]
     assert cause.effect == pytest.approx([4.0, 0.0])
     assert kept[0].tolist() == [*range(2, 18), *range(23, 47)]
+
+
+@pytest.mark.parametrize(("deviations", "suspected"), [(1.9, False), (2.1, True), (-2.1, True)])
+def test_a_cube_is_suspected_from_two_deviations_on(
+    monkeypatch: pytest.MonkeyPatch, deviations: float, suspected: bool
+) -> None:
+    angle = swayed(2000)
+    recordings = [made_recording("sway", angle, 400.0 * angle)]
+    fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
+    assert fit is not None
+    found = SimpleNamespace(
+        values=np.append(fit.values + [8.0, 1.0], 500.0 * deviations),
+        std=np.array([1.0, 1.0, 500.0]),
+        condition_number=10.0,
+    )
+    monkeypatch.setattr(systematic, "fit_blocks", lambda *_, **__: found)
+    causes = _suspected_hardening(fit, blocks_of(recordings, FOOT, "pitch", fit=fit), False)
+    assert len(causes) == suspected
+    for cause in causes:
+        assert np.abs(cause.share) == pytest.approx([8.0, 1.0]), "as far as it moves the fit"
