@@ -86,8 +86,8 @@ def test_motions_that_teach_nothing_are_named_and_many_are_counted() -> None:
 
     result = FeetResult("b", (), {}, "kelvin_voigt", (), (), (), (row("a", 0.5), row("b", 2.0)), ())
     assert trust(result) == (
-        "On motions it has not seen, the model beats predicting the offset alone in 1 of 2 cases; it has learnt nothing "
-        "for b left pitch.",
+        "On motions it has not seen, the model beats predicting the offset alone in 1 of 2 cases; it has "
+        "learnt nothing for b left pitch.",
     )
     lost = tuple(row(f"m{place}", 2.0) for place in range(8))
     (text,) = trust(replace(result, validation=lost))
