@@ -8,6 +8,7 @@ from designed_motions import DESIGNED_MOTIONS
 from drawn import DRAWN
 from drawn_again import DRAWN_AGAIN
 from drawn_everywhere import DRAWN_EVERYWHERE
+from drawn_last import DRAWN_LAST
 from engine_exports import ENGINE_EXPORTS
 from fleet_statistics import FLEET
 from handed_on import HANDED_ON
@@ -30,4 +31,5 @@ LISTS = {
     "engine_exports": ENGINE_EXPORTS,
     "handed_on": HANDED_ON,
     "at_their_edges": AT_THEIR_EDGES,
+    "drawn_last": DRAWN_LAST,
 }
