@@ -66,3 +66,17 @@ def test_a_sensor_that_drops_out_is_named_as_a_whole(robot: RobotModel, log: Mot
     assert (found.code, found.severity) == ("dropout", "warning")
     assert "columns 'wrench.left.*', t = 4.8" in found.text
     assert "read exactly 0" in found.text
+
+
+@pytest.mark.parametrize(("seconds", "told"), [(0.5, False), (0.8, True)])
+def test_gaps_are_worth_a_word_from_three_percent_of_the_log_on(
+    robot: RobotModel, log: MotionLog, seconds: float, told: bool
+) -> None:
+    """Of 20 s, in one hole or in two of different sensors."""
+    for parts in (("wrench.left",), ("wrench.left", "wrench.right")):
+        holed = log
+        for place, part in enumerate(parts):
+            start = 4.0 + 3.0 * place
+            rows = (log.time > start) & (log.time < start + seconds / len(parts))
+            holed = emptied(holed, part, rows)
+        assert len(list(check_gaps(robot, holed))) == told

@@ -9,6 +9,8 @@ from scipy.spatial.transform import Rotation
 from biped import record, sines, sway
 from plantar.checks.gyroscope import SCALE_OFF, TURNED, Turns, check_gyroscope
 from plantar.logs.motion_log import MotionLog
+from plantar.notes import Finding
+from plantar.signals.resampling import shifted
 
 GYROSCOPE = [f"imu.chest.angular_velocity.{axis}" for axis in "xyz"]
 
@@ -19,12 +21,16 @@ def log() -> MotionLog:
     return record(sway(duration=40.0, torso=torso))
 
 
-def codes(log: MotionLog) -> list[str]:
+def findings(log: MotionLog) -> list[Finding]:
     orientation = log.orientation("chest")
     assert orientation is not None
     turns = Turns.of(log, "chest", orientation)
     assert turns is not None
-    return [finding.code for finding in check_gyroscope("chest", log, orientation, turns)]
+    return list(check_gyroscope("chest", log, orientation, turns))
+
+
+def codes(log: MotionLog) -> list[str]:
+    return [finding.code for finding in findings(log)]
 
 
 def changed(log: MotionLog, rates: np.ndarray) -> MotionLog:
@@ -81,3 +87,25 @@ def test_a_scale_is_told_beyond_its_limit(log: MotionLog, share: float, found: l
 def test_axes_are_told_beyond_theirs(log: MotionLog, share: float, found: list[str]) -> None:
     turn = Rotation.from_rotvec([0.0, share * TURNED, 0.0])
     assert codes(changed(log, turn.apply(log.stack(GYROSCOPE)))) == found
+
+
+def test_what_is_told_has_its_number(log: MotionLog) -> None:
+    """Factors as they are, angles in degrees, times in milliseconds; each side of a delay by its name."""
+    rates = log.stack(GYROSCOPE)
+    (finding,) = findings(changed(log, 57.3 * rates))
+    assert "57 times the orientation's rate" in finding.text
+    (finding,) = findings(changed(log, 3.0 * rates))
+    assert "3 times the orientation's rate" in finding.text
+    (finding,) = findings(changed(log, 1.2 * rates))
+    assert "1.20 times the orientation's rate" in finding.text
+    (finding,) = findings(changed(log, Rotation.from_rotvec([0.0, np.radians(20.0), 0.0]).apply(rates)))
+    assert "about axes 20 deg beside" in finding.text
+    for late, said in ((0.03, "the gyroscope is 30 ms behind the orientation"),
+                       (-0.03, "the orientation is 30 ms behind the gyroscope")):  # fmt: skip
+        told = [
+            one.text
+            for one in findings(changed(log, np.nan_to_num(shifted(rates, log.period, -late))))
+            if one.code == "imu_late"
+        ]
+        assert len(told) == 1
+        assert said in told[0]

@@ -134,3 +134,25 @@ def test_a_gyroscope_in_the_world_is_told_of_where_a_reversed_axis_looks_the_sam
     (finding,) = check_imu("chest", log.with_columns(turned))
     assert finding.code == "sign"
     assert "about the world's axes" in finding.text
+
+
+@pytest.mark.parametrize(("degrees", "told"), [(22.0, False), (28.0, True)])
+def test_an_attitude_that_leans_against_the_accelerometer_is_told_from_25_degrees_on(
+    log: MotionLog, degrees: float, told: bool
+) -> None:
+    leaning = Rotation.from_rotvec([np.radians(degrees), 0.0, 0.0])
+    believed = leaning * Rotation.from_quat(log.stack(ORIENTATION), scalar_first=True)
+    quaternions = believed.as_quat(scalar_first=True)
+    wrong = log.with_columns(dict(zip(ORIENTATION, quaternions.T, strict=True)))
+    found = [one for one in check_imu("chest", wrong) if one.code == "attitude_mismatch"]
+    assert len(found) == told
+    for one in found:
+        assert float(one.text.split("by ")[1].split(" deg")[0]) == pytest.approx(degrees, abs=2.0)
+
+
+@pytest.mark.parametrize(("share", "told"), [(0.55, True), (0.65, False), (1.55, False), (1.65, True)])
+def test_an_accelerometer_in_another_unit_is_told_beyond_its_limits(
+    log: MotionLog, share: float, told: bool
+) -> None:
+    found = [one.code for one in check_imu("chest", scaled(ACCELEROMETER, share)(log))]
+    assert ("accelerometer_unit" in found) == told

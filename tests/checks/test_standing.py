@@ -178,6 +178,33 @@ def test_force_sensors_that_are_turned_are_told_by_as_much(degrees: int, feet: l
     assert f"columns {which}: turned by {degrees if degrees == 180 else -degrees:+d} deg" in finding.text
 
 
+@pytest.mark.parametrize(("degrees", "told"), [(8.0, False), (13.0, True), (-13.0, True)])
+def test_an_imu_turned_about_the_vertical_is_told_from_ten_degrees_on(
+    sway: MotionLog, degrees: float, told: bool
+) -> None:
+    robot = hrp2.robot()
+    assert robot.imu is not None
+    turned = robot.imu.placement.rpy + np.array([0.0, 0.0, np.radians(degrees)])
+    wrong = replace(robot, imu=replace(robot.imu, placement=replace(robot.imu.placement, rpy=turned)))
+    findings = [one for one in check_balance(wrong, sway) if one.code == "imu_turned"]
+    assert len(findings) == told
+    for one in findings:
+        size = float(one.text.split("turned by ")[1].split(" deg")[0])
+        assert abs(size) == pytest.approx(abs(degrees), abs=2.0)
+
+
+def test_what_a_reversal_mends_is_told_in_centimetres(sway: MotionLog) -> None:
+    wrong = reversed_(sway, "wrench.right_foot.torque.x")
+    before, after = (standing.stance_of(hrp2.robot(), log) for log in (wrong, sway))
+    assert before is not None
+    assert after is not None
+    (finding,) = [one for one in found(wrong) if one.code == "sign"]
+    right, as_is = (100 * one.sides().misfit for one in (after, before))
+    told, beside = (float(finding.text.split(word)[1].split()[0]) for word in ("gravity to", "instead of"))
+    assert beside == pytest.approx(as_is, abs=0.06)
+    assert 0.3 * right < told <= right + 0.06, "the best of what was tried"
+
+
 @pytest.mark.parametrize(
     "column", ["imu.chest.angular_velocity.y", "imu.chest.orientation.x", "wrench.right_foot.torque.x"]
 )

@@ -149,6 +149,18 @@ def test_an_impact_is_left_out_until_it_has_settled(axis: int) -> None:
     assert not struck[(time < 7.8) | (time > 10.4)].any()
 
 
+def test_what_shakes_for_most_of_a_log_is_still_shaken() -> None:
+    """The sensor's noise is what the calmest tenth of the log shows."""
+    random, time = np.random.default_rng(3), np.arange(4000) * 0.005
+    force = np.zeros((len(time), 3))
+    force[:, 2] = WEIGHT
+    rings = time > 7.0
+    force[:, 0] += random.normal(0, np.where(rings, 60.0, 0.5))
+    struck = shaken(force, WEIGHT, 0.005)
+    assert struck[time > 7.2].all()
+    assert not struck[time < 6.8].any()
+
+
 def test_stretches_are_widened_and_joined() -> None:
     mask = np.zeros(20, dtype=bool)
     mask[[5, 9]] = True

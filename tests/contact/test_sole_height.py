@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from biped import record, sway
 from plantar.contact.deflection import bush_states
@@ -51,3 +52,22 @@ def test_changes_follow_the_deviations(robot: RobotModel) -> None:
     )
     np.testing.assert_allclose(twice["imu x"], 2 * once["imu x"])
     assert np.abs(once["imu x"]).max() == pytest.approx(np.abs(np.median(once["imu x"])), rel=0.1)
+
+
+def test_an_imu_that_is_turned_about_each_axis(robot: RobotModel) -> None:
+    """As a log whose attitude is turned by the mount's deviation about that axis of the IMU."""
+    log = record(sway("sway", 3))
+    changes = dict(height_changes(log, replace(robot, uncertainty=Uncertainty(imu_mount=0.01))))
+    names = [f"imu.{robot.imu.name}.orientation.{axis}" for axis in "wxyz"]
+    believed = Rotation.from_quat(log.stack(names), scalar_first=True)
+    assert {name for name in changes if name.startswith("imu ")} == {"imu x", "imu y", "imu z"}
+    for place, axis in enumerate("xyz"):
+        found = []
+        for sign in (1.0, -1.0):
+            turned = (believed * Rotation.from_rotvec(sign * 0.01 * np.eye(3)[place])).as_quat(
+                scalar_first=True
+            )
+            moved = log.with_columns(dict(zip(names, turned.T, strict=True)))
+            found.append(height(robot, moved) - height(robot, log))
+        apart = [np.abs(one - changes[f"imu {axis}"]).max() for one in found]
+        assert min(apart) < 0.05 * np.abs(changes[f"imu {axis}"]).max() + 2e-5

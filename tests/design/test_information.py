@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from copy import copy
+
 import numpy as np
 import pytest
 
@@ -13,13 +15,14 @@ from plantar.design.family import CHANNELS, Lines
 from plantar.design.information import (
     MISSED,
     UNCLOSED,
+    Criterion,
     badness,
     delay_half_width,
     half_widths,
     information,
     vertical_half_width,
 )
-from plantar.design.reach import BEND, RATE, Reach, margin_kept
+from plantar.design.reach import BEND, LIFT, RATE, Reach, margin_kept
 from plantar.design.rubber import NEARBY, SECANT, SHARE, SLIP_ANGLE, remembered
 from plantar.design.search import best_motion
 from plantar.design.soft_feet import Softness
@@ -92,6 +95,19 @@ def test_a_number_out_of_reach_is_not_all_that_counts(monkeypatch: pytest.Monkey
     assert of(half) - of(reached) > 0.5 * np.log(2)  # of what is in reach the widest counts
 
 
+@pytest.mark.parametrize("criterion", ["widest", "D", "A"])
+def test_widths_that_are_all_as_wanted_times_a_number_count_as_its_logarithm(
+    monkeypatch: pytest.MonkeyPatch, criterion: Criterion
+) -> None:
+    reach, coefficients = design_samples.reach(), design_samples.coefficients()
+    monkeypatch.setattr(objective, "delay_half_width", lambda *_: 1.5 * objective.WANTED_DELAY)
+    wide = np.full(3, 1.5 * objective.WANTED_VERTICAL)
+    monkeypatch.setattr(objective, "vertical_half_width", lambda *_: wide)
+    all_alike = 1.5 * np.array(objective.WANTED) * np.ones((3, 2, 2, 2))
+    monkeypatch.setattr(objective, "half_widths", lambda *_: all_alike)
+    assert badness(reach, coefficients, criterion) == pytest.approx(np.log(1.5))
+
+
 def test_a_delay_shows_where_the_moments_change_and_costs_damping(monkeypatch: pytest.MonkeyPatch) -> None:
     """What a late sensor misses at each moment is the rate times the delay; C is off by K times the delay."""
     reach, coefficients = design_samples.reach(), design_samples.coefficients()
@@ -121,6 +137,9 @@ def test_a_delay_shows_where_the_moments_change_and_costs_damping(monkeypatch: p
 def test_vertical_compliance_shows_where_load_goes_from_foot_to_foot() -> None:
     reach, coefficients = design_samples.reach(), design_samples.coefficients()
     whole = vertical_half_width(reach, coefficients)
+    load = reach.of(reach.load, coefficients)
+    moved = np.std(load[:, 0] - load[:, 1], axis=-1) / reach.vertical
+    assert whole == pytest.approx(NORMAL95 * objective.UNEVEN / moved), "95 %, as everywhere"
     assert vertical_half_width(reach, 0.5 * coefficients) == pytest.approx(2 * whole)
     middle = coefficients.reshape(len(CHANNELS), -1).copy()
     for channel in ("centre.y", "trunk.roll", "left.roll", "right.roll", "left.pitch", "right.pitch"):
@@ -168,3 +187,35 @@ def test_the_element_is_at_least_the_rubber_of_the_rehearsals() -> None:
     stiff = Softness.told(hrp2.robot(), 800.0, None)
     more = Reach(design_samples.legs(), design_samples.linear(), lines, stiff, [stiff]).element
     assert more == pytest.approx(800.0 * np.array(SHARE))
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_feet_are_beyond_their_limits_where_a_centre_of_pressure_is(sign: float) -> None:
+    """Whichever way the motion goes: soles are longer in front than behind."""
+    reach, inside = design_samples.reach(), []
+    shape = sign * design_samples.coefficients()
+    for size in np.linspace(0.6, 2.0, 29):
+        bent, load = reach.of(reach.deflection, size * shape), reach.of(reach.load, size * shape)
+        rate = reach.of(reach.rate, size * shape)
+        slips = remembered(bent.reshape(-1, bent.shape[-1]), [SLIP_ANGLE]).reshape(bent.shape)
+        torque = reach.stiffness[:, None, None, None] * bent + reach.damping[:, None, None, None] * rate
+        torque += reach.element[:, None] * slips
+        free = np.abs(bent).max() < BEND
+        for place, (normals, room) in enumerate(reach._edges):
+            carried = reach.weight + load[:, place]
+            pressure = np.stack([-torque[:, place, 0], torque[:, place, 1]]) / carried
+            free &= bool((np.einsum("ek,ksn->esn", normals, pressure) + room[:, None, None] > 0).all())
+        free &= bool((-load.min() / reach.weight) < 1 - LIFT)
+        inside.append(free)
+        assert (reach._feet_used(size * shape) <= 1.0) == free, size
+    assert any(inside)
+    assert not all(inside)
+
+
+def test_joints_have_their_own_room_to_each_side() -> None:
+    reach, shape = copy(design_samples.reach()), design_samples.coefficients()
+    moved = reach._gain.T @ reach.of(reach._basis, shape)
+    for side, most in ((0, -moved.min(axis=1)), (1, moved.max(axis=1))):
+        reach._room = np.full_like(reach._room, np.inf)
+        reach._room[:, side] = 1e-3
+        assert reach._joints_used(shape) == pytest.approx(most.max() / 1e-3)

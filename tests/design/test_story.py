@@ -18,7 +18,7 @@ import command_line
 import design_samples
 from plantar.design import story
 from plantar.design.rehearsal import Rehearsal
-from plantar.design.story import FRICTION, KEPT, SPARE, DesignSettings, design_motion
+from plantar.design.story import EFFORT, FRICTION, KEPT, SPARE, DesignSettings, design_motion
 from plantar.design.writing.outputs import content_of, write_design
 from plantar.design.writing.sheet import sheet
 from plantar.errors import MotionError, SettingsError
@@ -85,6 +85,29 @@ def test_it_says_what_it_promises_and_what_it_kept(written: Path) -> None:
     assert f"stiffer than {needed:.4g} N·m/rad to hold it alone, and may be as soft as 250" in page
     stiff = sheet(content | {"stiffness_range": [600.0, 2400.0]}, approach=False)
     assert "feet of 600 N·m/rad could hold it, but" in stiff
+
+
+def test_limits_are_told_with_the_worst_of_the_rehearsals(written: Path) -> None:
+    found = design_samples.designed()
+    unlike = tuple(
+        replace(one, sole_margin=0.01 + 0.001 * k, friction=0.1 + 0.01 * k, effort=0.8 - 0.1 * k)
+        for k, one in enumerate(found.rehearsals)
+    )
+    content = content_of(replace(found, rehearsals=unlike), written, 100.0)
+    assert content["wanted"] == pytest.approx(
+        {
+            "stiffness_percent": 1.0,
+            "damping_percent": 4.0,
+            "sensor_delay": 0.001,
+            "vertical_compliance_percent": 30.0,
+        }
+    )
+    way, speed = found.trajectory().limits_used()
+    reached = [0.01, 0.1 + 0.01 * (len(unlike) - 1), 0.8, way, speed]
+    assert [one["reached"] for one in content["limits"]] == pytest.approx(reached)
+    assert [one["kept"] for one in content["limits"]] == [KEPT, FRICTION, EFFORT, 1.0, 1.0]
+    assert [one["unit"] for one in content["limits"]] == ["m", "", "", "", ""]
+    assert [one["sole_margin"] for one in content["rehearsals"]] == [one.sole_margin for one in unlike]
 
 
 def test_a_number_that_rehearsals_do_not_find_is_said(written: Path) -> None:

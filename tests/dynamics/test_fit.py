@@ -22,6 +22,7 @@ from plantar.dynamics import (
     model_parameters,
     pinocchio_motion,
     regressor,
+    solve_triangle,
     stacked,
 )
 from plantar.errors import DataError, RobotError
@@ -184,6 +185,21 @@ def test_what_a_motion_does_not_excite_is_named_and_infinitely_uncertain() -> No
     assert note.code == "unexcited"
     assert "wrist_3" in note.text
     np.testing.assert_allclose(fit.predict(q, v, a), tau, atol=0.06)
+
+
+@pytest.mark.parametrize(("share", "excited"), [(0.04, True), (0.06, False)])
+def test_a_parameter_is_named_from_a_twentieth_of_an_unexcited_direction_on(
+    share: float, excited: bool
+) -> None:
+    """Three columns of length one whose sum, weighted by a unit direction, is nothing."""
+    others = np.sqrt((1 - share**2) / 2)
+    sine = share / (2 * others)
+    columns = np.array([[1.0, -sine, -sine], [0.0, np.sqrt(1 - sine**2), -np.sqrt(1 - sine**2)]])
+    stacked = np.column_stack([np.vstack([columns, np.zeros((2, 3))]), [1.0, 2.0, 0.0, 0.5]])
+    found = solve_triangle(np.linalg.qr(stacked)[1])
+    assert found.rank == 2
+    assert found.excited.tolist() == [excited, False, False]
+    assert found.residual == pytest.approx(0.5)
 
 
 def test_one_sample_is_fitted_with_a_warning() -> None:

@@ -59,3 +59,16 @@ def test_the_interval_of_the_share_holds() -> None:
         found = share_between([Differences(shares[1:] - shares[0], own**2 * (np.eye(5) + 1.0))], 0.01)
         held += found.low < true < found.high
     assert held >= 0.9 * 200
+
+
+def test_differences_that_say_nothing_leave_the_prior() -> None:
+    """The root of the mean square, and the ends of the middle 95 %, of Student's half with its three degrees."""
+    found = share_between([Differences(np.zeros(1), np.array([[1e6]]))], 0.01)
+    shares = np.geomspace(1e-5, 0.2, 20001)
+    density = stats.t.pdf(shares / 0.01, 3)
+    square = np.trapezoid(density * shares**2, shares) / np.trapezoid(density, shares)
+    assert found.share == pytest.approx(np.sqrt(square), rel=0.02)
+    below = np.cumsum(density * np.gradient(shares))
+    low, high = np.interp([0.025, 0.975], below / below[-1], shares)
+    assert found.low == pytest.approx(low, rel=0.1)
+    assert found.high == pytest.approx(high, rel=0.1)

@@ -153,6 +153,20 @@ def test_offsets_hold_what_no_recording_shows(feet: dict[str, Any], tmp_path: Pa
     feet["robot_model"]["uncertainty"] = {"imu_mount": 0.0, "encoder_zero": 0.0}
     made, place = ranges(feet, tmp_path)
     assert made["parameters"][place["left.pitch.offset"]]["std"] == pytest.approx(scatter)
+    feet["robot_model"]["uncertainty"] = {"imu_mount": 0.0, "encoder_zero": 0.01}
+    made, place = ranges(feet, tmp_path)
+    leans = np.sqrt(6) * 0.01 * TRUTH["left"]["pitch"][0]  # six joints, each with a zero of its own
+    assert made["parameters"][place["left.pitch.offset"]]["std"] == pytest.approx(np.hypot(scatter, leans))
+
+
+def test_offsets_that_agree_are_as_sure_as_the_surest(feet: dict[str, Any], tmp_path: Path) -> None:
+    feet["robot_model"]["uncertainty"] = {"imu_mount": 0.0, "encoder_zero": 0.0}
+    own = [row for row in feet["offsets"] if (row["foot"], row["axis"]) == ("left", "pitch")]
+    for row, std in zip(own, (0.3, 0.1), strict=True):
+        row |= {"value": 2.0, "std": std}
+    made, place = ranges(feet, tmp_path)
+    found = made["parameters"][place["left.pitch.offset"]]
+    assert (found["mean"], found["std"]) == pytest.approx((2.0, 0.1))
 
 
 def test_a_vertical_stiffness_that_only_the_sum_shows_is_one_number(

@@ -47,10 +47,12 @@ def test_half_widths_are_those_of_the_fit(robot: RobotModel, logs: list[MotionLo
     recordings = prepare_all(robot, logs, (), PUNCTUAL, lambda _: None).fitted
     for foot in FEET:
         for axis in AXES:
-            fit = fit_blocks(blocks_of(recordings, foot, axis, drift=False))
+            fit = fit_blocks(blocks_of(recordings, foot, axis))
             for place, term in enumerate(("stiffness", "damping")):
                 expected = 196 * fit.std[place] / abs(fit.values[place])
-                assert found.together.half_width_percent[foot, axis, term] == pytest.approx(expected, rel=0.3)
+                assert found.together.half_width_percent[foot, axis, term] == pytest.approx(
+                    expected, rel=0.05
+                )
     assert found.together.worst == max(found.together.half_width_percent.values())
     widths = np.array(list(found.together.half_width_percent.values()))
     assert found.together.usual == pytest.approx(np.exp(np.log(widths).mean()))

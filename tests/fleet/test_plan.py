@@ -11,7 +11,7 @@ import pytest
 from command_line import refused, run
 from fleet_samples import make_logs, short_log
 from plantar.fleet.manifest import read_manifest
-from plantar.fleet.plan import stamp_in
+from plantar.fleet.plan import PlannedLog, groups_of, sources_of, stamp_in
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.save import save_log
 
@@ -81,3 +81,19 @@ def test_what_names_no_log_or_unit_is_told(tmp_path: Path, capsys: pytest.Captur
     for unit in ("(", "(a)(b)", "nowhere/(.*)/"):
         assert run("fleet", "plan", tmp_path / name, *robot, "--unit", unit) == 2
         assert "Traceback" not in capsys.readouterr().err
+
+
+def test_logs_of_a_day_stand_in_times_order_and_the_group_begins_with_the_first() -> None:
+    def log(name: str, hour: int, unit: str = "a") -> PlannedLog:
+        return PlannedLog(f"/{name}.csv", unit, datetime(2026, 5, 4, hour, tzinfo=UTC), "log")
+
+    groups = groups_of(
+        [log("first", 11), log("second", 9), log("other", 8, "b"), log("third", 10)], "robot.yaml"
+    )
+    assert [(group.name, group.unit, group.time) for group in groups] == [
+        ("a 2026-05-04", "a", datetime(2026, 5, 4, 9, tzinfo=UTC)),
+        ("b 2026-05-04", "b", datetime(2026, 5, 4, 8, tzinfo=UTC)),
+    ]
+    assert [one.place for one in groups[0].logs] == ["/second.csv", "/third.csv", "/first.csv"]
+    counted = sources_of([log("x", 1), log("y", 2)])
+    assert counted == "times from logs' stamps: 2"

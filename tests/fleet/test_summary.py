@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import json
-from datetime import timedelta
+from datetime import date, timedelta
 
 import numpy as np
 import pytest
 
 from fleet_tables import START, STEP_DAY, changing_fleet, failures, results, row
 from plantar.errors import SettingsError
-from plantar.fleet.series import by_day, series_of
-from plantar.fleet.summary import FleetSummary, reasons_of, summary_of
+from plantar.fleet.alarms import Alarm
+from plantar.fleet.series import Series, SeriesKey, by_day, series_of
+from plantar.fleet.statistics.random_effects import Mean
+from plantar.fleet.summary import FleetSummary, _advised, _with_shared, reasons_of, summary_of
 from plantar.fleet.tables import GroupRow
 from plantar.report.fleet import fleet_page
 
@@ -144,3 +146,22 @@ def test_effects_are_told_in_percent() -> None:
     assert effect.units_percent == pytest.approx(3.0, rel=0.4)
     assert effect.low < 400 * 1.02
     assert effect.high > 400 * 0.98
+
+
+def test_what_recordings_share_is_what_most_of_them_report() -> None:
+    """One of five that is unsure of its number does not make the robot's unsure."""
+    key = SeriesKey("left", "pitch", "stiffness", "N.m/rad")
+    stds = np.array([0.01, 0.01, 0.01, 0.012, 0.9])
+    series = Series("a", key, tuple("abcde"), np.arange(5.0), np.zeros(5), stds)
+    mean = Mean(0.0, 0.0, np.inf, -0.03, 0.03, 5)
+    assert _with_shared(mean, series) == pytest.approx(np.hypot(0.03, 1.96 * 0.01))
+
+
+def test_the_latest_alarms_come_first_and_outliers_behind_them() -> None:
+    def alarm(kind: str, day: int, text: str) -> Alarm:
+        seen = date(2026, 1, day)
+        return Alarm("a", "left", "pitch", "stiffness", kind, seen, seen, 1.0, None, None, ("g",), text)  # type: ignore[arg-type]
+
+    told = [alarm("outlier", 9, "a"), alarm("step", 2, "c"), alarm("step", 5, "e"), alarm("step", 5, "d")]
+    assert [one.text for one in _advised(told)] == ["d", "e", "c", "a"]
+    assert all(one.advice for one in _advised(told))

@@ -64,3 +64,11 @@ def test_the_state_at_a_landing_is_what_the_air_left(first: float) -> None:
 def test_a_single_stance_keeps_its_guess() -> None:
     bush = Hysteresis(MODELS["elastoplastic"], np.array([K, 10.0, SLIP_TORQUE]), np.array([SLIP_ANGLE]), 0.0)
     np.testing.assert_array_equal(landing_states(bush, [np.linspace(0, 0.01, 50)], np.array([0.3])), [0.3])
+
+
+def test_sensors_read_spring_element_and_offset() -> None:
+    bush = Hysteresis(
+        MODELS["elastoplastic"], np.array([K, 10.0, SLIP_TORQUE]), np.array([SLIP_ANGLE]), OFFSET
+    )
+    path, state = np.array([0.0, 0.01, -0.02]), np.array([0.5, 1.0, -1.0])
+    np.testing.assert_allclose(bush.torque(path, state), K * path + SLIP_TORQUE * state + OFFSET)

@@ -254,3 +254,14 @@ def test_the_reach_is_half_of_the_widest_swing_less_a_hundredth() -> None:
     ramp, still = np.linspace(-1.0, 3.0, 1001), np.zeros(1001)
     motion = BushMotion(np.concatenate([ramp, [np.nan], 0.1 * ramp]), np.zeros(2003), 0.01)
     assert reach([BushMotion(still, still, 0.01), motion]) == pytest.approx(0.99 * 2.0)
+
+
+def test_relaxation_is_looked_for_between_a_damper_and_drift() -> None:
+    """From 50 ms to a tenth of the longest run, in equal ratios; of short runs to four times the least."""
+    model = MODELS["standard_linear_solid"]
+    for seconds, slowest in ((40.0, 4.0), (1.0, 0.2)):
+        count = round(seconds / 0.01)
+        motion = BushMotion(0.01 * np.sin(np.linspace(0, 9, count)), np.zeros(count), 0.01)
+        times = model.candidates([motion])[:, 0]
+        assert times[[0, -1]] == pytest.approx([0.05, slowest])
+        assert np.ptp(np.diff(np.log(times))) < 1e-9

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from at_their_edges import AT_THEIR_EDGES
 from data_faults import DATA_FAULTS
 from designed_motions import DESIGNED_MOTIONS
 from drawn import DRAWN
 from drawn_again import DRAWN_AGAIN
 from drawn_everywhere import DRAWN_EVERYWHERE
+from drawn_last import DRAWN_LAST
 from engine_exports import ENGINE_EXPORTS
 from fleet_statistics import FLEET
 from handed_on import HANDED_ON
@@ -28,4 +30,6 @@ LISTS = {
     "fleet": FLEET,
     "engine_exports": ENGINE_EXPORTS,
     "handed_on": HANDED_ON,
+    "at_their_edges": AT_THEIR_EDGES,
+    "drawn_last": DRAWN_LAST,
 }

@@ -49,6 +49,8 @@ def test_a_batch_result_is_handed_on(tmp_path: Path) -> None:
     rows = [
         Parameter("left", "pitch", "slip_angle", "rad", 0.01, 0.001, None, None, "usable", ""),
         Parameter("left", "pitch", "slip_torque", "N.m", -2.0, None, None, None, "weak", ""),
+        Parameter("right", "pitch", "slip_angle", "rad", 0.02, 0.001, None, None, "usable", ""),
+        Parameter("right", "pitch", "slip_torque", "N.m", 3.0, 0.25, None, None, "usable", ""),
         Parameter("left", "roll", "stiffness", "N.m/rad", 400.0, 1.0, None, None, "usable", ""),
         Parameter("right", "roll", "stiffness", "N.m/rad", 400.0, 1.0, None, None, "weak", ""),
     ]
@@ -61,10 +63,16 @@ def test_a_batch_result_is_handed_on(tmp_path: Path) -> None:
     assert {"cutoff 3.0", "wrench_delay 0.004 0.001"} <= set(lines)
     # All is unsure of a torque whose deviation nobody knows.
     told = sorted(line for line in lines if line.startswith(("element", "linear")))
-    assert told == ["element 0 0.01 -2.0 2.0", "linear 1"], "of a weak stiffness nobody knows"
+    assert told == ["element 0 0.01 -2.0 2.0", "element 0 0.02 3.0 0.25", "linear 1"], (
+        "of a weak stiffness nobody knows"
+    )
     known, unknown = (line.split()[1:] for line in lines if line.startswith("compliance"))
     assert [float(value) for value in known] == [4e-6, 0.0]
-    assert float(unknown[0]) == 0.0 < float(unknown[1])
+    assert float(unknown[0]) == 0.0
+    weight = next(float(line.split()[1]) for line in lines if line.startswith("weight"))
+    assert float(unknown[1]) * weight == pytest.approx(0.003), (
+        "the robot's weight compresses it by millimetres"
+    )
 
 
 def test_the_written_file_makes_the_same_estimator(tmp_path: Path) -> None:

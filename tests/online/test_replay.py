@@ -44,6 +44,50 @@ def test_a_compliance_that_was_told_is_not_called_learnt() -> None:
 
 
 @pytest.mark.parametrize(
+    "name", ["pitch_stiffness", "pitch_damping", "roll_stiffness", "roll_slip_torque", "z"]
+)
+def test_a_number_may_be_used_once_it_is_known_within_a_tenth(name: str) -> None:
+    """Whatever its size and sign of doubt; beyond its own value it is not known, and beyond ten times not said."""
+
+    def judged(share: float) -> Parameter:
+        key = "compliance" if name == "z" else name
+        value = 4e-6 if name == "z" else 200.0
+        replay = ended(**{key: value, f"{key}_std": share * value / 4, f"{key}_half_width": share * value})
+        axis, _, number = name.partition("_")
+        return next(row for row in replay.parameters if (row.axis, row.name) == (axis, number or "stiffness"))
+
+    verdicts = {share: judged(share).verdict for share in (0.099, 0.101, 0.99, 1.01, 9.9)}
+    assert verdicts == {
+        0.099: "usable",
+        0.101: "weak",
+        0.99: "weak",
+        1.01: "unidentifiable",
+        9.9: "unidentifiable",
+    }
+    assert judged(10.1).value is None
+    near, far = judged(0.05), judged(0.4)
+    assert near.reason == ""
+    assert "± 40 % so far; known from ± 10 % on" in far.reason
+    assert far.value is not None
+    assert far.interval95 is not None
+    if name == "z":
+        assert far.interval95 == pytest.approx((1 / 5.6e-6, 1 / 2.4e-6))
+    else:
+        assert far.interval95 == pytest.approx((120.0, 280.0))
+        assert far.std == pytest.approx(20.0)
+        assert (
+            far.unit == {"stiffness": "N.m/rad", "damping": "N.m.s/rad", "torque": "N.m"}[name.split("_")[-1]]
+        )
+
+
+def test_how_long_a_step_takes_is_told_in_microseconds() -> None:
+    latency = np.concatenate([np.arange(9991) * 1e-9, np.full(9, 1e-3), [2e-3]])
+    replay = Replay(np.zeros(len(latency)), ("left",), np.zeros((len(latency), 1, len(FIELDS))), latency)
+    assert replay.latency_us["median"] == pytest.approx(5.0, rel=1e-3)
+    assert 9.9 < replay.latency_us["p999"] < 1000.0 < replay.latency_us["max"] == pytest.approx(2000.0)
+
+
+@pytest.mark.parametrize(
     ("flag", "word"), [(Flag.PITCH_UNTESTED, "too small"), (Flag.PITCH_MEMORY, "memory")]
 )
 def test_numbers_that_other_motions_change_are_weak(flag: Flag, word: str) -> None:

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from plantar.report.verdict import foot_verdicts, limits
-from plantar.results.feet import Diagnosis, Parameter
+import pytest
+
+from plantar.report.verdict import foot_verdicts, limits, trust
+from plantar.results.feet import Diagnosis, FeetResult, Parameter, ValidationRow
+from plantar.results.feet_rows import Verdict
 from report_walks import standing_result
 
 ADVICE = "weigh the robot"
@@ -50,3 +53,43 @@ def test_what_limits_a_number_does_not_say_again_what_its_verdict_says() -> None
     other = limits(replace(standing_result(), parameters=ROWS, diagnosis=(fresh,)))
     assert other.widest == fresh.text
     assert (other.each, other.remedies) == ((), ())
+
+
+@pytest.mark.parametrize(
+    ("verdicts", "mark", "said"),
+    [
+        (("usable", "usable"), "good", "K = 400 ± 8 N·m/rad, C = 400 ± 8 N·m/rad — usable"),
+        (("usable", "weak"), "weak", "K = 400 ± 8 N·m/rad (usable), C = 400 ± 8 N·m/rad (weak)"),
+        (("weak", "weak"), "weak", "K = 400 ± 8 N·m/rad, C = 400 ± 8 N·m/rad — weak"),
+        (
+            ("usable", "unidentifiable"),
+            "weak",
+            "K = 400 ± 8 N·m/rad (usable), C cannot be told from these logs",
+        ),
+        (("unidentifiable", "unidentifiable"), "bad", "K and C cannot be told from these logs"),
+    ],
+)
+def test_an_axis_is_marked_by_its_worst_number_and_says_no_number_that_nobody_may_use(
+    verdicts: tuple[Verdict, Verdict], mark: str, said: str
+) -> None:
+    rows = [
+        Parameter("left", "pitch", name, "N.m/rad", 400.0, 4.0, (392.0, 408.0), 0.1, verdict, "")
+        for name, verdict in zip(("stiffness", "damping"), verdicts, strict=True)
+    ]
+    ((found,),) = (one.statements for one in foot_verdicts(rows))
+    assert (found.mark, found.text, found.reasons) == (mark, said, ())
+
+
+def test_motions_that_teach_nothing_are_named_and_many_are_counted() -> None:
+    def row(motion: str, error: float) -> ValidationRow:
+        return ValidationRow("cross", motion, "left", "pitch", error, error, 9.0, 1.0, 1.0, 10)
+
+    result = FeetResult("b", (), {}, "kelvin_voigt", (), (), (), (row("a", 0.5), row("b", 2.0)), ())
+    assert trust(result) == (
+        "On motions it has not seen, the model beats predicting the offset alone in 1 of 2 cases; it has "
+        "learnt nothing for b left pitch.",
+    )
+    lost = tuple(row(f"m{place}", 2.0) for place in range(8))
+    (text,) = trust(replace(result, validation=lost))
+    assert text.endswith("m4 left pitch and 3 more (marked in the table).")
+    assert "in 0 of 8 cases" in text

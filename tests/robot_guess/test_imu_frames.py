@@ -32,3 +32,23 @@ def test_a_frame_that_tilts_otherwise_is_not_offered(named: str) -> None:
     assert found.link in ("torso", "twin")
     assert {found.link, *found.others} == {"torso", "twin"}
     assert ("tilts as the IMU does" in found.reason) == (named == "head")
+
+
+def leaning(frame: float, felt: float) -> Mount:
+    """What is guessed of a mount whose frame leans by `frame` [deg], of an IMU that feels up leant by `felt` [deg]."""
+    sway = np.radians(4) * np.sin(np.linspace(0, 20, SAMPLES))
+    links = {"torso": poses(sway)}
+    turn = rotation_from_rpy(np.array([np.radians(felt - frame), 0.0, 0.0]))
+    up = np.einsum("nji,j->ni", links["torso"][:, :3, :3], [0.0, 0.0, 1.0]) @ turn.T
+    level = np.tile([0.0, 0.0, 1.0], (SAMPLES, 1))
+    none = np.zeros(SAMPLES, np.intp)
+    stance = Stance({}, {}, np.zeros((SAMPLES, 3)), level, {}, {}, up, links, none)
+    return turned_to_gravity(Mount("torso", np.eye(3), False, "told"), stance)
+
+
+def test_angles_between_imu_and_soles_are_told_in_degrees() -> None:
+    for felt, before, after in ((6.0, "soles are ", " deg apart"), (90.0, "as it is, ", " deg off gravity"),
+                                (40.0, "turned by ", " deg to agree")):  # fmt: skip
+        reason = leaning(0.0, felt).reason
+        assert float(reason.split(before)[1].split(after)[0]) == pytest.approx(felt, abs=0.5)
+    assert np.abs(np.degrees(leaning(0.0, 90.0).rpy)).max() == 90.0

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 from example_robots import ROMEO, TALOS, model
 from plantar.conventions import Array
 from plantar.exporters.urdf.tree import UrdfTree
-from plantar.robot_guess.biped import find_biped
+from plantar.robot_guess.biped import Limb, find_biped
 from plantar.robot_guess.evidence import unlike_soles
-from plantar.robot_guess.feet import LONGEST, Sole, box, find_sole
+from plantar.robot_guess.feet import LONGEST, Sole, _by_inertia, box, find_sole
 
 
 @pytest.fixture
@@ -48,3 +49,21 @@ def test_an_inertia_that_no_foot_has_draws_no_outline() -> None:
         found = find_sole(tree, robot, biped, leg)
         assert np.ptp(found.corners[:, 0]) < LONGEST * biped.reach
         assert "size of a usual foot" in found.reason
+
+
+def test_a_foot_that_is_a_solid_box_is_as_much_larger_as_those_of_known_robots() -> None:
+    """1.2 times as long, 1.35 times as wide, and its sole twice as deep as its centre of mass."""
+    length, width, height = 0.2, 0.1, 0.06
+    body = pin.Inertia.FromBox(1.5, length, width, height)
+    inertia = pin.Inertia(1.5, np.array([0.03, 0.0, -0.05]), np.array(body.inertia))
+    robot = pin.Model()
+    ankle = robot.addJoint(0, pin.JointModelRX(), pin.SE3.Identity(), "ankle")
+    robot.appendBodyToJoint(ankle, inertia, pin.SE3.Identity())
+    limb = Limb("foot", ("ankle",), np.zeros(3), np.eye(3), "left")
+    found = _by_inertia(robot, limb, np.eye(3), 0.8)
+    assert found is not None
+    depth, spread, corners, _ = found
+    assert depth == pytest.approx(-0.1)
+    assert spread == pytest.approx(0.025)
+    assert np.ptp(corners, axis=0) == pytest.approx([1.2 * length, 1.35 * width])
+    assert corners.mean(axis=0) == pytest.approx([0.03, 0.0], abs=1e-12)

@@ -50,6 +50,15 @@ def test_a_drift_is_followed() -> None:
     assert zero.drift[3:] == pytest.approx(np.zeros(3), abs=0.1)
 
 
+@pytest.mark.parametrize(("swings", "followed"), [(3, False), (4, True)])
+def test_four_swings_show_a_drift_and_three_do_not(swings: int, followed: bool) -> None:
+    time, wrench = walked(swings, drift=2.0, noise=0.05)
+    zero = air_zero(time, wrench, wrench[:, 2], WEIGHT)
+    assert zero is not None
+    assert zero.swings == swings
+    assert zero.drift[:3] == pytest.approx(np.full(3, 2.0 if followed else 0.0), abs=0.1)
+
+
 def test_what_swings_scatter_by_is_no_drift() -> None:
     time, wrench = walked(8, noise=0.0)
     number = np.floor(time / 2.0).astype(int)

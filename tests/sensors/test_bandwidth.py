@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from types import SimpleNamespace
 
 import numpy as np
@@ -13,8 +14,21 @@ from plantar.sensors.bandwidth import FILTERED, Fading, fading, fading_notes
 PERIOD, COUNT = 0.025, 2400
 
 
+def first_order(frequency: np.ndarray, corner: float) -> np.ndarray:
+    return 1 / (1 + 1j * frequency / corner)
+
+
+def parabola(frequency: np.ndarray, corner: float) -> np.ndarray:
+    """What a low-pass of first order does to slow motion, at any frequency."""
+    return np.exp(-0.5 * (frequency / corner) ** 2)
+
+
 def log(
-    measured: float | None = None, predicted: float | None = None, gain: float = 1.0, noise: float = 0.01
+    measured: float | None = None,
+    predicted: float | None = None,
+    gain: float = 1.0,
+    noise: float = 0.01,
+    fades: Callable[[np.ndarray, float], np.ndarray] = first_order,
 ) -> object:
     """Forces of a motion up to 5 Hz; either side behind a low-pass of first order with a corner [Hz]."""
     random = np.random.default_rng(0)
@@ -22,7 +36,7 @@ def log(
     motion = np.fft.rfft(random.standard_normal((COUNT, 6)), axis=0) * np.exp(-((frequency / 3.0) ** 2))
 
     def read(corner: float | None) -> np.ndarray:
-        passed = 1.0 if corner is None else 1 / (1 + 1j * frequency / corner)
+        passed = 1.0 if corner is None else fades(frequency, corner)
         return np.fft.irfft(motion * passed, COUNT, axis=0)
 
     sides = [gain * read(measured), read(predicted)]
@@ -45,6 +59,15 @@ def test_a_low_pass_is_told_with_its_corner(corner: float) -> None:
     assert text.startswith("forces and torques fade beside IMU and encoders")
     (text,) = told(log(predicted=corner))
     assert text.startswith("IMU and encoders fade beside forces and torques")
+
+
+@pytest.mark.parametrize("corner", [4.0, 8.0])
+def test_a_parabola_of_the_gains_logarithm_is_found_as_it_is(corner: float) -> None:
+    for sign, sides in ((-1.0, {"measured": corner}), (1.0, {"predicted": corner})):
+        found = fading([log(**sides, fades=parabola)])
+        assert found is not None
+        assert found.slope == pytest.approx(sign / (2 * corner**2), rel=0.05)
+        assert found.corner == pytest.approx(corner, rel=0.03)
 
 
 @pytest.mark.parametrize(

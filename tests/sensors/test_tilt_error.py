@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,10 +12,11 @@ import pytest
 from biped import TRUTH, record, sway
 from biped_robot import make_robot
 from plantar.checks.log_checks import check_log
+from plantar.conventions import GRAVITY
 from plantar.feet.identify import identify_feet
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
-from plantar.sensors.tilt_error import tilt_error_of
+from plantar.sensors.tilt_error import lean_of, stance_leans, tilt_error_of
 from plantar.twin.sensing.attitude_filter import filtered_attitude
 
 CORRECTION_RATE = 0.2  # 1/s, of the filter below
@@ -80,6 +82,46 @@ def test_a_pull_is_told_in_noise_that_hides_most_of_it() -> None:
     assert found.believed
     assert abs(found.rate - clean.rate) < 3 * found.std
     assert not tilt_error_of(orientation, rates + noise, acceleration, log.period).believed
+
+
+def test_its_deviation_is_how_the_rate_scatters() -> None:
+    """Over draws of the gyroscope's noise: independent values are two axes' in the band."""
+    log, random = record(sway(duration=30.0)), np.random.default_rng(3)
+    orientation, rates, acceleration = parts(log)
+    found = [
+        tilt_error_of(orientation, rates + random.normal(0, 0.01, rates.shape), acceleration, log.period)
+        for _ in range(60)
+    ]
+    scatter = np.sqrt(np.mean([one.rate**2 for one in found]))
+    assert scatter == pytest.approx(np.median([one.std for one in found]), rel=0.2)
+
+
+@pytest.mark.parametrize(("hertz", "kept"), [(0.25, 1.0), (1.0, 0.96), (1.5, 0.5), (2.25, 0.04)])
+def test_a_lean_is_what_the_accelerometer_feels_over_gravity_and_height(hertz: float, kept: float) -> None:
+    """An attitude that is off by δ feels g δ - h δ'': (g + h ω²) δ; what is faster than 1.5 Hz stays as it is."""
+    time, height, omega = np.arange(0.0, 40.0, 0.01), 0.9, 2 * np.pi * hertz
+    lean = 0.01 * np.sin(omega * time)
+    push = np.column_stack([(GRAVITY + height * omega**2) * lean, np.zeros_like(lean)])
+    inner = slice(500, -500)
+    found = lean_of(push, np.zeros((len(time), 2)), height, 0.01)[inner]
+    assert found[:, 0] @ lean[inner] / (lean[inner] @ lean[inner]) == pytest.approx(kept, abs=0.04)
+    assert np.abs(found[:, 1]).max() < 1e-9
+
+
+@pytest.mark.parametrize(("seconds", "stances"), [(4.8, 0), (5.2, 1)])
+def test_a_stance_of_five_seconds_tells_a_lean_and_a_shorter_one_does_not(
+    seconds: float, stances: int
+) -> None:
+    count, stands = 2000, np.arange(2000) * 0.01 < seconds
+    place = np.zeros((count, 3))
+    place[:, 2] = -0.8
+    bushes = {"left": SimpleNamespace(sole_position=place)}
+    contacts = {"left": SimpleNamespace(standing=stands)}
+    upright = np.tile([1.0, 0.0, 0.0, 0.0], (count, 1))
+    felt = np.tile([0.0, 0.0, GRAVITY], (count, 1))
+    found = list(stance_leans(upright, felt, bushes, contacts, 0.01))  # type: ignore[arg-type]
+    assert len(found) == stances
+    assert all(height == pytest.approx(0.8) for _, _, height in found)
 
 
 def test_what_the_soles_have_put_right_is_no_fault_of_the_log(tmp_path: Path) -> None:

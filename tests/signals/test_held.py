@@ -66,3 +66,13 @@ def test_a_level_quaternions_first_number_is_not_held() -> None:
     assert (level[:400] == 1).all()
     log = MotionLog("level", TIME, {"imu.chest.orientation.w": level})
     assert without_held(log) is log
+
+
+@pytest.mark.parametrize(("share", "held"), [(0.95, True), (0.85, False)])
+def test_a_channel_that_often_repeats_itself_says_nothing(share: float, held: bool) -> None:
+    """Nine of ten other steps must change the value."""
+    values = WAVE.copy()
+    for place in np.flatnonzero(np.arange(TIME.size) % 20 < round(20 * (1 - share))):
+        values[place] = values[place - 1]
+    values[700:900] = values[700]
+    assert held_samples(values, PERIOD, full_scale=False).any() == held

@@ -33,7 +33,11 @@ def test_slow_motions_keep_size_and_time(rate: float) -> None:
     inner = slice(50, -50)
     there = thin.column("joint.knee.position")[inner]
     np.testing.assert_allclose(there, np.sin(10 * np.pi * thin.time[inner]), atol=1e-3)
-    assert [note.code for note in thin.notes] == ["thinned"]
+    (note,) = thin.notes
+    assert note.code == "thinned"
+    every = round(thin.period * rate)
+    assert f"{rate:.4g} Hz; every {every}th sample" in note.text
+    assert f"({rate / every:.4g} Hz)" in note.text
 
 
 def test_what_is_too_quick_does_not_pass_for_slow() -> None:

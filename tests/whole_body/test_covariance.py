@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ import pytest
 import small_biped
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
-from plantar.whole_body.covariance import uncertainty
+from plantar.whole_body.covariance import uncertainty, uncertainty_from
 from plantar.whole_body.dataset import Body, prepare_whole
 from plantar.whole_body.equations import Calibration, inertial_samples
 from plantar.whole_body.folds import Samples
@@ -85,3 +86,43 @@ def test_recordings_add_up(fit: RegularisedFit, samples: Samples) -> None:
     assert (twice.base >= once.base).all()
     assert (twice.base <= np.sqrt(2) * once.base * (1 + 1e-9)).all()
     assert (twice.base > 1.1 * once.base).any()
+
+
+def made_fit(sizes: list[float], apart: np.ndarray, regularisation: float) -> RegularisedFit:
+    """Independent numbers without noise, known with `sizes`, of a robot that is `apart` from its CAD at 0."""
+    square = np.square(sizes)
+    return SimpleNamespace(  # type: ignore[return-value]
+        base=Grouping(len(sizes)),
+        prior=SimpleNamespace(cad=np.zeros(len(sizes)), spread=np.eye(len(sizes))),
+        inertial=square * apart / (square + regularisation),
+        extras={},
+        regularisation=regularisation,
+        triangle=np.column_stack([np.diag(sizes), np.array(sizes) * apart]),
+    )
+
+
+class Grouping(list[int]):
+    """Base parameters that are the parameters themselves."""
+
+    def __init__(self, size: int) -> None:
+        super().__init__(range(size))
+        self.grouping = np.eye(size)
+
+
+@pytest.mark.parametrize("regularisation", [1.0, 25.0])
+def test_what_the_data_decide_says_how_far_the_rest_may_be_from_the_cad(regularisation: float) -> None:
+    """Of four numbers the logs show two: the others are as unsure as those two are from the CAD, root mean square."""
+    apart = np.array([3.0, -4.0, 0.5, 0.25])
+    fit = made_fit([1e3, 1e3, 1e-3, 1e-3], apart, regularisation)
+    trust = uncertainty_from(fit, [(np.zeros((4, 4)), 3.0), (np.zeros((4, 4)), 4.0)])
+    assert trust.base[2:] == pytest.approx(np.full(2, np.sqrt((3.0**2 + 4.0**2) / 2)), rel=1e-3)
+    assert trust.base[:2] == pytest.approx(trust.base[2:] * regularisation / (1e6 + regularisation), rel=1e-3)
+    assert trust.freedom == 7.0
+
+
+def test_scatter_of_the_scores_goes_through_the_inverse_twice() -> None:
+    fit = made_fit([2.0, 4.0], np.zeros(2), 1.0)
+    trust = uncertainty_from(fit, [(np.diag([9.0, 16.0]), 3.0), (np.diag([16.0, 9.0]), 4.0)])
+    assert trust.base == pytest.approx([5.0 / (4 + 1), 5.0 / (16 + 1)]), (
+        "deviations of sums add up in squares"
+    )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pinocchio as pin
@@ -19,7 +20,8 @@ from plantar.logs.readers import open_log
 from plantar.results.dynamics import DynamicsResult
 from plantar.robot.model import RobotModel, load_robot
 from plantar.whole_body.dataset import COULOMB_SPEED
-from plantar.whole_body.joints import Inertia, _judge, identify_joints
+from plantar.whole_body.joints import OFFSET_SHARE, Inertia, _held_out, _judge, identify_joints
+from plantar.whole_body.regularised_fit import HeldOutError, errors_of
 
 VISCOUS, COULOMB, OFFSET = 3.0, 2.0, 0.5
 TERMS = "".join(
@@ -235,3 +237,32 @@ def test_a_wide_interval_is_told_by_its_half() -> None:
     )  # fmt: skip
     assert _judge("viscous", -1.0, (-1.4, -0.6), 10.0, False)[1] == "negative, which is impossible"
     assert _judge("offset", 0.1, (-0.3, 0.5), 10.0, True)[0] == "usable", "near zero beside the torque"
+
+
+@pytest.mark.parametrize("value", [2.0, -2.0])
+def test_a_joints_term_is_judged_by_half_of_its_interval_over_its_value(value: float) -> None:
+    """A fifth of it; an offset may also be small beside the torque."""
+
+    def verdict(share: float, torque: float = 0.0) -> str:
+        low, high = sorted((value * (1 - share), value * (1 + share)))
+        return _judge("offset", value, (low, high), torque, False)[0]
+
+    assert [verdict(share) for share in (0.19, 0.21, 0.99, 1.01)] == [
+        "usable",
+        "weak",
+        "weak",
+        "unidentifiable",
+    ]
+    assert verdict(0.5, 1.0 / OFFSET_SHARE * 1.01) == "usable"
+    assert verdict(0.5, 1.0 / OFFSET_SHARE * 0.99) == "weak"
+
+
+def test_a_fit_is_judged_in_the_weights_of_another() -> None:
+    """Squared errors over squared weights: with half of the reference's weight the same error counts four times."""
+    tried = (HeldOutError(1.0, np.array([2.0, 4.0])), HeldOutError(2.0, np.array([5.0, 5.0])))
+    one = SimpleNamespace(held_out=tried, weights={0: 1.0, 1: 2.0})
+    reference = SimpleNamespace(held_out=tried, weights={0: 2.0, 1: 4.0})
+    alike, lighter = _held_out(one, one), _held_out(one, reference)  # type: ignore[arg-type]
+    assert lighter == pytest.approx(4 * alike)
+    assert alike == pytest.approx(float(errors_of(tried).min()))
+    assert _held_out(SimpleNamespace(held_out=()), one) == np.inf  # type: ignore[arg-type]

@@ -57,3 +57,22 @@ def test_a_mend_that_spoils_another_row_is_refused(robot: RobotModel, log: Motio
         recorded = np.column_stack([x + wrong, -x, z]) @ turn
         columns |= dict(zip(names, (sign * recorded).T, strict=True))
     assert "wrench_polarity" not in codes(robot, log.with_columns(columns))
+
+
+@pytest.mark.parametrize(("degrees", "said"), [(0.5, False), (3.0, True)])
+def test_a_tilted_mount_is_told_in_degrees(
+    robot: RobotModel, log: MotionLog, degrees: float, said: bool
+) -> None:
+    """Its accelerometer and gyroscope read in axes that are turned about the IMU's x."""
+    turn = pin.exp3(np.array([np.radians(degrees), 0.0, 0.0]))
+    columns = {}
+    for kind in ("linear_acceleration", "angular_velocity"):
+        names = [f"imu.trunk.{kind}.{axis}" for axis in "xyz"]
+        columns |= dict(zip(names, (log.stack(names) @ turn.T).T, strict=True))
+    body = Body.of(robot, floating=True)
+    tilted = prepare_whole(body, log.with_columns(columns), DynamicsSettings())
+    notes = [note for note in calibrate(body, [tilted])[1] if note.code == "imu_tilt"]
+    assert len(notes) == said
+    for note in notes:
+        told = [float(part) for part in note.text.split("by (")[1].split(")")[0].split(",")]
+        assert np.linalg.norm(told) == pytest.approx(degrees, abs=0.5)

@@ -127,6 +127,7 @@ def test_feet_that_differ_and_encoders_that_lag_are_told(
     assert found.note.code == "delays_apart"
     assert found.feet == pytest.approx({"left": 0.012, "right": 0.002}, abs=7e-4)
     assert found.encoders == 0.0
+    assert found.std > refined_delays.LEAST_STD, "no robot's model shows a delay better"
     lagging = sensor_delay(tmp_path, monkeypatch, 0.0, 0.0, 0.006)
     assert lagging.feet == {}
     assert lagging.encoders == pytest.approx(0.006, abs=7e-4)

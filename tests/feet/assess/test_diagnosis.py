@@ -54,9 +54,10 @@ def test_shares_are_of_variances_and_the_largest_limits() -> None:
 
 
 def test_coloured_residuals_are_the_models_and_an_interval_over_zero_is_the_motions() -> None:
-    coloured = axis_fit((3.0, 0.1), white=0.01)
+    """From ten times the white deviation on."""
+    coloured = axis_fit((3.0, 0.1), white=1 / 10.5)
     assert {row.limit for row in diagnose_axis(coloured, coloured, [], rows())} == {"model"}
-    hardly = axis_fit((3.0, 0.1), white=0.2)  # filtered noise is as coloured
+    hardly = axis_fit((3.0, 0.1), white=1 / 9.5)  # filtered noise is nearly as coloured
     assert {row.limit for row in diagnose_axis(hardly, hardly, [], rows())} == {"noise"}
     assert {row.limit for row in diagnose_axis(coloured, coloured, [], rows("unidentifiable"))} == {
         "excitation"

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from made_recording import FOOT, made_recording, predicted_torque, swayed
 from plantar.contact.reasons import Reason
 from plantar.feet.assess.residual_table import residual_table
+from plantar.feet.fit.prediction import Prediction
 
 
 def test_every_sample_has_a_row_with_its_prediction() -> None:
@@ -28,3 +31,24 @@ def test_every_sample_has_a_row_with_its_prediction() -> None:
     np.testing.assert_array_equal(predicted[:100], 390 * angle)
     assert np.isnan(predicted[100:]).all()
     assert np.isnan(table["pitch.predicted"]).all()
+
+
+def test_every_column_is_its_own_quantity_of_its_own_axis() -> None:
+    random, count = np.random.default_rng(0), 50
+    recording = made_recording("sway", np.zeros(count), np.zeros(count))
+    names = ("deflection", "rate", "torque", "cop")
+    drawn = {name: random.normal(size=(count, 2)) for name in names}
+    load = random.normal(size=count)
+    state = replace(recording.bushes[FOOT], **drawn, force_z=load)
+    parts = [random.normal(size=count) for _ in range(3)]
+    prediction = Prediction(*parts, np.ones(count, dtype=bool))
+    table = residual_table([replace(recording, bushes={FOOT: state})], {("sway", FOOT, "pitch"): prediction})
+    for column, axis in enumerate(("pitch", "roll")):
+        for name in names[:3]:
+            np.testing.assert_array_equal(table[f"{axis}.{name}"].to_numpy(), drawn[name][:, column])
+    for column, name in enumerate(("cop_x", "cop_y")):
+        np.testing.assert_allclose(table[name].to_numpy(), drawn["cop"][:, column], rtol=1e-6)
+    np.testing.assert_allclose(table["force_z"].to_numpy(), load, rtol=1e-6)
+    np.testing.assert_array_equal(table["pitch.predicted"].to_numpy(), parts[0])
+    np.testing.assert_array_equal(table["pitch.offset"].to_numpy(), parts[0] - parts[1])
+    assert np.isnan(table["roll.offset"].to_numpy()).all()

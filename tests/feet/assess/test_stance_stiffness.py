@@ -85,6 +85,19 @@ def test_a_walk_alone_tells_its_own_stiffness_and_how_well(walks: list[Recording
         assert high - low < 0.1 * row.stiffness
 
 
+def test_what_noise_of_the_angle_takes_off_a_walk_is_given_back(walks: list[Recording]) -> None:
+    """At least by the share of the angle's square within stances that is noise; other columns explain some of it."""
+    walk = walks[0]
+    angle, number = walk.bushes["left"].deflection[:, 0], (walk.time // STANCE).astype(np.intp)
+    means = np.bincount(number, angle) / np.bincount(number)
+    noise = 0.02 * float(np.mean((angle - means[number]) ** 2))
+    told = replace(walk, noise={**walk.noise, "left": np.array([[noise, noise], [0.0, 0.0]])})
+    plain = replace(walk, noise={**walk.noise, "left": np.zeros((2, 2))})
+    (without,), (given,) = (walk_stiffness([one], fitted([plain])) for one in (plain, told))
+    assert given.stiffness > without.stiffness / (1 - 0.02)
+    assert given.stiffness < 2.0 * without.stiffness
+
+
 def test_a_foot_that_stands_has_neither(robot: RobotModel, walks: list[Recording]) -> None:
     standing = [replace(walk, stances={"left": None, "right": None}) for walk in walks]
     fit = fitted(standing)

@@ -10,7 +10,7 @@ import pytest
 
 from biped import record, sines, sway
 from biped_robot import FEET, make_robot, robot_entry
-from plantar.feet.assess.verdicts import SIGNS, Evidence, judge
+from plantar.feet.assess.verdicts import SIGNS, Evidence, judge, judge_term
 from plantar.feet.identify import identify_feet
 from plantar.feet.settings import FeetSettings
 from plantar.logs.readers import open_log
@@ -55,6 +55,40 @@ def test_verdicts(
         assert advice == SIGNS
     else:
         assert advice is None or ("left foot" in advice and "forward and backward" in advice)
+
+
+@pytest.mark.parametrize(
+    ("change", "inside", "outside", "verdicts"),
+    [
+        ("half", 0.149, 0.151, ("usable", "weak")),
+        ("half", 0.499, 0.501, ("weak", "unidentifiable")),
+        ("seconds", 10.1, 9.9, ("usable", "weak")),
+        ("seconds", 3.1, 2.9, ("weak", "unidentifiable")),
+        ("explained", 0.81, 0.79, ("usable", "weak")),
+        ("explained", 0.31, 0.29, ("weak", "unidentifiable")),
+        ("leaning", 0.049, 0.051, ("usable", "weak")),
+        ("excitation", 1.1e-7, 0.9e-7, ("usable", "unidentifiable")),
+    ],
+)
+def test_verdicts_turn_where_the_page_says(
+    change: str, inside: float, outside: float, verdicts: tuple[str, str]
+) -> None:
+    """One step over each edge, all else as good as it may be; of both signs where the width is meant."""
+    for size, verdict in zip((inside, outside), verdicts, strict=True):
+        half = size if change == "half" else 0.01
+        evidence = GOOD if change == "half" else replace(GOOD, **{change: size})
+        interval = (400.0 * (1 - half), 400.0 * (1 + half))
+        assert judge("left", "pitch", "stiffness", 400.0, interval, evidence)[0] == verdict, size
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_further_terms_may_be_twice_as_wide(sign: float) -> None:
+    ends = [
+        tuple(sorted((sign * 2.0 * (1 - half), sign * 2.0 * (1 + half))))
+        for half in (0.299, 0.301, 0.99, 1.01)
+    ]
+    verdicts = [judge_term(sign * 2.0, (low, high))[0] for low, high in ends]
+    assert verdicts == ["usable", "weak", "weak", "unidentifiable"]
 
 
 def test_damping_asks_for_faster_motion() -> None:

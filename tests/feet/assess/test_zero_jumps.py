@@ -12,7 +12,8 @@ from bush_data_sets import Rubber
 from made_recording import FOOT, PERIOD, made_recording, swayed
 from plantar.contact.phases import AIR, SUPPORTS
 from plantar.contact.reasons import Reason
-from plantar.feet.assess.zero_jumps import CODE, zero_jumps
+from plantar.estimation import Block
+from plantar.feet.assess.zero_jumps import CODE, _left_beside, zero_jumps
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.identify import identify_feet
 from plantar.feet.recording import Recording
@@ -141,3 +142,18 @@ def test_an_encoder_that_slips_keeps_numbers_from_being_usable(robot: RobotModel
     healthy = found.parameter("right", "pitch", "stiffness")
     assert healthy.value == pytest.approx(TRUTH["right", "pitch"].stiffness, rel=0.01)
     assert not [note for note in identify_feet(robot, [log]).notes if note.code == CODE]
+
+
+@pytest.mark.parametrize(("share", "told"), [(0.4, False), (0.6, True)])
+def test_a_step_explains_most_of_what_is_missed(share: float, told: bool) -> None:
+    """Half of the squares; a step of `size` has a quarter of its square, the rest is noise."""
+    random = np.random.default_rng(0)
+    missed = random.standard_normal(2000)
+    missed /= missed.std()
+    step = 2 * np.sqrt(share / (1 - share)) * (np.arange(2000) >= 1000)
+    block = Block("sway", random.standard_normal((2000, 1)), 10 * random.standard_normal(2000), PERIOD, 1)
+    whole = missed - missed.mean() + step - step.mean()
+    left = _left_beside(whole, 1000, block)
+    assert (left is not None) == told
+    if left is not None:
+        assert left == pytest.approx((1 - share) * float(whole @ whole), rel=0.05)

@@ -50,3 +50,14 @@ def test_a_torque_that_stops_only_on_the_way_out_is_friction() -> None:
     angle = 0.03 * SWAY
     torque = np.clip(STIFFNESS * angle, -6.0, 6.0) + 3.0 * np.sign(np.cos(2 * np.pi * 0.25 * TIME))
     assert not moved(torque / LOAD, angle, torque).any()
+
+
+@pytest.mark.parametrize(("share", "is_edge"), [(0.0, True), (0.15, True), (0.35, False)])
+def test_over_an_edge_the_torque_hardly_grows(share: float, is_edge: bool) -> None:
+    """A quarter of the usual slope, which is the spread of the torque over that of the angle."""
+    angle = 0.03 * SWAY
+    bend = 0.012
+    usual = (bend + 0.03) * STIFFNESS / 0.06
+    slope = share * usual
+    torque = np.where(angle > bend, STIFFNESS * bend + slope * (angle - bend), STIFFNESS * angle)
+    assert moved(0.5 * torque / LOAD, angle, torque)[:, FRONT].any() == is_edge

@@ -196,3 +196,30 @@ def test_bad_stretches_are_left_out_with_their_reason(
     if shape == "held":  # shaken ones may count as impacts
         assert 2 * 3 * 0.2 < left_out(result) < 2 * 3 * 1.2
         assert {p.motion for p in result.phases if p.reason and p.reason.startswith("outlier")} == {"sway_2"}
+
+
+@pytest.mark.parametrize(
+    ("size", "spread", "found"),
+    [(7.0, 1.0, True), (5.0, 1.0, False), (7.0, 200.0, True), (7.0, 280.0, False)],
+)
+def test_a_stretch_is_bad_at_six_usual_misfits_and_three_percent_of_the_torque(
+    size: float, spread: float, found: bool
+) -> None:
+    """`size` in usual misfits; of a torque that spreads by `spread` of them."""
+    missed = np.tile([1.0, -1.0], 3000)
+    stretch = slice(3000, 3060)
+    missed[stretch] *= size
+    off = outliers(missed, spread, PERIOD, 0.1)
+    assert off.any() == found
+    if found:
+        assert off[stretch].all()
+        assert np.flatnonzero(off)[[0, -1]] == pytest.approx([2980, 3079], abs=1), (
+            "widened by the filter's reach"
+        )
+
+
+@pytest.mark.parametrize(("seconds", "found"), [(0.9, True), (1.2, False)])
+def test_what_lasts_longer_than_a_second_is_no_bad_sample(seconds: float, found: bool) -> None:
+    missed = np.tile([1.0, -1.0], 3000)
+    missed[3000 : 3000 + round(seconds / PERIOD)] *= 20.0
+    assert outliers(missed, 1.0, PERIOD, 0.0).any() == found

@@ -43,6 +43,8 @@ def test_what_lies_beyond_the_bend_is_left_out_on_that_side(
     reasons = [why.text for why in found.contacts[FOOT].reasons if why.reason is Reason.TORQUE_SATURATION]
     assert reasons
     assert all(("positive" if side > 0 else "negative") in text for text in reasons)
+    told = float(reasons[0].split("more than ")[1].split(" deg")[0])
+    assert told == pytest.approx(1.2, abs=0.15), "in degrees"
 
 
 def test_a_spring_that_never_bends_and_a_foot_with_a_centre_of_pressure_are_used_whole(
@@ -63,3 +65,12 @@ def test_the_window_is_about_the_resting_pose(robot: RobotModel) -> None:
 def test_a_short_log_is_left_as_it_is(robot: RobotModel) -> None:
     few = made_recording("few", ANGLE[:90], STIFFNESS * np.minimum(ANGLE[:90], 0.001))
     assert left_out(zeroed_under_load(robot), few).used(FOOT).all()
+
+
+@pytest.mark.parametrize(("share", "bent"), [(0.3, True), (0.7, False)])
+def test_a_torque_that_grows_at_less_than_half_of_its_slope_has_stopped(
+    robot: RobotModel, share: float, bent: bool
+) -> None:
+    torque = STIFFNESS * np.where(ANGLE > BEND, BEND + share * (ANGLE - BEND), ANGLE)
+    found = left_out(zeroed_under_load(robot), made_recording("tips", ANGLE, torque))
+    assert (not found.used(FOOT).all()) == bent

@@ -84,7 +84,13 @@ def test_what_noise_in_the_angles_takes_off_is_given_back_and_widens() -> None:
     right = unattenuated(fit, recordings, shared=False)
     assert right.values == pytest.approx([400.0, 20.0], rel=0.03)
     assert right.equivalent == pytest.approx(right.values)
-    assert np.all(right.std > fit.std)
+    taken = right.values - fit.values
+    added = right.covariance - fit.covariance
+    np.testing.assert_allclose(
+        added[:2, :2], 0.3**2 * np.outer(taken, taken), rtol=1e-6
+    )  # it may not be white
+    for name, part in zip(("stiffness", "damping"), 100 * taken / fit.values, strict=True):
+        assert f"{name} {part:+.2g} %" in right.notes[0].text
     assert [(note.code, note.severity) for note in right.notes] == [("noisy_regressors", "info")]
 
 

@@ -87,3 +87,23 @@ def test_a_prior_that_few_recordings_hold_up_is_no_more_sure_than_these() -> Non
     assert fit is not None
     (cause,) = between_recordings(fit, recordings, 0.05, False)
     assert (cause.std, cause.freedom) == (0.05, 2.0)
+
+
+def test_many_that_differ_say_it_by_what_each_moves() -> None:
+    """Fits without one of six recordings each (jackknife), what the fit itself is unsure by taken off."""
+    stiffness = 400.0 * (1 + np.array([-0.05, 0.03, 0.0, 0.04, -0.03, 0.01]))
+    noise = np.random.default_rng(1)
+    recordings = []
+    for seed, own in enumerate(stiffness):
+        angle = swayed(3000, seed=seed)
+        slow = np.convolve(noise.standard_normal(3000), np.ones(200) / 14.0, "same")
+        recordings.append(made_recording(f"sway_{seed}", angle, own * angle + slow))
+    fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
+    assert fit is not None
+    (cause,) = between_recordings(fit, recordings, 0.0, False)
+    assert cause.freedom == pytest.approx(5.0)
+    without = [fit_axis([*recordings[:k], *recordings[k + 1 :]], FOOT, "pitch", LINEAR) for k in range(6)]
+    values = np.array([one.values for one in without if one is not None])
+    jackknife = np.sqrt(5 * np.var(values, axis=0))
+    assert cause.share[0] > fit.std[0] > 1.0
+    assert np.hypot(cause.share, fit.std) == pytest.approx(jackknife, rel=0.01)

@@ -12,7 +12,7 @@ from biped_robot import make_robot, robot_entry
 from feet_trials import LINEAR, codes
 from plantar.conventions import NORMAL95
 from plantar.feet.identify import identify_feet
-from plantar.feet.interval_width.force_gain import GainError, force_gain_errors
+from plantar.feet.interval_width.force_gain import GainError, _mass_deviation, force_gain_errors
 from plantar.feet.prepare_log import checked, prepare
 from plantar.feet.recording import Recording
 from plantar.logs.motion_log import MotionLog
@@ -165,3 +165,12 @@ def test_a_balance_decides_between_masses_and_gains(tmp_path: Path) -> None:
     assert {"weighed", "force_gain"} & set(codes(light)) == {"force_gain"}
     assert "weighed 60.0 kg" in next(note.text for note in light.notes if note.code == "force_gain")
     assert "was weighed" in (light.parameter("left", "pitch", "stiffness").advice or "")
+
+
+def test_links_are_off_each_by_itself(weighed: RobotModel) -> None:
+    """Their errors add up in squares; of a robot that was weighed the balance tells."""
+    masses = np.array([inertia.mass for inertia in weighed.model.inertias])
+    rng = np.random.default_rng(0)
+    drawn = (masses * rng.normal(1.0, weighed.uncertainty.link_mass, (20_000, len(masses)))).sum(axis=1)
+    assert _mass_deviation(weighed) == pytest.approx(np.std(drawn) / masses.sum(), rel=0.03)
+    assert _mass_deviation(weighed) < 0.9 * weighed.uncertainty.link_mass

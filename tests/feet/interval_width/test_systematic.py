@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,10 +17,12 @@ from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.fit.regression_data import blocks_of
 from plantar.feet.fit.vertical_stiffness import VerticalStiffness
 from plantar.feet.identify import identify_feet
+from plantar.feet.interval_width import systematic
 from plantar.feet.interval_width.systematic import (
     Cause,
     _between_walks,
     _by_delay,
+    _ends_of_stances,
     _shared_slope,
     _suspected_hardening,
     inflated,
@@ -180,3 +183,65 @@ def test_what_spring_and_element_take_from_each_other_leaves_their_sum() -> None
     (cause,) = _shared_slope(fit, [recording])
     assert cause.share == pytest.approx([0.01 * 300.0, 0.0, 0.01 * 3.0])
     assert cause.effect[0] + cause.effect[2] / 0.01 == pytest.approx(0.0)
+
+
+def test_the_yaw_torques_zero_is_as_large_as_the_others() -> None:
+    """Their root mean square, whatever their signs; each recording has its own, and moves roll by its own sine."""
+    angle = [swayed(2000, seed=seed) for seed in (0, 1)]
+    recordings = [made_recording(f"sway_{k}", own, 400.0 * own) for k, own in enumerate(angle)]
+    fit = fit_axis(recordings, FOOT, "roll", LINEAR)
+    assert fit is not None
+    fit = replace(fit, offsets={"sway_0": 3.0, "sway_1": -4.0})
+    exact = SensorDelay(0.0, 0.0, np.inf, False, Note("delay", "info", ""))
+    flat = VerticalStiffness((), (), {FOOT: 0.0}, {FOOT: 0.0}, np.inf)
+    causes = {cause.name: cause for cause in systematic_causes(fit, recordings, exact, flat, False)}
+    yaw = causes["yaw torque zero"]
+    assert yaw.std == pytest.approx(np.sqrt((3.0**2 + 4.0**2) / 2))
+    # A torque zero of 1 N·m in one of two alike recordings adds half of the pitch angle's sine to K·roll.
+    assert yaw.effect[0] == pytest.approx(np.hypot(0.5, 0.5), rel=0.05)
+    none = systematic_causes(replace(fit, axis="pitch"), recordings, exact, flat, False)
+    assert "yaw torque zero" not in {cause.name for cause in none}
+
+
+def test_ends_of_stances_move_a_fit_beyond_what_fewer_samples_do_by_chance(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Without a tenth at either end; the deviations of both fits differ by 3, so 3 of 5 may be chance (Hausman)."""
+    kept: list[np.ndarray] = []
+
+    class Rows(SimpleNamespace):
+        def part(self, rows: np.ndarray) -> str:
+            kept.append(rows)
+            return "inner"
+
+    fits = {
+        "inner": SimpleNamespace(values=np.array([405.0, 18.0]), std=np.array([5.0, 5.0])),
+        "whole": SimpleNamespace(values=np.array([400.0, 20.0]), std=np.array([4.0, 4.0])),
+    }
+    monkeypatch.setattr(
+        systematic, "fit_blocks", lambda some: fits["inner" if some[0] == "inner" else "whole"]
+    )
+    stances = SimpleNamespace(split=lambda: [np.arange(20), np.arange(20, 50)])
+    cause = _ends_of_stances([Rows(stances=stances)])  # type: ignore[list-item]
+    assert cause.effect == pytest.approx([4.0, 0.0])
+    assert kept[0].tolist() == [*range(2, 18), *range(23, 47)]
+
+
+@pytest.mark.parametrize(("deviations", "suspected"), [(1.9, False), (2.1, True), (-2.1, True)])
+def test_a_cube_is_suspected_from_two_deviations_on(
+    monkeypatch: pytest.MonkeyPatch, deviations: float, suspected: bool
+) -> None:
+    angle = swayed(2000)
+    recordings = [made_recording("sway", angle, 400.0 * angle)]
+    fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
+    assert fit is not None
+    found = SimpleNamespace(
+        values=np.append(fit.values + [8.0, 1.0], 500.0 * deviations),
+        std=np.array([1.0, 1.0, 500.0]),
+        condition_number=10.0,
+    )
+    monkeypatch.setattr(systematic, "fit_blocks", lambda *_, **__: found)
+    causes = _suspected_hardening(fit, blocks_of(recordings, FOOT, "pitch", fit=fit), False)
+    assert len(causes) == suspected
+    for cause in causes:
+        assert np.abs(cause.share) == pytest.approx([8.0, 1.0]), "as far as it moves the fit"

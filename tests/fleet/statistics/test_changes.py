@@ -6,8 +6,10 @@ from collections import Counter
 
 import numpy as np
 import pytest
+from scipy import stats
 
-from plantar.fleet.statistics.changes import Change, history_of
+from plantar.fleet.statistics.changes import Change, _is_outlier, history_of
+from plantar.fleet.statistics.control_chart import Limits
 from plantar.fleet.statistics.trend import MONTH
 
 DAYS = np.arange(365.0)
@@ -77,6 +79,29 @@ def test_one_bad_day_is_an_outlier_with_its_size() -> None:
     assert (change.kind, change.first) == ("outlier", 60)
     assert (change.high - change.low) / 2 == pytest.approx(1.96 * NOISE, rel=0.2), "the others' scatter, 95 %"
     assert change.size == pytest.approx(0.2, abs=0.01)
+
+
+def test_the_size_of_a_step_has_students_interval_from_the_two_months_beside_it() -> None:
+    """Eight days before and nine behind; what lies further off may have drifted since."""
+    days = 7.0 * np.arange(40)
+    values = np.random.default_rng(7).normal(0, NOISE, 40) + 0.2 * (np.arange(40) >= 20)
+    (step,) = [one for one in history_of(days, values, np.ones(40), 1.0).changes if one.kind == "step"]
+    assert step.first == 20
+    beside = stats.ttest_ind(values[20:29], values[12:20], equal_var=True)
+    interval = beside.confidence_interval(0.95)
+    assert step.size == pytest.approx(values[20:29].mean() - values[12:20].mean())
+    assert (step.low, step.high) == pytest.approx((interval.low, interval.high))
+
+
+@pytest.mark.parametrize(("deviations", "outlier"), [(2.8, False), (3.6, True), (-2.8, False), (-3.6, True)])
+def test_a_day_stands_apart_by_four_fifths_of_the_limit_from_the_line_of_the_others(
+    deviations: float, outlier: bool
+) -> None:
+    time = np.arange(301.0)
+    noise = NOISE * stats.norm.ppf((np.random.default_rng(8).permutation(301) + 0.5) / 301)
+    noise[150] = deviations * NOISE
+    values = noise + 0.3 * time / MONTH
+    assert _is_outlier(150, [0], time, values, np.ones(301), Limits(4.0, 5.0)) == outlier
 
 
 def test_few_days_say_nothing() -> None:

@@ -27,7 +27,8 @@ def test_the_fastest_clock_is_the_base_and_the_rest_is_linear_in_between() -> No
     time, columns = merge([force, joints], LIMIT, notes)
     assert np.isin(time, fast).all()
     np.testing.assert_allclose(columns["wrench.l.force.z"], 3 * time + 1, atol=1e-12)
-    assert "streams_resampled" in {note.code for note in notes}
+    (note,) = [one for one in notes if one.code == "streams_resampled"]
+    assert note.text.endswith("resampled to the clock of j (500 Hz): w")
 
 
 def test_gaps_stay_gaps_and_samples_beside_them_stay_recorded() -> None:
@@ -100,3 +101,15 @@ def test_stamps_of_an_epoch_start_within_their_second() -> None:
     """As 1.7e9 s they keep a quarter of a microsecond; times of the log's own stay as they are."""
     assert origin(1_700_000_000.25) == 1_700_000_000.0
     assert [origin(first) for first in (0.0, 12.3, -4.0, 86400.5)] == [0.0] * 4
+
+
+@pytest.mark.parametrize(("periods", "gap"), [(2, False), (3, True)])
+def test_a_hole_of_more_than_two_and_a_half_periods_is_a_gap(periods: int, gap: bool) -> None:
+    base, other = np.arange(0, 4, 0.01), np.arange(0, 4, 0.1)
+    kept = np.r_[other[:20], other[19 + periods :]]
+    values = resample(stream("w", kept, wrench__l__force__z=kept), base)[0]["wrench.l.force.z"]
+    inside = (base > kept[19] + 1e-9) & (base < kept[20] - 1e-9)
+    assert inside.sum() >= 10
+    assert np.isnan(values[inside]).all() == gap
+    if not gap:
+        np.testing.assert_allclose(values[inside], base[inside], atol=1e-9)

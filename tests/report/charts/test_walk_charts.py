@@ -86,6 +86,10 @@ def test_zeros_of_swings_stand_where_they_were_read() -> None:
     )
     assert np.all(np.diff([dot.x for dot in vertical]) > 0), "recordings stand one after the other"
     assert len(dots(torque, "component x")) == 3 * STANCES
+    assert vertical[0].hover.endswith("s: −40.0 N")
+    assert all(dot.hover.endswith(" N·m") for dot in dots(torque, "component x"))
+    for chart, unit in ((force, "[N]"), (torque, "[N·m]")):
+        assert any(text.text.endswith(unit) for text in chart.panels[0].texts)
     taken = [mark for mark in force.panels[0].marks if isinstance(mark, Path) and mark.kind == "component z"]
     assert len(taken) == 3
     assert number_at(force, float(taken[0].points[1:].split("l")[0].split()[1])) == pytest.approx(

@@ -1,0 +1,104 @@
+"""What commands print when their work is done: the work is made up, so that every number is known."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from plantar.campaign import scene
+from plantar.cli import compare, design, select
+from plantar.comparison import compare as comparison
+from plantar.design import story
+from plantar.design.writing import outputs
+from plantar.feet.select_motions import Choice, Selection
+
+KEYS = [("left", "pitch", "stiffness"), ("left", "pitch", "damping")]
+
+
+def made_up(monkeypatch: pytest.MonkeyPatch, module: object, **values: object) -> None:
+    for name, value in values.items():
+        monkeypatch.setattr(module, name, lambda *_, _value=value, **__: _value)
+
+
+def choice(motions: str, width: float) -> Choice:
+    return Choice(tuple(motions), dict(zip(KEYS, (width, width), strict=True)), 10.0)
+
+
+def test_select_names_the_smallest_set_that_is_nearly_as_good_as_the_largest(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Within a fifth of the widths of the largest."""
+    best = (choice("a", 2.0), choice("ab", 1.25), choice("abc", 1.19), choice("abcd", 1.0))
+    found = Selection((choice("a", 2.0),), best, choice("abcd", 1.0), None)
+    made_up(monkeypatch, select, load_robot=None, open_together=[], select_motions=found)
+    select.run(Path("robot.yaml"), [Path("a.csv")], quiet=True)
+    assert capsys.readouterr().out.splitlines()[-1] == "3 logs give nearly all the information: a, b, c."
+
+
+def test_compare_ends_with_the_chest_of_all_motions_and_with_falls(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rows = [
+        comparison.KindScore("squat", "joints", 0.003, 0.004, 2.5, 12.0),
+        comparison.KindScore("sway", "joints", 0.0, 0.0, 1.5, 12.0),
+        comparison.KindScore("squat", "rigid", None, None, None, 0.0, 1.5),
+        comparison.KindScore("sway", "rigid", 0.01, 0.01, 9.0, 4.5, 5.5),
+    ]
+    made_up(monkeypatch, compare, load_robot=None, open_together=[])
+    monkeypatch.setattr(compare.FeetResult, "load", lambda *_, **__: None)
+    made_up(monkeypatch, comparison, compare=(rows, []))
+    compare.run(Path("result.json"), Path("robot.yaml"), [Path("a.csv")], quiet=False)
+    lines = capsys.readouterr().out.splitlines()
+    assert "chest, all motions: joints 3.54 mrad, rigid -" in lines
+    assert "squat: on 'rigid' the robot falls at 1.5 s, too early to compare" in lines
+    assert "sway: on 'rigid' the robot falls at 5.5 s, all are compared up to 4.5 s" in lines
+    assert next(line.split() for line in lines if line.startswith("squat")) == [
+        "squat",
+        "joints",
+        "3",
+        "4",
+        "2.5",
+    ]
+
+
+def test_design_prints_widths_and_rehearsals_in_their_units(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    at = [{"factor": 0.5, "half_width_percent": 2.5}, {"factor": 2.0, "half_width_percent": None}]
+    content: dict[str, Any] = {
+        "parameters": [
+            {"foot": "left", "axis": "pitch", "name": "stiffness", "half_width_percent": 1.25, "at": at}
+        ],
+        "rehearsals": [
+            {
+                "factor": factor,
+                "sole_margin": 0.0075,
+                "least_load": 0.45,
+                "friction": 0.12,
+                "effort": 0.66,
+                "bend": 0.034,
+            }
+            for factor in (0.5, 2.0)
+        ],
+        "notes": ["roll is not found"],
+    }
+    found = SimpleNamespace(
+        robot=None,
+        trajectory=lambda: SimpleNamespace(plan=lambda: None),
+        nominal=SimpleNamespace(bushes=None),
+    )
+    made_up(monkeypatch, design, load_robot=None)
+    made_up(monkeypatch, outputs, check_outputs=None, write_design=content)
+    made_up(monkeypatch, story, design_motion=found)
+    made_up(monkeypatch, scene, write_plan_scene=None)
+    design.run(Path("robot.yaml"), tmp_path / "motion.csv", stiffness=500.0, quiet=True)
+    lines = [line.split() for line in capsys.readouterr().out.splitlines()]
+    assert ["foot", "axis", "parameter", "predicted", "x0.5", "x2"] in lines
+    assert ["left", "pitch", "stiffness", "1.25", "2.5", "–"] in lines
+    heads = "stiffness margin on the soles [mm] least load [%] friction torque [% of limit] bend [rad]"
+    assert heads.split() in lines
+    assert ["x0.5", "7.5", "45", "0.12", "66", "0.034"] in lines
+    assert ["note", "(warning):", "roll", "is", "not", "found"] in lines

@@ -1,0 +1,204 @@
+"""Whole tables on the terminal: every number under the head that is its own, in the unit that the head says."""
+
+from __future__ import annotations
+
+import io
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from rich.console import Console
+
+from plantar.cli.compare import _cells
+from plantar.cli.fleet.report import print_alarms
+from plantar.cli.fleet.run import _reporter
+from plantar.cli.identify.dynamics_tables import print_inertia
+from plantar.cli.identify.feet_tables import print_feet
+from plantar.cli.inspect import _print
+from plantar.cli.online import _print as print_replay
+from plantar.comparison.compare import KindScore
+from plantar.contact.phases import Phase
+from plantar.fleet.run import Progress
+from plantar.inspection.log_summary import ColumnRange, FootSummary, LogSummary
+from plantar.notes import Finding, Note
+from plantar.online.estimates import FIELDS, Contact
+from plantar.online.replay import Replay
+from plantar.results.dynamics_rows import DynamicsScore, InertialParameter
+from plantar.results.feet import FeetResult
+from plantar.results.feet_rows import Parameter, ValidationRow
+from plantar.results.usage import used_shares
+from plantar.signals.resampling import Sampling
+
+K = Parameter("left", "pitch", "stiffness", "N.m/rad", 434.0, 1.5, (430.5, 437.5), 0.0125, "usable", "narrow")
+C = Parameter("left", "pitch", "damping", "N.m.s/rad", 20.0, 4.0, (12.25, 28.0), 0.5, "weak", "wide", "sway")
+Z = Parameter("left", "z", "stiffness", "N/m", None, None, None, None, "unidentifiable", "no shift", "shift")
+
+
+def shown(draw: object, *arguments: object) -> list[str]:
+    """The lines that something prints on a wide terminal."""
+    out = io.StringIO()
+    draw(Console(file=out, width=240, highlight=False), *arguments)  # type: ignore[operator]
+    return out.getvalue().splitlines()
+
+
+def under(lines: list[str], title: str) -> tuple[list[str], list[list[str]]]:
+    """Heads and rows of the table of that title: what stands two spaces apart."""
+    place = next(place for place, line in enumerate(lines) if line.strip().startswith(title))
+    body = [[cell.strip() for cell in line.split("  ") if cell.strip()] for line in lines[place + 1 :]]
+    end = next((row for row, cells in enumerate(body) if not cells), len(body))
+    return body[0], body[1:end]
+
+
+def test_feet_are_told_with_interval_deviation_and_scores() -> None:
+    scores = (
+        ValidationRow("direct", "sway", "left", "pitch", 0.125, 0.25, 30.0, 0.5, 5.0, 100),
+        ValidationRow("cross", "squat", "left", "pitch", 0.5, 0.75, 20.0, 2.5, 2.0, 100),
+    )
+    notes = (Note("drift", "warning", "it drifts"), Note("band", "info", "a filter"))
+    result = FeetResult("b", (), {"offset": "per-motion"}, "kelvin_voigt", (K, C, Z), (), (), scores, notes)
+    lines = shown(print_feet, result)
+    heads, rows = under(lines, "Table 1. Feet of b (kelvin_voigt, offset per-motion)")
+    assert heads == [
+        "foot",
+        "axis",
+        "parameter",
+        "value",
+        "unit",
+        "95 % interval",
+        "std",
+        "white std %",
+        "verdict",
+    ]
+    assert rows[:3] == [
+        ["left", "pitch", "stiffness", "434", "N.m/rad", "430.5 to 437.5", "1.5", "0.013", "usable"],
+        ["left", "pitch", "damping", "20", "N.m.s/rad", "12.25 to 28", "4", "0.5", "weak"],
+        ["left", "z", "stiffness", "–", "N/m", "–", "–", "–", "unidentifiable"],
+    ]
+    assert "left pitch damping: weak: wide. Next: sway." in lines
+    for title, numbers in (
+        ("Table 2. Direct validation [N·m]", ["sway", "left", "pitch", "0.125", "0.25", "30", "0.5", "5"]),
+        ("Table 3. Cross validation [N·m]", ["squat", "left", "pitch", "0.5", "0.75", "20", "2.5", "2"]),
+    ):
+        heads, rows = under(lines, title)
+        assert heads == [
+            "motion",
+            "foot",
+            "axis",
+            "mean |error|",
+            "rms",
+            "max |torque|",
+            "% of max",
+            "offset alone",
+        ]
+        assert rows[0] == numbers
+    first, last = lines.index("note (warning): it drifts"), lines.index("note (info): a filter")
+    assert first == 0
+    assert last == len(lines) - 1
+
+
+def test_inertias_are_told_beside_the_urdfs() -> None:
+    names = ("m", "mx", "my", "mz")
+    found = [
+        InertialParameter(link, name, "", value, cad)
+        for link, first in (("leg", 1.0), ("arm", 11.0))
+        for name, value, cad in zip(names, first + np.arange(4), first + 0.5 + np.arange(4), strict=True)
+    ]
+    score = DynamicsScore(
+        "cross", "squat", "N", 0.25, 0.375, 9.0, zero_mean_abs=1.5, cad_rms_error=3.0, samples=12,
+        relative_error_percent=7.5, axis="force.x",
+    )  # fmt: skip
+    result = SimpleNamespace(
+        robot="b", mass=12.0, inertial_parameters=found, validation=(score,), notes=(), schema=""
+    )
+    lines = shown(print_inertia, result)
+    heads, rows = under(lines, "Inertial parameters of b: 12.00 kg")
+    assert heads == ["link", "mass [kg] (URDF)", "m·cx [kg.m]", "m·cy [kg.m]", "m·cz [kg.m]"]
+    assert rows == [
+        ["leg", "1 (1.5)", "2 (2.5)", "3 (3.5)", "4 (4.5)"],
+        ["arm", "11 (11.5)", "12 (12.5)", "13 (13.5)", "14 (14.5)"],
+    ]  # fmt: skip
+    heads, rows = under(lines, "Cross validation")
+    assert heads == ["motion", "of", "unit", "rms", "rms by URDF", "mean |error|", "mean alone", "error %"]
+    assert rows == [["squat", "force.x", "N", "0.375", "3", "0.25", "1.5", "7.5"]]
+
+
+def test_a_log_is_told_foot_by_foot_with_what_it_identifies() -> None:
+    foot = FootSummary(
+        "left", 12.34, 3.21, 300.4, 10.04, {"pitch": 0.02, "roll": 0.01}, {"pitch": 0.1, "roll": 0.05}
+    )
+    sampling = Sampling(100.0, 0.0005, tuple((float(at), at + 0.25) for at in range(1, 8)))
+    columns = tuple(ColumnRange(f"c{place}", 0.0, 1.0, place) for place in range(8))
+    findings = (Finding("air_reading", "reads 3 N in the air"), Finding("gap", "a hole", fatal=True))
+    log = LogSummary("sway", 20.0, 2001, sampling, columns, 60.0, 59.5, (foot,), (K, C), findings, ())
+    lines = shown(_print, log, False, "URDF")
+    heads, rows = under(lines, "Feet")
+    assert heads == [
+        "foot", "both stand s", "alone s", "load N", "used s", "pitch deg rms", "roll deg rms", "pitch rad/s rms",
+        "roll rad/s rms",
+    ]  # fmt: skip
+    assert rows[0] == ["left", "12.3", "3.2", "300", "10.0", "1.15", "0.57", "0.100", "0.050"]
+    assert [line for line in lines if "gap from" in line] == [
+        f"  gap from {at}.000 to {at}.250 s" for at in range(1, 6)
+    ], "the first five, all are counted above"
+    assert sum("samples without a value" in line for line in lines) == 5
+    assert any("in which the zeros named below are still inside" in line for line in lines)
+    assert any("problem: a hole" in line for line in lines)
+    heads, rows = under(lines, "What this log identifies by itself")
+    assert heads == ["foot", "axis", "parameter", "value", "verdict", "reason"]
+    assert rows == [
+        ["left", "pitch", "stiffness", "434", "usable", "narrow"],
+        ["left", "pitch", "damping", "20", "weak", "wide"],
+    ]
+
+
+def test_a_replay_ends_with_its_numbers_and_the_time_of_a_step(capsys: pytest.CaptureFixture[str]) -> None:
+    values = np.zeros((2000, 1, len(FIELDS)))
+    values[:, 0, FIELDS.index("contact")] = Contact.STANCE
+    latency = 1e-6 * np.repeat([4.0, 12.0, 20.0], [1990, 9, 1])
+    print_replay(Replay(np.arange(2000.0), ("left",), values, latency), (K, C))
+    lines = capsys.readouterr().out.splitlines()
+    heads, rows = under(lines, "At the end of the log")
+    assert heads == ["foot", "axis", "parameter", "value", "95 %", "unit", "verdict", "reason"]
+    assert rows[:2] == [
+        ["left", "pitch", "stiffness", "434", "± 3.5", "N.m/rad", "usable", "narrow"],
+        ["left", "pitch", "damping", "20", "± 7.9", "N.m.s/rad", "weak", "wide"],
+    ]
+    heads, rows = under(lines, "Through the log")
+    assert heads == ["foot", "stands %", "pitch mrad rms", "roll mrad rms", "flags, % of the samples"]
+    assert lines[-1] == "a step: median 4.0 µs, 99.9 % 12.0 µs, longest 20.0 µs"
+
+
+def test_replays_of_a_simulator_are_told_in_milliradians() -> None:
+    score = KindScore("squat", "joints", 0.0015, 0.002, 3.25, 12.0)
+    assert _cells(score) == ("squat", "joints", "1.5", "2", "3.25")
+    assert score.chest == pytest.approx(0.0025)
+    assert _cells(KindScore("squat", "rigid", None, None, None, 0.0, 1.5))[2:] == ("falls",) * 3
+
+
+def test_alarms_fill_a_screen_and_the_rest_is_counted(capsys: pytest.CaptureFixture[str]) -> None:
+    alarms = [SimpleNamespace(kind="step", text=f"alarm {place}") for place in range(15)]
+    print_alarms(SimpleNamespace(alarms=alarms))  # type: ignore[arg-type]
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[:2] == ["step: alarm 0", "step: alarm 1"]
+    assert lines[-1] == "and 3 more alarms: see fleet.html"
+    assert len(lines) == 13
+
+
+def test_progress_counts_what_is_done_and_what_was_there() -> None:
+    said: list[str] = []
+    report = _reporter(said.append)
+    report(Progress(9, 2, 6, 1, 30.0))
+    assert said == ["8 of 9 groups done, 2 of them there already, 1 failed, 30 s left"]
+
+
+def test_how_much_of_a_log_was_used_adds_up_by_motion_and_foot() -> None:
+    phases = [
+        Phase("walk", "left", 0.0, 2.0, "double", True, None),
+        Phase("walk", "left", 2.0, 3.5, "transition", False, "tips"),
+        Phase("walk", "left", 3.5, 4.0, "transition", False, "tips"),
+        Phase("walk", "right", 0.0, 4.0, "single", True, None),
+    ]
+    assert used_shares(phases) == [
+        {"motion": "walk", "foot": "left", "seconds": 4.0, "served": 2.0, "reasons": "tips (2.0 s)"},
+        {"motion": "walk", "foot": "right", "seconds": 4.0, "served": 4.0, "reasons": ""},
+    ]

@@ -1,0 +1,141 @@
+"""A foot on points, without any engine: what its springs and dampers add up to, and what its notes say of them."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from plantar.conventions import Axis
+from plantar.exporters.bush import FootBush
+from plantar.exporters.contact import fit
+from plantar.exporters.contact.alone import MARKED, Measured
+from plantar.exporters.contact.fit import LOADS
+from plantar.exporters.contact.points import PointFoot, points_for, sides_of
+from plantar.exporters.contact.springs import (
+    FRICTION,
+    placed,
+    pushes,
+    said,
+    share_of_friction,
+    sliding_note,
+    spring_foot,
+    stiffness_under,
+    vertical_note,
+)
+from plantar.exporters.spring import Spring
+
+WEIGHT = 600.0
+SOLE = np.array([[0.13, 0.06, -0.1], [-0.09, 0.06, -0.1], [-0.09, -0.05, -0.1], [0.13, -0.05, -0.1]])
+SPRINGS = (
+    Spring("z", 2.5e5, 5000.0, 0.0),
+    Spring("pitch", 434.0, 15.5, 0.0),
+    Spring("roll", 323.0, 17.5, 0.0),
+)
+FOOT = FootBush("left", "ankle", SPRINGS, np.zeros(3), np.eye(3), SOLE)
+STIFFNESS: dict[Axis, float] = {"z": 2.5e5, "pitch": 434.0, "roll": 323.0}
+DAMPING: dict[Axis, float] = {"z": 5000.0, "pitch": 15.5, "roll": 17.5}
+
+
+@pytest.fixture(scope="module")
+def foot() -> PointFoot:
+    return points_for(STIFFNESS, DAMPING, sides_of(FOOT), 0.1, WEIGHT, 0.2)
+
+
+def test_points_add_up_to_the_springs_and_dampers_asked_for(foot: PointFoot) -> None:
+    assert foot.vertical == pytest.approx((2.5e5, 5000.0))
+    for axis in ("pitch", "roll"):
+        assert foot.turning(axis) == pytest.approx((STIFFNESS[axis], DAMPING[axis]))
+    edges = [p for p in foot.points if p.lower > 0]
+    for sides in ([p.x for p in edges], [p.y for p in edges]):
+        assert sum(p.stiffness * side for p, side in zip(edges, sides, strict=True)) == pytest.approx(
+            0.0, abs=1e-9
+        )
+        assert min(sides) < 0 < max(sides)
+
+
+@pytest.mark.parametrize("load", [0.1 * WEIGHT, 0.5 * WEIGHT, WEIGHT])
+def test_a_load_is_carried_by_what_touches(foot: PointFoot, load: float) -> None:
+    """Below the share that edges carry alone the middle point does not touch."""
+    sink = foot.sink(load)
+    carried = [p.stiffness * max(sink + p.lower, 0.0) for p in foot.points]
+    assert sum(carried) == pytest.approx(load)
+    assert pushes(foot, load) == pytest.approx(carried)
+    assert (carried[-1] > 0) == (load > 0.2 * WEIGHT), "the middle one"
+
+
+@pytest.mark.parametrize("axis", ["pitch", "roll"])
+def test_up_to_the_touching_angle_every_edge_is_pressed(foot: PointFoot, axis: Axis) -> None:
+    load = 0.5 * WEIGHT
+    angle = foot.touching_angle(axis, load)
+    for share, pressed in ((0.99, True), (1.01, False)):
+        depths = [
+            foot.sink(load) + p.lower - share * angle * abs(p.x if axis == "pitch" else p.y)
+            for p in foot.points
+            if p.lower > 0
+        ]
+        assert (min(depths) > 0) == pressed
+
+
+@pytest.mark.parametrize("axis", ["pitch", "roll"])
+def test_under_half_of_the_weight_the_foot_turns_as_the_bush(axis: Axis) -> None:
+    """The push under each point turns with the sole: load times its depth below the bush centre comes off."""
+    made = spring_foot(FOOT, WEIGHT)
+    assert stiffness_under(made, axis, 0.5 * WEIGHT) == pytest.approx(STIFFNESS[axis], rel=1e-3)
+
+
+def test_notes_say_the_errors_angles_and_millimetres_that_the_points_have() -> None:
+    made = spring_foot(FOOT, WEIGHT)
+    notes = {note.text.split(":")[0].split()[-1]: note.text for note in said(FOOT, made, WEIGHT)}
+    for axis in ("pitch", "roll"):
+        errors = [stiffness_under(made, axis, share * WEIGHT) / STIFFNESS[axis] - 1 for share in LOADS]
+        worst = max(errors, key=abs)
+        assert abs(worst) > 0.01
+        assert f"off by {100 * worst:+.1f} % at most" in notes[axis]
+        angle = made.touching_angle(axis, LOADS[0] * WEIGHT)
+        assert f"up to {angle:.3f} rad ({STIFFNESS[axis] * angle:.0f} N·m)" in notes[axis]
+    lower = max(p.lower for p in made.points)
+    stiffness, damping = made.vertical
+    assert f"{stiffness:.4g} N/m and {damping:.4g} N·s/m" in notes["z"]
+    assert f"{1e3 * lower:.1f} mm lower" in notes["z"]
+    edges = sum(p.stiffness for p in made.points if p.lower > 0)
+    assert f"more than {edges * lower:.3g} N; below that {edges:.4g} N/m" in notes["z"]
+    wrong = replace(FOOT, springs=(replace(SPRINGS[0], stiffness=3.5e5), *SPRINGS[1:]))
+    assert (vertical_note(wrong, made).severity, vertical_note(FOOT, made).severity) == ("warning", "info")
+
+
+def test_outer_points_rub_for_the_one_that_slides() -> None:
+    """At eight tenths of the weight the foot slips at the force that it would with all points alike."""
+    made = spring_foot(FOOT, WEIGHT)
+    points = placed(FOOT, made, WEIGHT)
+    share = share_of_friction(points)
+    outer = sum(push for push, p in zip(pushes(made, 0.5 * WEIGHT), made.points, strict=True) if p.lower > 0)
+    assert share == pytest.approx(0.8 * WEIGHT / outer)
+    (note,) = sliding_note(FOOT, points)
+    told = [
+        float(number)
+        for number in re.findall(r"at ([\d.]+) times|to ([\d.]+) times", note.text)
+        for number in number
+        if number
+    ]
+    assert told == pytest.approx([0.8 / 0.5, 0.8 / 1.1], rel=0.02)
+    assert FRICTION == 1.0
+
+
+def test_what_a_foot_alone_shows_is_checked_over_loads_steps_and_angles(
+    foot: PointFoot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """K is 4 % off at each load, C 10 %, 20 % at steps of 2 ms; far out K is 30 % off."""
+
+    def shown(_: PointFoot, axis: Axis, load: float, step: float, share: float = MARKED) -> Measured:
+        k = 0.7 if share > 0.6 else 0.96 if load < 1.1 * WEIGHT else 1.04
+        return Measured(k * STIFFNESS[axis], (1.1 if step < 0.002 else 0.8) * DAMPING[axis])
+
+    monkeypatch.setattr(fit, "measured", shown)
+    found = fit._check(foot, "pitch", STIFFNESS["pitch"], DAMPING["pitch"], WEIGHT)
+    assert (found.stiffness_error, found.damping_error) == pytest.approx((0.04, 0.1))
+    assert found.steps == (0.0005, 0.001)
+    assert found.angle == pytest.approx(0.5 * foot.touching_angle("pitch", 0.5 * WEIGHT))
+    assert found.torque == pytest.approx(STIFFNESS["pitch"] * found.angle)
