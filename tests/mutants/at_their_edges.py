@@ -58,8 +58,8 @@ AT_THEIR_EDGES = (
     Mutant(
         "estimation/delays/delay.py",
         "no least variance of few independent values",
-        "np.sqrt(max(float(coloured[0, 0]), usual)) / slope",
-        "np.sqrt(float(coloured[0, 0])) / slope",
+        "np.sqrt(np.maximum(_dots(cosines, cosines), usual)) / slope",
+        "np.sqrt(_dots(cosines, cosines)) / slope",
         ("estimation/delays/test_deviations.py",),
     ),
     Mutant(

@@ -56,32 +56,40 @@ def device(kind: str, sizes: np.ndarray) -> dict[str, np.ndarray]:
     return {"wrench.left.force.z": sizes, "wrench.left.torque.x": np.zeros_like(sizes)}
 
 
+LOAD = 250 + 5 * np.sin(TIME)
+OTHER = {"wrench.right.force.z": 500 - LOAD}
+
+
 @pytest.mark.parametrize("kind", ["imu", "wrench"])
 def test_a_device_drops_out_as_a_whole(kind: str) -> None:
-    read, gone = dropping(9.81 + 0.1 * np.sin(TIME))
-    log = MotionLog("silent", TIME, device(kind, read) | {"joint.knee.position": ANGLE})
+    read, gone = dropping(LOAD)
+    log = MotionLog("silent", TIME, device(kind, read) | OTHER | {"joint.knee.position": ANGLE})
     mended = without_dropouts(log)
     inner = gone & (TIME < 39.5)
     for name in device(kind, read):
         assert np.isnan(mended.column(name)[inner]).all()
         assert np.isnan(mended.column(name)).sum() <= inner.sum() + 2 * (len(TIME) // 1000)
-    assert np.isfinite(mended.column("joint.knee.position")).all()
+    for name in (*OTHER, "joint.knee.position"):
+        assert np.isfinite(mended.column(name)).all()
 
 
 @pytest.mark.parametrize("kind", ["imu", "wrench"])
 def test_one_channel_at_zero_is_no_device_that_dropped_out(kind: str) -> None:
-    read, _ = dropping(9.81 + 0.1 * np.sin(TIME))
+    read, _ = dropping(LOAD)
     columns = device(kind, read)
     columns[[*columns][1]] = np.full_like(TIME, 0.1)
-    log = MotionLog("one channel", TIME, columns)
+    log = MotionLog("one channel", TIME, columns | OTHER)
     assert without_dropouts(log) is log
 
 
-def test_a_foot_that_is_put_down_and_lifted_does_not_drop_out() -> None:
-    """Zeroed in the air by its driver: it leaves zero at once, and comes back to it slowly."""
-    load = np.clip(500 * (1 - (TIME % 2) / 1.2), 0, None)
-    log = MotionLog("stepping", TIME, device("wrench", load))
+def test_a_foot_in_the_air_does_not_drop_out() -> None:
+    """Its driver cuts what is small: it leaves zero and comes back to it at once, while the other foot carries all."""
+    load, _ = dropping(LOAD, length=400)
+    columns = device("wrench", load) | {"wrench.right.force.z": 500 - load}
+    log = MotionLog("stepping", TIME, columns)
     assert without_dropouts(log) is log
+    alone = MotionLog("one sensor", TIME, device("wrench", load))
+    assert without_dropouts(alone) is alone
 
 
 def test_of_joints_only_positions_are_looked_at() -> None:

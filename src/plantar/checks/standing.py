@@ -15,6 +15,7 @@ from plantar.notes import Finding
 from plantar.robot.model import RobotModel
 
 BETTER = 0.5  # share of the misfit that must be left after the change
+FAR_BETTER = 0.35  # after the best of nine turns: a wrong mass is undone by half of its misfit by chance
 NOTABLE = 0.02  # m: a moment arm below it is within the model's own error
 ALIKE = 0.1  # of the misfit: changes that do as well as the best are named with it
 CERTAIN_MOMENT_ARM = 0.05  # m: an operator's hand adds less, and one of many joints undoes that by chance
@@ -76,7 +77,7 @@ def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         text = "the feet's wrenches look swapped: exchanged, they balance gravity far better"
         text += f"; or {_alike(left, as_is)} is reversed" if best < exchanged + ALIKE * as_is else ""
         yield Finding("swapped_feet", f"{text} (check the sensors' names)", True)
-    elif turned is not None and turned.misfit < min(BETTER * as_is, best - ALIKE * as_is):
+    elif turned is not None and turned.misfit < min(FAR_BETTER * as_is, best - ALIKE * as_is):
         text = f"{turned.columns}: turned by {turned.degrees:+d} deg about the sensors' z axes, the wrenches balance"
         text += f" gravity to {100 * turned.misfit:.1f} cm instead of {100 * as_is:.1f} cm"
         yield Finding("wrench_turned", f"{text} (check the sensors' rpy in the robot file)")

@@ -23,6 +23,7 @@ from plantar.robot.model import RobotModel
 from plantar.sensors.tilt_error import CORRECTED, DERIVED, lean_of, stance_leans, unit_quaternions
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.resampling import shifted
+from plantar.signals.segments import runs
 
 SLOW = 0.15  # Hz: below it an attitude's wander leans more than any delay
 EDGE = 1.0  # s at both ends of a stance: the filters'
@@ -100,10 +101,12 @@ def accelerometer_delay(robot: RobotModel, log: MotionLog) -> AccelerometerDelay
         return found
     period, edge = log.period, round(EDGE / log.period)
     for signals in _leans(robot, log, unit_quaternions(orientation), log.linear_acceleration(imu.name)):
-        if len(signals) > 4 * edge:
-            moved = signals - low_pass(signals.reshape(len(signals), -1), period, SLOW).reshape(signals.shape)
-            rows = np.concatenate([moved[edge:-edge, 0], moved[edge:-edge, 1]])
-            found = found + AccelerometerDelay(period * rows.T @ rows, len(rows) * period)
+        for run in runs(np.asarray(np.isfinite(signals).all(axis=(1, 2)))):
+            if run.stop - run.start > 4 * edge:
+                own = signals[run]
+                moved = own - low_pass(own.reshape(len(own), -1), period, SLOW).reshape(own.shape)
+                rows = np.concatenate([moved[edge:-edge, 0], moved[edge:-edge, 1]])
+                found = found + AccelerometerDelay(period * rows.T @ rows, len(rows) * period)
     return found
 
 

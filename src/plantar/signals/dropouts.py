@@ -12,8 +12,7 @@ FAR_STEPS = 10.0  # usual steps from sample to sample, by which the angle must j
 FINEST = 1e-7  # rad: smaller steps are rounding, as of a coarse encoder that stands still
 LEAST = 0.01  # rad: several steps of the coarsest encoder, which reads zero wherever its joint is near it
 FEWEST = 2  # stretches: a joint that was switched on has one
-# Of a device all of whose columns read zero: those that jump when it does, gravity's and the load's.
-NEVER_ZERO = {"imu": ".linear_acceleration.", "wrench": ".force."}
+LOST = 0.75  # of the usual load of all force sensors: less is left where a loaded one is silent
 BESIDE = 1  # samples around a stretch, that resampling may have put between the angle and zero
 
 
@@ -48,15 +47,29 @@ def dropouts_of(log: MotionLog) -> dict[tuple[str, ...], Mask]:
     for name in log.columns:
         if name.startswith("joint.") and name.endswith(".position"):
             found[name,] = dropped_samples(log.column(name))
-    for kind, never_zero in NEVER_ZERO.items():
-        for columns in _devices(log, kind):
-            sizes = [np.abs(log.column(name)) for name in columns if never_zero in name]
-            if sizes:
-                silent = np.all([log.column(name) == 0 for name in columns], axis=0)
-                found[columns] = dropped_samples(
-                    np.where(silent, 0.0, np.maximum(np.sum(sizes, axis=0), LEAST))
-                )
+    for columns in _devices(log, "imu"):
+        if any(".linear_acceleration." in name for name in columns):
+            found[columns] = _silent(log, columns, ".linear_acceleration.")
+    sensors = _devices(log, "wrench")
+    loads = np.zeros(len(log)) + sum(_size(log, columns, ".force.") for columns in sensors)
+    for columns in sensors if len(sensors) > 1 else []:
+        silent = _silent(log, columns, ".force.")
+        # A foot in the air may read zero as well, but then the other one carries what it did.
+        found[columns] = silent & (loads < LOST * np.median(loads[np.isfinite(loads)]))
     return {columns: mask for columns, mask in found.items() if mask.any()}
+
+
+def _silent(log: MotionLog, columns: tuple[str, ...], part: str) -> Mask:
+    """`dropped_samples` of a device all of whose columns read zero, by the size of a `part` that jumps when it does."""
+    silent = np.all([log.column(name) == 0 for name in columns], axis=0)
+    return dropped_samples(np.where(silent, 0.0, np.maximum(_size(log, columns, part), LEAST)))
+
+
+def _size(log: MotionLog, columns: tuple[str, ...], part: str) -> Array:
+    """Sum (N,) of the absolute values of those columns that hold `part`."""
+    return np.asarray(
+        np.sum([np.abs(log.column(name)) for name in columns if part in name] or [np.zeros(len(log))], axis=0)
+    )
 
 
 def _devices(log: MotionLog, kind: str) -> list[tuple[str, ...]]:
