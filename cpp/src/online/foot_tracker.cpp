@@ -10,7 +10,6 @@ namespace {
 
 constexpr double ROWS_PER_CYCLE = 8.0;  // of the cutoff: more say the same
 constexpr double LEAST_LOAD = 0.02;     // of the weight: a foot that carries less has no centre of pressure
-constexpr double EDGE_MARGIN = 0.005;   // m from the sole's border
 constexpr double ROLLING_SHARE = 0.1;   // of the sole's half width: a sole that lands may roll so near its outline
 constexpr double LONGEST_STANCE = 5.0;  // s: a foot that stands longer does not step now
 constexpr int STEPS = 3;                // stances, from which a foot counts as one that steps
@@ -64,6 +63,7 @@ FootTracker::FootTracker(const EstimatorModel& model, const FootModel& foot) noe
       delay_std_(model.wrench_delay_std),
       gate_(model.weight, foot.always),
       shaking_(model.weight),
+      edge_(model.weight),
       axes_{AxisRegression(prior_of(model, foot, 0, foot.slip_angle[0])),
             AxisRegression(prior_of(model, foot, 1, foot.slip_angle[1]))},
       memories_{MemoryWatch(prior_of(model, foot, 0, SUSPECTED_ANGLE)),
@@ -133,7 +133,11 @@ void FootTracker::learn(const FootKinematics& motion, double others, SlipGate::V
     restart_filter();
   }
   std::uint32_t flags = estimate_.flags & OF_LEARNING;
-  const bool edge = contact == ContactState::stance && !foot_->always && inside < EDGE_MARGIN;
+  const bool rests = contact == ContactState::stance && !foot_->always;
+  // A foot that steps rolls while it lands and lifts: that is left out anyway.
+  const bool steps = gate_.stances() >= STEPS && gate_.standing_for() < LONGEST_STANCE;
+  if (!rests || steps) edge_.restart();
+  const bool edge = rests && (inside < EDGE_MARGIN || (!steps && leans(motion, inside, dt)));
   if (contact != ContactState::stance)
     flags |= NOT_STANDING;
   else
@@ -155,6 +159,23 @@ void FootTracker::learn(const FootKinematics& motion, double others, SlipGate::V
   }
   filter(motion, time, dt, fresh ? period : 0.0);
   if (contact == ContactState::stance) commit(time - (foot_->always ? 0.0 : gate_.settling()));
+}
+
+// Whether the sole tips, as far as the bush is known.
+bool FootTracker::leans(const FootKinematics& motion, double inside, double dt) noexcept {
+  const double torque[2] = {estimate_.pitch.torque, estimate_.roll.torque};
+  std::array<double, 2> angle, bent;
+  for (int a = 0; a < 2; ++a) {
+    const AxisValues& found = axes_[a].values();
+    if (found.groups < FEWEST_GROUPS || !found.plausible(STIFFEST * weight_)) {
+      edge_.restart();
+      return false;
+    }
+    const double element = has_element(*foot_, a) ? found.value[SLIP_TORQUE] * element_[a].state() : 0.0;
+    angle[a] = motion.angle[a];
+    bent[a] = (torque[a] - found.value[DAMPING] * motion.rate[a] - element) / found.value[STIFFNESS];
+  }
+  return edge_.step(inside, estimate_.load, angle, bent, dt);
 }
 
 // The tick's signals in the middle of its period, where differences are exact, each as late as the latest of them.
@@ -325,7 +346,7 @@ void FootTracker::miss(std::uint32_t reason) noexcept {
   if (reason & TIME_FAULT) stood_ = lifted_ = false;
   begun_elements_ = lifted_;
   gate_.restart();  // what is told of the contact stays, until readings say otherwise
-  shaking_.restart();
+  shaking_.restart(), edge_.restart();
   noise_.restart();
   angles_.restart(), forces_.restart();
   restart_filter();

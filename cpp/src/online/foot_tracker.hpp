@@ -9,6 +9,7 @@
 #include "online/causal_filter.hpp"
 #include "online/contact_gate.hpp"
 #include "online/delay_line.hpp"
+#include "online/edge_watch.hpp"
 #include "online/element_state.hpp"
 #include "online/foot_noise.hpp"
 #include "online/memory_watch.hpp"
@@ -80,6 +81,7 @@ class FootTracker {
   void commit(double before) noexcept;
   void give(const HeldRow& row) noexcept;
   void end_stance() noexcept;
+  bool leans(const FootKinematics& motion, double inside, double dt) noexcept;
   void close_blocks() noexcept;
   void publish(int axis) noexcept;
   void publish_compliance() noexcept;
@@ -92,6 +94,7 @@ class FootTracker {
   ContactGate gate_;
   AirZero zero_;
   Shaking shaking_;
+  EdgeWatch edge_;
   CausalFilter<CHANNELS> filter_;
   DelayLine<6> angles_;  // of both axes: angles, rates, angles without noise
   std::array<SmoothAngle, 2> smooth_;
