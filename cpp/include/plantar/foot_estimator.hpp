@@ -50,7 +50,8 @@ enum Flag : std::uint32_t {
   PITCH_MEMORY = 1 << 11,    // the rubber has a memory that the model lacks: other motions have another stiffness
   ROLL_MEMORY = 1 << 12,     // the same of roll
   PITCH_UNTESTED = 1 << 13,  // its motions were too small to show a memory, and no batch fit has excluded one
-  ROLL_UNTESTED = 1 << 14    // the same of roll
+  ROLL_UNTESTED = 1 << 14,   // the same of roll
+  CONTRADICTION = 1 << 15    // gyroscope and attitude turn differently, or the feet do not carry the weight
 };
 
 // A parameter with its standard deviation and half of its 95 % interval (wider than 1.96 deviations while data are

@@ -34,6 +34,7 @@ class ChangeWatch {
     probe_.add(row);
     ++rows_, time_ += dt;
   }
+  void forget() noexcept { drop(), softer_ = stiffer_ = 0.0; }
   // Nothing speaks for a change, and no probe has begun.
   bool calm() const noexcept { return rows_ == 0 && softer_ == 0.0 && stiffer_ == 0.0; }
   // What speaks for a change to either side [log-likelihood].

@@ -20,6 +20,8 @@ constexpr double SLOWEST = 1.0;        // s: damping over stiffness before any d
 constexpr double TWIST_ZERO = 2e-3;    // m, times the weight: zero of a yaw torque
 constexpr double NEWLY_KNOWN = 0.005;   // of an element's range: less changes no offset
 constexpr double HARDLY_SLIPS = 0.99;  // of an element's largest state: below it noise moves it as the deflection
+constexpr double STEEPEST = 0.35;      // rad: no sole lies so on a ground that a robot stands on
+constexpr double FASTEST = 20.0;       // rad/s: no bush is bent so fast
 constexpr double CHANGE_TOLD = 5.0;    // s for which the flag of a change stands
 constexpr std::uint32_t OF_LEARNING =
     NEVER_LOADED | PITCH_UNKNOWN | ROLL_UNKNOWN | PITCH_MEMORY | ROLL_MEMORY | PITCH_UNTESTED | ROLL_UNTESTED;  // they outlast a tick
@@ -111,8 +113,8 @@ void FootTracker::end_stance() noexcept {
   for (MemoryWatch& memory : memories_) memory.set_spread(ASIDE, STIFFEST);
 }
 
-void FootTracker::learn(const FootKinematics& motion, double others, SlipGate::Verdict slips, bool fresh, double time,
-                        double dt, double period) noexcept {
+void FootTracker::learn(const FootKinematics& motion, double others, Doubt doubt, bool fresh, double time, double dt,
+                        double period) noexcept {
   period_ = period;
   noise_.follow({{motion.angle[0], motion.angle[1]},
                  {motion.turning[0], motion.turning[1]},
@@ -122,7 +124,10 @@ void FootTracker::learn(const FootKinematics& motion, double others, SlipGate::V
   const ContactState before = gate_.contact();
   const double inside = depth(foot_->polygon, estimate_.centre_of_pressure);
   const bool carries = estimate_.load > least_load_;
-  flat_ = carries && inside > ROLLING_SHARE * middle_depth_;
+  const bool steep = std::max(std::abs(motion.angle[0]), std::abs(motion.angle[1])) > STEEPEST ||
+                     std::max(std::abs(motion.rate[0]), std::abs(motion.rate[1])) > FASTEST;
+  flat_ = carries && !steep && inside > ROLLING_SHARE * middle_depth_;
+  if (steep && !foot_->always) gate_.restart();
   const ContactState contact = gate_.step(estimate_.load, others, flat_, zero_.known(), dt);
   const bool struck = shaking_.step(wrench_.data(), dt) && !foot_->always && gate_.standing_for() > LONGEST_STANCE;
   if (contact == ContactState::air) zero_.swing(raw_, estimate_.load, weight_, dt);
@@ -143,8 +148,10 @@ void FootTracker::learn(const FootKinematics& motion, double others, SlipGate::V
   else
     flags &= ~static_cast<std::uint32_t>(NEVER_LOADED);
   if (edge) flags |= EDGE;
-  if (slips == SlipGate::Verdict::sure) flags |= SLIP;
+  const bool slides = doubt.slips == SlipGate::Verdict::sure;
+  if (slides) flags |= SLIP;
   if (struck) flags |= IMPACT;
+  if (doubt.contradiction) flags |= CONTRADICTION;
   if (told_change_ > 0.0) flags |= GROUND_CHANGED, told_change_ -= dt;
   estimate_.flags = flags, estimate_.contact = contact;
   if (!fresh) {
@@ -153,11 +160,14 @@ void FootTracker::learn(const FootKinematics& motion, double others, SlipGate::V
     for (SmoothAngle& angle : smooth_) angle.restart();
     restart_filter();
   }
-  if (contact != ContactState::stance || edge || struck || slips == SlipGate::Verdict::sure) {
+  if (contact != ContactState::stance || edge || struck || slides || doubt.contradiction) {
     if (running_) held_count_ = 0;
     restart_filter();
   }
   filter(motion, time, dt, fresh ? period : 0.0);
+  // What sensors that contradict each other have said of the ground until that showed is not believed.
+  if (doubt.contradiction)
+    for (AxisRegression& axis : axes_) axis.forget_suspicion();
   if (contact == ContactState::stance) commit(time - (foot_->always ? 0.0 : gate_.settling()));
 }
 
@@ -195,7 +205,7 @@ void FootTracker::filter(const FootKinematics& motion, double time, double dt, d
   const bool paused = pause_ > 0.0;
   pause_ -= std::min(pause_, dt);
   if (estimate_.contact != ContactState::stance) return;
-  if (estimate_.flags & (EDGE | SLIP | IMPACT)) {
+  if (estimate_.flags & (EDGE | SLIP | IMPACT | CONTRADICTION)) {
     pause_ = std::abs(delay_) + 0.5 * dt;  // one tick, and the delay
     return;
   }

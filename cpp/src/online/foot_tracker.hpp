@@ -43,9 +43,14 @@ class FootTracker {
 
   // The wrench at the bush, the load and the centre of pressure of this tick.
   void read(const FootKinematics& motion, const std::array<double, 6>& raw) noexcept;
-  // Contact, and what this tick teaches. others: load of the other feet; slips: of the soles; fresh: the tick before
-  // was read as well, `dt` earlier.
-  void learn(const FootKinematics& motion, double others, SlipGate::Verdict slips, bool fresh, double time, double dt,
+  // What speaks against all feet's readings: a slide of their soles, sensors that contradict each other.
+  struct Doubt {
+    SlipGate::Verdict slips;
+    bool contradiction;
+  };
+  // Contact, and what this tick teaches. others: load of the other feet; fresh: the tick before was read as well, `dt`
+  // earlier.
+  void learn(const FootKinematics& motion, double others, Doubt doubt, bool fresh, double time, double dt,
              double period) noexcept;
   // A tick without readings that can be used, for `reason`.
   void miss(std::uint32_t reason) noexcept;
@@ -59,6 +64,8 @@ class FootTracker {
 
   double load() const noexcept { return estimate_.load; }
   ContactState contact() const noexcept { return gate_.contact(); }
+  // Whether a swing has shown the force sensor's zero.
+  bool zero_known() const noexcept { return zero_.known(); }
   const FootEstimate& estimate() const noexcept { return estimate_; }
 
  private:
