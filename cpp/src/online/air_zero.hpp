@@ -9,7 +9,7 @@ namespace plantar {
 
 constexpr double SWING_PIECE = 0.05;  // s: the first piece of a swing and the last ones may still touch the ground
 constexpr double CALM_AIR = 0.05;     // of the weight: what a lifted foot reads changes by less
-constexpr double LARGEST_ZERO = 0.2;   // of the weight: a foot that reads more is loaded, whatever the sign
+constexpr double LARGEST_ZERO = 0.2;  // of the weight: a foot that reads more is loaded, whatever the sign
 constexpr int SWINGS_REMEMBERED = 8;  // the zero drifts
 
 class AirZero {

@@ -8,11 +8,11 @@
 
 namespace plantar {
 
-constexpr double LARGEST = 1e12;     // in any unit: what no sensor reads
-constexpr double FROZEN_TIME = 0.1;  // s without any change: no device is read so rarely
-constexpr int FROZEN_SAMPLES = 8;    // and so many samples: a slow log repeats nothing that long
-constexpr double NOISY_TIME = 10.0;      // s, in which a noisy channel repeats itself
-constexpr double NOISY_REPEATS = 0.01;   // so rarely
+constexpr double LARGEST = 1e12;                       // in any unit: what no sensor reads
+constexpr double FROZEN_TIME = 0.1;                    // s without any change: no device is read so rarely
+constexpr int FROZEN_SAMPLES = 8;                      // and so many samples: a slow log repeats nothing that long
+constexpr double NOISY_TIME = 10.0;                    // s, in which a noisy channel repeats itself
+constexpr double NOISY_REPEATS = 0.01;                 // so rarely
 constexpr double WHOLE_TURN = 2.0 * std::numbers::pi;  // rad: no joint of a leg turns further: those are degrees
 constexpr double FROZEN_WAY = 0.01;  // rad or m that a joint's velocity says it moved while its position stood
 
@@ -23,7 +23,7 @@ inline bool all_finite(std::span<const double> values) noexcept {
 }
 
 // Noisy readings of one device: one that repeats all of them is frozen; so is a channel that repeats itself and has
-// hardly ever done so before.
+// hardly ever done so before, but for zeros: a simulated foot in the air reads them.
 template <int SIZE>
 class DeviceWatch {
  public:
@@ -36,7 +36,7 @@ class DeviceWatch {
       channel.time = same ? channel.time + dt : 0.0, channel.samples = same ? channel.samples + 1 : 0;
       const bool stuck = channel.time > FROZEN_TIME && channel.samples >= FROZEN_SAMPLES;
       all = all && stuck;
-      one = one || (stuck && channel.seen > NOISY_TIME && channel.repeats < NOISY_REPEATS);
+      one = one || (stuck && values[i] != 0.0 && channel.seen > NOISY_TIME && channel.repeats < NOISY_REPEATS);
       if (stuck) continue;
       const double news = dt / std::clamp(channel.seen + dt, std::max(dt, 1e-9), NOISY_TIME);
       channel.seen += dt, channel.repeats += std::min(news, 1.0) * (same - channel.repeats);

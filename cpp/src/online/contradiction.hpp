@@ -11,20 +11,20 @@
 
 namespace plantar {
 
-constexpr double TURN_BAND = 1.5;       // Hz: of the turns that are compared; an attitude's noise is smaller there
-constexpr double TURN_TIME = 0.5;       // s over which they are compared
-constexpr double TURN_SHARE = 0.3;      // of that time, in which they differ: between two swings neither turns
-constexpr double LEAST_TURN = 0.005;    // rad/s: less spoils no damping
-constexpr double TURN_NOISE = 4.0;      // deviations of what the attitude's noise makes of it
-constexpr double TURNS_DIFFER = 0.5;    // of the larger of both: no gain and no filter makes that
-constexpr double TURNS_SURE = 1.8;      // times that, at once: 0.9 of the larger of both
-constexpr double LEAST_SURE = 0.03;     // rad/s
-constexpr double ZERO_TIME = 20.0;      // s in which a gyroscope's zero is learnt, and a usual load
-constexpr double ZERO_NEWS = 0.02;      // rad/s: the most that one reading says of it
-constexpr double LOAD_TIME = 0.4;       // s over which the feet's load is compared: a step's accelerations cancel
-constexpr double LOAD_DIFFERS = 0.15;   // of the weight: a step's rest is less
-constexpr double WRONG_MASS = 0.2;      // of the weight: gains and a mass that is not the model's
-constexpr double LOAD_ZERO = 0.15;      // of the weight, of each foot that has not swung yet
+constexpr double TURN_BAND = 1.5;      // Hz: of the turns that are compared; an attitude's noise is smaller there
+constexpr double TURN_TIME = 0.5;      // s over which they are compared
+constexpr double TURN_SHARE = 0.3;     // of that time, in which they differ: between two swings neither turns
+constexpr double LEAST_TURN = 0.005;   // rad/s: less spoils no damping
+constexpr double TURN_NOISE = 4.0;     // deviations of what the attitude's noise makes of it
+constexpr double TURNS_DIFFER = 0.5;   // of the larger of both: no gain and no filter makes that
+constexpr double TURNS_SURE = 1.8;     // times that, at once: 0.9 of the larger of both
+constexpr double LEAST_SURE = 0.03;    // rad/s
+constexpr double ZERO_TIME = 20.0;     // s in which a gyroscope's zero is learnt, and a usual load
+constexpr double ZERO_NEWS = 0.02;     // rad/s: the most that one reading says of it
+constexpr double LOAD_TIME = 0.4;      // s over which the feet's load is compared: a step's accelerations cancel
+constexpr double LOAD_DIFFERS = 0.15;  // of the weight: a step's rest is less
+constexpr double WRONG_MASS = 0.2;     // of the weight: gains and a mass that is not the model's
+constexpr double LOAD_ZERO = 0.15;     // of the weight, of each foot that has not swung yet
 
 inline double one_pole(double dt, double time) noexcept { return 1.0 - std::exp(-dt / time); }
 

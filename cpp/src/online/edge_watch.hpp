@@ -8,11 +8,11 @@
 
 namespace plantar {
 
-constexpr double EDGE_MARGIN = 0.005;   // m from the sole's border
-constexpr double TORQUE_ZERO = 6e-3;    // m, times the weight: how far a torque's zero may be off, three usual ones
-constexpr double LEAST_LEAN = 0.003;    // rad: less hardly disturbs a deflection, as in `identify feet`
-constexpr double LEAN_BAND = 20.0;      // Hz: noise above it is no lean
-constexpr double SOFTER_BUSH = 0.5;      // of the bend that the torque explains: no softer ground looks like a lean
+constexpr double EDGE_MARGIN = 0.005;  // m from the sole's border
+constexpr double TORQUE_ZERO = 6e-3;   // m, times the weight: how far a torque's zero may be off, three usual ones
+constexpr double LEAST_LEAN = 0.003;   // rad: less hardly disturbs a deflection, as in `identify feet`
+constexpr double LEAN_BAND = 20.0;     // Hz: noise above it is no lean
+constexpr double SOFTER_BUSH = 0.5;    // of the bend that the torque explains: no softer ground looks like a lean
 
 class EdgeWatch {
  public:

@@ -11,9 +11,9 @@ namespace {
 // Of a period: how far apart the readings of one tick are, and how far a sample is from what it stands for: motors
 // that are told something new at each tick shake the joints in step with the samples.
 constexpr double SKEW = 0.03;
-constexpr double TRUSTED = 0.1;        // half width over stiffness
+constexpr double TRUSTED = 0.1;  // half width over stiffness
 constexpr double NORMAL = 1.96;
-constexpr double UNMODELLED = 0.07;    // of a learnt compliance: what the model leaves where no sensor has noise
+constexpr double UNMODELLED = 0.07;  // of a learnt compliance: what the model leaves where no sensor has noise
 // Student's t for 95 %, by degrees of freedom from 2.
 constexpr double QUANTILE[] = {4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201};
 
@@ -38,7 +38,8 @@ void FootTracker::publish(int axis) noexcept {
   out.offset = found.offset;
   learnt_compliance_[axis] = parameter(COMPLIANCE, 0.0);
   publish_compliance();
-  const bool sure = found.groups >= FEWEST_GROUPS && found.plausible(STIFFEST * weight_) && out.stiffness.half_width < TRUSTED * k;
+  const bool sure =
+      found.groups >= FEWEST_GROUPS && found.plausible(STIFFEST * weight_) && out.stiffness.half_width < TRUSTED * k;
   const bool told = has_element(*foot_, axis) || foot_->linear[axis], tested = told || memories_[axis].excluded();
   out.identified = sure && tested && !memories_[axis].seen();
   const auto tell = [this](std::uint32_t flag, bool holds) {
