@@ -28,6 +28,7 @@ from coverage import on_the_floor
 from plantar.conventions import ROTATIONAL_AXES
 from plantar.feet.identify import identify_feet
 from plantar.motions.campaign import CAMPAIGN
+from plantar.online.estimates import Contact, Flag
 from plantar.online.estimator import FootEstimator
 from plantar.online.replay import USABLE
 from plantar.results.feet import FeetResult
@@ -132,7 +133,8 @@ def _score(
         replay = estimator.replay(one.log)
         latency += replay.latency.tolist()
         for foot in replay.feet:
-            stands = replay.column(foot, "contact") == 2
+            tips = (replay.column(foot, "flags").astype(int) & Flag.EDGE) > 0
+            stands = (replay.column(foot, "contact") == Contact.STANCE) & ~tips
             for axis in ROTATIONAL_AXES:
                 truth = np.interp(replay.time, one.truth.time, one.truth.column(f"{foot}.deflection.{axis}"))
                 away = (replay.column(foot, f"{axis}.deflection") - truth)[stands]

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -126,7 +126,12 @@ def dead(readings: Readings, ticks: slice) -> None:
     readings.rate[ticks] = 1e-3 * np.random.default_rng(0).standard_normal(size)
 
 
+def none(readings: Readings, ticks: slice) -> None:
+    """What the numbers beside the faults are to be compared with."""
+
+
 FAULTS: dict[str, Fault] = {
+    "none": none,
     "NaN in the attitude": nan("attitude"),
     "NaN in the joints": nan("position"),
     "NaN in the wrenches": nan("wrench"),
@@ -164,13 +169,11 @@ def main() -> None:
     preset, twin = preset_named(told.preset), twin_of("hrp2")
     seeds = range(told.first, told.first + told.seeds)
     everything = play_all(MOTIONS, twin.robot, twin.bushes, told.preset, seeds)
-    logs = {
-        seed: [one.log for one in recordings] for seed, recordings in zip(seeds, everything, strict=True)
-    }
+    logs = {seed: [one.log for one in recordings] for seed, recordings in zip(seeds, everything, strict=True)}
     for name in told.faults:
         burst = [_burst(twin, preset, seed, logs[seed], FAULTS[name]) for seed in seeds]
         whole = [_whole(twin, preset, seed, logs[seed], FAULTS[name]) for seed in seeds]
-        said, again = np.mean([one[0] for one in burst]), max(one[1] for one in burst)
+        said, again = float(np.mean([one[0] for one in burst])), max(one[1] for one in burst)
         print(
             f"{name:27} for {LAST:g} s: said at {100 * said:3.0f} % of the ticks, again itself after {again:4.2f} s, "
             f"{_worst([one[2] for one in burst])}; throughout: {_worst(whole)}",
