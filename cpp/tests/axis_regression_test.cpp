@@ -195,9 +195,23 @@ void the_compliance_is_learnt() {
   check::near(axis.values().value[STIFFNESS], 800.0, 0.5, "stiffness beside it");
 }
 
+// What an element's state splits to a quarter of a second speaks of other ground, if it is clear.
+void a_short_probe_speaks() {
+  ChangeWatch watch;
+  for (int i = 0; i < FEWEST_ROWS; ++i) {
+    const double angle = 0.01 * i / FEWEST_ROWS;
+    watch.add(1.0, angle, 0.0, -400.0 * angle, ROW);
+  }
+  check::that(!watch.judge(800.0, 8.0, 0.02), "one probe alone may be a stumble");
+  check::that(watch.softer() > 5.0 && watch.stiffer() == 0.0, "a short probe of half the stiffness");
+  watch.forget();
+  check::that(watch.calm(), "what was said is forgotten");
+}
+
 }  // namespace
 
 int main() {
+  a_short_probe_speaks();
   what_differs_between_blocks_moves_nothing();
   noise_of_forces_moves_nothing();
   noise_under_changing_loads_moves_nothing(80.0, "beside noise under a changing load");

@@ -75,6 +75,24 @@ def test_an_impact_is_left_out(robot: RobotModel) -> None:
     expect_unharmed(replay)
 
 
+def test_degrees_are_no_radians(robot: RobotModel) -> None:
+    log = record(sway(duration=60.0))
+    column = "joint.left_ankle_pitch.position"
+    values = log.columns[column]
+    degrees = 400.0 + np.degrees(values[DAMAGE]) - values[DAMAGE]  # a multi-turn encoder's zero
+    replay = replayed(robot, spoilt(log, column, degrees))
+    assert told(replay, Flag.INPUT_MISSING)[DAMAGE].all()
+    assert not told(replay, Flag.INPUT_MISSING | Flag.NOT_STANDING)[DAMAGE.stop + 100 :].any()
+    expect_unharmed(replay)
+
+
+def test_a_sole_that_lies_flat_is_not_steep(robot: RobotModel) -> None:
+    log = record(sway(duration=60.0))
+    replay = replayed(robot, spoilt(log, "joint.left_ankle_pitch.position", 0.7))
+    assert told(replay, Flag.NOT_STANDING)[DAMAGE].all()
+    expect_unharmed(replay)
+
+
 def test_a_slide_is_left_out(robot: RobotModel) -> None:
     log = record(sway(duration=60.0))
     slid = 0.01 * (1 - np.cos(np.pi * np.arange(200) / 199)) / 2
@@ -130,6 +148,8 @@ def test_a_compliance_that_nobody_told_is_learnt(robot: RobotModel) -> None:
     for foot in replay.feet:
         found = replay.estimate(foot)
         assert found.compliance.value == pytest.approx(1 / VERTICAL, rel=0.01)
+        half = found.compliance.half_width
+        assert 0.1 < half / found.compliance.value < 0.5, "what no model has is part of it"
         assert found.compression == pytest.approx(found.load / VERTICAL, rel=0.06)
 
 

@@ -36,8 +36,8 @@ enum class ContactState : std::uint8_t {
 
 // Why something of a foot's estimate may not be trusted; several may hold at once.
 enum Flag : std::uint32_t {
-  INPUT_MISSING = 1 << 0,    // a value that this foot needs is not finite: the last deflection is held
-  FROZEN = 1 << 1,           // a sensor repeats itself: nothing is learnt
+  INPUT_MISSING = 1 << 0,    // a value that this foot needs is not finite, or degrees: the last deflection is held
+  FROZEN = 1 << 1,           // a sensor, or one channel of it, repeats itself: nothing is learnt
   TIME_FAULT = 1 << 2,       // time stood still, stepped back or jumped
   NOT_STANDING = 1 << 3,     // the sole is not known to lie flat: the deflection is no bush's
   EDGE = 1 << 4,             // the centre of pressure is at the sole's edge or beside it
@@ -50,7 +50,8 @@ enum Flag : std::uint32_t {
   PITCH_MEMORY = 1 << 11,    // the rubber has a memory that the model lacks: other motions have another stiffness
   ROLL_MEMORY = 1 << 12,     // the same of roll
   PITCH_UNTESTED = 1 << 13,  // its motions were too small to show a memory, and no batch fit has excluded one
-  ROLL_UNTESTED = 1 << 14    // the same of roll
+  ROLL_UNTESTED = 1 << 14,   // the same of roll
+  CONTRADICTION = 1 << 15    // gyroscope and attitude turn differently, or the feet do not carry the weight
 };
 
 // A parameter with its standard deviation and half of its 95 % interval (wider than 1.96 deviations while data are

@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace plantar {
 
 constexpr double SWING_PIECE = 0.05;  // s: the first piece of a swing and the last ones may still touch the ground
 constexpr double CALM_AIR = 0.05;     // of the weight: what a lifted foot reads changes by less
+constexpr double LARGEST_ZERO = 0.2;  // of the weight: a foot that reads more is loaded, whatever the sign
 constexpr int SWINGS_REMEMBERED = 8;  // the zero drifts
 
 class AirZero {
@@ -24,10 +26,12 @@ class AirZero {
     most_ = count_ == 0 ? load : std::max(most_, load);
     ++count_, time_ += dt;
     if (time_ < SWING_PIECE) return;
+    const double mean[3] = {piece_[0] / count_, piece_[1] / count_, piece_[2] / count_};
+    const double force = std::sqrt(mean[0] * mean[0] + mean[1] * mean[1] + mean[2] * mean[2]);
     // A piece counts once the next one is full: the last one ends with the landing.
     if (pieces_ > 1)
       for (int i = 0; i < 6; ++i) sum_[i] += before_[i];
-    pieces_ = most_ - least_ < CALM_AIR * weight ? pieces_ + 1 : 0;
+    pieces_ = most_ - least_ < CALM_AIR * weight && force < LARGEST_ZERO * weight ? pieces_ + 1 : 0;
     if (pieces_ == 0) sum_ = {};
     for (int i = 0; i < 6; ++i) before_[i] = piece_[i] / count_;
     begin_piece();

@@ -91,6 +91,7 @@ class AxisRegression {
   // What speaks for a jump so far, and to believe it for other reasons.
   const ChangeWatch& suspicion() const noexcept { return watch_; }
   void jump() noexcept;
+  void forget_suspicion() noexcept { watch_.forget(); }
   void set_spread(Unknown unknown, double spread) noexcept { prior_.spread[unknown] = spread; }
 
   // One piece of the work that keeps `values` current, each short enough for one tick.

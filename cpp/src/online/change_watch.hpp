@@ -14,7 +14,7 @@
 namespace plantar {
 
 constexpr double PROBE_TIME = 0.75;      // s of rows: a usual stance
-constexpr int PROBE_ROWS = 12;           // fewer say nothing
+constexpr int PROBE_ROWS = 8;            // as of a block; fewer say nothing
 constexpr double CHANGE = 0.4;           // of the stiffness: half of it and less the regression follows by itself
 constexpr double SURE_OF_CHANGE = 15.0;  // log-likelihood: three million to one
 constexpr double MOST_OF_ONE = 7.5;      // of one probe: a single one may be a stumble
@@ -34,6 +34,7 @@ class ChangeWatch {
     probe_.add(row);
     ++rows_, time_ += dt;
   }
+  void forget() noexcept { drop(), softer_ = stiffer_ = 0.0; }
   // Nothing speaks for a change, and no probe has begun.
   bool calm() const noexcept { return rows_ == 0 && softer_ == 0.0 && stiffer_ == 0.0; }
   // What speaks for a change to either side [log-likelihood].

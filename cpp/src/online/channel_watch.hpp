@@ -1,14 +1,19 @@
 // Sensors that say nothing: values that are not finite, and readings that stand still while their noise should not.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <span>
 
 namespace plantar {
 
-constexpr double LARGEST = 1e12;     // in any unit: what no sensor reads
-constexpr double FROZEN_TIME = 0.1;  // s without any change: no device is read so rarely
-constexpr int FROZEN_SAMPLES = 8;    // and so many samples: a slow log repeats nothing that long
+constexpr double LARGEST = 1e12;                       // in any unit: what no sensor reads
+constexpr double FROZEN_TIME = 0.1;                    // s without any change: no device is read so rarely
+constexpr int FROZEN_SAMPLES = 8;                      // and so many samples: a slow log repeats nothing that long
+constexpr double NOISY_TIME = 10.0;                    // s, in which a noisy channel repeats itself
+constexpr double NOISY_REPEATS = 0.01;                 // so rarely
+constexpr double WHOLE_TURN = 2.0 * std::numbers::pi;  // rad: no joint of a leg turns further: those are degrees
 constexpr double FROZEN_WAY = 0.01;  // rad or m that a joint's velocity says it moved while its position stood
 
 inline bool all_finite(std::span<const double> values) noexcept {
@@ -17,25 +22,35 @@ inline bool all_finite(std::span<const double> values) noexcept {
   return true;
 }
 
-// Noisy readings of one device: one that repeats all of them is frozen.
+// Noisy readings of one device: one that repeats all of them is frozen; so is a channel that repeats itself and has
+// hardly ever done so before, but for zeros: a simulated foot in the air reads them.
 template <int SIZE>
 class DeviceWatch {
  public:
   bool frozen(std::span<const double> values, double dt) noexcept {
-    bool same = true;
+    bool all = true, one = false;
     for (int i = 0; i < SIZE; ++i) {
-      same = same && values[i] == last_[i];
-      last_[i] = values[i];
+      Channel& channel = channels_[i];
+      const bool same = values[i] == channel.last;
+      channel.last = values[i];
+      channel.time = same ? channel.time + dt : 0.0, channel.samples = same ? channel.samples + 1 : 0;
+      const bool stuck = channel.time > FROZEN_TIME && channel.samples >= FROZEN_SAMPLES;
+      all = all && stuck;
+      one = one || (stuck && values[i] != 0.0 && channel.seen > NOISY_TIME && channel.repeats < NOISY_REPEATS);
+      if (stuck) continue;
+      const double news = dt / std::clamp(channel.seen + dt, std::max(dt, 1e-9), NOISY_TIME);
+      channel.seen += dt, channel.repeats += std::min(news, 1.0) * (same - channel.repeats);
     }
-    time_ = same ? time_ + dt : 0.0;
-    samples_ = same ? samples_ + 1 : 0;
-    return time_ > FROZEN_TIME && samples_ >= FROZEN_SAMPLES;
+    return all || one;
   }
 
  private:
-  double last_[SIZE] = {};
-  double time_ = 0.0;
-  int samples_ = 0;
+  struct Channel {
+    double last = 0.0, time = 0.0;
+    int samples = 0;
+    double seen = 0.0, repeats = 0.0;  // s in which it was not frozen; the share of readings that repeat the last one
+  };
+  Channel channels_[SIZE];
 };
 
 // An encoder may well repeat itself at rest: it is frozen where its velocity says that the joint moved.

@@ -8,6 +8,7 @@
 #include "kernels.hpp"
 #include "online/attitude_filter.hpp"
 #include "online/channel_watch.hpp"
+#include "online/contradiction.hpp"
 #include "online/foot_tracker.hpp"
 
 namespace plantar {
@@ -42,6 +43,7 @@ struct FootEstimator::State {
       : model(given),
         weight(checked_weight(given)),
         kernels(**runnable_kernels()),
+        weight_watch(weight),
         position(TICKS * given.joints.size()),
         velocity(TICKS * given.joints.size()),
         last_position(given.joints.size()),
@@ -73,10 +75,14 @@ struct FootEstimator::State {
   void kinematics(std::size_t foot) noexcept;
   void miss_all(std::uint32_t reason) noexcept;
   void watch_ground() noexcept;
+  bool weight_differs(double total) noexcept;
 
   const EstimatorModel model;
   const double weight;
   const Kernels& kernels;
+  WeightWatch weight_watch;
+  TurnWatch turn_watch;
+  bool turns_differ = false;
   std::vector<std::vector<ChainStep>> steps;
   std::vector<FootTracker> feet;
   std::vector<double> position, velocity, last_position;
@@ -110,7 +116,7 @@ FootEstimator::State::Time FootEstimator::State::keep_time(double now) noexcept 
   time = now;
   if (first || passed < 0.0 || passed > std::max(GAP, GAP_PERIODS * period)) {
     ticks = 1, known = false;
-    slip.restart(), filter.restart();
+    slip.restart(), filter.restart(), turn_watch.restart(), weight_watch.restart();
     return first ? Time::onward : Time::jumped;
   }
   dt = passed;
@@ -153,6 +159,11 @@ bool FootEstimator::State::imu(const Reading& reading) noexcept {
     angular_velocity[i][1] = gyroscope && known ? 0.5 * (w[i] + last_rate[i]) : w[i];
     last_rate[i] = w[i];
   }
+  if (!known) turn_watch.restart();
+  const TurnWatch::Vector up = {2.0 * (q[1] * q[3] - q[0] * q[2]), 2.0 * (q[2] * q[3] + q[0] * q[1]),
+                                1.0 - 2.0 * (q[1] * q[1] + q[2] * q[2])};
+  const double turning[3] = {angular_velocity[0][1], angular_velocity[1][1], angular_velocity[2][1]};
+  turns_differ = gyroscope && reading.attitude.size() == 4 && dt > 0.0 && turn_watch.differ(up, turning, dt);
   std::copy_n(q, 4, last_quaternion);
   return true;
 }
@@ -220,6 +231,20 @@ void FootEstimator::State::watch_ground() noexcept {
   for (FootTracker& foot : feet) foot.change_ground();
 }
 
+// Where no foot stands, or one cannot be read, the weight is not known to rest on them.
+bool FootEstimator::State::weight_differs(double total) noexcept {
+  int unknown = 0;
+  bool stands = false, read = true;
+  for (std::size_t f = 0; f < feet.size(); ++f) {
+    read = read && !bad[f] && !model.feet[f].always;
+    stands = stands || feet[f].contact() == ContactState::stance;
+    unknown += !feet[f].zero_known();
+  }
+  if (read && stands) return weight_watch.differs(total, unknown, dt);
+  weight_watch.restart();
+  return false;
+}
+
 void FootEstimator::State::step(const Reading& reading) noexcept {
   const Time went = keep_time(reading.time);
   if (went == Time::jumped) return miss_all(TIME_FAULT);
@@ -244,7 +269,10 @@ void FootEstimator::State::step(const Reading& reading) noexcept {
       bad[f] |= INPUT_MISSING;
     else if (wrench_watch[f].frozen(reading.wrench[f], dt))
       bad[f] |= FROZEN;
-    for (const PathJoint& joint : model.feet[f].path) bad[f] |= joint_bad[joint.joint];
+    for (const PathJoint& joint : model.feet[f].path) {
+      bad[f] |= joint_bad[joint.joint];
+      if (!joint.slides && std::abs(reading.position[joint.joint]) > WHOLE_TURN) bad[f] |= INPUT_MISSING;
+    }
     if (bad[f] & INPUT_MISSING) continue;
     kinematics(f);
     feet[f].read(motion[f], reading.wrench[f]);
@@ -257,12 +285,13 @@ void FootEstimator::State::step(const Reading& reading) noexcept {
     slips = slip.step(motion[0].place, motion[1].place, std::max(dt, 1e-9));
   else
     slip.restart();
+  const bool contradiction = weight_differs(total) || turns_differ;
   for (std::size_t f = 0; f < feet.size(); ++f) {
     if (bad[f]) {
       feet[f].miss(bad[f]);
     } else {
       const bool begun = known && !was_bad[f] && ticks > FIRST_TICKS;
-      feet[f].learn(motion[f], total - feet[f].load(), slips, begun, time, dt, period);
+      feet[f].learn(motion[f], total - feet[f].load(), {slips, contradiction}, begun, time, dt, period);
     }
     was_bad[f] = bad[f] != 0;
   }

@@ -11,8 +11,9 @@ namespace {
 // Of a period: how far apart the readings of one tick are, and how far a sample is from what it stands for: motors
 // that are told something new at each tick shake the joints in step with the samples.
 constexpr double SKEW = 0.03;
-constexpr double TRUSTED = 0.1;        // half width over stiffness
+constexpr double TRUSTED = 0.1;  // half width over stiffness
 constexpr double NORMAL = 1.96;
+constexpr double UNMODELLED = 0.07;  // of a learnt compliance: what the model leaves where no sensor has noise
 // Student's t for 95 %, by degrees of freedom from 2.
 constexpr double QUANTILE[] = {4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201};
 
@@ -37,7 +38,8 @@ void FootTracker::publish(int axis) noexcept {
   out.offset = found.offset;
   learnt_compliance_[axis] = parameter(COMPLIANCE, 0.0);
   publish_compliance();
-  const bool sure = found.groups >= FEWEST_GROUPS && found.plausible(STIFFEST * weight_) && out.stiffness.half_width < TRUSTED * k;
+  const bool sure =
+      found.groups >= FEWEST_GROUPS && found.plausible(STIFFEST * weight_) && out.stiffness.half_width < TRUSTED * k;
   const bool told = has_element(*foot_, axis) || foot_->linear[axis], tested = told || memories_[axis].excluded();
   out.identified = sure && tested && !memories_[axis].seen();
   const auto tell = [this](std::uint32_t flag, bool holds) {
@@ -48,13 +50,18 @@ void FootTracker::publish(int axis) noexcept {
   tell(axis == 0 ? PITCH_UNTESTED : ROLL_UNTESTED, sure && !tested && !memories_[axis].seen());
 }
 
-// Both axes have learnt it, each with a prior of its own, from torques of the same load.
+// Both axes have learnt it, each with a prior of its own, from torques of the same load. The horizontal forces' torque
+// is hundredths of a newton metre: there the axes differ by more than each knows of itself, and both by what no model
+// has.
 void FootTracker::publish_compliance() noexcept {
   const Parameter &p = learnt_compliance_[0], &r = learnt_compliance_[1];
   const double share = r.std > 0.0 ? r.std * r.std / (p.std * p.std + r.std * r.std) : 0.0;
   const auto mean = [share](double pitch, double roll) { return share * pitch + (1.0 - share) * roll; };
-  estimate_.compliance = {foot_->compliance + mean(p.value, r.value), std::min(p.std, r.std),
-                          std::min(p.half_width, r.half_width)};
+  const double value = mean(p.value, r.value);
+  const double apart = std::sqrt(mean((p.value - value) * (p.value - value), (r.value - value) * (r.value - value)));
+  const double beside = std::hypot(apart, UNMODELLED * value);
+  estimate_.compliance = {foot_->compliance + value, std::hypot(std::min(p.std, r.std), beside),
+                          std::hypot(std::min(p.half_width, r.half_width), NORMAL * beside)};
 }
 
 }  // namespace plantar

@@ -10,7 +10,6 @@ namespace {
 
 constexpr double ROWS_PER_CYCLE = 8.0;  // of the cutoff: more say the same
 constexpr double LEAST_LOAD = 0.02;     // of the weight: a foot that carries less has no centre of pressure
-constexpr double EDGE_MARGIN = 0.005;   // m from the sole's border
 constexpr double ROLLING_SHARE = 0.1;   // of the sole's half width: a sole that lands may roll so near its outline
 constexpr double LONGEST_STANCE = 5.0;  // s: a foot that stands longer does not step now
 constexpr int STEPS = 3;                // stances, from which a foot counts as one that steps
@@ -21,6 +20,8 @@ constexpr double SLOWEST = 1.0;        // s: damping over stiffness before any d
 constexpr double TWIST_ZERO = 2e-3;    // m, times the weight: zero of a yaw torque
 constexpr double NEWLY_KNOWN = 0.005;   // of an element's range: less changes no offset
 constexpr double HARDLY_SLIPS = 0.99;  // of an element's largest state: below it noise moves it as the deflection
+constexpr double STEEPEST = 0.35;      // rad: no sole lies so on a ground that a robot stands on
+constexpr double FASTEST = 20.0;       // rad/s: no bush is bent so fast
 constexpr double CHANGE_TOLD = 5.0;    // s for which the flag of a change stands
 constexpr std::uint32_t OF_LEARNING =
     NEVER_LOADED | PITCH_UNKNOWN | ROLL_UNKNOWN | PITCH_MEMORY | ROLL_MEMORY | PITCH_UNTESTED | ROLL_UNTESTED;  // they outlast a tick
@@ -64,6 +65,7 @@ FootTracker::FootTracker(const EstimatorModel& model, const FootModel& foot) noe
       delay_std_(model.wrench_delay_std),
       gate_(model.weight, foot.always),
       shaking_(model.weight),
+      edge_(model.weight),
       axes_{AxisRegression(prior_of(model, foot, 0, foot.slip_angle[0])),
             AxisRegression(prior_of(model, foot, 1, foot.slip_angle[1]))},
       memories_{MemoryWatch(prior_of(model, foot, 0, SUSPECTED_ANGLE)),
@@ -111,8 +113,8 @@ void FootTracker::end_stance() noexcept {
   for (MemoryWatch& memory : memories_) memory.set_spread(ASIDE, STIFFEST);
 }
 
-void FootTracker::learn(const FootKinematics& motion, double others, SlipGate::Verdict slips, bool fresh, double time,
-                        double dt, double period) noexcept {
+void FootTracker::learn(const FootKinematics& motion, double others, Doubt doubt, bool fresh, double time, double dt,
+                        double period) noexcept {
   period_ = period;
   noise_.follow({{motion.angle[0], motion.angle[1]},
                  {motion.turning[0], motion.turning[1]},
@@ -122,7 +124,10 @@ void FootTracker::learn(const FootKinematics& motion, double others, SlipGate::V
   const ContactState before = gate_.contact();
   const double inside = depth(foot_->polygon, estimate_.centre_of_pressure);
   const bool carries = estimate_.load > least_load_;
-  flat_ = carries && inside > ROLLING_SHARE * middle_depth_;
+  const bool steep = std::max(std::abs(motion.angle[0]), std::abs(motion.angle[1])) > STEEPEST ||
+                     std::max(std::abs(motion.rate[0]), std::abs(motion.rate[1])) > FASTEST;
+  flat_ = carries && !steep && inside > ROLLING_SHARE * middle_depth_;
+  if (steep && !foot_->always) gate_.restart();
   const ContactState contact = gate_.step(estimate_.load, others, flat_, zero_.known(), dt);
   const bool struck = shaking_.step(wrench_.data(), dt) && !foot_->always && gate_.standing_for() > LONGEST_STANCE;
   if (contact == ContactState::air) zero_.swing(raw_, estimate_.load, weight_, dt);
@@ -133,14 +138,20 @@ void FootTracker::learn(const FootKinematics& motion, double others, SlipGate::V
     restart_filter();
   }
   std::uint32_t flags = estimate_.flags & OF_LEARNING;
-  const bool edge = contact == ContactState::stance && !foot_->always && inside < EDGE_MARGIN;
+  const bool rests = contact == ContactState::stance && !foot_->always;
+  // A foot that steps rolls while it lands and lifts: that is left out anyway.
+  const bool steps = gate_.stances() >= STEPS && gate_.standing_for() < LONGEST_STANCE;
+  if (!rests || steps) edge_.restart();
+  const bool edge = rests && (inside < EDGE_MARGIN || (!steps && leans(motion, inside, dt)));
   if (contact != ContactState::stance)
     flags |= NOT_STANDING;
   else
     flags &= ~static_cast<std::uint32_t>(NEVER_LOADED);
   if (edge) flags |= EDGE;
-  if (slips == SlipGate::Verdict::sure) flags |= SLIP;
+  const bool slides = doubt.slips == SlipGate::Verdict::sure;
+  if (slides) flags |= SLIP;
   if (struck) flags |= IMPACT;
+  if (doubt.contradiction) flags |= CONTRADICTION;
   if (told_change_ > 0.0) flags |= GROUND_CHANGED, told_change_ -= dt;
   estimate_.flags = flags, estimate_.contact = contact;
   if (!fresh) {
@@ -149,12 +160,32 @@ void FootTracker::learn(const FootKinematics& motion, double others, SlipGate::V
     for (SmoothAngle& angle : smooth_) angle.restart();
     restart_filter();
   }
-  if (contact != ContactState::stance || edge || struck || slips == SlipGate::Verdict::sure) {
+  if (contact != ContactState::stance || edge || struck || slides || doubt.contradiction) {
     if (running_) held_count_ = 0;
     restart_filter();
   }
   filter(motion, time, dt, fresh ? period : 0.0);
+  // What sensors that contradict each other have said of the ground until that showed is not believed.
+  if (doubt.contradiction)
+    for (AxisRegression& axis : axes_) axis.forget_suspicion();
   if (contact == ContactState::stance) commit(time - (foot_->always ? 0.0 : gate_.settling()));
+}
+
+// Whether the sole tips, as far as the bush is known.
+bool FootTracker::leans(const FootKinematics& motion, double inside, double dt) noexcept {
+  const double torque[2] = {estimate_.pitch.torque, estimate_.roll.torque};
+  std::array<double, 2> angle, bent;
+  for (int a = 0; a < 2; ++a) {
+    const AxisValues& found = axes_[a].values();
+    if (found.groups < FEWEST_GROUPS || !found.plausible(STIFFEST * weight_)) {
+      edge_.restart();
+      return false;
+    }
+    const double element = has_element(*foot_, a) ? found.value[SLIP_TORQUE] * element_[a].state() : 0.0;
+    angle[a] = motion.angle[a];
+    bent[a] = (torque[a] - found.value[DAMPING] * motion.rate[a] - element) / found.value[STIFFNESS];
+  }
+  return edge_.step(inside, estimate_.load, angle, bent, dt);
 }
 
 // The tick's signals in the middle of its period, where differences are exact, each as late as the latest of them.
@@ -174,7 +205,7 @@ void FootTracker::filter(const FootKinematics& motion, double time, double dt, d
   const bool paused = pause_ > 0.0;
   pause_ -= std::min(pause_, dt);
   if (estimate_.contact != ContactState::stance) return;
-  if (estimate_.flags & (EDGE | SLIP | IMPACT)) {
+  if (estimate_.flags & (EDGE | SLIP | IMPACT | CONTRADICTION)) {
     pause_ = std::abs(delay_) + 0.5 * dt;  // one tick, and the delay
     return;
   }
@@ -325,7 +356,7 @@ void FootTracker::miss(std::uint32_t reason) noexcept {
   if (reason & TIME_FAULT) stood_ = lifted_ = false;
   begun_elements_ = lifted_;
   gate_.restart();  // what is told of the contact stays, until readings say otherwise
-  shaking_.restart();
+  shaking_.restart(), edge_.restart();
   noise_.restart();
   angles_.restart(), forces_.restart();
   restart_filter();

@@ -9,6 +9,7 @@
 #include "online/causal_filter.hpp"
 #include "online/contact_gate.hpp"
 #include "online/delay_line.hpp"
+#include "online/edge_watch.hpp"
 #include "online/element_state.hpp"
 #include "online/foot_noise.hpp"
 #include "online/memory_watch.hpp"
@@ -42,9 +43,14 @@ class FootTracker {
 
   // The wrench at the bush, the load and the centre of pressure of this tick.
   void read(const FootKinematics& motion, const std::array<double, 6>& raw) noexcept;
-  // Contact, and what this tick teaches. others: load of the other feet; slips: of the soles; fresh: the tick before
-  // was read as well, `dt` earlier.
-  void learn(const FootKinematics& motion, double others, SlipGate::Verdict slips, bool fresh, double time, double dt,
+  // What speaks against all feet's readings: a slide of their soles, sensors that contradict each other.
+  struct Doubt {
+    SlipGate::Verdict slips;
+    bool contradiction;
+  };
+  // Contact, and what this tick teaches. others: load of the other feet; fresh: the tick before was read as well, `dt`
+  // earlier.
+  void learn(const FootKinematics& motion, double others, Doubt doubt, bool fresh, double time, double dt,
              double period) noexcept;
   // A tick without readings that can be used, for `reason`.
   void miss(std::uint32_t reason) noexcept;
@@ -58,6 +64,8 @@ class FootTracker {
 
   double load() const noexcept { return estimate_.load; }
   ContactState contact() const noexcept { return gate_.contact(); }
+  // Whether a swing has shown the force sensor's zero.
+  bool zero_known() const noexcept { return zero_.known(); }
   const FootEstimate& estimate() const noexcept { return estimate_; }
 
  private:
@@ -80,6 +88,7 @@ class FootTracker {
   void commit(double before) noexcept;
   void give(const HeldRow& row) noexcept;
   void end_stance() noexcept;
+  bool leans(const FootKinematics& motion, double inside, double dt) noexcept;
   void close_blocks() noexcept;
   void publish(int axis) noexcept;
   void publish_compliance() noexcept;
@@ -92,6 +101,7 @@ class FootTracker {
   ContactGate gate_;
   AirZero zero_;
   Shaking shaking_;
+  EdgeWatch edge_;
   CausalFilter<CHANNELS> filter_;
   DelayLine<6> angles_;  // of both axes: angles, rates, angles without noise
   std::array<SmoothAngle, 2> smooth_;

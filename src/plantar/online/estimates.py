@@ -35,6 +35,7 @@ class Flag(IntFlag):
     ROLL_MEMORY = 4096
     PITCH_UNTESTED = 8192
     ROLL_UNTESTED = 16384
+    CONTRADICTION = 32768
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,51 @@
+// A sole that tips before its centre of pressure seems to be at the edge: a zero of the torque moves the one, not the
+// other. The foot then turns on while the torque that would bend the bush stays as it is.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace plantar {
+
+constexpr double EDGE_MARGIN = 0.005;  // m from the sole's border
+constexpr double TORQUE_ZERO = 6e-3;   // m, times the weight: how far a torque's zero may be off, three usual ones
+constexpr double LEAST_LEAN = 0.003;   // rad: less hardly disturbs a deflection, as in `identify feet`
+constexpr double LEAN_BAND = 20.0;     // Hz: noise above it is no lean
+constexpr double SOFTER_BUSH = 0.5;    // of the bend that the torque explains: no softer ground looks like a lean
+
+class EdgeWatch {
+ public:
+  explicit EdgeWatch(double weight) noexcept : weight_(weight) {}
+
+  void restart() noexcept { first_ = true, visiting_ = false; }
+
+  // Whether the sole leans on its edge. inside: of the centre of pressure in the sole's outline [m]; load [N]; angle:
+  // of the ankle over the ground; bent: what the torque explains of it [rad].
+  bool step(double inside, double load, const std::array<double, 2>& angle, const std::array<double, 2>& bent,
+            double dt) noexcept {
+    const double blend = first_ ? 1.0 : 1.0 - std::exp(-2.0 * std::numbers::pi * LEAN_BAND * dt);
+    first_ = false;
+    for (int a = 0; a < 2; ++a) {
+      angle_[a] += blend * (angle[a] - angle_[a]);
+      bent_[a] += blend * (bent[a] - bent_[a]);
+    }
+    const bool near = inside * load < EDGE_MARGIN * load + TORQUE_ZERO * weight_;
+    if (!near || !visiting_) flat_angle_ = angle_, flat_bent_ = bent_;
+    visiting_ = near;
+    std::array<double, 2> explained, beyond;
+    for (int a = 0; a < 2; ++a) {
+      explained[a] = bent_[a] - flat_bent_[a];
+      beyond[a] = angle_[a] - flat_angle_[a] - explained[a];
+    }
+    return std::hypot(beyond[0], beyond[1]) > LEAST_LEAN + SOFTER_BUSH * std::hypot(explained[0], explained[1]);
+  }
+
+ private:
+  double weight_;
+  bool first_ = true, visiting_ = false;
+  std::array<double, 2> angle_ = {}, bent_ = {};            // behind the band
+  std::array<double, 2> flat_angle_ = {}, flat_bent_ = {};  // when the sole was flat last
+};
+
+}  // namespace plantar
