@@ -30,7 +30,7 @@ from plantar.feet.identify import identify_feet
 from plantar.motions.campaign import CAMPAIGN
 from plantar.online.estimates import Contact, Flag
 from plantar.online.estimator import FootEstimator
-from plantar.online.replay import USABLE
+from plantar.online.replay import USABLE, Replay
 from plantar.results.feet import FeetResult
 from plantar.results.feet_rows import Parameter
 from plantar.robot.model import RobotModel
@@ -74,6 +74,7 @@ def main() -> None:
     truth = on_the_floor(*twin_of(told.robot), told.preset)
     deflections: dict[str, list[float]] = defaultdict(list)
     latency: list[float] = []
+    slides: list[tuple[float, float]] = []  # errors of the compliances at the end, and half widths
     twin = twin_of(told.robot)
     everything = play_all(
         told.motions, twin.robot, twin.bushes, told.preset, range(told.first, told.first + told.seeds)
@@ -83,7 +84,10 @@ def main() -> None:
         estimator = FootEstimator(
             twin.robot, result, wrench_delay=None if told.batch else preset.sensors.wrench_delay
         )
-        _score(twin, truth, estimator, recordings, told.after, scores, unknown, deflections, latency)
+        last = _score(twin, truth, estimator, recordings, told.after, scores, unknown, deflections, latency)
+        for foot, bush in truth.items():
+            found = last.estimate(foot).compliance
+            slides.append((found.value * bush.z_stiffness - 1, found.half_width * bush.z_stiffness))
     motions = ", ".join(told.motions)
     print(f"{told.robot}, {told.preset}, {motions}, {told.seeds} seeds, every 5 s from {told.after:g} s on")
     for key in sorted({*scores, *unknown}):
@@ -99,6 +103,12 @@ def main() -> None:
         print(
             f"  deflection {axis}: {np.mean(values):.3f} mrad rms about each recording's bias, worst {max(values):.3f}"
         )
+    error, half = 100 * np.array(slides).T
+    print(
+        f"  compliance at the end: error rms {_rms(error):.1f} %, mean {_mean(error):.1f} %, largest "
+        f"{np.abs(error).max():.1f} %, half width {_median(half):.1f} %, covers "
+        f"{100 * _mean(np.abs(error) <= half):.0f} %"
+    )
     median, p999 = np.percentile(latency, [50, 99.9])
     print(f"  a step: median {1e6 * median:.1f} µs, 99.9 % {1e6 * p999:.1f} µs")
 
@@ -127,7 +137,8 @@ def _score(
     unknown: dict[str, int],
     deflections: dict[str, list[float]],
     latency: list[float],
-) -> None:
+) -> Replay:
+    """Adds to the scores; returns what the estimator said of the last recording."""
     begun = 0.0
     for one in recordings:
         replay = estimator.replay(one.log)
@@ -152,6 +163,7 @@ def _score(
                         else:
                             unknown[key] += 1
         begun += one.log.duration
+    return replay
 
 
 def batch(twin: Twin, preset: str, seed: int) -> FeetResult:

@@ -18,7 +18,6 @@ constexpr double USUAL_RATE = 0.1;
 constexpr double USUAL_SLOPE = 0.1;    // horizontal force over weight
 constexpr double SLOWEST = 1.0;        // s: damping over stiffness before any data
 constexpr double TWIST_ZERO = 2e-3;    // m, times the weight: zero of a yaw torque
-constexpr double NEWLY_KNOWN = 0.005;   // of an element's range: less changes no offset
 constexpr double HARDLY_SLIPS = 0.99;  // of an element's largest state: below it noise moves it as the deflection
 constexpr double STEEPEST = 0.35;      // rad: no sole lies so on a ground that a robot stands on
 constexpr double FASTEST = 20.0;       // rad/s: no bush is bent so fast
@@ -227,58 +226,6 @@ void FootTracker::filter(const FootKinematics& motion, double time, double dt, d
   if (++row_ticks_ < stride) return;
   hold(time, row_time_, channels);
   row_ticks_ = 0, row_time_ = 0.0;
-}
-
-// Elements from tick to tick. Of a foot that stood when time began nobody knows: each time that less is unknown, the
-// rows' offset changes; where little is unknown, the rows carry it. A sole that rolls over its edge turns with the
-// ankle, and the bush stays about as it is. What a foot lands with is known from how it lifted; it is loaded from there
-// until the sole lies flat.
-void FootTracker::follow_elements(const double* angles, const double* rates, double time, double dt) noexcept {
-  const bool stands = estimate_.contact == ContactState::stance, rolls = stands && (estimate_.flags & EDGE);
-  if (stood_ && !stands) unload_elements();
-  const bool lands = flat_ && estimate_.contact == ContactState::landing;
-  stood_ = stands;
-  bool known = false, suspected = false;
-  for (int a = 0; a < 2 && !rolls; ++a) {
-    ElementState& element = element_[a];
-    if (begun_elements_ && (stands || lands)) {
-      if (rolled_) element.hold(angles[a]), opened_[a] = element.gap();
-      if (turned(rates_before_[a], rates[a]))
-        element.load(turning_angle(angles_before_[a], rates_before_[a], rates[a], dt));
-      element.load(angles[a]);
-      if (lands) opened_[a] = element.gap();
-      const bool wide = opened_[a] > LEAN / slip_angle_[a];
-      if (wide && opened_[a] - element.gap() > NEWLY_KNOWN) (has_element(*foot_, a) ? known : suspected) = true;
-    } else if (lifted_) {
-      ElementState landed = hanging_[a];
-      landed.load(angles[a]);
-      element = landed, opened_[a] = element.gap();
-    } else {
-      element.begin(slip_angle_[a], angles[a]), opened_[a] = element.gap();
-    }
-  }
-  begun_elements_ = true;
-  std::copy_n(angles, 2, angles_before_), std::copy_n(rates, 2, rates_before_);
-  rolled_ = rolls;
-  if (!known && !suspected) return;
-  commit(time);
-  for (int a = 0; a < 2; ++a) opened_[a] = element_[a].gap();
-  for (MemoryWatch& memory : memories_) memory.close();
-  if (!known) return;
-  for (AxisRegression& axis : axes_) axis.close();
-  restart_filter();
-}
-
-// The foot has lifted.
-void FootTracker::unload_elements() noexcept {
-  lifted_ = true;
-  for (int a = 0; a < 2; ++a) {
-    const AxisValues& found = has_element(*foot_, a) ? axes_[a].values() : memories_[a].values();
-    lifted_ = lifted_ && found.groups >= FEWEST_GROUPS && found.plausible(STIFFEST * weight_);
-    if (!lifted_) return;
-    hanging_[a] = element_[a];
-    hanging_[a].unload(std::max(found.value[SLIP_TORQUE], 0.0) / found.value[STIFFNESS]);
-  }
 }
 
 void FootTracker::hold(double time, double dt, const double* channels) noexcept {
