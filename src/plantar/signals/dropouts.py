@@ -52,10 +52,10 @@ def dropouts_of(log: MotionLog) -> dict[tuple[str, ...], Mask]:
             found[columns] = _silent(log, columns, ".linear_acceleration.")
     sensors = _devices(log, "wrench")
     loads = np.zeros(len(log)) + sum(_size(log, columns, ".force.") for columns in sensors)
-    for columns in sensors if len(sensors) > 1 else []:
+    for columns in sensors if len(sensors) > 1 and np.isfinite(loads).any() else []:
         silent = _silent(log, columns, ".force.")
         # A foot in the air may read zero as well, but then the other one carries what it did.
-        found[columns] = silent & (loads < LOST * np.median(loads[np.isfinite(loads)]))
+        found[columns] = silent & (loads < LOST * np.nanmedian(loads))
     return {columns: mask for columns, mask in found.items() if mask.any()}
 
 
