@@ -80,20 +80,6 @@ def test_a_law_recovers_its_own_parameters(name: str) -> None:
     assert fit.doubts == ()
 
 
-def test_no_slip_angle_is_known_better_than_its_derivative_reaches() -> None:
-    """Corners of the squares, within the hundredth over which that is taken, do not show; all that follows it knows."""
-    data_sets = campaign(1, JENKINS)
-    fit = fit_model(Elastoplastic(), data_sets)
-    assert 0.005 * fit.shape[0] <= fit.std[3] * (1 + 1e-9) < 0.006 * fit.shape[0]
-    prepared = prepare_data_sets(data_sets, fit.cutoff, drift=True)
-    problem = Problem(Elastoplastic(), prepared, False)
-    states = [fit.initial_states[each.label] for each in prepared]
-    more, less = (problem.at(fit.shape * np.exp(by), states).values for by in (0.01, -0.01))
-    follows = np.abs(more - less) / 0.02
-    assert (fit.std[:3] >= 0.0049 * follows).all()
-    assert (np.sign(fit.covariance[3, :3]) == np.sign(more - less)).all()
-
-
 def test_kelvin_voigt_is_plain_least_squares() -> None:
     data_sets = campaign(1, Rubber())
     fit = fit_model(KelvinVoigt(), data_sets)

@@ -23,7 +23,6 @@ from plantar.model_selection.variable_projection import (
     NARROWEST_SCAN,
     NARROWING,
     SETTLED,
-    SHAPE_STEP,
     WIDEST_SCAN,
     Point,
     Problem,
@@ -36,7 +35,6 @@ from plantar.model_selection.variable_projection import (
 from plantar.models import BESIDE, BushModel
 
 AT_LIMIT = 0.02  # of a nonlinear parameter: this near to the end of its range it counts as at the end
-UNRESOLVED = SHAPE_STEP / 2  # of a nonlinear parameter: corners nearer to each other than derivatives reach
 HARDLY_KNOWN = 0.5  # a standard deviation beyond this share of the value
 
 
@@ -171,28 +169,6 @@ def refine(
     return _finished(problem, best, limits)
 
 
-def _between_corners(problem: Problem, point: Point, covariance: Array) -> Array:
-    """What the covariance of values and nonlinear parameters lacks, (k + s, same): corners of the squares.
-
-    Where an element begins to slip the squares have corners, and a fit comes to rest in one of them. Within the step
-    over which derivatives are taken they do not show, so that no nonlinear parameter is known better than UNRESOLVED.
-    """
-    count = len(point.values)
-    added = np.zeros((count + len(point.shape),) * 2)
-    for place, size in enumerate(point.shape):
-        known = float(np.sqrt(covariance[count + place, count + place])) / size
-        if not known < UNRESOLVED:
-            continue
-        ends = []
-        for by in (SHAPE_STEP, -SHAPE_STEP):
-            shape: Array = point.shape.copy()
-            shape[place] *= np.exp(by)
-            ends.append(np.append(problem.at(shape, point.initial_states).values, shape))
-        moved = (ends[0] - ends[1]) / (2 * SHAPE_STEP) * UNRESOLVED
-        added += (1 - (known / UNRESOLVED) ** 2) * np.outer(moved, moved)
-    return added
-
-
 def _finished(problem: Problem, point: Point, limits: Array) -> ModelFit:
     linear = problem.linearised(point)
     scale = np.concatenate([np.ones(len(point.values)), point.shape])
@@ -200,8 +176,6 @@ def _finished(problem: Problem, point: Point, limits: Array) -> ModelFit:
     covariance, freedom = robust_covariance(linear, point.residuals, durations)
     wide = np.concatenate([scale, np.ones(len(covariance) - len(scale))])
     covariance = covariance * wide[:, None] * wide[None, :]
-    if problem.model.remembers:
-        covariance[: len(scale), : len(scale)] += _between_corners(problem, point, covariance)
     count, rows = len(scale), sum(len(residual) for residual in point.residuals)
     white = point.squares / max(rows - len(covariance), 1) * linear.inverse_diagonal() * scale**2
     labels = [each.label for each in problem.prepared]
