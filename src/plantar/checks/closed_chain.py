@@ -25,10 +25,7 @@ from plantar.robot.model import RobotModel
 from plantar.signals.segments import longest_run, run_numbers
 
 LOADED = 0.1  # of the weight: a foot that carries more holds its sole still
-CARRIES, IN_AIR = (
-    0.6,
-    0.2,
-)  # of the weight: a foot that carries the robot alone, and the other one, zero included
+CARRIES, IN_AIR = 0.6, 0.2  # of the weight: a foot that carries the robot alone, the other one with its zero
 LIFTED = 0.005  # m: less is how soles lean and bushes give way; small robots lift their feet by a centimetre
 SURELY = 0.8  # share of the samples
 EACH = 0.2  # of the samples, in which each foot of a robot that steps carries it

@@ -43,7 +43,7 @@ class _TurnedWrench(NamedTuple):
 
 
 def check_balance(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
-    """Exchanged wrenches, reversed signs of a wrench's component or a joint, or a misfit that none of them explains.
+    """Wrenches exchanged or turned, reversed signs of a component or a joint, or a misfit that none of them explains.
 
     The moment of the feet's wrenches about the centre of mass, over the load, is a moment arm [m] that stays small
     while the robot stands or sways; an operator's push adds centimetres.

@@ -51,17 +51,21 @@ def dropouts_of(log: MotionLog) -> dict[tuple[str, ...], Mask]:
         if any(".linear_acceleration." in name for name in columns):
             found[columns] = _silent(log, columns, ".linear_acceleration.")
     sensors = _devices(log, "wrench")
-    loads = np.zeros(len(log)) + sum(_size(log, columns, ".force.") for columns in sensors)
-    for columns in sensors if len(sensors) > 1 and np.isfinite(loads).any() else []:
-        silent = _silent(log, columns, ".force.")
-        # A foot in the air may read zero as well, but then the other one carries what it did.
-        found[columns] = silent & (loads < LOST * np.nanmedian(loads))
+    silent = {columns: _silent(log, columns, ".force.") for columns in sensors if len(sensors) > 1}
+    if any(mask.any() for mask in silent.values()):
+        loads = np.sum([_size(log, columns, ".force.") for columns in sensors], axis=0)
+        if np.isfinite(loads).any():
+            # A foot in the air may read zero as well, but then the other one carries what it did.
+            lost = loads < LOST * np.nanmedian(loads)
+            found |= {columns: mask & lost for columns, mask in silent.items()}
     return {columns: mask for columns, mask in found.items() if mask.any()}
 
 
 def _silent(log: MotionLog, columns: tuple[str, ...], part: str) -> Mask:
     """`dropped_samples` of a device all of whose columns read zero, by the size of a `part` that jumps when it does."""
-    silent = np.all([log.column(name) == 0 for name in columns], axis=0)
+    silent = np.asarray(np.all([log.column(name) == 0 for name in columns], axis=0))
+    if not silent.any():
+        return silent
     return dropped_samples(np.where(silent, 0.0, np.maximum(_size(log, columns, part), LEAST)))
 
 

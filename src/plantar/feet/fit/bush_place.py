@@ -18,7 +18,7 @@ from plantar.conventions import ROTATIONAL_AXES, UNIFORM, Array, Axis, Mask
 from plantar.estimation import Block, LinearFit, effect_of, fit_blocks, influences_of
 from plantar.estimation.errors_in_variables import attenuation
 from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.load_torque import late_encoder_torque, others_torque, place_columns
+from plantar.feet.fit.load_torque import ENCODERS_APART, late_encoder_torque, others_torque, place_columns
 from plantar.feet.fit.place_notes import (
     BUSH_WORTH_SAYING,
     CLEAR,
@@ -38,7 +38,7 @@ TURN_STEP = 1e-3  # rad, of the differences that stand for derivatives
 GUESSED_TURN = 0.02  # rad: of an IMU whose mount nobody measured, about any axis
 ALIKE = 0.5  # of another foot's height above the robot file's place
 UNSEEN = 1e-4  # of the torque's rms: what one deviation of a place adds beside it is as good as nothing
-ENCODERS_LATE = UNIFORM * 0.005  # s: a device's own filter delays an IMU by 5 ms at most, and encoders not
+ENCODERS_LATE = UNIFORM * ENCODERS_APART  # s
 SURE = 5.0  # deviations of the other axis' share, from which stances show it
 STEPS_LEAVE = 0.75  # of the squares that the model of one axis leaves
 SINGULAR = 1e6  # condition of the fit beyond which the motions do not show the place

@@ -11,6 +11,8 @@ from plantar.signals.filters import differentiate
 
 # By which a centre that is higher turns a horizontal force into torque, of pitch and roll.
 ACROSS = (1.0, -1.0)
+# s: a device's own filter delays an IMU by as much at most, and encoders not at all; what looks later is another fault.
+ENCODERS_APART = 0.005
 
 
 def load_of(recording: Recording, foot: str) -> Array:

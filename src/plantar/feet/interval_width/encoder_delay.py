@@ -11,14 +11,13 @@ from collections.abc import Sequence
 
 from plantar.estimation import effect_of, fit_blocks, influences_of
 from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.load_torque import late_encoder_torque
+from plantar.feet.fit.load_torque import ENCODERS_APART, late_encoder_torque
 from plantar.feet.fit.regression_data import beside, tangent_blocks
 from plantar.feet.interval_width.systematic import SINGULAR, Cause
 from plantar.feet.recording import Recording
 
 NAME = "encoders' delay"
 SUSPECTED = 3.0  # deviations from none
-USUAL = 0.005  # s: what a device's own filter delays it by at most; what looks later is something else
 
 
 def encoder_delay_causes(fit: AxisFit, recordings: Sequence[Recording], shared: bool) -> list[Cause]:
@@ -37,4 +36,4 @@ def encoder_delay_causes(fit: AxisFit, recordings: Sequence[Recording], shared: 
     if found.condition_number > SINGULAR or abs(late) < SUSPECTED * std:
         return []
     influences = influences_of(blocks, shared_offset=shared)
-    return [Cause(NAME, effect_of(influences, columns), min(abs(late), USUAL))]
+    return [Cause(NAME, effect_of(influences, columns), min(abs(late), ENCODERS_APART))]
