@@ -32,6 +32,7 @@ from plantar.feet.interval_width.encoder_delay import encoder_delay_causes
 from plantar.feet.interval_width.force_gain import force_gain_causes, force_gain_notes, torque_gain_causes
 from plantar.feet.interval_width.imu_turn import imu_turn_causes
 from plantar.feet.interval_width.robot_causes import robot_causes
+from plantar.feet.interval_width.slip_angle import slip_angle_causes
 from plantar.feet.interval_width.systematic import inflated, systematic_causes
 from plantar.feet.prepare import PreparedLogs
 from plantar.feet.recording import Recording
@@ -167,6 +168,7 @@ def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit) -> FootFit:
     shared = ready.settings.offset == "shared"
     causes = systematic_causes(fit, thin.fitted, ready.sensor_delay, ready.vertical, shared)
     causes += robot_causes(fit, thin.fitted, ready.robot.uncertainty, shared)
+    causes += slip_angle_causes(fit, thin.fitted, shared)
     causes += encoder_delay_causes(fit, thin.fitted, shared)
     causes += imu_turn_causes(fit, thin.fitted, ready.imu_turn)
     causes += force_gain_causes(fit, ready.gain_errors)

@@ -35,6 +35,7 @@ REMEDY = {
     "imu turn": "add walks along curves: they show how the IMU is turned in its mount; or measure it and write it into "
     "the robot file (imu: rpy, and uncertainty: imu_mount)",
     "memory in stances": "add a recording of standing and swaying: short steps hardly separate spring and hysteresis",
+    "slip angle": "record other motions of the same size: where an element begins to slip shows no nearer in these",
     "hidden memory": "record larger motions, standing and swaying: spring and hysteresis are one until rubber slips",
     "hardening": "record larger motions, or use --model hardening: the stiffness changes with the angle",
     "model": "more of the same will not help: the model does not fit the rubber; try --model auto or other motions",

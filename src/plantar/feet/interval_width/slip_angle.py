@@ -1,0 +1,42 @@
+"""No slip angle is known better than the step of its derivative: nearer than that, corners of the squares do not show.
+
+Where an element of the rubber's memory begins to slip, the sum of squares has a corner, and a fit comes to rest in one
+of them. The derivative there says how the squares rise to either side of the corner, not how far away the next one is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from plantar.estimation import fit_blocks
+from plantar.feet.fit.axis import AxisFit
+from plantar.feet.fit.regression_data import SHAPE_STEP, blocks_of
+from plantar.feet.interval_width.systematic import Cause
+from plantar.feet.recording import Recording
+
+NAME = "slip angle"
+UNRESOLVED = SHAPE_STEP / 2  # standard deviation, as a share: the derivative is taken over twice as much either way
+
+
+def slip_angle_causes(fit: AxisFit, recordings: Sequence[Recording], shared: bool) -> list[Cause]:
+    """What an element's angle that is claimed to be known better than UNRESOLVED lacks, and what follows it: how the
+    fit's values are others beside a slip angle that is SHAPE_STEP larger and smaller."""
+    if "slip_angle" not in fit.model.shape_terms:
+        return []
+    place = fit.model.shape_terms.index("slip_angle")
+    number, size = len(fit.values) + place, float(fit.shape[place])
+    known = float(fit.std[number]) / size
+    if not known < UNRESOLVED:
+        return []
+    ends = []
+    for share in (1 + SHAPE_STEP, 1 - SHAPE_STEP):
+        shape = fit.shape.copy()
+        shape[place] = share * size
+        moved = replace(fit, shape=shape)
+        blocks = blocks_of(recordings, fit.foot, fit.axis, drift=not shared, fit=moved)
+        ends.append(np.append(fit_blocks(blocks, shared_offset=shared).values, shape))
+    effect = (ends[0] - ends[1]) / (2 * SHAPE_STEP)
+    return [Cause(NAME, effect, float(np.sqrt(UNRESOLVED**2 - known**2)))]
