@@ -18,7 +18,9 @@ from plantar.feet.interval_width.systematic import Cause
 from plantar.feet.recording import Recording
 
 NAME = "slip angle"
-UNRESOLVED = SHAPE_STEP / 2  # standard deviation, as a share: the derivative is taken over twice as much either way
+UNRESOLVED = (
+    SHAPE_STEP / 2
+)  # standard deviation, as a share: the derivative is taken over twice as much either way
 
 
 def slip_angle_causes(fit: AxisFit, recordings: Sequence[Recording], shared: bool) -> list[Cause]:
