@@ -112,3 +112,9 @@ def test_a_pair_that_only_a_delay_of_half_a_second_would_close_does_not() -> Non
     """So slow that half a second is a small step along its rate: no sensor is as late, something else is wrong."""
     assert closes(tone(0.15, 0.03))
     assert not closes(tone(0.15, 0.5))
+
+
+def test_a_delay_of_little_freedom_is_as_wide_as_student_says() -> None:
+    """At 97.5 %: 4.303 with two degrees of freedom, 1.960 with endless."""
+    assert Delay(0.0, 0.002, 2.0, 3).wide_std == pytest.approx(0.002 * 4.3027 / 1.95996, rel=1e-4)
+    assert Delay(0.0, 0.002, np.inf, 3).wide_std == pytest.approx(0.002, rel=1e-4)

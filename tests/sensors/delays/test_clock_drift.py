@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from plantar.estimation.delays.delay import Pair
+from plantar.estimation.delays.delay import Delay, Pair
 from plantar.sensors.delays.clock_drift import clock_drift
 from plantar.sensors.delays.delays_by_log import delays_by_log
 from plantar.signals.filters import differentiate, low_pass
@@ -51,3 +51,32 @@ def test_logs_with_one_delay_and_a_single_log_say_nothing() -> None:
     assert delays_by_log([pair(0.0, seed, 0.02) for seed in range(4)], 0.0) is None
     assert delays_by_log([pair(0.0, 1, 0.002), pair(0.0, 2)], 0.0) is None, "too little to matter"
     assert delays_by_log([pair(0.0, 1, 0.02)], 0.0) is None
+
+
+@pytest.mark.parametrize(("freedom", "apart", "told"), [
+    (1e6, 4.9, False), (1e6, 5.1, True),
+    # Student's 97.5 % with 4 degrees of freedom lies at 2.776, the normal distribution's at 1.960.
+    (4.0, 5.1, False), (4.0, 0.99 * 5 * 2.776 / 1.960, False), (4.0, 1.01 * 5 * 2.776 / 1.960, True),
+])  # fmt: skip
+def test_a_deviation_of_few_values_reaches_further(
+    monkeypatch: pytest.MonkeyPatch, freedom: float, apart: float, told: bool
+) -> None:
+    """A slow log of a light robot seemed 27 ± 5 ms late, by three bands of two waves each."""
+    delays = {"slow": Delay(0.005 * apart, 0.005, freedom, 3), "quick": Delay(0.0, 1e-9, 40.0, 14)}
+    monkeypatch.setattr(
+        "plantar.sensors.delays.delays_by_log.estimate_delay", lambda own: delays[own[0].label]
+    )
+    pairs = [Pair(label, *np.zeros((3, 1, 6)), PERIOD) for label in delays]
+    assert (delays_by_log(pairs, 0.0) is not None) == told
+
+
+@pytest.mark.parametrize(("freedom", "times", "told"), [
+    (1e6, 3.9, False), (1e6, 4.1, True), (4.0, 4.1, False), (4.0, 4.1 * 2.776 / 1.960, True),
+])  # fmt: skip
+def test_halves_of_few_values_differ_by_chance(
+    monkeypatch: pytest.MonkeyPatch, freedom: float, times: float, told: bool
+) -> None:
+    """Two halves, each known to 5 ms: their difference to √2 times that."""
+    halves = iter([Delay(0.0, 0.005, freedom, 3), Delay(np.sqrt(2) * 0.005 * times, 0.005, freedom, 3)])
+    monkeypatch.setattr("plantar.sensors.delays.clock_drift.estimate_delay", lambda _: next(halves))
+    assert (clock_drift([pair(0.0, 1)]) is not None) == told

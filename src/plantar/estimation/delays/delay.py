@@ -12,7 +12,8 @@ from functools import cached_property
 
 import numpy as np
 
-from plantar.conventions import FORCE, Array
+from plantar.conventions import FORCE, NORMAL95, Array
+from plantar.estimation.quantiles import student_quantile
 from plantar.estimation.residual_covariance import score_cosines
 from plantar.signals.filters import differentiate, low_pass
 
@@ -73,6 +74,11 @@ class Delay:
     std: float
     freedom: float
     cells: int
+
+    @property
+    def wide_std(self) -> float:
+        """The deviation of a normal distribution whose 95 % interval is as wide as this delay's."""
+        return self.std * student_quantile(0.975, self.freedom) / NORMAL95
 
 
 def estimate_delay(pairs: Sequence[Pair]) -> Delay | None:

@@ -52,7 +52,7 @@ def fit_axis(
     """The model given or asked for, or the one that predicts held-out motions; None where no recording has samples.
 
     What errors of the angles do to its values is taken off, where that matters. `place`: what the robot file's place of
-    the bush may be off by; not `timed`: sensors may be late by any time, which looks like a memory, so none is tried.
+    the bush may be off by; not `timed`: sensors may be late by any time, which looks like a memory: none is chosen.
     """
     shared = settings.offset == "shared"
     if model is None and settings.model != AUTOMATIC:
@@ -104,7 +104,8 @@ def _fitted(
     if explained <= LEAST_EXPLAINED or (explained >= FULLY_EXPLAINED and not small):
         return _of_linear(foot, axis, linear, None, _untried(explained))
     names = CANDIDATES_IN_STANCES if steps else CANDIDATES
-    memory = timed and (steps or _remembers(data_sets))
+    # In short stances a late sensor always looks like one: there it would tell nothing of what it may hide.
+    memory = timed if steps else _remembers(data_sets)
     models = [MODELS[name] for name in names if memory or not MODELS[name].remembers]
     gain = LEAST_GAIN_IN_STANCES if steps else LEAST_GAIN
     choice = choose_model(data_sets, models, cutoff, shared_offset=shared, least_gain=gain)

@@ -23,9 +23,10 @@ TOO_SMALL = (
     "stiffness may be smaller (record larger motions)"
 )
 UNTIMED = (
-    "sensors may be late by any time, which looks like a memory of the rubber: none was looked for, and with one "
+    "sensors may be late by any time, which looks like a memory of the rubber: none is believed, and with one "
     "stiffness is smaller"
 )
+UNBELIEVED = "sensors may be late by any time, which looks like it"
 
 
 def has_memory(model: BushModel) -> bool:
@@ -86,10 +87,12 @@ def may_hide_a_memory(motions: Sequence[BushMotion]) -> bool:
 
 
 def cautioned(choice: ModelChoice, *, timed: bool, steps: bool) -> ModelChoice:
-    """The choice with a caution where a memory could not be looked for, or could not show.
+    """The choice with a caution where a memory cannot be believed, or could not show.
 
     timed: whether it is known when the sensors read; steps: whether the foot steps, of which `half_turns` tells.
     """
+    if not timed:
+        choice = _unbelieved(choice)
     if choice.caution is not None:
         return choice
     if not timed:
@@ -97,3 +100,18 @@ def cautioned(choice: ModelChoice, *, timed: bool, steps: bool) -> ModelChoice:
     if isinstance(choice.fit.model, Hysteretic) or steps or choice.reach >= SMALL:
         return choice
     return replace(choice, caution=TOO_SMALL.format(choice.reach))
+
+
+def _unbelieved(choice: ModelChoice) -> ModelChoice:
+    """Spring and damper in the place of a memory, which stays in the ranking: `rival` says what it would change."""
+    if not has_memory(choice.fit.model):
+        return choice
+    ranking = tuple(
+        replace(
+            score,
+            chosen=isinstance(score.model, KelvinVoigt),
+            refused=UNBELIEVED if has_memory(score.model) else score.refused,
+        )
+        for score in choice.ranking
+    )
+    return replace(choice, fit=choice.equivalent, ranking=ranking, reason=UNTIMED)

@@ -58,7 +58,7 @@ def _halves(pair: Pair) -> tuple[float, float] | None:
     first, second = delays
     if first is None or second is None:
         return None
-    return second.value - first.value, first.std**2 + second.std**2
+    return second.value - first.value, first.wide_std**2 + second.wide_std**2
 
 
 def _part(pair: Pair, rows: slice) -> Pair:

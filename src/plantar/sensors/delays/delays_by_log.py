@@ -48,7 +48,7 @@ def delays_by_log(pairs: Sequence[Pair], common: float) -> DelaysByLog | None:
     if len(found) < 2:
         return None
     values = np.array([one.value for one in found.values()])
-    stds = np.array([one.std for one in found.values()])
+    stds = np.array([one.wide_std for one in found.values()])
     apart = np.abs(values[:, None] - values)
     if not (apart > np.maximum(SURE * np.hypot(stds[:, None], stds), LEAST)).any():
         return None
