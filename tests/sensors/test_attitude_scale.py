@@ -124,3 +124,22 @@ def test_an_attitude_that_wanders_while_the_robot_hardly_tilts_has_no_scale() ->
         signals = np.column_stack([lean, believed, higher])
         one = AttitudeScale(np.tile(0.05 * signals.T @ signals, (2, 1, 1)), time[-1])
         assert bool(attitude_scale_notes(one)) is found
+
+
+def test_what_an_attitude_drifts_by_is_no_share_of_its_tilts(
+    robot: RobotModel, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Two milliradians within half a minute: they went with the slow tilts for a while, as 6 % of them."""
+    log = record(sway("sway", seed=1, duration=60.0))
+    drift = 0.002 * np.cos(2 * np.pi * log.time / 33.0)
+    quaternion = log.orientation("chest")
+    assert quaternion is not None
+    turned = Rotation.from_rotvec(np.outer(drift, [1.0, 1.0, 0.0]))
+    drifting = (turned * Rotation.from_quat(quaternion, scalar_first=True)).as_quat(scalar_first=True)
+    columns = {f"imu.chest.orientation.{axis}": part for axis, part in zip("wxyz", drifting.T, strict=True)}
+    told = list[AttitudeScale]()
+    monkeypatch.setattr("plantar.feet.prepare.attitude_scale_notes", lambda found: [told.append(found)][:0])
+    identify_feet(robot, [log.with_columns(columns)], settings=KNOWN)
+    share, std = told[0].share
+    assert np.abs(share).max() < 0.006
+    assert std.max() < 0.002

@@ -16,6 +16,8 @@ import numpy as np
 from plantar.contact.deflection import BushState
 from plantar.contact.phases import FootContact
 from plantar.conventions import Array, rotation_from_quaternion
+from plantar.estimation.orthonormal import without
+from plantar.estimation.slow_drift import drift_basis
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.robot.model import Imu
@@ -97,7 +99,10 @@ def log_attitude_scale(
         tilt = low_pass(horizontal[run], period, CORRECTED)
         higher = lean_of(np.zeros_like(tilt), horizontal[run], height, period)
         signals = np.stack([lean, tilt, higher], axis=2)[edge:-edge]  # (n, 2, 3)
-        signals = signals - signals.mean(axis=0)
+        # What an attitude drifts by over seconds is no share of any tilt, but goes with slow ones for a while.
+        flat = signals.reshape(len(signals), -1)
+        flat = without(drift_basis(period * np.arange(len(flat))), flat - flat.mean(axis=0))
+        signals = flat.reshape(signals.shape)
         products = period * np.einsum("nai,naj->aij", signals, signals)
         found = found + AttitudeScale(products, len(signals) * period)
     return found
