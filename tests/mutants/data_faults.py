@@ -160,8 +160,17 @@ DATA_FAULTS = (
         ("feet/assess/test_verdicts.py",),
     ),
     Mutant(
-        "feet/prepare_log.py", "the gyroscope stays late", "with_gyroscope_on_time(even, imu.name)", "even",
+        "feet/prepare.py", "the gyroscope stays late", "with_gyroscopes_on_time(logs, name, found), found",
+        "[*logs], found",
         ("feet/test_prepare.py",),
+    ),
+    Mutant(
+        "signals/gyroscope_delay.py", "logs that disagree show a filter", "apart < AGREE**2", "True",
+        ("signals/test_gyroscope_delay.py",),
+    ),
+    Mutant(
+        "sensors/accelerometer_delay.py", "the gyroscope tells nothing of the accelerometer",
+        "gyroscope is not None and gyroscope.shown and std < np.inf", "False", ("sensors/test_accelerometer_delay.py",),
     ),
     Mutant(
         "feet/assess/contradiction.py", "drift contradicts the fit",

@@ -145,8 +145,13 @@ SENSOR_FAULTS = (
         ("sensors/test_attitude_scale.py",),
     ),
     Mutant(
+        "sensors/attitude_scale.py", "what an attitude drifts by is a scale",
+        "without(drift_basis(period * np.arange(len(flat), dtype=np.float64)), flat - flat.mean(axis=0))",
+        "flat - flat.mean(axis=0)", ("sensors/test_attitude_scale.py",),
+    ),
+    Mutant(
         "sensors/attitude_scale.py", "each stance keeps its zero",
-        "signals = signals - signals.mean(axis=0)", "signals = signals",
+        "flat - flat.mean(axis=0)", "flat",
         ("sensors/test_attitude_scale.py",),
     ),
     Mutant(

@@ -15,10 +15,15 @@ from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.robot.model import RobotModel
 from plantar.sensors.accelerometer_delay import (
+    ALIKE,
+    COLUMNS,
+    RATE,
+    STRAY,
     AccelerometerDelay,
     accelerometer_delay,
     with_accelerometers_on_time,
 )
+from plantar.signals.gyroscope_delay import ImuFilter
 
 ACCELERATION = imu_columns("chest", "linear_acceleration")
 TORSO = (
@@ -86,7 +91,8 @@ def test_without_an_accelerometer_or_a_stance_nothing_is_told(robot: RobotModel)
     )
     for log in (SWAY.with_columns({name: np.full(len(SWAY), np.nan) for name in ACCELERATION}), hung):
         assert accelerometer_delay(robot, log).late == (0.0, np.inf)
-    assert AccelerometerDelay().sure == 0.0
+    assert AccelerometerDelay().beside(None) == (0.0, np.inf)
+    assert AccelerometerDelay().beside(ImuFilter(0.004, 1e-4, True))[0] == 0.0
 
 
 def test_an_imu_out_of_place_is_no_delay(tmp_path: Path) -> None:
@@ -101,3 +107,43 @@ def test_identify_says_that_it_reads_the_accelerometer_earlier(robot: RobotModel
     settings = FeetSettings(model="kelvin_voigt", wrench_delay=0.0)
     found = identify_feet(robot, [late_by(0.004)], settings=settings)
     assert sum(note.code == "accelerometer_delay" for note in found.notes) == 1
+
+
+def told(late: float, std: float) -> AccelerometerDelay:
+    """Sums that tell a delay [s] with a deviation: of a lean that goes with it alone, over 100 s."""
+    rest = std**2 * RATE * 100.0
+    products = np.zeros((COLUMNS, COLUMNS))
+    products[:2, :2] = [[late**2 + rest, late], [late, 1.0]]
+    return AccelerometerDelay(products, 100.0)
+
+
+def test_what_sums_tell() -> None:
+    np.testing.assert_allclose(told(0.004, 0.0005).late, (0.004, 0.0005), rtol=1e-9)
+
+
+def test_a_gyroscope_behind_its_filter_tells_of_the_accelerometer_beside_it() -> None:
+    """2.0 ± 1.2 ms and, from the gyroscope, 3.5 ± 1.0 ms: their mean by weight, which is sure, as neither stray is."""
+    unsure = told(0.002, 0.0012)
+    own, usual = np.hypot(0.0012, STRAY), np.hypot(0.0002, ALIKE)
+    assert unsure.beside(None) == (0.0, pytest.approx(own))
+    late, std = unsure.beside(ImuFilter(0.0035, 0.0002, True))
+    assert late == pytest.approx((0.002 / own**2 + 0.0035 / usual**2) / (own**-2 + usual**-2))
+    assert std == pytest.approx((own**-2 + usual**-2) ** -0.5)
+
+
+@pytest.mark.parametrize("gyroscope", [None, ImuFilter(0.0001, 0.0001, True), ImuFilter(0.0049, 1e-5, True)])
+def test_without_a_filter_or_against_it_the_accelerometer_is_believed(gyroscope: ImuFilter | None) -> None:
+    """Of 1.0 ± 0.2 ms, 4.9 ms are 3.4 deviations away; 1.8 ms alone is sure."""
+    assert told(0.001, 0.0002).beside(gyroscope)[0] == 0.0
+    assert told(0.0018, 0.0002).beside(None)[0] == pytest.approx(0.0018)
+
+
+def test_an_orientation_that_follows_the_accelerometer_makes_it_late_for_nothing() -> None:
+    """Gyroscope and orientation are apart by another time in each log then."""
+    assert told(0.004, 0.0002).beside(ImuFilter(0.002, 0.0001, False))[0] == 0.0
+    assert told(0.004, 0.0002).beside(ImuFilter(0.0, 0.0001, True))[0] == pytest.approx(0.004)
+
+
+@pytest.mark.parametrize(("late", "moved"), [(0.0099, True), (0.0101, False), (-0.004, False)])
+def test_only_a_filter_s_delay_is_undone(late: float, moved: bool) -> None:
+    assert (told(late, 0.0001).beside(None)[0] != 0.0) is moved

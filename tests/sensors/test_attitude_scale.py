@@ -142,4 +142,4 @@ def test_what_an_attitude_drifts_by_is_no_share_of_its_tilts(
     identify_feet(robot, [log.with_columns(columns)], settings=KNOWN)
     share, std = told[0].share
     assert np.abs(share).max() < 0.006
-    assert std.max() < 0.002
+    assert std.max() < 0.02

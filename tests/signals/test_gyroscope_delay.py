@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from plantar.conventions import Array
 from plantar.logs.motion_log import MotionLog, imu_columns
-from plantar.signals.gyroscope_delay import gyroscope_delay, with_gyroscope_on_time
+from plantar.signals.gyroscope_delay import ImuFilter, gyroscope_delay, imu_filter, with_gyroscopes_on_time
 from plantar.signals.orientation import rates_from
 
 PERIOD = 0.005
@@ -34,13 +34,18 @@ def log_with(late: float, noise: float = 1e-4) -> MotionLog:
     return MotionLog("sway", TIME, columns | dict(zip(RATES, delayed.T, strict=True)))
 
 
+def on_time(log: MotionLog) -> MotionLog:
+    """The log alone, its gyroscope read when it should be."""
+    return with_gyroscopes_on_time([log], "chest", imu_filter([log], "chest"))[0]
+
+
 @pytest.mark.parametrize("late", [0.003, -0.002, 0.0045])
 def test_rates_come_at_the_moments_of_the_orientation(late: float) -> None:
     log = log_with(late)
-    found = with_gyroscope_on_time(log, "chest")
-    on_time, inner = log_with(0.0), slice(200, -200)
+    found = on_time(log)
+    exact, inner = log_with(0.0), slice(200, -200)
     before, after = (
-        np.abs(one.angular_velocity("chest") - on_time.angular_velocity("chest"))[inner].mean()
+        np.abs(one.angular_velocity("chest") - exact.angular_velocity("chest"))[inner].mean()
         for one in (log, found)
     )
     assert after < 0.6 * before
@@ -53,21 +58,21 @@ def test_rates_come_at_the_moments_of_the_orientation(late: float) -> None:
 @pytest.mark.parametrize("late", [0.0, 0.0055])
 def test_none_and_a_fault_are_left_as_they_are(late: float) -> None:
     log = log_with(late)
-    assert with_gyroscope_on_time(log, "chest") is log
+    assert on_time(log) is log
 
 
 def test_noise_that_hides_a_delay_shifts_nothing() -> None:
     log = log_with(0.0005, noise=0.02)
-    assert with_gyroscope_on_time(log, "chest") is log
+    assert on_time(log) is log
 
 
 def test_a_log_without_orientation_or_with_gaps() -> None:
     log = log_with(0.003)
     alone = MotionLog("sway", TIME, {name: log.column(name) for name in RATES})
-    assert with_gyroscope_on_time(alone, "chest") is alone
+    assert on_time(alone) is alone
     holes = log.angular_velocity("chest").copy()
     holes[3000:3010] = np.nan
-    found = with_gyroscope_on_time(log.with_columns(dict(zip(RATES, holes.T, strict=True))), "chest")
+    found = on_time(log.with_columns(dict(zip(RATES, holes.T, strict=True))))
     assert found.notes
     assert np.isnan(found.angular_velocity("chest")).sum() < 45
 
@@ -79,7 +84,7 @@ def test_a_gyroscope_that_an_accelerometer_may_explain_is_not_made_late() -> Non
         still = np.tile([0.0, 0.0, 9.81], (len(TIME), 1))
         columns = dict(zip(imu_columns("chest", "linear_acceleration"), still.T, strict=True))
         log = log.with_columns(columns)
-        assert (with_gyroscope_on_time(log, "chest") is log) is left
+        assert (on_time(log) is log) is left
 
 
 def test_its_deviation_is_how_the_delay_scatters() -> None:
@@ -92,3 +97,45 @@ def test_its_deviation_is_how_the_delay_scatters() -> None:
         found.append(one)
     scatter = np.sqrt(np.mean([one.late**2 for one in found]))
     assert scatter == pytest.approx(np.median([one.std for one in found]), rel=0.25)
+
+
+def test_a_filter_is_the_device_s_so_logs_that_hardly_turn_are_read_as_the_others() -> None:
+    quiet = log_with(0.003, noise=0.02)
+    assert on_time(quiet) is quiet
+    logs = [log_with(0.003), quiet, log_with(0.003)]
+    found = imu_filter(logs, "chest")
+    assert found is not None
+    assert found.shown
+    alone = imu_filter(logs[:1], "chest")
+    assert alone is not None
+    assert found.std == pytest.approx(alone.std / np.sqrt(2), rel=0.1)
+    read = with_gyroscopes_on_time(logs, "chest", found)
+    moved = [
+        float(np.nanmax(np.abs(one.angular_velocity("chest") - log.angular_velocity("chest"))))
+        for one, log in zip(read, logs, strict=True)
+    ]
+    assert min(moved) > 0.5 * max(moved) > 0
+    assert all(len(one.notes) == 1 for one in read)
+
+
+def test_logs_that_disagree_show_no_filter() -> None:
+    """Ahead in one log and behind in another: the orientation follows something else, and nothing is moved."""
+    logs = [log_with(0.003), log_with(0.001)]
+    found = imu_filter(logs, "chest")
+    assert found is not None
+    assert not found.steady
+    assert all(
+        one is log for one, log in zip(with_gyroscopes_on_time(logs, "chest", found), logs, strict=True)
+    )
+    assert imu_filter([MotionLog("empty", TIME, {})], "chest") is None
+
+
+@pytest.mark.parametrize(("late", "std", "steady", "shown"), [
+    (0.004, 0.0013, True, True), (0.004, 0.0014, True, False), (0.004, 0.0001, False, False),
+    (0.00049, 0.0001, True, False), (0.00051, 0.0001, True, True),
+    (0.0049, 0.0001, True, True), (0.0051, 0.0001, True, False), (-0.004, 0.0001, True, True),
+])  # fmt: skip
+def test_a_filter_is_shown_where_it_is_sure_and_a_filter_s(
+    late: float, std: float, steady: bool, shown: bool
+) -> None:
+    assert ImuFilter(late, std, steady).shown is shown

@@ -36,6 +36,7 @@ from plantar.sensors.moment_balance import TorqueGain, torque_gain_notes, torque
 from plantar.sensors.moment_fit import fit_moments
 from plantar.sensors.sensor_turns import sensor_turn_notes
 from plantar.sensors.tilt_error import NO_TILT_ERROR, log_tilt_error
+from plantar.signals.gyroscope_delay import ImuFilter, imu_filter, with_gyroscopes_on_time
 
 Progress = Callable[[str], None]
 LONG = 50_000  # samples: with fewer, threads mostly hand Python's lock to each other, and hold memory each
@@ -124,7 +125,7 @@ def prepare_checked(
 ) -> PreparedLogs:
     """Correct `checked` logs for delay, leave out what cannot be used, move torques to the loaded centre."""
     progress("estimate the sensors' delays")
-    even = with_accelerometers_on_time(robot, [*logs, *validate])
+    even = _imu_on_time(robot, [*logs, *validate])
     if settings.wrench_delay is None:
         with over_logs(even) as each:
             delay = estimate_wrench_delay(robot, even, each)
@@ -177,8 +178,23 @@ def prepare_unseen(
     """Logs to score with what an earlier fit found: its cutoff in `settings`, its `delay`, its `compliance` [m/N]."""
     even = checked_in_turn(robot, logs)
     check_names(even)
+    even = _gyroscopes_on_time(robot, even)[0]
     recordings, _ = _recordings(robot, even, 0, settings, delay, progress)
     return [moved_centre(recording, compliance) for recording in recordings]
+
+
+def _imu_on_time(robot: RobotModel, logs: Sequence[MotionLog]) -> list[MotionLog]:
+    """Checked logs with what the IMU's own filter delays read at the moments of its orientation."""
+    read, found = _gyroscopes_on_time(robot, logs)
+    return with_accelerometers_on_time(robot, read, found)
+
+
+def _gyroscopes_on_time(
+    robot: RobotModel, logs: Sequence[MotionLog]
+) -> tuple[list[MotionLog], ImuFilter | None]:
+    name = "" if robot.imu is None else robot.imu.name
+    found = imu_filter(logs, name)
+    return with_gyroscopes_on_time(logs, name, found), found
 
 
 def _recordings(

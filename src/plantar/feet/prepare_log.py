@@ -26,7 +26,6 @@ from plantar.sensors.attitude_scale import AttitudeScale, log_attitude_scale
 from plantar.sensors.tilt_error import NO_TILT_ERROR, TiltError, right_attitude
 from plantar.signals.dropouts import without_dropouts
 from plantar.signals.filters import differentiate, low_pass
-from plantar.signals.gyroscope_delay import with_gyroscope_on_time
 from plantar.signals.held import without_held
 from plantar.signals.orientation import attitude
 from plantar.signals.resampling import evenly_sampled, without_holes
@@ -40,21 +39,20 @@ WEIGHT_MISMATCH = 0.15  # share by which the feet may carry more or less than th
 
 
 def checked(robot: RobotModel, log: MotionLog, findings: Sequence[Finding] | None = None) -> MotionLog:
-    """The log on an even grid, without held samples, dropouts and spikes, its gyroscope on time, oddities as notes.
+    """The log on an even grid, without held samples, dropouts and spikes, oddities as notes.
 
     findings: of `check_log`, where that has been asked already.
 
     Raises RobotError without IMU or feet in the robot file, LogError for a missing column, DataError where a sensor
     reads something impossible (degrees for radians, a flipped sign, swapped feet; see `checks`).
     """
-    imu = _require(robot)
+    _require(robot)
     findings = check_log(robot, log) if findings is None else findings
     refuse_impossible(log, findings)
     odd = finding_notes(log, findings)
     return_freed(log.size)
     even = thinned(without_spikes(without_holes(without_held(without_dropouts(evenly_sampled(log))))))
-    on_time = with_gyroscope_on_time(even, imu.name)
-    return on_time.with_columns({}, *log.joint_notes(robot), *odd)
+    return even.with_columns({}, *log.joint_notes(robot), *odd)
 
 
 def prepare(

@@ -16,12 +16,13 @@ import numpy as np
 
 from plantar.contact.deflection import BushState, bush_states
 from plantar.contact.phases import carried_weight, detect_contact
-from plantar.conventions import GRAVITY, Array, rotation_from_quaternion
+from plantar.conventions import GRAVITY, NORMAL95, Array, rotation_from_quaternion
 from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
 from plantar.sensors.tilt_error import CORRECTED, DERIVED, lean_of, stance_leans, unit_quaternions
 from plantar.signals.filters import differentiate, low_pass
+from plantar.signals.gyroscope_delay import ImuFilter
 from plantar.signals.resampling import shifted
 from plantar.signals.segments import runs
 
@@ -29,6 +30,7 @@ SLOW = 0.15  # Hz: below it an attitude's wander leans more than any delay
 EDGE = 1.0  # s at both ends of a stance: the filters'
 RATE = CORRECTED  # 1/s and axis, of values that tell something new: half of what the band holds, since wander is red
 SURE = 3.0  # deviations
+ALIKE = 0.001  # s: standard deviation by which the filters of a device's two sensors differ
 STRAY = 0.0005  # s: what encoders that are a millisecond off, or legs that are, make of it
 LARGEST = 0.01  # s: a device's own filter; later is a fault, and `sensor_delay` searches for it
 COLUMNS = 8  # the lean, and what goes with it
@@ -61,26 +63,39 @@ class AccelerometerDelay:
         unit = float(scale[0] / scale[1])
         return float(found[0]) * unit, unit * float(np.sqrt(left * inverse[0, 0] / (RATE * self.seconds)))
 
-    @property
-    def sure(self) -> float:
-        """The delay to read it earlier by [s]; 0 where it is not told from none, or larger than a filter's.
+    def beside(self, gyroscope: ImuFilter | None) -> tuple[float, float]:
+        """The delay to read it earlier by and its deviation [s]; 0 where it is not told from none, or larger than a
+        filter's.
 
-        No filter makes it early: ahead of the orientation, that is late, or follows it (`tilt_error`).
+        A device filters both of its sensors much alike: a gyroscope whose delay is `shown` tells of the accelerometer,
+        unless the two contradict each other. One whose logs disagree shows an orientation that follows the
+        accelerometer, and so does an accelerometer that is early: no filter makes it so (`tilt_error`).
         """
         late, std = self.late
-        return late if SURE * float(np.hypot(std, STRAY)) < late < LARGEST else 0.0
+        std = float(np.hypot(std, STRAY))
+        if gyroscope is not None and not gyroscope.steady:
+            return 0.0, std
+        if gyroscope is not None and gyroscope.shown and std < np.inf:
+            usual = float(np.hypot(gyroscope.std, ALIKE))
+            if abs(late - gyroscope.late) < SURE * float(np.hypot(std, usual)):
+                share = usual**2 / (usual**2 + std**2)
+                late, std = share * late + (1 - share) * gyroscope.late, std * float(np.sqrt(share))
+        return (late, std) if SURE * std < late < LARGEST else (0.0, std)
 
 
-def with_accelerometers_on_time(robot: RobotModel, logs: Sequence[MotionLog]) -> list[MotionLog]:
+def with_accelerometers_on_time(
+    robot: RobotModel, logs: Sequence[MotionLog], gyroscope: ImuFilter | None = None
+) -> list[MotionLog]:
     """Checked logs of one IMU with its accelerometer read at the moments of its orientation, and a note of it.
 
-    All logs tell together: a filter belongs to the device. As they are where that is not sure.
+    All logs tell together: a filter belongs to the device. As they are where that is not sure. `gyroscope`: what they
+    tell of the filter of the same device.
     """
     found = sum((accelerometer_delay(robot, log) for log in logs), AccelerometerDelay())
-    late = found.sure
+    late, std = found.beside(gyroscope)
     if robot.imu is None or not late:
         return [*logs]
-    how = f"{1e3 * late:.1f} ± {2e3 * found.late[1]:.1f} ms behind the IMU's orientation (95 %)"
+    how = f"{1e3 * late:.1f} ± {1e3 * NORMAL95 * std:.1f} ms behind the IMU's orientation (95 %)"
     note = Note(
         "accelerometer_delay", "info", f"accelerometer {how} over soles that stand, read earlier by as much"
     )

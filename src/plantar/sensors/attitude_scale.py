@@ -101,7 +101,7 @@ def log_attitude_scale(
         signals = np.stack([lean, tilt, higher], axis=2)[edge:-edge]  # (n, 2, 3)
         # What an attitude drifts by over seconds is no share of any tilt, but goes with slow ones for a while.
         flat = signals.reshape(len(signals), -1)
-        flat = without(drift_basis(period * np.arange(len(flat))), flat - flat.mean(axis=0))
+        flat = without(drift_basis(period * np.arange(len(flat), dtype=np.float64)), flat - flat.mean(axis=0))
         signals = flat.reshape(signals.shape)
         products = period * np.einsum("nai,naj->aij", signals, signals)
         found = found + AttitudeScale(products, len(signals) * period)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -19,29 +20,7 @@ EDGE, LEAST_EDGES = 0.5, 10  # s that a filter's ends take; how many of them a r
 USUAL = 0.005  # s: a device's own filter; a later one is a fault, or an orientation that follows the accelerometer
 LEAST = 0.0005  # s: less moves damping by less than its interval ever shows
 SURE = 3.0  # deviations
-
-
-def with_gyroscope_on_time(log: MotionLog, imu: str) -> MotionLog:
-    """An evenly sampled log with its gyroscope read at the moments that the orientation tells of, and a note of it.
-
-    A device's own filter delays a gyroscope by milliseconds; damping, and the delay of the force sensors beside it,
-    would follow. As it is where the delay is small, not told from none, or larger than such a filter's. No filter makes
-    a gyroscope early: ahead of an orientation that follows its accelerometer, it is the orientation that is wrong, and
-    the accelerometer tells by how much (`sensors/tilt_error.py`).
-    """
-    orientation, columns = log.orientation(imu), imu_columns(imu, "angular_velocity")
-    if orientation is None or not log.has(*columns):
-        return log
-    rates = log.angular_velocity(imu)
-    found = gyroscope_delay(rates, rates_from(orientation, log.period), log.period)
-    if found is None or not max(SURE * found.std, LEAST) < abs(found.late) < USUAL:
-        return log
-    if found.late < 0 and log.has_imu(imu, "linear_acceleration"):
-        return log
-    late, ahead = ("behind", "earlier") if found.late > 0 else ("ahead of", "later")
-    text = f"{log.name}: gyroscope {1e3 * abs(found.late):.1f} ms {late} the orientation, read {ahead} by as much"
-    on_time = shifted(rates, log.period, found.late)
-    return log.with_columns(dict(zip(columns, on_time.T, strict=True)), Note("gyroscope_delay", "info", text))
+AGREE = 2.5  # times the deviations that single logs claim, by which logs of one device may scatter
 
 
 class GyroscopeDelay(NamedTuple):
@@ -50,6 +29,65 @@ class GyroscopeDelay(NamedTuple):
     late: float
     std: float
     explained: float
+
+
+class ImuFilter(NamedTuple):
+    """By how much a device's own filter delays its gyroscope behind its orientation: `late` [s] and its `std`, from
+    all logs of it. `steady`: whether the logs agree.
+
+    They do not where the orientation follows the accelerometer: then gyroscope and orientation are apart by what the
+    robot does, now one way and now the other, and neither is late.
+    """
+
+    late: float
+    std: float
+    steady: bool
+
+    @property
+    def shown(self) -> bool:
+        """Whether it is told from none, and no larger than a device's own filter."""
+        return self.steady and max(SURE * self.std, LEAST) < abs(self.late) < USUAL
+
+
+def imu_filter(logs: Sequence[MotionLog], imu: str) -> ImuFilter | None:
+    """What evenly sampled logs tell of it together; None where none tells."""
+    found = [one for one in (_of_log(log, imu) for log in logs) if one is not None]
+    if not found:
+        return None
+    late, weights = np.array([one.late for one in found]), np.array([one.std**-2 for one in found])
+    mean = float(weights @ late / weights.sum())
+    apart = float(weights @ (late - mean) ** 2) / max(len(found) - 1, 1)
+    return ImuFilter(mean, float(np.sqrt(max(apart, 1.0) / weights.sum())), apart < AGREE**2)
+
+
+def with_gyroscopes_on_time(logs: Sequence[MotionLog], imu: str, found: ImuFilter | None) -> list[MotionLog]:
+    """Logs with their gyroscope read at the moments that the orientation tells of, and a note of it.
+
+    A device's own filter delays a gyroscope by milliseconds; damping, and the delay of the force sensors beside it,
+    would follow. As they are where it is not `shown`. No filter makes a gyroscope early: ahead of an orientation that
+    follows its accelerometer, it is the orientation that is wrong, and the accelerometer tells by how much
+    (`sensors/tilt_error.py`).
+    """
+    if found is None or not found.shown:
+        return [*logs]
+    late, ahead = ("behind", "earlier") if found.late > 0 else ("ahead of", "later")
+    how = f"gyroscope {1e3 * abs(found.late):.1f} ms {late} the orientation, read {ahead} by as much"
+    columns, read = imu_columns(imu, "angular_velocity"), list[MotionLog]()
+    for log in logs:
+        right = found.late < 0 and log.has_imu(imu, "linear_acceleration")
+        if log.orientation(imu) is not None and log.has(*columns) and not right:
+            on_time = shifted(log.angular_velocity(imu), log.period, found.late)
+            note = Note("gyroscope_delay", "info", f"{log.name}: {how}")
+            log = log.with_columns(dict(zip(columns, on_time.T, strict=True)), note)
+        read.append(log)
+    return read
+
+
+def _of_log(log: MotionLog, imu: str) -> GyroscopeDelay | None:
+    orientation = log.orientation(imu)
+    if orientation is None or not log.has(*imu_columns(imu, "angular_velocity")):
+        return None
+    return gyroscope_delay(log.angular_velocity(imu), rates_from(orientation, log.period), log.period)
 
 
 def gyroscope_delay(rates: Array, turning: Array, period: float) -> GyroscopeDelay | None:
