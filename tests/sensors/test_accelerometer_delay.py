@@ -21,6 +21,8 @@ from plantar.sensors.accelerometer_delay import (
     STRAY,
     AccelerometerDelay,
     accelerometer_delay,
+    device_delay,
+    filter_delay,
     with_accelerometers_on_time,
 )
 from plantar.signals.gyroscope_delay import ImuFilter
@@ -91,8 +93,8 @@ def test_without_an_accelerometer_or_a_stance_nothing_is_told(robot: RobotModel)
     )
     for log in (SWAY.with_columns({name: np.full(len(SWAY), np.nan) for name in ACCELERATION}), hung):
         assert accelerometer_delay(robot, log).late == (0.0, np.inf)
-    assert AccelerometerDelay().beside(None) == (0.0, np.inf)
-    assert AccelerometerDelay().beside(ImuFilter(0.004, 1e-4, True))[0] == 0.0
+    assert device_delay([AccelerometerDelay()]) == (0.0, np.inf)
+    assert filter_delay((0.0, np.inf), ImuFilter(0.004, 1e-4, True))[0] == 0.0
 
 
 def test_an_imu_out_of_place_is_no_delay(tmp_path: Path) -> None:
@@ -121,12 +123,21 @@ def test_what_sums_tell() -> None:
     np.testing.assert_allclose(told(0.004, 0.0005).late, (0.004, 0.0005), rtol=1e-9)
 
 
+def test_logs_of_one_device_tell_by_weight_and_less_where_they_disagree() -> None:
+    logs = [told(0.003, 0.001), told(0.0042, 0.0005), AccelerometerDelay()]
+    late, std = device_delay(logs)
+    assert late == pytest.approx((0.003 * 1 + 0.0042 * 4) / 5)
+    # Apart by 1.1 deviations: Σ (x - mean)²/σ² = 1.15 over one degree of freedom.
+    assert std == pytest.approx(0.001 / np.sqrt(5) * np.sqrt(0.0012**2 / (0.001**2 + 0.0005**2)))
+    agreeing = device_delay([told(0.004, 0.001), told(0.0041, 0.0005)])
+    assert agreeing[1] == pytest.approx(0.001 / np.sqrt(5))
+
+
 def test_a_gyroscope_behind_its_filter_tells_of_the_accelerometer_beside_it() -> None:
     """2.0 ± 1.2 ms and, from the gyroscope, 3.5 ± 1.0 ms: their mean by weight, which is sure, as neither stray is."""
-    unsure = told(0.002, 0.0012)
     own, usual = np.hypot(0.0012, STRAY), np.hypot(0.0002, ALIKE)
-    assert unsure.beside(None) == (0.0, pytest.approx(own))
-    late, std = unsure.beside(ImuFilter(0.0035, 0.0002, True))
+    assert filter_delay((0.002, 0.0012), None) == (0.0, pytest.approx(own))
+    late, std = filter_delay((0.002, 0.0012), ImuFilter(0.0035, 0.0002, True))
     assert late == pytest.approx((0.002 / own**2 + 0.0035 / usual**2) / (own**-2 + usual**-2))
     assert std == pytest.approx((own**-2 + usual**-2) ** -0.5)
 
@@ -134,16 +145,16 @@ def test_a_gyroscope_behind_its_filter_tells_of_the_accelerometer_beside_it() ->
 @pytest.mark.parametrize("gyroscope", [None, ImuFilter(0.0001, 0.0001, True), ImuFilter(0.0049, 1e-5, True)])
 def test_without_a_filter_or_against_it_the_accelerometer_is_believed(gyroscope: ImuFilter | None) -> None:
     """Of 1.0 ± 0.2 ms, 4.9 ms are 3.4 deviations away; 1.8 ms alone is sure."""
-    assert told(0.001, 0.0002).beside(gyroscope)[0] == 0.0
-    assert told(0.0018, 0.0002).beside(None)[0] == pytest.approx(0.0018)
+    assert filter_delay((0.001, 0.0002), gyroscope)[0] == 0.0
+    assert filter_delay((0.0018, 0.0002), None)[0] == 0.0018
 
 
 def test_an_orientation_that_follows_the_accelerometer_makes_it_late_for_nothing() -> None:
     """Gyroscope and orientation are apart by another time in each log then."""
-    assert told(0.004, 0.0002).beside(ImuFilter(0.002, 0.0001, False))[0] == 0.0
-    assert told(0.004, 0.0002).beside(ImuFilter(0.0, 0.0001, True))[0] == pytest.approx(0.004)
+    assert filter_delay((0.004, 0.0002), ImuFilter(0.002, 0.0001, False))[0] == 0.0
+    assert filter_delay((0.004, 0.0002), ImuFilter(0.0, 0.0001, True))[0] == 0.004
 
 
 @pytest.mark.parametrize(("late", "moved"), [(0.0099, True), (0.0101, False), (-0.004, False)])
 def test_only_a_filter_s_delay_is_undone(late: float, moved: bool) -> None:
-    assert (told(late, 0.0001).beside(None)[0] != 0.0) is moved
+    assert (filter_delay((late, 0.0001), None)[0] != 0.0) is moved

@@ -9,7 +9,7 @@ own motion is fitted beside it: a scale of the attitude, an IMU that is higher t
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -33,7 +33,7 @@ SURE = 3.0  # deviations
 ALIKE = 0.001  # s: standard deviation by which the filters of a device's two sensors differ
 STRAY = 0.0005  # s: what encoders that are a millisecond off, or legs that are, make of it
 LARGEST = 0.01  # s: a device's own filter; later is a fault, and `sensor_delay` searches for it
-COLUMNS = 8  # the lean, and what goes with it
+COLUMNS = 10  # the lean, and what goes with it
 SINGULAR = (
     1e-10  # of the columns' products, scaled to 1: one pace of sway does not tell scale and height apart
 )
@@ -41,7 +41,8 @@ SINGULAR = (
 
 @dataclass(frozen=True)
 class AccelerometerDelay:
-    """Sums over stances: `products` (8, 8) of the lean and of what goes with it, delay first; `seconds` of all axes."""
+    """Sums over the stances of a log: `products` (10, 10) of the lean and of what goes with it, delay first; `seconds`
+    of all axes."""
 
     products: Array = field(default_factory=lambda: np.zeros((COLUMNS, COLUMNS)))
     seconds: float = 0.0
@@ -63,24 +64,40 @@ class AccelerometerDelay:
         unit = float(scale[0] / scale[1])
         return float(found[0]) * unit, unit * float(np.sqrt(left * inverse[0, 0] / (RATE * self.seconds)))
 
-    def beside(self, gyroscope: ImuFilter | None) -> tuple[float, float]:
-        """The delay to read it earlier by and its deviation [s]; 0 where it is not told from none, or larger than a
-        filter's.
 
-        A device filters both of its sensors much alike: a gyroscope whose delay is `shown` tells of the accelerometer,
-        unless the two contradict each other. One whose logs disagree shows an orientation that follows the
-        accelerometer, and so does an accelerometer that is early: no filter makes it so (`tilt_error`).
-        """
-        late, std = self.late
-        std = float(np.hypot(std, STRAY))
-        if gyroscope is not None and not gyroscope.steady:
-            return 0.0, std
-        if gyroscope is not None and gyroscope.shown and std < np.inf:
-            usual = float(np.hypot(gyroscope.std, ALIKE))
-            if abs(late - gyroscope.late) < SURE * float(np.hypot(std, usual)):
-                share = usual**2 / (usual**2 + std**2)
-                late, std = share * late + (1 - share) * gyroscope.late, std * float(np.sqrt(share))
-        return (late, std) if SURE * std < late < LARGEST else (0.0, std)
+def device_delay(found: Iterable[AccelerometerDelay]) -> tuple[float, float]:
+    """How far one device's accelerometer is behind its orientation and its deviation [s]: a filter's delay is the same
+    in all logs. Inf where none tells.
+
+    What else leans goes its own way in each log: a turned IMU shows otherwise in a squat than in a sway. So each log
+    tells by itself, and where logs disagree the deviation grows.
+    """
+    told = np.array([(late, std) for late, std in (one.late for one in found) if 0 < std < np.inf])
+    if not len(told):
+        return 0.0, np.inf
+    weights = told[:, 1] ** -2
+    mean = float(weights @ told[:, 0] / weights.sum())
+    apart = float(weights @ (told[:, 0] - mean) ** 2) / max(len(told) - 1, 1)
+    return mean, float(np.sqrt(max(apart, 1.0) / weights.sum()))
+
+
+def filter_delay(told: tuple[float, float], gyroscope: ImuFilter | None) -> tuple[float, float]:
+    """The delay to read an accelerometer earlier by and its deviation [s]; 0 where it is not told from none, or larger
+    than a filter's.
+
+    A device filters both of its sensors much alike: a gyroscope whose delay is `shown` tells of the accelerometer,
+    unless the two contradict each other. One whose logs disagree shows an orientation that follows the accelerometer,
+    and so does an accelerometer that is early: no filter makes it so (`tilt_error`).
+    """
+    late, std = told[0], float(np.hypot(told[1], STRAY))
+    if gyroscope is not None and not gyroscope.steady:
+        return 0.0, std
+    if gyroscope is not None and gyroscope.shown and std < np.inf:
+        usual = float(np.hypot(gyroscope.std, ALIKE))
+        if abs(late - gyroscope.late) < SURE * float(np.hypot(std, usual)):
+            share = usual**2 / (usual**2 + std**2)
+            late, std = share * late + (1 - share) * gyroscope.late, std * float(np.sqrt(share))
+    return (late, std) if SURE * std < late < LARGEST else (0.0, std)
 
 
 def with_accelerometers_on_time(
@@ -91,8 +108,7 @@ def with_accelerometers_on_time(
     All logs tell together: a filter belongs to the device. As they are where that is not sure. `gyroscope`: what they
     tell of the filter of the same device.
     """
-    found = sum((accelerometer_delay(robot, log) for log in logs), AccelerometerDelay())
-    late, std = found.beside(gyroscope)
+    late, std = filter_delay(device_delay(accelerometer_delay(robot, log) for log in logs), gyroscope)
     if robot.imu is None or not late:
         return [*logs]
     how = f"{1e3 * late:.1f} ± {1e3 * NORMAL95 * std:.1f} ms behind the IMU's orientation (95 %)"
@@ -126,7 +142,7 @@ def accelerometer_delay(robot: RobotModel, log: MotionLog) -> AccelerometerDelay
 
 
 def _leans(robot: RobotModel, log: MotionLog, orientation: Array, acceleration: Array) -> Iterator[Array]:
-    """Of each stance the lean about both axes and what goes with it, (n, 2, 8) [rad, and per unit]."""
+    """Of each stance the lean about both axes and what goes with it, (n, 2, 10) [rad, and per unit]."""
     period, bushes = log.period, _bushes(robot, log, orientation)
     contacts = detect_contact(
         {name: low_pass(bush.force_z, period, DERIVED) for name, bush in bushes.items()},
@@ -136,20 +152,23 @@ def _leans(robot: RobotModel, log: MotionLog, orientation: Array, acceleration: 
         ),
         period,
     )
-    axes = rotation_from_quaternion(orientation)[:, :2]
-    earlier = -differentiate(low_pass(acceleration, period, DERIVED), period)
-    pushed, tilt = np.einsum("nij,nj->ni", axes, earlier), axes[:, :, 2]
+    rotation, smooth = rotation_from_quaternion(orientation), low_pass(acceleration, period, DERIVED)
+    earlier = -differentiate(smooth, period)
+    pushed, tilt = np.einsum("nij,nj->ni", rotation[:, :2], earlier), rotation[:, :2, 2]
+    rising = np.einsum("nj,nj->n", rotation[:, 2], smooth)
     for run, lean, height in stance_leans(orientation, acceleration, bushes, contacts, period):
         place = np.mean([bush.sole_position[run, :2] for bush in bushes.values()], axis=0)
         none = np.zeros_like(place)
-        smooth = low_pass(tilt[run], period, CORRECTED)
+        tilted = low_pass(tilt[run], period, CORRECTED)
         higher = lean_of(none, tilt[run], height, period)
         turned = lean_of(none, np.column_stack([-place[:, 1], place[:, 0]]), height, period)
-        about = [np.stack([each[:, 0], none[:, 0]], axis=1) for each in (smooth, higher)]
-        across = [np.stack([none[:, 0], each[:, 1]], axis=1) for each in (smooth, higher)]
-        tilted = np.column_stack([-smooth[:, 1], smooth[:, 0]])
+        about = [np.stack([each[:, 0], none[:, 0]], axis=1) for each in (tilted, higher)]
+        across = [np.stack([none[:, 0], each[:, 1]], axis=1) for each in (tilted, higher)]
+        swapped = np.column_stack([-tilted[:, 1], tilted[:, 0]])
         late = lean_of(pushed[run], none, height, period)
-        yield np.stack([lean, late, *about, *across, turned, tilted], axis=2)
+        # An IMU that leans in its mount takes a part of what rises for what goes to the side.
+        leant = [lean_of(np.outer(rising[run], side), none, height, period) for side in np.eye(2)]
+        yield np.stack([lean, late, *about, *across, turned, swapped, *leant], axis=2)
 
 
 def _bushes(robot: RobotModel, log: MotionLog, orientation: Array) -> dict[str, BushState]:
