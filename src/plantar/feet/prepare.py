@@ -125,7 +125,8 @@ def prepare_checked(
 ) -> PreparedLogs:
     """Correct `checked` logs for delay, leave out what cannot be used, move torques to the loaded centre."""
     progress("estimate the sensors' delays")
-    even = _imu_on_time(robot, [*logs, *validate])
+    even, imu = _gyroscopes_on_time(robot, [*logs, *validate])
+    even = with_accelerometers_on_time(robot, even, imu)
     if settings.wrench_delay is None:
         with over_logs(even) as each:
             delay = estimate_wrench_delay(robot, even, each)
@@ -183,15 +184,10 @@ def prepare_unseen(
     return [moved_centre(recording, compliance) for recording in recordings]
 
 
-def _imu_on_time(robot: RobotModel, logs: Sequence[MotionLog]) -> list[MotionLog]:
-    """Checked logs with what the IMU's own filter delays read at the moments of its orientation."""
-    read, found = _gyroscopes_on_time(robot, logs)
-    return with_accelerometers_on_time(robot, read, found)
-
-
 def _gyroscopes_on_time(
     robot: RobotModel, logs: Sequence[MotionLog]
 ) -> tuple[list[MotionLog], ImuFilter | None]:
+    """Checked logs with what the gyroscope's own filter delays read at the moments of the orientation; that filter."""
     name = "" if robot.imu is None else robot.imu.name
     found = imu_filter(logs, name)
     return with_gyroscopes_on_time(logs, name, found), found

@@ -9,7 +9,7 @@ own motion is fitted beside it: a scale of the attitude, an IMU that is higher t
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -65,7 +65,7 @@ class AccelerometerDelay:
         return float(found[0]) * unit, unit * float(np.sqrt(left * inverse[0, 0] / (RATE * self.seconds)))
 
 
-def device_delay(found: Iterable[AccelerometerDelay]) -> tuple[float, float]:
+def device_delay(found: Sequence[AccelerometerDelay]) -> tuple[float, float]:
     """How far one device's accelerometer is behind its orientation and its deviation [s]: a filter's delay is the same
     in all logs. Inf where none tells.
 
@@ -108,7 +108,8 @@ def with_accelerometers_on_time(
     All logs tell together: a filter belongs to the device. As they are where that is not sure. `gyroscope`: what they
     tell of the filter of the same device.
     """
-    late, std = filter_delay(device_delay(accelerometer_delay(robot, log) for log in logs), gyroscope)
+    told = [accelerometer_delay(robot, log) for log in logs]
+    late, std = filter_delay(device_delay(told), gyroscope)
     if robot.imu is None or not late:
         return [*logs]
     how = f"{1e3 * late:.1f} ± {1e3 * NORMAL95 * std:.1f} ms behind the IMU's orientation (95 %)"
