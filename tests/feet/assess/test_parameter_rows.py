@@ -11,6 +11,7 @@ from scipy import stats
 from made_recording import FOOT, PERIOD, made_recording, predicted_torque, swayed
 from plantar.contact.reasons import Reason
 from plantar.feet.assess.parameter_rows import axis_rows, missing_rows, unseen_rows
+from plantar.feet.assess.verdicts import NOISY
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.recording import Recording
 from plantar.models import BushModel, Elastoplastic, KelvinVoigt
@@ -102,3 +103,20 @@ def test_a_slip_angle_is_worth_no_more_than_its_slip_torque(torque: float, verdi
         recording(), replace(fit, covariance=np.diag(std**2), freedom=np.full(4, 6.0), white_std=std)
     )
     assert [rows[place].verdict for place in places] == [verdict, verdict]
+
+
+@pytest.mark.parametrize(("share", "verdict"), [(0.9, "usable"), (1.1, "weak")])
+def test_what_a_memory_misses_is_noise_of_its_angle(share: float, verdict: str) -> None:
+    """A misfit of 0.13 x 400 N.m/rad x 0.01 rad, rms, is noise of 13 % of the slip angle; a spring has none."""
+    one = recording()
+    torque = one.bushes[FOOT].torque[:, 0]
+    missed = share * NOISY * 400.0 * 0.01 * np.sqrt(2) * np.sin(np.arange(len(torque)))
+    predicted = {(one.name, FOOT, "pitch"): predicted_torque(torque + missed)}
+    memory, spring = (
+        axis_rows(fit, [one], predicted, None)
+        for fit in (fit_of(Elastoplastic(), (400.0, 20.0, 400.0)), fit_of())
+    )
+    told = [row for row in memory if row.name != "slip_angle"]  # of which `fit_of` knows nothing
+    assert {row.verdict for row in told} == {verdict}
+    assert all("of the slip angle" in row.reason for row in told) is (verdict == "weak")
+    assert {row.verdict for row in spring} == {"usable"}

@@ -10,7 +10,7 @@ import pytest
 
 from biped import record, sines, sway
 from biped_robot import FEET, make_robot, robot_entry
-from plantar.feet.assess.verdicts import SIGNS, Evidence, judge, judge_term
+from plantar.feet.assess.verdicts import NOISY, SIGNS, Evidence, judge, judge_term
 from plantar.feet.identify import identify_feet
 from plantar.feet.settings import FeetSettings
 from plantar.logs.readers import open_log
@@ -87,7 +87,7 @@ def test_further_terms_may_be_twice_as_wide(sign: float) -> None:
         tuple(sorted((sign * 2.0 * (1 - half), sign * 2.0 * (1 + half))))
         for half in (0.299, 0.301, 0.99, 1.01)
     ]
-    verdicts = [judge_term(sign * 2.0, (low, high))[0] for low, high in ends]
+    verdicts = [judge_term(sign * 2.0, (low, high), GOOD)[0] for low, high in ends]
     assert verdicts == ["usable", "weak", "weak", "unidentifiable"]
 
 
@@ -189,3 +189,23 @@ def test_a_memory_that_goes_through_a_long_lean_is_weak() -> None:
     assert "inside the sole" in advice
     short = Evidence(60.0, 0.02, 0.99, leaning=0.02)
     assert judge("left", "pitch", "stiffness", 480.0, (475.0, 485.0), short)[0] == "usable"
+
+
+@pytest.mark.parametrize(("noise", "verdict"), [(0.99 * NOISY, "usable"), (1.01 * NOISY, "weak")])
+def test_noise_of_the_angle_that_is_no_small_part_of_the_slip_angle(noise: float, verdict: str) -> None:
+    """It turns an element where nothing slips: spring and element take from each other."""
+    noisy = replace(GOOD, noise=noise)
+    told = [
+        judge("left", "roll", "stiffness", 400.0, (390.0, 410.0), noisy),
+        judge_term(2.0, (1.9, 2.1), noisy),
+    ]
+    assert [one[0] for one in told] == [verdict, verdict]
+    if verdict == "weak":
+        assert all("13 % of the slip angle" in one[1] for one in told)
+
+
+def test_what_spring_and_element_may_have_taken_from_each_other_holds_for_both() -> None:
+    unsure = replace(GOOD, caution="hardly turned round")
+    assert judge_term(2.0, (1.9, 2.1), unsure) == ("weak", "hardly turned round", None)
+    assert judge_term(2.0, (-0.1, 4.1), unsure)[0] == "unidentifiable"
+    assert judge_term(2.0, (1.9, 2.1), GOOD)[0] == "usable"

@@ -42,7 +42,7 @@ def axis_rows(
         if place < 2:
             verdict, reason, advice = judge(fit.foot, fit.axis, term, value, interval, evidence)
         else:
-            verdict, reason, advice = judge_term(value, interval)
+            verdict, reason, advice = judge_term(value, interval, evidence)
         unit = fit.model.unit(term, fit.axis)
         relative = relative_std_percent(value, float(fit.white_std[place]))
         rows.append(
@@ -95,6 +95,10 @@ def _evidence(fit: AxisFit, recordings: Sequence[Recording], predictions: Predic
         moved += float(np.sum((angle - angle.mean()) ** 2))
         varied += float(np.sum((torque - torque.mean()) ** 2))
         missed += float(np.sum((torque - predicted.torque[used]) ** 2))
+    noise = 0.0
+    if "slip_angle" in fit.model.shape_terms and all(each.stances[fit.foot] is None for each in recordings):
+        slip_angle = float(fit.shape[fit.model.shape_terms.index("slip_angle")])
+        noise = float(np.sqrt(missed / max(samples, 1))) / abs(float(fit.values[0])) / slip_angle
     damping = float(fit.numbers[1]) + 2 * float(fit.std[1])
     return Evidence(
         seconds,
@@ -102,4 +106,5 @@ def _evidence(fit: AxisFit, recordings: Sequence[Recording], predictions: Predic
         1 - missed / varied if varied else 0.0,
         damping < 0,
         leaning=leans / loaded if has_memory(fit.model) and loaded else 0.0,
+        noise=noise,
     )

@@ -17,6 +17,7 @@ SHORT_SECONDS = 10.0  # likewise: in less, what is slower than 0.1 Hz, as drift 
 LEAST_EXPLAINED = 0.3  # share of the torque's variance that the model must explain
 GOOD_EXPLAINED = 0.8
 SIGNS = "check sign and rpy of this foot's wrench, link and rpy of the IMU, signs of the joints: no motion helps here"
+NOISY = 0.13  # of the slip angle: of simulated robots with more noise of the angle one in three had a wrong slip angle
 LEANING = 0.05  # of the time: shorter leans hardly move what comes behind them
 
 SWAY = {
@@ -30,8 +31,9 @@ SWAY = {
 class Evidence:
     """What one fit shows: used `seconds`, rms of deflection [rad], share of variance explained, whether the
     damping is negative beyond doubt, the motion that contradicts the others (None where they agree), the share of the
-    time in which the sole leans, where the model has a memory that has to go through that, and why a model that could
-    not be chosen is nearer to the truth (None where none is)."""
+    time in which the sole leans, where the model has a memory that has to go through that, why a model that could
+    not be chosen is nearer to the truth (None where none is), and `noise` of a standing foot's angle, as much as there
+    can be, over the slip angle of a memory."""
 
     seconds: float
     excitation: float
@@ -40,6 +42,15 @@ class Evidence:
     contradicted: ValidationRow | None = None
     leaning: float = 0.0
     caution: str | None = None
+    noise: float = 0.0
+
+    @property
+    def doubt(self) -> str | None:
+        """Why spring and element may have taken from each other; None where they have not."""
+        if self.noise > NOISY:
+            share = f"{100 * self.noise:.0f} % of the slip angle"
+            return f"the angle's noise may be {share}, and an element turns by the angle itself"
+        return self.caution
 
 
 def judge(
@@ -91,8 +102,8 @@ def judge(
             f"the sole leans for {100 * evidence.leaning:.0f} % of the time, where hysteresis cannot be followed",
             f"{_advice(foot, axis, term)}: the centre of pressure has to stay inside the sole",
         )
-    if evidence.caution is not None:
-        return "weak", evidence.caution, f"{SWAY[axis]} with its weight on the {foot} foot, by larger angles"
+    if evidence.doubt is not None:
+        return "weak", evidence.doubt, f"{SWAY[axis]} with its weight on the {foot} foot, by larger angles"
     if evidence.seconds < SHORT_SECONDS:
         told = (
             f"only {evidence.seconds:.1f} s of samples are used, too short to tell slow drift from the foot"
@@ -109,12 +120,16 @@ def judge(
     return "usable", f"95 % interval ±{100 * width:.2g} %, {evidence.seconds:.0f} s used", None
 
 
-def judge_term(value: float, interval: tuple[float, float]) -> tuple[Verdict, str, str | None]:
+def judge_term(
+    value: float, interval: tuple[float, float], evidence: Evidence
+) -> tuple[Verdict, str, str | None]:
     """Verdict and reason for a further term of a richer model."""
     half = (interval[1] - interval[0]) / 2
     width = half / abs(value) if value else np.inf
     if not interval[0] * interval[1] > 0 or not np.isfinite(width):
         return "unidentifiable", "the 95 % interval reaches zero", None
+    if evidence.doubt is not None:
+        return "weak", evidence.doubt, None
     return ("usable" if width < 2 * USABLE_WIDTH else "weak"), f"95 % interval ±{100 * width:.2g} %", None
 
 
