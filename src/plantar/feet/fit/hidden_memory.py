@@ -63,8 +63,8 @@ def slope_share(fit: AxisFit) -> float:
 def moved_by_memory(fit: AxisFit, *, steps: bool) -> Array:
     """How far stiffness and damping may be off (2,), where a caution says that a memory may be hidden.
 
-    By as much as they are others beside the rival, as far as that is known; without one, stiffness by the share that
-    other axes' elements would make. Of a foot that `steps` only where other axes show a memory: in short stances, whose
+    By as much as they are others beside the rival, as far as that is known; stiffness by the share that other axes'
+    elements would make at least: a rival found in motions too small for these is the noise's. Of a foot that `steps` only where other axes show a memory: in short stances, whose
     first states nobody knows, some rival always comes near.
     """
     moved = np.zeros(len(BESIDE))
@@ -74,10 +74,8 @@ def moved_by_memory(fit: AxisFit, *, steps: bool) -> Array:
         return moved
     if (found := rival(fit)) is not None:
         both = slice(len(BESIDE))
-        return np.asarray(
-            np.hypot(fit.choice.equivalent.values[both] - found.fit.values[both], found.fit.std[both])
-        )
-    moved[0] = fit.hidden_share * abs(float(fit.values[0]))
+        moved[:] = np.hypot(fit.choice.equivalent.values[both] - found.fit.values[both], found.fit.std[both])
+    moved[0] = max(moved[0], fit.hidden_share * abs(float(fit.values[0])))
     return moved
 
 
