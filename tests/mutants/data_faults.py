@@ -156,7 +156,8 @@ DATA_FAULTS = (
         ("feet/exclusion/test_tipping.py",),
     ),
     Mutant(
-        "feet/assess/verdicts.py", "a nearer law is said alone", "if evidence.caution is not None:", "if False:",
+        "feet/assess/verdicts.py", "a nearer law is said alone", 'return "weak", evidence.doubt, f"{SWAY',
+        'return "usable", evidence.doubt, f"{SWAY',
         ("feet/assess/test_verdicts.py",),
     ),
     Mutant(

@@ -64,8 +64,9 @@ def moved_by_memory(fit: AxisFit, *, steps: bool) -> Array:
     """How far stiffness and damping may be off (2,), where a caution says that a memory may be hidden.
 
     By as much as they are others beside the rival, as far as that is known; stiffness by the share that other axes'
-    elements would make at least: a rival found in motions too small for these is the noise's. Of a foot that `steps` only where other axes show a memory: in short stances, whose
-    first states nobody knows, some rival always comes near.
+    elements would make at least: a rival found in motions too small for these is the noise's. Of a foot that `steps`
+    only where other axes show a memory: in short stances, whose first states nobody knows, some rival always comes
+    near.
     """
     moved = np.zeros(len(BESIDE))
     if fit.choice is None or fit.choice.caution is None or has_memory(fit.model):
