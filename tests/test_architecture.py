@@ -16,7 +16,7 @@ FILES = sorted(SOURCE.rglob("*.py"))
 
 # A room imports only from rooms that stand before it.
 ROOMS = (
-    "conventions", "errors", "choices", "notes", "pages", "files",
+    "conventions", "errors", "choices", "notes", "pages", "files", "handed_back", "cores",
     "robot", "logs", "signals", "contact", "checks",
     "dynamics", "models", "estimation", "model_selection",
     "results", "sensors", "feet", "whole_body",
@@ -63,7 +63,7 @@ KEEPERS = {
     "fsspec": {"fleet"},
     "typer": {"cli"},
     "rich": {"cli"},
-    "pickle": set(),
+    "pickle": {"handed_back"},  # between a process and its own copy, never from a file
     "socket": set(),
     "urllib": set(),
     "requests": set(),
@@ -199,10 +199,13 @@ def test_heavy_parts_have_their_keepers() -> None:
 
 def test_only_the_command_line_prints_or_exits() -> None:
     forbidden = {"print", "input", "exit", "quit", "sys.exit", "os._exit", "eval", "exec"}
+    ends_its_copies = {("cores", "os._exit")}
     wrong = []
     for path in FILES:
         for node in nodes(path):
             if isinstance(node, ast.Call) and ast.unparse(node.func) in forbidden and room(path) != "cli":
+                if (room(path), ast.unparse(node.func)) in ends_its_copies:
+                    continue
                 wrong.append(f"{where(path, node.lineno)} calls {ast.unparse(node.func)}")
     assert wrong == []
 

@@ -92,7 +92,8 @@ def fit_prepared(
     fitted = with_memory_of_others(feet)
     between = between_all(list(fitted.values()))
     fitted = {foot: without_needless(one) for foot, one in fitted.items()}
-    found = [assess_foot(one) for one in fitted.values()]
+    with over_logs([recording.log for recording in ready.recordings]) as each:
+        found = list(each(assess_foot, fitted.values()))
     ready = _merged(ready, {foot: one.ready for foot, one in fitted.items()})
     fits = [fit for each in found for fit in each.fits]
     limits = [row for each in found for row in each.diagnosis]
@@ -159,7 +160,9 @@ def _fitted_feet(ready: PreparedLogs, progress: Callable[[str], None]) -> dict[s
 
     def fit_all(places: Mapping[str, PlaceSpread]) -> dict[str, FittedFoot]:
         with over_logs([recording.log for recording in ready.recordings]) as each:
-            found = each(lambda foot: fit_foot(ready, foot, places[foot], progress), places)
+            for foot in places:
+                progress(f"fit {foot}")
+            found = each(fit_foot, [ready] * len(places), places, places.values())
             return dict(zip(places, found, strict=True))
 
     found = fit_all(places)

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 
 from plantar.conventions import Axis
+from plantar.cores import Each, over_cores
 from plantar.errors import DataError
 from plantar.feet.coherent_band import coherent_band
 from plantar.feet.exclusion.edge_rolling import without_edge_rolling
@@ -22,7 +23,7 @@ from plantar.feet.prepare_log import checked, prepare
 from plantar.feet.recording import Recording, Role, filtered_recording, moved_centre
 from plantar.feet.settings import FeetSettings
 from plantar.logs.freed_memory import return_freed
-from plantar.logs.inputs import check_names
+from plantar.logs.inputs import WaitingLogs, check_names
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note, unique
 from plantar.robot.guesses import guess_notes, naming_notes
@@ -30,15 +31,15 @@ from plantar.robot.model import RobotModel
 from plantar.sensors.accelerometer_delay import with_accelerometers_on_time
 from plantar.sensors.attitude_scale import AttitudeScale, attitude_scale_notes
 from plantar.sensors.bandwidth import fading, fading_notes
-from plantar.sensors.delays.refined_delays import Each
 from plantar.sensors.delays.sensor_delay import SensorDelay, estimate_wrench_delay, in_time, known_delay
 from plantar.sensors.moment_balance import TorqueGain, torque_gain_notes, torque_gains
 from plantar.sensors.moment_fit import fit_moments
 from plantar.sensors.sensor_turns import sensor_turn_notes
-from plantar.sensors.tilt_error import NO_TILT_ERROR, log_tilt_error
+from plantar.sensors.tilt_error import NO_TILT_ERROR, TiltError, log_tilt_error
 
 Progress = Callable[[str], None]
-LONG = 50_000  # samples: with fewer, threads mostly hand Python's lock to each other, and hold memory each
+# Samples: with fewer, threads mostly hand Python's lock to each other; with more, copies of the process hold much.
+LONG = 50_000
 
 
 @dataclass(frozen=True)
@@ -68,9 +69,9 @@ class PreparedLogs:
 
 @contextmanager
 def over_logs(logs: Sequence[MotionLog]) -> Iterator[Each]:
-    """A map over logs, or over what comes of them: on all cores where one of them is long."""
+    """A map over logs, or over what comes of them, on all cores: by threads where one of them is long."""
     if max(map(len, logs), default=0) <= LONG:
-        yield map
+        yield over_cores
         return
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         yield pool.map
@@ -97,7 +98,12 @@ def prepare_all(
 
 
 def checked_in_turn(robot: RobotModel, logs: Iterable[MotionLog]) -> list[MotionLog]:
-    """Every log `checked`, in order; while one is, the next is read. Raises the error of the first that has one."""
+    """Every log `checked`, in order: small files on all cores, of others the next is read while one is checked.
+
+    Raises the error of the first that has one.
+    """
+    if isinstance(logs, WaitingLogs) and logs.fit:
+        return over_cores(lambda opened: checked(robot, opened()), logs.openers)
     even: list[MotionLog] = []
     pending: Future[MotionLog] | None = None
     with ThreadPoolExecutor(1) as pool:
@@ -124,17 +130,18 @@ def prepare_checked(
 ) -> PreparedLogs:
     """Correct `checked` logs for delay, leave out what cannot be used, move torques to the loaded centre."""
     progress("estimate the sensors' delays")
-    even = with_accelerometers_on_time(robot, [*logs, *validate])
-    if settings.wrench_delay is None:
-        with over_logs(even) as each:
+    with over_logs([*logs, *validate]) as each:
+        even = with_accelerometers_on_time(robot, [*logs, *validate], each)
+        if settings.wrench_delay is None:
             delay = estimate_wrench_delay(robot, even, each)
-    else:
-        delay = known_delay(settings.wrench_delay)
+        else:
+            delay = known_delay(settings.wrench_delay)
     return_freed()
     recordings, settings = _recordings(robot, even, len(logs), settings, delay, progress)
     return_freed()
     progress("fit z")
-    vertical = fit_vertical_stiffness(recordings[: len(logs)], robot)
+    with over_logs(even) as each:
+        vertical = fit_vertical_stiffness(recordings[: len(logs)], robot, each)
     moved = [moved_centre(recording, vertical.compliance) for recording in recordings]
     forces = force_gain_errors(robot, recordings)
     return_freed()
@@ -190,16 +197,21 @@ def _recordings(
     progress: Progress,
 ) -> tuple[list[Recording], FeetSettings]:
     """Checked logs, the first `fitted` of them to fit, as recordings without what cannot be used; the cutoff used."""
-    on_time = [in_time(robot, log, delay) for log in even]
-    tilt_error = sum((log_tilt_error(log, robot.imu) for log in on_time if robot.imu), NO_TILT_ERROR)
+    progress("prepare the logs")
+    roles: list[Role] = ["fit" if place < fitted else "validate" for place in range(len(even))]
 
-    def ready(place: int) -> Recording:
-        progress(f"prepare {on_time[place].name}")
-        role: Role = "fit" if place < fitted else "validate"
-        return prepare(robot, on_time[place], role, tilt_error, settings.highest_cutoff)
+    def read_in_time(log: MotionLog) -> tuple[MotionLog, TiltError]:
+        on_time = in_time(robot, log, delay)
+        return on_time, log_tilt_error(on_time, robot.imu) if robot.imu else NO_TILT_ERROR
 
     with over_logs(even) as each:
-        recordings = list(each(ready, range(len(on_time))))
+        on_time, tilt_errors = zip(*each(read_in_time, even), strict=True)
+        tilt_error = sum(tilt_errors, NO_TILT_ERROR)
+
+        def ready(log: MotionLog, role: Role) -> Recording:
+            return prepare(robot, log, role, tilt_error, settings.highest_cutoff)
+
+        recordings = list(each(ready, on_time, roles))
         cutoff = settings.highest_cutoff
         if settings.cutoff is None:
             cutoff = min(cutoff, coherent_band(recordings[:fitted]))

@@ -11,12 +11,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
 from plantar.contact.deflection import BushState, bush_states
 from plantar.contact.phases import carried_weight, detect_contact
 from plantar.conventions import GRAVITY, Array, rotation_from_quaternion
+from plantar.cores import Each
 from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
@@ -71,12 +73,15 @@ class AccelerometerDelay:
         return late if SURE * float(np.hypot(std, STRAY)) < late < LARGEST else 0.0
 
 
-def with_accelerometers_on_time(robot: RobotModel, logs: Sequence[MotionLog]) -> list[MotionLog]:
+def with_accelerometers_on_time(
+    robot: RobotModel, logs: Sequence[MotionLog], each: Each = map
+) -> list[MotionLog]:
     """Checked logs of one IMU with its accelerometer read at the moments of its orientation, and a note of it.
 
-    All logs tell together: a filter belongs to the device. As they are where that is not sure.
+    All logs tell together: a filter belongs to the device. As they are where that is not sure. `each` maps a function
+    over logs.
     """
-    found = sum((accelerometer_delay(robot, log) for log in logs), AccelerometerDelay())
+    found = sum(each(partial(accelerometer_delay, robot), logs), AccelerometerDelay())
     late = found.sure
     if robot.imu is None or not late:
         return [*logs]

@@ -13,10 +13,10 @@ from typing import NamedTuple
 import numpy as np
 
 from plantar.conventions import Array
+from plantar.cores import Each
 from plantar.estimation.quantiles import MOST_FREEDOM, fisher_quantile
 from plantar.estimation.residual_covariance import pooled_freedom
 from plantar.robot.model import RobotModel
-from plantar.sensors.delays.refined_delays import Each
 from plantar.sensors.moment_errors import LOOSE, MomentErrors, moment_errors, prior_deviations
 from plantar.sensors.newton_euler import NewtonEulerResidual
 

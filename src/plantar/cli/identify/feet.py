@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import partial
-from itertools import islice
 from typing import Annotated
 
 import numpy as np
@@ -60,6 +59,6 @@ def run(
     from plantar.signals.thinning import kept_size
 
     read = open_in_turn([*logs, *(validate or ())], known, kept_size, memory)
-    result = identify_feet(known, islice(read, len(logs)), read, settings, progress(quiet))
+    result = identify_feet(known, read[: len(logs)], read[len(logs) :], settings, progress(quiet))
     report = partial(write_feet_report, table=result.residuals)
     identification.keep(result, out, report, print_feet, json=json, quiet=quiet)

@@ -15,6 +15,7 @@ from functools import partial
 import numpy as np
 
 from plantar.conventions import NORMAL95, Mask
+from plantar.cores import Each
 from plantar.estimation.delays.delay import LEAST_CLOSED
 from plantar.estimation.delays.lag_search import Lags, search_lags
 from plantar.logs.freed_memory import return_freed
@@ -25,7 +26,6 @@ from plantar.sensors.delays.lagged_log import SEARCHED, STEP, lagged_log
 from plantar.sensors.delays.refined_delays import (
     LEAST_STD,
     WELL_KNOWN,
-    Each,
     RefinedDelays,
     read_in_time,
     refined_delays,
