@@ -8,6 +8,7 @@ so that an error is the first one, as if nothing had been shared.
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 import sys
@@ -75,6 +76,7 @@ class _Copy:
             return
         try:
             signal.signal(signal.SIGINT, signal.SIG_DFL)  # whoever interrupts stops both, and one says so
+            gc.disable()  # it would touch every object, and so copy its memory
             found = {}
             with suppress(Exception):
                 for place in own:

@@ -138,7 +138,7 @@ DATA_FAULTS = (
         ("feet/test_steps.py",),
     ),
     Mutant(
-        "feet/prepare.py", "a log stays when it is checked", "                del log  #",
+        "feet/first_look.py", "a log stays when it is checked", "                del log  #",
         "                # del log  #",
         ("feet/test_prepare.py",),
     ),

@@ -15,6 +15,7 @@ from plantar.feet.assess.far_arms import far_arms
 from plantar.feet.assess.feasible_advice import hardly_standing, remedies, with_remedies
 from plantar.feet.assess.left_out import unused_logs
 from plantar.feet.assess.residual_table import residual_table
+from plantar.feet.first_look import over_logs
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.bush_place import PlaceSpread
 from plantar.feet.fit.imu_mount import ImuTurn
@@ -22,7 +23,7 @@ from plantar.feet.foot_fit import FittedFoot, assess_foot, between_all, fit_foot
 from plantar.feet.imu_of_steps import imu_turn_notes, is_worth, put_right, turn_shown
 from plantar.feet.interval_width.between_recordings import apart_notes
 from plantar.feet.memory_of_others import with_memory_of_others
-from plantar.feet.prepare import PreparedLogs, over_logs, prepare_all
+from plantar.feet.prepare import PreparedLogs, prepare_all
 from plantar.feet.recording import Recording
 from plantar.feet.settings import FeetSettings
 from plantar.logs.inputs import LogInputs, RobotInput, logs_of, robot_of

@@ -11,14 +11,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from functools import partial
 
 import numpy as np
 
 from plantar.contact.deflection import BushState, bush_states
 from plantar.contact.phases import carried_weight, detect_contact
 from plantar.conventions import GRAVITY, Array, rotation_from_quaternion
-from plantar.cores import Each
 from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
@@ -74,14 +72,13 @@ class AccelerometerDelay:
 
 
 def with_accelerometers_on_time(
-    robot: RobotModel, logs: Sequence[MotionLog], each: Each = map
+    robot: RobotModel, logs: Sequence[MotionLog], told: Sequence[AccelerometerDelay]
 ) -> list[MotionLog]:
     """Checked logs of one IMU with its accelerometer read at the moments of its orientation, and a note of it.
 
-    All logs tell together: a filter belongs to the device. As they are where that is not sure. `each` maps a function
-    over logs.
+    All logs tell together, each of them as `told`: a filter belongs to the device. As they are where that is not sure.
     """
-    found = sum(each(partial(accelerometer_delay, robot), logs), AccelerometerDelay())
+    found = sum(told, AccelerometerDelay())
     late = found.sure
     if robot.imu is None or not late:
         return [*logs]

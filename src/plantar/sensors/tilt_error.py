@@ -102,16 +102,17 @@ def right_attitude(
     log: MotionLog,
     imu: Imu,
     orientation: Array,
-    tilt_error: TiltError,
+    tilt_errors: tuple[TiltError, TiltError],
     bushes: Mapping[str, BushState],
     contacts: Mapping[str, FootContact],
 ) -> tuple[Array, Note] | None:
     """The log's orientation (N, 4) without what its filter took from the accelerometer, and a note that says so.
 
-    None where neither this log nor all together (`tilt_error`) show that it took any, or this log has not the sensors.
+    None where neither this log nor all together, whose `tilt_errors` these are, show that it took any, or this log has
+    not the sensors.
     """
-    own = log_tilt_error(log, imu)
-    found = own if own.believed else tilt_error
+    own, together = tilt_errors
+    found = own if own.believed else together
     if not found.believed or own.predicted == 0:
         return None
     text = (

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,7 +21,6 @@ from plantar.contact.phases import DOUBLE, SUPPORTS
 from plantar.contact.relative_pose import relative_pose
 from plantar.contact.sole_height import height_changes
 from plantar.conventions import STIFFNESS_UNIT, Array, Mask
-from plantar.cores import Each
 from plantar.estimation import Block, effect_of, fit_linear, influences_of, interval95, relative_std_percent
 from plantar.feet.recording import Recording
 from plantar.notes import Note
@@ -91,17 +90,24 @@ class VerticalStiffness:
     freedom: float
 
 
-def fit_vertical_stiffness(
-    recordings: Sequence[Recording], robot: RobotModel, each: Each = map
-) -> VerticalStiffness:
-    """Vertical stiffness of two feet; where no log shows it, compliance 0 with the deviation of soft rubber.
+class Heights(NamedTuple):
+    """What the soles' heights in one recording tell: `block`, and the changes (n,) of h that each cause makes of it."""
 
-    `each` maps a function over recordings.
-    """
+    block: Block
+    changes: Mapping[str, Array]
+
+
+def heights_of(robot: RobotModel, recording: Recording) -> Heights | None:
+    """What one recording tells; None where it is nothing."""
+    shows = _block(recording, tuple(robot.feet)) if len(robot.feet) == 2 else None
+    return shows and Heights(shows[0], dict(height_changes(recording.log, robot, shows[1])))
+
+
+def fit_vertical_stiffness(heights: Sequence[Heights], robot: RobotModel) -> VerticalStiffness:
+    """Vertical stiffness of two feet; where no log shows it, compliance 0 with the deviation of soft rubber."""
     feet = tuple(robot.feet)
-    told = each(partial(_told, robot, feet), recordings) if len(feet) == 2 else ()
-    shown = [one for one in told if one is not None]
-    found = _compliances([block for block, _ in shown], _common([own for _, own in shown])) if shown else None
+    blocks, changes = [own.block for own in heights], [own.changes for own in heights]
+    found = _compliances(blocks, _common(changes)) if blocks else None
     if found is None or not found.clear:
         text = "z: no log shows the vertical compliance; K of pitch and roll may come out too large by load²·compliance"
         unknown = tuple(_unknown_row(foot) for foot in feet) if len(feet) == 2 else ()
@@ -119,14 +125,6 @@ def fit_vertical_stiffness(
         {foot: std for foot, (_, std) in own.items()},
         found.freedom,
     )
-
-
-def _told(
-    robot: RobotModel, feet: tuple[str, ...], recording: Recording
-) -> tuple[Block, dict[str, Array]] | None:
-    """What one recording tells, if anything: a block, and the change of h at its rows, (n,), of each cause."""
-    shows = _block(recording, feet)
-    return shows and (shows[0], dict(height_changes(recording.log, robot, shows[1])))
 
 
 def _common(errors: Sequence[Mapping[str, Array]]) -> list[list[Array]]:

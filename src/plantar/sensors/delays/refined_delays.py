@@ -70,12 +70,19 @@ def read_in_time(robot: RobotModel, log: MotionLog, delays: Array) -> MotionLog:
 
 
 def refined_delays(
-    robot: RobotModel, logs: Sequence[MotionLog], each: Each, start: Array
+    robot: RobotModel,
+    logs: Sequence[MotionLog],
+    each: Each,
+    start: Array,
+    tried: Sequence[Sequence[NewtonEulerResidual]] | None = None,
 ) -> RefinedDelays | None:
-    """Delays near `start` (feet + 1,) [s]; None where Newton's law closes in no log, or the steps do not settle."""
+    """Delays near `start` (feet + 1,) [s]; None where Newton's law closes in no log, or the steps do not settle.
+
+    tried: `residuals_at` the start, where they are known.
+    """
     at = start
     for _ in range(ROUNDS):
-        tried = list(each(partial(_read_at, robot, at), logs))
+        tried = tried or list(each(partial(residuals_at, robot, at), logs))
         return_freed()
         step = _step(logs, tried, at)
         if step is None:
@@ -87,10 +94,11 @@ def refined_delays(
             unsteady = clock_drift(pairs, each) or delays_by_log(pairs, common)
             residuals = tuple(replace(one, pair=one.pair.slim) for one in residuals)
             return replace(step, unsteady=unsteady, residuals=residuals)
+        tried = None
     return None
 
 
-def _read_at(robot: RobotModel, delays: Array, log: MotionLog) -> list[NewtonEulerResidual]:
+def residuals_at(robot: RobotModel, delays: Array, log: MotionLog) -> list[NewtonEulerResidual]:
     """Both sides of Newton's law along a log read at `delays`, filtered in all bands: here, one log apart from others,
     and not when delays are asked of all."""
     found = newton_euler_residuals(robot, read_in_time(robot, log, delays))

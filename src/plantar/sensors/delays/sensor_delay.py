@@ -78,16 +78,22 @@ def known_delay(delay: float) -> SensorDelay:
     return SensorDelay(delay, 0.0, np.inf, False, Note("delay_given", "info", text))
 
 
-def estimate_wrench_delay(robot: RobotModel, logs: Sequence[MotionLog], each: Each = map) -> SensorDelay:
+def estimate_wrench_delay(
+    robot: RobotModel,
+    logs: Sequence[MotionLog],
+    each: Each = map,
+    as_recorded: Sequence[Sequence[NewtonEulerResidual] | None] = (),
+) -> SensorDelay:
     """The delay common to all logs, evenly sampled, drawn towards zero by what is usual where the logs say little;
     where sensors clearly differ, the delay of each.
 
-    `each` maps a function over logs: a pool's map uses all cores.
+    `each` maps a function over logs: a pool's map uses all cores. as_recorded: `residuals_at` no delay, if known.
     """
     if on_force_cells(robot, logs):
         return _unseen(robot, logs)
     still = np.zeros(len(robot.feet) + 1)
-    found = refined_delays(robot, logs, each, still)
+    known = [own for own in as_recorded if own is not None]
+    found = refined_delays(robot, logs, each, still, known if len(known) == len(logs) else None)
     if found is not None and found.std <= KNOWN_STD and not found.suspect:
         return replace(_told(robot, found), residuals=found.residuals)
     return_freed()
