@@ -7,11 +7,14 @@ import hashlib
 import json
 import math
 from collections.abc import Sequence
+from functools import cache
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
 
 _HERE: Final = Path(__file__).parent
 _VENDORED: Final = {"uPlot.iife.min.js", "uPlot.min.css"}
@@ -25,6 +28,23 @@ def render(template: str, *, styles: Sequence[str], scripts: Sequence[str] = (),
     """
     style_texts = [_asset(name) for name in styles]
     script_texts = [_asset(name) for name in scripts]
+    return (
+        templates()
+        .get_template(template)
+        .render(
+            styles=[Markup(text) for text in style_texts],
+            scripts=[Markup(text) for text in script_texts],
+            policy=content_policy(script_texts, style_texts),
+            **context,
+        )
+    )
+
+
+@cache
+def templates() -> Environment:
+    """All templates; it keeps those that it has compiled, which takes longer than to fill them in."""
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined  # costs start-up
+
     environment = Environment(
         loader=FileSystemLoader(_HERE / "templates"),
         autoescape=True,
@@ -33,13 +53,7 @@ def render(template: str, *, styles: Sequence[str], scripts: Sequence[str] = (),
         lstrip_blocks=True,
     )
     environment.filters["embed"] = embed
-    page = environment.get_template(template)
-    return page.render(
-        styles=[Markup(text) for text in style_texts],
-        scripts=[Markup(text) for text in script_texts],
-        policy=content_policy(script_texts, style_texts),
-        **context,
-    )
+    return environment
 
 
 def content_policy(scripts: Sequence[str], styles: Sequence[str]) -> str:
