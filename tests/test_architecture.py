@@ -47,7 +47,7 @@ LONGEST = 350  # lines
 
 # Who may import what is heavy, optional or has effects.
 KEEPERS = {
-    "plantar._core": {"contact", "dynamics", "estimation", "models", "online", "signals", "twin"},
+    "plantar._core": {"contact", "dynamics", "estimation", "logs", "models", "online", "signals", "twin"},
     "mujoco": {"twin", "exporters"},
     "pink": {"motions", "twin"},
     "qpsolvers": {"motions", "twin"},

@@ -34,12 +34,16 @@ def usable_cores() -> int:
 
 
 def over_cores(
-    function: Callable[..., Found], *items: Iterable[Any], cores: int | None = None
+    function: Callable[..., Found],
+    *items: Iterable[Any],
+    cores: int | None = None,
+    meanwhile: Callable[[], object] | None = None,
 ) -> list[Found]:
     """`list(map(function, *items))` on all cores.
 
     The function must not change what it is given, nor anything else that is read later. cores: all that are usable if
-    left out. Raises what the function raises, of the first item that it does so for.
+    left out. meanwhile: called here once this process has done its share, which is the smallest. Raises what the
+    function raises, of the first item that it does so for.
 
     Example:
         >>> over_cores(abs, [-3, 4])
@@ -50,13 +54,15 @@ def over_cores(
     found: dict[int, Found] = {}
     copies = list[_Copy]()
     try:
-        # The last share is the smallest: this process has to gather as well.
+        # The last share is the smallest: this process gathers as well.
         with suppress(OSError):  # no room for another process: its share is done below
             for first in range(shares - 1):
                 copies.append(_Copy(function, rows, range(first, len(rows), shares)))
         with suppress(Exception):  # it comes again below, unless an earlier item has one
             for place in range(shares - 1, len(rows), shares):
                 found[place] = function(*rows[place])
+        if meanwhile is not None:
+            meanwhile()
         for copy in copies:
             found |= copy.found()
     finally:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -49,13 +49,23 @@ def over_logs(logs: Sequence[MotionLog]) -> Iterator[Each]:
         yield pool.map
 
 
-def looked_at(robot: RobotModel, logs: Iterable[MotionLog], timed: bool) -> list[FirstLook]:
+def looked_at(
+    robot: RobotModel,
+    logs: Iterable[MotionLog],
+    timed: bool,
+    meanwhile: Callable[[], object] | None = None,
+) -> list[FirstLook]:
     """Every log `checked` and looked at, in order: small files on all cores, others read when their turns come.
 
-    timed: whether Newton's law is to tell how late sensors are. Raises the error of the first log that has one.
+    timed: whether Newton's law is to tell how late sensors are; meanwhile: as in `over_cores`. Raises the error of the
+    first log that has one.
     """
     if isinstance(logs, WaitingLogs) and logs.fit:
-        return over_cores(lambda opened: look_at(robot, timed, checked(robot, opened())), logs.openers)
+
+        def read(opened: Callable[[], MotionLog]) -> FirstLook:
+            return look_at(robot, timed, checked(robot, opened()))
+
+        return over_cores(read, logs.openers, meanwhile=meanwhile)
     even = checked_in_turn(robot, logs)
     with over_logs(even) as each:
         return list(each(partial(look_at, robot, timed), even))

@@ -71,14 +71,16 @@ def prepare_all(
     validate: Iterable[MotionLog],
     settings: FeetSettings,
     progress: Progress,
+    meanwhile: Callable[[], object] | None = None,
 ) -> PreparedLogs:
     """Check, put on even grids, and `prepare_checked`; a log that is read when its turn comes is let go when checked.
 
-    Raises RobotError, LogError or DataError with one line where an input cannot be used, or nothing is to be fitted.
+    meanwhile: called while logs are read and cores are free. Raises RobotError, LogError or DataError with one line
+    where an input cannot be used, or nothing is to be fitted.
     """
     progress("check the logs")
     timed = settings.wrench_delay is None
-    fitted = looked_at(robot, logs, timed)
+    fitted = looked_at(robot, logs, timed, meanwhile)
     if not fitted:
         raise DataError("no logs to fit (valid: at least one)")
     unseen = looked_at(robot, validate, timed)

@@ -18,7 +18,7 @@ from plantar.report.charts.chart import Chart
 from plantar.report.charts.loop import loop_charts
 from plantar.report.content import Figure, Section, Table
 from plantar.report.motions import MotionView, motion_views
-from plantar.report.page import render, templates
+from plantar.report.page import get_ready, render
 from plantar.report.verdict import foot_verdicts, limits, trust
 from plantar.report.walks import walk_section
 from plantar.results.feet import FeetResult
@@ -26,6 +26,11 @@ from plantar.results.io import result_path
 from plantar.results.residuals import read_residuals, residuals_path, tracks_of
 
 TEMPLATES: Final = ("feet.html.j2", "base.html.j2", "macros.html.j2", "charts.html.j2", "motions.html.j2")
+
+
+def get_report_ready() -> None:
+    """What a report costs before there is a result: to be called while nothing else is to be done."""
+    get_ready(*TEMPLATES)
 
 
 def write_feet_report(
@@ -55,8 +60,6 @@ def write_feet_report(
         return motion_views(content, tracks)
 
     def loops_drawn() -> dict[tuple[str, str], Chart]:
-        for name in TEMPLATES:  # the last share is this process's: it keeps them
-            templates().get_template(name)
         return loop_charts(content, tracks)
 
     (motions, stride), loops = over_cores(lambda draw: draw(), (motions_drawn, loops_drawn))

@@ -28,21 +28,24 @@ def render(template: str, *, styles: Sequence[str], scripts: Sequence[str] = (),
     """
     style_texts = [_asset(name) for name in styles]
     script_texts = [_asset(name) for name in scripts]
-    return (
-        templates()
-        .get_template(template)
-        .render(
-            styles=[Markup(text) for text in style_texts],
-            scripts=[Markup(text) for text in script_texts],
-            policy=content_policy(script_texts, style_texts),
-            **context,
-        )
+    page = _templates().get_template(template)
+    return page.render(
+        styles=[Markup(text) for text in style_texts],
+        scripts=[Markup(text) for text in script_texts],
+        policy=content_policy(script_texts, style_texts),
+        **context,
     )
 
 
+def get_ready(*names: str) -> None:
+    """Compile templates, which takes longer than to fill them in, before these are asked for."""
+    for name in names:
+        _templates().get_template(name)
+
+
 @cache
-def templates() -> Environment:
-    """All templates; it keeps those that it has compiled, which takes longer than to fill them in."""
+def _templates() -> Environment:
+    """All templates; it keeps those that it has compiled."""
     from jinja2 import Environment, FileSystemLoader, StrictUndefined  # costs start-up
 
     environment = Environment(
