@@ -7,7 +7,6 @@ both, and is found again as the very same object.
 from __future__ import annotations
 
 import io
-import mmap
 import os
 import pickle
 import struct
@@ -17,7 +16,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-ALIGNED = 64  # bytes: a line of the processor's memory, which its widest loads take
 SIZE = struct.Struct("<q")
 PLAIN = (str, bytes, int, float, bool, type(None))
 
@@ -58,19 +56,24 @@ def hand_back(found: Any, held: Mapping[int, Any], file: int) -> None:
             with buffer.raw() as raw:
                 spans.append(_Span(first, raw.nbytes, raw.readonly))
                 first += out.write(raw)
-            first += out.write(bytes(-first % ALIGNED))
         table = pickle.dumps((spans, text.getvalue()))
         out.write(table + SIZE.pack(len(table)))
 
 
 def taken(file: int, held: Mapping[int, Any]) -> Any:
-    """What `hand_back` wrote. Its arrays are the file's own memory, which lasts as long as they do."""
-    memory = memoryview(mmap.mmap(file, 0, flags=mmap.MAP_PRIVATE))
-    table = memory.nbytes - SIZE.size - SIZE.unpack(memory[-SIZE.size :])[0]
-    spans, text = pickle.loads(memory[table : -SIZE.size])
-    buffers = (memory[span.first : span.first + span.size] for span in spans)
-    fixed = (part.toreadonly() if span.fixed else part for part, span in zip(buffers, spans, strict=True))
-    return _Reader(io.BytesIO(text), held, fixed).load()
+    """What `hand_back` wrote. Each array has memory of its own again, so that it can be given back by itself."""
+    end = os.fstat(file).st_size - SIZE.size
+    size = SIZE.unpack(os.pread(file, SIZE.size, end))[0]
+    spans, text = pickle.loads(os.pread(file, size, end - size))
+    return _Reader(io.BytesIO(text), held, (_numbers(file, span) for span in spans)).load()
+
+
+def _numbers(file: int, span: _Span) -> memoryview:
+    numbers = memoryview(bytearray(span.size))
+    done = 0
+    while done < span.size:
+        done += os.preadv(file, [numbers[done:]], span.first + done)
+    return numbers.toreadonly() if span.fixed else numbers
 
 
 class _Writer(pickle.Pickler):

@@ -26,6 +26,7 @@ from plantar.feet.memory_of_others import with_memory_of_others
 from plantar.feet.prepare import PreparedLogs, prepare_all
 from plantar.feet.recording import Recording
 from plantar.feet.settings import FeetSettings
+from plantar.logs.freed_memory import return_freed
 from plantar.logs.inputs import LogInputs, RobotInput, logs_of, robot_of
 from plantar.models import KelvinVoigt
 from plantar.notes import Note, joined
@@ -89,6 +90,7 @@ def fit_prepared(
         names = ", ".join(log.name for log in logs)
         valid = "a standing robot; were the sensors zeroed under load, 'contact: always' for these feet"
         raise DataError(f"{names}: no foot carries load in any log (valid: {valid})")
+    return_freed()  # what preparation took, copies of the process would keep
     ready, feet = _with_imu_right(ready, progress)
     fitted = with_memory_of_others(feet)
     between = between_all(list(fitted.values()))

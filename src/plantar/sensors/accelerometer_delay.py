@@ -130,12 +130,12 @@ def _leans(robot: RobotModel, log: MotionLog, orientation: Array, acceleration: 
         place = np.mean([bush.sole_position[run, :2] for bush in bushes.values()], axis=0)
         none = np.zeros_like(place)
         smooth = low_pass(tilt[run], period, CORRECTED)
-        higher = lean_of(none, tilt[run], height, period)
-        turned = lean_of(none, np.column_stack([-place[:, 1], place[:, 0]]), height, period)
+        turning = np.column_stack([-place[:, 1], place[:, 0]])
+        pushes, places = np.hstack([none, none, pushed[run]]), np.hstack([tilt[run], turning, none])
+        higher, turned, late = np.split(lean_of(pushes, places, height, period), 3, axis=1)
         about = [np.stack([each[:, 0], none[:, 0]], axis=1) for each in (smooth, higher)]
         across = [np.stack([none[:, 0], each[:, 1]], axis=1) for each in (smooth, higher)]
         tilted = np.column_stack([-smooth[:, 1], smooth[:, 0]])
-        late = lean_of(pushed[run], none, height, period)
         yield np.stack([lean, late, *about, *across, turned, tilted], axis=2)
 
 
