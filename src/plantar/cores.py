@@ -81,7 +81,8 @@ class _Copy:
         if self._process:
             return
         try:
-            signal.signal(signal.SIGINT, signal.SIG_DFL)  # whoever interrupts stops both, and one says so
+            if signal.getsignal(signal.SIGINT) != signal.SIG_IGN:
+                signal.signal(signal.SIGINT, signal.SIG_DFL)  # whoever interrupts stops both, and one says so
             gc.disable()  # it would touch every object, and so copy its memory
             found = {}
             with suppress(Exception):

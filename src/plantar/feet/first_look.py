@@ -36,7 +36,12 @@ class FirstLook:
     log: MotionLog
     accelerometer: AccelerometerDelay
     tilt: TiltError
-    residuals: Sequence[NewtonEulerResidual] | None
+    residuals: list[NewtonEulerResidual] | None
+
+    def forget_residuals(self) -> None:
+        """Give back what is larger than the log itself, whoever holds the look: delays are known then."""
+        if self.residuals is not None:
+            self.residuals.clear()
 
 
 @contextmanager

@@ -104,7 +104,8 @@ def prepare_checked(
             delay = estimate_wrench_delay(robot, even, each, [look.residuals for look in looks])
     else:
         delay = known_delay(settings.wrench_delay)
-    looks = [replace(look, residuals=None) for look in looks]
+    for look in (*logs, *validate, *looks):
+        look.forget_residuals()
     return_freed()
     found = _recordings(robot, looks, len(logs), settings, delay, progress)
     recordings, settings = found.recordings, found.settings
