@@ -25,7 +25,7 @@ def test_identify_feet_writes_results_and_tables(
     assert all(len(row["sha256"]) == 64 for row in content["inputs"])
     for part in ("Table 1", "Table 2", "Table 3", "stiffness", "usable", str(out / "result.json")):
         assert part in captured.out
-    assert "prepare the logs" in captured.err, "progress goes to stderr"
+    assert "prepare first" in captured.err, "progress goes to stderr"
     assert "prepare" not in captured.out
 
 

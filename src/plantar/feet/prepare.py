@@ -186,7 +186,8 @@ def _recordings(
     progress: Progress,
 ) -> _Ready:
     """Logs, the first `fitted` of them to fit, made ready."""
-    progress("prepare the logs")
+    others = f" and {len(looks) - 1} more" if len(looks) > 1 else ""
+    progress(f"prepare {looks[0].log.name}{others}")
     tilt_error = sum((look.tilt for look in looks), NO_TILT_ERROR)
     highest = settings.highest_cutoff
     roles: list[Role] = ["fit" if place < fitted else "validate" for place in range(len(looks))]
