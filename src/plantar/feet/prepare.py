@@ -214,9 +214,8 @@ def _recordings(
         prepared, done, moments = zip(*each(ready, looks, roles, residuals), strict=True)
         cutoff = highest if settings.cutoff is not None else min(highest, coherent_band(prepared[:fitted]))
         settings = replace(settings, cutoff=cutoff)
-        if cutoff == highest and None not in done:
-            recordings = list(done)
-        else:
+        recordings = list(done)
+        if None in done:
             recordings = list(each(partial(usable, cutoff=cutoff), prepared))
         del prepared, done
         progress("look for soles that tip or slide")
