@@ -39,11 +39,10 @@ def held_by(values: Iterable[Any]) -> dict[int, Any]:
 
 
 class _Span(NamedTuple):
-    """Where in the file an array's numbers stand [bytes]; `fixed`: nobody may change them."""
+    """Where in the file an array's numbers stand [bytes]."""
 
     first: int
     size: int
-    fixed: bool
 
 
 def hand_back(found: Any, held: Mapping[int, Any], file: int) -> None:
@@ -54,7 +53,7 @@ def hand_back(found: Any, held: Mapping[int, Any], file: int) -> None:
     with os.fdopen(file, "wb", closefd=False) as out:
         for buffer in buffers:
             with buffer.raw() as raw:
-                spans.append(_Span(first, raw.nbytes, raw.readonly))
+                spans.append(_Span(first, raw.nbytes))
                 first += out.write(raw)
         table = pickle.dumps((spans, text.getvalue()))
         out.write(table + SIZE.pack(len(table)))
@@ -73,7 +72,7 @@ def _numbers(file: int, span: _Span) -> memoryview:
     done = 0
     while done < span.size:
         done += os.preadv(file, [numbers[done:]], span.first + done)
-    return numbers.toreadonly() if span.fixed else numbers
+    return numbers
 
 
 class _Writer(pickle.Pickler):

@@ -215,7 +215,7 @@ def _recordings(
         cutoff = highest if settings.cutoff is not None else min(highest, coherent_band(prepared[:fitted]))
         settings = replace(settings, cutoff=cutoff)
         recordings = list(done)
-        if None in done:
+        if cutoff < highest or None in done:
             recordings = list(each(partial(usable, cutoff=cutoff), prepared))
         del prepared, done
         progress("look for soles that tip or slide")
