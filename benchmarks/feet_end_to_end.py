@@ -1,6 +1,7 @@
 """`plantar identify feet` beside the plain way (`plain_feet.py`), as whole processes, on the twin's logs.
 
-Prints seconds, CPU seconds and peak memory of each, and how many times faster plantar is, best of several turns.
+Prints seconds, CPU seconds and peak memory of each, and how many times faster plantar is, best of several turns. Memory
+is that of a run of its own, of a process and its copies together, where what they share counts once (Linux's PSS).
 
     python benchmarks/feet_end_to_end.py [--preset sensors] [--times 3]
     python benchmarks/feet_end_to_end.py --walks             nine walks instead of tilts and sways
@@ -15,6 +16,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -35,25 +37,52 @@ LONG_RATE = 1000.0  # Hz
 
 @dataclass(frozen=True)
 class Spent:
-    """Clock and CPU time [s], and peak memory [MB], of a whole process."""
+    """Clock and CPU time [s] of a whole process and its copies."""
 
     clock: float
     cpu: float
-    memory: float
 
 
 def spent(command: Sequence[str]) -> Spent:
     """Run a command to its end; CalledProcessError where it fails."""
     start = time.perf_counter()
-    # As installed: compiled modules are kept from one turn to the next.
-    environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
-    environment["PYTHONPYCACHEPREFIX"] = str(folder() / "compiled")
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, env=environment)
+    process = started(command)
     _, status, usage = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(status)
     if process.returncode:
         raise subprocess.CalledProcessError(process.returncode, command)
-    return Spent(time.perf_counter() - start, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024)
+    return Spent(time.perf_counter() - start, usage.ru_utime + usage.ru_stime)
+
+
+def peak_memory(command: Sequence[str]) -> float:
+    """The most memory [MB] that a command and its copies hold together, looked at every hundredth of a second."""
+    process, peak = started(command), 0.0
+    while process.poll() is None:
+        listed = Path(f"/proc/{process.pid}/task/{process.pid}/children")
+        with suppress(OSError):
+            copies = [int(number) for number in listed.read_text().split()]
+            peak = max(peak, sum(map(_held, [process.pid, *copies])))
+        time.sleep(0.01)
+    if process.returncode:
+        raise subprocess.CalledProcessError(process.returncode, command)
+    return peak
+
+
+def _held(process: int) -> float:
+    """Memory of one process [MB], of what it shares its part; 0 where it has ended."""
+    with suppress(OSError):
+        for line in Path(f"/proc/{process}/smaps_rollup").read_text().splitlines():
+            if line.startswith("Pss:"):
+                return int(line.split()[1]) / 1024
+    return 0.0
+
+
+def started(command: Sequence[str]) -> subprocess.Popen[bytes]:
+    """The command at work, with its output thrown away."""
+    # As installed: compiled modules are kept from one turn to the next.
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+    environment["PYTHONPYCACHEPREFIX"] = str(folder() / "compiled")
+    return subprocess.Popen(command, stdout=subprocess.DEVNULL, env=environment)
 
 
 def kept(preset: str, walks: bool, long: float) -> tuple[Path, list[Path]]:
@@ -111,7 +140,7 @@ def main() -> None:
     print(f"{'way':8} {'s':>7} {'CPU s':>7} {'MB':>6}")
     best = {way: min((turn[way] for turn in turns), key=lambda run: run.clock) for way in ways}
     for way, run in best.items():
-        print(f"{way:8} {run.clock:7.2f} {run.cpu:7.2f} {run.memory:6.0f}")
+        print(f"{way:8} {run.clock:7.2f} {run.cpu:7.2f} {peak_memory(ways[way]):6.0f}")
     plain, ours = best["plain"], best["plantar"]
     print(f"times faster: {plain.clock / ours.clock:.2f} (CPU {plain.cpu / ours.cpu:.2f})")
 

@@ -1,5 +1,5 @@
 // What all of the views from Python share, and those that have files of their own: of drift.hpp, the estimator,
-// factor.hpp, low_pass.hpp, stepping.hpp and stop_operator.hpp.
+// factor.hpp, low_pass.hpp, number_table.hpp, stepping.hpp and stop_operator.hpp.
 #pragma once
 
 #include <nanobind/nanobind.h>
@@ -18,5 +18,6 @@ void bind_drift(nanobind::module_& m);
 void bind_estimator(nanobind::module_& m);
 void bind_factor(nanobind::module_& m);
 void bind_low_pass(nanobind::module_& m);
+void bind_number_table(nanobind::module_& m);
 void bind_stepping(nanobind::module_& m);
 void bind_stop_operator(nanobind::module_& m);

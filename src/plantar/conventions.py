@@ -48,6 +48,14 @@ def skew(vector: Array) -> Array:
     return np.stack(rows, axis=-2)
 
 
+def cross(one: Array, other: Array) -> Array:
+    """Products one × other of vectors (..., 3): as NumPy's, which takes twice as long for those of a log."""
+    product = np.empty(np.broadcast_shapes(one.shape, other.shape))
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        product[..., i] = one[..., j] * other[..., k] - one[..., k] * other[..., j]
+    return product
+
+
 def rotation_from_rpy(rpy: Array) -> Array:
     """URDF's fixed-axis roll-pitch-yaw [rad] to a rotation matrix: Rz(yaw) Ry(pitch) Rx(roll)."""
     (sr, sp, sy), (cr, cp, cy) = np.sin(rpy), np.cos(rpy)
@@ -68,4 +76,8 @@ def rotation_from_quaternion(quaternion: Array) -> Array:
         (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
         (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
     )
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+    rotation = np.empty((*np.shape(w), 3, 3))
+    for i, row in enumerate(rows):
+        for j, entry in enumerate(row):
+            rotation[..., i, j] = entry
+    return rotation

@@ -49,6 +49,7 @@ OWN: dict[str, Callable[[Path], object]] = {
 # Pages that go on from a robot, logs and results: those of the examples in docstrings.
 RESULTS = (
     "docs/how_to/contact_elsewhere.md",
+    "docs/how_to/cores.md",
     "docs/how_to/mujoco_contact.md",
     "docs/how_to/randomisation.md",
     "docs/how_to/stabiliser.md",

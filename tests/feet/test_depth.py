@@ -9,15 +9,20 @@ from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
 
+import pytest
+
 import plantar
 from biped import record, sway
 from biped_robot import make_robot
 from feet_trials import PUNCTUAL, noisy
+from plantar import cores
 from plantar.feet.foot_fit import assess_foot, between_all, fit_foot, without_needless
 from plantar.feet.identify import identify_feet
+from plantar.feet.prepare_log import checked
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
+from plantar.sensors.delays.refined_delays import residuals_at
 
 DEEPEST = 10
 DEEPEST_OF_STEPS = 12  # of a foot that steps: its reduced sums are kept, which takes two functions more
@@ -25,19 +30,23 @@ STATES = 2  # more to the states of a model, which are no linear algebra: what c
 SOURCE = str(Path(plantar.__file__).parent)
 SOLVERS = {"qr", "lstsq", "solve", "pinv", "svd", "svdvals", "eigh", "inv", "cholesky", "solve_triangular"}
 Path_ = tuple[str, ...]
-FROM = {each.__code__ for each in (fit_foot, between_all, without_needless, assess_foot)}
+FROM = {
+    each.__code__ for each in (checked, residuals_at, fit_foot, between_all, without_needless, assess_foot)
+}
 
 
 def path_to(frame: FrameType) -> Path_:
     """The package's functions from a step of `FROM`, or the first of the thread, to a frame, both counted.
 
-    Comprehensions and lambdas are no functions that a reader jumps to; one that calls itself counts each time.
+    Comprehensions, lambdas and the map over cores are no functions that a reader jumps to; one that calls itself counts
+    each time.
     """
     found: list[str] = []
     step: FrameType | None = frame
     while step is not None:
         code = step.f_code
-        if code.co_filename.startswith(SOURCE) and not code.co_name.startswith("<"):
+        named = code is not cores.over_cores.__code__ and not code.co_name.startswith("<")
+        if code.co_filename.startswith(SOURCE) and named:
             found.append(f"{code.co_filename[len(SOURCE) + 1 :]}:{code.co_name}")
         if code in FROM:
             break
@@ -74,7 +83,8 @@ def assert_shallow(
 ) -> None:
     """No path deeper than `deepest`, and paths through each function `named`, so that what is deep was reached."""
     paths: set[Path_] = set()
-    with solved_at(paths):
+    with solved_at(paths), pytest.MonkeyPatch.context() as patch:
+        patch.setattr(cores, "usable_cores", lambda: 1)  # nobody watches copies of this process
         identify_feet(robot, logs, settings=settings)
     for name in named:
         assert any(name in step for path in paths for step in path), f"{name} was not reached"

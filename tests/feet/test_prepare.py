@@ -14,7 +14,8 @@ import pytest
 from biped import VERTICAL, record, sway
 from feet_trials import PUNCTUAL
 from plantar.errors import DataError, LogError
-from plantar.feet.prepare import PreparedLogs, checked_in_turn, prepare_all, prepare_unseen
+from plantar.feet.first_look import checked_in_turn
+from plantar.feet.prepare import PreparedLogs, prepare_all, prepare_unseen
 from plantar.feet.recording import Recording
 from plantar.feet.settings import FeetSettings
 from plantar.logs.inputs import logs_of

@@ -7,7 +7,7 @@ from threading import current_thread, main_thread
 import numpy as np
 import pytest
 
-from plantar.feet.prepare import LONG, over_logs
+from plantar.feet.first_look import LONG, over_logs
 from plantar.logs.motion_log import MotionLog
 
 

@@ -138,7 +138,7 @@ DATA_FAULTS = (
         ("feet/test_steps.py",),
     ),
     Mutant(
-        "feet/prepare.py", "a log stays when it is checked", "                del log  #",
+        "feet/first_look.py", "a log stays when it is checked", "                del log  #",
         "                # del log  #",
         ("feet/test_prepare.py",),
     ),
@@ -161,8 +161,7 @@ DATA_FAULTS = (
         ("feet/assess/test_verdicts.py",),
     ),
     Mutant(
-        "feet/prepare.py", "the gyroscope stays late", "with_gyroscopes_on_time(logs, name, found), found",
-        "[*logs], found",
+        "feet/prepare.py", "the gyroscope stays late", "with_gyroscopes_on_time(before, name, imu)", "before",
         ("feet/test_prepare.py",),
     ),
     Mutant(

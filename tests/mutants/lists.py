@@ -16,6 +16,7 @@ from made_cheaper import MADE_CHEAPER
 from of_their_kinds import OF_THEIR_KINDS
 from once_unnoticed import ONCE_UNNOTICED
 from sensor_faults import SENSOR_FAULTS
+from shared_work import SHARED_WORK
 
 LISTS = {
     "drawn": DRAWN,
@@ -24,6 +25,7 @@ LISTS = {
     "of_their_kinds": OF_THEIR_KINDS,
     "once_unnoticed": ONCE_UNNOTICED,
     "made_cheaper": MADE_CHEAPER,
+    "shared_work": SHARED_WORK,
     "data_faults": DATA_FAULTS,
     "sensor_faults": SENSOR_FAULTS,
     "designed_motions": DESIGNED_MOTIONS,

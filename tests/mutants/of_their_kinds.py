@@ -78,8 +78,8 @@ OF_THEIR_KINDS = (
     Mutant(
         "feet/prepare.py",
         "unseen walks choose the filter, too",
-        "coherent_band(recordings[:fitted])",
-        "coherent_band(recordings)",
+        "coherent_band(prepared[:fitted])",
+        "coherent_band(prepared)",
         ("feet/test_prepare.py",),
     ),
     Mutant(

@@ -55,6 +55,10 @@ def late_by(delay: float, noise: float = 0.02, tilt: float = 2e-4) -> MotionLog:
     return SWAY.with_columns(columns)
 
 
+def on_time(robot: RobotModel, logs: list[MotionLog]) -> list[MotionLog]:
+    return with_accelerometers_on_time(robot, logs, [accelerometer_delay(robot, log) for log in logs])
+
+
 @pytest.mark.parametrize("delay", [0.004, 0.0, -0.003])
 def test_standing_soles_tell_how_late_it_is(robot: RobotModel, delay: float) -> None:
     found, std = accelerometer_delay(robot, late_by(delay)).late
@@ -64,7 +68,7 @@ def test_standing_soles_tell_how_late_it_is(robot: RobotModel, delay: float) -> 
 
 def test_it_is_read_at_the_moments_of_the_orientation(robot: RobotModel) -> None:
     late = late_by(0.004, noise=0.0, tilt=0.0)
-    (read,) = with_accelerometers_on_time(robot, [late])
+    (read,) = on_time(robot, [late])
     assert [note.code for note in read.notes] == ["accelerometer_delay"]
     inner, exact = slice(200, -200), SWAY.linear_acceleration("chest")
     before, after = (np.abs(one.linear_acceleration("chest") - exact)[inner].mean() for one in (late, read))
@@ -75,15 +79,15 @@ def test_it_is_read_at_the_moments_of_the_orientation(robot: RobotModel) -> None
 @pytest.mark.parametrize("delay", [0.0, 0.0008, -0.004, 0.02])
 def test_none_little_early_and_a_fault_are_left_as_they_are(robot: RobotModel, delay: float) -> None:
     log = late_by(delay)
-    assert with_accelerometers_on_time(robot, [log])[0] is log
+    assert on_time(robot, [log])[0] is log
 
 
 def test_a_quiet_log_is_read_as_the_others_of_its_imu(robot: RobotModel) -> None:
     quiet = late_by(0.004).with_columns(
         {name: np.full(len(SWAY), np.nan) for name in imu_columns("chest", "orientation")}
     )
-    assert with_accelerometers_on_time(robot, [quiet])[0] is quiet
-    read = with_accelerometers_on_time(robot, [late_by(0.004), quiet])
+    assert on_time(robot, [quiet])[0] is quiet
+    read = on_time(robot, [late_by(0.004), quiet])
     assert all(one.notes for one in read)
 
 

@@ -53,7 +53,7 @@ def test_the_slowest_clock_bounds_what_is_known(slow_first: bool, tmp_path: Path
     periods = [0.02, PERIOD] if slow_first else [PERIOD, 0.02]
     logs = [MotionLog(str(period), period * np.arange(100), {}) for period in (*periods, 0.1)]
     residuals = [[closed(late_pair(0.0, 1))], [closed(late_pair(0.0, 2))], []]
-    found = estimate_wrench_delay(make_robot(tmp_path), logs, lambda *_: residuals)
+    found = estimate_wrench_delay(make_robot(tmp_path), logs, as_recorded=residuals)
     assert CLOCK * 0.02 <= found.std < CLOCK * 0.1
 
 

@@ -8,7 +8,13 @@ from scipy.spatial.transform import Rotation
 
 from plantar.conventions import Array
 from plantar.logs.motion_log import MotionLog, imu_columns
-from plantar.signals.gyroscope_delay import ImuFilter, gyroscope_delay, imu_filter, with_gyroscopes_on_time
+from plantar.signals.gyroscope_delay import (
+    ImuFilter,
+    gyroscope_delay,
+    imu_filter,
+    log_gyroscope_delay,
+    with_gyroscopes_on_time,
+)
 from plantar.signals.orientation import rates_from
 
 PERIOD = 0.005
@@ -34,9 +40,13 @@ def log_with(late: float, noise: float = 1e-4) -> MotionLog:
     return MotionLog("sway", TIME, columns | dict(zip(RATES, delayed.T, strict=True)))
 
 
+def filter_of(logs: list[MotionLog]) -> ImuFilter | None:
+    return imu_filter(log_gyroscope_delay(log, "chest") for log in logs)
+
+
 def on_time(log: MotionLog) -> MotionLog:
     """The log alone, its gyroscope read when it should be."""
-    return with_gyroscopes_on_time([log], "chest", imu_filter([log], "chest"))[0]
+    return with_gyroscopes_on_time([log], "chest", filter_of([log]))[0]
 
 
 @pytest.mark.parametrize("late", [0.003, -0.002, 0.0045])
@@ -103,10 +113,10 @@ def test_a_filter_is_the_device_s_so_logs_that_hardly_turn_are_read_as_the_other
     quiet = log_with(0.003, noise=0.02)
     assert on_time(quiet) is quiet
     logs = [log_with(0.003), quiet, log_with(0.003)]
-    found = imu_filter(logs, "chest")
+    found = filter_of(logs)
     assert found is not None
     assert found.shown
-    alone = imu_filter(logs[:1], "chest")
+    alone = filter_of(logs[:1])
     assert alone is not None
     assert found.std == pytest.approx(alone.std / np.sqrt(2), rel=0.1)
     read = with_gyroscopes_on_time(logs, "chest", found)
@@ -121,13 +131,13 @@ def test_a_filter_is_the_device_s_so_logs_that_hardly_turn_are_read_as_the_other
 def test_logs_that_disagree_show_no_filter() -> None:
     """Ahead in one log and behind in another: the orientation follows something else, and nothing is moved."""
     logs = [log_with(0.003), log_with(0.001)]
-    found = imu_filter(logs, "chest")
+    found = filter_of(logs)
     assert found is not None
     assert not found.steady
     assert all(
         one is log for one, log in zip(with_gyroscopes_on_time(logs, "chest", found), logs, strict=True)
     )
-    assert imu_filter([MotionLog("empty", TIME, {})], "chest") is None
+    assert filter_of([MotionLog("empty", TIME, {})]) is None
 
 
 @pytest.mark.parametrize(("late", "std", "steady", "shown"), [

@@ -18,7 +18,7 @@ import numpy as np
 import pinocchio as pin
 
 from plantar import _core
-from plantar.conventions import FORCE, GRAVITY, TORQUE, Array, skew
+from plantar.conventions import FORCE, GRAVITY, TORQUE, Array, cross, skew
 from plantar.errors import DataError
 from plantar.robot.kinematics import KinematicTree, packed_frame
 from plantar.robot.model import Placement, RobotModel
@@ -223,7 +223,7 @@ def _centre_of_pressure(
 ) -> Array:
     """Where the ground's force passes through the sole's plane, in the sole frame, (N, 2)."""
     force, torque = _onto_sole(force, pitch, roll), _onto_sole(torque, pitch, roll)
-    moment = (torque - np.cross(sole.translation, force)) @ sole.rotation
+    moment = (torque - cross(sole.translation, force)) @ sole.rotation
     normal = force @ sole.rotation[:, 2]
     normal = np.where(normal >= least, normal, np.nan)
     return np.column_stack([-moment[:, 1] / normal, moment[:, 0] / normal])

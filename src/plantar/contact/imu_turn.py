@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from plantar.contact.deflection import foot_motion, path_to
-from plantar.conventions import Array
+from plantar.conventions import Array, cross
 from plantar.robot.model import RobotModel
 
 RATE = 50.0  # Hz, at which effects are computed: they follow hips and waist, not the feet
@@ -52,4 +52,4 @@ def imu_turn_effects(
 def turned(orientation: Array, turn: Array) -> Array:
     """Orientations w x y z (N, 4) of an IMU that is turned by a small `turn` (3,) [rad] about its own axes."""
     w, vector, half = orientation[:, :1], orientation[:, 1:], turn / 2
-    return np.hstack([w - vector @ half[:, None], vector + w * half + np.cross(vector, half)])
+    return np.hstack([w - vector @ half[:, None], vector + w * half + cross(vector, half)])

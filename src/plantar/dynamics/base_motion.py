@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
-from plantar.conventions import GRAVITY, Array
+from plantar.conventions import GRAVITY, Array, cross
 from plantar.robot.kinematics import KinematicTree, rotations_about
 
 
@@ -46,17 +46,17 @@ def relative_motion(
 
     def carried(arm: Array) -> None:
         nonlocal position, velocity, acceleration
-        spin = np.cross(omega, arm)
+        spin = cross(omega, arm)
         position = position + arm
         velocity = velocity + spin
-        acceleration = acceleration + np.cross(alpha, arm) + np.cross(omega, spin)
+        acceleration = acceleration + cross(alpha, arm) + cross(omega, spin)
 
     for index in reversed(tree.ancestors[joint]) if joint >= 0 else ():
         carried(rotation @ tree.translations[index])
         rotation = rotation @ tree.rotations[index]
         axis = rotation @ tree.axes[index]
         angle, rate, second = (values[:, index : index + 1] for values in (q, v, a))
-        turning = np.cross(omega, axis) * rate
+        turning = cross(omega, axis) * rate
         if tree.slides[index]:
             carried(angle * axis)
             velocity = velocity + rate * axis
@@ -79,12 +79,12 @@ def root_motion(relative: RelativeMotion, acceleration: Array, rate: Array, rate
         np.einsum("nij,nj->ni", relative.rotation, values) for values in (acceleration, rate, rate_slope)
     )
     omega = spin - relative.angular_velocity
-    alpha = turning - relative.angular_acceleration - np.cross(omega, relative.angular_velocity)
+    alpha = turning - relative.angular_acceleration - cross(omega, relative.angular_velocity)
     origin = (
         measured
-        - np.cross(alpha, relative.position)
-        - np.cross(omega, np.cross(omega, relative.position))
-        - 2 * np.cross(omega, relative.velocity)
+        - cross(alpha, relative.position)
+        - cross(omega, cross(omega, relative.position))
+        - 2 * cross(omega, relative.velocity)
         - relative.acceleration
     )
     return np.hstack([origin, omega, alpha])

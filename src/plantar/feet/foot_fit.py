@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from plantar.contact.reasons import Reason
@@ -75,15 +75,12 @@ class FittedFoot:
     jumps: Sequence[Note]
 
 
-def fit_foot(
-    ready: PreparedLogs, foot: str, place: PlaceSpread, progress: Callable[[str], None]
-) -> FittedFoot:
+def fit_foot(ready: PreparedLogs, foot: str, place: PlaceSpread) -> FittedFoot:
     """Pitch and roll of one foot, and the logs without the samples that leave either model by far.
 
     What is left out is decided for both axes before either is scored. Clean recordings are fitted once; others again
     without their outliers, under the models first chosen, and at last with the choice made anew.
     """
-    progress(f"fit {foot}")
     given_up: dict[Axis, str] = {}
     thin, several = _thin(ready, foot), False
     fits = _fits(thin, foot, place, {}, given_up)

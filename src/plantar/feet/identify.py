@@ -15,6 +15,7 @@ from plantar.feet.assess.far_arms import far_arms
 from plantar.feet.assess.feasible_advice import hardly_standing, remedies, with_remedies
 from plantar.feet.assess.left_out import unused_logs
 from plantar.feet.assess.residual_table import residual_table
+from plantar.feet.first_look import over_logs
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.bush_place import PlaceSpread
 from plantar.feet.fit.imu_mount import ImuTurn
@@ -22,9 +23,10 @@ from plantar.feet.foot_fit import FittedFoot, assess_foot, between_all, fit_foot
 from plantar.feet.imu_of_steps import imu_turn_notes, is_worth, put_right, turn_shown
 from plantar.feet.interval_width.between_recordings import apart_notes
 from plantar.feet.memory_of_others import with_memory_of_others
-from plantar.feet.prepare import PreparedLogs, over_logs, prepare_all
+from plantar.feet.prepare import PreparedLogs, prepare_all
 from plantar.feet.recording import Recording
 from plantar.feet.settings import FeetSettings
+from plantar.logs.freed_memory import return_freed
 from plantar.logs.inputs import LogInputs, RobotInput, logs_of, robot_of
 from plantar.models import KelvinVoigt
 from plantar.notes import Note, joined
@@ -88,11 +90,13 @@ def fit_prepared(
         names = ", ".join(log.name for log in logs)
         valid = "a standing robot; were the sensors zeroed under load, 'contact: always' for these feet"
         raise DataError(f"{names}: no foot carries load in any log (valid: {valid})")
+    return_freed()  # what preparation took, copies of the process would keep
     ready, feet = _with_imu_right(ready, progress)
     fitted = with_memory_of_others(feet)
     between = between_all(list(fitted.values()))
     fitted = {foot: without_needless(one) for foot, one in fitted.items()}
-    found = [assess_foot(one) for one in fitted.values()]
+    with over_logs([recording.log for recording in ready.recordings]) as each:
+        found = list(each(assess_foot, fitted.values()))
     ready = _merged(ready, {foot: one.ready for foot, one in fitted.items()})
     fits = [fit for each in found for fit in each.fits]
     limits = [row for each in found for row in each.diagnosis]
@@ -159,7 +163,9 @@ def _fitted_feet(ready: PreparedLogs, progress: Callable[[str], None]) -> dict[s
 
     def fit_all(places: Mapping[str, PlaceSpread]) -> dict[str, FittedFoot]:
         with over_logs([recording.log for recording in ready.recordings]) as each:
-            found = each(lambda foot: fit_foot(ready, foot, places[foot], progress), places)
+            for foot in places:
+                progress(f"fit {foot}")
+            found = each(fit_foot, [ready] * len(places), places, places.values())
             return dict(zip(places, found, strict=True))
 
     found = fit_all(places)

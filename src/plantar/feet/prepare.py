@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
+from typing import NamedTuple
 
 from plantar.conventions import Axis
 from plantar.errors import DataError
@@ -15,11 +13,12 @@ from plantar.feet.coherent_band import coherent_band
 from plantar.feet.exclusion.edge_rolling import without_edge_rolling
 from plantar.feet.exclusion.slip import without_slip
 from plantar.feet.exclusion.torque_saturation import without_torque_saturation
+from plantar.feet.first_look import FirstLook, look_again, looked_at, over_logs
 from plantar.feet.fit.imu_mount import ImuTurn
-from plantar.feet.fit.vertical_stiffness import VerticalStiffness, fit_vertical_stiffness
+from plantar.feet.fit.vertical_stiffness import Heights, VerticalStiffness, fit_vertical_stiffness, heights_of
 from plantar.feet.interval_width.force_gain import GainError, force_gain_errors, force_gain_notes
-from plantar.feet.prepare_log import checked, prepare
-from plantar.feet.recording import Recording, Role, filtered_recording, moved_centre
+from plantar.feet.prepare_log import prepare
+from plantar.feet.recording import Recording, Role, filtered_recording, has_steps, moved_centre
 from plantar.feet.settings import FeetSettings
 from plantar.logs.freed_memory import return_freed
 from plantar.logs.inputs import check_names
@@ -30,16 +29,16 @@ from plantar.robot.model import RobotModel
 from plantar.sensors.accelerometer_delay import with_accelerometers_on_time
 from plantar.sensors.attitude_scale import AttitudeScale, attitude_scale_notes
 from plantar.sensors.bandwidth import fading, fading_notes
-from plantar.sensors.delays.refined_delays import Each
 from plantar.sensors.delays.sensor_delay import SensorDelay, estimate_wrench_delay, in_time, known_delay
 from plantar.sensors.moment_balance import TorqueGain, torque_gain_notes, torque_gains
-from plantar.sensors.moment_fit import fit_moments
+from plantar.sensors.moment_errors import MomentErrors, moment_errors
+from plantar.sensors.moment_fit import moments_of
+from plantar.sensors.newton_euler import NewtonEulerResidual
 from plantar.sensors.sensor_turns import sensor_turn_notes
-from plantar.sensors.tilt_error import NO_TILT_ERROR, log_tilt_error
-from plantar.signals.gyroscope_delay import ImuFilter, imu_filter, with_gyroscopes_on_time
+from plantar.sensors.tilt_error import NO_TILT_ERROR
+from plantar.signals.gyroscope_delay import imu_filter, with_gyroscopes_on_time
 
 Progress = Callable[[str], None]
-LONG = 50_000  # samples: with fewer, threads mostly hand Python's lock to each other, and hold memory each
 
 
 @dataclass(frozen=True)
@@ -67,84 +66,57 @@ class PreparedLogs:
         return self.fitted + self.unseen
 
 
-@contextmanager
-def over_logs(logs: Sequence[MotionLog]) -> Iterator[Each]:
-    """A map over logs, or over what comes of them: on all cores where one of them is long."""
-    if max(map(len, logs), default=0) <= LONG:
-        yield map
-        return
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        yield pool.map
-
-
 def prepare_all(
     robot: RobotModel,
     logs: Iterable[MotionLog],
     validate: Iterable[MotionLog],
     settings: FeetSettings,
     progress: Progress,
+    meanwhile: Callable[[], object] | None = None,
 ) -> PreparedLogs:
     """Check, put on even grids, and `prepare_checked`; a log that is read when its turn comes is let go when checked.
 
-    Raises RobotError, LogError or DataError with one line where an input cannot be used, or nothing is to be fitted.
+    meanwhile: called while logs are read and cores are free. Raises RobotError, LogError or DataError with one line
+    where an input cannot be used, or nothing is to be fitted.
     """
     progress("check the logs")
-    fitted = checked_in_turn(robot, logs)
+    timed = settings.wrench_delay is None
+    fitted = looked_at(robot, logs, timed, meanwhile)
     if not fitted:
         raise DataError("no logs to fit (valid: at least one)")
-    unseen = checked_in_turn(robot, validate)
-    check_names([*fitted, *unseen])
+    unseen = looked_at(robot, validate, timed)
+    check_names([one.log for one in (*fitted, *unseen)])
     return prepare_checked(robot, fitted, unseen, settings, progress)
-
-
-def checked_in_turn(robot: RobotModel, logs: Iterable[MotionLog]) -> list[MotionLog]:
-    """Every log `checked`, in order; while one is, the next is read. Raises the error of the first that has one."""
-    even: list[MotionLog] = []
-    pending: Future[MotionLog] | None = None
-    with ThreadPoolExecutor(1) as pool:
-        try:
-            for log in logs:
-                if pending is not None:
-                    before, pending = pending, None
-                    even.append(before.result())
-                pending = pool.submit(checked, robot, log)
-                del log  # or it would stay until the next was read
-        finally:  # also where the next one cannot be read: what is wrong with this one is told first
-            if pending is not None:
-                even.append(pending.result())
-    return_freed()
-    return even
 
 
 def prepare_checked(
     robot: RobotModel,
-    logs: Sequence[MotionLog],
-    validate: Sequence[MotionLog],
+    logs: Sequence[FirstLook],
+    validate: Sequence[FirstLook],
     settings: FeetSettings,
     progress: Progress,
 ) -> PreparedLogs:
     """Correct `checked` logs for delay, leave out what cannot be used, move torques to the loaded centre."""
     progress("estimate the sensors' delays")
-    even, imu = _gyroscopes_on_time(robot, [*logs, *validate])
-    even = with_accelerometers_on_time(robot, even, imu)
+    looks = _on_time(robot, [*logs, *validate], settings.wrench_delay is None)
     if settings.wrench_delay is None:
+        even = [look.log for look in looks]
         with over_logs(even) as each:
-            delay = estimate_wrench_delay(robot, even, each)
+            delay = estimate_wrench_delay(robot, even, each, [look.residuals for look in looks])
     else:
         delay = known_delay(settings.wrench_delay)
+    for look in (*logs, *validate, *looks):
+        look.forget_residuals()
     return_freed()
-    recordings, settings = _recordings(robot, even, len(logs), settings, delay, progress)
+    found = _recordings(robot, looks, len(logs), settings, delay, progress)
+    recordings, settings = found.recordings, found.settings
     return_freed()
     progress("fit z")
-    vertical = fit_vertical_stiffness(recordings[: len(logs)], robot)
+    vertical = fit_vertical_stiffness(found.heights, robot)
     moved = [moved_centre(recording, vertical.compliance) for recording in recordings]
     forces = force_gain_errors(robot, recordings)
     return_freed()
-    with over_logs(even) as each:
-        stepping = {
-            one.name for one in recordings if any(found is not None for found in one.stances.values())
-        }
-        moments = fit_moments(robot, delay.residuals, stepping, each)
+    moments = moments_of(robot, found.moments, any(map(has_steps, recordings)))
     fades = fading_notes(fading(delay.residuals))
     delay = replace(delay, residuals=())  # both sides of Newton's law in every log: no fit reads them
     return_freed()
@@ -177,51 +149,81 @@ def prepare_unseen(
     progress: Progress,
 ) -> list[Recording]:
     """Logs to score with what an earlier fit found: its cutoff in `settings`, its `delay`, its `compliance` [m/N]."""
-    even = checked_in_turn(robot, logs)
-    check_names(even)
-    even = _gyroscopes_on_time(robot, even)[0]
-    recordings, _ = _recordings(robot, even, 0, settings, delay, progress)
+    looks = looked_at(robot, logs, False)
+    if not looks:
+        return []
+    check_names([look.log for look in looks])
+    looks = _on_time(robot, looks, False)
+    recordings = _recordings(robot, looks, 0, settings, delay, progress).recordings
     return [moved_centre(recording, compliance) for recording in recordings]
 
 
-def _gyroscopes_on_time(
-    robot: RobotModel, logs: Sequence[MotionLog]
-) -> tuple[list[MotionLog], ImuFilter | None]:
-    """Checked logs with what the gyroscope's own filter delays read at the moments of the orientation; that filter."""
-    name = "" if robot.imu is None else robot.imu.name
-    found = imu_filter(logs, name)
-    return with_gyroscopes_on_time(logs, name, found), found
+def _on_time(robot: RobotModel, looks: Sequence[FirstLook], timed: bool) -> list[FirstLook]:
+    """The logs with what the IMU's own filter delays read at the moments of its orientation; looked at again where that
+    moves them."""
+    before, name = [look.log for look in looks], "" if robot.imu is None else robot.imu.name
+    imu = imu_filter([look.gyroscope for look in looks])
+    read = with_gyroscopes_on_time(before, name, imu)
+    after = with_accelerometers_on_time(robot, read, [look.accelerometer for look in looks], imu)
+    if all(one is other for one, other in zip(before, after, strict=True)):
+        return [*looks]
+    with over_logs(after) as each:
+        return list(each(partial(look_again, robot, timed), looks, after))
+
+
+class _Ready(NamedTuple):
+    """Recordings without what cannot be used, and the settings with the cutoff that was; of those to fit what the
+    `heights` of their soles tell, and of all in which Newton's law closes what its `moments` do."""
+
+    recordings: list[Recording]
+    settings: FeetSettings
+    heights: list[Heights]
+    moments: list[MomentErrors]
 
 
 def _recordings(
     robot: RobotModel,
-    even: Sequence[MotionLog],
+    looks: Sequence[FirstLook],
     fitted: int,
     settings: FeetSettings,
     delay: SensorDelay,
     progress: Progress,
-) -> tuple[list[Recording], FeetSettings]:
-    """Checked logs, the first `fitted` of them to fit, as recordings without what cannot be used; the cutoff used."""
-    on_time = [in_time(robot, log, delay) for log in even]
-    tilt_error = sum((log_tilt_error(log, robot.imu) for log in on_time if robot.imu), NO_TILT_ERROR)
+) -> _Ready:
+    """Logs, the first `fitted` of them to fit, made ready."""
+    others = f" and {len(looks) - 1} more" if len(looks) > 1 else ""
+    progress(f"prepare {looks[0].log.name}{others}")
+    tilt_error = sum((look.tilt for look in looks), NO_TILT_ERROR)
+    highest = settings.highest_cutoff
+    roles: list[Role] = ["fit" if place < fitted else "validate" for place in range(len(looks))]
+    residuals = [[one for one in delay.residuals if one.pair.label == look.log.name] for look in looks]
 
-    def ready(place: int) -> Recording:
-        progress(f"prepare {on_time[place].name}")
-        role: Role = "fit" if place < fitted else "validate"
-        return prepare(robot, on_time[place], role, tilt_error, settings.highest_cutoff)
+    def usable(recording: Recording, cutoff: float) -> Recording:
+        return without_torque_saturation(robot, filtered_recording(recording, cutoff), settings)
 
-    with over_logs(even) as each:
-        recordings = list(each(ready, range(len(on_time))))
-        cutoff = settings.highest_cutoff
-        if settings.cutoff is None:
-            cutoff = min(cutoff, coherent_band(recordings[:fitted]))
+    def ready(
+        look: FirstLook, role: Role, own: Sequence[NewtonEulerResidual]
+    ) -> tuple[Recording, Recording | None, list[MomentErrors]]:
+        recording = prepare(robot, in_time(robot, look.log, delay), role, look.tilt, tilt_error, highest)
+        steps = has_steps(recording)
+        moments = [moment_errors(robot, residual, steps) for residual in own]
+        # The cutoff may still fall where feet step.
+        done = usable(recording, highest) if settings.cutoff is not None or not steps else None
+        return recording, done, moments
+
+    def standing(recording: Recording) -> tuple[Recording, Heights | None]:
+        flat = without_slip(robot, recording)
+        return flat, heights_of(robot, flat) if recording.role == "fit" else None
+
+    with over_logs([look.log for look in looks]) as each:
+        prepared, done, moments = zip(*each(ready, looks, roles, residuals), strict=True)
+        cutoff = highest if settings.cutoff is not None else min(highest, coherent_band(prepared[:fitted]))
         settings = replace(settings, cutoff=cutoff)
-
-        def usable(recording: Recording) -> Recording:
-            return without_torque_saturation(robot, filtered_recording(recording, cutoff), settings)
-
-        recordings = list(each(usable, recordings))
+        recordings = list(done)
+        if cutoff < highest or None in done:
+            recordings = list(each(partial(usable, cutoff=cutoff), prepared))
+        del prepared, done
         progress("look for soles that tip or slide")
         recordings = without_edge_rolling(robot, recordings, settings)
-        recordings = list(each(lambda recording: without_slip(robot, recording), recordings))
-    return recordings, settings
+        recordings, heights = map(list, zip(*each(standing, recordings), strict=True))
+    told = [one for one in heights if one is not None]
+    return _Ready(recordings, settings, told, [one for own in moments for one in own])

@@ -59,13 +59,14 @@ def prepare(
     robot: RobotModel,
     log: MotionLog,
     role: Role,
+    own_tilt: TiltError = NO_TILT_ERROR,
     tilt_error: TiltError = NO_TILT_ERROR,
     highest_cutoff: float = DEFAULT_CUTOFF,
 ) -> Recording:
     """Bush states, contacts and stances of every foot in a `checked` log whose sensors were read together; unfiltered.
 
-    tilt_error: of the attitude towards the accelerometer, from all logs of this IMU; highest_cutoff: of the filter that
-    the fit may use [Hz].
+    own_tilt, tilt_error: of the attitude towards the accelerometer, from this log and from all of this IMU;
+    highest_cutoff: of the filter that the fit may use [Hz].
     """
     imu = _require(robot)
     notes = list(log.notes)
@@ -83,7 +84,7 @@ def prepare(
         ]
     contacts, stances = _contacts(robot, log, raw, CONTACT_BAND * highest_cutoff, notes)
     places = {name: state.sole_position[:, :2] for name, state in raw.items()}
-    if (right := right_attitude(log, imu, orientation, tilt_error, raw, contacts)) is not None:
+    if (right := right_attitude(log, imu, orientation, (own_tilt, tilt_error), raw, contacts)) is not None:
         orientation = right[0]
         raw = bush_states(robot, positions, velocities, orientation, rates, wrenches)
         if not any(imu_late(imu.name, log, orientation)):  # the soles have mended that

@@ -160,6 +160,11 @@ class Recording:
         return replace(self, contacts={**self.contacts, foot: contact})
 
 
+def has_steps(recording: Recording) -> bool:
+    """Whether a foot steps."""
+    return any(stances is not None for stances in recording.stances.values())
+
+
 def filtered_recording(recording: Recording, cutoff: float) -> Recording:
     """The recording with angles, rates and torques filtered at `cutoff` [Hz], without samples that the filter loses."""
     period, noise = recording.period, {}

@@ -12,6 +12,7 @@ from plantar.checks.log_checks import check_log
 from plantar.contact.phases import DOUBLE, SINGLE, SUPPORTS
 from plantar.conventions import GRAVITY, ROTATIONAL_AXES, Array
 from plantar.errors import PlantarError
+from plantar.feet.first_look import look_at
 from plantar.feet.identify import fit_prepared
 from plantar.feet.prepare import prepare_checked
 from plantar.feet.prepare_log import checked
@@ -85,7 +86,11 @@ def inspect_log(robot: RobotModel, log: MotionLog) -> LogSummary:
         findings = check_log(robot, log)
         if robot.feet and not any(finding.fatal for finding in findings):
             ready = prepare_checked(
-                robot, [checked(robot, log, findings)], [], FeetSettings(), lambda _: None
+                robot,
+                [look_at(robot, True, checked(robot, log, findings))],
+                [],
+                FeetSettings(),
+                lambda _: None,
             )
             feet = tuple(_foot(ready.fitted[0], foot) for foot in robot.feet)
             result = fit_prepared(robot, ready)

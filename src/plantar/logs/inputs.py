@@ -5,13 +5,17 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from threading import Lock
+
+import numpy as np
 
 from plantar.errors import DataError, LogError, NoRoom, RobotError, located
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import open_log
-from plantar.logs.readers.read_limit import shown, usual_memory
+from plantar.logs.readers.read_limit import NUMBER, shown, usual_memory
 from plantar.robot.model import RobotModel, load_robot
 
 PathInput = str | os.PathLike[str]
@@ -31,10 +35,31 @@ def robot_of(robot: RobotInput) -> RobotModel:
     raise RobotError(located("is not a robot", value=kind, valid="a RobotModel or the path of a robot file"))
 
 
-def logs_of(logs: LogInputs, robot: RobotModel) -> Iterator[MotionLog]:
+@dataclass(frozen=True)
+class WaitingLogs:
+    """Logs that are read when their turns come, each by one of `openers`; these raise LogError.
+
+    `fit`: all of them are known to fit in memory whatever they hold, so that any of them may come first.
+    """
+
+    openers: Sequence[Callable[[], MotionLog]]
+    fit: bool
+
+    def __iter__(self) -> Iterator[MotionLog]:
+        return (opened() for opened in self.openers)
+
+    def __getitem__(self, some: slice) -> WaitingLogs:
+        return replace(self, openers=self.openers[some])
+
+
+def logs_of(logs: LogInputs, robot: RobotModel) -> Iterable[MotionLog]:
     """One log or several, each itself or read from its file when its turn comes. Raises LogError for anything else."""
     if isinstance(logs, MotionLog | str | os.PathLike):
         logs = (logs,)
+    if isinstance(logs, WaitingLogs):
+        return logs
+    if isinstance(logs, Sequence):
+        return WaitingLogs([partial(_log_of, log, robot) for log in logs], _fit(logs, usual_memory()))
     if not isinstance(logs, Iterable):
         raise _no_log(logs)
     return (_log_of(log, robot) for log in logs)
@@ -42,7 +67,7 @@ def logs_of(logs: LogInputs, robot: RobotModel) -> Iterator[MotionLog]:
 
 def open_in_turn(
     paths: Sequence[Path], robot: RobotModel, kept: Callable[[MotionLog], int], memory: int | None = None
-) -> Iterator[MotionLog]:
+) -> WaitingLogs:
     """Logs read when their turns come: each must fit in `memory` bytes beside those that are `kept` of the ones before.
 
     If left out, the usual memory. Raises LogError as `open_log`.
@@ -62,7 +87,7 @@ def open_in_turn(
         left = max(0, left - kept(log))
         return log
 
-    return map(read, paths)  # which keeps no log that it has handed over
+    return WaitingLogs([partial(read, path) for path in paths], _fit(paths, whole))
 
 
 def open_together(paths: Sequence[Path], robot: RobotModel, memory: int | None = None) -> list[MotionLog]:
@@ -97,6 +122,18 @@ def check_names(logs: Sequence[MotionLog]) -> None:
             message = f"two logs are called '{log.name}': {seen[log.name].source} and {log.source}"
             raise DataError(f"{message} (valid: file names that differ, since results name motions by them)")
         seen[log.name] = log
+
+
+def _fit(logs: Sequence[LogInput], memory: int) -> bool:
+    """Whether logs that are still files fit in `memory` bytes together, as far as their sizes tell."""
+    sizes = (_largest(Path(log)) for log in logs if isinstance(log, str | os.PathLike))
+    return sum(sizes) <= memory
+
+
+def _largest(path: Path) -> float:
+    """Bytes that the numbers of a file may take: a plain text has a character or more for each."""
+    plain = path.suffix.lower() == ".csv" and path.is_file()
+    return NUMBER * path.stat().st_size if plain else np.inf
 
 
 def _log_of(log: LogInput, robot: RobotModel) -> MotionLog:

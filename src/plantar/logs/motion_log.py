@@ -202,7 +202,10 @@ class MotionLog:
 
     def with_columns(self, columns: Mapping[str, Array], *notes: Note) -> MotionLog:
         """The same recording with columns added or replaced, and notes added."""
-        return replace(self, columns={**self.columns, **columns}, notes=self.notes + notes)
+        other = replace(self, columns=columns, notes=self.notes + notes)  # checks those that are new
+        object.__setattr__(other, "columns", MappingProxyType({**self.columns, **other.columns}))
+        other.__dict__["period"] = self.period  # the time is the same
+        return other
 
 
 def _missing(robot: RobotModel, names: list[str]) -> str:

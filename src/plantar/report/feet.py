@@ -5,23 +5,32 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
+from plantar.cores import over_cores
 from plantar.files import write_text
 from plantar.notes import kinds
 from plantar.pages import on_feet
 from plantar.report import tables
+from plantar.report.charts.chart import Chart
 from plantar.report.charts.loop import loop_charts
 from plantar.report.content import Figure, Section, Table
-from plantar.report.motions import motion_views
-from plantar.report.page import render
+from plantar.report.motions import MotionView, motion_views
+from plantar.report.page import get_ready, render
 from plantar.report.verdict import foot_verdicts, limits, trust
 from plantar.report.walks import walk_section
 from plantar.results.feet import FeetResult
 from plantar.results.io import result_path
 from plantar.results.residuals import read_residuals, residuals_path, tracks_of
+
+TEMPLATES: Final = ("feet.html.j2", "base.html.j2", "macros.html.j2", "charts.html.j2", "motions.html.j2")
+
+
+def get_report_ready() -> None:
+    """What a report costs before there is a result: to be called while nothing else is to be done."""
+    get_ready(*TEMPLATES)
 
 
 def write_feet_report(
@@ -46,16 +55,23 @@ def write_feet_report(
         tracks = tracks_of(table)
     else:
         tracks = read_residuals(residuals) if residuals is not None else ()
-    motions, stride = motion_views(content, tracks)
+
+    def motions_drawn() -> tuple[list[MotionView], int]:
+        return motion_views(content, tracks)
+
+    def loops_drawn() -> dict[tuple[str, str], Chart]:
+        return loop_charts(content, tracks)
+
+    (motions, stride), loops = over_cores(lambda draw: draw(), (motions_drawn, loops_drawn))
     page = render(
-        "feet.html.j2",
+        TEMPLATES[0],
         styles=["uPlot.min.css", "report.css"],
         scripts=["uPlot.iife.min.js", "payload.js", "colours.js", "plots.js", "planes.js", "report.js"],
         title=f"The feet of {content.robot}",
         result=content,
         verdicts=foot_verdicts(content.parameters),
         trust=trust(content),
-        loops=loop_charts(content, tracks),
+        loops=loops,
         limits=limits(content),
         read_on=on_feet(row.verdict for row in content.parameters),
         walks=walk_section(content, tracks),

@@ -7,11 +7,14 @@ import hashlib
 import json
 import math
 from collections.abc import Sequence
+from functools import cache
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
 
 _HERE: Final = Path(__file__).parent
 _VENDORED: Final = {"uPlot.iife.min.js", "uPlot.min.css"}
@@ -25,6 +28,26 @@ def render(template: str, *, styles: Sequence[str], scripts: Sequence[str] = (),
     """
     style_texts = [_asset(name) for name in styles]
     script_texts = [_asset(name) for name in scripts]
+    page = _templates().get_template(template)
+    return page.render(
+        styles=[Markup(text) for text in style_texts],
+        scripts=[Markup(text) for text in script_texts],
+        policy=content_policy(script_texts, style_texts),
+        **context,
+    )
+
+
+def get_ready(*names: str) -> None:
+    """Compile templates, which takes longer than to fill them in, before these are asked for."""
+    for name in names:
+        _templates().get_template(name)
+
+
+@cache
+def _templates() -> Environment:
+    """All templates; it keeps those that it has compiled."""
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined  # costs start-up
+
     environment = Environment(
         loader=FileSystemLoader(_HERE / "templates"),
         autoescape=True,
@@ -33,13 +56,7 @@ def render(template: str, *, styles: Sequence[str], scripts: Sequence[str] = (),
         lstrip_blocks=True,
     )
     environment.filters["embed"] = embed
-    page = environment.get_template(template)
-    return page.render(
-        styles=[Markup(text) for text in style_texts],
-        scripts=[Markup(text) for text in script_texts],
-        policy=content_policy(script_texts, style_texts),
-        **context,
-    )
+    return environment
 
 
 def content_policy(scripts: Sequence[str], styles: Sequence[str]) -> str:

@@ -101,14 +101,16 @@ def filter_delay(told: tuple[float, float], gyroscope: ImuFilter | None) -> tupl
 
 
 def with_accelerometers_on_time(
-    robot: RobotModel, logs: Sequence[MotionLog], gyroscope: ImuFilter | None = None
+    robot: RobotModel,
+    logs: Sequence[MotionLog],
+    told: Sequence[AccelerometerDelay],
+    gyroscope: ImuFilter | None = None,
 ) -> list[MotionLog]:
     """Checked logs of one IMU with its accelerometer read at the moments of its orientation, and a note of it.
 
-    All logs tell together: a filter belongs to the device. As they are where that is not sure. `gyroscope`: what they
-    tell of the filter of the same device.
+    All logs tell together, each of them as `told`: a filter belongs to the device. As they are where that is not sure.
+    `gyroscope`: what they tell of the filter of the same device.
     """
-    told = [accelerometer_delay(robot, log) for log in logs]
     late, std = filter_delay(device_delay(told), gyroscope)
     if robot.imu is None or not late:
         return [*logs]
@@ -161,14 +163,15 @@ def _leans(robot: RobotModel, log: MotionLog, orientation: Array, acceleration: 
         place = np.mean([bush.sole_position[run, :2] for bush in bushes.values()], axis=0)
         none = np.zeros_like(place)
         tilted = low_pass(tilt[run], period, CORRECTED)
-        higher = lean_of(none, tilt[run], height, period)
-        turned = lean_of(none, np.column_stack([-place[:, 1], place[:, 0]]), height, period)
+        turning = np.column_stack([-place[:, 1], place[:, 0]])
+        # An IMU that leans in its mount takes a part of what rises for what goes to the side.
+        aside = [np.outer(rising[run], side) for side in np.eye(2)]
+        pushes = np.hstack([none, none, pushed[run], *aside])
+        places = np.hstack([tilt[run], turning, none, none, none])
+        higher, turned, late, *leant = np.split(lean_of(pushes, places, height, period), 5, axis=1)
         about = [np.stack([each[:, 0], none[:, 0]], axis=1) for each in (tilted, higher)]
         across = [np.stack([none[:, 0], each[:, 1]], axis=1) for each in (tilted, higher)]
         swapped = np.column_stack([-tilted[:, 1], tilted[:, 0]])
-        late = lean_of(pushed[run], none, height, period)
-        # An IMU that leans in its mount takes a part of what rises for what goes to the side.
-        leant = [lean_of(np.outer(rising[run], side), none, height, period) for side in np.eye(2)]
         yield np.stack([lean, late, *about, *across, turned, swapped, *leant], axis=2)
 
 

@@ -7,7 +7,6 @@ robot file says. Its covariance holds coloured noise and a wrong URDF.
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -16,7 +15,6 @@ from plantar.conventions import Array
 from plantar.estimation.quantiles import MOST_FREEDOM, fisher_quantile
 from plantar.estimation.residual_covariance import pooled_freedom
 from plantar.robot.model import RobotModel
-from plantar.sensors.delays.refined_delays import Each
 from plantar.sensors.moment_errors import LOOSE, MomentErrors, moment_errors, prior_deviations
 from plantar.sensors.newton_euler import NewtonEulerResidual
 
@@ -43,23 +41,26 @@ class MomentFit(NamedTuple):
 
 
 def fit_moments(
-    robot: RobotModel, residuals: Sequence[NewtonEulerResidual], stepping: Collection[str], each: Each = map
+    robot: RobotModel, residuals: Sequence[NewtonEulerResidual], stepping: Collection[str]
 ) -> MomentFit | None:
-    """The fit over all logs in which Newton's law closes; None without one.
+    """The fit over all logs in which Newton's law closes; None without one. `stepping`: names of those in which feet
+    step."""
+    steps = [one.pair.label in stepping for one in residuals]
+    logs = [moment_errors(robot, *one) for one in zip(residuals, steps, strict=True)]
+    return moments_of(robot, logs, any(steps))
 
-    stepping: names of the logs in which feet step. `each` maps a function over logs: a pool's map uses all cores.
-    """
-    steps, gains = [one.pair.label in stepping for one in residuals], 2 * len(robot.feet)
-    logs = list(each(partial(moment_errors, robot), residuals, steps))
+
+def moments_of(robot: RobotModel, logs: Sequence[MomentErrors], steps: bool) -> MomentFit | None:
+    """The fit over what each log tells, None without one; `steps`: whether feet step in some."""
     if not logs:
         return None
-    prior = prior_deviations(robot)
+    prior, gains = prior_deviations(robot), 2 * len(robot.feet)
     fit = solved(logs, prior)
     if np.abs(fit.values[:gains]).max() > STRAINED * LOOSE:
         # Only another unit is so far off: the prior that keeps a gain from passing for other errors would hide it.
         prior[:gains] = ANOTHER_UNIT
         fit = solved(logs, prior)
-    if any(steps):
+    if steps:
         alike = np.zeros(len(prior))
         alike[:gains] = LANDINGS**2
         fit = MomentFit(fit.values, [*fit.parts, Part(np.diag(alike), MOST_FREEDOM)])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -66,7 +67,7 @@ class NewtonEulerResidual:
             self.parameters,
         )
 
-    @property
+    @cached_property
     def balance(self) -> Balance:
         """Feet and encoders apart: delays of each foot, then of the encoders, all against the IMU."""
         by_delay = np.concatenate([self.rates, -self.by_encoders[None]])

@@ -20,7 +20,7 @@ import numpy as np
 
 from plantar.contact.deflection import BushState
 from plantar.contact.phases import FootContact
-from plantar.conventions import GRAVITY, Array, rotation_from_quaternion
+from plantar.conventions import GRAVITY, Array, cross, rotation_from_quaternion
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.robot.model import Imu
@@ -102,16 +102,17 @@ def right_attitude(
     log: MotionLog,
     imu: Imu,
     orientation: Array,
-    tilt_error: TiltError,
+    tilt_errors: tuple[TiltError, TiltError],
     bushes: Mapping[str, BushState],
     contacts: Mapping[str, FootContact],
 ) -> tuple[Array, Note] | None:
     """The log's orientation (N, 4) without what its filter took from the accelerometer, and a note that says so.
 
-    None where neither this log nor all together (`tilt_error`) show that it took any, or this log has not the sensors.
+    None where neither this log nor all together, whose `tilt_errors` these are, show that it took any, or this log has
+    not the sensors.
     """
-    own = log_tilt_error(log, imu)
-    found = own if own.believed else tilt_error
+    own, together = tilt_errors
+    found = own if own.believed else together
     if not found.believed or own.predicted == 0:
         return None
     text = (
@@ -139,8 +140,8 @@ def tilt_error_of(orientation: Array, rates: Array, acceleration: Array, period:
     # World's up in the body: d(up)/dt = -(ω + k (a × up)) × up, a the direction of the acceleration.
     size = np.linalg.norm(acceleration, axis=1, keepdims=True)
     direction = acceleration / np.where(size > 0, size, np.nan)
-    turned = low_pass(np.cross(rates, up), period, BAND)
-    predicted = low_pass(-np.cross(np.cross(direction, up), up), period, BAND)
+    turned = low_pass(cross(rates, up), period, BAND)
+    predicted = low_pass(-cross(cross(direction, up), up), period, BAND)
     error = differentiate(believed, period) + turned
     known = np.isfinite(np.column_stack([error, predicted])).all(axis=1)
     if known.sum() * period < SHORTEST_STANCE:
@@ -216,11 +217,11 @@ def stance_leans(
 def lean_of(push: Array, place: Array, height: float, period: float) -> Array:
     """How far the believed vertical leans along x and y, (n, 2) [rad], over one stance.
 
-    push: horizontal acceleration of the IMU in the believed world; place: of the sole from the IMU, both (n, 2);
-    height: of the IMU [m].
+    push: horizontal acceleration of the IMU in the believed world; place: of the sole from the IMU, both (n, 2), or
+    several such beside each other; height: of the IMU [m].
     """
-    smooth = low_pass(np.column_stack([push, place]), period, DERIVED)
-    left = smooth[:, :2] + differentiate(differentiate(smooth[:, 2:], period), period)
+    smooth, pushed = low_pass(np.column_stack([push, place]), period, DERIVED), push.shape[1]
+    left = smooth[:, :pushed] + differentiate(differentiate(smooth[:, pushed:], period), period)
     padding = min(round(PADDING / period), len(left) - 1)
     mirrored = np.vstack([left[padding:0:-1], left, left[-2 : -padding - 2 : -1]])
     frequency = np.fft.rfftfreq(len(mirrored), period)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -30,6 +30,11 @@ class GyroscopeDelay(NamedTuple):
     std: float
     explained: float
 
+    @property
+    def shown(self) -> bool:
+        """Whether it is told from none, and no larger than a device's own filter."""
+        return max(SURE * self.std, LEAST) < abs(self.late) < USUAL
+
 
 class ImuFilter(NamedTuple):
     """By how much a device's own filter delays its gyroscope behind its orientation: `late` [s] and its `std`, from
@@ -49,9 +54,9 @@ class ImuFilter(NamedTuple):
         return self.steady and max(SURE * self.std, LEAST) < abs(self.late) < USUAL
 
 
-def imu_filter(logs: Sequence[MotionLog], imu: str) -> ImuFilter | None:
-    """What evenly sampled logs tell of it together; None where none tells."""
-    found = [one for one in (_of_log(log, imu) for log in logs) if one is not None]
+def imu_filter(told: Iterable[GyroscopeDelay | None]) -> ImuFilter | None:
+    """What logs tell of it together; None where none tells."""
+    found = [one for one in told if one is not None]
     if not found:
         return None
     late, weights = np.array([one.late for one in found]), np.array([one.std**-2 for one in found])
@@ -83,7 +88,8 @@ def with_gyroscopes_on_time(logs: Sequence[MotionLog], imu: str, found: ImuFilte
     return read
 
 
-def _of_log(log: MotionLog, imu: str) -> GyroscopeDelay | None:
+def log_gyroscope_delay(log: MotionLog, imu: str) -> GyroscopeDelay | None:
+    """What one evenly sampled log tells; None of one without orientation or gyroscope."""
     orientation = log.orientation(imu)
     if orientation is None or not log.has(*imu_columns(imu, "angular_velocity")):
         return None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from plantar.conventions import Array
+from plantar.conventions import Array, cross
 from plantar.errors import DataError, located
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
@@ -51,4 +51,4 @@ def rates_from(orientation: Array, period: float) -> Array:
     unit = unit * np.concatenate([[1.0], np.cumprod(flips)])[:, None]
     slope = differentiate(unit, period)
     w, vector, dw, dvector = unit[:, :1], unit[:, 1:], slope[:, :1], slope[:, 1:]
-    return np.asarray(2 * (w * dvector - dw * vector - np.cross(vector, dvector)))
+    return np.asarray(2 * (w * dvector - dw * vector - cross(vector, dvector)))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import partial
-from itertools import islice
 from typing import Annotated
 
 import numpy as np
@@ -55,11 +54,22 @@ def run(
     settings = FeetSettings(offset, model, cutoff, window=reach, wrench_delay=wrench_delay)
     refuse_file(out)
     known = load_robot(robot)
-    from plantar.feet.identify import identify_feet
-    from plantar.report import write_feet_report
+    from plantar.feet.prepare import prepare_all
     from plantar.signals.thinning import kept_size
 
-    read = open_in_turn([*logs, *(validate or ())], known, kept_size, memory)
-    result = identify_feet(known, islice(read, len(logs)), read, settings, progress(quiet))
+    read, show = open_in_turn([*logs, *(validate or ())], known, kept_size, memory), progress(quiet)
+    ready = prepare_all(known, read[: len(logs)], read[len(logs) :], settings, show, _get_rest_ready)
+    from plantar.feet.identify import fit_prepared
+    from plantar.report import write_feet_report
+
+    result = fit_prepared(known, ready, show)
     report = partial(write_feet_report, table=result.residuals)
     identification.keep(result, out, report, print_feet, json=json, quiet=quiet)
+
+
+def _get_rest_ready() -> None:
+    """Import what comes behind the logs, and make the report ready: cores wait for the last log."""
+    import plantar.feet.identify  # noqa: F401
+    from plantar.report.feet import get_report_ready
+
+    get_report_ready()

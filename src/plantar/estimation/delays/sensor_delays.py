@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -33,6 +34,11 @@ class Balance:
     by_delay: Array
     period: float
     model_errors: Array = field(default_factory=lambda: np.zeros((0, 0, 6)))
+
+    @cached_property
+    def cells(self) -> list[_Cell]:
+        """Every axis in every band that closes, once they were asked for."""
+        return _cells(self)
 
 
 @dataclass(frozen=True)
@@ -64,7 +70,7 @@ def estimate_delays(balances: Sequence[Balance], held: Array | None = None) -> D
 
     held: (c, delays), combinations of delays that are taken as zero.
     """
-    cells = [cell for balance in balances for cell in _cells(balance)]
+    cells = [cell for balance in balances for cell in balance.cells]
     if len(cells) < FEWEST_CELLS:
         return None
     count = len(balances[0].by_delay)

@@ -11,8 +11,9 @@ robot file may be off by moves h with the robot's own motion, and widens both (`
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -89,15 +90,24 @@ class VerticalStiffness:
     freedom: float
 
 
-def fit_vertical_stiffness(recordings: Sequence[Recording], robot: RobotModel) -> VerticalStiffness:
+class Heights(NamedTuple):
+    """What the soles' heights in one recording tell: `block`, and the changes (n,) of h that each cause makes of it."""
+
+    block: Block
+    changes: Mapping[str, Array]
+
+
+def heights_of(robot: RobotModel, recording: Recording) -> Heights | None:
+    """What one recording tells; None where it is nothing."""
+    shows = _block(recording, tuple(robot.feet)) if len(robot.feet) == 2 else None
+    return shows and Heights(shows[0], dict(height_changes(recording.log, robot, shows[1])))
+
+
+def fit_vertical_stiffness(heights: Sequence[Heights], robot: RobotModel) -> VerticalStiffness:
     """Vertical stiffness of two feet; where no log shows it, compliance 0 with the deviation of soft rubber."""
     feet = tuple(robot.feet)
-    blocks, shown = list[Block](), list[tuple[Recording, Mask]]()
-    for recording in recordings if len(feet) == 2 else ():
-        if (shows := _block(recording, feet)) is not None:
-            blocks.append(shows[0])
-            shown.append((recording, shows[1]))
-    found = _compliances(blocks, _height_errors(shown, robot)) if blocks else None
+    blocks, changes = [own.block for own in heights], [own.changes for own in heights]
+    found = _compliances(blocks, _common(changes)) if blocks else None
     if found is None or not found.clear:
         text = "z: no log shows the vertical compliance; K of pitch and roll may come out too large by load²·compliance"
         unknown = tuple(_unknown_row(foot) for foot in feet) if len(feet) == 2 else ()
@@ -117,17 +127,13 @@ def fit_vertical_stiffness(recordings: Sequence[Recording], robot: RobotModel) -
     )
 
 
-def _height_errors(shown: Sequence[tuple[Recording, Mask]], robot: RobotModel) -> list[list[Array]]:
-    """Of each cause, the change of h at the rows of each recording's block, (n,)."""
-    causes: dict[str, list[Array]] = {}
-    for recording, rows in shown:
-        for cause, change in height_changes(recording.log, robot, rows):
-            causes.setdefault(cause, []).append(change)
-    return [changes for changes in causes.values() if len(changes) == len(shown)]
+def _common(errors: Sequence[Mapping[str, Array]]) -> list[list[Array]]:
+    """The changes of h in each recording, of each cause that all of them have."""
+    return [[own[cause] for own in errors] for cause in errors[0] if all(cause in own for own in errors)]
 
 
 def _compliances(blocks: Sequence[Block], errors: Sequence[Sequence[Array]]) -> Compliances:
-    """Sum and difference; the sum alone where the total load changes in no recording. `errors`: as `_height_errors`."""
+    """Sum and difference; the sum alone where the total load changes in no recording. `errors`: see `_common`."""
     if any(block.regressor[:, 1].any() for block in blocks):
         fit = fit_linear(blocks)
         return Compliances(

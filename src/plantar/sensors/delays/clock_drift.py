@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from plantar.cores import Each
 from plantar.estimation.delays.delay import Pair, estimate_delay
 from plantar.notes import Note
 
@@ -36,9 +37,10 @@ class ClockDrift(NamedTuple):
         return Note("clock_drift", "warning", text)
 
 
-def clock_drift(pairs: Sequence[Pair]) -> ClockDrift | None:
-    """What the delays of each log's halves say; None where they do not clearly differ."""
-    found = [(pair, halves) for pair in pairs if (halves := _halves(pair)) is not None]
+def clock_drift(pairs: Sequence[Pair], each: Each = map) -> ClockDrift | None:
+    """What the delays of each log's halves say; None where they do not clearly differ. `each` maps over pairs."""
+    told = zip(pairs, each(_halves, pairs), strict=True)
+    found = [(pair, halves) for pair, halves in told if halves is not None]
     if not found:
         return None
     apart, variance = (np.array(values) for values in zip(*(halves for _, halves in found), strict=True))

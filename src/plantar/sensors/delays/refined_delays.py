@@ -6,13 +6,14 @@ and IMU read together; where feet or encoders clearly have delays of their own, 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from functools import partial
 
 import numpy as np
 
 from plantar.conventions import Array, Mask
+from plantar.cores import Each
 from plantar.estimation.delays.delay import LONGEST, estimate_delay
 from plantar.estimation.delays.sensor_delays import estimate_delays
 from plantar.logs.freed_memory import return_freed
@@ -22,8 +23,6 @@ from plantar.sensors.delays.clock_drift import ClockDrift, clock_drift
 from plantar.sensors.delays.delays_by_log import DelaysByLog, delays_by_log
 from plantar.sensors.newton_euler import NewtonEulerResidual, newton_euler_residuals
 from plantar.signals.resampling import shifted
-
-Each = Callable[..., Iterable[Any]]  # a map over logs, that of a pool or the usual one
 
 ROUNDS = (
     6  # steps: each leaves a tenth of the one before; changing between common and own delays takes some more
@@ -71,14 +70,19 @@ def read_in_time(robot: RobotModel, log: MotionLog, delays: Array) -> MotionLog:
 
 
 def refined_delays(
-    robot: RobotModel, logs: Sequence[MotionLog], each: Each, start: Array
+    robot: RobotModel,
+    logs: Sequence[MotionLog],
+    each: Each,
+    start: Array,
+    tried: Sequence[Sequence[NewtonEulerResidual]] | None = None,
 ) -> RefinedDelays | None:
-    """Delays near `start` (feet + 1,) [s]; None where Newton's law closes in no log, or the steps do not settle."""
+    """Delays near `start` (feet + 1,) [s]; None where Newton's law closes in no log, or the steps do not settle.
+
+    tried: `residuals_at` the start, where they are known.
+    """
     at = start
     for _ in range(ROUNDS):
-        tried = list(
-            each(lambda log, at=at: newton_euler_residuals(robot, read_in_time(robot, log, at)), logs)
-        )
+        tried = tried or list(each(partial(residuals_at, robot, at), logs))
         return_freed()
         step = _step(logs, tried, at)
         if step is None:
@@ -87,10 +91,20 @@ def refined_delays(
         if moved < SETTLED and step.std < np.inf:
             residuals = tuple(residual for own in tried for residual in own)
             pairs, common = [one.pair for one in residuals], float(np.mean(read_at[:-1]))
-            unsteady = clock_drift(pairs) or delays_by_log(pairs, common)
+            unsteady = clock_drift(pairs, each) or delays_by_log(pairs, common)
             residuals = tuple(replace(one, pair=one.pair.slim) for one in residuals)
             return replace(step, unsteady=unsteady, residuals=residuals)
+        tried = None
     return None
+
+
+def residuals_at(robot: RobotModel, delays: Array, log: MotionLog) -> list[NewtonEulerResidual]:
+    """Both sides of Newton's law along a log read at `delays`, filtered in all bands: here, one log apart from others,
+    and not when delays are asked of all."""
+    found = newton_euler_residuals(robot, read_in_time(robot, log, delays))
+    for one in found:
+        _ = one.pair.bands, one.balance.cells
+    return found
 
 
 def _step(

@@ -15,6 +15,7 @@ from functools import partial
 import numpy as np
 
 from plantar.conventions import NORMAL95, Mask
+from plantar.cores import Each
 from plantar.estimation.delays.delay import LEAST_CLOSED
 from plantar.estimation.delays.lag_search import Lags, search_lags
 from plantar.logs.freed_memory import return_freed
@@ -25,7 +26,6 @@ from plantar.sensors.delays.lagged_log import SEARCHED, STEP, lagged_log
 from plantar.sensors.delays.refined_delays import (
     LEAST_STD,
     WELL_KNOWN,
-    Each,
     RefinedDelays,
     read_in_time,
     refined_delays,
@@ -78,16 +78,22 @@ def known_delay(delay: float) -> SensorDelay:
     return SensorDelay(delay, 0.0, np.inf, False, Note("delay_given", "info", text))
 
 
-def estimate_wrench_delay(robot: RobotModel, logs: Sequence[MotionLog], each: Each = map) -> SensorDelay:
+def estimate_wrench_delay(
+    robot: RobotModel,
+    logs: Sequence[MotionLog],
+    each: Each = map,
+    as_recorded: Sequence[Sequence[NewtonEulerResidual] | None] = (),
+) -> SensorDelay:
     """The delay common to all logs, evenly sampled, drawn towards zero by what is usual where the logs say little;
     where sensors clearly differ, the delay of each.
 
-    `each` maps a function over logs: a pool's map uses all cores.
+    `each` maps a function over logs: a pool's map uses all cores. as_recorded: `residuals_at` no delay, if known.
     """
     if on_force_cells(robot, logs):
         return _unseen(robot, logs)
     still = np.zeros(len(robot.feet) + 1)
-    found = refined_delays(robot, logs, each, still)
+    known = [own for own in as_recorded if own is not None]
+    found = refined_delays(robot, logs, each, still, known if len(known) == len(logs) else None)
     if found is not None and found.std <= KNOWN_STD and not found.suspect:
         return replace(_told(robot, found), residuals=found.residuals)
     return_freed()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import codecs
 import csv
 import zlib
+from collections import deque
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -36,7 +37,8 @@ class Survey:
 def survey(path: Path, limit: ReadLimit) -> Survey:
     """Walk over the whole text without keeping it. LogError: empty, no text, or more than `limit` allows."""
     check = codecs.getincrementaldecoder("utf-8")()
-    head, size, rows, end, tail = b"", 0, 0, 0, b""
+    head, size, rows, end = b"", 0, 0, 0
+    behind, held = deque[bytes](), 0  # the last blocks: a line or more
     names: list[str] | None = None
     first = 0
     whole = True  # no character waits for its end in the next block
@@ -50,7 +52,10 @@ def survey(path: Path, limit: ReadLimit) -> Survey:
         except UnicodeDecodeError as error:
             line = 1 + rows + (0 if names is None else 1) + block.count(b"\n", 0, error.start)
             raise LogError(located(f"is not UTF-8 text at line {line}", path=path, valid="a CSV")) from error
-        tail = (tail + block)[-LINE_LIMIT:]
+        behind.append(block)
+        held += len(block)
+        while held - len(behind[0]) >= LINE_LIMIT:
+            held -= len(behind.popleft())
         size += len(block)
         if names is None:
             head += block
@@ -68,6 +73,7 @@ def survey(path: Path, limit: ReadLimit) -> Survey:
             raise LogError(located("is empty", path=path, valid="a header and one row a sample"))
         raise LogError(located("holds no samples", path=path, valid="a header and one row a sample"))
     cut_by = text.cut or (None if end == size else "ends in the middle of a line; that line is left out")
+    tail = b"".join(behind)[-LINE_LIMIT:]
     last = tail[: len(tail) - (size - end)].rstrip().rsplit(b"\n", 1)[-1]
     return Survey(names, first, end, rows, last, cut_by)
 

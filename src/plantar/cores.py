@@ -1,0 +1,107 @@
+"""Work that is the same for each log or foot, shared between the machine's cores.
+
+Python runs one thread at a time, and what comes between long loops over samples is Python. So each share is done by a
+copy of this process: it has all that this one has and hands back what it found. Results are those of one core: every
+item is worked on by itself, by the same code. What a copy could not do, for whatever reason, this process does again,
+so that an error is the first one, as if nothing had been shared.
+"""
+
+from __future__ import annotations
+
+import gc
+import os
+import signal
+import sys
+import threading
+from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
+from typing import Any, TypeVar
+
+from plantar.handed_back import hand_back, held_by, taken
+
+Found = TypeVar("Found")
+Each = Callable[..., Iterable[Any]]  # `over_cores`, a pool's map, or the usual one
+
+
+def usable_cores() -> int:
+    """Cores that work may be shared between; 1 where this process cannot be copied.
+
+    That is: on systems other than Linux, and beside other threads of Python, whose locks a copy would never see free.
+    """
+    if sys.platform != "linux" or threading.active_count() > 1:
+        return 1
+    return len(os.sched_getaffinity(0))
+
+
+def over_cores(
+    function: Callable[..., Found],
+    *items: Iterable[Any],
+    cores: int | None = None,
+    meanwhile: Callable[[], object] | None = None,
+) -> list[Found]:
+    """`list(map(function, *items))` on all cores.
+
+    The function must not change what it is given, nor anything else that is read later. cores: all that are usable if
+    left out. meanwhile: called here once this process has done its share, which is the smallest. Raises what the
+    function raises, of the first item that it does so for.
+
+    Example:
+        >>> over_cores(abs, [-3, 4])
+        [3, 4]
+    """
+    rows = list(zip(*items, strict=True))
+    shares = max(1, min(usable_cores() if cores is None else cores, len(rows)))
+    found: dict[int, Found] = {}
+    copies = list[_Copy]()
+    try:
+        # The last share is the smallest: this process gathers as well.
+        with suppress(OSError):  # no room for another process: its share is done below
+            for first in range(shares - 1):
+                copies.append(_Copy(function, rows, range(first, len(rows), shares)))
+        with suppress(Exception):  # it comes again below, unless an earlier item has one
+            for place in range(shares - 1, len(rows), shares):
+                found[place] = function(*rows[place])
+        if meanwhile is not None:
+            meanwhile()
+        for copy in copies:
+            found |= copy.found()
+    finally:
+        for copy in copies:
+            copy.end()
+    return [found[place] if place in found else function(*row) for place, row in enumerate(rows)]
+
+
+class _Copy:
+    """A copy of this process at work on its `own` of the rows."""
+
+    def __init__(self, function: Callable[..., Any], rows: Sequence[tuple[Any, ...]], own: range) -> None:
+        self._held = held_by([rows])
+        self._file = os.memfd_create("plantar")
+        self._process = os.fork()
+        if self._process:
+            return
+        try:
+            if signal.getsignal(signal.SIGINT) != signal.SIG_IGN:
+                signal.signal(signal.SIGINT, signal.SIG_DFL)  # whoever interrupts stops both, and one says so
+            gc.disable()  # it would touch every object, and so copy its memory
+            found = {}
+            with suppress(Exception):
+                for place in own:
+                    found[place] = function(*rows[place])
+            hand_back(found, self._held, self._file)
+            os._exit(0)
+        finally:  # nothing that this process had begun is the copy's to end
+            os._exit(1)
+
+    def found(self) -> dict[int, Any]:
+        """What it found, by place, once it has ended: nothing where it was stopped."""
+        process, self._process = self._process, 0
+        _, status = os.waitpid(process, 0)
+        return taken(self._file, self._held) if status == 0 else {}
+
+    def end(self) -> None:
+        """Stop it where it is still at work, and give back what it took."""
+        if self._process:
+            os.kill(self._process, signal.SIGKILL)
+            os.waitpid(self._process, 0)
+        os.close(self._file)

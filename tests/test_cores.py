@@ -1,0 +1,130 @@
+"""Work shared between copies of the process: the same as on one core, whatever happens to a copy."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from plantar.cores import over_cores, usable_cores
+from plantar.logs.motion_log import MotionLog
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processes are copied on Linux")
+HERE = os.getpid()
+
+
+def log(seed: int) -> MotionLog:
+    values = np.random.default_rng(seed).normal(size=(2, 500))
+    columns = dict(zip(("joint.hip.position", "joint.knee.position"), values, strict=True))
+    return MotionLog(f"log {seed}", np.arange(500.0), columns)
+
+
+@pytest.mark.parametrize("cores", [1, 2, 3, 8])
+def test_any_number_of_cores_finds_the_same_in_the_same_order(cores: int) -> None:
+    logs = [log(seed) for seed in range(5)]
+    found = over_cores(lambda one, by: one.select(slice(by, None)), logs, range(5), cores=cores)
+    for by, (before, after) in enumerate(zip(logs, found, strict=True)):
+        assert after.name == before.name
+        assert after.time.tobytes() == before.time[by:].tobytes()
+        for name, values in before.columns.items():
+            assert after.columns[name].tobytes() == values[by:].tobytes()
+            assert not after.columns[name].flags.writeable
+
+
+def test_the_work_is_shared() -> None:
+    processes = over_cores(lambda _: os.getpid(), range(5), cores=2)
+    assert processes[1::2] == [HERE, HERE]
+    assert len({*processes[::2]} - {HERE}) == 1
+
+
+def test_what_both_have_is_not_sent_back_but_is_the_same_object() -> None:
+    logs = [log(seed) for seed in range(2)]
+    found = over_cores(lambda one: (one, one.columns["joint.hip.position"], one.time + 1), logs, cores=2)
+    for before, (same, column, new) in zip(logs, found, strict=True):
+        assert same is before
+        assert column is before.columns["joint.hip.position"]
+        assert np.array_equal(new, before.time + 1)
+        new += 1  # its own, and to be written
+
+
+def test_arrays_keep_their_order_in_memory() -> None:
+    """Sums over another order of memory round otherwise."""
+    found = over_cores(lambda size: np.ones((3, size)).T, [4, 5], cores=2)
+    assert all(one.flags.f_contiguous and not one.flags.c_contiguous for one in found)
+
+
+@pytest.mark.parametrize("wrong", [{0}, {1}, {0, 1}, {1, 2}, {2, 3}, {3}])
+def test_the_error_is_that_of_the_first_item(wrong: set[int]) -> None:
+    def refuse(item: int) -> int:
+        if item in wrong:
+            raise ValueError(f"item {item}")
+        return item
+
+    with pytest.raises(ValueError, match=f"item {min(wrong)}"):
+        over_cores(refuse, range(5), cores=2)
+
+
+def test_what_a_copy_cannot_do_is_done_here() -> None:
+    def killed(item: int) -> int:
+        if os.getpid() != HERE:
+            os.kill(os.getpid(), signal.SIGKILL)
+        return item + 1
+
+    assert over_cores(killed, range(4), cores=2) == [1, 2, 3, 4]
+    generators = over_cores(lambda item: (item for _ in "a"), range(3), cores=2)  # nothing that can be sent
+    assert [next(one) for one in generators] == [0, 1, 2]
+
+
+def test_nothing_is_left_behind() -> None:
+    def files() -> int:
+        return len(os.listdir("/proc/self/fd"))
+
+    before = files()
+    for _ in range(3):
+        over_cores(abs, range(4), cores=3)
+        with pytest.raises(TypeError):
+            over_cores(abs, "abcd", cores=3)
+    assert files() == before
+    with pytest.raises(ChildProcessError):
+        os.waitpid(-1, 0)
+
+
+def test_one_core_beside_threads_of_python_and_on_no_other_system(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(threading, "active_count", lambda: 1)
+    assert usable_cores() == len(os.sched_getaffinity(0))
+    monkeypatch.setattr(sys, "platform", "darwin")
+    assert usable_cores() == 1
+    monkeypatch.undo()
+    done = threading.Event()
+    thread = threading.Thread(target=done.wait)
+    thread.start()
+    assert usable_cores() == 1
+    done.set()
+    thread.join()
+
+
+def test_an_interrupt_ends_all_processes_at_once() -> None:
+    code = (
+        "import os, time\nfrom plantar.cores import over_cores\n"
+        "def work(item):\n"
+        "    os.write(1, b'%d\\n' % os.getpid())\n"
+        "    time.sleep(60)\n"
+        "try:\n    over_cores(work, range(2), cores=2)\n"
+        "except KeyboardInterrupt:\n    print('interrupted', flush=True)\n"
+    )
+    command = [sys.executable, "-c", code]
+    process = subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
+    )
+    assert process.stdout is not None
+    ours = [int(process.stdout.readline()) for _ in range(2)]
+    os.killpg(process.pid, signal.SIGINT)
+    out, err = process.communicate(timeout=30)
+    assert (out, err) == ("interrupted\n", "")
+    assert not any(Path(f"/proc/{one}").exists() for one in ours)
