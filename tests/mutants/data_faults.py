@@ -156,8 +156,8 @@ DATA_FAULTS = (
         ("feet/exclusion/test_tipping.py",),
     ),
     Mutant(
-        "feet/assess/verdicts.py", "a nearer law is said alone", 'return "weak", evidence.doubt, f"{SWAY',
-        'return "usable", evidence.doubt, f"{SWAY',
+        "feet/assess/verdicts.py", "a nearer law is said alone", 'return "weak", evidence.doubt, outline',
+        'return "usable", evidence.doubt, outline',
         ("feet/assess/test_verdicts.py",),
     ),
     Mutant(

@@ -14,7 +14,7 @@ from plantar.feet.assess.parameter_rows import axis_rows, missing_rows, unseen_r
 from plantar.feet.assess.verdicts import NOISY
 from plantar.feet.fit.axis import AxisFit
 from plantar.feet.recording import Recording
-from plantar.models import BushModel, Elastoplastic, KelvinVoigt
+from plantar.models import MODELS, BushModel, Elastoplastic, KelvinVoigt
 from plantar.results.feet import Parameter, ValidationRow
 
 STD = np.array([4.0, 1.0])
@@ -120,3 +120,15 @@ def test_what_a_memory_misses_is_noise_of_its_angle(share: float, verdict: str) 
     assert {row.verdict for row in told} == {verdict}
     assert all("of the slip angle" in row.reason for row in told) is (verdict == "weak")
     assert {row.verdict for row in spring} == {"usable"}
+
+
+@pytest.mark.parametrize(("lost", "verdict"), [(0.27, "usable"), (0.33, "weak"), (-0.33, "usable")])
+def test_a_spring_that_softens_as_it_bends_may_be_a_sole_that_tips(lost: float, verdict: str) -> None:
+    """K - 3h·q² at the largest angle; a spring that hardens is rubber."""
+    one = recording()
+    largest = float(np.abs(one.bushes[FOOT].deflection[:, 0]).max())
+    fit = fit_of(MODELS["hardening"], (400.0, 20.0, -lost * 400.0 / (3 * largest**2)))
+    rows = rows_of(one, replace(fit, covariance=1e-6 * fit.covariance))
+    assert {row.verdict for row in rows} == {verdict}
+    assert all(("sole: polygon" in row.reason) is (verdict == "weak") for row in rows)
+    assert ("outline" in (rows[0].advice or "")) is (verdict == "weak")

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from plantar.contact.reasons import TIPPING
-from plantar.conventions import ROTATIONAL_AXES, Axis
+from plantar.conventions import ROTATIONAL_AXES, Array, Axis
 from plantar.estimation import interval95, relative_std_percent
 from plantar.feet.assess.left_out import why_unseen
 from plantar.feet.assess.residual_table import Predictions
@@ -79,7 +79,7 @@ def missing_rows(foot: str, axis: Axis, reason: str, advice: str = "") -> list[P
 
 def _evidence(fit: AxisFit, recordings: Sequence[Recording], predictions: Predictions) -> Evidence:
     column = ROTATIONAL_AXES.index(fit.axis)
-    seconds = moved = varied = missed = leans = loaded = 0.0
+    seconds = moved = varied = missed = leans = loaded = softened = 0.0
     samples = 0
     for recording in recordings:
         predicted = predictions.get((recording.name, fit.foot, fit.axis))
@@ -88,6 +88,7 @@ def _evidence(fit: AxisFit, recordings: Sequence[Recording], predictions: Predic
         used, bush = recording.used(fit.foot) & np.isfinite(predicted.torque), recording.bushes[fit.foot]
         angle, torque = bush.deflection[used, column], bush.torque[used, column]
         samples += len(angle)
+        softened = max(softened, _softened(fit, angle))
         contact = recording.contacts[fit.foot]
         loaded += float(contact.loaded.sum()) * recording.period
         leans += float((contact.loaded & contact.left_out_for(TIPPING)).sum()) * recording.period
@@ -107,4 +108,13 @@ def _evidence(fit: AxisFit, recordings: Sequence[Recording], predictions: Predic
         damping < 0,
         leaning=leans / loaded if has_memory(fit.model) and loaded else 0.0,
         noise=noise,
+        softened=softened,
     )
+
+
+def _softened(fit: AxisFit, angle: Array) -> float:
+    """The share of its slope at rest that a spring with a cubic term has lost at the largest of angles (n,) [rad]."""
+    if "hardening" not in fit.model.terms or not len(angle):
+        return 0.0
+    cubic = float(fit.values[fit.model.terms.index("hardening")])
+    return -3 * cubic * float(np.max(angle**2)) / abs(float(fit.values[0]))

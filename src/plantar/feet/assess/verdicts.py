@@ -18,6 +18,9 @@ LEAST_EXPLAINED = 0.3  # share of the torque's variance that the model must expl
 GOOD_EXPLAINED = 0.8
 SIGNS = "check sign and rpy of this foot's wrench, link and rpy of the IMU, signs of the joints: no motion helps here"
 NOISY = 0.13  # of the slip angle: of simulated robots with more noise of the angle one in three had a wrong slip angle
+# Share of its slope that a spring may lose as it bends. Rubber hardens; a sole that begins to turn about its edge takes
+# the same torque at larger angles.
+SOFTENED = 0.3
 LEANING = 0.05  # of the time: shorter leans hardly move what comes behind them
 
 SWAY = {
@@ -33,7 +36,8 @@ class Evidence:
     damping is negative beyond doubt, the motion that contradicts the others (None where they agree), the share of the
     time in which the sole leans, where the model has a memory that has to go through that, why a model that could
     not be chosen is nearer to the truth (None where none is), and `noise` of a standing foot's angle, as much as there
-    can be, over the slip angle of a memory."""
+    can be, over the slip angle of a memory. `softened`: the share of its slope that the spring has lost where it is
+    bent most."""
 
     seconds: float
     excitation: float
@@ -43,10 +47,14 @@ class Evidence:
     leaning: float = 0.0
     caution: str | None = None
     noise: float = 0.0
+    softened: float = 0.0
 
     @property
     def doubt(self) -> str | None:
-        """Why spring and element may have taken from each other; None where they have not."""
+        """Why the spring may be another, or have taken from an element beside it; None where neither shows."""
+        if self.softened > SOFTENED:
+            lost = f"the spring loses {100 * self.softened:.0f} % of its slope as it bends"
+            return f"{lost}, as where a sole tips whose outline (sole: polygon) is told too large"
         if self.noise > NOISY:
             share = f"{100 * self.noise:.0f} % of the slip angle"
             return f"the angle's noise may be {share}, and an element turns by the angle itself"
@@ -103,7 +111,9 @@ def judge(
             f"{_advice(foot, axis, term)}: the centre of pressure has to stay inside the sole",
         )
     if evidence.doubt is not None:
-        return "weak", evidence.doubt, f"{SWAY[axis]} with its weight on the {foot} foot, by larger angles"
+        larger = f"{SWAY[axis]} with its weight on the {foot} foot, by larger angles"
+        outline = f"measure the {foot} sole's outline for the robot file, or sway by smaller angles"
+        return "weak", evidence.doubt, outline if evidence.softened > SOFTENED else larger
     if evidence.seconds < SHORT_SECONDS:
         told = (
             f"only {evidence.seconds:.1f} s of samples are used, too short to tell slow drift from the foot"
