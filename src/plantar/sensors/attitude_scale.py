@@ -35,6 +35,7 @@ WITHOUT_LEAN = np.array([[1.0, 0.0, 0.0], [-1.0, 1.0, 0.0], [0.0, 0.0, 1.0]])  #
 STAYS = (
     0.5  # of the share, beside the tilt as the soles have it: less, and most of it is the attitude's wander
 )
+KEPT = 8.0  # samples for each period of CORRECTED: all of it, and few enough for minutes at a kilohertz
 RATE = 1.0  # 1/s, of samples of the lean that tell something new: it is slower than CORRECTED
 
 
@@ -93,18 +94,19 @@ def log_attitude_scale(
     if log.orientation(imu.name) is None or not log.has_imu(imu.name, "linear_acceleration"):
         return AttitudeScale()
     unit, acceleration, period = unit_quaternions(orientation), log.linear_acceleration(imu.name), log.period
-    found, edge = AttitudeScale(), round(EDGE / period)
+    found, edge, thinned = AttitudeScale(), round(EDGE / period), max(1, int(1 / (KEPT * CORRECTED * period)))
+    every = thinned * period
     horizontal = rotation_from_quaternion(unit)[:, :2, 2]
     for run, lean, height in stance_leans(unit, acceleration, bushes, contacts, period):
         tilt = low_pass(horizontal[run], period, CORRECTED)
         higher = lean_of(np.zeros_like(tilt), horizontal[run], height, period)
-        signals = np.stack([lean, tilt, higher], axis=2)[edge:-edge]  # (n, 2, 3)
+        signals = np.stack([lean, tilt, higher], axis=2)[edge:-edge:thinned]  # (n, 2, 3)
         # What an attitude drifts by over seconds is no share of any tilt, but goes with slow ones for a while.
         flat = signals.reshape(len(signals), -1)
-        flat = without(drift_basis(period * np.arange(len(flat), dtype=np.float64)), flat - flat.mean(axis=0))
+        flat = without(drift_basis(every * np.arange(len(flat), dtype=np.float64)), flat - flat.mean(axis=0))
         signals = flat.reshape(signals.shape)
-        products = period * np.einsum("nai,naj->aij", signals, signals)
-        found = found + AttitudeScale(products, len(signals) * period)
+        products = every * np.einsum("nai,naj->aij", signals, signals)
+        found = found + AttitudeScale(products, len(signals) * every)
     return found
 
 
