@@ -40,6 +40,16 @@ def test_a_position_that_stands_while_its_velocity_turns_is_refused(
         identify_feet(robot, [log])
 
 
+def test_dead_encoders_are_told_in_the_order_of_their_names(robot: RobotModel) -> None:
+    log = record(sway())
+    joints = [f"{foot}_ankle_{axis}" for foot in ("left", "right") for axis in ("pitch", "roll")]
+    for joint in joints:
+        values = log.column(f"joint.{joint}.position")
+        log = log.with_columns({f"joint.{joint}.position": np.full(len(log), values[0])})
+    told = [finding.text for finding in check_channels(robot, log) if finding.code == "dead_channel"]
+    assert [text.split("'")[1] for text in told] == [f"joint.{joint}.position" for joint in joints]
+
+
 def test_coarse_encoders_and_still_joints_are_not_dead(robot: RobotModel) -> None:
     log = record(sway())
     position, velocity = f"joint.{JOINT}.position", f"joint.{JOINT}.velocity"

@@ -40,7 +40,7 @@ def check_channels(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
             f"{text}; right if the joint stood still, else the channel is dead",
             severity="info",
         )
-    for name in path:
+    for name in sorted(path):
         yield from _dead_encoder(name, log)
     for sensor in (
         f"imu.{robot.imu.name}.",
