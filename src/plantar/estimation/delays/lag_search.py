@@ -114,7 +114,8 @@ def _missed(predicted: Array, measured: Array, combined: NDArray[np.intp], split
         for other in range(feet):
             left += squares[:, foot, combined[:, foot], other, combined[:, other]]
     holds = 2.0 * width  # two shares a sample, of forces and of torques
-    return np.asarray(np.minimum(left / holds, 1.0).sum(axis=0))
+    # Rounding may leave less than nothing where all is explained.
+    return np.asarray(np.clip(left / holds, 0.0, 1.0).sum(axis=0))
 
 
 def _power(grid: LagGrid) -> float:
