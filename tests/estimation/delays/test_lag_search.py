@@ -43,7 +43,7 @@ def test_each_lag_is_found_among_all(late: tuple[int, int, int]) -> None:
 
 
 def test_rounding_leaves_no_less_than_nothing() -> None:
-    """Where all is explained the rest is zero, on whatever processor: below it no lag was near the best, and std NaN."""
+    """Where all is explained the rest is zero, on any processor: below it no lag was near the best, and std NaN."""
     for seed in range(8):
         found = search_lags([grid((4, 4, 0), seed=seed)])
         assert found.missed[0] >= 0
