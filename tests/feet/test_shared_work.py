@@ -61,7 +61,7 @@ def test_any_number_of_cores_finds_the_same(
 def test_a_look_is_the_same_at_files_and_at_logs_in_turn(robot: RobotModel, files: list[Path]) -> None:
     waiting = logs_of([str(path) for path in files], robot)
     assert isinstance(waiting, WaitingLogs)
-    assert waiting.fit
+    assert waiting.bounded
     together = looked_at(robot, waiting, True)
     in_turn = [look_at(robot, True, log) for log in checked_in_turn(robot, iter(waiting))]
     for one, other in zip(together, in_turn, strict=True):
@@ -78,12 +78,12 @@ def test_packed_files_and_large_ones_wait_for_their_turns(
     text, packed = tmp_path / "log.csv", tmp_path / "log.csv.gz"
     text.write_bytes(b"0" * 100)
     packed.write_bytes(b"0" * 100)
-    for files, fit in (([text], True), ([text, packed], False), ([tmp_path / "none.csv"], False)):
+    for files, bounded in (([text], True), ([text, packed], False), ([tmp_path / "none.csv"], False)):
         found = logs_of(files, robot)
         assert isinstance(found, WaitingLogs)
-        assert found.fit is fit
-    for memory, fit in ((1600, True), (1599, False)):
+        assert found.bounded is bounded
+    for memory, bounded in ((1600, True), (1599, False)):
         monkeypatch.setattr("plantar.logs.inputs.usual_memory", lambda memory=memory: memory)
         found = logs_of([text, text], robot)
         assert isinstance(found, WaitingLogs)
-        assert found.fit is fit
+        assert found.bounded is bounded

@@ -156,8 +156,8 @@ DATA_FAULTS = (
         ("feet/exclusion/test_tipping.py",),
     ),
     Mutant(
-        "feet/assess/verdicts.py", "a nearer law is said alone", 'return "weak", evidence.doubt, outline',
-        'return "usable", evidence.doubt, outline',
+        "feet/assess/verdicts.py", "a nearer law is said alone",
+        'return "weak", evidence.doubt, _advice', 'return "usable", evidence.doubt, _advice',
         ("feet/assess/test_verdicts.py",),
     ),
     Mutant(
@@ -165,8 +165,8 @@ DATA_FAULTS = (
         ("feet/test_prepare.py",),
     ),
     Mutant(
-        "signals/gyroscope_delay.py", "logs that disagree show a filter", "apart < AGREE**2", "True",
-        ("signals/test_gyroscope_delay.py",),
+        "sensors/imu_filter.py", "logs that disagree show a filter", "mean.apart < AGREE", "True",
+        ("sensors/test_imu_filter.py",),
     ),
     Mutant(
         "sensors/accelerometer_delay.py", "the gyroscope tells nothing of the accelerometer",

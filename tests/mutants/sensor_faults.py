@@ -182,8 +182,8 @@ SENSOR_FAULTS = (
         ("estimation/test_least_squares.py",),
     ),
     Mutant(
-        "signals/gyroscope_delay.py", "the gyroscope is read later still", "log.period, found.late)",
-        "log.period, -found.late)", ("signals/test_gyroscope_delay.py",),
+        "sensors/imu_filter.py", "the gyroscope is read later still", "log.period, found.late)",
+        "log.period, -found.late)", ("sensors/test_imu_filter.py",),
     ),
     Mutant(
         "estimation/slow_drift.py", "what is quicker than drift passes for drift", "DRIFT_PERIOD = 20.0",

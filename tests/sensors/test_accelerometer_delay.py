@@ -25,7 +25,7 @@ from plantar.sensors.accelerometer_delay import (
     filter_delay,
     with_accelerometers_on_time,
 )
-from plantar.signals.gyroscope_delay import ImuFilter
+from plantar.sensors.imu_filter import ImuFilter
 
 ACCELERATION = imu_columns("chest", "linear_acceleration")
 TORSO = (

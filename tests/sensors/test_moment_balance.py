@@ -8,13 +8,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from moments import fit_moments
 from plantar.feet.prepare_log import checked
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
 from plantar.robot.uncertainty import EXACT
 from plantar.sensors.moment_balance import TorqueGain, torque_gain_notes, torque_gains
 from plantar.sensors.moment_errors import moment_errors, prior_deviations
-from plantar.sensors.moment_fit import MomentFit, Part, fit_moments, solved
+from plantar.sensors.moment_fit import MomentFit, Part, solved
 from plantar.sensors.newton_euler import EDGE, SHORTEST, newton_euler_residuals
 from plantar.signals.resampling import shifted
 from plantar.twin import PAPER, play_all

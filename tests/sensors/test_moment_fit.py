@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from moments import fit_moments
 from plantar.conventions import Array
 from plantar.feet.prepare_log import checked
 from plantar.sensors.moment_errors import PARTS, MomentErrors, moment_errors
-from plantar.sensors.moment_fit import fit_moments, solved
+from plantar.sensors.moment_fit import solved
 from plantar.sensors.newton_euler import newton_euler_residuals
 from plantar.signals.filters import low_pass
 from plantar.twin.robots import hrp2

@@ -8,12 +8,13 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
+from moments import fit_moments
 from plantar.feet.prepare_log import checked
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
 from plantar.sensors.moment_errors import turn_columns
-from plantar.sensors.moment_fit import MomentFit, Part, fit_moments
+from plantar.sensors.moment_fit import MomentFit, Part
 from plantar.sensors.newton_euler import newton_euler_residuals
 from plantar.sensors.sensor_turns import LEAST, TURNED, sensor_turn_notes
 from plantar.twin.robots import hrp2

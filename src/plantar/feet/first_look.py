@@ -68,7 +68,7 @@ def looked_at(
     timed: whether Newton's law is to tell how late sensors are; meanwhile: as in `over_cores`. Raises the error of the
     first log that has one.
     """
-    if isinstance(logs, WaitingLogs) and logs.fit:
+    if isinstance(logs, WaitingLogs) and logs.bounded:
 
         def read(opened: Callable[[], MotionLog]) -> FirstLook:
             return look_at(robot, timed, checked(robot, opened()))

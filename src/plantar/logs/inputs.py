@@ -39,11 +39,11 @@ def robot_of(robot: RobotInput) -> RobotModel:
 class WaitingLogs:
     """Logs that are read when their turns come, each by one of `openers`; these raise LogError.
 
-    `fit`: all of them are known to fit in memory whatever they hold, so that any of them may come first.
+    `bounded`: all of them are known to fit in memory whatever they hold, so that any of them may come first.
     """
 
     openers: Sequence[Callable[[], MotionLog]]
-    fit: bool
+    bounded: bool
 
     def __iter__(self) -> Iterator[MotionLog]:
         return (opened() for opened in self.openers)
@@ -59,7 +59,7 @@ def logs_of(logs: LogInputs, robot: RobotModel) -> Iterable[MotionLog]:
     if isinstance(logs, WaitingLogs):
         return logs
     if isinstance(logs, Sequence):
-        return WaitingLogs([partial(_log_of, log, robot) for log in logs], _fit(logs, usual_memory()))
+        return WaitingLogs([partial(_log_of, log, robot) for log in logs], _bounded(logs, usual_memory()))
     if not isinstance(logs, Iterable):
         raise _no_log(logs)
     return (_log_of(log, robot) for log in logs)
@@ -87,7 +87,7 @@ def open_in_turn(
         left = max(0, left - kept(log))
         return log
 
-    return WaitingLogs([partial(read, path) for path in paths], _fit(paths, whole))
+    return WaitingLogs([partial(read, path) for path in paths], _bounded(paths, whole))
 
 
 def open_together(paths: Sequence[Path], robot: RobotModel, memory: int | None = None) -> list[MotionLog]:
@@ -124,7 +124,7 @@ def check_names(logs: Sequence[MotionLog]) -> None:
         seen[log.name] = log
 
 
-def _fit(logs: Sequence[LogInput], memory: int) -> bool:
+def _bounded(logs: Sequence[LogInput], memory: int) -> bool:
     """Whether logs that are still files fit in `memory` bytes together, as far as their sizes tell."""
     sizes = (_largest(Path(log)) for log in logs if isinstance(log, str | os.PathLike))
     return sum(sizes) <= memory

@@ -17,12 +17,13 @@ import numpy as np
 from plantar.contact.deflection import BushState, bush_states
 from plantar.contact.phases import carried_weight, detect_contact
 from plantar.conventions import GRAVITY, NORMAL95, Array, rotation_from_quaternion
+from plantar.estimation.weighted_mean import weighted_mean
 from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
+from plantar.sensors.imu_filter import ImuFilter
 from plantar.sensors.tilt_error import CORRECTED, DERIVED, lean_of, stance_leans, unit_quaternions
 from plantar.signals.filters import differentiate, low_pass
-from plantar.signals.gyroscope_delay import ImuFilter
 from plantar.signals.resampling import shifted
 from plantar.signals.segments import runs
 
@@ -72,13 +73,11 @@ def device_delay(found: Sequence[AccelerometerDelay]) -> tuple[float, float]:
     What else leans goes its own way in each log: a turned IMU shows otherwise in a squat than in a sway. So each log
     tells by itself, and where logs disagree the deviation grows.
     """
-    told = np.array([(late, std) for late, std in (one.late for one in found) if 0 < std < np.inf])
-    if not len(told):
+    told = [one for one in (each.late for each in found) if 0 < one[1] < np.inf]
+    if not told:
         return 0.0, np.inf
-    weights = told[:, 1] ** -2
-    mean = float(weights @ told[:, 0] / weights.sum())
-    apart = float(weights @ (told[:, 0] - mean) ** 2) / max(len(told) - 1, 1)
-    return mean, float(np.sqrt(max(apart, 1.0) / weights.sum()))
+    mean = weighted_mean(*zip(*told, strict=True))
+    return mean.value, mean.std
 
 
 def filter_delay(told: tuple[float, float], gyroscope: ImuFilter | None) -> tuple[float, float]:

@@ -6,7 +6,7 @@ robot file says. Its covariance holds coloured noise and a wrong URDF.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -15,8 +15,7 @@ from plantar.conventions import Array
 from plantar.estimation.quantiles import MOST_FREEDOM, fisher_quantile
 from plantar.estimation.residual_covariance import pooled_freedom
 from plantar.robot.model import RobotModel
-from plantar.sensors.moment_errors import LOOSE, MomentErrors, moment_errors, prior_deviations
-from plantar.sensors.newton_euler import NewtonEulerResidual
+from plantar.sensors.moment_errors import LOOSE, MomentErrors, prior_deviations
 
 STRAINED = 2.0  # deviations of its prior, beyond which a gain is looked for anew
 ANOTHER_UNIT = 10.0  # share: kgf.m for N.m
@@ -38,16 +37,6 @@ class MomentFit(NamedTuple):
 
     values: Array
     parts: list[Part]
-
-
-def fit_moments(
-    robot: RobotModel, residuals: Sequence[NewtonEulerResidual], stepping: Collection[str]
-) -> MomentFit | None:
-    """The fit over all logs in which Newton's law closes; None without one. `stepping`: names of those in which feet
-    step."""
-    steps = [one.pair.label in stepping for one in residuals]
-    logs = [moment_errors(robot, *one) for one in zip(residuals, steps, strict=True)]
-    return moments_of(robot, logs, any(steps))
 
 
 def moments_of(robot: RobotModel, logs: Sequence[MomentErrors], steps: bool) -> MomentFit | None:

@@ -119,6 +119,7 @@ def test_what_a_memory_misses_is_noise_of_its_angle(share: float, verdict: str) 
     told = [row for row in memory if row.name != "slip_angle"]  # of which `fit_of` knows nothing
     assert {row.verdict for row in told} == {verdict}
     assert all("of the slip angle" in row.reason for row in told) is (verdict == "weak")
+    assert ("attitude" in (memory[0].advice or "")) is (verdict == "weak")
     assert {row.verdict for row in spring} == {"usable"}
 
 

@@ -97,9 +97,8 @@ def _evidence(fit: AxisFit, recordings: Sequence[Recording], predictions: Predic
         varied += float(np.sum((torque - torque.mean()) ** 2))
         missed += float(np.sum((torque - predicted.torque[used]) ** 2))
     noise = 0.0
-    if "slip_angle" in fit.model.shape_terms and all(each.stances[fit.foot] is None for each in recordings):
-        slip_angle = float(fit.shape[fit.model.shape_terms.index("slip_angle")])
-        noise = float(np.sqrt(missed / max(samples, 1))) / abs(float(fit.values[0])) / slip_angle
+    if fit.slip_angle is not None and all(each.stances[fit.foot] is None for each in recordings):
+        noise = float(np.sqrt(missed / max(samples, 1))) / abs(float(fit.values[0])) / fit.slip_angle
     damping = float(fit.numbers[1]) + 2 * float(fit.std[1])
     return Evidence(
         seconds,

@@ -111,9 +111,7 @@ def judge(
             f"{_advice(foot, axis, term)}: the centre of pressure has to stay inside the sole",
         )
     if evidence.doubt is not None:
-        larger = f"{SWAY[axis]} with its weight on the {foot} foot, by larger angles"
-        outline = f"measure the {foot} sole's outline for the robot file, or sway by smaller angles"
-        return "weak", evidence.doubt, outline if evidence.softened > SOFTENED else larger
+        return "weak", evidence.doubt, _advice_in_doubt(foot, axis, evidence)
     if evidence.seconds < SHORT_SECONDS:
         told = (
             f"only {evidence.seconds:.1f} s of samples are used, too short to tell slow drift from the foot"
@@ -141,6 +139,15 @@ def judge_term(
     if evidence.doubt is not None:
         return "weak", evidence.doubt, None
     return ("usable" if width < 2 * USABLE_WIDTH else "weak"), f"95 % interval ±{100 * width:.2g} %", None
+
+
+def _advice_in_doubt(foot: str, axis: Axis, evidence: Evidence) -> str:
+    """What takes the `doubt` away."""
+    if evidence.softened > SOFTENED:
+        return f"measure the {foot} sole's outline for the robot file, or sway by smaller angles"
+    if evidence.noise > NOISY:
+        return "use an attitude that wanders less: no motion makes the slip angle larger beside it"
+    return f"{SWAY[axis]} with its weight on the {foot} foot, by larger angles"
 
 
 def _advice(foot: str, axis: Axis, term: str) -> str:

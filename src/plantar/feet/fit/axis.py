@@ -59,6 +59,12 @@ class FittedModel:
         """`moment_arms`, `turned` and `leans`, as the columns of steps take them, (4,)."""
         return np.array([*self.moment_arms, self.turned, self.leans])
 
+    @property
+    def slip_angle(self) -> float | None:
+        """The angle at which an element of the model slips [rad]; None of a model without one."""
+        terms = self.model.shape_terms
+        return float(self.shape[terms.index("slip_angle")]) if "slip_angle" in terms else None
+
     def at_place(self, place: Array) -> Self:
         """The same about another `place` (4,)."""
         aside, above, turned, leans = place.tolist()

@@ -26,12 +26,11 @@ HARDLY_TURNED = (
 def slip_angles_spanned(fit: AxisFit, recordings: Sequence[Recording]) -> float | None:
     """How many slip angles the path of a usual stance spans; None of a foot that stands and a model without one."""
     walks = [each for each in recordings if each.stances[fit.foot] is not None and each.name in fit.offsets]
-    if not walks or "slip_angle" not in fit.model.shape_terms:
+    if not walks or fit.slip_angle is None:
         return None
     paths = [path_of(each, fit.foot, fit.axis, fit.imu_turned) for each in walks]
     spans = [float(np.ptp(path.deflection[run])) for path in paths for run in path.runs]
-    slip_angle = float(fit.shape[fit.model.shape_terms.index("slip_angle")])
-    return float(np.median(spans)) / slip_angle if spans else None
+    return float(np.median(spans)) / fit.slip_angle if spans else None
 
 
 def cautioned_if_hardly_turned(fit: AxisFit, recordings: Sequence[Recording]) -> AxisFit:

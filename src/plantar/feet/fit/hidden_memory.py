@@ -47,10 +47,9 @@ def rival(fit: AxisFit) -> ModelScore | None:
 
 def element_slope(fit: AxisFit) -> float:
     """Stiffness of a fit's element until it slips [N.m/rad]; 0 of a model without one."""
-    if "slip_torque" not in fit.model.terms:
+    if "slip_torque" not in fit.model.terms or fit.slip_angle is None:
         return 0.0
-    slip_torque = fit.values[fit.model.terms.index("slip_torque")]
-    return abs(float(slip_torque / fit.shape[fit.model.shape_terms.index("slip_angle")]))
+    return abs(float(fit.values[fit.model.terms.index("slip_torque")])) / fit.slip_angle
 
 
 def slope_share(fit: AxisFit) -> float:

@@ -18,25 +18,22 @@ from plantar.feet.interval_width.systematic import Cause
 from plantar.feet.recording import Recording
 
 NAME = "slip angle"
-UNRESOLVED = (
-    SHAPE_STEP / 2
-)  # standard deviation, as a share: the derivative is taken over twice as much either way
+UNRESOLVED = SHAPE_STEP / 2  # deviation, as a share: the derivative is taken over twice as much either way
 
 
 def slip_angle_causes(fit: AxisFit, recordings: Sequence[Recording], shared: bool) -> list[Cause]:
     """What an element's angle that is claimed to be known better than UNRESOLVED lacks, and what follows it: how the
     fit's values are others beside a slip angle that is SHAPE_STEP larger and smaller."""
-    if "slip_angle" not in fit.model.shape_terms:
+    if fit.slip_angle is None:
         return []
     place = fit.model.shape_terms.index("slip_angle")
-    number, size = len(fit.values) + place, float(fit.shape[place])
-    known = float(fit.std[number]) / size
+    known = float(fit.std[len(fit.values) + place]) / fit.slip_angle
     if not known < UNRESOLVED:
         return []
     ends = []
     for share in (1 + SHAPE_STEP, 1 - SHAPE_STEP):
         shape = fit.shape.copy()
-        shape[place] = share * size
+        shape[place] = share * fit.slip_angle
         moved = replace(fit, shape=shape)
         blocks = blocks_of(recordings, fit.foot, fit.axis, drift=not shared, fit=moved)
         ends.append(np.append(fit_blocks(blocks, shared_offset=shared).values, shape))
