@@ -14,8 +14,8 @@ from plantar.design import information, reach, story
 from plantar.estimation import residual_covariance, slow_drift, stance_least_squares
 from plantar.feet.assess import verdicts
 from plantar.feet.exclusion import edge_rolling, moved_edges
-from plantar.feet.fit import bush_place, place_notes
 from plantar.feet.interval_width import systematic
+from plantar.feet.place import place_notes, spread
 from plantar.model_selection import cross_validation, selection
 from plantar.motions import gait
 from plantar.robot.uncertainty import Uncertainty
@@ -49,7 +49,7 @@ def page(name: str) -> str:
         ("intervals.md", f"lowest cosines, up to {residual_covariance.SCORE_BANDWIDTH:.1f} Hz"),
         ("intervals.md", f"(one chance in {1 / moment_fit.CHANCE:.0f})"),
         ("intervals.md", f"Only what is slower than {moment_errors.BAND:.0f} Hz is asked"),
-        ("intervals.md", f"({1e3 * bush_place.GUESSED:.0f} mm for a line marked GUESS)"),
+        ("intervals.md", f"({1e3 * spread.GUESSED:.0f} mm for a line marked GUESS)"),
         ("intervals.md", f"From {WORDS[stance_least_squares.FEWEST_RECORDINGS]} recordings on, refits"),
         ("intervals.md", f"cosines of {slow_drift.DRIFT_PERIOD:.0f} s and longer"),
         ("intervals.md", f"From {100 * attitude_scale.SCALE_OFF:.0f} % on, and six deviations"),

@@ -12,11 +12,11 @@ import pytest
 from bush_data_sets import Rubber
 from made_recording import FOOT, PERIOD, made_recording, swayed
 from plantar.contact.stances import Stances
-from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.foot_fit import FittedFoot
 from plantar.feet.memory_of_others import with_memory_of_others
 from plantar.feet.recording import Recording
+from plantar.feet.regression.axis import AxisFit
 from plantar.feet.settings import FeetSettings
 from plantar.models import Hardening, KelvinVoigt
 

@@ -7,8 +7,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from plantar.feet.fit.imu_mount import ImuTurn
-from plantar.feet.identify import _axis_model, _model
+from plantar.feet.place.imu_mount import ImuTurn
+from plantar.feet.result import _axis_model, _model
 
 
 @pytest.mark.parametrize(

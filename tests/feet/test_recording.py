@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from biped import record, sway
-from plantar.feet.fit.load_torque import moment_columns
-from plantar.feet.fit.regression_data import blocks_of
 from plantar.feet.prepare_log import checked, prepare
 from plantar.feet.recording import Recording, filtered_recording, moved_centre
+from plantar.feet.regression.load_torque import moment_columns
+from plantar.feet.regression.regression_data import blocks_of
 from plantar.robot.model import RobotModel
 
 CUTOFF = 2.0  # Hz, below a slow log's Nyquist frequency

@@ -10,8 +10,8 @@ from biped_robot import FEET
 from feet_trials import AXES, PUNCTUAL, noisy
 from plantar.errors import DataError
 from plantar.estimation import fit_blocks
-from plantar.feet.fit.regression_data import blocks_of
 from plantar.feet.prepare import prepare_all
+from plantar.feet.regression.regression_data import blocks_of
 from plantar.feet.select_motions import Selection, select_motions
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel

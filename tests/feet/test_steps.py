@@ -11,8 +11,8 @@ import pytest
 from biped import TRUTH, BushModel, record, sway
 from biped_robot import make_robot, robot_entry
 from feet_trials import LINEAR, noisy
-from plantar.feet.fit.place_notes import BUSH_TURNED
 from plantar.feet.identify import identify_feet
+from plantar.feet.place.place_notes import BUSH_TURNED
 from plantar.feet.prepare_log import prepare
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog

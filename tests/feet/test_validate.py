@@ -12,7 +12,8 @@ from biped import record, sway
 from biped_robot import make_robot, robot_entry
 from feet_trials import LINEAR
 from plantar.errors import DataError
-from plantar.feet.identify import delay_estimate, identify_feet
+from plantar.feet.identify import identify_feet
+from plantar.feet.result import delay_estimate
 from plantar.feet.validate import scored_feet, validate_feet
 from plantar.notes import Note
 from plantar.results.feet import DelayEstimate

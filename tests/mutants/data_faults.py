@@ -45,12 +45,12 @@ DATA_FAULTS = (
         ("feet/test_steps.py",),
     ),
     Mutant(
-        "feet/fit/bush_place.py", "no step shows a turned bush",
+        "feet/place/turned_bush.py", "no step shows a turned bush",
         "    if blocks[0].stances is None:\n        return None", "    if True:\n        return None",
         ("feet/test_steps.py",),
     ),
     Mutant(
-        "feet/fit/bush_place.py", "a leg that gives way is a turned bush", "STEPS_LEAVE = 0.75", "STEPS_LEAVE = 1e9",
+        "feet/place/turned_bush.py", "a leg that gives way is a turned bush", "STEPS_LEAVE = 0.75", "STEPS_LEAVE = 1e9",
         ("feet/test_steps.py",),
     ),
     Mutant(
@@ -66,20 +66,21 @@ DATA_FAULTS = (
         "jumps = zero_jumps(thin.fitted, fit, shared)", ("feet/assess/test_zero_jumps.py",),
     ),
     Mutant(
-        "feet/fit/bush_place.py", "a guessed height is one for each axis", "above = min(self.above, self.between)",
-        "above = self.above", ("feet/fit/test_bush_place.py",),
+        "feet/place/spread.py", "a guessed height is one for each axis", "above = min(self.above, self.between)",
+        "above = self.above", ("feet/place/test_bush_place.py",),
     ),
     Mutant(
-        "feet/fit/bush_place.py", "a shape may turn negative", "shape * np.exp(np.clip(by / shape, -1.0, 1.0))",
-        "shape + by", ("feet/fit/test_bush_place.py",),
+        "feet/place/bush_place.py", "a shape may turn negative", "shape * np.exp(np.clip(by / shape, -1.0, 1.0))",
+        "shape + by", ("feet/place/test_bush_place.py",),
     ),
     Mutant(
-        "feet/fit/bush_place.py", "a wandering angle makes another place", "0.5 * float(np.mean(fit.residuals",
-        "0.0 * float(np.mean(fit.residuals", ("feet/fit/test_bush_place.py",),
+        "feet/place/bush_place.py", "a wandering angle makes another place", "0.5 * float(np.mean(fit.residuals",
+        "0.0 * float(np.mean(fit.residuals", ("feet/place/test_bush_place.py",),
     ),
     Mutant(
-        "feet/fit/regression_data.py", "drift is a line", "drift = drift_beside(deflection, recording.drift(foot))",
-        "drift = drift_beside(deflection, recording.drift(foot))[:, :1]", ("feet/fit/test_regression_data.py",),
+        "feet/regression/regression_data.py", "drift is a line",
+        "drift = drift_beside(deflection, recording.drift(foot))",
+        "drift = drift_beside(deflection, recording.drift(foot))[:, :1]", ("feet/regression/test_regression_data.py",),
     ),
     Mutant(
         "feet/memory_of_others.py", "a memory is made up", "s.refused is None and s.model.name in shown), None)",
@@ -133,7 +134,7 @@ DATA_FAULTS = (
         ("feet/test_imu_of_steps.py",),
     ),
     Mutant(
-        "feet/fit/regression_data.py", "a sensor that steps is not turned", "np.inf, 0.006, 0.02",
+        "feet/regression/regression_data.py", "a sensor that steps is not turned", "np.inf, 0.006, 0.02",
         "np.inf, 0.006, 1e-9",
         ("feet/test_steps.py",),
     ),
@@ -149,7 +150,7 @@ DATA_FAULTS = (
     Mutant(
         "feet/fit/axis_fit.py", "offsets stay of first order",
         "with_best_offsets(unattenuated(fit, recordings, shared), recordings, shared)",
-        "unattenuated(fit, recordings, shared)", ("feet/fit/test_bush_place.py",),
+        "unattenuated(fit, recordings, shared)", ("feet/place/test_bush_place.py",),
     ),
     Mutant(
         "feet/exclusion/edge_rolling.py", "a guessed outline is trusted", "(inner if guessed else 0.0)", "0.0",

@@ -140,7 +140,7 @@ FIT = (
         "seconds / len(stances) > SHORT_STANCE", "seconds > SHORT_STANCE",
     ),
     Mutant(
-        "feet/fit/regression_data.py", "columns of a model with memory unfiltered",
+        "feet/regression/regression_data.py", "columns of a model with memory unfiltered",
         "low_pass(columns[:, 2:], recording.period, recording.cutoff, shortest)", "columns[:, 2:]",
     ),
 )  # fmt: skip
@@ -159,7 +159,7 @@ ASSESSMENT = (
         "float(cause.share[place] / total) ** 2", "float(cause.share[place] / total)",
     ),
     Mutant(
-        "feet/fit/prediction.py", "the trivial predictor sees the samples that are scored",
+        "feet/regression/prediction.py", "the trivial predictor sees the samples that are scored",
         "np.full(len(torque), np.mean(torque[first]))", "np.full(len(torque), np.mean(torque[used & ~first]))",
         tests=("feet/assess/test_scores.py",),
     ),

@@ -20,18 +20,18 @@ DRAWN_EVERYWHERE = (
         ("feet/fit/test_corrections.py",),
     ),
     Mutant(
-        "feet/fit/prediction.py",
+        "feet/regression/prediction.py",
         "an unseen motion's trivial predictor knows all of it",
         "np.full(len(torque), np.mean(torque[first])), used & ~first",
         "np.full(len(torque), np.mean(torque[used])), used & ~first",
-        ("feet/fit/test_prediction.py",),
+        ("feet/regression/test_prediction.py",),
     ),
     Mutant(
-        "feet/fit/regression_data.py",
+        "feet/regression/regression_data.py",
         "slopes of nonlinear parameters twice as steep",
         "/ (2 * SHAPE_STEP * value)",
         "/ (SHAPE_STEP * value)",
-        ("feet/fit/test_regression_data.py",),
+        ("feet/regression/test_regression_data.py",),
     ),
     Mutant(
         "feet/interval_width/systematic.py",

@@ -16,8 +16,8 @@ MADE_CHEAPER = (
         ("feet/interval_width/test_between_recordings.py",),
     ),
     Mutant(
-        "feet/fit/bush_place.py", "a bush elsewhere is corrected the wrong way",
-        "moved = -follows @ (place", "moved = follows @ (place", ("feet/fit/test_bush_place.py",),
+        "feet/place/bush_place.py", "a bush elsewhere is corrected the wrong way",
+        "moved = -follows @ (place", "moved = follows @ (place", ("feet/place/test_bush_place.py",),
     ),
     Mutant(
         "feet/interval_width/systematic.py", "a suspected cube widens nothing",

@@ -62,14 +62,14 @@ OF_THEIR_KINDS = (
         ("report/test_tables.py",),
     ),
     Mutant(
-        "feet/identify.py",
+        "feet/result.py",
         "of equally many models the simpler one",
         "name != KelvinVoigt.name), default",
         "name == KelvinVoigt.name), default",
         ("feet/test_model_of_most.py",),
     ),
     Mutant(
-        "feet/identify.py",
+        "feet/result.py",
         "the IMU's turn as the last round left it, not in all",
         "(np.array(fit.imu_turned) + turn.angles).tolist()",
         "np.array(fit.imu_turned).tolist()",
@@ -111,11 +111,11 @@ OF_THEIR_KINDS = (
         ("feet/fit/test_corrections.py",),
     ),
     Mutant(
-        "feet/fit/prediction.py",
+        "feet/regression/prediction.py",
         "a walk's trivial predictor is one offset for all stances",
         "_by_stance(torque, used, stances.number), used)",
         "np.full(len(torque), np.mean(torque[used])), used)",
-        ("feet/fit/test_prediction.py",),
+        ("feet/regression/test_prediction.py",),
     ),
     Mutant(
         "online/estimator.py",

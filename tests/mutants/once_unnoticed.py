@@ -44,7 +44,7 @@ GUARDS = (
         "np.std(fall) * np.sqrt(len(fall))", "np.std(fall)",
     ),
     Mutant(
-        "feet/fit/prediction.py", "an unseen motion's offset from all of it",
+        "feet/regression/prediction.py", "an unseen motion's offset from all of it",
         "np.mean((torque - model)[first])", "np.mean((torque - model)[used])",
         tests=("feet/assess/test_scores.py",),
     ),

@@ -7,8 +7,8 @@ import numpy as np
 from plantar.contact.deflection import BushState
 from plantar.contact.phases import FootContact
 from plantar.contact.stances import Stances
-from plantar.feet.fit.prediction import Prediction
 from plantar.feet.recording import Recording, Role
+from plantar.feet.regression.prediction import Prediction
 from plantar.logs.motion_log import MotionLog
 
 PERIOD = 0.01

@@ -17,9 +17,7 @@ from plantar.feet.assess.scores import score_axis
 from plantar.feet.assess.stance_stiffness import stance_stiffness, walk_stiffness
 from plantar.feet.assess.zero_jumps import zero_jumps
 from plantar.feet.exclusion.outliers import outlier_masks
-from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.axis_fit import fit_axis
-from plantar.feet.fit.bush_place import PlaceSpread, turned_bush_note
 from plantar.feet.fit.worth import hardly_matters, in_place_of, too_sure
 from plantar.feet.internal_error import gives_up, internal_errors
 from plantar.feet.interval_width.between_recordings import (
@@ -34,8 +32,11 @@ from plantar.feet.interval_width.imu_turn import imu_turn_causes
 from plantar.feet.interval_width.robot_causes import robot_causes
 from plantar.feet.interval_width.slip_angle import slip_angle_causes
 from plantar.feet.interval_width.systematic import inflated, systematic_causes
+from plantar.feet.place.spread import PlaceSpread
+from plantar.feet.place.turned_bush import turned_bush_note
 from plantar.feet.prepare import PreparedLogs
 from plantar.feet.recording import Recording
+from plantar.feet.regression.axis import AxisFit
 from plantar.models import BushModel, KelvinVoigt
 from plantar.notes import Note
 from plantar.results.feet import Diagnosis, Parameter, ValidationRow

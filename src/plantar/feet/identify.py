@@ -2,38 +2,22 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Any
 
-import numpy as np
-
-from plantar.conventions import OFFSET_UNIT
 from plantar.errors import DataError
-from plantar.feet.assess.far_arms import far_arms
-from plantar.feet.assess.feasible_advice import hardly_standing, remedies, with_remedies
-from plantar.feet.assess.left_out import unused_logs
-from plantar.feet.assess.residual_table import residual_table
 from plantar.feet.first_look import over_logs
-from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.bush_place import PlaceSpread
-from plantar.feet.fit.imu_mount import ImuTurn
 from plantar.feet.foot_fit import FittedFoot, assess_foot, between_all, fit_foot, without_needless
-from plantar.feet.imu_of_steps import imu_turn_notes, is_worth, put_right, turn_shown
-from plantar.feet.interval_width.between_recordings import apart_notes
+from plantar.feet.imu_of_steps import is_worth, put_right, turn_shown
 from plantar.feet.memory_of_others import with_memory_of_others
+from plantar.feet.place.spread import PlaceSpread
 from plantar.feet.prepare import PreparedLogs, prepare_all
-from plantar.feet.recording import Recording
+from plantar.feet.result import feet_result
 from plantar.feet.settings import FeetSettings
 from plantar.logs.freed_memory import return_freed
 from plantar.logs.inputs import LogInputs, RobotInput, logs_of, robot_of
-from plantar.models import KelvinVoigt
-from plantar.notes import Note, joined
-from plantar.results.feet import AxisModel, DelayEstimate, FeetResult, Input, Offset
-from plantar.results.feet_rows import Candidate, LinearEquivalent
-from plantar.robot.model import Foot, Placement, RobotModel
-from plantar.sensors.delays.sensor_delay import SensorDelay
+from plantar.results.feet import FeetResult
+from plantar.robot.model import RobotModel
 
 TURN_ROUNDS = 2  # of fitting again with the IMU's turn: what a fit took up of it before shows in the next
 
@@ -98,48 +82,7 @@ def fit_prepared(
     with over_logs([recording.log for recording in ready.recordings]) as each:
         found = list(each(assess_foot, fitted.values()))
     ready = _merged(ready, {foot: one.ready for foot, one in fitted.items()})
-    fits = [fit for each in found for fit in each.fits]
-    limits = [row for each in found for row in each.diagnosis]
-    feasible = remedies(ready.settings, ready.sensor_delay, robot, ready.fitted)
-    parameters, limits = with_remedies([row for each in found for row in each.parameters], limits, feasible)
-    rows = [row for each in found for row in each.validation]
-    predictions = {key: value for each in found for key, value in each.predictions.items()}
-    return FeetResult(
-        robot=robot.name,
-        inputs=tuple(Input.of(recording.log, recording.role) for recording in ready.recordings),
-        settings=ready.settings.to_dict(),
-        model=_model(fits),
-        parameters=(*parameters, *hardly_standing(ready.vertical.parameters, ready.fitted)),
-        offsets=tuple(offset for fit in fits for offset in _offsets(fit)),
-        phases=tuple(
-            phase
-            for recording in ready.recordings
-            for foot, contact in recording.contacts.items()
-            for phase in contact.phases(recording.name, foot, recording.time)
-        ),
-        validation=tuple(sorted(rows, key=lambda row: row.kind != "direct")),
-        notes=joined(
-            [
-                *ready.notes,
-                *imu_turn_notes(ready.imu_turn, robot.uncertainty.imu_mount),
-                *_feet_notes(robot, ready.fitted),
-                *unused_logs(ready.fitted),
-                *_model_notes(fits),
-                *apart_notes(between),
-                *(note for each in found for note in each.notes),
-            ],
-            [recording.name for recording in ready.recordings],
-        ),
-        robot_model=_robot_model(robot),
-        models=tuple(_axis_model(fit, ready.imu_turn) for fit in fits),
-        sensor_delay=delay_estimate(ready.sensor_delay),
-        compliance=dict(ready.vertical.compliance),
-        diagnosis=tuple(limits),
-        stances=tuple(row for each in found for row in each.stances),
-        walks=tuple(row for each in found for row in each.walks),
-        swing_zeros=tuple(row for recording in ready.recordings for row in recording.zeros),
-        residuals=residual_table(ready.recordings, predictions),
-    )
+    return feet_result(robot, ready, found, between)
 
 
 def _with_imu_right(
@@ -177,37 +120,6 @@ def _fitted_feet(ready: PreparedLogs, progress: Callable[[str], None]) -> dict[s
     return found | fit_all({foot: place for foot, place in wider.items() if place != places[foot]})
 
 
-def _axis_model(fit: AxisFit, turn: ImuTurn) -> AxisModel:
-    """The model of one axis, why it was chosen, and what the others missed by on held-out motions."""
-    x, y, z = (np.array(fit.imu_turned) + turn.angles).tolist()  # in all, beside the logs as they were
-    linear = LinearEquivalent(*fit.equivalent)
-    axis_model = AxisModel(
-        fit.foot,
-        fit.axis,
-        fit.model.name,
-        fit.reason,
-        linear,
-        fit.moment_arms,
-        turned=fit.turned,
-        leans=fit.leans,
-        imu_turned=(x, y, z),
-    )
-    if fit.choice is None:
-        return axis_model
-    ranking = tuple(
-        Candidate(tried.model.name, tried.held_out_rms, tried.parameters, tried.refused, tried.chosen)
-        for tried in fit.choice.ranking
-    )
-    return replace(axis_model, held_out=fit.choice.held_out, ranking=ranking)
-
-
-def delay_estimate(found: SensorDelay) -> DelayEstimate:
-    """The delays that the logs were corrected for."""
-    return DelayEstimate(
-        found.delay, found.std, found.measured, feet=dict(found.feet), encoder_delay=found.encoders
-    )
-
-
 def _merged(ready: PreparedLogs, by_foot: Mapping[str, PreparedLogs]) -> PreparedLogs:
     """The logs with each foot's contacts as its own fit left them."""
     fitted = tuple(
@@ -215,68 +127,3 @@ def _merged(ready: PreparedLogs, by_foot: Mapping[str, PreparedLogs]) -> Prepare
         for place, recording in enumerate(ready.fitted)
     )
     return replace(ready, fitted=fitted)
-
-
-def _model(fits: Sequence[AxisFit]) -> str:
-    """The model of most axes; of equally many, the richer one."""
-    counts = Counter(fit.model.name for fit in fits)
-    return max(counts, key=lambda name: (counts[name], name != KelvinVoigt.name), default=KelvinVoigt.name)
-
-
-def _model_notes(fits: Sequence[AxisFit]) -> list[Note]:
-    """Models richer than spring and damper, and what a chosen model leaves open."""
-    notes, cautions = [], dict[str, list[str]]()
-    for fit in fits:
-        where = f"{fit.foot} {fit.axis}"
-        if fit.model.name != KelvinVoigt.name:
-            stiffness, damping = fit.equivalent
-            linear = f"the nearest spring and damper has K = {stiffness:.4g}, C = {damping:.4g}"
-            text = f"{where}: the model is {fit.model.name}: {fit.reason}; {linear}"
-            notes.append(Note("model", "info", text))
-        if fit.choice is not None and fit.choice.caution is not None:
-            cautions.setdefault(fit.choice.caution, []).append(where)
-        notes += fit.notes
-    told = [
-        Note("model_caution", "warning", f"{', '.join(where)}: {text}") for text, where in cautions.items()
-    ]
-    return [*notes, *told, *far_arms([fit for fit in fits if not fit.notes])]
-
-
-def _offsets(fit: AxisFit) -> list[Offset]:
-    unit = OFFSET_UNIT[fit.axis]
-    return [
-        Offset(fit.foot, fit.axis, motion, unit, value, fit.offset_std[motion])
-        for motion, value in fit.offsets.items()
-    ]
-
-
-def _feet_notes(robot: RobotModel, recordings: Sequence[Recording]) -> list[Note]:
-    notes = []
-    for foot in robot.feet:
-        if not any(recording.contacts[foot].standing.any() for recording in recordings):
-            notes.append(Note("foot_never_stands", "warning", f"the {foot} foot carries no load in any log"))
-    double = any(
-        np.any(contact.support == 0) for recording in recordings for contact in recording.contacts.values()
-    )
-    if len(robot.feet) > 1 and not double:
-        notes.append(
-            Note("no_double_support", "info", "no log has both feet on the ground: slip cannot be checked")
-        )
-    return notes
-
-
-def _robot_model(robot: RobotModel) -> dict[str, Any]:
-    """What an export needs of the robot: its URDF's path, each foot's geometry, and what its file may be off by."""
-
-    def placed(placement: Placement) -> dict[str, Any]:
-        return {"link": placement.link, "xyz": placement.xyz.tolist(), "rpy": placement.rpy.tolist()}
-
-    def described(foot: Foot) -> dict[str, Any]:
-        sole = {**placed(foot.sole.placement), "polygon": foot.sole.polygon.tolist()}
-        return {"ankle": foot.ankle, "bush": placed(foot.bush), "sole": sole}
-
-    return {
-        "urdf": str(robot.urdf_path),
-        "feet": {name: described(foot) for name, foot in robot.feet.items()},
-        "uncertainty": robot.uncertainty.model_dump(),
-    }

@@ -12,9 +12,9 @@ from dataclasses import replace
 import numpy as np
 
 from plantar.estimation import fit_blocks
-from plantar.feet.fit.imu_mount import ImuTurn, Told, turn_told, with_turns
 from plantar.feet.foot_fit import FittedFoot
 from plantar.feet.internal_error import gives_up
+from plantar.feet.place.imu_mount import ImuTurn, Told, turn_told, with_turns
 from plantar.feet.prepare import PreparedLogs
 from plantar.feet.recording import Recording
 from plantar.notes import Note, Severity

@@ -11,12 +11,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.fit.half_turns import cautioned_if_hardly_turned
 from plantar.feet.fit.hidden_memory import has_memory, slope_share
 from plantar.feet.foot_fit import FittedFoot
 from plantar.feet.internal_error import gives_up
+from plantar.feet.regression.axis import AxisFit
 from plantar.model_selection.selection import ModelChoice, ModelScore
 from plantar.models import KelvinVoigt
 from plantar.models.hysteresis import SURE_SLIP_ANGLE, Hysteretic

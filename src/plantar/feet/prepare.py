@@ -14,9 +14,9 @@ from plantar.feet.exclusion.edge_rolling import without_edge_rolling
 from plantar.feet.exclusion.slip import without_slip
 from plantar.feet.exclusion.torque_saturation import without_torque_saturation
 from plantar.feet.first_look import FirstLook, look_again, looked_at, over_logs
-from plantar.feet.fit.imu_mount import ImuTurn
 from plantar.feet.fit.vertical_stiffness import Heights, VerticalStiffness, fit_vertical_stiffness, heights_of
 from plantar.feet.interval_width.force_gain import GainError, force_gain_errors, force_gain_notes
+from plantar.feet.place.imu_mount import ImuTurn
 from plantar.feet.prepare_log import prepare
 from plantar.feet.recording import Recording, Role, filtered_recording, has_steps, moved_centre
 from plantar.feet.settings import FeetSettings

@@ -12,8 +12,8 @@ from plantar.conventions import NORMAL95, ROTATIONAL_AXES, Array
 from plantar.errors import DataError
 from plantar.estimation import fit_blocks
 from plantar.estimation.residual_covariance import cosine_covariance
-from plantar.feet.fit.regression_data import blocks_of
 from plantar.feet.prepare import prepare_all
+from plantar.feet.regression.regression_data import blocks_of
 from plantar.feet.settings import FeetSettings
 from plantar.logs.inputs import LogInputs, RobotInput, check_names, logs_of, robot_of
 from plantar.models import KelvinVoigt

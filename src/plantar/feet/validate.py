@@ -10,9 +10,9 @@ import numpy as np
 from plantar.conventions import ROTATIONAL_AXES, Axis
 from plantar.errors import DataError
 from plantar.feet.assess.scores import score_axis
-from plantar.feet.fit.axis import FittedModel
 from plantar.feet.prepare import prepare_unseen
 from plantar.feet.recording import Recording
+from plantar.feet.regression.axis import FittedModel
 from plantar.feet.settings import FeetSettings
 from plantar.logs.inputs import LogInputs, RobotInput, logs_of, robot_of
 from plantar.models import MODELS, KelvinVoigt

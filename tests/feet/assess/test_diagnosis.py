@@ -11,9 +11,9 @@ import pytest
 
 from plantar.feet.assess.data_faults import ADVICE
 from plantar.feet.assess.diagnosis import REMEDY, advised, diagnose_axis, mend_first
-from plantar.feet.fit.axis import AxisFit
 from plantar.feet.interval_width import systematic
 from plantar.feet.interval_width.systematic import Cause
+from plantar.feet.regression.axis import AxisFit
 from plantar.models import KelvinVoigt
 from plantar.notes import Note
 from plantar.results.feet import Parameter

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from plantar.feet.assess.far_arms import FAR_ARM, far_arms
-from plantar.feet.fit.axis import AxisFit
+from plantar.feet.regression.axis import AxisFit
 from plantar.models import KelvinVoigt
 
 

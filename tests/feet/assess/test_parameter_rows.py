@@ -12,8 +12,8 @@ from made_recording import FOOT, PERIOD, made_recording, predicted_torque, swaye
 from plantar.contact.reasons import Reason
 from plantar.feet.assess.parameter_rows import axis_rows, missing_rows, unseen_rows
 from plantar.feet.assess.verdicts import NOISY
-from plantar.feet.fit.axis import AxisFit
 from plantar.feet.recording import Recording
+from plantar.feet.regression.axis import AxisFit
 from plantar.models import MODELS, BushModel, Elastoplastic, KelvinVoigt
 from plantar.results.feet import Parameter, ValidationRow
 

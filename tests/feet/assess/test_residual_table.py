@@ -9,7 +9,7 @@ import numpy as np
 from made_recording import FOOT, made_recording, predicted_torque, swayed
 from plantar.contact.reasons import Reason
 from plantar.feet.assess.residual_table import residual_table
-from plantar.feet.fit.prediction import Prediction
+from plantar.feet.regression.prediction import Prediction
 
 
 def test_every_sample_has_a_row_with_its_prediction() -> None:

@@ -9,8 +9,8 @@ from biped import record, sway
 from feet_trials import LINEAR
 from made_recording import FOOT, made_recording, swayed
 from plantar.feet.assess.scores import score_axis
-from plantar.feet.fit.axis import FittedModel
 from plantar.feet.identify import identify_feet
+from plantar.feet.regression.axis import FittedModel
 from plantar.logs.motion_log import MotionLog
 from plantar.models import KelvinVoigt
 from plantar.results.feet import FeetResult

@@ -11,10 +11,10 @@ import pytest
 from biped import TRUTH, record, sway
 from plantar.contact.stances import Stances
 from plantar.feet.assess.stance_stiffness import stance_stiffness, walk_stiffness
-from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.prepare_log import checked, prepare
 from plantar.feet.recording import Recording, Role, filtered_recording
+from plantar.feet.regression.axis import AxisFit
 from plantar.feet.settings import FeetSettings
 from plantar.robot.model import RobotModel
 

@@ -13,8 +13,8 @@ from biped_robot import make_robot
 from feet_trials import LINEAR
 from made_recording import FOOT, made_recording, swayed
 from plantar.feet.exclusion.outliers import outlier_masks, outliers
-from plantar.feet.fit.axis import FittedModel
 from plantar.feet.identify import identify_feet
+from plantar.feet.regression.axis import FittedModel
 from plantar.logs.motion_log import MotionLog
 from plantar.models import KelvinVoigt
 from plantar.results.feet import FeetResult

@@ -11,10 +11,10 @@ from bush_data_sets import Rubber
 from made_recording import FOOT, PERIOD, made_recording, swayed
 from plantar.conventions import Array
 from plantar.feet.fit.angle_drift import beside_drift
-from plantar.feet.fit.axis import AngleDrift, AxisFit
 from plantar.feet.fit.axis_fit import fit_axis
-from plantar.feet.fit.regression_data import model_columns
 from plantar.feet.recording import Recording
+from plantar.feet.regression.axis import AngleDrift, AxisFit
+from plantar.feet.regression.regression_data import model_columns
 from plantar.feet.settings import FeetSettings
 
 COUNT = 6000

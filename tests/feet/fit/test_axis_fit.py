@@ -8,10 +8,10 @@ import pytest
 from bush_data_sets import Rubber
 from made_recording import FOOT, PERIOD, made_recording, swayed
 from plantar.contact.reasons import Reason
-from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.fit.hidden_memory import UNBELIEVED, UNTIMED, has_memory, moved_by_memory
 from plantar.feet.recording import Recording
+from plantar.feet.regression.axis import AxisFit
 from plantar.feet.settings import FeetSettings
 from plantar.models import KelvinVoigt
 

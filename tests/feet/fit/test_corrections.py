@@ -14,11 +14,11 @@ from feet_trials import AXES, PUNCTUAL, noisy
 from made_recording import FOOT, PERIOD, made_recording, swayed
 from plantar.contact.stances import Stances
 from plantar.estimation import fit_blocks
-from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.corrections import about_true_zero, over_stances, unattenuated
-from plantar.feet.fit.regression_data import blocks_of
 from plantar.feet.identify import identify_feet
 from plantar.feet.recording import Recording
+from plantar.feet.regression.axis import AxisFit
+from plantar.feet.regression.regression_data import blocks_of
 from plantar.logs.motion_log import MotionLog
 from plantar.models import MODELS, KelvinVoigt
 from plantar.robot.model import RobotModel

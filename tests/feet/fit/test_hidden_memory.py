@@ -8,7 +8,6 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.hidden_memory import (
     SMALL,
     UNTIMED,
@@ -18,6 +17,7 @@ from plantar.feet.fit.hidden_memory import (
     rival,
     slope_share,
 )
+from plantar.feet.regression.axis import AxisFit
 from plantar.model_selection.model_fit import ModelFit
 from plantar.model_selection.selection import ModelChoice, ModelScore
 from plantar.models import MODELS, BushMotion

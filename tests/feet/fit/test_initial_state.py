@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from made_recording import FOOT, PERIOD, made_recording, swayed
-from plantar.feet.fit.axis import FittedModel
-from plantar.feet.fit.prediction import unseen_initial_states
 from plantar.feet.recording import Recording
+from plantar.feet.regression.axis import FittedModel
+from plantar.feet.regression.prediction import unseen_initial_states
 from plantar.models import BushMotion, Elastoplastic, KelvinVoigt
 
 VALUES, SHAPE = np.array([400.0, 15.0, 5.0]), np.array([0.006])

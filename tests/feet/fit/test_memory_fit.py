@@ -9,11 +9,11 @@ import pytest
 
 from bush_data_sets import Rubber
 from made_recording import FOOT, PERIOD, made_recording, swayed
-from plantar.feet.fit.axis import AngleDrift, AxisFit
 from plantar.feet.fit.axis_fit import fit_axis
-from plantar.feet.fit.load_torque import load_torque
 from plantar.feet.fit.memory_fit import data_sets_about, placed_as
 from plantar.feet.recording import Recording
+from plantar.feet.regression.axis import AngleDrift, AxisFit
+from plantar.feet.regression.load_torque import load_torque
 from plantar.feet.settings import FeetSettings
 
 RUBBER = Rubber(stiffness=420.0, damping=18.0, slip_torque=4.0, slip_angle=0.006)

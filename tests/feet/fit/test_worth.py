@@ -9,9 +9,9 @@ import pytest
 
 from biped import SLIPPING, record, sway
 from feet_trials import PUNCTUAL, noisy
-from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.worth import hardly_matters, in_place_of, too_sure
 from plantar.feet.identify import identify_feet
+from plantar.feet.regression.axis import AxisFit
 from plantar.models import Elastoplastic, KelvinVoigt
 from plantar.robot.model import RobotModel
 

@@ -14,7 +14,6 @@ from feet_trials import AXES, LINEAR, noisy
 from made_recording import FOOT, made_recording, swayed
 from plantar.conventions import NORMAL95
 from plantar.feet.fit.axis_fit import fit_axis
-from plantar.feet.fit.regression_data import blocks_of
 from plantar.feet.fit.vertical_stiffness import VerticalStiffness
 from plantar.feet.identify import identify_feet
 from plantar.feet.interval_width import systematic
@@ -28,6 +27,7 @@ from plantar.feet.interval_width.systematic import (
     inflated,
     systematic_causes,
 )
+from plantar.feet.regression.regression_data import blocks_of
 from plantar.logs.motion_log import MotionLog
 from plantar.models import MODELS
 from plantar.notes import Note

@@ -11,9 +11,9 @@ from plantar.conventions import ROTATIONAL_AXES, Array
 from plantar.estimation.orthonormal import without
 from plantar.estimation.slow_drift import drift_basis
 from plantar.feet.assess.residual_table import Predictions
-from plantar.feet.fit.axis import FittedModel
-from plantar.feet.fit.prediction import predict
 from plantar.feet.recording import Recording
+from plantar.feet.regression.axis import FittedModel
+from plantar.feet.regression.prediction import predict
 from plantar.results.feet import ValidationRow
 from plantar.results.scores import error_measures
 

@@ -7,9 +7,9 @@ from dataclasses import replace
 
 from plantar.checks.gyroscope import IMU_LATE
 from plantar.checks.standing import LEANS, LEANS_LITTLE
-from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.place_notes import BUSH_TURNED, FAR
+from plantar.feet.place.place_notes import BUSH_TURNED, FAR
 from plantar.feet.recording import Recording
+from plantar.feet.regression.axis import AxisFit
 from plantar.notes import Note
 from plantar.results.feet import Parameter
 from plantar.sensors.bandwidth import FILTERED

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.place_notes import FARTHEST
+from plantar.feet.place.place_notes import FARTHEST
+from plantar.feet.regression.axis import AxisFit
 from plantar.notes import Note
 
 FAR_ARM = "bush_arm_far"

@@ -13,9 +13,9 @@ from plantar.estimation import interval95, relative_std_percent
 from plantar.feet.assess.left_out import why_unseen
 from plantar.feet.assess.residual_table import Predictions
 from plantar.feet.assess.verdicts import Evidence, judge, judge_term
-from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.hidden_memory import has_memory
 from plantar.feet.recording import Recording
+from plantar.feet.regression.axis import AxisFit
 from plantar.models import KelvinVoigt
 from plantar.results.feet import Parameter, ValidationRow
 

@@ -12,9 +12,9 @@ import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES, Array
 from plantar.estimation import Block, fit_blocks
-from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.regression_data import beside, blocks_of, tangent_blocks
 from plantar.feet.recording import Recording
+from plantar.feet.regression.axis import AxisFit
+from plantar.feet.regression.regression_data import beside, blocks_of, tangent_blocks
 from plantar.notes import Note
 
 SOFT = 0.1  # of a recording's spread of torque, within which its sign changes: behind a filter it is no step

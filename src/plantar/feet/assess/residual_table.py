@@ -9,8 +9,8 @@ import pyarrow as pa
 
 from plantar.contact.phases import SUPPORTS
 from plantar.conventions import ROTATIONAL_AXES, Array, Axis
-from plantar.feet.fit.prediction import Prediction
 from plantar.feet.recording import Recording
+from plantar.feet.regression.prediction import Prediction
 
 Predictions = dict[tuple[str, str, Axis], Prediction]  # by motion, foot and axis
 

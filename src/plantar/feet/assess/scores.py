@@ -7,9 +7,9 @@ from typing import Literal
 
 from plantar.conventions import ROTATIONAL_AXES
 from plantar.feet.assess.residual_table import Predictions
-from plantar.feet.fit.axis import FittedModel
-from plantar.feet.fit.prediction import predict
 from plantar.feet.recording import Recording
+from plantar.feet.regression.axis import FittedModel
+from plantar.feet.regression.prediction import predict
 from plantar.results.feet import ValidationRow
 from plantar.results.scores import score
 

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from plantar.conventions import Array
 from plantar.estimation import Block, fit_blocks, interval95
 from plantar.estimation.errors_in_variables import attenuation
-from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.regression_data import blocks_of
 from plantar.feet.recording import Recording
+from plantar.feet.regression.axis import AxisFit
+from plantar.feet.regression.regression_data import blocks_of
 from plantar.results.walk_rows import StanceStiffness, WalkStiffness
 
 FEWEST_STANCES = 3  # of one recording: the scatter of two says next to nothing

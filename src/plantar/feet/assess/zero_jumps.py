@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 from plantar.contact.reasons import TIPPING
 from plantar.conventions import Array
 from plantar.estimation import Block, LinearFit, fit_blocks
-from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.hidden_memory import rival
-from plantar.feet.fit.regression_data import beside, blocks_of, tangent_blocks
 from plantar.feet.recording import Recording
+from plantar.feet.regression.axis import AxisFit
+from plantar.feet.regression.regression_data import beside, blocks_of, tangent_blocks
 from plantar.models import KelvinVoigt
 from plantar.notes import Note
 from plantar.signals.segments import run_numbers

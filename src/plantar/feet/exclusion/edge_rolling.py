@@ -19,8 +19,8 @@ from plantar.contact.reasons import Reason
 from plantar.conventions import ROTATIONAL_AXES, Array, Mask
 from plantar.estimation import fit_blocks
 from plantar.feet.exclusion.moved_edges import moved_inwards
-from plantar.feet.fit.regression_data import blocks_of
 from plantar.feet.recording import Recording, filtered
+from plantar.feet.regression.regression_data import blocks_of
 from plantar.feet.settings import FeetSettings
 from plantar.robot.model import RobotModel
 from plantar.signals.filters import low_pass

@@ -8,10 +8,10 @@ import numpy as np
 
 from plantar.contact.deflection import BushState
 from plantar.conventions import ROTATIONAL_AXES, Array, Mask
-from plantar.feet.fit.axis import FittedModel
-from plantar.feet.fit.prediction import predict
-from plantar.feet.fit.regression_data import FEWEST_SAMPLES
 from plantar.feet.recording import Recording
+from plantar.feet.regression.axis import FittedModel
+from plantar.feet.regression.prediction import predict
+from plantar.feet.regression.regression_data import FEWEST_SAMPLES
 from plantar.signals.segments import runs
 
 BIN = 0.1  # s

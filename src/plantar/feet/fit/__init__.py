@@ -1,1 +1,1 @@
-"""The regressions of one foot."""
+"""The fit of one axis, what is put right of it, and what it may hide."""

@@ -17,9 +17,9 @@ import numpy as np
 from plantar.conventions import ROTATIONAL_AXES, Array
 from plantar.estimation import effect_of, influences_of
 from plantar.estimation.slow_drift import drift_beside
-from plantar.feet.fit.axis import AngleDrift, AxisFit
-from plantar.feet.fit.regression_data import blocks_of, model_columns, tangent_blocks
 from plantar.feet.recording import Recording
+from plantar.feet.regression.axis import AngleDrift, AxisFit
+from plantar.feet.regression.regression_data import blocks_of, model_columns, tangent_blocks
 
 ROUNDS = 6
 HALFWAY = 0.5  # from one round's drift to the next: fit and drift answer each other with the opposite, nearly as large

@@ -9,13 +9,14 @@ import numpy as np
 from plantar.conventions import Axis
 from plantar.estimation import Block, LinearFit, fit_blocks
 from plantar.estimation.stance_problem import StanceProblem
-from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.bush_place import PlaceSpread, about_its_place
 from plantar.feet.fit.corrections import about_true_zero, unattenuated, with_best_offsets
 from plantar.feet.fit.hidden_memory import cautioned, may_hide_a_memory
 from plantar.feet.fit.memory_fit import about_its_centre, data_sets_about, placed_as, standing
-from plantar.feet.fit.regression_data import blocks_of, data_set_of
+from plantar.feet.place.bush_place import about_its_place
+from plantar.feet.place.spread import PlaceSpread
 from plantar.feet.recording import Recording
+from plantar.feet.regression.axis import AxisFit
+from plantar.feet.regression.regression_data import blocks_of, data_set_of
 from plantar.feet.settings import AUTOMATIC, FeetSettings
 from plantar.model_selection.data_sets import DataSet
 from plantar.model_selection.model_fit import ModelFit, fit_model

@@ -9,9 +9,9 @@ import numpy as np
 
 from plantar.estimation import fit_blocks
 from plantar.estimation.errors_in_variables import attenuation, offsets_moved
-from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.regression_data import blocks_of
 from plantar.feet.recording import Recording
+from plantar.feet.regression.axis import AxisFit
+from plantar.feet.regression.regression_data import blocks_of
 from plantar.models import KelvinVoigt
 from plantar.notes import Note
 

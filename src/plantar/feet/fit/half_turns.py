@@ -12,9 +12,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.regression_data import path_of
 from plantar.feet.recording import Recording
+from plantar.feet.regression.axis import AxisFit
+from plantar.feet.regression.regression_data import path_of
 
 ROUND = 2.0  # slip angles from one end of a path to the other
 HARDLY_TURNED = (

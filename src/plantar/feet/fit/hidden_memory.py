@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.feet.fit.axis import AxisFit
+from plantar.feet.regression.axis import AxisFit
 from plantar.model_selection.selection import ModelChoice, ModelScore
 from plantar.models import BESIDE, BushModel, BushMotion, KelvinVoigt, reach
 from plantar.models.hysteresis import Hysteretic

@@ -6,13 +6,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from plantar.feet.fit.angle_drift import beside_drift
-from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.bush_place import PlaceSpread, about_its_place
 from plantar.feet.fit.corrections import over_stances
 from plantar.feet.fit.hidden_memory import has_memory
-from plantar.feet.fit.load_torque import load_torque
-from plantar.feet.fit.regression_data import data_set_of
+from plantar.feet.place.bush_place import about_its_place
+from plantar.feet.place.spread import PlaceSpread
 from plantar.feet.recording import Recording
+from plantar.feet.regression.axis import AxisFit
+from plantar.feet.regression.load_torque import load_torque
+from plantar.feet.regression.regression_data import data_set_of
 from plantar.model_selection.data_sets import DataSet
 from plantar.model_selection.model_fit import ModelFit, fit_again
 

@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 
 from plantar.estimation import interval95
-from plantar.feet.fit.axis import AxisFit
+from plantar.feet.regression.axis import AxisFit
 from plantar.models import KelvinVoigt
 
 FAR: Final = 0.15  # of the stiffness: with an interval as wide to either side a number is no longer usable

@@ -12,10 +12,10 @@ from plantar.estimation import Block, fit_blocks, influences_of
 from plantar.estimation.least_squares import values_without_each
 from plantar.estimation.random_effects import Differences, share_between
 from plantar.estimation.stance_least_squares import FEWEST_RECORDINGS, jackknife
-from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.regression_data import beside, tangent_blocks
 from plantar.feet.interval_width.systematic import Cause
 from plantar.feet.recording import Recording
+from plantar.feet.regression.axis import AxisFit
+from plantar.feet.regression.regression_data import beside, tangent_blocks
 from plantar.notes import Note
 
 NAME = "between recordings"

@@ -10,11 +10,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from plantar.estimation import effect_of, fit_blocks, influences_of
-from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.load_torque import ENCODERS_APART, late_encoder_torque
-from plantar.feet.fit.regression_data import beside, tangent_blocks
 from plantar.feet.interval_width.systematic import SINGULAR, Cause
 from plantar.feet.recording import Recording
+from plantar.feet.regression.axis import AxisFit
+from plantar.feet.regression.load_torque import ENCODERS_APART, late_encoder_torque
+from plantar.feet.regression.regression_data import beside, tangent_blocks
 
 NAME = "encoders' delay"
 SUSPECTED = 3.0  # deviations from none

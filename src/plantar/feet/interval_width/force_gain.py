@@ -13,9 +13,9 @@ from typing import NamedTuple
 import numpy as np
 
 from plantar.conventions import GRAVITY, NORMAL95, Array, Axis
-from plantar.feet.fit.axis import AxisFit
 from plantar.feet.interval_width.systematic import Cause
 from plantar.feet.recording import Recording
+from plantar.feet.regression.axis import AxisFit
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
 from plantar.sensors.moment_balance import TorqueGain

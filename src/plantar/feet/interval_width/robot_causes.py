@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from plantar.feet.fit.axis import AxisFit
 from plantar.feet.interval_width.between_recordings import between_recordings
 from plantar.feet.interval_width.systematic import Cause
 from plantar.feet.recording import Recording
+from plantar.feet.regression.axis import AxisFit
 from plantar.robot.uncertainty import Uncertainty
 
 

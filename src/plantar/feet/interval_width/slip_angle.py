@@ -12,10 +12,10 @@ from dataclasses import replace
 import numpy as np
 
 from plantar.estimation import fit_blocks
-from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.regression_data import SHAPE_STEP, blocks_of
 from plantar.feet.interval_width.systematic import Cause
 from plantar.feet.recording import Recording
+from plantar.feet.regression.axis import AxisFit
+from plantar.feet.regression.regression_data import SHAPE_STEP, blocks_of
 
 NAME = "slip angle"
 UNRESOLVED = SHAPE_STEP / 2  # deviation, as a share: the derivative is taken over twice as much either way

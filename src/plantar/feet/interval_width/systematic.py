@@ -12,12 +12,12 @@ from plantar.conventions import NORMAL95, ROTATIONAL_AXES, UNIFORM, Array, Mask
 from plantar.estimation import Block, effect_of, fit_blocks, influences_of
 from plantar.estimation.residual_covariance import pooled_freedom
 from plantar.estimation.stance_least_squares import FEWEST_RECORDINGS
-from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.half_turns import ROUND, slip_angles_spanned
 from plantar.feet.fit.hidden_memory import element_slope, moved_by_memory
-from plantar.feet.fit.regression_data import beside, tangent_blocks
 from plantar.feet.fit.vertical_stiffness import VerticalStiffness
 from plantar.feet.recording import Recording, moment_arm_effect
+from plantar.feet.regression.axis import AxisFit
+from plantar.feet.regression.regression_data import beside, tangent_blocks
 from plantar.sensors.delays.sensor_delay import SensorDelay
 from plantar.signals.filters import differentiate
 from plantar.signals.resampling import shifted

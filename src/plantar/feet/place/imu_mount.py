@@ -9,10 +9,10 @@ import numpy as np
 
 from plantar.conventions import Array, Mask
 from plantar.estimation import Block, LinearFit
-from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.bush_place import imu_columns, that_show
-from plantar.feet.fit.regression_data import beside, blocks_of
+from plantar.feet.place.imu_columns import imu_columns, that_show
 from plantar.feet.recording import Recording
+from plantar.feet.regression.axis import AxisFit
+from plantar.feet.regression.regression_data import beside, blocks_of
 
 SINGULAR = 1e6  # condition of a fit beyond which its motions do not show the turn
 

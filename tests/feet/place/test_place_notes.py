@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from plantar.feet.fit.axis import AxisFit
-from plantar.feet.fit.place_notes import BUSH_TURNED, FAR, place_notes, turned_bush
+from plantar.feet.place.place_notes import BUSH_TURNED, FAR, place_notes, turned_bush
+from plantar.feet.regression.axis import AxisFit
 from plantar.models import KelvinVoigt
 
 PRIOR = np.array([0.005, 0.003, 0.01, 0.01, 0.01, 0.01])

@@ -13,11 +13,12 @@ from biped_robot import FEET, Frame, Mounting
 from feet_trials import AXES, LINEAR, PUNCTUAL, codes, noisy
 from made_recording import FOOT, PERIOD, made_recording, swayed
 from plantar.conventions import Axis
-from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.axis_fit import fit_axis
-from plantar.feet.fit.bush_place import PlaceSpread, about_its_place, shape_moved
 from plantar.feet.identify import identify_feet
+from plantar.feet.place.bush_place import about_its_place, shape_moved
+from plantar.feet.place.spread import PlaceSpread
 from plantar.feet.recording import Recording
+from plantar.feet.regression.axis import AxisFit
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.results.feet import FeetResult

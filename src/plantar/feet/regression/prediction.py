@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plantar.conventions import ROTATIONAL_AXES, Array, Mask
-from plantar.feet.fit.axis import FittedModel
-from plantar.feet.fit.load_torque import load_torque
-from plantar.feet.fit.regression_data import model_columns, motion_of
 from plantar.feet.recording import Recording
+from plantar.feet.regression.axis import FittedModel
+from plantar.feet.regression.load_torque import load_torque
+from plantar.feet.regression.regression_data import model_columns, motion_of
 from plantar.model_selection.initial_state import initial_states_of
 from plantar.results.scores import first_second
 

@@ -7,9 +7,9 @@ import pytest
 
 from feet_trials import LINEAR
 from made_recording import FOOT, PERIOD, made_recording, swayed
-from plantar.feet.fit.axis import AxisFit
 from plantar.feet.fit.axis_fit import fit_axis
-from plantar.feet.fit.regression_data import blocks_of, tangent_blocks
+from plantar.feet.regression.axis import AxisFit
+from plantar.feet.regression.regression_data import blocks_of, tangent_blocks
 from plantar.models import MODELS
 
 STIFFNESS, COUNT = 400.0, 4000

@@ -9,10 +9,10 @@ import pytest
 
 from biped import TRUTH, record, sway
 from plantar.contact.stances import Stances
-from plantar.feet.fit.axis import FittedModel
-from plantar.feet.fit.prediction import Prediction, predict
 from plantar.feet.prepare_log import checked, prepare
 from plantar.feet.recording import Recording, Role, filtered_recording
+from plantar.feet.regression.axis import FittedModel
+from plantar.feet.regression.prediction import Prediction, predict
 from plantar.models import KelvinVoigt
 from plantar.robot.model import RobotModel
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from made_recording import LOAD, made_recording
-from plantar.feet.fit.axis import FittedModel
-from plantar.feet.fit.load_torque import load_of, load_torque, moment_columns, place_columns
+from plantar.feet.regression.axis import FittedModel
+from plantar.feet.regression.load_torque import load_of, load_torque, moment_columns, place_columns
 from plantar.models import KelvinVoigt
 
 TIME = 0.01 * np.arange(1000)

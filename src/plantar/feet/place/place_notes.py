@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from plantar.conventions import NORMAL95, Array
-from plantar.feet.fit.axis import AxisFit
+from plantar.feet.regression.axis import AxisFit
 from plantar.notes import Note
 
 CLEAR = 3.0  # deviations of prior and data together, beyond which the robot file's place is called wrong

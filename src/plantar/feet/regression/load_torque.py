@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES, Array, Axis
-from plantar.feet.fit.axis import AxisFit, FittedModel
 from plantar.feet.recording import Recording
+from plantar.feet.regression.axis import AxisFit, FittedModel
 from plantar.signals.filters import differentiate
 
 # By which a centre that is higher turns a horizontal force into torque, of pitch and roll.

@@ -12,9 +12,9 @@ from plantar.estimation import Block
 from plantar.estimation.blocks import StanceRows
 from plantar.estimation.orthonormal import orthonormal
 from plantar.estimation.slow_drift import drift_beside
-from plantar.feet.fit.axis import AngleDrift, AxisFit, FittedModel
-from plantar.feet.fit.load_torque import across_force, load_of, load_torque, step_columns, yaw_torque
 from plantar.feet.recording import Recording
+from plantar.feet.regression.axis import AngleDrift, AxisFit, FittedModel
+from plantar.feet.regression.load_torque import across_force, load_of, load_torque, step_columns, yaw_torque
 from plantar.model_selection.data_sets import DataSet, StepColumns
 from plantar.models import BushMotion, KelvinVoigt
 from plantar.signals.filters import SHORTEST_RUN, SHORTEST_STANCE_RUN, differentiate, low_pass

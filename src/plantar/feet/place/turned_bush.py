@@ -1,0 +1,69 @@
+"""A bush whose own axes are turned about the vertical: the other axis' torque shows in both, with one sign."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from plantar.conventions import ROTATIONAL_AXES, Axis
+from plantar.estimation import Block, fit_blocks
+from plantar.feet.place.place_notes import BUSH_WORTH_SAYING, STEPS_WORTH_SAYING, turned_bush
+from plantar.feet.recording import Recording
+from plantar.feet.regression.axis import AxisFit
+from plantar.feet.regression.load_torque import others_torque
+from plantar.feet.regression.regression_data import beside, tangent_blocks
+from plantar.notes import Note
+
+SURE = 5.0  # deviations of the other axis' share, from which stances show it
+STEPS_LEAVE = 0.75  # of the squares that the model of one axis leaves
+SINGULAR = 1e6  # condition of the fit beyond which the motions do not show the place
+
+
+def turned_bush_note(
+    fits: Mapping[Axis, AxisFit], recordings: Sequence[Recording], shared: bool
+) -> Note | None:
+    """`turned_bush` of one foot's fits, of which both axes must be there."""
+    if not set(ROTATIONAL_AXES) <= set(fits):
+        return None
+    pitch, roll = (fits[axis] for axis in ROTATIONAL_AXES)
+    in_pitch, in_roll = (_others_torque(fit, recordings, shared) for fit in (pitch, roll))
+    if in_pitch is None or in_roll is None:
+        return turned_bush(pitch.foot, pitch.turned, roll.turned, BUSH_WORTH_SAYING)
+    (of_roll, left), (of_pitch, also_left) = in_pitch, in_roll
+    # A leg that gives way shows some of it as well, but explains little of what the feet's models leave.
+    explained = min(left, also_left) < STEPS_LEAVE and of_roll != 0 and of_pitch != 0
+    return turned_bush(pitch.foot, of_roll, of_pitch, STEPS_WORTH_SAYING) if explained else None
+
+
+def _others_torque(fit: AxisFit, recordings: Sequence[Recording], shared: bool) -> tuple[float, float] | None:
+    """The share of the other axis' torque that shows in this one, 0 where unsure; None of a foot that stands.
+
+    With it the share that it leaves of what the model leaves, in squares.
+    """
+    blocks = tangent_blocks(recordings, fit, drift=not shared)
+    if blocks[0].stances is None:
+        return None
+    blocks = [_without_the_other(block) for block in blocks]
+    by_name = {recording.name: recording for recording in recordings}
+    chosen = [by_name[block.label] for block in blocks]
+    other = [others_torque(one, fit.foot, fit.axis)[one.rows(fit.foot), None] for one in chosen]
+    wider = [beside(block, own) for block, own in zip(blocks, other, strict=True)]
+    fits = [fit_blocks(each, shared_offset=shared) for each in (blocks, wider)]
+    before, left = (
+        sum(float(residual @ residual) for residual in found.residuals.values()) for found in fits
+    )
+    size, found = blocks[0].regressor.shape[1], fits[1]
+    sure = found.condition_number <= SINGULAR and abs(found.values[size]) > SURE * found.std[size]
+    return (float(found.values[size]) if sure else 0.0), left / max(before, np.finfo(float).tiny)
+
+
+def _without_the_other(block: Block) -> Block:
+    """The block of a foot that steps without the other axis' torque among its nuisances, their third column."""
+    assert block.common_nuisance is not None, "a block of a foot that steps"
+    assert block.common_spread is not None, "a block of a foot that steps"
+    kept = [0, 1, 3]
+    return replace(
+        block, common_nuisance=block.common_nuisance[:, kept], common_spread=block.common_spread[kept]
+    )
