@@ -113,24 +113,3 @@ def test_force_cells_are_named_and_not_called_dead(robot: RobotModel) -> None:
     assert [finding.code for finding in found] == ["vertical_only"]
     broken = cells.with_columns({"wrench.left.torque.z": log.column("wrench.left.torque.z")})
     assert [f.code for f in check_log(robot, broken) if "wrench.left" in f.text] == ["dead_channel"]
-
-
-@pytest.mark.parametrize(("still", "told"), [(1, True), (4, True), (5, False)])
-def test_joints_that_never_move_are_named_unless_most_of_them_stand(
-    robot: RobotModel, still: int, told: bool
-) -> None:
-    """Of a robot that stands still they say nothing; fewer than half of the legs' joints may be dead."""
-    log = record(sway())
-    assert robot.imu is not None
-    names = sorted(
-        set().union(*(robot.joints_between(robot.imu.placement, foot.bush) for foot in robot.feet.values()))
-    )
-    assert len(names) == 10
-    moving = {f"joint.{name}.position": np.linspace(0.0, 0.1, len(log)) for name in names}
-    stands = {f"joint.{name}.position": np.full(len(log), 0.1) for name in names[:still]}
-    found = [
-        one for one in check_channels(robot, log.with_columns(moving | stands)) if one.code == "still_joint"
-    ]
-    assert len(found) == told
-    for one in found:
-        assert all(name in one.text for name in stands)

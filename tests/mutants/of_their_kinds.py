@@ -195,11 +195,11 @@ OF_THEIR_KINDS = (
         ("robot_guess/test_zeros.py",),
     ),
     Mutant(
-        "checks/joints.py",
+        "checks/joints/names.py",
         "joints that legs share are each leg's own",
         "uses[joint] == 1]",
         "uses[joint] >= 1]",
-        ("checks/test_joints.py",),
+        ("checks/joints/test_names.py",),
     ),
     Mutant(
         "models/bush_model.py",

@@ -10,8 +10,8 @@ SENSOR_FAULTS = (
         "np.any([log.column(name) == 0", ("signals/test_dropouts.py",),
     ),
     Mutant(
-        "checks/closed_chain.py", "the foot in the air may be lower than the one that carries",
-        "np.where(carrying == 0, 1, -1)", "np.where(carrying == 0, 1, 1)", ("checks/test_closed_chain.py",),
+        "checks/joints/closed_chain.py", "the foot in the air may be lower than the one that carries",
+        "np.where(carrying == 0, 1, -1)", "np.where(carrying == 0, 1, 1)", ("checks/joints/test_closed_chain.py",),
     ),
     Mutant(
         "checks/standing.py", "force sensors are turned one at a time only",
@@ -85,12 +85,12 @@ SENSOR_FAULTS = (
         ("logs/readers/test_column_map.py",),
     ),
     Mutant(
-        "checks/stepping_joints.py", "one landing is a step", "FEWEST = 2 ", "FEWEST = 1 ",
-        ("checks/test_stepping_joints.py",),
+        "checks/joints/stepping_joints.py", "one landing is a step", "FEWEST = 2 ", "FEWEST = 1 ",
+        ("checks/joints/test_stepping_joints.py",),
     ),
     Mutant(
-        "checks/stepping_joints.py", "the other leg may stand as well", "if turned[same] > TURNED:",
-        "if turned[same] >= 0:", ("checks/test_stepping_joints.py",),
+        "checks/joints/stepping_joints.py", "the other leg may stand as well", "if turned[same] > TURNED:",
+        "if turned[same] >= 0:", ("checks/joints/test_stepping_joints.py",),
     ),
     Mutant(
         "checks/gyroscope.py", "a gyroscope's bias turns", "integral = _centred(total[ends] - total[starts])",
@@ -227,5 +227,13 @@ SENSOR_FAULTS = (
     Mutant(
         "feet/assess/data_faults.py", "a push in one log is a fault of all", "(upright and note", "(False and note",
         ("feet/assess/test_data_faults.py",),
+    ),
+    Mutant(
+        "checks/joints/still_joints.py", "a joint that stands alone is at rest", "if doubtful:", "if False:",
+        ("checks/joints/test_still_joints.py",),
+    ),
+    Mutant(
+        "checks/joints/still_joints.py", "a spike is a motion", "MOST = (1.0, 99.0)", "MOST = (0.0, 100.0)",
+        ("checks/joints/test_still_joints.py",),
     ),
 )  # fmt: skip

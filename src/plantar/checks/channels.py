@@ -22,31 +22,28 @@ LEAST_ELSEWHERE = 0.2  # of a run's length, for the rest of the log to show the 
 
 
 def check_channels(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
-    """Columns of the IMU and of the wrenches that stand at one value for a while, joints between them that never move.
+    """Columns of the IMU and of the wrenches that stand at one value for a while, joints that do while they turn.
 
     Columns of one sensor that stop together are one finding. Encoders read in steps: of one that stands for a while
     nothing can be said.
     """
     if robot.imu is None:
         return
-    loaded = [foot for foot in robot.feet.values() if _carries(robot, foot, log)]
-    path = frozenset().union(*(robot.joints_between(robot.imu.placement, foot.bush) for foot in loaded))
-    joints = [f"joint.{name}.position" for name in sorted(path) if log.has(f"joint.{name}.position")]
-    still = [name for name in joints if not _moves(log.column(name))]
-    if still and 2 * len(still) < len(joints):
-        text = f"{named(still)}: never change{'s' * (len(still) == 1)}"
-        yield Finding(
-            "still_joint",
-            f"{text}; right if the joint stood still, else the channel is dead",
-            severity="info",
-        )
-    for name in sorted(path):
+    for name in sorted(loaded_path(robot, log)):
         yield from _dead_encoder(name, log)
     for sensor in (
         f"imu.{robot.imu.name}.",
         *(f"wrench.{foot.wrench.name}." for foot in robot.feet.values()),
     ):
         yield from _stuck(sensor, log)
+
+
+def loaded_path(robot: RobotModel, log: MotionLog) -> frozenset[str]:
+    """Names of the joints between the IMU and any foot that carries load; none without IMU."""
+    if robot.imu is None:
+        return frozenset()
+    loaded = [foot for foot in robot.feet.values() if _carries(robot, foot, log)]
+    return frozenset().union(*(robot.joints_between(robot.imu.placement, foot.bush) for foot in loaded))
 
 
 def named(columns: Sequence[str], sensor: str | None = None, of: int = 0) -> str:
@@ -60,11 +57,6 @@ def _carries(robot: RobotModel, foot: Foot, log: MotionLog) -> bool:
     """Whether this foot carries a tenth of the weight or more, at least half of the time."""
     force = np.linalg.norm(log.stack(wrench_columns(foot.wrench.name)[FORCE]), axis=1)
     return bool(np.mean(force > 0.1 * robot.mass * GRAVITY) > 0.5)
-
-
-def _moves(values: Array) -> bool:
-    finite = values[np.isfinite(values)]
-    return finite.size == 0 or bool(np.ptp(finite) > 0)
 
 
 def _dead_encoder(joint: str, log: MotionLog) -> Iterator[Finding]:

@@ -10,13 +10,14 @@ from plantar.checks.air_readings import check_air_readings
 from plantar.checks.bush_axes import check_bush_axes
 from plantar.checks.bush_link import check_bush_link
 from plantar.checks.channels import check_channels, named
-from plantar.checks.closed_chain import check_closed_chain
 from plantar.checks.gaps import check_gaps
 from plantar.checks.imu import check_imu
-from plantar.checks.joints import check_joint_names, check_path_joints
+from plantar.checks.joints.closed_chain import check_closed_chain
+from plantar.checks.joints.names import check_joint_names, check_path_joints
+from plantar.checks.joints.stepping_joints import check_stepping_joints
+from plantar.checks.joints.still_joints import check_still_joints
 from plantar.checks.load_signs import check_load_signs
 from plantar.checks.standing import check_balance
-from plantar.checks.stepping_joints import check_stepping_joints
 from plantar.conventions import GRAVITY
 from plantar.errors import DataError, located
 from plantar.logs.freed_memory import return_freed
@@ -43,7 +44,12 @@ def check_log(robot: RobotModel, log: MotionLog) -> list[Finding]:
     few = picked(log)
     imu = list(check_imu(robot.imu.name, few)) if robot.imu is not None else ()
     return_freed(log.size)
-    channels = [*check_gaps(robot, log), *check_channels(robot, log), *check_stepping_joints(robot, log)]
+    channels = [
+        *check_gaps(robot, log),
+        *check_channels(robot, log),
+        *check_still_joints(robot, log),
+        *check_stepping_joints(robot, log),
+    ]
     chain, wrenches = list(check_closed_chain(robot, few)), list(_wrenches(robot, few))
     missing = check_path_joints(robot, log) if any(one.fatal for one in (*wrenches, *chain)) else ()
     bushes = [*check_bush_link(robot, few), *check_bush_axes(robot, few)]

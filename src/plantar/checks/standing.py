@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from plantar.checks.joints import legs
+from plantar.checks.joints.names import legs
 from plantar.checks.stance import Stance, StanceSides, stance_of, usual
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pinocchio as pin
 
-from plantar.checks.joints import recorded_joints
+from plantar.checks.joints.names import recorded_joints
 from plantar.checks.log_checks import check_log
 from plantar.conventions import GRAVITY, Array
 from plantar.errors import LogError, located

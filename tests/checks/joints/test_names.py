@@ -10,7 +10,7 @@ import pytest
 
 from biped import record, sway
 from biped_robot import make_robot, write_robot
-from plantar.checks.joints import check_joint_names, legs, recorded_joints
+from plantar.checks.joints.names import check_joint_names, legs, recorded_joints
 from plantar.checks.log_checks import check_log
 from plantar.cli import main
 from plantar.errors import DataError

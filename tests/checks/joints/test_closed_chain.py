@@ -7,7 +7,7 @@ import pytest
 
 from biped import record, sway
 from feet_trials import noisy
-from plantar.checks.closed_chain import check_closed_chain
+from plantar.checks.joints.closed_chain import check_closed_chain
 from plantar.errors import DataError
 from plantar.feet.identify import identify_feet
 from plantar.logs.motion_log import MotionLog

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from plantar.checks.joints import legs
+from plantar.checks.joints.names import legs
 from plantar.conventions import Array
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from biped import record, sway
+from plantar.checks.joints.stepping_joints import check_stepping_joints
 from plantar.checks.log_checks import check_log
-from plantar.checks.stepping_joints import check_stepping_joints
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
 

@@ -15,7 +15,7 @@ from itertools import compress
 import numpy as np
 from numpy.typing import NDArray
 
-from plantar.checks.joints import legs
+from plantar.checks.joints.names import legs
 from plantar.contact.deflection import BushState, bush_states
 from plantar.contact.relative_pose import relative_pose
 from plantar.conventions import GRAVITY, Array, Mask
