@@ -62,7 +62,8 @@ def score(fault: Fault, answer: Answer, truth: Truth, healthy: FeetResult) -> Sc
             lost.append(f"{_short(row)} lost")
     wrong = (*sorted(silent, key=_size, reverse=True), *sorted(weak, key=_size, reverse=True), *lost)
     if fault.kind == "healthy":
-        odd = [text for text in said_now if text.partition(":")[0] not in RECORDING_ADVICE]
+        # A number that was weak before may be so for one more reason: one that is lost is among the wrong ones.
+        odd = {note.code for note in answer.notes if note.severity == "warning"} - RECORDING_ADVICE
         return Score(SILENT if silent else ALARM if odd or wrong else QUIET, False, wrong, first)
     if silent:
         outcome = SILENT

@@ -158,6 +158,12 @@ def test_healthy_logs_may_ask_for_other_motions_but_not_lose_a_verdict() -> None
     )
 
 
+def test_a_number_that_was_weak_may_be_so_for_one_more_reason() -> None:
+    healthy, weak = replace(FAULT, kind="healthy"), row(100.0, 20.0, "weak")
+    again = result(replace(weak, reason="its reason; and too short"))
+    assert score(healthy, again, TRUTH, result(weak)).outcome == QUIET
+
+
 def test_totals_count_what_harms() -> None:
     answers = [result(row(110.0, 1.0)), DataError("late"), ValueError("late"), GOOD]
     lines = totals([(FAULT, score(FAULT, answer, TRUTH, GOOD)) for answer in answers])
