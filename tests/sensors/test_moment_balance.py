@@ -181,7 +181,7 @@ def test_the_warning_names_axis_and_size() -> None:
     (note,) = torque_gain_notes({"roll": TorqueGain(0.1, 0.02, {"left": 0.12, "right": 0.08})}).values()
     assert note.severity == "warning"
     assert "roll" in note.text
-    assert "+10 ± 4 %" in note.text
+    assert "1.10 ± 0.04 times" in note.text
     assert "up to 28 %" in note.text
     (note,) = torque_gain_notes({"roll": TorqueGain(1.4, 0.0, {"left": -2.0, "right": 0.0}, True)}).values()
     assert "by left -200 % and right +0 %" in note.text

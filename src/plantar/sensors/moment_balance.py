@@ -106,12 +106,14 @@ def torque_gain_notes(gains: Mapping[Axis, TorqueGain]) -> dict[Axis, Note]:
     for axis, found in gains.items():
         opposite = any(share < REVERSED for share in found.shares.values())
         if found.apart or opposite:
-            feet = " and ".join(f"{foot} {100 * share:+.0f} %" for foot, share in found.shares.items())
-            read = f"they read too much by {feet}"
+            read = " and ".join(
+                f"the {foot}'s read {1 + share:.2f} times" for foot, share in found.shares.items()
+            )
+            read += " what they should"
         else:
             read = (
-                f"they read {100 * found.mean:+.0f} ± {100 * NORMAL95 * found.std:.0f} % too much on average of the "
-                f"feet (95 %; one foot's alone by up to {100 * found.reach:.0f} %)"
+                f"together they read {1 + found.mean:.2f} ± {NORMAL95 * found.std:.2f} times what they should (95 %; "
+                f"one foot's alone may be off by {100 * found.reach:.0f} %)"
             )
         text = (
             f"{axis}: the feet's torques do not give the moments that the robot's motion needs: {read}, and stiffness "
