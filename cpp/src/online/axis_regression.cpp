@@ -60,7 +60,7 @@ void AxisRegression::restart() noexcept {
   watch_.restart();
   values_ = {};
   before_ = {};
-  values_.value = prior_.mean, values_.std = values_.resolved = prior_.spread;
+  values_.value = prior_.mean, values_.std = values_.resolved = values_.grouped = prior_.spread;
 }
 
 // Rows are compared with what was learnt, once that is worth it; at a jump everything is learnt anew. While a jump is
@@ -107,6 +107,7 @@ void AxisRegression::add(const RegressionRow& row, double dt) noexcept {
   open_noise_[BY_LOAD] += row.noise[OF_HORIZONTAL] * load;
   open_noise_[BY_LOAD_SQUARED] += row.noise[OF_HORIZONTAL] * load * load;
   ++open_rows_, open_time_ += dt, fresh_ = true;
+  if (dt > 0.0) together_ = std::clamp(prior_.noise_time / dt, 1.0, COLOUR);
   if (open_time_ >= std::min(BLOCK * group_time_, LONGEST_BLOCK)) close();
 }
 
@@ -131,7 +132,16 @@ AxisRegression::Part AxisRegression::open_part() const noexcept {
   const auto block = pinned();
   for (int i = 0; i <= UNKNOWNS; ++i)
     for (int j = i; j <= UNKNOWNS; ++j) part.triangle.r[i][j] = block.r[OWN + i][OWN + j];
-  for (int i = 0; i < NOISE_SUMS; ++i) part.noise[i] = open_noise_[i];
+  // The offset has taken the noise's slowest part with it, as the others have where they are not pinned. What an element
+  // has of it is slower still: at no frequency its share is one, in the mean over those that pass `element_share`.
+  double taken = 0.0;
+  for (int e = 0; e < OWN; ++e)
+    if (block.r[e][e] > 0.0) taken += open_.r[e][e] * open_.r[e][e] / (block.r[e][e] * block.r[e][e]);
+  const double share = open_time_ > 0.0 ? prior_.noise_time * taken / open_time_ : 1.0;
+  const double left = std::max(1.0 - share, 0.0), slow = std::max(1.0 - share / prior_.element_share, 0.0);
+  for (int i = 0; i < NOISE_SUMS; ++i) part.noise[i] = open_noise_[i] * left;
+  part.noise[ANGLE_BY_ELEMENT] = open_noise_[OF_ANGLE_AND_ELEMENT] * prior_.element_share * slow;
+  part.noise[RATE_BY_ELEMENT] = open_noise_[OF_RATE_AND_ELEMENT] * prior_.element_lag * slow;
   part.rows = open_rows_ - 1;
   return part;
 }
@@ -206,9 +216,9 @@ AxisRegression::Shared AxisRegression::completed(const Part& data) const noexcep
 std::array<AxisRegression::Line, NOISE_LINES> AxisRegression::noise_lines(const Part& data) const noexcept {
   std::array<Line, NOISE_LINES> lines;
   const double* sums = data.noise;
-  const double load = data.mean_load();
+  const double load = data.over(BY_LOAD, OF_HORIZONTAL);
   for (int source = 0; source < NOISE_SOURCES; ++source) {
-    lines[source] = direction(source, load);
+    lines[source] = direction(source, data);
     for (double& part : lines[source]) part *= std::sqrt(sums[source]);
   }
   Line& changes = lines[NOISE_SOURCES] = {};
@@ -217,18 +227,18 @@ std::array<AxisRegression::Line, NOISE_LINES> AxisRegression::noise_lines(const 
   return lines;
 }
 
-// What one unit of a source's noise adds to the columns, and to the torque, under a load.
-AxisRegression::Line AxisRegression::direction(int source, double load) const noexcept {
+// What one unit of a source's noise adds to the columns, and to the torque, in the mean of some rows.
+AxisRegression::Line AxisRegression::direction(int source, const Part& data) const noexcept {
   Line along = {};
   switch (source) {
     case OF_ANGLE_AND_ELEMENT:
-      along[SLIP_TORQUE] = prior_.element_slope * prior_.element_share;
+      along[SLIP_TORQUE] = prior_.element_slope * data.over(ANGLE_BY_ELEMENT, OF_ANGLE_AND_ELEMENT);
       [[fallthrough]];
     case OF_ANGLE:
       along[STIFFNESS] = 1.0;
       break;
     case OF_RATE_AND_ELEMENT:
-      along[SLIP_TORQUE] = prior_.element_slope * prior_.element_lag;
+      along[SLIP_TORQUE] = prior_.element_slope * data.over(RATE_BY_ELEMENT, OF_RATE_AND_ELEMENT);
       [[fallthrough]];
     case OF_RATE:
       along[DAMPING] = 1.0;
@@ -237,7 +247,8 @@ AxisRegression::Line AxisRegression::direction(int source, double load) const no
       along[ASIDE] = 1.0, along[UNKNOWNS] = prior_.load_arm;
       break;
     default:
-      along[ABOVE] = 1.0, along[COMPLIANCE] = load, along[UNKNOWNS] = prior_.horizontal_arm;
+      along[ABOVE] = 1.0, along[COMPLIANCE] = data.over(BY_LOAD, OF_HORIZONTAL);
+      along[UNKNOWNS] = prior_.horizontal_arm;
   }
   for (int i = 0; i < UNKNOWNS; ++i) along[i] /= prior_.scale[i];
   return along;
@@ -256,6 +267,7 @@ void AxisRegression::solve() noexcept {
   for (int i = 0; i < UNKNOWNS; ++i)
     if (!std::isfinite(x[i])) return;
   for (int i = 0; i < UNKNOWNS; ++i) values_.value[i] = x[i] / prior_.scale[i];
+  find_moved();
   if (open_rows_ >= FEWEST_ROWS && open_.r[0][0] > 0.0) {
     const auto block = pinned();
     double own[OWN];
@@ -269,12 +281,19 @@ void AxisRegression::solve() noexcept {
   }
 }
 
+void AxisRegression::find_moved() noexcept {
+  for (int i = 0; i < UNKNOWNS; ++i)
+    values_.moved[i] = used_ < FEWEST_GROUPS ? 0.0 : std::min(std::abs(values_.value[i] - closed_[i]), prior_.spread[i]);
+}
+
 void AxisRegression::find_deviations() noexcept {
   values_.groups = used_;
   if (used_ < FEWEST_GROUPS) return;
   const Shared whole = completed(total_);
   double x[UNKNOWNS], normal[UNKNOWNS][UNKNOWNS], mean[UNKNOWNS] = {}, moved[MOST_GROUPS][UNKNOWNS];
   whole.solve(x);
+  for (int i = 0; i < UNKNOWNS; ++i) closed_[i] = x[i] / prior_.scale[i];
+  find_moved();
   squares_of(whole, normal);
   for (int g = 0; g < used_; ++g) {
     // Without this group: x + (A - A_g)⁻¹ (A_g x - b_g).
@@ -301,13 +320,20 @@ void AxisRegression::find_deviations() noexcept {
     unit[i] = 1.0;
     std::copy(&normal[0][0], &normal[0][0] + UNKNOWNS * UNKNOWNS, &m[0][0]);
     solve_positive(m, unit, row);
-    values_.resolved[i] = noise_ * std::sqrt(std::max(row[i], 0.0)) / prior_.scale[i];
+    const double resolved = noise_ * noise_ * std::max(row[i], 0.0);
+    double told = 0.0;
     for (int j = 0; j < UNKNOWNS; ++j) {  // what the prior may be off by
       const double moves = row[j] * noise_ * noise_ / (prior_.spread[j] * prior_.scale[j]);
-      squares += moves * moves;
+      told += moves * moves;
+      if (i == STIFFNESS && j == SLIP_TORQUE) values_.by_element = std::abs(moves) / prior_.scale[i];
     }
-    const double deviation = std::sqrt(squares) / prior_.scale[i];
-    values_.std[i] = std::isfinite(deviation) ? std::min(deviation, prior_.spread[i]) : prior_.spread[i];
+    const double white = std::max(resolved - told, 0.0) * together_ / COLOUR;
+    const auto deviation = [&](double variance) {
+      const double root = std::sqrt(variance) / prior_.scale[i];
+      return std::isfinite(root) ? std::min(root, prior_.spread[i]) : prior_.spread[i];
+    };
+    values_.grouped[i] = deviation(squares), values_.white[i] = deviation(white), values_.told[i] = deviation(told);
+    values_.std[i] = deviation(std::max(squares, white) + told), values_.resolved[i] = deviation(resolved);
   }
 }
 

@@ -47,6 +47,7 @@ RegressionPrior prior_of(const EstimatorModel& model, const FootModel& foot, int
   prior.element_share = smooth_share(model.cutoff), prior.element_lag = smooth_lag(model.cutoff);
   prior.load_arm = axis == 0 ? -foot.sensor.origin[0] : foot.sensor.origin[1];
   prior.horizontal_arm = foot.sensor.origin[2];
+  prior.noise_time = 0.5 / model.cutoff;
   return prior;
 }
 
