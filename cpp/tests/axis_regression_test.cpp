@@ -134,6 +134,39 @@ void offsets_are_each_stances_own() {
   check::near(axis.values().value[DAMPING], DAMPING_TRUTH, 1e-3, "damping beside offsets that differ");
 }
 
+// In blocks that are shorter than the motion is slow, offset and drift would take most of it.
+void slow_motions_tell_the_stiffness() {
+  double squares = 0.0;
+  constexpr int TRIALS = 40;
+  for (unsigned seed = 0; seed < TRIALS; ++seed) {
+    AxisRegression axis(prior());
+    Source source(seed);
+    for (int i = 0; i < 1800; ++i) {
+      const double t = ROW * i, angle = 0.004 * std::sin(0.7 * t), rate = 0.0028 * std::cos(0.7 * t);
+      const double torque = 800.0 * angle + DAMPING_TRUTH * rate + 0.3 * source.normal(source.random);
+      axis.add({{1.0, t, 0.0}, {angle, rate}, torque, {}}, ROW);
+      axis.work();
+    }
+    for (int i = 0; i < 4; ++i) axis.work();
+    const double off = axis.values().value[STIFFNESS] - 800.0;
+    squares += off * off / TRIALS;
+  }
+  check::that(std::sqrt(squares) < 3.0, "stiffness from slow motions");
+}
+
+// A block that says something else has moved the value before any group tells by how much they differ.
+void a_block_that_moves_the_value_widens_it() {
+  AxisRegression axis(prior());
+  Source source(5);
+  after(axis, source, 0.0, 100.0, 800.0, 0.0, 0.01);
+  axis.close();
+  const AxisValues learnt = after(axis, source, 100.0, 0.0, 800.0, 0.0, 0.01);
+  const AxisValues moved = after(axis, source, 100.0, 5.0, 850.0, 0.0, 0.01);
+  const double off = moved.value[STIFFNESS] - learnt.value[STIFFNESS];
+  check::that(off > 10.0 * learnt.std[STIFFNESS], "other rows move the value");
+  check::near(moved.moved[STIFFNESS], off, 0.5 * off, "and say so");
+}
+
 // Another drift and another zero of the yaw torque in each recording, as large as the regression allows for, beside a
 // motion as slow as a block is long.
 void what_differs_between_blocks_moves_nothing() {
@@ -243,6 +276,8 @@ void a_short_probe_speaks() {
 
 int main() {
   a_short_probe_speaks();
+  slow_motions_tell_the_stiffness();
+  a_block_that_moves_the_value_widens_it();
   what_differs_between_blocks_moves_nothing();
   noise_of_forces_moves_nothing();
   noise_under_changing_loads_moves_nothing(80.0, "beside noise under a changing load");

@@ -108,7 +108,8 @@ void AxisRegression::add(const RegressionRow& row, double dt) noexcept {
   open_noise_[BY_LOAD_SQUARED] += row.noise[OF_HORIZONTAL] * load * load;
   ++open_rows_, open_time_ += dt, fresh_ = true;
   if (dt > 0.0) together_ = std::clamp(prior_.noise_time / dt, 1.0, COLOUR);
-  if (open_time_ >= std::min(BLOCK * group_time_, LONGEST_BLOCK)) close();
+  const bool first = used_ <= FEWEST_GROUPS;
+  if (open_time_ >= (first ? FIRST_BLOCK : std::min(BLOCK * group_time_, LONGEST_BLOCK))) close();
 }
 
 // The open block with what is known of drift, twist and the element's beginning: they are small. A short block cannot

@@ -43,7 +43,8 @@ constexpr int FEWEST_GROUPS = 3;        // that say how they differ
 constexpr double FIRST_GROUP = 1.0;     // s of rows in one group, in the beginning
 constexpr double LARGEST_GROUP = 8.0;   // s: errors hang together for less
 constexpr double MEMORY = 2.0;          // fillings of each group that are remembered
-constexpr double BLOCK = 2.5;           // groups with one offset, of a foot that stands
+constexpr double FIRST_BLOCK = 2.5;     // s with one offset, of a foot that stands, until groups say how they differ
+constexpr double BLOCK = 5.0;           // groups, from then on: in a short block the offset takes most of a slow motion
 constexpr double LONGEST_BLOCK = 10.0;  // s
 constexpr int FEWEST_ROWS = 8;          // of a block: with fewer its offset takes most of it
 
