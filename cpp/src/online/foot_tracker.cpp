@@ -295,6 +295,12 @@ void FootTracker::change_ground() noexcept {
     if (axis.suspicion().softer() + axis.suspicion().stiffer() > 0.0) axis.jump();
 }
 
+void FootTracker::forget() noexcept {
+  for (AxisRegression& axis : axes_) axis.restart();
+  for (MemoryWatch& memory : memories_) memory.restart();
+  for (int axis = 0; axis < 2; ++axis) publish(axis);
+}
+
 void FootTracker::miss(std::uint32_t reason) noexcept {
   estimate_.flags = (estimate_.flags & OF_LEARNING) | reason | NOT_STANDING;
   estimate_.pitch.rate = estimate_.roll.rate = 0.0;
