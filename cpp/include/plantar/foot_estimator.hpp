@@ -52,7 +52,8 @@ enum Flag : std::uint32_t {
   PITCH_UNTESTED = 1 << 13,  // its motions were too small: a memory that no batch fit has excluded would not have shown,
                              // or the stiffness rests on the slip torque that was told, and nothing has tested that
   ROLL_UNTESTED = 1 << 14,   // the same of roll
-  CONTRADICTION = 1 << 15    // gyroscope and attitude turn differently, or the feet do not carry the weight
+  CONTRADICTION = 1 << 15,   // gyroscope and attitude turn differently, or the feet do not carry the weight
+  LATE_WRENCH = 1 << 16      // torques follow deflections as if the force sensors' delay were not the one that was told
 };
 
 // A parameter with its standard deviation and half of its 95 % interval (wider than 1.96 deviations while data are

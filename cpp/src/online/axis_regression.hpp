@@ -19,9 +19,10 @@
 namespace plantar {
 
 // Columns of a row beside the offset's: what each unknown multiplies. The bush's centre is ASIDE of and ABOVE its
-// place, and higher the more it is loaded (COMPLIANCE).
-enum Unknown : int { STIFFNESS, DAMPING, SLIP_TORQUE, ASIDE, ABOVE, COMPLIANCE };
-constexpr int UNKNOWNS = 6;
+// place, and higher the more it is loaded (COMPLIANCE). A torque that is later than was told lacks what it changes by in
+// that time (LATE): the values do not follow that, each group tells it beside values of its own.
+enum Unknown : int { STIFFNESS, DAMPING, SLIP_TORQUE, ASIDE, ABOVE, COMPLIANCE, LATE };
+constexpr int UNKNOWNS = 7;
 // What each block has of its own: an offset, its drift, the zero of the yaw torque, which pitch turns into roll, and
 // where between its bounds the element was when the block began.
 enum Own : int { OFFSET, SLOPE, TWIST, BEGINNING };
@@ -38,6 +39,7 @@ enum NoiseSum : int { BY_LOAD = NOISE_SOURCES, BY_LOAD_SQUARED, ANGLE_BY_ELEMENT
 // One line a source, and one for what the load's changes add to the horizontal force's.
 constexpr int NOISE_LINES = NOISE_SOURCES + 1;
 
+constexpr double COLOUR = 8.0;  // rows in a cycle of the filter: so many say the same
 constexpr int MOST_GROUPS = 12;
 constexpr int FEWEST_GROUPS = 3;        // that say how they differ
 constexpr double FIRST_GROUP = 1.0;     // s of rows in one group, in the beginning
@@ -78,6 +80,7 @@ struct AxisValues {
   std::array<double, UNKNOWNS> moved = {};     // by the block that is open, of which no group has told yet how it differs
   double by_element = 0.0;                     // of the stiffness, by what was told of the element's torque
   double offset = 0.0;
+  double late = 0.0, late_grouped = 0.0, late_white = 0.0;  // than was told, as groups tell it, each beside values of its own [s]
   double pace = 0.0;  // squares of the rate over those of the deflection [1/s²]
   int groups = 0;
 
@@ -139,6 +142,7 @@ class AxisRegression {
   void solve() noexcept;
   void find_moved() noexcept;
   void find_deviations() noexcept;
+  void find_lateness() noexcept;
   void watch(const RegressionRow& row, double dt) noexcept;
   void end_probe() noexcept;
 

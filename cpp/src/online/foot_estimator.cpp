@@ -9,6 +9,7 @@
 #include "online/attitude_filter.hpp"
 #include "online/channel_watch.hpp"
 #include "online/contradiction.hpp"
+#include "online/delay_watch.hpp"
 #include "online/foot_tracker.hpp"
 
 namespace plantar {
@@ -97,6 +98,7 @@ struct FootEstimator::State {
   WeightWatch weight_watch;
   TurnWatch turn_watch;
   bool turns_differ = false;
+  DelayWatch delay_watch;
   std::vector<std::vector<ChainStep>> steps;
   std::vector<FootTracker> feet;
   std::vector<double> position, velocity, last_position;
@@ -308,12 +310,15 @@ void FootEstimator::State::step(const Reading& reading) noexcept {
   else
     slip.restart();
   const bool contradiction = weight_differs(total) || turns_differ;
+  Lateness all;
+  for (const FootTracker& foot : feet) all += foot.lateness();
+  const bool late = delay_watch.late(all, model.wrench_delay_std, period);
   for (std::size_t f = 0; f < feet.size(); ++f) {
     if (bad[f]) {
       feet[f].miss(bad[f]);
     } else {
       const bool begun = known && !was_bad[f] && ticks > FIRST_TICKS;
-      feet[f].learn(motion[f], total - feet[f].load(), {slips, contradiction}, begun, time, dt, period);
+      feet[f].learn(motion[f], total - feet[f].load(), {slips, contradiction, late}, begun, time, dt, period);
     }
     was_bad[f] = bad[f] != 0;
   }

@@ -46,7 +46,13 @@ void FootTracker::publish(int axis) noexcept {
   // says that was told.
   const bool tested = has_element(*foot_, axis) ? NORMAL * found.by_element < TOLD * k
                                                 : foot_->linear[axis] || memories_[axis].excluded();
-  out.identified = sure && tested && !memories_[axis].seen();
+  // A memory that is not modelled delays torques, too.
+  const bool modelled = has_element(*foot_, axis) || foot_->linear[axis] || memories_[axis].excluded();
+  const double late_half = std::max(quantile * found.late_grouped, NORMAL * found.late_white);
+  late_[axis] = {};
+  if (modelled && !memories_[axis].seen() && found.groups >= FEWEST_GROUPS && late_half > 0.0)
+    late_[axis] = {found.late / (late_half * late_half), 1.0 / (late_half * late_half)};
+  out.identified = sure && tested && !memories_[axis].seen() && !told_late_;
   const auto tell = [this](std::uint32_t flag, bool holds) {
     estimate_.flags = holds ? estimate_.flags | flag : estimate_.flags & ~flag;
   };

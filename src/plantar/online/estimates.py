@@ -36,6 +36,7 @@ class Flag(IntFlag):
     PITCH_UNTESTED = 8192
     ROLL_UNTESTED = 16384
     CONTRADICTION = 32768
+    LATE_WRENCH = 65536
 
 
 @dataclass(frozen=True)

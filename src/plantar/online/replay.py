@@ -23,6 +23,7 @@ UNTESTED = (Flag.PITCH_UNTESTED, Flag.ROLL_UNTESTED)
 SMALL = "too small motions to show whether the rubber has a memory: larger ones may have less stiffness"
 REST = "too small motions to test the slip torque that was told, on which this stiffness rests"
 FARTHER = "bend the foot beyond its slip angle to either side, as walking does"
+LATE = "torques follow deflections as if the force sensors' delay were not the one that was told"
 IDENTIFY = "run identify feet on logs of this robot, and give its result"
 
 
@@ -69,7 +70,9 @@ class Replay:
                 stiffness = _parameter(foot, axis, "stiffness", STIFFNESS_UNIT[axis], found.stiffness)
                 damping = _parameter(foot, axis, "damping", DAMPING_UNIT[axis], found.damping)
                 modelled, small = bool(found.slip_torque.std), bool(last.flags & untested)
-                if small and modelled:
+                if last.flags & Flag.LATE_WRENCH:
+                    stiffness, damping = (_weakened(row, LATE, IDENTIFY) for row in (stiffness, damping))
+                elif small and modelled:
                     stiffness = _weakened(stiffness, REST, FARTHER)
                 elif small or last.flags & memory:
                     reason = REMEMBERS if last.flags & memory else SMALL
