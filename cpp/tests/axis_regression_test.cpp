@@ -272,10 +272,37 @@ void a_short_probe_speaks() {
   check::that(watch.calm(), "what was said is forgotten");
 }
 
+// One probe of a tenth of a second that finds `change` of what was learnt, beside noise [N·m].
+bool probed(ChangeWatch& watch, double change, double noise) {
+  for (int i = 0; i < FEWEST_ROWS; ++i) {
+    const double angle = 0.01 * i / FEWEST_ROWS;
+    watch.add(1.0, angle, 0.0, 800.0 * change * angle, ROW);
+  }
+  return watch.judge(800.0, 1.0, noise);
+}
+
+// After unclear probes, and after the first one of the change itself.
+void two_clear_probes_are_enough() {
+  ChangeWatch watch;
+  for (int i = 0; i < 60; ++i) probed(watch, i % 2 ? 0.12 : -0.12, 0.8);
+  check::that(watch.calm(), "unclear probes say nothing");
+  check::that(!probed(watch, -0.69, 0.2) && probed(watch, -0.37, 0.2), "two clear ones do");
+}
+
+// Steps that differ are usual, once contrary ones have followed.
+void steps_that_differ_become_usual() {
+  ChangeWatch watch;
+  for (int i = 0; i < 60; ++i) check::that(!probed(watch, i % 2 ? 0.25 : -0.25, 0.05), "steps that differ");
+  probed(watch, -0.37, 0.05);
+  check::that(watch.softer() < 7.0, "so that one more says less");
+}
+
 }  // namespace
 
 int main() {
   a_short_probe_speaks();
+  two_clear_probes_are_enough();
+  steps_that_differ_become_usual();
   slow_motions_tell_the_stiffness();
   a_block_that_moves_the_value_widens_it();
   what_differs_between_blocks_moves_nothing();
