@@ -34,7 +34,7 @@ BROKEN = (1, 3)  # of these motions, those in which a fault of some seconds come
 BEGIN, LAST = 12.0, 4.0  # s of the log
 SAID = (
     Flag.INPUT_MISSING | Flag.FROZEN | Flag.TIME_FAULT | Flag.NOT_STANDING | Flag.EDGE | Flag.SLIP | Flag.IMPACT
-    | Flag.NEVER_LOADED | Flag.GROUND_CHANGED | Flag.CONTRADICTION
+    | Flag.NEVER_LOADED | Flag.GROUND_CHANGED | Flag.CONTRADICTION | Flag.LATE_WRENCH
 )  # fmt: skip
 AWAY = 1e-3  # rad: a deflection further from the faultless one is not yet itself again
 BLINK = 0.05  # s: a landing that counts a little later is no fault

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "check.hpp"
 #include "plantar/foot_estimator.hpp"
@@ -17,7 +18,7 @@ constexpr Frame HERE = {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
 constexpr int FINE = 20;  // steps of the rubber in one sample
 
 // One foot beside another one that carries the rest; the IMU sits on the ankle.
-EstimatorModel model(bool always) {
+EstimatorModel model(bool always, double told_std) {
   EstimatorModel model;
   model.weight = WEIGHT, model.joints = {"free"};
   for (const char* name : {"left", "right"}) {
@@ -26,7 +27,7 @@ EstimatorModel model(bool always) {
     foot.bush = foot.sole = foot.sensor = HERE;
     foot.polygon = {{0.1, 0.06}, {-0.1, 0.06}, {-0.1, -0.06}, {0.1, -0.06}};
     foot.place_std = {0.003, 0.003};
-    foot.slip_angle = {SLIP_ANGLE, 0.0}, foot.slip_torque = {SLIP_TORQUE, 0.0}, foot.slip_torque_std = {1e-6, 0.0};
+    foot.slip_angle = {SLIP_ANGLE, 0.0}, foot.slip_torque = {SLIP_TORQUE, 0.0}, foot.slip_torque_std = {told_std, 0.0};
     foot.linear = {false, true};
     model.feet.push_back(foot);
   }
@@ -35,8 +36,11 @@ EstimatorModel model(bool always) {
 
 // `angle(t)` and `load(t)` of the left foot, sampled at `rate_hz` for `seconds`; what is known of its pitch at the end.
 template <class Angle, class Load>
-FootEstimate after(double seconds, double rate_hz, bool always, double first_state, Angle angle, Load load) {
-  FootEstimator estimator(model(always));
+FootEstimate after(double seconds, double rate_hz, bool always, double first_state, Angle angle, Load load,
+                   double told_std = 1e-6, double torque_noise = 0.0) {
+  FootEstimator estimator(model(always, told_std));
+  std::mt19937 random(0);
+  std::normal_distribution<double> normal;
   FootEstimate last;
   double state = first_state, position = 0.0;
   for (int i = 0; i < static_cast<int>(seconds * rate_hz); ++i) {
@@ -47,7 +51,7 @@ FootEstimate after(double seconds, double rate_hz, bool always, double first_sta
     }
     const double p = angle(t), rate = (angle(t + 1e-6) - angle(t - 1e-6)) / 2e-6, noise = 1e-9 * std::sin(1e5 * t);
     const double carried = load(t), stands = carried > 0.1 * WEIGHT ? 1.0 : 0.0;
-    const double torque = stands * (STIFFNESS * p + DAMPING * rate + SLIP_TORQUE * state);
+    const double torque = stands * (STIFFNESS * p + DAMPING * rate + SLIP_TORQUE * state) + torque_noise * normal(random);
     const double attitude[4] = {std::cos(p / 2), noise, -std::sin(p / 2), noise}, gyroscope[3] = {noise, -rate, noise};
     const std::array<double, 6> wrench[2] = {{0.0, noise, carried + noise, noise, torque + noise, 0.0},
                                              {0.0, noise, WEIGHT - carried + noise, noise, noise, 0.0}};
@@ -73,6 +77,20 @@ void knows_nothing_of_a_foot_that_always_stands() {
   check::near(found.pitch.stiffness.value, STIFFNESS, 5e-3 * STIFFNESS, "stiffness of a foot that always stands");
 }
 
+// Within its slip angle the element is a spring beside the spring, and only what was told of it tells both apart.
+void says_what_rests_on_what_it_was_told() {
+  constexpr double NOISE = 0.1;
+  const auto swings = [](double size) { return [size](double t) { return size * std::sin(2.0 * t); }; };
+  const FootEstimate small = after(60.0, 200.0, false, 0.0, swings(0.006), all, 0.02 * SLIP_TORQUE, NOISE);
+  check::that((small.flags & (PITCH_UNTESTED | PITCH_UNKNOWN)) == PITCH_UNTESTED, "small motions test no slip torque");
+  check::that(!small.pitch.identified && small.pitch.stiffness.half_width > 0.03 * STIFFNESS, "and tell no stiffness");
+  const FootEstimate large = after(60.0, 200.0, false, 0.0, swings(0.02), all, 0.02 * SLIP_TORQUE, NOISE);
+  check::that((large.flags & (PITCH_UNTESTED | PITCH_UNKNOWN)) == 0 && large.pitch.identified, "large ones do");
+  check::near(large.pitch.stiffness.value, STIFFNESS, 0.01 * STIFFNESS, "and tell the stiffness");
+  const FootEstimate sure = after(60.0, 200.0, false, 0.0, swings(0.006), all, 0.002 * SLIP_TORQUE, NOISE);
+  check::that((sure.flags & PITCH_UNTESTED) == 0 && sure.pitch.identified, "what is well known needs no test");
+}
+
 // Each landing swings the element from one end to the other while the sole lies flat; the stance itself moves little.
 void is_known_from_the_first_landing_on() {
   constexpr double STEP = 1.3, AIR = 0.4, LANDS = 0.25, TURN = 2.0 * std::numbers::pi;
@@ -95,5 +113,6 @@ int main() {
   follows_what_turns_between_samples();
   knows_nothing_of_a_foot_that_always_stands();
   is_known_from_the_first_landing_on();
+  says_what_rests_on_what_it_was_told();
   return check::result();
 }

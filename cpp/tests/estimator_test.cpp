@@ -98,6 +98,23 @@ void learns(double rate_hz, double delay) {
   check::that(last.contact == ContactState::stance && last.flags == 0, "stands, nothing to object");
 }
 
+// Wrenches that are later than was told from the first tick on, or earlier, follow the deflection otherwise at each
+// frequency.
+void a_delay_that_was_told_wrongly_is_seen(double delay) {
+  constexpr double TOLD = 0.01;
+  FootEstimator estimator(two_feet(TOLD));
+  FootEstimate last;
+  bool believed = false;
+  for (int i = 0; i < 12000; ++i) {
+    const double t = i / 200.0;
+    last = estimator.step(Sensors(t, delay).reading(t))[0];
+    believed = believed || last.pitch.identified;
+  }
+  const bool wrong = delay != TOLD;
+  check::that(((last.flags & LATE_WRENCH) != 0) == wrong, "a delay that is not the one that was told");
+  check::that(believed != wrong, "and its numbers are not believed");
+}
+
 // A fault from 20 s to 21 s: outputs stay finite, a flag says so, and all is well a second later.
 template <class Fault>
 void survives(Fault fault, std::uint32_t flag, const char* what) {
@@ -241,6 +258,7 @@ void broken_models_are_refused() {
 }  // namespace
 
 int main() {
+  for (const double delay : {0.01, 0.03, -0.01}) a_delay_that_was_told_wrongly_is_seen(delay);
   learns(1000.0, 0.0);
   learns(1000.0, 0.0075);
   learns(1000.0, -0.004);

@@ -202,6 +202,27 @@ def test_a_frozen_force_sensor_is_seen(robot: RobotModel) -> None:
     assert not (flags[2400:] & Flag.FROZEN).any()
 
 
+def test_an_encoder_that_never_moves_while_the_other_legs_does_is_frozen(robot: RobotModel) -> None:
+    log, dead = record(sway(duration=40.0)), "joint.left_ankle_roll.position"
+    estimator = FootEstimator(robot, wrench_delay=0.0)
+    replay = estimator.replay(with_columns(log, **{dead: np.full(len(log), 0.01)}))
+    assert replay.estimate("left").flags & Flag.FROZEN
+    assert not replay.estimate("left").roll.identified
+    assert not replay.estimate("right").flags & Flag.FROZEN
+    assert replay.estimate("right").roll.identified
+    still = record(sway(duration=10.0, seed=3))
+    again = estimator.replay(with_columns(still, **{dead: np.full(len(still), 0.02)}))
+    assert again.estimate("left", 5).flags & Flag.FROZEN, "nobody has mended it in between"
+    assert not estimator.replay(still).estimate("left").flags & Flag.FROZEN, "until it moves"
+
+
+def test_a_joint_that_stands_in_both_legs_is_not_frozen(robot: RobotModel) -> None:
+    log = record(sway(duration=20.0))
+    still = {f"joint.{leg}_leg_z.position": np.zeros(len(log)) for leg in ("left", "right")}
+    replay = FootEstimator(robot, wrench_delay=0.0).replay(with_columns(log, **still))
+    assert not (replay.column("left", "flags").astype(int) & Flag.FROZEN).any()
+
+
 def test_a_foot_that_never_stands_is_said_to(robot: RobotModel) -> None:
     log = record(sway(duration=20.0, lifts=(("left", -1.0, 30.0),)))
     replay = FootEstimator(robot).replay(log)

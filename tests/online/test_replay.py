@@ -88,10 +88,24 @@ def test_how_long_a_step_takes_is_told_in_microseconds() -> None:
 
 
 @pytest.mark.parametrize(
-    ("flag", "word"), [(Flag.PITCH_UNTESTED, "too small"), (Flag.PITCH_MEMORY, "memory")]
+    ("flag", "word"),
+    [(Flag.PITCH_UNTESTED, "too small"), (Flag.PITCH_MEMORY, "memory"), (Flag.LATE_WRENCH, "delay")],
 )
 def test_numbers_that_other_motions_change_are_weak(flag: Flag, word: str) -> None:
     replay = ended(flags=float(flag), pitch_stiffness=400.0, pitch_stiffness_half_width=1.0)
     row = next(row for row in replay.parameters if (row.axis, row.name) == ("pitch", "stiffness"))
     assert row.verdict == "weak"
     assert word in row.reason
+
+
+def test_a_stiffness_that_rests_on_what_was_told_is_weak_and_its_damping_is_not() -> None:
+    known = {"pitch_stiffness": 400.0, "pitch_stiffness_half_width": 9.0, "pitch_slip_torque_std": 0.05}
+    known |= {"pitch_slip_torque": 5.0, "pitch_damping": 20.0, "pitch_damping_half_width": 0.5}
+    rows = {
+        row.name: row
+        for row in ended(flags=float(Flag.PITCH_UNTESTED), **known).parameters
+        if row.axis == "pitch"
+    }
+    assert rows["stiffness"].verdict == "weak"
+    assert "slip torque that was told" in rows["stiffness"].reason
+    assert rows["damping"].verdict == "usable"

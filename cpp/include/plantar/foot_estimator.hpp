@@ -49,9 +49,10 @@ enum Flag : std::uint32_t {
   GROUND_CHANGED = 1 << 10,  // the stiffness jumped lately: it is learnt anew
   PITCH_MEMORY = 1 << 11,    // the rubber has a memory that the model lacks: other motions have another stiffness
   ROLL_MEMORY = 1 << 12,     // the same of roll
-  PITCH_UNTESTED = 1 << 13,  // its motions were too small to show a memory, and no batch fit has excluded one
+  PITCH_UNTESTED = 1 << 13,  // its motions were too small to show a memory, or to test the slip torque that was told
   ROLL_UNTESTED = 1 << 14,   // the same of roll
-  CONTRADICTION = 1 << 15    // gyroscope and attitude turn differently, or the feet do not carry the weight
+  CONTRADICTION = 1 << 15,   // gyroscope and attitude turn differently, or the feet do not carry the weight
+  LATE_WRENCH = 1 << 16      // torques follow deflections as if the force sensors' delay were not the one that was told
 };
 
 // A parameter with its standard deviation and half of its 95 % interval (wider than 1.96 deviations while data are
@@ -71,7 +72,7 @@ struct AxisEstimate {
   Parameter damping;        // [N·m·s/rad]
   Parameter slip_torque;    // [N·m], of a Jenkins element where the model has one
   double offset = 0.0;      // [N·m], of this stance
-  bool identified = false;  // whether the stiffness is known within a tenth, and a memory is modelled or excluded
+  bool identified = false;  // whether the stiffness is known within a tenth, and a memory is tested or excluded
 };
 
 // One foot at one tick.

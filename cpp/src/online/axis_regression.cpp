@@ -7,38 +7,12 @@ namespace plantar {
 
 namespace {
 
-constexpr double COLOUR = 8.0;        // rows in a cycle of the filter: so many say the same
-constexpr double LEAST_LEFT = 1e-3;   // share of what is known that must stay when one group is left out
 constexpr double MOST_NOISE = 0.9;    // of a square: beyond, nothing of it is known
 constexpr int GROUPS_TO_WATCH = 6;
 constexpr double SETTLED = 0.1;       // deviation over stiffness, from which jumps are looked for
 constexpr double DRIFT = 3e-5;        // rad/s, of the attitude: a tenth of a degree in a minute
 constexpr double ANYWHERE = 0.6;      // deviation of what is anywhere between -1 and 1; an element is as stiff as the rest
 constexpr double FIRST_NOISE = 1e-3;  // of the weight, as torque at 1 m, before any residual is known
-
-void squares_of(const RootTriangle<UNKNOWNS>& root, double (&a)[UNKNOWNS][UNKNOWNS]) noexcept {
-  for (int i = 0; i < UNKNOWNS; ++i)
-    for (int j = i; j < UNKNOWNS; ++j) {
-      a[i][j] = 0.0;
-      for (int k = 0; k <= i; ++k) a[i][j] += root.r[k][i] * root.r[k][j];
-      a[j][i] = a[i][j];
-    }
-}
-
-// m x = b by elimination; m is positive definite and used up, as b is.
-void solve_positive(double (&m)[UNKNOWNS][UNKNOWNS], double (&b)[UNKNOWNS], double (&x)[UNKNOWNS]) noexcept {
-  for (int p = 0; p < UNKNOWNS; ++p)
-    for (int i = p + 1; i < UNKNOWNS; ++i) {
-      const double k = m[i][p] / m[p][p];
-      for (int j = p; j < UNKNOWNS; ++j) m[i][j] -= k * m[p][j];
-      b[i] -= k * b[p];
-    }
-  for (int i = UNKNOWNS - 1; i >= 0; --i) {
-    x[i] = b[i];
-    for (int j = i + 1; j < UNKNOWNS; ++j) x[i] -= m[i][j] * x[j];
-    x[i] /= m[i][i];
-  }
-}
 
 }  // namespace
 
@@ -60,7 +34,7 @@ void AxisRegression::restart() noexcept {
   watch_.restart();
   values_ = {};
   before_ = {};
-  values_.value = prior_.mean, values_.std = values_.resolved = prior_.spread;
+  values_.value = prior_.mean, values_.std = values_.resolved = values_.grouped = prior_.spread;
 }
 
 // Rows are compared with what was learnt, once that is worth it; at a jump everything is learnt anew. While a jump is
@@ -107,7 +81,9 @@ void AxisRegression::add(const RegressionRow& row, double dt) noexcept {
   open_noise_[BY_LOAD] += row.noise[OF_HORIZONTAL] * load;
   open_noise_[BY_LOAD_SQUARED] += row.noise[OF_HORIZONTAL] * load * load;
   ++open_rows_, open_time_ += dt, fresh_ = true;
-  if (open_time_ >= std::min(BLOCK * group_time_, LONGEST_BLOCK)) close();
+  if (dt > 0.0) together_ = std::clamp(prior_.noise_time / dt, 1.0, COLOUR);
+  const bool first = used_ <= FEWEST_GROUPS;
+  if (open_time_ >= (first ? FIRST_BLOCK : std::min(BLOCK * group_time_, LONGEST_BLOCK))) close();
 }
 
 // The open block with what is known of drift, twist and the element's beginning: they are small. A short block cannot
@@ -131,7 +107,16 @@ AxisRegression::Part AxisRegression::open_part() const noexcept {
   const auto block = pinned();
   for (int i = 0; i <= UNKNOWNS; ++i)
     for (int j = i; j <= UNKNOWNS; ++j) part.triangle.r[i][j] = block.r[OWN + i][OWN + j];
-  for (int i = 0; i < NOISE_SUMS; ++i) part.noise[i] = open_noise_[i];
+  // The offset has taken the noise's slowest part with it, as the others have where they are not pinned. What an element
+  // has of it is slower still: at no frequency its share is one, in the mean over those that pass `element_share`.
+  double taken = 0.0;
+  for (int e = 0; e < OWN; ++e)
+    if (block.r[e][e] > 0.0) taken += open_.r[e][e] * open_.r[e][e] / (block.r[e][e] * block.r[e][e]);
+  const double share = open_time_ > 0.0 ? prior_.noise_time * taken / open_time_ : 1.0;
+  const double left = std::max(1.0 - share, 0.0), slow = std::max(1.0 - share / prior_.element_share, 0.0);
+  for (int i = 0; i < NOISE_SUMS; ++i) part.noise[i] = open_noise_[i] * left;
+  part.noise[ANGLE_BY_ELEMENT] = open_noise_[OF_ANGLE_AND_ELEMENT] * prior_.element_share * slow;
+  part.noise[RATE_BY_ELEMENT] = open_noise_[OF_RATE_AND_ELEMENT] * prior_.element_lag * slow;
   part.rows = open_rows_ - 1;
   return part;
 }
@@ -206,9 +191,9 @@ AxisRegression::Shared AxisRegression::completed(const Part& data) const noexcep
 std::array<AxisRegression::Line, NOISE_LINES> AxisRegression::noise_lines(const Part& data) const noexcept {
   std::array<Line, NOISE_LINES> lines;
   const double* sums = data.noise;
-  const double load = data.mean_load();
+  const double load = data.over(BY_LOAD, OF_HORIZONTAL);
   for (int source = 0; source < NOISE_SOURCES; ++source) {
-    lines[source] = direction(source, load);
+    lines[source] = direction(source, data);
     for (double& part : lines[source]) part *= std::sqrt(sums[source]);
   }
   Line& changes = lines[NOISE_SOURCES] = {};
@@ -217,18 +202,18 @@ std::array<AxisRegression::Line, NOISE_LINES> AxisRegression::noise_lines(const 
   return lines;
 }
 
-// What one unit of a source's noise adds to the columns, and to the torque, under a load.
-AxisRegression::Line AxisRegression::direction(int source, double load) const noexcept {
+// What one unit of a source's noise adds to the columns, and to the torque, in the mean of some rows.
+AxisRegression::Line AxisRegression::direction(int source, const Part& data) const noexcept {
   Line along = {};
   switch (source) {
     case OF_ANGLE_AND_ELEMENT:
-      along[SLIP_TORQUE] = prior_.element_slope * prior_.element_share;
+      along[SLIP_TORQUE] = prior_.element_slope * data.over(ANGLE_BY_ELEMENT, OF_ANGLE_AND_ELEMENT);
       [[fallthrough]];
     case OF_ANGLE:
       along[STIFFNESS] = 1.0;
       break;
     case OF_RATE_AND_ELEMENT:
-      along[SLIP_TORQUE] = prior_.element_slope * prior_.element_lag;
+      along[SLIP_TORQUE] = prior_.element_slope * data.over(RATE_BY_ELEMENT, OF_RATE_AND_ELEMENT);
       [[fallthrough]];
     case OF_RATE:
       along[DAMPING] = 1.0;
@@ -237,7 +222,8 @@ AxisRegression::Line AxisRegression::direction(int source, double load) const no
       along[ASIDE] = 1.0, along[UNKNOWNS] = prior_.load_arm;
       break;
     default:
-      along[ABOVE] = 1.0, along[COMPLIANCE] = load, along[UNKNOWNS] = prior_.horizontal_arm;
+      along[ABOVE] = 1.0, along[COMPLIANCE] = data.over(BY_LOAD, OF_HORIZONTAL);
+      along[UNKNOWNS] = prior_.horizontal_arm;
   }
   for (int i = 0; i < UNKNOWNS; ++i) along[i] /= prior_.scale[i];
   return along;
@@ -256,6 +242,7 @@ void AxisRegression::solve() noexcept {
   for (int i = 0; i < UNKNOWNS; ++i)
     if (!std::isfinite(x[i])) return;
   for (int i = 0; i < UNKNOWNS; ++i) values_.value[i] = x[i] / prior_.scale[i];
+  find_moved();
   if (open_rows_ >= FEWEST_ROWS && open_.r[0][0] > 0.0) {
     const auto block = pinned();
     double own[OWN];
@@ -269,54 +256,13 @@ void AxisRegression::solve() noexcept {
   }
 }
 
-void AxisRegression::find_deviations() noexcept {
-  values_.groups = used_;
-  if (used_ < FEWEST_GROUPS) return;
-  const Shared whole = completed(total_);
-  double x[UNKNOWNS], normal[UNKNOWNS][UNKNOWNS], mean[UNKNOWNS] = {}, moved[MOST_GROUPS][UNKNOWNS];
-  whole.solve(x);
-  squares_of(whole, normal);
-  for (int g = 0; g < used_; ++g) {
-    // Without this group: x + (A - A_g)⁻¹ (A_g x - b_g).
-    const Shared& part = groups_[g].triangle;
-    double own[UNKNOWNS][UNKNOWNS], m[UNKNOWNS][UNKNOWNS], b[UNKNOWNS] = {};
-    squares_of(part, own);
-    for (const Line& line : noise_lines(groups_[g]))
-      for (int i = 0; i < UNKNOWNS; ++i) {
-        for (int j = 0; j < UNKNOWNS; ++j) own[i][j] -= line[i] * line[j];
-        b[i] += line[i] * line[UNKNOWNS];
-      }
-    for (int i = 0; i < UNKNOWNS; ++i) {
-      for (int j = 0; j <= i; ++j) b[i] -= part.r[j][i] * part.r[j][UNKNOWNS];
-      for (int j = 0; j < UNKNOWNS; ++j) b[i] += own[i][j] * x[j], m[i][j] = normal[i][j] - own[i][j];
-      m[i][i] = std::max(m[i][i], LEAST_LEFT * normal[i][i]);
-    }
-    solve_positive(m, b, moved[g]);
-    for (int i = 0; i < UNKNOWNS; ++i) mean[i] += moved[g][i] / used_;
-  }
-  for (int i = 0; i < UNKNOWNS; ++i) {
-    double squares = 0.0, m[UNKNOWNS][UNKNOWNS], unit[UNKNOWNS] = {}, row[UNKNOWNS];
-    for (int g = 0; g < used_; ++g) squares += (moved[g][i] - mean[i]) * (moved[g][i] - mean[i]);
-    squares *= (used_ - 1.0) / used_;
-    unit[i] = 1.0;
-    std::copy(&normal[0][0], &normal[0][0] + UNKNOWNS * UNKNOWNS, &m[0][0]);
-    solve_positive(m, unit, row);
-    values_.resolved[i] = noise_ * std::sqrt(std::max(row[i], 0.0)) / prior_.scale[i];
-    for (int j = 0; j < UNKNOWNS; ++j) {  // what the prior may be off by
-      const double moves = row[j] * noise_ * noise_ / (prior_.spread[j] * prior_.scale[j]);
-      squares += moves * moves;
-    }
-    const double deviation = std::sqrt(squares) / prior_.scale[i];
-    values_.std[i] = std::isfinite(deviation) ? std::min(deviation, prior_.spread[i]) : prior_.spread[i];
-  }
-}
-
 void AxisRegression::work() noexcept {
   if (changed_) {
     sum_up();
     changed_ = false, unsure_ = true;
   } else if (unsure_) {
     find_deviations();
+    if (used_ >= FEWEST_GROUPS) find_lateness();
     unsure_ = false;
   } else if (fresh_) {
     solve();

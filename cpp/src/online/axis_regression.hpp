@@ -7,7 +7,8 @@
 //
 // Noise of angles and rates adds to their squares but to no product with the torque, and so draws the values to zero;
 // noise of forces also adds to their products with the torque about a bush that is not at the sensor. Both are
-// measured, and their expected share is taken off again (W. A. Fuller, Measurement Error Models, Wiley 1987).
+// measured, and their expected share is taken off again (W. A. Fuller, Measurement Error Models, Wiley 1987), but for
+// what went with the offset and the others of each block.
 #pragma once
 
 #include <array>
@@ -18,9 +19,10 @@
 namespace plantar {
 
 // Columns of a row beside the offset's: what each unknown multiplies. The bush's centre is ASIDE of and ABOVE its
-// place, and higher the more it is loaded (COMPLIANCE).
-enum Unknown : int { STIFFNESS, DAMPING, SLIP_TORQUE, ASIDE, ABOVE, COMPLIANCE };
-constexpr int UNKNOWNS = 6;
+// place, and higher the more it is loaded (COMPLIANCE). A torque that is later than was told lacks what it changes by in
+// that time (LATE): the values do not follow that, each group tells it beside values of its own.
+enum Unknown : int { STIFFNESS, DAMPING, SLIP_TORQUE, ASIDE, ABOVE, COMPLIANCE, LATE };
+constexpr int UNKNOWNS = 7;
 // What each block has of its own: an offset, its drift, the zero of the yaw torque, which pitch turns into roll, and
 // where between its bounds the element was when the block began.
 enum Own : int { OFFSET, SLOPE, TWIST, BEGINNING };
@@ -31,17 +33,20 @@ constexpr int BLOCK_UNKNOWNS = OWN + UNKNOWNS;
 // horizontal force.
 enum NoiseSource : int { OF_ANGLE, OF_RATE, OF_ANGLE_AND_ELEMENT, OF_RATE_AND_ELEMENT, OF_LOAD, OF_HORIZONTAL };
 constexpr int NOISE_SOURCES = 6;
-// Sums over rows: each source's variance; the horizontal force's times the load, and times its square.
-enum NoiseSum : int { BY_LOAD = NOISE_SOURCES, BY_LOAD_SQUARED, NOISE_SUMS };
+// Sums over rows: each source's variance; the horizontal force's times the load, and times its square; and what an
+// angle's and a rate's have in common with the element that follows them.
+enum NoiseSum : int { BY_LOAD = NOISE_SOURCES, BY_LOAD_SQUARED, ANGLE_BY_ELEMENT, RATE_BY_ELEMENT, NOISE_SUMS };
 // One line a source, and one for what the load's changes add to the horizontal force's.
 constexpr int NOISE_LINES = NOISE_SOURCES + 1;
 
+constexpr double COLOUR = 8.0;  // rows in a cycle of the filter: so many say the same
 constexpr int MOST_GROUPS = 12;
 constexpr int FEWEST_GROUPS = 3;        // that say how they differ
 constexpr double FIRST_GROUP = 1.0;     // s of rows in one group, in the beginning
 constexpr double LARGEST_GROUP = 8.0;   // s: errors hang together for less
 constexpr double MEMORY = 2.0;          // fillings of each group that are remembered
-constexpr double BLOCK = 2.5;           // groups with one offset, of a foot that stands
+constexpr double FIRST_BLOCK = 2.5;     // s with one offset, of a foot that stands, until groups say how they differ
+constexpr double BLOCK = 5.0;           // groups, from then on: in a short block the offset takes most of a slow motion
 constexpr double LONGEST_BLOCK = 10.0;  // s
 constexpr int FEWEST_ROWS = 8;          // of a block: with fewer its offset takes most of it
 
@@ -62,13 +67,20 @@ struct RegressionPrior {
   double load_arm;       // torque that the sensor's load and horizontal force bring with them to the bush [m]
   double horizontal_arm;
   double twist;  // how far the yaw torque's zero may be off [N·m]; 0: of no account about this axis
+  double noise_time;  // rows' noise hangs together for so long [s]
 };
 
 struct AxisValues {
   std::array<double, UNKNOWNS> value = {};
-  std::array<double, UNKNOWNS> std = {};       // of the rows' errors and of the prior
-  std::array<double, UNKNOWNS> resolved = {};  // deviations that the rows' scatter alone would leave
+  // Deviations: by how much groups differ; what errors leave that hang together no longer than noise does, of which few
+  // groups may show less by chance; by what the prior may be off.
+  std::array<double, UNKNOWNS> grouped = {}, white = {}, told = {};
+  std::array<double, UNKNOWNS> std = {};       // all of it
+  std::array<double, UNKNOWNS> resolved = {};  // what the rows' scatter and the prior alone would leave
+  std::array<double, UNKNOWNS> moved = {};     // by the block that is open, of which no group has told yet how it differs
+  double by_element = 0.0;                     // of the stiffness, by what was told of the element's torque
   double offset = 0.0;
+  double late = 0.0, late_grouped = 0.0, late_white = 0.0;  // than was told, as groups tell it, each beside values of its own [s]
   double pace = 0.0;  // squares of the rate over those of the deflection [1/s²]
   int groups = 0;
 
@@ -107,8 +119,9 @@ class AxisRegression {
     void add(const Part& other) noexcept;
     void fade(double left) noexcept;
     double excitation(double scale) const noexcept;
-    double mean_load() const noexcept {
-      return noise[OF_HORIZONTAL] > 0.0 ? noise[BY_LOAD] / noise[OF_HORIZONTAL] : 0.0;
+    // Of a product with a source's noise, over its variance.
+    double over(NoiseSum product, NoiseSource source) const noexcept {
+      return noise[source] > 0.0 ? noise[product] / noise[source] : 0.0;
     }
   };
   struct Group : Part {
@@ -123,11 +136,13 @@ class AxisRegression {
   // With the prior, without the noise: the triangle that the values are solved from.
   Shared completed(const Part& data) const noexcept;
   using Line = std::array<double, UNKNOWNS + 1>;
-  Line direction(int source, double load) const noexcept;
+  Line direction(int source, const Part& data) const noexcept;
   // What noise has added to the squares of some rows is the squares of these.
   std::array<Line, NOISE_LINES> noise_lines(const Part& data) const noexcept;
   void solve() noexcept;
+  void find_moved() noexcept;
   void find_deviations() noexcept;
+  void find_lateness() noexcept;
   void watch(const RegressionRow& row, double dt) noexcept;
   void end_probe() noexcept;
 
@@ -141,7 +156,9 @@ class AxisRegression {
   double group_time_ = FIRST_GROUP;
   Part total_;
   double noise_ = 0.0;  // of a row, as much as rows that hang together leave [N·m]
+  double together_ = 1.0;  // rows with the same noise
   bool changed_ = false, unsure_ = false, fresh_ = false;
+  std::array<double, UNKNOWNS> closed_ = {};  // values without the open block
   bool jumped_ = false;
   ChangeWatch watch_;
   AxisValues values_, before_;  // now, and before a jump was suspected

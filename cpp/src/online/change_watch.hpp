@@ -1,9 +1,10 @@
 // Whether the stiffness has jumped: from firm ground onto mats, or back.
 //
 // Each probe, a part of a second of rows with an offset of its own, says how far the stiffness is from what was learnt.
-// Its usual scatter is followed, so that steps that differ anyway raise no alarm. Evidence for a large change is added
-// up for either direction, and taken off again by probes that speak against it (CUSUM; E. S. Page, Biometrika 41,
-// 1954).
+// Its usual scatter beyond its own noise is followed, so that steps that differ anyway raise no alarm, and a clear probe
+// counts for what it is after many unclear ones. Evidence for a large change is added up for either direction, and taken
+// off again by probes that speak against it (CUSUM; E. S. Page, Biometrika 41, 1954). Probes that speak for a change are
+// no usual scatter until others have spoken against it: the first one of a change shall not hide the second.
 #pragma once
 
 #include <algorithm>
@@ -34,7 +35,7 @@ class ChangeWatch {
     probe_.add(row);
     ++rows_, time_ += dt;
   }
-  void forget() noexcept { drop(), softer_ = stiffer_ = 0.0; }
+  void forget() noexcept { drop(), softer_ = stiffer_ = suspected_ = 0.0, probes_ = 0; }
   // Nothing speaks for a change, and no probe has begun.
   bool calm() const noexcept { return rows_ == 0 && softer_ == 0.0 && stiffer_ == 0.0; }
   // What speaks for a change to either side [log-likelihood].
@@ -52,19 +53,25 @@ class ChangeWatch {
     drop();
     if (own > SHOWS) return false;
     const double known = deviation / stiffness;
-    const double variance = std::max(scatter_, own * own) + known * known;
+    const double variance = scatter_ + own * own + known * known;
     const auto evidence = [&](double change) {
       return std::clamp(change * (away - 0.5 * change) / variance, -MOST_OF_ONE, MOST_OF_ONE);
     };
     softer_ = std::max(0.0, softer_ + evidence(-CHANGE));
     stiffer_ = std::max(0.0, stiffer_ + evidence(CHANGE));
-    scatter_ += SCATTER_NEWS * (std::min(away * away, ODD * scatter_) - scatter_);
+    const double beyond = std::clamp(away * away - own * own, 0.0, ODD * (scatter_ + own * own));
+    suspected_ += beyond, ++probes_;
+    for (; calm() && probes_ > 0; --probes_) {
+      const double mean = suspected_ / probes_;
+      scatter_ += SCATTER_NEWS * (mean - scatter_), suspected_ -= mean;
+    }
     return std::max(softer_, stiffer_) >= SURE_OF_CHANGE;
   }
 
  private:
   RootTriangle<3> probe_;
-  int rows_ = 0;
+  int rows_ = 0, probes_ = 0;  // since nothing was suspected
+  double suspected_ = 0.0;     // sum of what these were off beyond their noise
   double time_ = 0.0, softer_ = 0.0, stiffer_ = 0.0, scatter_ = FIRST_SCATTER * FIRST_SCATTER;
 };
 

@@ -15,6 +15,7 @@ constexpr double NOISY_TIME = 10.0;                    // s, in which a noisy ch
 constexpr double NOISY_REPEATS = 0.01;                 // so rarely
 constexpr double WHOLE_TURN = 2.0 * std::numbers::pi;  // rad: no joint of a leg turns further: those are degrees
 constexpr double FROZEN_WAY = 0.01;  // rad or m that a joint's velocity says it moved while its position stood
+constexpr double TWIN_MOVED = 0.02;  // rad or m that the other leg's joint has moved, while this one never did by a bit
 
 inline bool all_finite(std::span<const double> values) noexcept {
   for (const double value : values)
@@ -53,17 +54,30 @@ class DeviceWatch {
   Channel channels_[SIZE];
 };
 
-// An encoder may well repeat itself at rest: it is frozen where its velocity says that the joint moved.
+// An encoder may well repeat itself at rest: it is frozen where its velocity says that the joint moved, or where it has
+// not changed by a bit since the first tick and the same joint of another leg has moved.
 class JointWatch {
  public:
+  // Time begins anew, perhaps elsewhere. Nobody mends an encoder in between: one that was dead is, until it moves.
+  void restart() noexcept { way_ = 0.0, begun_ = false; }
+
   bool frozen(double position, double velocity, double dt) noexcept {
-    way_ = position == last_ ? way_ + std::abs(velocity) * dt : 0.0;
+    way_ = begun_ && position == last_ ? way_ + std::abs(velocity) * dt : 0.0;
+    if (begun_ && position != last_) dead_ = false;
     last_ = position;
+    low_ = begun_ ? std::min(low_, position) : position, high_ = begun_ ? std::max(high_, position) : position;
+    begun_ = true;
     return way_ > FROZEN_WAY;
+  }
+  // Whether it has never moved, although its twin has.
+  bool dead(const JointWatch& twin) noexcept {
+    dead_ = dead_ || (begun_ && high_ == low_ && twin.begun_ && twin.high_ - twin.low_ > TWIN_MOVED);
+    return dead_;
   }
 
  private:
-  double last_ = 0.0, way_ = 0.0;
+  double last_ = 0.0, way_ = 0.0, low_ = 0.0, high_ = 0.0;
+  bool begun_ = false, dead_ = false;
 };
 
 }  // namespace plantar

@@ -9,6 +9,7 @@
 #include "online/attitude_filter.hpp"
 #include "online/channel_watch.hpp"
 #include "online/contradiction.hpp"
+#include "online/delay_watch.hpp"
 #include "online/foot_tracker.hpp"
 
 namespace plantar {
@@ -36,6 +37,18 @@ double checked_weight(const EstimatorModel& model) {
   return model.weight;
 }
 
+// Of each joint, the one that is as far from another foot: -1 where none is, or both feet share it.
+std::vector<int> twins(const EstimatorModel& model) {
+  std::vector<int> found(model.joints.size(), -1);
+  for (const FootModel& foot : model.feet)
+    for (const FootModel& other : model.feet)
+      for (std::size_t k = 1; k <= std::min(foot.path.size(), other.path.size()); ++k) {
+        const int joint = foot.path[foot.path.size() - k].joint, its = other.path[other.path.size() - k].joint;
+        if (joint != its) found[joint] = its;
+      }
+  return found;
+}
+
 }  // namespace
 
 struct FootEstimator::State {
@@ -49,6 +62,8 @@ struct FootEstimator::State {
         last_position(given.joints.size()),
         joint_watch(given.joints.size()),
         joint_bad(given.joints.size()),
+        joint_dead(given.joints.size()),
+        twin(twins(given)),
         wrench_watch(given.feet.size()),
         motion(given.feet.size()),
         bad(given.feet.size()),
@@ -83,11 +98,14 @@ struct FootEstimator::State {
   WeightWatch weight_watch;
   TurnWatch turn_watch;
   bool turns_differ = false;
+  DelayWatch delay_watch;
   std::vector<std::vector<ChainStep>> steps;
   std::vector<FootTracker> feet;
   std::vector<double> position, velocity, last_position;
   std::vector<JointWatch> joint_watch;
   std::vector<std::uint32_t> joint_bad;
+  std::vector<bool> joint_dead;
+  std::vector<int> twin;
   std::vector<DeviceWatch<6>> wrench_watch;
   DeviceWatch<4> attitude_watch;
   DeviceWatch<3> gyroscope_watch;
@@ -117,6 +135,7 @@ FootEstimator::State::Time FootEstimator::State::keep_time(double now) noexcept 
   if (first || passed < 0.0 || passed > std::max(GAP, GAP_PERIODS * period)) {
     ticks = 1, known = false;
     slip.restart(), filter.restart(), turn_watch.restart(), weight_watch.restart();
+    for (JointWatch& watch : joint_watch) watch.restart();
     return first ? Time::onward : Time::jumped;
   }
   dt = passed;
@@ -179,13 +198,17 @@ void FootEstimator::State::joints(const Reading& reading) noexcept {
       last_position[j] = UNREAD;
       continue;
     }
-    if (given && joint_watch[j].frozen(q, v, dt)) joint_bad[j] = FROZEN;
+    if (joint_watch[j].frozen(q, v, dt)) joint_bad[j] = FROZEN;
     const bool read = known && last_position[j] != UNREAD;
     const double difference = read ? (q - last_position[j]) / dt : 0.0;
     position[TICKS * j] = position[TICKS * j + 2] = q;
     position[TICKS * j + 1] = read ? 0.5 * (q + last_position[j]) : q;
     velocity[TICKS * j] = given ? v : difference, velocity[TICKS * j + 1] = difference;
     last_position[j] = q;
+  }
+  for (std::size_t j = 0; j < n; ++j) {
+    joint_dead[j] = twin[j] >= 0 && joint_watch[j].dead(joint_watch[twin[j]]);
+    if (joint_dead[j]) joint_bad[j] |= FROZEN;
   }
 }
 
@@ -271,6 +294,7 @@ void FootEstimator::State::step(const Reading& reading) noexcept {
       bad[f] |= FROZEN;
     for (const PathJoint& joint : model.feet[f].path) {
       bad[f] |= joint_bad[joint.joint];
+      if (joint_dead[joint.joint]) feet[f].forget();
       if (!joint.slides && std::abs(reading.position[joint.joint]) > WHOLE_TURN) bad[f] |= INPUT_MISSING;
     }
     if (bad[f] & INPUT_MISSING) continue;
@@ -286,12 +310,15 @@ void FootEstimator::State::step(const Reading& reading) noexcept {
   else
     slip.restart();
   const bool contradiction = weight_differs(total) || turns_differ;
+  Lateness all;
+  for (const FootTracker& foot : feet) all += foot.lateness();
+  const bool late = delay_watch.late(all, model.wrench_delay_std, period);
   for (std::size_t f = 0; f < feet.size(); ++f) {
     if (bad[f]) {
       feet[f].miss(bad[f]);
     } else {
       const bool begun = known && !was_bad[f] && ticks > FIRST_TICKS;
-      feet[f].learn(motion[f], total - feet[f].load(), {slips, contradiction}, begun, time, dt, period);
+      feet[f].learn(motion[f], total - feet[f].load(), {slips, contradiction, late}, begun, time, dt, period);
     }
     was_bad[f] = bad[f] != 0;
   }

@@ -12,6 +12,7 @@ namespace {
 // that are told something new at each tick shake the joints in step with the samples.
 constexpr double SKEW = 0.03;
 constexpr double TRUSTED = 0.1;  // half width over stiffness
+constexpr double TOLD = 0.01;    // the same, by what was told of the element alone: a tenth of that
 constexpr double NORMAL = 1.96;
 constexpr double UNMODELLED = 0.07;  // of a learnt compliance: what the model leaves where no sensor has noise
 // Student's t for 95 %, by degrees of freedom from 2.
@@ -25,9 +26,10 @@ void FootTracker::publish(int axis) noexcept {
   const double k = found.value[STIFFNESS], c = found.value[DAMPING];
   const double quantile = QUANTILE[std::clamp(found.groups - 1, 2, 11) - 2];
   const auto parameter = [&](Unknown unknown, double systematic) {
-    const double std = found.std[unknown];
-    return Parameter{found.value[unknown], std::hypot(std, systematic),
-                     std::hypot(quantile * std, NORMAL * systematic)};
+    const double rows = std::max(quantile * found.grouped[unknown], NORMAL * found.white[unknown]);
+    const double beside = std::hypot(found.moved[unknown], systematic);
+    return Parameter{found.value[unknown], std::hypot(found.std[unknown], beside),
+                     std::hypot(rows, NORMAL * found.told[unknown], NORMAL * beside)};
   };
   // A wrench that is late by more than it was told to be takes K·delay off the damping and adds C·ω²·delay to K.
   const double late = std::hypot(delay_std_, SKEW * period_);
@@ -40,8 +42,17 @@ void FootTracker::publish(int axis) noexcept {
   publish_compliance();
   const bool sure =
       found.groups >= FEWEST_GROUPS && found.plausible(STIFFEST * weight_) && out.stiffness.half_width < TRUSTED * k;
-  const bool told = has_element(*foot_, axis) || foot_->linear[axis], tested = told || memories_[axis].excluded();
-  out.identified = sure && tested && !memories_[axis].seen();
+  // Within its slip angle an element is a stiffer spring: what is the spring's and what the element's, only the torque
+  // says that was told.
+  const bool tested = has_element(*foot_, axis) ? NORMAL * found.by_element < TOLD * k
+                                                : foot_->linear[axis] || memories_[axis].excluded();
+  // A memory that is not modelled delays torques, too.
+  const bool modelled = has_element(*foot_, axis) || foot_->linear[axis] || memories_[axis].excluded();
+  const double late_half = std::max(quantile * found.late_grouped, NORMAL * found.late_white);
+  late_[axis] = {};
+  if (modelled && !memories_[axis].seen() && found.groups >= FEWEST_GROUPS && late_half > 0.0)
+    late_[axis] = {found.late / (late_half * late_half), 1.0 / (late_half * late_half)};
+  out.identified = sure && tested && !memories_[axis].seen() && !told_late_;
   const auto tell = [this](std::uint32_t flag, bool holds) {
     estimate_.flags = holds ? estimate_.flags | flag : estimate_.flags & ~flag;
   };

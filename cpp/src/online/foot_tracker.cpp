@@ -18,6 +18,7 @@ constexpr double USUAL_RATE = 0.1;
 constexpr double USUAL_SLOPE = 0.1;    // horizontal force over weight
 constexpr double SLOWEST = 1.0;        // s: damping over stiffness before any data
 constexpr double TWIST_ZERO = 2e-3;    // m, times the weight: zero of a yaw torque
+constexpr double NEVER = 1e-9;         // s: the values follow the delay that was told
 constexpr double HARDLY_SLIPS = 0.99;  // of an element's largest state: below it noise moves it as the deflection
 constexpr double STEEPEST = 0.35;      // rad: no sole lies so on a ground that a robot stands on
 constexpr double FASTEST = 20.0;       // rad/s: no bush is bent so fast
@@ -37,16 +38,18 @@ RegressionPrior prior_of(const EstimatorModel& model, const FootModel& foot, int
   const bool known = has_element(foot, axis);
   const double torque_std = known && foot.slip_torque_std[axis] > 0.0 ? foot.slip_torque_std[axis] : w;
   RegressionPrior prior;
-  prior.scale = {USUAL_ANGLE, USUAL_RATE, 1.0, w, USUAL_SLOPE * w, USUAL_SLOPE * w * w};
+  prior.scale = {USUAL_ANGLE, USUAL_RATE, 1.0, w, USUAL_SLOPE * w, USUAL_SLOPE * w * w,
+                 USUAL_SLOPE * w};
   prior.mean = {};
   if (known) prior.mean[SLIP_TORQUE] = foot.slip_torque[axis];
   prior.spread = {STIFFEST * w, SLOWEST * STIFFEST * w, torque_std, std::max(foot.place_std[0], 1e-9),
-                  std::max(foot.place_std[1], 1e-9), std::max(foot.compliance_std, 1e-9 / w)};
+                  std::max(foot.place_std[1], 1e-9), std::max(foot.compliance_std, 1e-9 / w), NEVER};
   prior.twist = axis == 1 ? TWIST_ZERO * w : 0.0;
   prior.element_slope = slip > 0.0 ? 1.0 / slip : 0.0;
   prior.element_share = smooth_share(model.cutoff), prior.element_lag = smooth_lag(model.cutoff);
   prior.load_arm = axis == 0 ? -foot.sensor.origin[0] : foot.sensor.origin[1];
   prior.horizontal_arm = foot.sensor.origin[2];
+  prior.noise_time = 0.5 / model.cutoff;
   return prior;
 }
 
@@ -151,6 +154,7 @@ void FootTracker::learn(const FootKinematics& motion, double others, Doubt doubt
   if (slides) flags |= SLIP;
   if (struck) flags |= IMPACT;
   if (doubt.contradiction) flags |= CONTRADICTION;
+  if ((told_late_ = doubt.late)) flags |= LATE_WRENCH;
   if (told_change_ > 0.0) flags |= GROUND_CHANGED, told_change_ -= dt;
   estimate_.flags = flags, estimate_.contact = contact;
   if (!fresh) {
@@ -189,10 +193,11 @@ bool FootTracker::leans(const FootKinematics& motion, double inside, double dt) 
 
 // The tick's signals in the middle of its period, where differences are exact, each as late as the latest of them.
 void FootTracker::filter(const FootKinematics& motion, double time, double dt, double period) noexcept {
-  const std::array<double, 6> now = {estimate_.load,        wrench_[0], wrench_[1], estimate_.pitch.torque,
-                                     estimate_.roll.torque, 0.0};
-  std::array<double, 6> mean = {}, forces;
+  const std::array<double, 5> now = {estimate_.load, wrench_[0], wrench_[1], estimate_.pitch.torque,
+                                     estimate_.roll.torque};
+  std::array<double, 7> mean = {}, forces;
   for (int i = 0; i < 5; ++i) mean[i] = 0.5 * (now[i] + before_[i]);
+  for (int a = 0; a < 2; ++a) mean[5 + a] = dt > 0.0 ? (now[3 + a] - before_[3 + a]) / dt : 0.0;
   before_ = now;
   if (period <= 0.0) return;
   const double *angle = motion.mean_angle, *rate = motion.mean_rate;
@@ -218,8 +223,8 @@ void FootTracker::filter(const FootKinematics& motion, double time, double dt, d
   const double load = forces[0], x = forces[1], y = forces[2];
   double channels[CHANNELS] = {1.0,       time - begun_, load,                x,         y,         load * x,
                                load * y,  -std::sin(angles[0]),
-                               angles[0], angles[2],     element_[0].state(), element_[0].gap(), forces[3],
-                               angles[1], angles[3],     element_[1].state(), element_[1].gap(), forces[4]};
+                               angles[0], angles[2],     element_[0].state(), element_[0].gap(), forces[3], forces[5],
+                               angles[1], angles[3],     element_[1].state(), element_[1].gap(), forces[4], forces[6]};
   filter_.pass(channels);
   row_time_ += dt;
   const int stride = std::max(1, static_cast<int>(1.0 / (ROWS_PER_CYCLE * cutoff_ * period)));
@@ -254,7 +259,7 @@ void FootTracker::give(const HeldRow& row) noexcept {
     const double across = a == 0 ? c[FORCE_X] : -c[FORCE_Y], loaded = a == 0 ? c[LOAD_X] : -c[LOAD_Y];
     const bool known = has_element(*foot_, a), sticks = std::abs(own[ELEMENT]) < HARDLY_SLIPS * c[ONE];
     RegressionRow line = {{c[ONE], c[TIME], a == 1 ? c[TURN] : 0.0, own[GAP]},
-                          {own[ANGLE], own[ANGLE_RATE], own[ELEMENT], c[LOAD], across, loaded},
+                          {own[ANGLE], own[ANGLE_RATE], own[ELEMENT], c[LOAD], across, loaded, -own[TORQUE_RATE]},
                           own[TORQUE],
                           {0.0, 0.0, 0.0, 0.0, noise_.of_force[0], noise_.of_force[1 + a]}};
     line.noise[sticks ? OF_ANGLE_AND_ELEMENT : OF_ANGLE] = noise_.of_angle[a];
@@ -292,6 +297,12 @@ std::array<double, 2> FootTracker::suspicion() const noexcept {
 void FootTracker::change_ground() noexcept {
   for (AxisRegression& axis : axes_)
     if (axis.suspicion().softer() + axis.suspicion().stiffer() > 0.0) axis.jump();
+}
+
+void FootTracker::forget() noexcept {
+  for (AxisRegression& axis : axes_) axis.restart();
+  for (MemoryWatch& memory : memories_) memory.restart();
+  for (int axis = 0; axis < 2; ++axis) publish(axis);
 }
 
 void FootTracker::miss(std::uint32_t reason) noexcept {

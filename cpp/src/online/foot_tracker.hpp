@@ -9,6 +9,7 @@
 #include "online/causal_filter.hpp"
 #include "online/contact_gate.hpp"
 #include "online/delay_line.hpp"
+#include "online/delay_watch.hpp"
 #include "online/edge_watch.hpp"
 #include "online/element_state.hpp"
 #include "online/foot_noise.hpp"
@@ -47,11 +48,14 @@ class FootTracker {
   struct Doubt {
     SlipGate::Verdict slips;
     bool contradiction;
+    bool late;
   };
   // Contact, and what this tick teaches. others: load of the other feet; fresh: the tick before was read as well, `dt`
   // earlier.
   void learn(const FootKinematics& motion, double others, Doubt doubt, bool fresh, double time, double dt,
              double period) noexcept;
+  // What was learnt came from a reading that was wrong from the beginning.
+  void forget() noexcept;
   // A tick without readings that can be used, for `reason`.
   void miss(std::uint32_t reason) noexcept;
   // One piece of the regressions' work, of PIECES.
@@ -64,17 +68,22 @@ class FootTracker {
 
   double load() const noexcept { return estimate_.load; }
   ContactState contact() const noexcept { return gate_.contact(); }
+  // Of both axes' torques behind their deflections.
+  Lateness lateness() const noexcept {
+    Lateness both = late_[0];
+    return both += late_[1];
+  }
   // Whether a swing has shown the force sensor's zero.
   bool zero_known() const noexcept { return zero_.known(); }
   const FootEstimate& estimate() const noexcept { return estimate_; }
 
  private:
-  static constexpr int CHANNELS = 18;
+  static constexpr int CHANNELS = 20;
   static constexpr int HELD = 32;      // rows that wait until the foot has not lifted behind them
   // What the filter passes: constant, time, load, horizontal forces, the load times each, what turns with the pitch;
   // then of each axis.
   enum Channel : int { ONE, TIME, LOAD, FORCE_X, FORCE_Y, LOAD_X, LOAD_Y, TURN, FIRST_AXIS };
-  enum AxisChannel : int { ANGLE, ANGLE_RATE, ELEMENT, GAP, TORQUE, AXIS_CHANNELS };
+  enum AxisChannel : int { ANGLE, ANGLE_RATE, ELEMENT, GAP, TORQUE, TORQUE_RATE, AXIS_CHANNELS };
   struct HeldRow {
     double time, dt;
     double channels[CHANNELS];
@@ -105,14 +114,17 @@ class FootTracker {
   CausalFilter<CHANNELS> filter_;
   DelayLine<6> angles_;  // of both axes: angles, rates, angles without noise
   std::array<SmoothAngle, 2> smooth_;
-  DelayLine<6> forces_;
+  DelayLine<7> forces_;  // load, horizontal forces, both torques, their rates
   std::array<AxisRegression, 2> axes_;
   std::array<MemoryWatch, 2> memories_;  // of axes whose model has no element
   Parameter learnt_compliance_[2];       // of the slide beside the model's, as each axis has it
   double slip_angle_[2];                 // of the model's element, or of the one that a memory is looked for with
-  std::array<double, 6> raw_ = {}, wrench_ = {}, before_ = {};  // before_: load, force x, y, both torques, of last tick
+  std::array<double, 6> raw_ = {}, wrench_ = {};
+  std::array<double, 5> before_ = {};  // load, force x, y, both torques, of the last tick
   ElementState element_[2], hanging_[2];  // now, and in the air
   double opened_[2] = {};  // the elements' gaps when the offset of the rows began
+  Lateness late_[2];          // as its own axes show it
+  bool told_late_ = false;    // as all feet's do: one delay was told for them
   bool flat_ = false;         // the centre of pressure is inside the sole
   bool stood_ = false;        // it stood at the last tick
   bool lifted_ = false;       // its elements are followed from its last stance, through the air

@@ -36,6 +36,7 @@ class Flag(IntFlag):
     PITCH_UNTESTED = 8192
     ROLL_UNTESTED = 16384
     CONTRADICTION = 32768
+    LATE_WRENCH = 65536
 
 
 @dataclass(frozen=True)
@@ -53,7 +54,7 @@ class AxisEstimate:
 
     deflection [rad], rate [rad/s] and torque [N·m] are this tick's; stiffness [N·m/rad], damping [N·m·s/rad] and
     slip_torque [N·m] what was learnt so far; offset [N·m] is this stance's. identified: whether the stiffness is known
-    within a tenth.
+    within a tenth, and a memory of the rubber is excluded, or the one that is modelled was tested.
     """
 
     deflection: float

@@ -21,6 +21,9 @@ MEMORY = (Flag.PITCH_MEMORY, Flag.ROLL_MEMORY)
 REMEMBERS = "the rubber has a memory: motions of another size have another stiffness"
 UNTESTED = (Flag.PITCH_UNTESTED, Flag.ROLL_UNTESTED)
 SMALL = "too small motions to show whether the rubber has a memory: larger ones may have less stiffness"
+REST = "too small motions to test the slip torque that was told, on which this stiffness rests"
+FARTHER = "bend the foot beyond its slip angle to either side, as walking does"
+LATE = "torques follow deflections as if the force sensors' delay were not the one that was told"
 IDENTIFY = "run identify feet on logs of this robot, and give its result"
 
 
@@ -64,11 +67,18 @@ class Replay:
             last = self.estimate(foot)
             found_axes = zip(ROTATIONAL_AXES, (last.pitch, last.roll), MEMORY, UNTESTED, strict=True)
             for axis, found, memory, untested in found_axes:
-                reason = REMEMBERS if last.flags & memory else SMALL if last.flags & untested else None
                 stiffness = _parameter(foot, axis, "stiffness", STIFFNESS_UNIT[axis], found.stiffness)
                 damping = _parameter(foot, axis, "damping", DAMPING_UNIT[axis], found.damping)
-                yield from (_weakened(row, reason) if reason else row for row in (stiffness, damping))
-                if found.slip_torque.std:
+                modelled, small = bool(found.slip_torque.std), bool(last.flags & untested)
+                if last.flags & Flag.LATE_WRENCH:
+                    stiffness, damping = (_weakened(row, LATE, IDENTIFY) for row in (stiffness, damping))
+                elif small and modelled:
+                    stiffness = _weakened(stiffness, REST, FARTHER)
+                elif small or last.flags & memory:
+                    reason = REMEMBERS if last.flags & memory else SMALL
+                    stiffness, damping = (_weakened(row, reason, IDENTIFY) for row in (stiffness, damping))
+                yield from (stiffness, damping)
+                if modelled:
                     yield _parameter(foot, axis, "slip_torque", "N.m", found.slip_torque)
             yield _vertical(foot, last.compliance)
 
@@ -93,9 +103,9 @@ def _vertical(foot: str, compliance: Estimated) -> Parameter:
     )  # fmt: skip
 
 
-def _weakened(row: Parameter, reason: str) -> Parameter:
+def _weakened(row: Parameter, reason: str, advice: str) -> Parameter:
     verdict: Verdict = "weak" if row.verdict == "usable" else row.verdict
-    return replace(row, verdict=verdict, reason=reason, advice=IDENTIFY)
+    return replace(row, verdict=verdict, reason=reason, advice=advice)
 
 
 def _parameter(foot: str, axis: Axis, name: str, unit: str, found: Estimated) -> Parameter:
