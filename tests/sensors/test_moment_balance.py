@@ -182,9 +182,9 @@ def test_the_warning_names_axis_and_size() -> None:
     assert note.severity == "warning"
     assert "roll" in note.text
     assert "1.10 ± 0.04 times" in note.text
-    assert "up to 28 %" in note.text
+    assert "may be off by 28 %" in note.text
     (note,) = torque_gain_notes({"roll": TorqueGain(1.4, 0.0, {"left": -2.0, "right": 0.0}, True)}).values()
-    assert "by left -200 % and right +0 %" in note.text
+    assert "the left's read -1.00 times and the right's read 1.00 times what they should" in note.text
     assert "Check sign, unit and calibration" in note.text
     small = {"roll": TorqueGain(0.05, 0.01, {"left": 0.1, "right": 0.0})}
     assert torque_gain_notes(small)["roll"].severity == "info"
