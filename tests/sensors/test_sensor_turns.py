@@ -68,6 +68,7 @@ def test_one_that_is_turned_is_told_with_its_turn(
     size = float(note.text.split("turned by ")[1].split()[0])
     assert size == pytest.approx(-np.degrees(sum(turn)), abs=2.0)
     assert f"about its {axis} axis" in note.text
+    assert "encoders" in note.text, "a joint of the leg that reads from a wrong zero turns it alike"
 
 
 def test_all_of_a_turn_is_found_though_delays_are_told_without_it(twin: RobotModel) -> None:

@@ -32,7 +32,7 @@ def sensor_turn_notes(robot: RobotModel, fit: MomentFit | None) -> dict[str, Not
             text = (
                 f"{foot}: forces and torques give the moments of the robot's motion with the force sensor's frame "
                 f"turned by {size:+.0f} ± {reach:.0f} deg about its {'xyz'[worst]} axis (95 %). Check "
-                f"'feet.{foot}.wrench' in the robot file"
+                f"'feet.{foot}.wrench' in the robot file, and the zeros of this leg's encoders, which turn it alike"
             )
             notes[foot] = Note(TURNED, "warning", text)
     return notes
