@@ -14,9 +14,11 @@ from biped_robot import make_robot
 from plantar.checks.log_checks import check_log
 from plantar.conventions import GRAVITY
 from plantar.feet.identify import identify_feet
+from plantar.feet.prepare_log import checked, prepare
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
-from plantar.sensors.tilt_error import lean_of, stance_leans, tilt_error_of
+from plantar.sensors.tilt_error import lean_of, log_tilt_error, stance_leans, tilt_error_of
+from plantar.twin.sensing import attitude_filter
 from plantar.twin.sensing.attitude_filter import filtered_attitude
 
 CORRECTION_RATE = 0.2  # 1/s, of the filter below
@@ -132,6 +134,22 @@ def test_what_the_soles_have_put_right_is_no_fault_of_the_log(tmp_path: Path) ->
     assert not any(note.code == "imu_late" for note in found.notes)
     alone = identify_feet(robot, [without_accelerometer(log)], settings=KNOWN)
     assert any(note.code == "imu_late" for note in alone.notes)
+
+
+@pytest.mark.parametrize("scale", [1.0, 0.85])
+def test_a_gyroscope_s_scale_is_judged_beside_the_attitude_that_the_soles_have_put_right(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, scale: float
+) -> None:
+    """An attitude that leans with the motion, quickly, turns by another share than the gyroscope, which is right."""
+    monkeypatch.setattr(attitude_filter, "CORRECTION_RATE", 2.0)
+    log = filtered(record(sway("sway", seed=1, duration=30.0)))
+    rates = {name: scale * log.column(name) for name in log.columns if ".angular_velocity." in name}
+    robot, log = make_robot(tmp_path), checked(make_robot(tmp_path), log.with_columns(rates))
+    assert any(note.code == "gyroscope_scale" for note in log.notes)
+    assert robot.imu is not None
+    found = prepare(robot, log, "fit", log_tilt_error(log, robot.imu))
+    assert any(note.code == "attitude_tilted" for note in found.notes)
+    assert any(note.code == "gyroscope_scale" for note in found.notes) == (scale != 1.0)
 
 
 def without_accelerometer(log: MotionLog) -> MotionLog:

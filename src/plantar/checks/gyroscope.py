@@ -26,7 +26,10 @@ SCALE_OFF, TURNED = 0.05, 0.1  # share, rad: of a gyroscope, damping is off by a
 SURE = 6.0  # deviations
 FOLLOWED = 0.25  # share of the difference's square that turning one side may leave
 PLANAR = 0.05  # second over first singular value: turns about one axis do not show how the other two lie
-IMU_LATE = "imu_late"
+IMU_LATE, SCALE, FRAME = "imu_late", "gyroscope_scale", "gyroscope_frame"
+BY_LEANS = frozenset(
+    {IMU_LATE, SCALE, FRAME}
+)  # what an orientation that leans with the motion looks like as well
 EXPLAINED = 0.1  # share of the difference of both rates, by a delay between gyroscope and orientation
 MEDIAN = 0.6745  # of absolute values over the deviation, of a normal distribution
 REVERSED = -0.9  # correlation, and slope within a factor of two, of an axis that reads the opposite
@@ -129,9 +132,7 @@ def check_gyroscope(name: str, log: MotionLog, orientation: Array, turns: Turns)
         yield Finding("degrees", text, True)
         return
     if not 0.5 < ratio < 2:
-        yield Finding(
-            "gyroscope_scale", f"{where}: {ratio:.2g} times the orientation's rate (valid: about 1)"
-        )
+        yield Finding(SCALE, f"{where}: {ratio:.2g} times the orientation's rate (valid: about 1)")
         return
     if not _upside_down(name, log, orientation):
         opposite = _reversed_axes(turns)
@@ -151,7 +152,18 @@ def check_gyroscope(name: str, log: MotionLog, orientation: Array, turns: Turns)
         yield from _axes_and_scale(where, turns)
     else:
         text = f"{where}: turns about other axes than the orientation (valid: both in the IMU's own frame)"
-        yield Finding("gyroscope_frame", text)
+        yield Finding(FRAME, text)
+
+
+def put_right_by(name: str, log: MotionLog, orientation: Array) -> frozenset[str]:
+    """Codes of findings that another orientation of the same IMU, as soles that stand have it, does not show."""
+    turns = Turns.of(log, name, orientation)
+    found = (
+        check_gyroscope(name, log, orientation, turns)
+        if turns is not None
+        else imu_late(name, log, orientation)
+    )
+    return BY_LEANS - {finding.code for finding in found}
 
 
 def _axes_and_scale(where: str, turns: Turns) -> Iterator[Finding]:
@@ -161,21 +173,21 @@ def _axes_and_scale(where: str, turns: Turns) -> Iterator[Finding]:
     if power == 0 or apart == 0:
         return
     if turns.about_world:
-        yield Finding("gyroscope_frame", f"{where}: turns about the world's axes (valid: the IMU's own)")
+        yield Finding(FRAME, f"{where}: turns about the world's axes (valid: the IMU's own)")
         return
     mount, shown = _turned_onto(integral, turn), np.linalg.svd(turn, compute_uv=False)
     angle = float(np.arccos(np.clip((np.trace(mount) - 1) / 2, -1, 1)))
     left = float(np.sum((integral - turn @ mount.T) ** 2))
     if angle > TURNED and left < FOLLOWED * apart and shown[1] > PLANAR * shown[0]:
         text = f"{where}: turns about axes {np.degrees(angle):.0f} deg beside the orientation's"
-        yield Finding("gyroscope_frame", f"{text} (valid: both in the IMU's own frame)")
+        yield Finding(FRAME, f"{text} (valid: both in the IMU's own frame)")
         return
     scale = float(np.sum(integral * turn)) / power
     missed = float(np.sum((integral - scale * turn) ** 2))
     deviation = np.sqrt(missed / power * OVERLAP / turn.size)
     if abs(scale - 1) > max(SCALE_OFF, SURE * deviation):
         text = f"{where}: {scale:.2f} times the orientation's rate, and damping follows it (valid: 1)"
-        yield Finding("gyroscope_scale", text)
+        yield Finding(SCALE, text)
 
 
 def _turned_onto(one: Array, other: Array) -> Array:

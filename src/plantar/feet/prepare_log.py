@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from plantar.checks.gyroscope import IMU_LATE, imu_late
+from plantar.checks.gyroscope import put_right_by
 from plantar.checks.log_checks import check_log, finding_notes, refuse_impossible
 from plantar.contact.deflection import BushState, bush_states, encoder_rates
 from plantar.contact.imu_turn import imu_turn_effects
@@ -87,8 +87,8 @@ def prepare(
     if (right := right_attitude(log, imu, orientation, (own_tilt, tilt_error), raw, contacts)) is not None:
         orientation = right[0]
         raw = bush_states(robot, positions, velocities, orientation, rates, wrenches)
-        if not any(imu_late(imu.name, log, orientation)):  # the soles have mended that
-            notes = [note for note in notes if note.code != IMU_LATE]
+        mended = put_right_by(imu.name, log, orientation)
+        notes = [note for note in notes if note.code not in mended]
         notes.append(right[1])
         scale = AttitudeScale()
     else:

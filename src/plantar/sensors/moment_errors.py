@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from itertools import chain, islice
 
 import numpy as np
 import pinocchio as pin
 
-from plantar.conventions import Array
+from plantar.conventions import GRAVITY, Array
 from plantar.dynamics import Contact, Equation
 from plantar.dynamics.inertial_motion import inertial_motion, turned_motions
 from plantar.dynamics.motion import Motion
@@ -29,6 +29,8 @@ LATE = 0.02  # s, of feet's sensors, encoders and gyroscope behind the accelerom
 MOUNT = 0.1  # rad, by which sensors and IMU may be turned: wide, so that no turned mount passes for a gain
 KEPT_PER_BAND = 5.0  # samples for each period of BAND: far above what has passed the filter
 TOGETHER = 8  # signals that are filtered at once
+ZERO = 0.02  # of the weight: deviation of a force channel's zero, as between two recordings of one sensor
+ZERO_ARM = 0.1  # m, times that: of a torque channel's, of a force about as far aside as a foot reaches
 PARTS = 8  # of a log, as long as each other: what fits without one of them says how well it is known
 TURN = 0.01  # rad, of the IMU, for the slope of what it predicts
 
@@ -41,9 +43,10 @@ class MomentErrors:
 
     The columns are, in this order: torques about pitch of each foot, torques about roll of each foot, what else each
     foot's sensor may get wrong, the IMU's turn about its three axes, and the delays of each foot, of the encoders and
-    of the gyroscope. `products` (parts, 6, k + 1, k + 1) are those of missing and columns in each part of the log,
-    without what the sensors' noise adds to them; `drawn` (6, k, draws) those of columns and what a wrong URDF adds;
-    `independent` is the share of samples [each `period` s] that are.
+    of the gyroscope. Behind them stand the log's own zeros of each channel of each foot, with deviations `zeros` (z,):
+    at an arm that moves with the robot, a zero does not stay a constant. `products` (parts, 6, k + 1, k + 1) are those
+    of missing and columns in each part of the log, without what the sensors' noise adds to them; `drawn` (6, k, draws)
+    those of columns and what a wrong URDF adds; `independent` is the share of samples [each `period` s] that are.
     """
 
     columns: Array
@@ -52,6 +55,7 @@ class MomentErrors:
     drawn: Array
     period: float
     independent: float
+    zeros: Array = field(default_factory=lambda: np.zeros(0))
 
 
 def moment_errors(robot: RobotModel, residual: NewtonEulerResidual, steps: bool) -> MomentErrors:
@@ -64,7 +68,8 @@ def moment_errors(robot: RobotModel, residual: NewtonEulerResidual, steps: bool)
     motion = inertial_motion(robot, residual.signals, residual.kept)
     readings, measured = _reading_columns(robot, residual)
     by_gyroscope, by_mount = _imu_slopes(robot, residual)
-    slopes = [*-by_mount, *residual.rates, residual.by_encoders, -by_gyroscope]
+    zeros = _zero_columns(robot, residual)
+    slopes = [*-by_mount, *residual.rates, residual.by_encoders, -by_gyroscope, *zeros]
     period, count, drawn = residual.pair.period, len(readings) + len(slopes), drawn_parameter_errors(robot)
     equation = Equation(robot.floating_model)
     # Both sides anew: those of the residual lost slow parts over all of the log, what an end of it then shows of them
@@ -82,7 +87,7 @@ def moment_errors(robot: RobotModel, residual: NewtonEulerResidual, steps: bool)
         rows = np.empty((6, signals, samples))
         for first, some in every:
             _put(rows, first, some)
-        return _errors(rows, count, period, CUTOFF)
+        return replace(_errors(rows, count, period, CUTOFF), zeros=_zero_deviations(robot))
     # Slopes are smooth: their noise is not white, and small below BAND.
     stride, noisy = max(1, round(1 / (KEPT_PER_BAND * BAND * period))), 1 + len(readings)
     slow, noise = np.empty((6, signals, -(-samples // stride))), np.empty((6, noisy, samples))
@@ -94,7 +99,7 @@ def moment_errors(robot: RobotModel, residual: NewtonEulerResidual, steps: bool)
     found = _errors(slow, count, stride * period, BAND)
     share = _below_to_above(period) / stride
     found.products[..., :noisy, :noisy] -= share * _products(noise)
-    return found
+    return replace(found, zeros=_zero_deviations(robot))
 
 
 def _quick(signals: Iterable[Array], period: float) -> Iterator[tuple[int, Array]]:
@@ -173,6 +178,23 @@ def _reading_columns(robot: RobotModel, residual: NewtonEulerResidual) -> tuple[
         others += [*carried[2:]]
         measured = measured + carried[2]  # the gain of all channels
     return [*gains[0], *gains[1], *others], measured
+
+
+def _zero_columns(robot: RobotModel, residual: NewtonEulerResidual) -> list[Array]:
+    """What one newton or newton-metre that each channel of each foot reads without any load adds to the prediction,
+    (n, 6) each.
+    """
+    equation, positions = Equation(robot.floating_model), residual.signals.positions[residual.kept]
+    contacts = [Contact(*robot.frame(foot.wrench.placement)) for foot in robot.feet.values()]
+    return [
+        -column for one in contacts for column in equation.base_transfer(positions, one).transpose(2, 0, 1)
+    ]
+
+
+def _zero_deviations(robot: RobotModel) -> Array:
+    """Deviations of the channels' zeros before the moments are asked, (6 feet,) [N, N.m]."""
+    force = ZERO * robot.mass * GRAVITY
+    return np.tile(np.repeat([force, ZERO_ARM * force], 3), len(robot.feet))
 
 
 def _sensor_errors(robot: RobotModel) -> tuple[Array, Array]:

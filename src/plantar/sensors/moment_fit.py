@@ -32,6 +32,21 @@ class Part(NamedTuple):
     freedom: float
 
 
+class Weighted(NamedTuple):
+    """One log's rows together, beside its own zeros: `products` (parts, k + 1, k + 1) of missing and columns, `drawn`
+    (k, draws) of columns and wrong URDFs, and `beside` (k + 1 + z, k + 1), what of all the log's signals they are.
+    """
+
+    products: Array
+    drawn: Array
+    beside: Array
+
+    def left(self, log: MomentErrors, values: Array) -> Array:
+        """What the coefficients `values` (k,) and the zeros that go with them leave of what is missing, (6, n)."""
+        shares = self.beside @ np.concatenate([[1.0], -values])
+        return np.asarray(shares[0] * log.missing + shares[1:] @ log.columns)
+
+
 class MomentFit(NamedTuple):
     """Coefficients `values` (k,) of the columns; `parts` of their covariance: of priors, noise and wrong URDFs."""
 
@@ -84,20 +99,32 @@ def _weights(logs: Sequence[MomentErrors], left: Sequence[Array]) -> list[Array]
     return [np.asarray(log.independent / power[log.independent]) for log in logs]
 
 
+def _beside_zeros(log: MomentErrors, weights: Array) -> Weighted:
+    """What a log tells with its rows weighted (6,), its zeros solved for: no other log shares them."""
+    products, drawn = np.einsum("r,prjk->pjk", weights, log.products), np.tensordot(weights, log.drawn, 1)
+    shared = products.shape[-1] - len(log.zeros)
+    both, known = products.sum(axis=0), np.diag(log.zeros**-2.0)
+    share = np.linalg.solve(_positive(both[shared:, shared:]) + known, both[shared:, :shared])
+    beside = np.vstack([np.eye(shared), -share])
+    # What the zeros' own priors say against a share of them belongs to all parts alike.
+    products = beside.T @ products @ beside + share.T @ known @ share / len(products)
+    return Weighted(products, beside[:, 1:].T[:, 1:] @ drawn, beside)
+
+
 def solved(logs: Sequence[MomentErrors], prior: Array) -> MomentFit:
     """The fit with deviations (k,) of the coefficients before the moments are asked, `prior`."""
     values: Array = np.zeros(len(prior))
     known = np.diag(prior**-2.0)
+    left = [log.missing for log in logs]
     for _ in range(2):  # weights from what is left, then the coefficients once more
-        weights = _weights(logs, [log.missing - values @ log.columns for log in logs])
-        own = np.concatenate(
-            [np.einsum("r,prjk->pjk", one, log.products) for one, log in zip(weights, logs, strict=True)]
-        )
+        weighted = [_beside_zeros(*one) for one in zip(logs, _weights(logs, left), strict=True)]
+        own = np.concatenate([one.products for one in weighted])
         both = own.sum(axis=0)
         values = _coefficients(both, known)
+        left = [one.left(log, values) for one, log in zip(weighted, logs, strict=True)]
     without = np.array([_coefficients(both - part, known) for part in own])
     apart = without - without.mean(axis=0)
-    wrong = sum(np.tensordot(one, log.drawn, 1) for one, log in zip(weights, logs, strict=True))
+    wrong = sum(one.drawn for one in weighted)
     inverse = np.linalg.inv(_positive(both[1:, 1:]) + known)
     moved = inverse @ wrong
     draws = max(moved.shape[1], 1)
