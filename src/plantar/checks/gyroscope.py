@@ -27,9 +27,7 @@ SURE = 6.0  # deviations
 FOLLOWED = 0.25  # share of the difference's square that turning one side may leave
 PLANAR = 0.05  # second over first singular value: turns about one axis do not show how the other two lie
 IMU_LATE, SCALE, FRAME = "imu_late", "gyroscope_scale", "gyroscope_frame"
-BY_LEANS = frozenset(
-    {IMU_LATE, SCALE, FRAME}
-)  # what an orientation that leans with the motion looks like as well
+BY_LEANS = frozenset({IMU_LATE, SCALE, FRAME})  # an orientation that leans looks like these as well
 EXPLAINED = 0.1  # share of the difference of both rates, by a delay between gyroscope and orientation
 MEDIAN = 0.6745  # of absolute values over the deviation, of a normal distribution
 REVERSED = -0.9  # correlation, and slope within a factor of two, of an axis that reads the opposite
