@@ -35,7 +35,9 @@ def log_of(columns: Array, missing: Array) -> MomentErrors:
     both = np.concatenate([missing[None], columns])
     rows = np.array([both, *(np.zeros((5, *both.shape)) + 1e-9 * both)])
     products = np.array([part @ part.transpose(0, 2, 1) for part in np.array_split(rows, PARTS, axis=2)])
-    return MomentErrors(rows[:, 1:], rows[:, 0], products, np.zeros((6, COLUMNS, 0)), PERIOD, 0.4)
+    return MomentErrors(
+        rows[:, 1:], rows[:, 0], products, np.zeros((6, COLUMNS, 0)), PERIOD, 0.4, np.zeros(0)
+    )
 
 
 def test_deviations_are_as_large_as_errors_where_many_columns_follow_few_frequencies() -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 from itertools import chain, islice
 
 import numpy as np
@@ -55,7 +55,7 @@ class MomentErrors:
     drawn: Array
     period: float
     independent: float
-    zeros: Array = field(default_factory=lambda: np.zeros(0))
+    zeros: Array
 
 
 def moment_errors(robot: RobotModel, residual: NewtonEulerResidual, steps: bool) -> MomentErrors:
@@ -66,9 +66,8 @@ def moment_errors(robot: RobotModel, residual: NewtonEulerResidual, steps: bool)
     """
     residual = residual.thinned(max(1, round(1 / (RATE * residual.pair.period))))
     motion = inertial_motion(robot, residual.signals, residual.kept)
-    readings, measured = _reading_columns(robot, residual)
+    readings, zeros, measured = _reading_columns(robot, residual)
     by_gyroscope, by_mount = _imu_slopes(robot, residual)
-    zeros = _zero_columns(robot, residual)
     slopes = [*-by_mount, *residual.rates, residual.by_encoders, -by_gyroscope, *zeros]
     period, count, drawn = residual.pair.period, len(readings) + len(slopes), drawn_parameter_errors(robot)
     equation = Equation(robot.floating_model)
@@ -87,7 +86,7 @@ def moment_errors(robot: RobotModel, residual: NewtonEulerResidual, steps: bool)
         rows = np.empty((6, signals, samples))
         for first, some in every:
             _put(rows, first, some)
-        return replace(_errors(rows, count, period, CUTOFF), zeros=_zero_deviations(robot))
+        return _errors(robot, rows, count, period, CUTOFF)
     # Slopes are smooth: their noise is not white, and small below BAND.
     stride, noisy = max(1, round(1 / (KEPT_PER_BAND * BAND * period))), 1 + len(readings)
     slow, noise = np.empty((6, signals, -(-samples // stride))), np.empty((6, noisy, samples))
@@ -96,10 +95,10 @@ def moment_errors(robot: RobotModel, residual: NewtonEulerResidual, steps: bool)
         _put(slow, first, read[::stride])
         if first < noisy:
             _put(noise, first, (some - read)[:, : 6 * (noisy - first)])
-    found = _errors(slow, count, stride * period, BAND)
+    found = _errors(robot, slow, count, stride * period, BAND)
     share = _below_to_above(period) / stride
     found.products[..., :noisy, :noisy] -= share * _products(noise)
-    return replace(found, zeros=_zero_deviations(robot))
+    return found
 
 
 def _quick(signals: Iterable[Array], period: float) -> Iterator[tuple[int, Array]]:
@@ -129,12 +128,14 @@ def _put(rows: Array, first: int, some: Array) -> None:
     rows[:, first : first + some.shape[1] // 6] = some.reshape(len(some), -1, 6).transpose(2, 1, 0)
 
 
-def _errors(rows: Array, count: int, period: float, band: float) -> MomentErrors:
+def _errors(robot: RobotModel, rows: Array, count: int, period: float, band: float) -> MomentErrors:
     """Of what is missing, `count` columns and drawn URDFs, (6, k, n), that hold what is slower than `band` [Hz]."""
     columns, drawn = rows[:, : count + 1].copy(), rows[:, count + 1 :]
     products, wrong = _products(columns), columns[:, 1:] @ drawn.transpose(0, 2, 1)
     # A filtered signal has two independent samples in a period of its cutoff.
-    return MomentErrors(columns[:, 1:], columns[:, 0], products, wrong, period, 2 * band * period)
+    independent = 2 * band * period
+    zeros = _zero_deviations(robot)
+    return MomentErrors(columns[:, 1:], columns[:, 0], products, wrong, period, independent, zeros)
 
 
 def _products(columns: Array) -> Array:
@@ -159,12 +160,17 @@ def turn_columns(robot: RobotModel) -> dict[str, slice]:
     return {foot: slice(start, start + 3) for foot, start in starts.items()}
 
 
-def _reading_columns(robot: RobotModel, residual: NewtonEulerResidual) -> tuple[list[Array], Array]:
-    """What gains of torques and other errors of the feet's sensors add to the measured side, (n, 6) each, and that."""
+def _reading_columns(
+    robot: RobotModel, residual: NewtonEulerResidual
+) -> tuple[list[Array], list[Array], Array]:
+    """What gains of torques and other errors of the feet's sensors add to the measured side; what one newton or
+    newton-metre that each channel of each foot reads without any load adds to the prediction; (n, 6) each; and the
+    measured side.
+    """
     equation, positions = Equation(robot.floating_model), residual.signals.positions[residual.kept]
     matrices = _sensor_errors(robot)[0]
     gains: list[list[Array]] = [[], []]
-    others, measured = list[Array](), np.zeros(())
+    others, zeros, measured = list[Array](), list[Array](), np.zeros(())
     for place, foot in enumerate(robot.feet.values()):
         wrench = residual.readings[:, 6 * place : 6 * place + 6]
         contact = Contact(*robot.frame(foot.wrench.placement))
@@ -176,19 +182,9 @@ def _reading_columns(robot: RobotModel, residual: NewtonEulerResidual) -> tuple[
         for own, column in zip(gains, carried[:2], strict=True):
             own.append(column)
         others += [*carried[2:]]
+        zeros += [*-transfer.transpose(2, 0, 1)]
         measured = measured + carried[2]  # the gain of all channels
-    return [*gains[0], *gains[1], *others], measured
-
-
-def _zero_columns(robot: RobotModel, residual: NewtonEulerResidual) -> list[Array]:
-    """What one newton or newton-metre that each channel of each foot reads without any load adds to the prediction,
-    (n, 6) each.
-    """
-    equation, positions = Equation(robot.floating_model), residual.signals.positions[residual.kept]
-    contacts = [Contact(*robot.frame(foot.wrench.placement)) for foot in robot.feet.values()]
-    return [
-        -column for one in contacts for column in equation.base_transfer(positions, one).transpose(2, 0, 1)
-    ]
+    return [*gains[0], *gains[1], *others], zeros, measured
 
 
 def _zero_deviations(robot: RobotModel) -> Array:
