@@ -42,41 +42,56 @@ PLANTAR_INLINE LinkState root_state(const Motion& motion, std::size_t first, std
           {base[0], base[1], base[2]}};
 }
 
+// A link's place, given its parent's, with its joint at q: all but its motion. Returns the arm from the parent's origin.
+PLANTAR_INLINE Vec3 place(const Link& link, const LinkState& parent, Lanes q, LinkState& state) {
+  const Mat3 rest = link.turned ? times_matrix(parent.rotation, link.placement.rotation) : parent.rotation;
+  Vec3 arm = times(parent.rotation, link.placement.origin);
+  state.axis = times(rest, link.axis);
+  state.rotation = rest;
+  if (link.joint == Joint::prismatic) {
+    arm = arm + q * state.axis;
+  } else {
+    Lanes s, c;
+    sincos(q, s, c);
+    state.rotation = turned_about(rest, link.joint, link.axis, s, c);
+  }
+  state.origin = parent.origin + arm;
+  return arm;
+}
+
+// Proper acceleration of what is fixed to a frame at `arm` from its origin.
+PLANTAR_INLINE Vec3 acceleration_at(const LinkState& state, Vec3 arm) {
+  return state.acceleration + cross(state.alpha, arm) + cross(state.omega, cross(state.omega, arm));
+}
+
+PLANTAR_INLINE void forward_link(const Tree& tree, std::int32_t i, const Motion& motion, std::size_t first,
+                                 std::size_t last, const LinkState& parent, LinkState& state) {
+  const Link& link = tree.links[i];
+  const std::int32_t j = i - tree.first_joint();
+  const Vec3 arm = place(link, parent, gather(motion.position[j], first, last), state);
+  const Lanes v = gather(motion.velocity[j], first, last), a = gather(motion.acceleration[j], first, last);
+  const Vec3 coriolis = v * cross(parent.omega, state.axis);
+  state.omega = parent.omega;
+  state.alpha = parent.alpha;
+  state.acceleration = acceleration_at(parent, arm);
+  if (link.joint == Joint::prismatic) {
+    state.acceleration = state.acceleration + a * state.axis + 2.0 * coriolis;
+  } else {
+    state.omega = state.omega + v * state.axis;
+    state.alpha = state.alpha + a * state.axis + coriolis;
+  }
+}
+
 inline void forward(const Tree& tree, const Motion& motion, std::size_t first, std::size_t last, LinkState* states) {
   const LinkState root = root_state(motion, first, last);
   for (std::int32_t i = 0; i < tree.n_links; ++i) {
     const Link& link = tree.links[i];
-    LinkState& state = states[i];
     const LinkState& parent = link.parent < 0 ? root : states[link.parent];
     if (link.joint == Joint::root) {
-      state = parent;
-      continue;
-    }
-    const std::int32_t j = i - tree.first_joint();
-    const Lanes q = gather(motion.position[j], first, last);
-    const Lanes v = gather(motion.velocity[j], first, last);
-    const Lanes a = gather(motion.acceleration[j], first, last);
-    const Mat3 rest = link.turned ? times_matrix(parent.rotation, link.placement.rotation) : parent.rotation;
-    Vec3 arm = times(parent.rotation, link.placement.origin);
-    state.axis = times(rest, link.axis);
-    const Vec3 coriolis = v * cross(parent.omega, state.axis);
-    state.omega = parent.omega;
-    state.alpha = parent.alpha;
-    state.rotation = rest;
-    state.acceleration = parent.acceleration;
-    if (link.joint == Joint::prismatic) {
-      arm = arm + q * state.axis;
-      state.acceleration = state.acceleration + a * state.axis + 2.0 * coriolis;
+      states[i] = parent;
     } else {
-      Lanes s, c;
-      sincos(q, s, c);
-      state.rotation = turned_about(rest, link.joint, link.axis, s, c);
-      state.omega = state.omega + v * state.axis;
-      state.alpha = state.alpha + a * state.axis + coriolis;
+      forward_link(tree, i, motion, first, last, parent, states[i]);
     }
-    state.origin = parent.origin + arm;
-    state.acceleration =
-        state.acceleration + cross(parent.alpha, arm) + cross(parent.omega, cross(parent.omega, arm));
   }
 }
 

@@ -1,5 +1,6 @@
 // Built once per instruction set, with its name, its lanes and its compiler flags set by CMakeLists.txt.
 #include "chain_kernel.hpp"
+#include "frame_kernel.hpp"
 #include "gram_kernel.hpp"
 #include "inverse_dynamics_kernel.hpp"
 #include "kernels.hpp"
@@ -19,6 +20,8 @@ const Kernels kernels = {PLANTAR_STRING(PLANTAR_ISA),
                          regressor,
                          inverse_dynamics,
                          base_wrenches,
+                         root_motion,
+                         base_transfer,
                          qr_update,
                          gram_update,
                          cholesky,

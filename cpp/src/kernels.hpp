@@ -24,6 +24,10 @@ struct Kernels {
                            double* work);
   void (*base_wrenches)(const Tree&, const Motion&, const double* parameters, std::size_t sets, std::size_t begin,
                         std::size_t end, std::size_t samples, double* out, double* work);
+  void (*root_motion)(const Tree&, const Carried& imu, const Motion& joints, const Column* measured, std::size_t begin,
+                      std::size_t end, double* out);
+  void (*base_transfer)(const Tree&, const Carried& contact, const Column* positions, std::size_t begin,
+                        std::size_t end, double* out);
   void (*qr_update)(const Triangle&, const Block&, void* work);
   void (*gram_update)(double* gram, std::size_t gram_stride, const double* block, std::size_t stride, std::size_t rows,
                       std::size_t columns);

@@ -55,4 +55,11 @@ struct Contact {
   Column wrench[6];
 };
 
+// A frame fixed in a link, with the links on the way to it, from the root on; without those that never move.
+struct Carried {
+  const std::int32_t* path;
+  std::size_t n_path;
+  Frame frame;
+};
+
 }  // namespace plantar

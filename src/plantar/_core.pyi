@@ -49,6 +49,20 @@ class Stream:
     def factor(self, group: int) -> Array: ...
     def parameters(self, group: int) -> list[int]: ...
 
+def root_motion(
+    tree: Tree,
+    link: int,
+    place: Array,
+    measured: Array,
+    q: Array,
+    v: Array,
+    a: Array,
+    threads: int = 0,
+    isa: str = "",
+) -> Array: ...
+def base_transfer(
+    tree: Tree, link: int, place: Array, positions: Array, threads: int = 0, isa: str = ""
+) -> Array: ...
 def regressor(
     tree: Tree,
     kept: Sequence[int],

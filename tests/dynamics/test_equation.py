@@ -12,6 +12,7 @@ from plantar import _core
 from plantar.conventions import Array
 from plantar.dynamics import Contact, Equation, Motion, model_parameters, pinocchio_motion, regressor
 from plantar.errors import DataError
+from plantar.robot.kinematics import packed_frame
 
 ROBOTS = [
     (example_robots.TALOS, True),
@@ -92,6 +93,30 @@ def test_contact_transfer_is_the_transposed_jacobian(urdf: object, floating: boo
         if floating:
             base = equation.base_transfer(equation.tree.joint_positions(q), Contact(joint - 1, placement))
             np.testing.assert_allclose(base, found[:, :6], rtol=1e-10, atol=1e-10)
+
+
+@pytest.mark.parametrize("isa", _core.instruction_sets())
+def test_a_frame_anywhere_tells_the_roots_motion(isa: str) -> None:
+    """Against Pinocchio's motion of the frame: arms that turn and slide, and more samples than lanes."""
+    model = example_robots.model(example_robots.TIAGO, floating=True)
+    equation = Equation(model)
+    q, v, a = random_motion(model, 37, 6)
+    given, data = pinocchio_motion(model, equation.tree, q, v, a), model.createData()
+    place = pin.SE3(pin.exp3(np.array([0.3, -0.8, 0.5])), np.array([0.1, -0.2, 0.3]))
+    joint = model.getJointId("arm_7_joint")
+    measured = []
+    for sample in zip(q, v, a, strict=True):
+        pin.forwardKinematics(model, data, *sample)
+        speed, slope = place.actInv(data.v[joint]), place.actInv(data.a[joint])
+        up = -(data.oMi[joint] * place).rotation.T @ model.gravity.linear
+        proper = slope.linear + np.cross(speed.angular, speed.linear) + up
+        measured.append(np.concatenate([proper, speed.angular, slope.angular]))
+    joints = (given.positions, given.velocities, given.accelerations)
+    arguments = (equation.core, joint - 1, packed_frame(place), np.array(measured), *joints)
+    np.testing.assert_allclose(_core.root_motion(*arguments, threads=2, isa=isa), given.base, atol=1e-9)
+    base = _core.base_transfer(*arguments[:3], given.positions, threads=2, isa=isa)
+    whole = equation.contact_transfer(given.positions, Contact(joint - 1, place))
+    np.testing.assert_allclose(base, whole[:, :6], rtol=1e-10, atol=1e-10)
 
 
 def test_contacts_carry_part_of_the_inverse_dynamics() -> None:

@@ -12,7 +12,7 @@ import pytest
 
 import small_biped
 from plantar.dynamics import Contact, Motion, base_parameters, model_parameters
-from plantar.dynamics.base_motion import relative_motion, root_motion, root_motion_from_sole
+from plantar.dynamics.base_motion import root_motion, root_motion_from_sole
 from plantar.dynamics.consistency import Normal, Prior, consistent_fit, is_consistent, pseudo_inertia
 from plantar.dynamics.equation import Equation
 from plantar.errors import DataError, RobotError
@@ -48,7 +48,7 @@ def result(robot: RobotModel, logs: list[MotionLog]) -> DynamicsResult:
 def test_the_imus_motion_moves_to_the_root_through_a_moving_arm(robot: RobotModel) -> None:
     """Against Pinocchio: a root with known motion, the IMU's readings made from it, and back."""
     model, data = robot.floating_model, robot.floating_model.createData()
-    tree = Equation(model).tree
+    equation = Equation(model)
     rng = np.random.default_rng(0)
     joint, placement = robot.frame(robot.imu.placement)  # type: ignore[union-attr]
     for _ in range(5):
@@ -62,10 +62,9 @@ def test_the_imus_motion_moves_to_the_root_through_a_moving_arm(robot: RobotMode
 
         speed, slope = placement.actInv(data.v[joint + 1]), placement.actInv(data.a[joint + 1])
         world = (data.oMi[joint + 1] * placement).rotation
-        relative = relative_motion(tree, joint - 1, placement, q[None, 7:], v[None, 6:], a[None, 6:])
-        found = root_motion(
-            relative, proper(speed, slope, world)[None], speed.angular[None], slope.angular[None]
-        )
+        measured = np.concatenate([proper(speed, slope, world), speed.angular, slope.angular])
+        rows = (measured, q[7:], v[6:], a[6:])
+        found = root_motion(equation, joint, placement, *(row[None] for row in rows))
         root = proper(data.v[1], data.a[1], data.oMi[1].rotation)
         expected = np.concatenate([root, data.v[1].angular, data.a[1].angular])
         np.testing.assert_allclose(found[0], expected, atol=1e-10)
@@ -91,9 +90,9 @@ def test_a_sole_that_stands_still_gives_the_roots_motion(robot: RobotModel) -> N
     a[:6] = -np.linalg.solve(jacobian[:, :6], jacobian[:, 6:] @ a[6:] + drift)
     up = pin.Quaternion(q[3:7]).toRotationMatrix().T @ np.array([0, 0, 9.80665])
     expected = np.concatenate([a[:3] + np.cross(v[3:6], v[:3]) + up, v[3:6], a[3:6]])
-    tree = Equation(robot.model).tree
-    relative = relative_motion(tree, joint - 1, placement, q[None, 7:], v[None, 6:], a[None, 6:])
-    np.testing.assert_allclose(root_motion_from_sole(relative)[0], expected, atol=1e-10)
+    rows = (q[None, 7:], v[None, 6:], a[None, 6:])
+    found = root_motion_from_sole(Equation(robot.floating_model), joint, placement, *rows)
+    np.testing.assert_allclose(found[0], expected, atol=1e-10)
 
 
 def test_a_log_without_imu_is_taken_from_its_standing_sole(robot: RobotModel, real: pin.Model) -> None:
@@ -103,7 +102,7 @@ def test_a_log_without_imu_is_taken_from_its_standing_sole(robot: RobotModel, re
     states = np.array([small_biped.smooth(rng, time, 0.4) for _ in robot.joint_names])
     q, v, a = states[:, 0].T, states[:, 1].T, states[:, 2].T
     joint, placement = robot.frame(robot.feet["left"].sole.placement)
-    base = root_motion_from_sole(relative_motion(equation.tree, joint - 1, placement, q, v, a))
+    base = root_motion_from_sole(equation, joint, placement, q, v, a)
     ground = equation.inverse_dynamics(Motion(base, q, v, a), model_parameters(real))[:6].T
     sensor = robot.frame(robot.feet["left"].wrench.placement)
     transfer = equation.contact_transfer(q, Contact(*sensor))[:, :6]

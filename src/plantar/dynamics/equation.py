@@ -135,13 +135,8 @@ class Equation:
 
     def base_transfer(self, positions: Array, contact: Contact) -> Array:
         """K_B of one contact of a floating base alone, (N, 6, 6): the first rows of `contact_transfer`."""
-        rotation, place = self.tree.pose(contact.link - 1, positions)
-        place = place + rotation @ contact.placement.translation
-        rotation = rotation @ contact.placement.rotation
-        transfer = np.zeros((len(positions), BASE_ROWS, BASE_ROWS))
-        transfer[:, :3, :3] = transfer[:, 3:, 3:] = rotation
-        transfer[:, 3:, :3] = np.cross(place[:, None], rotation, axisb=1, axisc=1)
-        return transfer
+        frame = packed_frame(contact.placement)
+        return _core.base_transfer(self.core, contact.link, frame, positions)
 
 
 def link_names(model: pin.Model) -> tuple[str, ...]:

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
+import numpy as np
+import pinocchio as pin
+
 from plantar.conventions import Array
-from plantar.dynamics.base_motion import RelativeMotion, relative_motion, root_motion
+from plantar.dynamics.base_motion import root_motion
+from plantar.dynamics.equation import Equation
 from plantar.dynamics.motion import Motion
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
@@ -52,27 +56,30 @@ def inertial_signals(robot: RobotModel, log: MotionLog, cutoff: float) -> Inerti
 
 def inertial_motion(
     robot: RobotModel,
+    equation: Equation,
     signals: InertialSignals,
     kept: slice = slice(None),
     encoders_late: float = 0.0,
     gyroscope_late: float = 0.0,
 ) -> Motion:
-    """Motion of root and joints at the samples `kept`.
+    """Motion of root and joints at the samples `kept`; equation: of the robot's floating model.
 
     encoders_late, gyroscope_late: by which these report late [s].
     """
     joints = _joint_motion(signals, kept, encoders_late)
-    return _with_base(_imu_motion(robot, joints), joints, signals, kept, gyroscope_late)
+    return Motion(
+        root_motion(equation, *_imu(robot), _measured(signals, kept, gyroscope_late), *joints), *joints
+    )
 
 
 def turned_motions(
-    robot: RobotModel, signals: InertialSignals, kept: slice, turns: Sequence[Array]
+    robot: RobotModel, equation: Equation, signals: InertialSignals, kept: slice, turns: Sequence[Array]
 ) -> list[Motion]:
     """`inertial_motion` for each of `turns`: rotations (3, 3) of the IMU from where the robot file has it."""
-    joints = _joint_motion(signals, kept)
-    seen = _imu_motion(robot, joints)
-    turned = [replace(seen, rotation=seen.rotation @ turn) for turn in turns]
-    return [_with_base(each, joints, signals, kept) for each in turned]
+    joints, measured = _joint_motion(signals, kept), _measured(signals, kept)
+    link, placement = _imu(robot)
+    turned = [pin.SE3(placement.rotation @ turn, placement.translation) for turn in turns]
+    return [Motion(root_motion(equation, link, each, measured, *joints), *joints) for each in turned]
 
 
 def _joint_motion(signals: InertialSignals, kept: slice, late: float = 0.0) -> tuple[Array, Array, Array]:
@@ -83,18 +90,12 @@ def _joint_motion(signals: InertialSignals, kept: slice, late: float = 0.0) -> t
     return positions, velocities, accelerations
 
 
-def _imu_motion(robot: RobotModel, joints: tuple[Array, Array, Array]) -> RelativeMotion:
-    """The IMU seen from the root link."""
-    carrier, placement = robot.frame(robot.required_imu.placement)
-    return relative_motion(robot.tree, carrier - 1, placement, *joints)
+def _imu(robot: RobotModel) -> tuple[int, pin.SE3]:
+    """The link that carries the IMU, and where."""
+    return robot.frame(robot.required_imu.placement)
 
 
-def _with_base(
-    seen: RelativeMotion,
-    joints: tuple[Array, Array, Array],
-    signals: InertialSignals,
-    kept: slice,
-    late: float = 0.0,
-) -> Motion:
-    rate, slope = (shifted(values, signals.period, late, kept) for values in signals.turning)
-    return Motion(root_motion(seen, signals.proper[kept], rate, slope), *joints)
+def _measured(signals: InertialSignals, kept: slice, late: float = 0.0) -> Array:
+    """The IMU's own motion (n, 9), as in `Motion.base`, of a gyroscope that reports `late` [s]."""
+    turning = (shifted(values, signals.period, late, kept) for values in signals.turning)
+    return np.hstack([signals.proper[kept], *turning])

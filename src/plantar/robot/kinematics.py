@@ -117,13 +117,6 @@ class KinematicTree:
             )
         return rotations, places
 
-    def pose(self, joint: int, positions: Array) -> tuple[Array, Array]:
-        """Rotation (N, 3, 3) and place (N, 3) [m] of one joint's frame in the root link; of that link itself: -1."""
-        rotation, place = np.tile(np.eye(3), (len(positions), 1, 1)), np.zeros((len(positions), 3))
-        for each in reversed(self.ancestors[joint]) if joint >= 0 else ():
-            rotation, place = self._frame(each, rotation, place, positions)
-        return rotation, place
-
     def _frame(self, joint: int, rotation: Array, place: Array, positions: Array) -> tuple[Array, Array]:
         """A joint's frame, given its parent's: rotation (N, 3, 3) and place (N, 3) in the root link."""
         place = place + rotation @ self.translations[joint]

@@ -65,12 +65,12 @@ def moment_errors(robot: RobotModel, residual: NewtonEulerResidual, steps: bool)
     so strongly that noise is small beside it.
     """
     residual = residual.thinned(max(1, round(1 / (RATE * residual.pair.period))))
-    motion = inertial_motion(robot, residual.signals, residual.kept)
-    readings, zeros, measured = _reading_columns(robot, residual)
-    by_gyroscope, by_mount = _imu_slopes(robot, residual)
+    equation = Equation(robot.floating_model)
+    motion = inertial_motion(robot, equation, residual.signals, residual.kept)
+    readings, zeros, measured = _reading_columns(robot, equation, residual)
+    by_gyroscope, by_mount = _imu_slopes(robot, equation, residual)
     slopes = [*-by_mount, *residual.rates, residual.by_encoders, -by_gyroscope, *zeros]
     period, count, drawn = residual.pair.period, len(readings) + len(slopes), drawn_parameter_errors(robot)
-    equation = Equation(robot.floating_model)
     # Both sides anew: those of the residual lost slow parts over all of the log, what an end of it then shows of them
     # would be no column's.
     (predicted,) = equation.base_wrenches(motion, residual.parameters[None])
@@ -161,13 +161,13 @@ def turn_columns(robot: RobotModel) -> dict[str, slice]:
 
 
 def _reading_columns(
-    robot: RobotModel, residual: NewtonEulerResidual
+    robot: RobotModel, equation: Equation, residual: NewtonEulerResidual
 ) -> tuple[list[Array], list[Array], Array]:
     """What gains of torques and other errors of the feet's sensors add to the measured side; what one newton or
     newton-metre that each channel of each foot reads without any load adds to the prediction; (n, 6) each; and the
     measured side.
     """
-    equation, positions = Equation(robot.floating_model), residual.signals.positions[residual.kept]
+    positions = residual.signals.positions[residual.kept]
     matrices = _sensor_errors(robot)[0]
     gains: list[list[Array]] = [[], []]
     others, zeros, measured = list[Array](), list[Array](), np.zeros(())
@@ -222,20 +222,19 @@ def _directions(foot: Foot) -> Array:
     return np.asarray(turn.T[[1, 0]])
 
 
-def _imu_slopes(robot: RobotModel, residual: NewtonEulerResidual) -> tuple[Array, Array]:
+def _imu_slopes(robot: RobotModel, equation: Equation, residual: NewtonEulerResidual) -> tuple[Array, Array]:
     """How the prediction changes with the moment at which the gyroscope is read, (n, 6), and with the angle [rad] by
     which the IMU is turned about each of its axes, (3, n, 6).
     """
-    equation, parameters = Equation(robot.floating_model), residual.parameters
     signals, kept, step = residual.signals, residual.kept, residual.signals.period
 
     def slope(late: Motion, early: Motion, apart: float) -> Array:
-        ends = [equation.base_wrenches(motion, parameters[None])[0] for motion in (late, early)]
+        ends = [equation.base_wrenches(motion, residual.parameters[None])[0] for motion in (late, early)]
         return np.asarray((ends[0] - ends[1]) / apart)
 
-    late, early = (inertial_motion(robot, signals, kept, gyroscope_late=by) for by in (step, -step))
+    late, early = (inertial_motion(robot, equation, signals, kept, gyroscope_late=by) for by in (step, -step))
     turns = [pin.exp3(by * axis) for by in (TURN, -TURN) for axis in np.eye(3)]
-    turned = turned_motions(robot, signals, kept, turns)
+    turned = turned_motions(robot, equation, signals, kept, turns)
     by_mount = [slope(*ends, 2 * TURN) for ends in zip(turned[:3], turned[3:], strict=True)]
     return slope(late, early, 2 * step), np.array(by_mount)
 

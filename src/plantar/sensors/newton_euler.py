@@ -112,7 +112,7 @@ def _along(
     stride = max(1, round(1 / (KEPT_RATE * log.period)))
     period, inner = stride * log.period, slice(edge, run.stop - run.start - edge, stride)
     kept = slice(run.start + edge, run.stop - edge, stride)
-    motion = inertial_motion(robot, signals, kept)
+    motion = inertial_motion(robot, equation, signals, kept)
     readings = low_pass(wrenches[run], log.period, CUTOFF)
     below = below_sensors(robot, equation, motion, readings[inner], period)
     parameters, readings = model_parameters(robot.floating_model) - below.parameters, readings - below.zeros
@@ -122,7 +122,10 @@ def _along(
         return np.asarray(equation.base_wrenches(motion, parameters[None])[0])
 
     step = log.period
-    ends = [predicted_by(inertial_motion(robot, signals, kept, encoders_late=by)) for by in (step, -step)]
+    ends = [
+        predicted_by(inertial_motion(robot, equation, signals, kept, encoders_late=by))
+        for by in (step, -step)
+    ]
     by_encoders = (ends[0] - ends[1]) / (2 * step)
     # A copy holds no differences yet: of long logs, and of all together, these are large.
     signals = replace(signals)
@@ -134,7 +137,10 @@ def _along(
     if found is None or not closes(found.pair):
         return None
     calm = found.calm
-    pair = replace(found.pair, model_errors=predicted_errors(robot, motion.select(calm), DELAY_DRAWS))
+    pair = replace(
+        found.pair,
+        model_errors=equation.base_wrenches(motion.select(calm), drawn_parameter_errors(robot)[:DELAY_DRAWS]),
+    )
     start, stop, _ = calm.indices(len(range(*kept.indices(len(log)))))
     return NewtonEulerResidual(
         pair,
@@ -156,11 +162,6 @@ def _known_runs(robot: RobotModel, signals: InertialSignals, wrenches: Array) ->
     calm = runs(whole & ~_struck(robot, wrenches, period))
     long = [run for run in calm if (run.stop - run.start) * period >= SHORTEST + 2 * EDGE]
     return long or [longest_run(whole)]
-
-
-def predicted_errors(robot: RobotModel, motion: Motion, draws: int) -> Array:
-    """What inertial parameters as wrong as the robot file allows would add to the prediction, (draws, n, 6)."""
-    return Equation(robot.floating_model).base_wrenches(motion, drawn_parameter_errors(robot)[:draws])
 
 
 def _struck(robot: RobotModel, wrenches: Array, period: float) -> Mask:

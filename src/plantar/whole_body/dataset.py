@@ -11,7 +11,7 @@ import pinocchio as pin
 from plantar.checks.log_checks import check_log, refuse_impossible
 from plantar.conventions import GRAVITY, Array, Mask
 from plantar.dynamics import BaseParameters, Equation, Motion, base_parameters, model_parameters
-from plantar.dynamics.base_motion import relative_motion, root_motion, root_motion_from_sole
+from plantar.dynamics.base_motion import root_motion, root_motion_from_sole
 from plantar.dynamics.consistency import Prior
 from plantar.errors import DataError, RobotError, located
 from plantar.logs.motion_log import MotionLog
@@ -132,31 +132,31 @@ def _root(
     body: Body, log: MotionLog, q: Array, v: Array, a: Array, smooth: Smooth, notes: list[Note]
 ) -> tuple[Array, Mask]:
     """The root frame's motion (N, 9) and where it is known: from the IMU, else from a sole that stands still."""
-    robot, tree = body.robot, body.equation.tree
+    robot = body.robot
     if not robot.feet:
         raise RobotError(
             located("names no feet", path=robot.path, valid="feet whose sensors carry the robot")
         )
     imu = robot.imu
     if imu is not None and log.has_imu(imu.name, "angular_velocity", "linear_acceleration"):
-        joint, placement = robot.frame(imu.placement)
+        link, placement = robot.frame(imu.placement)
         rate = smooth(log.angular_velocity(imu.name))
         acceleration = smooth(log.linear_acceleration(imu.name))
-        relative = relative_motion(tree, joint - 1, placement, q, v, a)
+        measured = np.hstack([acceleration, rate, differentiate(rate, log.period)])
         known = np.ones(len(log), dtype=bool)
-        return root_motion(relative, acceleration, rate, differentiate(rate, log.period)), known
+        return root_motion(body.equation, link, placement, measured, q, v, a), known
     standing = {name: _stands(body, log, name) for name in robot.feet}
     name = max(standing, key=lambda foot: int(standing[foot].sum()))
     if standing[name].sum() < FEWEST_SAMPLES:
         valid = "IMU columns angular_velocity and linear_acceleration, or a foot that stands still"
         raise DataError(located("does not tell how the root link moves", path=log.source, valid=valid))
-    joint, placement = robot.frame(robot.feet[name].sole.placement)
+    link, placement = robot.frame(robot.feet[name].sole.placement)
     text = (
         f"{log.name}: no IMU acceleration and angular velocity; the root's motion comes from the {name} sole, taken as "
         "level and still where it carries the robot"
     )
     notes.append(Note("base_from_sole", "warning", text))
-    return root_motion_from_sole(relative_motion(tree, joint - 1, placement, q, v, a)), standing[name]
+    return root_motion_from_sole(body.equation, link, placement, q, v, a), standing[name]
 
 
 def _stands(body: Body, log: MotionLog, name: str) -> Mask:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from plantar.conventions import FORCE, GRAVITY, Array
 from plantar.dynamics import Contact, Equation, model_parameters
@@ -36,10 +37,9 @@ def lagged_log(robot: RobotModel, log: MotionLog) -> LagGrid | None:
     steps = np.arange(-round(SEARCHED / thin.period), round(SEARCHED / thin.period) + 1)
     lags: Array = thin.period * steps.astype(np.float64)
     signals = inertial_signals(robot, thin, CUTOFF)
-    known = [np.asarray(np.isfinite(readings).all(axis=(0, 2)))]
-    # One motion after the other, here and below: all of them at once would be the largest array of any log.
-    known += [inertial_motion(robot, signals, encoders_late=late).finite for late in lags]
-    longest = longest_run(np.all(known, axis=0))
+    known = np.isfinite(np.hstack([*readings, signals.rate, signals.proper])).all(axis=1)
+    joints = np.pad(np.isfinite(signals.positions).all(axis=1), steps[-1])  # nothing is known beyond the ends
+    longest = longest_run(known & sliding_window_view(joints, len(steps)).all(axis=1))
     inner = slice(longest.start + steps[-1], longest.stop - steps[-1])
     if (inner.stop - inner.start) * thin.period < 2 * WINDOW:
         return None
@@ -48,7 +48,8 @@ def lagged_log(robot: RobotModel, log: MotionLog) -> LagGrid | None:
     contacts = [Contact(*robot.frame(foot.wrench.placement)) for foot in robot.feet.values()]
     late = np.stack([readings[:, inner.start + step : inner.stop + step] for step in steps], axis=1)
     predicted, measured = [], []
-    for motion in (inertial_motion(robot, signals, inner, encoders_late=late) for late in lags):
+    # One motion after the other: all of them at once would be the largest array of any log.
+    for motion in (inertial_motion(robot, equation, signals, inner, encoders_late=late) for late in lags):
         transfer = [equation.base_transfer(motion.positions, one) for one in contacts]
         carried = np.stack([(one @ own[..., None])[..., 0] for one, own in zip(transfer, late, strict=True)])
         measured.append(_moving(carried, thin.period))
