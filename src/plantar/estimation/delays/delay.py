@@ -18,6 +18,7 @@ from plantar.estimation.residual_covariance import score_cosines
 from plantar.signals.filters import differentiate, low_pass
 
 ROUNDS = 4  # the moment equation is linear near its solution: each round shifts and solves again
+SETTLED = 0.01  # of the deviation: after a smaller step the next one would be a hundredth of it or less
 LONGEST = 0.05  # s: later signals than this have another fault than a delay
 BAND_EDGES = (0.15, 0.4, 0.8, 1.6, 3.2, 6.4)  # Hz
 LEAST_EXPLAINED = 0.8  # share of an axis' variance in a band that the prediction must explain to take part
@@ -93,6 +94,8 @@ def estimate_delay(pairs: Sequence[Pair]) -> Delay | None:
         value += found.value
         if abs(value) > LONGEST:
             return None
+        if abs(found.value) < SETTLED * found.std:
+            break
     return found and Delay(value, found.std, found.freedom, found.cells)
 
 
