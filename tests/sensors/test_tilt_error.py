@@ -17,7 +17,7 @@ from plantar.feet.identify import identify_feet
 from plantar.feet.prepare_log import checked, prepare
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
-from plantar.sensors.tilt_error import lean_of, log_tilt_error, stance_leans, tilt_error_of
+from plantar.sensors.tilt_error import enough_of, lean_of, log_tilt_error, stance_leans, tilt_error_of
 from plantar.twin.sensing import attitude_filter
 from plantar.twin.sensing.attitude_filter import filtered_attitude
 
@@ -108,6 +108,18 @@ def test_a_lean_is_what_the_accelerometer_feels_over_gravity_and_height(hertz: f
     found = lean_of(push, np.zeros((len(time), 2)), height, 0.01)[inner]
     assert found[:, 0] @ lean[inner] / (lean[inner] @ lean[inner]) == pytest.approx(kept, abs=0.04)
     assert np.abs(found[:, 1]).max() < 1e-9
+
+
+def test_few_samples_of_a_lean_tell_what_all_do() -> None:
+    """Of what the accelerometer feels and of where the sole is; with noise above all that a lean holds."""
+    random, period = np.random.default_rng(5), 0.002
+    push, place = (scale * random.standard_normal((20_000, 2)).cumsum(axis=0) for scale in (0.01, 1e-4))
+    every = enough_of(period)
+    assert every == 12
+    whole, few = (lean_of(push, place, 0.9, period, nth) for nth in (1, every))
+    inner = slice(100, -100)
+    apart = few[inner] - whole[::every][inner]
+    assert np.abs(apart).max() < 1e-3 * np.abs(whole).std()
 
 
 @pytest.mark.parametrize(("seconds", "stances"), [(4.8, 0), (5.2, 1)])

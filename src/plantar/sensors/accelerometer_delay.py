@@ -14,15 +14,15 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from plantar.contact.deflection import BushState, bush_states
+from plantar.contact.deflection import FootMotion, foot_motion, path_to
 from plantar.contact.phases import carried_weight, detect_contact
-from plantar.conventions import GRAVITY, NORMAL95, Array, rotation_from_quaternion
+from plantar.conventions import FORCE, GRAVITY, NORMAL95, Array, rotation_from_quaternion
 from plantar.estimation.weighted_mean import weighted_mean
 from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
 from plantar.sensors.imu_filter import ImuFilter
-from plantar.sensors.tilt_error import CORRECTED, DERIVED, lean_of, stance_leans, unit_quaternions
+from plantar.sensors.tilt_error import CORRECTED, DERIVED, enough_of, lean_of, stance_leans, unit_quaternions
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.resampling import shifted
 from plantar.signals.segments import runs
@@ -132,8 +132,12 @@ def accelerometer_delay(robot: RobotModel, log: MotionLog) -> AccelerometerDelay
     orientation = None if imu is None else log.orientation(imu.name)
     if imu is None or orientation is None or not log.has_imu(imu.name, "linear_acceleration"):
         return found
-    period, edge = log.period, round(EDGE / log.period)
-    for signals in _leans(robot, log, unit_quaternions(orientation), log.linear_acceleration(imu.name)):
+    every = enough_of(log.period)
+    period = every * log.period
+    edge = round(EDGE / period)
+    for signals in _leans(
+        robot, log, unit_quaternions(orientation), log.linear_acceleration(imu.name), every
+    ):
         for run in runs(np.asarray(np.isfinite(signals).all(axis=(1, 2)))):
             if run.stop - run.start > 4 * edge:
                 own = signals[run]
@@ -143,39 +147,47 @@ def accelerometer_delay(robot: RobotModel, log: MotionLog) -> AccelerometerDelay
     return found
 
 
-def _leans(robot: RobotModel, log: MotionLog, orientation: Array, acceleration: Array) -> Iterator[Array]:
-    """Of each stance the lean about both axes and what goes with it, (n, 2, 10) [rad, and per unit]."""
-    period, bushes = log.period, _bushes(robot, log, orientation)
+def _leans(
+    robot: RobotModel, log: MotionLog, orientation: Array, acceleration: Array, every: int
+) -> Iterator[Array]:
+    """Of each stance the lean about both axes and what goes with it, (n, 2, 10) [rad, and per unit], at `every` nth
+    sample."""
+    period, (feet, forces) = log.period, _feet(robot, log, orientation)
     contacts = detect_contact(
-        {name: low_pass(bush.force_z, period, DERIVED) for name, bush in bushes.items()},
+        {name: low_pass(force, period, DERIVED) for name, force in forces.items()},
         {name: foot.contact == "always" for name, foot in robot.feet.items()},
-        max(
-            carried_weight({name: bush.force_z for name, bush in bushes.items()}), 0.3 * robot.mass * GRAVITY
-        ),
+        max(carried_weight(forces), 0.3 * robot.mass * GRAVITY),
         period,
     )
     rotation, smooth = rotation_from_quaternion(orientation), low_pass(acceleration, period, DERIVED)
     earlier = -differentiate(smooth, period)
     pushed, tilt = np.einsum("nij,nj->ni", rotation[:, :2], earlier), rotation[:, :2, 2]
     rising = np.einsum("nj,nj->n", rotation[:, 2], smooth)
-    for run, lean, height in stance_leans(orientation, acceleration, bushes, contacts, period):
-        place = np.mean([bush.sole_position[run, :2] for bush in bushes.values()], axis=0)
+    for run, lean, height in stance_leans(orientation, acceleration, feet, contacts, period, every):
+        place = np.mean([foot.sole_position[run, :2] for foot in feet.values()], axis=0)
         none = np.zeros_like(place)
-        tilted = low_pass(tilt[run], period, CORRECTED)
+        tilted = low_pass(tilt[run], period, CORRECTED, every=every)
         turning = np.column_stack([-place[:, 1], place[:, 0]])
         # An IMU that leans in its mount takes a part of what rises for what goes to the side.
         aside = [np.outer(rising[run], side) for side in np.eye(2)]
         pushes = np.hstack([none, none, pushed[run], *aside])
         places = np.hstack([tilt[run], turning, none, none, none])
-        higher, turned, late, *leant = np.split(lean_of(pushes, places, height, period), 5, axis=1)
-        about = [np.stack([each[:, 0], none[:, 0]], axis=1) for each in (tilted, higher)]
-        across = [np.stack([none[:, 0], each[:, 1]], axis=1) for each in (tilted, higher)]
+        higher, turned, late, *leant = np.split(lean_of(pushes, places, height, period, every), 5, axis=1)
+        about, across = ([each * side for each in (tilted, higher)] for side in np.eye(2))
         swapped = np.column_stack([-tilted[:, 1], tilted[:, 0]])
         yield np.stack([lean, late, *about, *across, turned, swapped, *leant], axis=2)
 
 
-def _bushes(robot: RobotModel, log: MotionLog, orientation: Array) -> dict[str, BushState]:
-    """Where the soles are; no rate is asked for."""
+def _feet(
+    robot: RobotModel, log: MotionLog, orientation: Array
+) -> tuple[dict[str, FootMotion], dict[str, Array]]:
+    """Where the soles are, without rates, and what each foot carries (N,) [N]."""
     positions, still = log.positions(robot), np.zeros((len(log), 3))
-    wrenches = {name: log.wrench(foot.wrench.name) for name, foot in robot.feet.items()}
-    return bush_states(robot, positions, np.zeros_like(positions), orientation, still, wrenches)
+    velocities, motions, forces = np.zeros_like(positions), dict[str, FootMotion](), dict[str, Array]()
+    for name, foot in robot.feet.items():
+        path, _, to_bush = path_to(robot, name)
+        motions[name] = motion = foot_motion(path, positions, velocities, orientation, still)
+        turn = (to_bush * robot.frame(foot.wrench.placement)[1]).rotation
+        read = foot.wrench.sign * log.wrench(foot.wrench.name)[:, FORCE] @ turn.T
+        forces[name] = np.einsum("ni,ni->n", motion.up, read)
+    return motions, forces

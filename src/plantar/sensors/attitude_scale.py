@@ -21,7 +21,7 @@ from plantar.estimation.slow_drift import drift_basis
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.robot.model import Imu
-from plantar.sensors.tilt_error import CORRECTED, lean_of, stance_leans, unit_quaternions
+from plantar.sensors.tilt_error import CORRECTED, enough_of, lean_of, stance_leans, unit_quaternions
 from plantar.signals.filters import low_pass
 
 ATTITUDE_SCALE = "attitude_scale"
@@ -94,19 +94,21 @@ def log_attitude_scale(
     if log.orientation(imu.name) is None or not log.has_imu(imu.name, "linear_acceleration"):
         return AttitudeScale()
     unit, acceleration, period = unit_quaternions(orientation), log.linear_acceleration(imu.name), log.period
-    found, edge, thinned = AttitudeScale(), round(EDGE / period), max(1, int(1 / (KEPT * CORRECTED * period)))
-    every = thinned * period
+    found, every = AttitudeScale(), enough_of(period)
+    edge, thinned = round(EDGE / (every * period)), max(1, int(1 / (KEPT * CORRECTED * every * period)))
+    step = thinned * every * period
     horizontal = rotation_from_quaternion(unit)[:, :2, 2]
-    for run, lean, height in stance_leans(unit, acceleration, bushes, contacts, period):
-        tilt = low_pass(horizontal[run], period, CORRECTED)
-        higher = lean_of(np.zeros_like(tilt), horizontal[run], height, period)
+    for run, lean, height in stance_leans(unit, acceleration, bushes, contacts, period, every):
+        believed = horizontal[run]
+        tilt = low_pass(believed, period, CORRECTED, every=every)
+        higher = lean_of(np.zeros_like(believed), believed, height, period, every)
         signals = np.stack([lean, tilt, higher], axis=2)[edge:-edge:thinned]  # (n, 2, 3)
         # What an attitude drifts by over seconds is no share of any tilt, but goes with slow ones for a while.
         flat = signals.reshape(len(signals), -1)
-        flat = without(drift_basis(every * np.arange(len(flat), dtype=np.float64)), flat - flat.mean(axis=0))
+        flat = without(drift_basis(step * np.arange(len(flat), dtype=np.float64)), flat - flat.mean(axis=0))
         signals = flat.reshape(signals.shape)
-        products = every * np.einsum("nai,naj->aij", signals, signals)
-        found = found + AttitudeScale(products, len(signals) * every)
+        products = step * np.einsum("nai,naj->aij", signals, signals)
+        found = found + AttitudeScale(products, len(signals) * step)
     return found
 
 

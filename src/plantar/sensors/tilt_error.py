@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from plantar.contact.deflection import BushState
+from plantar.contact.deflection import BushState, FootMotion
 from plantar.contact.phases import FootContact
 from plantar.conventions import GRAVITY, Array, cross, rotation_from_quaternion
 from plantar.logs.motion_log import MotionLog
@@ -36,6 +36,9 @@ SURE = (
 AXES = 2  # of the horizontal plane, in which the vertical leans
 CORRECTED = 1.5  # Hz, up to which the attitude is put right
 DERIVED = 5.0  # Hz: filter of what is differentiated twice
+KEPT_PER_PERIOD = (
+    8.0  # samples of DERIVED's period: differences of such leave the band below CORRECTED as it is
+)
 SHORTEST_STANCE = 5.0  # s on the same feet
 PADDING = 2.0  # s
 
@@ -183,17 +186,23 @@ def put_right(
     return right
 
 
+def enough_of(period: float) -> int:
+    """Every nth sample tells a lean as well as all do, since nothing above DERIVED is left: this n."""
+    return max(1, int(1 / (KEPT_PER_PERIOD * DERIVED * period)))
+
+
 def stance_leans(
     orientation: Array,
     acceleration: Array,
-    bushes: Mapping[str, BushState],
+    bushes: Mapping[str, BushState | FootMotion],
     contacts: Mapping[str, FootContact],
     period: float,
+    every: int = 1,
 ) -> Iterator[tuple[slice, Array, float]]:
-    """Long stances on the same feet, how far the believed vertical leans along the world's x and y, (n, 2) [rad], and
-    the IMU's height [m].
+    """Long stances on the same feet, how far the believed vertical leans along the world's x and y, (n, 2) [rad], at
+    `every` nth sample, and the IMU's height [m].
 
-    Arguments as of `put_right`. Each stance has a zero of its own: the accelerometer's, the attitude's, the sole's.
+    Others as of `put_right`. Each stance has a zero of its own: the accelerometer's, the attitude's, the sole's.
     """
     push = np.einsum("nij,nj->ni", rotation_from_quaternion(orientation)[:, :2], acceleration)
     standing = np.array([contacts[foot].standing for foot in bushes])
@@ -211,16 +220,17 @@ def stance_leans(
             if (run.stop - run.start) * period >= SHORTEST_STANCE:
                 place = np.mean([bush.sole_position[run] for bush in feet], axis=0)
                 height = -float(np.median(place[:, 2]))
-                yield run, lean_of(push[run], place[:, :2], height, period), height
+                yield run, lean_of(push[run], place[:, :2], height, period, every), height
 
 
-def lean_of(push: Array, place: Array, height: float, period: float) -> Array:
-    """How far the believed vertical leans along x and y, (n, 2) [rad], over one stance.
+def lean_of(push: Array, place: Array, height: float, period: float, every: int = 1) -> Array:
+    """How far the believed vertical leans along x and y, (n, 2) [rad], over one stance, at `every` nth sample.
 
     push: horizontal acceleration of the IMU in the believed world; place: of the sole from the IMU, both (n, 2), or
     several such beside each other; height: of the IMU [m].
     """
-    smooth, pushed = low_pass(np.column_stack([push, place]), period, DERIVED), push.shape[1]
+    smooth, pushed = low_pass(np.column_stack([push, place]), period, DERIVED, every=every), push.shape[1]
+    period = every * period
     left = smooth[:, :pushed] + differentiate(differentiate(smooth[:, pushed:], period), period)
     padding = min(round(PADDING / period), len(left) - 1)
     mirrored = np.vstack([left[padding:0:-1], left, left[-2 : -padding - 2 : -1]])
