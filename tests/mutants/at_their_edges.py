@@ -72,7 +72,7 @@ AT_THEIR_EDGES = (
     Mutant(
         "estimation/delays/sensor_delays.py",
         "a wrong model moves no delay",
-        "+ wrong @ wrong.T / max(wrong.shape[1], 1)",
+        "+ drawn @ drawn.T / max(drawn.shape[1], 1)",
         "",
         ("estimation/delays/test_deviations.py",),
     ),

@@ -43,7 +43,7 @@ ESTIMATION = (
     ),
     Mutant(
         "estimation/delays/sensor_delays.py", "cells weighed by their noise, not by their length too",
-        "[cell.freedom / float(rest @ rest + cell.floor)", "[1 / float(rest @ rest + cell.floor)",
+        "freedom / (squares - (missing", "1 / (squares - (missing",
     ),
 )  # fmt: skip
 

@@ -15,10 +15,10 @@ import numpy as np
 
 from plantar.conventions import Array
 from plantar.estimation.delays.delay import GAIN_BAND, LEAST_EXPLAINED, LEAST_SHARE, MODEL_ERROR, banded
-from plantar.estimation.orthonormal import orthonormal, without
 
 ROUNDS = 3  # of weighing cells by what the solution leaves of them
 FEWEST_CELLS = 6  # axes in bands that must close
+RANK_TOLERANCE = 1e-12  # of columns' products, scaled to 1: what is less counts as rounding
 
 
 @dataclass(frozen=True)
@@ -43,15 +43,13 @@ class Balance:
 
 @dataclass(frozen=True)
 class _Cell:
-    """One axis in one band, gains of prediction and sensors taken off.
+    """One axis in one band: the `products` (delays + 1 + draws, the same) of how what is missing grows with each delay,
+    of what is missing, and of what drawn models would make of it, gains of prediction and sensors taken off.
 
-    What is `missing` (n,), how it grows with the delays, `columns` (n, delays), what drawn models would make of it,
-    `wrong` (n, draws), and squares of the model's own error. `freedom`: how many independent values are left of n.
+    `floor`: squares of the model's own error; `freedom`: how many independent values the axis has in the band.
     """
 
-    missing: Array
-    columns: Array
-    wrong: Array
+    products: Array
     floor: float
     freedom: float
 
@@ -75,27 +73,27 @@ def estimate_delays(balances: Sequence[Balance], held: Array | None = None) -> D
         return None
     count = len(balances[0].by_delay)
     free = np.eye(count) if held is None or not len(held) else _null_space(held)
-    values = np.zeros(count)
-    weights = np.array([cell.freedom / float(cell.missing @ cell.missing) for cell in cells])
+    values, products = np.zeros(count), np.array([cell.products for cell in cells])
+    floor, freedom = (np.array([getattr(cell, name) for cell in cells]) for name in ("floor", "freedom"))
+    columns, missing = products[:, :count, :count], products[:, :count, count]
+    squares, wrong = products[:, count, count], products[:, :count, count + 1 :]
+    weights = freedom / squares
     for _ in range(ROUNDS):
-        information = sum(w * cell.columns.T @ cell.columns for w, cell in zip(weights, cells, strict=True))
+        information = np.tensordot(weights, columns, 1)
         reduced = free.T @ information @ free
         scale = np.sqrt(np.diag(reduced))
         if not (scale > 0).all() or np.linalg.cond(reduced / np.outer(scale, scale)) > 1e6:
             return None
-        product = sum(w * cell.columns.T @ cell.missing for w, cell in zip(weights, cells, strict=True))
-        values = free @ np.linalg.solve(reduced, free.T @ product)
-        left = [cell.missing - cell.columns @ values for cell in cells]
-        weights = np.array(
-            [cell.freedom / float(rest @ rest + cell.floor) for rest, cell in zip(left, cells, strict=True)]
-        )
+        values = free @ np.linalg.solve(reduced, free.T @ (weights @ missing))
+        left = missing - columns @ values
+        weights = freedom / (squares - (missing + left) @ values + floor)
     inverse = free @ np.linalg.inv(reduced) @ free.T
     # Cells disagree by more than noise where the robot's model is wrong: each is one draw of that. What a wrong model
     # does to all of them at once does not show in it, and stands beside it.
-    scores = np.array([w * cell.columns.T @ rest for w, rest, cell in zip(weights, left, cells, strict=True)])
+    scores = weights[:, None] * left
     share = len(cells) / max(len(cells) - free.shape[1], 1)
-    wrong = sum(w * cell.columns.T @ cell.wrong for w, cell in zip(weights, cells, strict=True))
-    middle = share * scores.T @ scores + wrong @ wrong.T / max(wrong.shape[1], 1)
+    drawn = np.tensordot(weights, wrong, 1)
+    middle = share * scores.T @ scores + drawn @ drawn.T / max(drawn.shape[1], 1)
     return Delays(values, inverse @ middle @ inverse, len(cells))
 
 
@@ -107,30 +105,40 @@ def _null_space(held: Array) -> Array:
 
 def _cells(balance: Balance) -> list[_Cell]:
     """Every axis in every band that closes."""
+    predicted, measured = balance.predicted[None], balance.measured
+    sensors, delays, found = len(measured), len(balance.by_delay), []
+    missing = predicted - measured.sum(axis=0)
     errors = balance.model_errors if len(balance.model_errors) else np.zeros((0, *balance.predicted.shape))
-    stacked = np.concatenate([balance.predicted[None], balance.measured, balance.by_delay, errors])
-    sensors, delays, found = len(balance.measured), len(balance.by_delay), []
-    flat = np.ascontiguousarray(stacked.transpose(1, 0, 2).reshape(stacked.shape[1], -1))
-    enough = LEAST_SHARE * np.var(balance.measured.sum(axis=0), axis=0)
-    for width, filtered, _, stride in banded(flat, balance.period):
+    # Gains come first: of the prediction, and of what sensors read unlike each other.
+    columns = [predicted, measured[1:] - measured[:1], balance.by_delay, missing, errors]
+    flat = np.concatenate(columns).transpose(1, 2, 0)
+    enough = LEAST_SHARE * np.var(predicted - missing, axis=1)[0]
+    for width, filtered, _, stride in banded(flat.reshape(len(flat), -1), balance.period):
         # Of a few seconds, a slow band holds fewer independent values than there are gains and delays: these explain
         # all of it, whatever they are.
         freedom = 2 * width * stride * balance.period * len(filtered) - sensors
         if freedom <= delays:
             continue
-        band = filtered.reshape(-1, *stacked.shape[::2])
-        for axis, least in zip(band.transpose(2, 0, 1), enough, strict=True):
-            predicted, measured, others = axis[:, 0], axis[:, 1 : 1 + sensors], axis[:, 1 + sensors :]
-            total = measured.sum(axis=1)
-            gains = np.column_stack([predicted, measured[:, 1:] - measured[:, :1]])
-            both = np.column_stack([predicted - total, others])
-            clear = without(orthonormal(gains), both)
-            missing, columns, wrong = clear[:, 0], clear[:, 1 : 1 + delays], clear[:, 1 + delays :]
-            rest = without(orthonormal(columns), missing)
-            gain = float(total @ predicted) / max(float(predicted @ predicted), 1e-300)
-            explains = float(rest @ rest) < (1 - LEAST_EXPLAINED) * float(total @ total)
-            if explains and GAIN_BAND[0] < gain < GAIN_BAND[1] and total @ total > least * len(total):
-                floor = MODEL_ERROR**2 * float(predicted @ predicted)
-                floor += float(np.sum(wrong**2)) / max(wrong.shape[1], 1)
-                found.append(_Cell(missing, columns, wrong, floor, freedom))
+        band = filtered.reshape(-1, *flat.shape[1:]).transpose(1, 2, 0)
+        products = band @ band.transpose(0, 2, 1)
+        clear = _beside(products, sensors)
+        rest = _beside(clear, delays)[:, 0, 0]
+        at = sensors + delays  # the place of what is missing
+        power, apart = products[:, 0, 0], products[:, 0, at]
+        total, gain = power - 2 * apart + products[:, at, at], 1 - apart / np.maximum(power, 1e-300)
+        explains = (rest < (1 - LEAST_EXPLAINED) * total) & (total > enough * len(filtered))
+        usable = (gain > GAIN_BAND[0]) & (gain < GAIN_BAND[1])
+        wrong = np.trace(clear[:, delays + 1 :, delays + 1 :], axis1=1, axis2=2) / max(len(errors), 1)
+        floor = MODEL_ERROR**2 * power + wrong
+        found += [_Cell(clear[axis], floor[axis], freedom) for axis in np.flatnonzero(explains & usable)]
     return found
+
+
+def _beside(products: Array, count: int) -> Array:
+    """Columns' products (..., k, k) without what the first `count` columns explain: those of the others alone."""
+    own, across = products[..., :count, :count], products[..., :count, count:]
+    size = np.sqrt(np.diagonal(own, axis1=-2, axis2=-1))[..., None]
+    size = np.where(size > 0, size, 1.0)
+    inverse = np.linalg.pinv(own / size / np.swapaxes(size, -1, -2), rcond=RANK_TOLERANCE, hermitian=True)
+    across = across / size
+    return np.asarray(products[..., count:, count:] - np.swapaxes(across, -1, -2) @ inverse @ across)
