@@ -222,14 +222,14 @@ def _centre_of_pressure(
     force: Array, torque: Array, pitch: Array, roll: Array, sole: pin.SE3, least: float
 ) -> Array:
     """Where the ground's force passes through the sole's plane, in the sole frame, (N, 2)."""
-    force, torque = _onto_sole(force, pitch, roll), _onto_sole(torque, pitch, roll)
+    force, torque = onto_sole(force, pitch, roll), onto_sole(torque, pitch, roll)
     moment = (torque - cross(sole.translation, force)) @ sole.rotation
     normal = force @ sole.rotation[:, 2]
     normal = np.where(normal >= least, normal, np.nan)
     return np.column_stack([-moment[:, 1] / normal, moment[:, 0] / normal])
 
 
-def _onto_sole(vector: Array, pitch: Array, roll: Array) -> Array:
+def onto_sole(vector: Array, pitch: Array, roll: Array) -> Array:
     """From the bush frame to the deflected one: (Ry(pitch) Rx(roll))ᵀ, (N, 3)."""
     x, y, z = vector.T
     cp, sp, cr, sr = np.cos(pitch), np.sin(pitch), np.cos(roll), np.sin(roll)

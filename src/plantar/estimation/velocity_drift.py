@@ -14,6 +14,7 @@ import numpy as np
 
 from plantar import _core
 from plantar.conventions import Array
+from plantar.estimation.normal_equations import solved
 
 OUTLYING = 5.0  # usual deviations: beyond them a sample is motion rather than drift
 ANNEALED = 2.0  # by which the weights' reach shrinks in a step
@@ -21,7 +22,6 @@ STIFF = 1e8  # by which the first weights are lower than the last
 SETTLED = 5  # steps with the final reach
 FIRST_DRIFT, FIRST_SLOPE = 1.0, 0.3  # m/s, m/s²: deviations of what is known of both before the first sample
 LEAST_JUMP = 1e-10  # m²/s²
-RESOLVED = 1e-12  # of the largest eigenvalue: columns that differ by less are one
 
 
 @dataclass(frozen=True)
@@ -78,8 +78,4 @@ def _sizes(left: Array, weight: Array) -> Array:
     m = left.shape[1] // 2
     both = ((left * weight[:, None]).T @ left).reshape(2, m, 2, m)
     products = both[0, :, 0] + both[1, :, 1]
-    length = np.sqrt(np.diag(products)[1:]) + 1e-12
-    scaled = products[1:, 1:] / np.outer(length, length)
-    return np.asarray(
-        np.linalg.pinv(scaled, rcond=RESOLVED, hermitian=True) @ (products[1:, 0] / length) / length
-    )
+    return solved(products[1:, 1:], products[1:, 0])
