@@ -10,7 +10,7 @@ import pytest
 
 import example_robots
 from plantar import _core
-from plantar.contact.deflection import BushState, bush_states
+from plantar.contact.deflection import BushState, bush_states, foot_motions
 from plantar.contact.relative_pose import relative_pose
 from plantar.conventions import Array, rotation_from_rpy
 from plantar.errors import DataError, RobotError
@@ -202,6 +202,16 @@ def test_rates_are_the_derivatives_of_the_angles() -> None:
     for state in found.values():
         slope = (state.deflection[2:] - state.deflection[:-2]) / (2 * step)
         np.testing.assert_allclose(state.rate[1:-1], slope, atol=1e-7)
+
+
+def test_encoders_have_their_part_in_the_rates() -> None:
+    model = talos()
+    moved = motion(model, 5)
+    whole = foot_motions(model, **moved)
+    held = foot_motions(model, **{**moved, "angular_velocity": np.zeros((SAMPLES, 3))})
+    for name in model.feet:
+        assert np.abs(whole[name].rate - whole[name].encoder_rate).max() > 0.1
+        np.testing.assert_allclose(whole[name].encoder_rate, held[name].rate, atol=1e-13)
 
 
 def test_a_known_deflection_comes_back() -> None:

@@ -51,13 +51,17 @@ class BushState:
 
 @dataclass(frozen=True)
 class FootMotion:
-    """What the kinematics alone say: `up` (N, 3), in the bush frame; the others as in `BushState`."""
+    """What the kinematics alone say: `up` (N, 3), in the bush frame; `encoder_rate` (N, 2), the part of the rate that
+    joints turn, the IMU held [rad/s]; `imu_turn` (N, 2, 3), change of pitch and roll with a turn of the IMU about its
+    own x, y and z [rad/rad]; the others as in `BushState`."""
 
     up: Array
     deflection: Array
     rate: Array
     sole_position: Array
     heading: Array
+    encoder_rate: Array
+    imu_turn: Array
 
 
 @dataclass(frozen=True)
@@ -93,31 +97,40 @@ def bush_states(
 
     Raises RobotError when the robot file has no IMU, DataError when an array has the wrong shape.
     """
+    motions = foot_motions(robot, positions, velocities, orientation, angular_velocity, threads)
+    return loaded(robot, motions, wrenches)
+
+
+def foot_motions(
+    robot: RobotModel,
+    positions: Array,
+    velocities: Array,
+    orientation: Array,
+    angular_velocity: Array,
+    threads: int = 0,
+) -> dict[str, FootMotion]:
+    """What the kinematics say of every foot; arguments and errors as of `bush_states`."""
     samples, joints = len(orientation), len(robot.joint_names)
     _expect("positions", positions, (samples, joints))
     _expect("velocities", velocities, (samples, joints))
     _expect("orientation", orientation, (samples, 4))
     _expect("angular velocity", angular_velocity, (samples, 3))
+    arrays = positions, velocities, orientation, angular_velocity
+    return {name: foot_motion(path_to(robot, name)[0], *arrays, threads) for name in robot.feet}
+
+
+def loaded(
+    robot: RobotModel, motions: Mapping[str, FootMotion], wrenches: Mapping[str, Array]
+) -> dict[str, BushState]:
+    """What the force sensors say added to the motions; `wrenches` and errors as of `bush_states`."""
     least = LEAST_LOAD * max(robot.mass * GRAVITY, 1.0)
     states = {}
     for name, foot in robot.feet.items():
-        _expect(f"wrench of foot '{name}'", wrenches[name], (samples, 6))
-        path, sole, to_bush = path_to(robot, name)
-        sensor = to_bush * robot.frame(foot.wrench.placement)[1]
-        motion = foot_motion(path, positions, velocities, orientation, angular_velocity, threads)
+        motion, to_bush = motions[name], robot.frame(foot.bush)[1].inverse()
+        _expect(f"wrench of foot '{name}'", wrenches[name], (len(motion.up), 6))
+        sole, sensor = (to_bush * robot.frame(part.placement)[1] for part in (foot.sole, foot.wrench))
         states[name] = bush_state(motion, moved_wrench(wrenches[name], sensor, foot.wrench.sign), sole, least)
     return states
-
-
-def encoder_rates(
-    robot: RobotModel, positions: Array, velocities: Array, orientation: Array
-) -> dict[str, Array]:
-    """Rate of each foot's deflection as far as joints turn, the IMU held, (N, 2) [rad/s]; see `bush_states`."""
-    held = np.zeros((len(orientation), 3))
-    return {
-        name: foot_motion(path_to(robot, name)[0], positions, velocities, orientation, held).rate
-        for name in robot.feet
-    }
 
 
 def path_to(
@@ -186,7 +199,15 @@ def foot_motion(
         angular_velocity,
         threads,
     )
-    return FootMotion(rows[0:3].T, rows[3:5].T, rows[5:7].T, rows[7:10].T, rows[10])
+    return FootMotion(
+        rows[0:3].T,
+        rows[3:5].T,
+        rows[5:7].T,
+        rows[7:10].T,
+        rows[10],
+        rows[11:13].T,
+        rows[13:19].T.reshape(-1, 2, 3),
+    )
 
 
 def moved_wrench(wrench: Array, sensor: pin.SE3, sign: float = 1.0) -> Array:
