@@ -267,6 +267,15 @@ def test_every_instruction_set_and_thread_count_agree() -> None:
             np.testing.assert_allclose(
                 _core.foot_chain(*arguments, threads=threads, isa=isa), reference, rtol=1e-12, atol=1e-12
             )
+    load = (frame, -1.0, 100 * rng.normal(size=(samples, 6)), reference[:3].T, frame, 50.0)
+    reference = _core.sole_load(*load, threads=1, isa="baseline")
+    assert np.isnan(reference).any()
+    assert not np.isnan(reference[:9]).any()
+    for isa in _core.instruction_sets():
+        for threads in (1, 3):
+            np.testing.assert_allclose(
+                _core.sole_load(*load, threads=threads, isa=isa), reference, rtol=1e-12, atol=1e-10
+            )
 
 
 def test_large_and_missing_angles_keep_their_meaning() -> None:

@@ -18,7 +18,7 @@ import numpy as np
 import pinocchio as pin
 
 from plantar import _core
-from plantar.conventions import FORCE, GRAVITY, TORQUE, Array, cross, skew
+from plantar.conventions import GRAVITY, Array, skew
 from plantar.errors import DataError
 from plantar.robot.kinematics import KinematicTree, packed_frame
 from plantar.robot.model import Placement, RobotModel
@@ -98,7 +98,7 @@ def bush_states(
     Raises RobotError when the robot file has no IMU, DataError when an array has the wrong shape.
     """
     motions = foot_motions(robot, positions, velocities, orientation, angular_velocity, threads)
-    return loaded(robot, motions, wrenches)
+    return loaded(robot, motions, wrenches, threads)
 
 
 def foot_motions(
@@ -120,7 +120,7 @@ def foot_motions(
 
 
 def loaded(
-    robot: RobotModel, motions: Mapping[str, FootMotion], wrenches: Mapping[str, Array]
+    robot: RobotModel, motions: Mapping[str, FootMotion], wrenches: Mapping[str, Array], threads: int = 0
 ) -> dict[str, BushState]:
     """What the force sensors say added to the motions; `wrenches` and errors as of `bush_states`."""
     least = LEAST_LOAD * max(robot.mass * GRAVITY, 1.0)
@@ -128,8 +128,20 @@ def loaded(
     for name, foot in robot.feet.items():
         motion, to_bush = motions[name], robot.frame(foot.bush)[1].inverse()
         _expect(f"wrench of foot '{name}'", wrenches[name], (len(motion.up), 6))
-        sole, sensor = (to_bush * robot.frame(part.placement)[1] for part in (foot.sole, foot.wrench))
-        states[name] = bush_state(motion, moved_wrench(wrenches[name], sensor, foot.wrench.sign), sole, least)
+        sensor, sole = (
+            packed_frame(to_bush * robot.frame(part.placement)[1]) for part in (foot.wrench, foot.sole)
+        )
+        rows = _core.sole_load(sensor, foot.wrench.sign, wrenches[name], motion.up, sole, least, threads)
+        states[name] = BushState(
+            deflection=motion.deflection,
+            rate=motion.rate,
+            wrench=rows[0:6].T,
+            torque=rows[6:8].T,
+            force_z=rows[8],
+            cop=rows[9:11].T,
+            sole_position=motion.sole_position,
+            heading=motion.heading,
+        )
     return states
 
 
@@ -208,46 +220,6 @@ def foot_motion(
         rows[11:13].T,
         rows[13:19].T.reshape(-1, 2, 3),
     )
-
-
-def moved_wrench(wrench: Array, sensor: pin.SE3, sign: float = 1.0) -> Array:
-    """Wrenches (N, 6) from a sensor's frame to the frame in which `sensor` is its placement."""
-    force = sign * wrench[:, FORCE] @ sensor.rotation.T
-    torque = sign * wrench[:, TORQUE] @ sensor.rotation.T + force @ skew(sensor.translation).T
-    return np.hstack([force, torque])
-
-
-def bush_state(motion: FootMotion, wrench: Array, sole: pin.SE3, least: float) -> BushState:
-    """Add what the force sensor says to what the kinematics say.
-
-    wrench: of the environment at the bush centre in the bush frame, (N, 6); sole: its placement in the bush
-    frame; least: the force along the sole's normal below which there is no centre of pressure [N].
-    """
-    force, torque = wrench[:, FORCE], wrench[:, TORQUE]
-    pitch, roll = motion.deflection.T
-    # The pitch axis is fixed to the ankle; the roll axis turns with the pitch: Ry(pitch) e_x.
-    about_roll = np.cos(pitch) * torque[:, 0] - np.sin(pitch) * torque[:, 2]
-    return BushState(
-        deflection=motion.deflection,
-        rate=motion.rate,
-        wrench=wrench,
-        torque=np.column_stack([torque[:, 1], about_roll]),
-        force_z=np.einsum("ni,ni->n", motion.up, force),
-        cop=_centre_of_pressure(force, torque, pitch, roll, sole, least),
-        sole_position=motion.sole_position,
-        heading=motion.heading,
-    )
-
-
-def _centre_of_pressure(
-    force: Array, torque: Array, pitch: Array, roll: Array, sole: pin.SE3, least: float
-) -> Array:
-    """Where the ground's force passes through the sole's plane, in the sole frame, (N, 2)."""
-    force, torque = onto_sole(force, pitch, roll), onto_sole(torque, pitch, roll)
-    moment = (torque - cross(sole.translation, force)) @ sole.rotation
-    normal = force @ sole.rotation[:, 2]
-    normal = np.where(normal >= least, normal, np.nan)
-    return np.column_stack([-moment[:, 1] / normal, moment[:, 0] / normal])
 
 
 def onto_sole(vector: Array, pitch: Array, roll: Array) -> Array:
