@@ -106,7 +106,7 @@ EXCLUSION = (
     ),
     Mutant(
         "feet/exclusion/sole_velocity.py", "the attitude's noise is added twice",
-        "arm[:, :2] - np.cross(noise_of_attitude, arm)", "arm[:, :2] + np.cross(noise_of_attitude, arm)",
+        "arm - cross(noise_of_attitude, arm)", "arm + cross(noise_of_attitude, arm)",
     ),
     Mutant(
         "feet/exclusion/sole_velocity.py", "friction turned by minus the heading",

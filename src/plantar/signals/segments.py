@@ -5,7 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from plantar.conventions import Mask
+from plantar.conventions import Array, Mask
+
+
+def complete(values: Array) -> Mask:
+    """The samples (N,) of values (N, k) none of which is NaN or infinite."""
+    with np.errstate(invalid="ignore", over="ignore"):  # one sum of each sample says what its values would
+        return np.asarray(np.isfinite(values @ np.ones(values.shape[1])))
 
 
 def runs(valid: Mask) -> list[slice]:

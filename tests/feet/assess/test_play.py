@@ -10,6 +10,7 @@ from made_recording import FOOT, PERIOD, made_recording, swayed
 from plantar.feet.assess.play import CODE, play_notes
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.recording import Recording
+from plantar.feet.regression.regression_data import tangent_blocks
 from plantar.feet.settings import FeetSettings
 from plantar.notes import Note
 
@@ -32,7 +33,7 @@ def swaying(rubber: Rubber, play: float = 0.0) -> list[Recording]:
 def said(recordings: list[Recording]) -> list[Note]:
     fit = fit_axis(recordings, FOOT, "pitch", FeetSettings())
     assert fit is not None
-    return play_notes(recordings, fit, False)
+    return play_notes(recordings, fit, tangent_blocks(recordings, fit), False)
 
 
 @pytest.mark.parametrize("play", [0.004, 0.01])
