@@ -140,8 +140,8 @@ FIT = (
         "seconds / len(stances) > SHORT_STANCE", "seconds > SHORT_STANCE",
     ),
     Mutant(
-        "feet/regression/regression_data.py", "columns of a model with memory unfiltered",
-        "low_pass(columns[:, 2:], recording.period, recording.cutoff, shortest)", "columns[:, 2:]",
+        "feet/regression/model_columns.py", "columns of a model with memory unfiltered",
+        "low_pass(columns, recording.period, recording.cutoff, _shortest_run(recording, fit.foot))", "columns",
     ),
 )  # fmt: skip
 
