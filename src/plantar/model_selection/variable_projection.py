@@ -29,9 +29,10 @@ WIDEST_SCAN, NARROWEST_SCAN, NARROWING = (
 SCANNED_RATIO = (
     0.25  # of a nonlinear parameter's logarithm, to either side at the widest scan: a step of the grid's
 )
-SHARES = (1.0, 0.4, 0.16, 0.064)  # of a step, tried in turn
+SHARES = np.array([1.0, 0.4, 0.16, 0.064])  # of a step: the longest that is better is taken
 SETTLED = 1e-4  # relative fall of the squares below which the refinement has arrived
 BOLDEST = 0.4  # largest step of a nonlinear parameter's logarithm
+ROUNDING = 1e-10  # of the torque's squares, in what products leave of them
 SHAPE_STEP, STATE_STEP = 0.01, 0.02  # of the differences that stand for derivatives
 
 
@@ -94,6 +95,12 @@ class Problem:
     def extras(self, shapes: Array, initial_states: Array) -> Array:
         """The model's own columns (n, e, b) of b variants of shape (b, s) and initial states (b, runs)."""
         return filtered_columns(self.model, self.prepared, shapes, self.by_recording(initial_states))
+
+    def squares(self, extras: Array) -> Array:
+        """What is left with each of b variants of the model's own columns (n, e, b), (b,), up to `ROUNDING`."""
+        common = np.column_stack([self.base, np.ones(len(extras)), self.response])
+        grams = grams_of(common, extras, np.cumsum([0, *self.rows[:-1]]))
+        return solve(grams, self.shared_offset)[2]
 
     def at(self, shape: Array, initial_states: Array, extra: Array | None = None) -> Point:
         """Solve the linear part. extra: the model's own columns there, (n, e), if known."""
@@ -160,9 +167,12 @@ def step(problem: Problem, point: Point, limits: Array) -> Point | None:
     change = linear.solve()
     move = np.clip(change[len(point.values) :], -BOLDEST, BOLDEST)
     moves = linear.initial_states(change)
-    for share in SHARES:
-        shape = np.clip(point.shape * np.exp(share * move), limits[0], limits[1])
-        tried = problem.at(shape, np.clip(point.initial_states + share * moves, -1.0, 1.0))
+    shapes = np.clip(point.shape * np.exp(SHARES[:, None] * move), limits[0], limits[1])
+    states = np.clip(point.initial_states + SHARES[:, None] * moves, -1.0, 1.0)
+    extras = problem.extras(shapes, states)
+    bound = point.squares + ROUNDING * float(problem.response @ problem.response)
+    for place in np.flatnonzero(problem.squares(extras) < bound):
+        tried = problem.at(shapes[place], states[place], extras[:, :, place])
         if tried.squares < point.squares:
             return tried
     return None
@@ -184,9 +194,7 @@ def scan_shape(problem: Problem, point: Point, limits: Array, width: float) -> P
     if not len(shapes):
         return None
     extras = problem.extras(shapes, np.tile(point.initial_states, (len(shapes), 1)))
-    common = np.column_stack([problem.base, np.ones(len(extras)), problem.response])
-    grams = grams_of(common, extras, np.cumsum([0, *problem.rows[:-1]]))
-    best = int(np.argmin(solve(grams, problem.shared_offset)[2]))
+    best = int(np.argmin(problem.squares(extras)))
     tried = problem.at(shapes[best], point.initial_states, extras[:, :, best])
     return tried if tried.squares < (1 - SETTLED) * point.squares else None
 
