@@ -5,7 +5,14 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from plantar.conventions import Mask
+from plantar.conventions import Array, Mask
+
+
+def known_rows(*values: Array) -> Mask:
+    """The samples (N,) at which no number of `values` (N, k) each is NaN; none may be infinite."""
+    return np.asarray(
+        np.isfinite(sum(part @ np.ones(part.shape[1]) for part in values))
+    )  # quicker than asking each
 
 
 def runs(valid: Mask) -> list[slice]:
