@@ -22,3 +22,9 @@ def test_samples_are_complete_without_nan_and_infinity() -> None:
     values[[1, 2, 3], [0, 1, 2]] = [np.nan, np.inf, -np.inf]
     values[3, 0] = np.inf
     assert complete(values).tolist() == [True, False, False, False, True]
+
+
+def test_samples_are_complete_where_no_column_of_any_table_is_empty() -> None:
+    one, other = np.ones((5, 2)), np.ones((5, 1))
+    one[1, 0] = one[3, 1] = other[3, 0] = np.nan
+    assert complete(one, other).tolist() == [True, False, True, False, True]

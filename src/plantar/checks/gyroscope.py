@@ -14,6 +14,7 @@ from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding
 from plantar.signals.gyroscope_delay import USUAL, gyroscope_delay
 from plantar.signals.orientation import rates_from
+from plantar.signals.segments import complete
 
 WINDOW = 0.5  # s over which the orientation's turn is compared with the gyroscope's integral
 OVERLAP = 5  # windows begin in each window's time
@@ -57,10 +58,8 @@ class Turns:
         total = np.vstack([np.zeros(3), np.cumsum(steps, axis=0)])
         starts = np.arange(0, len(log) - stride, max(1, stride // OVERLAP))
         ends = starts + stride
-        whole = np.isfinite(
-            np.column_stack([total[ends] - total[starts], orientation[starts], orientation[ends]])
-        )
-        starts, ends = starts[whole.all(axis=1)], ends[whole.all(axis=1)]
+        whole = complete(total[ends] - total[starts], orientation[starts], orientation[ends])
+        starts, ends = starts[whole], ends[whole]
         if starts.size == 0:
             return None
         before, after = readings(orientation[starts]), readings(orientation[ends])
@@ -232,7 +231,7 @@ def _upside_down(name: str, log: MotionLog, orientation: Array) -> bool:
     if not log.has(*columns):
         return True
     acceleration = log.linear_acceleration(name)
-    whole = np.flatnonzero(np.isfinite(np.column_stack([orientation, acceleration])).all(axis=1))
+    whole = np.flatnonzero(complete(orientation, acceleration))
     if whole.size < 10:
         return True
     rows = whole[:: max(1, whole.size // 2000)]

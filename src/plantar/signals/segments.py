@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 from plantar.conventions import Array, Mask
 
 
-def complete(values: Array) -> Mask:
-    """The samples (N,) of values (N, k) none of which is NaN or infinite."""
+def complete(*values: Array) -> Mask:
+    """The samples (N,) at which no number of `values`, (N, k) each, is NaN or infinite."""
     with np.errstate(invalid="ignore", over="ignore"):  # one sum of each sample says what its values would
-        return np.asarray(np.isfinite(values @ np.ones(values.shape[1])))
+        return np.asarray(np.isfinite(sum(part @ np.ones(part.shape[1]) for part in values)))
 
 
 def runs(valid: Mask) -> list[slice]:
