@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from plantar.checks.gyroscope import put_right_by
+from plantar.checks.gyroscope import BY_LEANS, beside_leans
 from plantar.checks.log_checks import check_log, finding_notes, refuse_impossible
 from plantar.contact.deflection import BushState, bush_states, encoder_rates
 from plantar.contact.imu_turn import imu_turn_effects
@@ -87,12 +87,14 @@ def prepare(
     if (right := right_attitude(log, imu, orientation, (own_tilt, tilt_error), raw, contacts)) is not None:
         orientation = right[0]
         raw = bush_states(robot, positions, velocities, orientation, rates, wrenches)
-        mended = put_right_by(imu.name, log, orientation)
-        notes = [note for note in notes if note.code not in mended]
         notes.append(right[1])
         scale = AttitudeScale()
     else:
         scale = log_attitude_scale(log, imu, orientation, raw, contacts)
+    if noted := BY_LEANS & {note.code for note in notes}:
+        # What was said of the sensors as recorded is said of them as they are used.
+        left = [one for one in beside_leans(imu.name, log, orientation) if one.code in noted]
+        notes = [note for note in notes if note.code not in noted] + finding_notes(log, left)
     return Recording(
         log=log,
         role=role,
