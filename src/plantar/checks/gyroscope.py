@@ -152,15 +152,16 @@ def check_gyroscope(name: str, log: MotionLog, orientation: Array, turns: Turns)
         yield Finding(FRAME, text)
 
 
-def put_right_by(name: str, log: MotionLog, orientation: Array) -> frozenset[str]:
-    """Codes of findings that another orientation of the same IMU, as soles that stand have it, does not show."""
+def beside_leans(name: str, log: MotionLog, orientation: Array) -> list[Finding]:
+    """What a log whose gyroscope was put right, or another orientation of the same IMU, as soles that stand have it,
+    still shows of the findings that an orientation which leans makes as well."""
     turns = Turns.of(log, name, orientation)
     found = (
         check_gyroscope(name, log, orientation, turns)
         if turns is not None
         else imu_late(name, log, orientation)
     )
-    return BY_LEANS - {finding.code for finding in found}
+    return [finding for finding in found if finding.code in BY_LEANS]
 
 
 def _axes_and_scale(where: str, turns: Turns) -> Iterator[Finding]:

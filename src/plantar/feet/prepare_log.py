@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from plantar.checks.gyroscope import put_right_by
+from plantar.checks.gyroscope import BY_LEANS, beside_leans
 from plantar.checks.log_checks import check_log, finding_notes, refuse_impossible
 from plantar.contact.deflection import BushState, foot_motions, loaded
 from plantar.contact.imu_turn import imu_turn_effects
@@ -89,12 +89,14 @@ def prepare(
         orientation = right[0]
         motions = foot_motions(robot, positions, velocities, orientation, rates)
         raw = loaded(robot, motions, wrenches)
-        mended = put_right_by(imu.name, log, orientation)
-        notes = [note for note in notes if note.code not in mended]
         notes.append(right[1])
         scale = AttitudeScale()
     else:
         scale = log_attitude_scale(log, imu, orientation, raw, contacts)
+    if noted := BY_LEANS & {note.code for note in notes}:
+        # What was said of the sensors as recorded is said of them as they are used.
+        left = [one for one in beside_leans(imu.name, log, orientation) if one.code in noted]
+        notes = [note for note in notes if note.code not in noted] + finding_notes(log, left)
     return Recording(
         log=log,
         role=role,
