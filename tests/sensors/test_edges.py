@@ -140,9 +140,9 @@ def scaled(share: float, noise: float = 1e-4, seconds: float = 400.0) -> Attitud
 @pytest.mark.parametrize(
     ("share", "noise", "told"),
     [
-        (0.0299, 1e-9, False),
-        (0.0301, 1e-9, True),
-        (-0.0301, 1e-9, True),
+        (0.0299, 1e-4, False),
+        (0.0301, 1e-4, True),
+        (-0.0301, 1e-4, True),
         (0.06, 0.19, True),
         (0.06, 0.21, False),
     ],
