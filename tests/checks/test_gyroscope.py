@@ -7,10 +7,16 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from biped import record, sines, sway
-from plantar.checks.gyroscope import SCALE_OFF, TURNED, Turns, check_gyroscope
+from plantar.checks.gyroscope import (
+    Turns,
+    check_gyroscope,
+)
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding
 from plantar.signals.resampling import shifted
+
+SCALE_OFF = 0.05
+TURNED = 0.1
 
 GYROSCOPE = [f"imu.chest.angular_velocity.{axis}" for axis in "xyz"]
 

@@ -57,7 +57,7 @@ def test_no_foot_without_play_is_told_of_it(rubber: Rubber) -> None:
 
 @pytest.mark.parametrize(("play", "told"), [(0.0023, False), (0.0033, True)])
 def test_play_is_told_where_half_as_much_again_is_left_without_it(play: float, told: bool) -> None:
-    """Of a step of the torque, half a play times the stiffness, spring and damper leave about a fifth of the squares."""
+    """Of a step of the torque, half a play times the stiffness, spring and damper leave a fifth of the squares."""
     made = []
     for seed in (0, 1):
         angle, random = swayed(COUNT, seed=seed), np.random.default_rng(seed)

@@ -10,10 +10,15 @@ import numpy as np
 import pytest
 
 from plantar.feet.fit import half_turns
-from plantar.feet.fit.half_turns import ROUND, cautioned_if_hardly_turned, slip_angles_spanned
+from plantar.feet.fit.half_turns import (
+    cautioned_if_hardly_turned,
+    slip_angles_spanned,
+)
 from plantar.feet.regression.axis import AxisFit
 from plantar.model_selection.selection import ModelChoice
 from plantar.models import MODELS, BushMotion
+
+ROUND = 2.0
 
 SLIP_ANGLE = 0.01
 
