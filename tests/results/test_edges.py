@@ -148,6 +148,22 @@ def test_a_result_names_itself(tmp_path: Path) -> None:
     assert one == replace(one, residuals=pa.table({"time": [0.0]})), (
         "residuals are no part of what is compared"
     )
+    knee = JointParameter("knee", "viscous", "N.m.s/rad", 3.0, 0.1, (2.8, 3.2), "usable", "")
+    score = DynamicsScore(
+        "direct", "a", "N", 1.0, 1.0, 9.0, zero_mean_abs=2.0, cad_rms_error=1.0, samples=5, axis="fz"
+    )
+    full = replace(
+        one, parameters=(replace(knee, joint="hip"), knee), validation=(score, replace(score, motion="b"))
+    )
+    assert full.parameter("knee", "viscous") is knee
+    assert full.score("b", "fz") is full.validation[1]
+    for missing in (
+        lambda: full.parameter("knee", "offset"),
+        lambda: full.score("a", "fx"),
+        lambda: full.score("c", "fz"),
+    ):
+        with pytest.raises(KeyError):
+            missing()
     content = replace(one, schema=INERTIA_SCHEMA).to_dict()
     del content["inertial_parameters"]
     (tmp_path / "result.json").write_text(json.dumps(content))
