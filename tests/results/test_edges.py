@@ -251,8 +251,8 @@ def test_seconds_are_added_up_by_reason() -> None:
     assert row["reasons"] == "slip (2.5 s); gap (0.1 s)"
 
 
-# Pitch, roll [N·m/rad], z [N/m], damping [N·m·s/rad]. Of the paper's table 1 the damping is the mean of 15.9 and 17.5, of
-# 24.3 and 28.2; the others are the robots' public configurations.
+# Pitch, roll [N·m/rad], z [N/m], damping [N·m·s/rad]. Of the paper's table 1 the damping is the mean of 15.9 and 17.5,
+# of 24.3 and 28.2; the others are the robots' public configurations.
 PUBLISHED = {
     ("HRP-2, right foot", 434, 323, None, 16.7), ("HRP-2, left foot", 480, 352, None, 26.2),
     ("HRP-2", 502, 707, 239018, None), ("HRP-2", 600, 600, 40000, 60),
