@@ -28,3 +28,19 @@ def test_a_sole_two_centimetres_off_is_another_link_s(
     said = f"lies 0.030 m below the bush, the result's sole {depth:.3f} m: is 'left_ankle' the URDF's link?"
     assert any(said in text for text in texts) == told
     assert len(texts) == 2 * told
+
+
+@pytest.mark.parametrize("target", ["bullet-contact", "drake-contact"])
+def test_shapes_of_links_below_the_ankle_touch_nothing_any_more(
+    target: str, urdf: Path, feet: dict[str, Any], tmp_path: Path
+) -> None:
+    """A box on the sole's own link, and one as far above the ankle."""
+    shape = '<collision name="{}"><origin xyz="0 0 {}"/><geometry><box size="0.1 0.1 0.01"/></geometry></collision>'
+    link = f'<link name="left_sole">{shape.format("low", 0)}{shape.format("high", 0.22)}</link>'
+    urdf.write_text(urdf.read_text().replace('<link name="left_sole"/>', link))
+    notes = export(feet, target, tmp_path / "out", model=urdf)
+    (silent,) = [note.text for note in notes if note.code == "export_silent" and note.text.startswith("left")]
+    assert "low" in silent
+    assert "foot" in silent
+    assert "high" not in silent
+    assert "cover" not in silent
