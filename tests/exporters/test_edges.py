@@ -15,7 +15,6 @@ from plantar.conventions import Axis
 from plantar.errors import ExportError
 from plantar.exporters import export
 from plantar.exporters.bush import FootBush, check_swing, raised
-from plantar.exporters.mjcf.file import INCLUDE_LIMIT
 from plantar.exporters.shapes import plate, reaches_sole
 from plantar.exporters.spring import Slip, Spring, spring_of
 from plantar.notes import Note
@@ -250,18 +249,3 @@ def test_ranges_to_train_with(feet: dict[str, Any], tmp_path: Path) -> None:
     between = matrix[places["left.pitch.offset"], places["right.pitch.offset"]]
     assert between == pytest.approx(own[0] * own[1], abs=6e-5), "to four digits"
     assert between == round(between, 4)
-
-
-@pytest.mark.parametrize(("files", "valid"), [(0, True), (1, False)])
-def test_includes_are_bounded(files: int, valid: bool, tmp_path: Path) -> None:
-    from plantar.exporters.mjcf.file import load_mjcf
-
-    assert INCLUDE_LIMIT == 100
-    (tmp_path / "one.xml").write_text("<mujoco/>")
-    includes = '<include file="one.xml"/>' * (100 + files)
-    (tmp_path / "model.xml").write_text(f"<mujoco>{includes}<worldbody/></mujoco>")
-    if valid:
-        load_mjcf(tmp_path / "model.xml", [])
-    else:
-        with pytest.raises(ExportError, match="includes more than 100 files"):
-            load_mjcf(tmp_path / "model.xml", [])

@@ -8,7 +8,9 @@ from typing import Any
 import pytest
 
 from export_robots import write_mjcf
+from plantar.errors import ExportError
 from plantar.exporters import export
+from plantar.exporters.mjcf.file import INCLUDE_LIMIT
 
 
 @pytest.mark.parametrize(
@@ -45,3 +47,18 @@ def test_shapes_of_links_below_the_ankle_touch_nothing_any_more(
     notes = export(feet, target, tmp_path / "out", model=urdf)
     (silent,) = [note.text for note in notes if note.code == "export_silent" and note.text.startswith("left")]
     assert silent.endswith(f"touch instead: {named}")
+
+
+@pytest.mark.parametrize(("files", "valid"), [(0, True), (1, False)])
+def test_includes_are_bounded(files: int, valid: bool, tmp_path: Path) -> None:
+    from plantar.exporters.mjcf.file import load_mjcf
+
+    assert INCLUDE_LIMIT == 100
+    (tmp_path / "one.xml").write_text("<mujoco/>")
+    includes = '<include file="one.xml"/>' * (100 + files)
+    (tmp_path / "model.xml").write_text(f"<mujoco>{includes}<worldbody/></mujoco>")
+    if valid:
+        load_mjcf(tmp_path / "model.xml", [])
+    else:
+        with pytest.raises(ExportError, match="includes more than 100 files"):
+            load_mjcf(tmp_path / "model.xml", [])

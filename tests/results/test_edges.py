@@ -21,9 +21,7 @@ from plantar.results.dynamics_text import joint_cells, score_cells
 from plantar.results.feet import FeetResult
 from plantar.results.feet_rows import AxisModel, DelayEstimate, LinearEquivalent, Parameter, ValidationRow
 from plantar.results.feet_text import delay_line, parameter_cells, prediction_cells, title_of_axis
-from plantar.results.io import read_result
 from plantar.results.numbers import decimals_for, interval, number, percent, unit, with_uncertainty
-from plantar.results.reference import REFERENCES, neighbours
 from plantar.results.residuals import read_table, tracks_of
 from plantar.results.stored import row_of
 from plantar.results.usage import used_shares
@@ -201,14 +199,13 @@ def test_an_interval_of_null_is_open() -> None:
     assert one.value != one.value
 
 
-def test_files_beyond_their_limit_are_not_read(tmp_path: Path) -> None:
-    for name, size, read in (("result.json", 256 * 2**20 + 1, read_result),
-                             ("residuals.parquet", 2_000_000_001, read_table)):  # fmt: skip
-        (tmp_path / name).touch()
-        os.truncate(tmp_path / name, size)
-        with pytest.raises(PlantarError, match="larger than"):
-            read(tmp_path / name)
-        (tmp_path / name).unlink()
+def test_residuals_beyond_two_gigabytes_are_not_read(tmp_path: Path) -> None:
+    path = tmp_path / "residuals.parquet"
+    path.touch()
+    for size, said in ((2_000_000_001, "is larger than 2000000000 bytes"), (2_000_000_000, "cannot be read")):
+        os.truncate(path, size)
+        with pytest.raises(PlantarError, match=said):
+            read_table(path)
 
 
 def test_tracks_hold_what_their_table_has() -> None:
@@ -249,24 +246,3 @@ def test_seconds_are_added_up_by_reason() -> None:
     assert row["seconds"] == pytest.approx(6.6)
     assert row["served"] == pytest.approx(4.0)
     assert row["reasons"] == "slip (2.5 s); gap (0.1 s)"
-
-
-# Pitch, roll [N·m/rad], z [N/m], damping [N·m·s/rad]. Of the paper's table 1 the damping is the mean of 15.9 and 17.5,
-# of 24.3 and 28.2; the others are the robots' public configurations.
-PUBLISHED = {
-    ("HRP-2, right foot", 434, 323, None, 16.7), ("HRP-2, left foot", 480, 352, None, 26.2),
-    ("HRP-2", 502, 707, 239018, None), ("HRP-2", 600, 600, 40000, 60),
-    ("any, Kinetics Observer's default", 400, 400, 40000, 12), ("JAXON", 2500, 2500, 1.1e6, 2.5),
-    ("JVRC-1", 3000, 3000, 1.3e6, 2.5), ("OpenHRP's sample robot", 1000, 1000, 5e5, 25), ("TALOS", 1e8, 1e8, 1e8, None),
-}  # fmt: skip
-
-
-def test_references_are_as_published_and_a_number_without_a_value_is_none() -> None:
-    assert {(one.robot, one.pitch, one.roll, one.z, one.damping) for one in REFERENCES} == PUBLISHED
-    rows = [replace(row, axis=axis, verdict="usable") for row in (K, C) for axis in ("pitch", "roll")]  # type: ignore[arg-type]
-    (own,) = [line.reference for line in neighbours([*rows[:3], replace(rows[3], value=None)]) if line.own]
-    assert (own.rotation, own.damping) == (500.0, None)
-    (own,) = [
-        line.reference for line in neighbours([rows[0], replace(rows[1], value=700.0), *rows[2:]]) if line.own
-    ]
-    assert (own.rotation, own.damping) == (600.0, 20.0)

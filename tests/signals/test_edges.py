@@ -14,7 +14,6 @@ from plantar.signals.gyroscope_delay import gyroscope_delay, of_a_filter
 from plantar.signals.held import held_samples
 from plantar.signals.resampling import evenly_sampled, sampling, without_holes
 from plantar.signals.segments import longest_run, run_ends, run_numbers, steps_in
-from plantar.signals.spikes import lone_spikes, without_spikes
 from plantar.signals.thinning import step_of, thinned
 
 STEPS = np.tile([0.0, 1.0], 1000)  # every step is 1
@@ -94,52 +93,6 @@ def test_a_gyroscope_s_delay_takes_five_seconds_without_a_hole(samples: int, tol
         assert found.late == pytest.approx(0.002, rel=0.01)
         assert found.explained > 0.99
     assert gyroscope_delay(np.ones_like(late), np.ones_like(late), 0.01) is None
-
-
-def spiked(places: list[int], height: float = 100.0) -> Array:
-    values = STEPS.copy()
-    values[places] = height
-    return values
-
-
-@pytest.mark.parametrize(
-    ("values", "found"),
-    [
-        (spiked([800], 10.5), []),  # 9.5 of the usual steps above those around it
-        (spiked([800], 11.5), [800]),
-        (spiked([800, 802, 806, 808]), [800, 802, 806, 808]),
-        (spiked([800, 802, 806, 808, 812]), []),  # ten quick steps within 0.15 s
-        (spiked([800, 804, 808, 812, 816]), [800, 816]),  # the outer ones see eight
-        (spiked([*range(0 + 40, 2000, 49)][:40]), [*range(40, 2000, 49)][:40]),
-        (spiked([*range(0 + 30, 2000, 48)][:41]), []),  # more than two per cent of the column
-        (STEPS[:5], []),
-    ],
-)
-def test_spikes_stand_out_by_ten_steps_are_few_and_alone(values: Array, found: list[int]) -> None:
-    assert list(lone_spikes(values, 0.01)) == found
-
-
-@pytest.mark.parametrize(("place", "found"), [(660, False), (740, True), (460, False), (380, True)])
-def test_steps_are_compared_with_those_of_a_second_and_of_the_seconds_beside_it(
-    place: int, found: bool
-) -> None:
-    values = 0.1 * STEPS
-    values[500:600] = STEPS[500:600]
-    values[place] = 5.0
-    assert list(lone_spikes(values, 0.01)) == [place] * found
-
-
-@pytest.mark.parametrize(("count", "severity"), [(10, "info"), (11, "warning")])
-def test_bridged_spikes_are_told_from_half_a_per_cent_on(count: int, severity: str) -> None:
-    places = [100 + 100 * place for place in range(count)]
-    rates = {f"imu.chest.angular_velocity.{axis}": spiked(places) for axis in "xyz"}
-    more = {f"imu.chest.linear_acceleration.{axis}": spiked(places[:3]) for axis in "xy"}
-    cleaned = without_spikes(MotionLog("log", 0.01 * np.arange(2000), rates | more))
-    (note,) = cleaned.notes
-    told = [f"{name} ({count}, first at t = 1 s: 100)" for name in rates]
-    expected = f"log: lone samples far from their neighbours bridged: {', '.join(told)} and 2 more columns"
-    assert (note.severity, note.text) == (severity, expected)
-    assert np.abs(cleaned.stack(list(rates))).max() == 1.0
 
 
 def switched(values: Array, stretches: int) -> Array:
