@@ -18,6 +18,14 @@ def spiked(places: list[int], height: float = 100.0) -> Array:
     return values
 
 
+def ringing(periods: int, size: float) -> Array:
+    """A spike, and 50 ms behind it so many periods of a quick ringing."""
+    values = spiked([800])
+    values[805 : 805 + 2 * periods + 1] = 1.0
+    values[806 : 806 + 2 * periods : 2] += size
+    return values
+
+
 @pytest.mark.parametrize(
     ("values", "found"),
     [
@@ -28,6 +36,9 @@ def spiked(places: list[int], height: float = 100.0) -> Array:
         (spiked([800, 804, 808, 812, 816]), [800, 816]),  # the outer ones see eight
         (spiked([*range(0 + 40, 2000, 49)][:40]), [*range(40, 2000, 49)][:40]),
         (spiked([*range(0 + 30, 2000, 48)][:41]), []),  # more than two per cent of the column
+        (ringing(2, 6.0), [800]),  # and six steps of six
+        (ringing(4, 6.0), []),  # and ten: what rings after a blow is no noise
+        (ringing(4, 4.0), [800]),
         (STEPS[:5], []),
     ],
 )

@@ -78,7 +78,7 @@ def test_lags_that_miss_a_third_more_are_as_good(second: float, near: int) -> No
     time = 0.05 * np.arange(240)
     tone, other = np.sin(2 * np.pi * 0.5 * time), np.sin(2 * np.pi * 0.75 * time)
     predicted = np.tile(tone[:, None], 6)
-    missed = [0.5, 0.1 * np.sqrt(second), 0.1, 0.5, 0.6]
+    missed = [0.5, 0.1 * np.sqrt(second), 0.1, 0.1 * np.sqrt(second), 0.6]
     measured = np.array([[np.tile((tone + one * other)[:, None], 6) for one in missed]])
     lags = np.array([-0.1, -0.05, 0.0, 0.05, 0.1])
     encoders = np.array([0.0, 0.05])  # of which nothing is told
@@ -87,6 +87,6 @@ def test_lags_that_miss_a_third_more_are_as_good(second: float, near: int) -> No
     assert found.values[0] == 0.0
     assert found.missed[0] == pytest.approx(0.01)
     assert not found.at_edge
-    spread = np.sqrt(near * 0.05**2 / (1 + near))
+    spread = np.sqrt(2 * near * 0.05**2 / (1 + 2 * near))
     assert found.std[0] == pytest.approx(np.hypot(spread, 0.05 / np.sqrt(12)))
     assert found.power[0] == pytest.approx(1 / 1.01)
