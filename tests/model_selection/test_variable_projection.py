@@ -9,8 +9,10 @@ from bush_data_sets import PERIOD, Rubber, campaign, sway
 from plantar.conventions import Array
 from plantar.model_selection.data_sets import DataSet, FilteredDataSet, filtered_columns, prepare_data_sets
 from plantar.model_selection.model_fit import ModelFit, fit_model
-from plantar.model_selection.variable_projection import ITERATIONS, Problem
+from plantar.model_selection.variable_projection import Problem
 from plantar.models import MODELS, BushMotion, Elastoplastic
+
+ITERATIONS = 16
 
 JENKINS = Rubber(slip_torque=5.0, slip_angle=0.01)
 MODEL = Elastoplastic()

@@ -15,11 +15,7 @@ from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.robot.model import RobotModel
 from plantar.sensors.accelerometer_delay import (
-    ALIKE,
-    COLUMNS,
     ORIENTATION,
-    RATE,
-    STRAY,
     AccelerometerDelay,
     accelerometer_delay,
     device_delay,
@@ -27,6 +23,11 @@ from plantar.sensors.accelerometer_delay import (
     with_imus_on_time,
 )
 from plantar.sensors.imu_filter import ImuFilter
+
+ALIKE = 0.001
+COLUMNS = 11
+RATE = 1.5
+STRAY = 0.0005
 
 ACCELERATION = imu_columns("chest", "linear_acceleration")
 TORSO = (

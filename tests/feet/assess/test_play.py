@@ -54,3 +54,19 @@ def test_play_is_told_with_its_size(play: float) -> None:
 )
 def test_no_foot_without_play_is_told_of_it(rubber: Rubber) -> None:
     assert said(swaying(rubber)) == []
+
+
+@pytest.mark.parametrize(("play", "told"), [(0.0023, False), (0.0033, True)])
+def test_play_is_told_where_half_as_much_again_is_left_without_it(play: float, told: bool) -> None:
+    """Of a step of the torque, half a play times the stiffness, spring and damper leave a fifth of the squares."""
+    made = []
+    for seed in (0, 1):
+        angle, random = swayed(COUNT, seed=seed), np.random.default_rng(seed)
+        rate = np.gradient(angle, PERIOD)
+        noise = 0.35 * random.standard_normal(COUNT)
+        torque = PLAIN.torque(angle, rate) + noise
+        read = angle + play / 2 * np.tanh(10 * torque / np.std(torque))
+        made.append(made_recording(f"sway_{seed}", read, torque, rate=rate))
+    fit = fit_axis(made, FOOT, "pitch", FeetSettings(model="kelvin_voigt"))
+    assert fit is not None
+    assert bool(play_notes(made, fit, False)) == told
