@@ -1,7 +1,7 @@
 // A zero-phase low-pass along rows of (n, k), one column a lane: Butterworth of fourth order, run forth and back.
 //
-// Each sample waits for the one before it. So several vectors of columns go through together, and the processor works on
-// one while the others wait.
+// Each sample waits for the one before it. So several vectors of columns go through together, and the processor works
+// on one while the others wait.
 #pragma once
 
 #include "lanes.hpp"
@@ -102,8 +102,8 @@ struct Columns {
   }
 };
 
-// V vectors of columns from `column` on, those before `to`; `work` holds `low_pass_work` doubles. `out` has a row for each
-// sample that is kept.
+// V vectors of columns from `column` on, those before `to`; `work` holds `low_pass_work` doubles. `out` has a row for
+// each sample that is kept.
 //
 // On the way forth only the states at the beginnings of blocks are kept, and each block is filtered again on the way
 // back: so it stays near the processor, where all of a long signal would go through memory.
