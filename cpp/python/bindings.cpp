@@ -17,7 +17,7 @@
 #include "aligned.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
-#include "kernels.hpp"
+#include "bound_tree.hpp"
 #include "parallel.hpp"
 #include "stream.hpp"
 
@@ -30,77 +30,6 @@ std::vector<std::string> instruction_sets() {
   std::vector<std::string> names;
   for (const Kernels* const* table = runnable_kernels(); *table != nullptr; ++table) names.push_back((*table)->name);
   return names;
-}
-
-// The tree with its own storage, and the arrays of one batch bound to it.
-class TreeObject {
- public:
-  TreeObject(const std::vector<int>& parents, const std::vector<bool>& slides, const std::vector<Packed>& axes,
-             const std::vector<Packed>& frames, bool floating) {
-    if (floating) {
-      Link root = {};
-      root.parent = -1;
-      root.joint = Joint::root;
-      links_.push_back(root);
-    }
-    const std::size_t n = parents.size();
-    if (slides.size() != n || axes.size() != n || frames.size() != n)
-      throw std::invalid_argument("every joint needs a parent, a kind, an axis and a frame");
-    for (std::size_t i = 0; i < n; ++i) {
-      Link link = {};
-      link.parent = parents[i] + (floating ? 1 : 0);
-      if (parents[i] < -1 || parents[i] >= static_cast<int>(i)) throw std::invalid_argument("parents come first");
-      if (axes[i].shape(0) != 3) throw std::invalid_argument("an axis is three numbers");
-      std::copy_n(axes[i].data(), 3, link.axis);
-      link.placement = frame(frames[i]);
-      const double* r = link.placement.rotation;
-      link.turned = !(r[0] == 1.0 && r[4] == 1.0 && r[8] == 1.0);
-      link.joint = slides[i]               ? Joint::prismatic
-                   : link.axis[0] == 1.0   ? Joint::revolute_x
-                   : link.axis[1] == 1.0   ? Joint::revolute_y
-                   : link.axis[2] == 1.0   ? Joint::revolute_z
-                                           : Joint::revolute;
-      links_.push_back(link);
-    }
-    if (links_.empty()) throw std::invalid_argument("a tree without links");
-    tree_ = {links_.data(), static_cast<std::int32_t>(links_.size()), floating};
-  }
-
-  TreeObject(const TreeObject& other) : links_(other.links_), tree_(other.tree_) { tree_.links = links_.data(); }
-  TreeObject& operator=(const TreeObject&) = delete;
-
-  const Tree& tree() const { return tree_; }
-  std::size_t joints() const { return links_.size() - tree_.first_joint(); }
-
- private:
-  std::vector<Link> links_;
-  Tree tree_ = {};
-};
-
-// base: (N, 9); position, velocity, acceleration: (N, joints). The columns live as long as this object.
-struct BoundMotion {
-  std::size_t samples;
-  std::vector<Column> columns;
-  Motion motion = {};
-
-  BoundMotion(const TreeObject& tree, const Matrix& base, const Matrix& q, const Matrix& v, const Matrix& a)
-      : samples(base.shape(0)) {
-    ::columns(base, samples, motion.base);
-    const std::size_t n = tree.joints();
-    for (const Matrix* m : {&q, &v, &a}) {
-      if (m->shape(0) != samples || m->shape(1) != n) throw std::invalid_argument("an array of the wrong shape");
-      for (std::size_t k = 0; k < n; ++k)
-        columns.push_back({m->data() + static_cast<std::ptrdiff_t>(k) * m->stride(1), m->stride(0)});
-    }
-    motion.position = columns.data();
-    motion.velocity = columns.data() + n;
-    motion.acceleration = columns.data() + 2 * n;
-  }
-};
-
-std::vector<std::uint32_t> kept_masks(const TreeObject& tree, const std::vector<unsigned>& kept) {
-  if (kept.size() != static_cast<std::size_t>(tree.tree().n_links)) throw std::invalid_argument("one mask a link");
-  return {kept.begin(), kept.end()};
 }
 
 // (rows, columns, N): every row with the columns of every kept parameter; zero where it does not depend on one.
@@ -170,81 +99,6 @@ nb::ndarray<nb::numpy, double> inverse_dynamics(const TreeObject& object, const 
   return owned(data.release(), {rows, n});
 }
 
-// (sets, N, 6) of a floating base; parameters: (sets, 10 links).
-nb::ndarray<nb::numpy, double> base_wrenches(
-    const TreeObject& object, const nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>& parameters,
-    const Matrix& base, const Matrix& q, const Matrix& v, const Matrix& a, unsigned threads, const std::string& isa) {
-  const Tree& tree = object.tree();
-  const BoundMotion bound(object, base, q, v, a);
-  const std::size_t n = bound.samples, sets = parameters.shape(0);
-  if (!tree.floating) throw std::invalid_argument("a floating base");
-  if (parameters.shape(1) != static_cast<std::size_t>(PARAMETERS * tree.n_links))
-    throw std::invalid_argument("ten parameters a link");
-  std::unique_ptr<double[]> data(new double[std::max<std::size_t>(sets * n * BASE_ROWS, 1)]);
-  const Kernels& table = kernels(isa);
-  {
-    nb::gil_scoped_release release;
-    parallel_parts(n, 64, worthwhile_threads(n, 512, threads), [&](unsigned, std::size_t begin, std::size_t end) {
-      Aligned work = aligned_bytes(table.link_work * tree.n_links);
-      table.base_wrenches(tree, bound.motion, parameters.data(), sets, begin, end, n, data.get(), work.get());
-    });
-  }
-  return owned(data.release(), {sets, n, static_cast<std::size_t>(BASE_ROWS)});
-}
-
-// A frame (12,) on a link, with its path from the root.
-struct BoundFrame {
-  std::vector<std::int32_t> path;
-  Carried carried;
-
-  BoundFrame(const TreeObject& object, int link, const Packed& twelve) : carried{nullptr, 0, frame(twelve)} {
-    const Tree& tree = object.tree();
-    if (link < -1 || link >= tree.n_links) throw std::invalid_argument("a frame on no link");
-    for (std::int32_t i = link; i >= tree.first_joint(); i = tree.links[i].parent) path.push_back(i);
-    std::reverse(path.begin(), path.end());
-    carried.path = path.data();
-    carried.n_path = path.size();
-  }
-};
-
-// (N, 9) from an IMU's, `measured` (N, 9), whose `place` (12,) is in a link.
-nb::ndarray<nb::numpy, double> root_motion(const TreeObject& object, int link, const Packed& place,
-                                           const Matrix& measured, const Matrix& q, const Matrix& v, const Matrix& a,
-                                           unsigned threads, const std::string& isa) {
-  const BoundFrame imu(object, link, place);
-  const BoundMotion bound(object, measured, q, v, a);
-  const std::size_t n = bound.samples;
-  std::unique_ptr<double[]> data(new double[std::max<std::size_t>(n * 9, 1)]);
-  const Kernels& table = kernels(isa);
-  {
-    nb::gil_scoped_release release;
-    parallel_parts(n, 64, worthwhile_threads(n, 4096, threads), [&](unsigned, std::size_t begin, std::size_t end) {
-      table.root_motion(object.tree(), imu.carried, bound.motion, bound.motion.base, begin, end, data.get());
-    });
-  }
-  return owned(data.release(), {n, 9});
-}
-
-// (N, 6, 6) of a contact whose `place` (12,) is in a link; positions: (N, joints).
-nb::ndarray<nb::numpy, double> base_transfer(const TreeObject& object, int link, const Packed& place,
-                                             const Matrix& positions, unsigned threads, const std::string& isa) {
-  const BoundFrame contact(object, link, place);
-  const std::size_t n = positions.shape(0), joints = object.joints();
-  if (positions.shape(1) != joints) throw std::invalid_argument("an array of the wrong shape");
-  std::vector<Column> columns;
-  for (std::size_t k = 0; k < joints; ++k)
-    columns.push_back({positions.data() + static_cast<std::ptrdiff_t>(k) * positions.stride(1), positions.stride(0)});
-  std::unique_ptr<double[]> data(new double[std::max<std::size_t>(n * 36, 1)]);
-  const Kernels& table = kernels(isa);
-  {
-    nb::gil_scoped_release release;
-    parallel_parts(n, 64, worthwhile_threads(n, 4096, threads), [&](unsigned, std::size_t begin, std::size_t end) {
-      table.base_transfer(object.tree(), contact.carried, columns.data(), begin, end, data.get());
-    });
-  }
-  return owned(data.release(), {n, 6, 6});
-}
-
 class StreamObject {
  public:
   StreamObject(const TreeObject& tree, const std::vector<unsigned>& kept, const std::vector<std::size_t>& extras,
@@ -308,12 +162,6 @@ NB_MODULE(_core, m) {
   m.def("inverse_dynamics", &inverse_dynamics, nb::arg("tree"), nb::arg("parameters").none(), nb::arg("links"),
         nb::arg("frames"), nb::arg("wrenches"), nb::arg("base"), nb::arg("q"), nb::arg("v"), nb::arg("a"),
         nb::arg("threads") = 0, nb::arg("isa") = "");
-  m.def("base_wrenches", &base_wrenches, nb::arg("tree"), nb::arg("parameters"), nb::arg("base"), nb::arg("q"),
-        nb::arg("v"), nb::arg("a"), nb::arg("threads") = 0, nb::arg("isa") = "");
-  m.def("root_motion", &root_motion, nb::arg("tree"), nb::arg("link"), nb::arg("place"), nb::arg("measured"),
-        nb::arg("q"), nb::arg("v"), nb::arg("a"), nb::arg("threads") = 0, nb::arg("isa") = "");
-  m.def("base_transfer", &base_transfer, nb::arg("tree"), nb::arg("link"), nb::arg("place"), nb::arg("positions"),
-        nb::arg("threads") = 0, nb::arg("isa") = "");
   nb::class_<StreamObject>(m, "Stream")
       .def(nb::init<const TreeObject&, const std::vector<unsigned>&, const std::vector<std::size_t>&,
                     const std::vector<std::size_t>&>(),
@@ -322,6 +170,6 @@ NB_MODULE(_core, m) {
            nb::arg("threads") = 0, nb::arg("isa") = "")
       .def("factor", &StreamObject::factor, nb::arg("group"))
       .def("parameters", &StreamObject::parameters, nb::arg("group"));
-  bind_drift(m), bind_estimator(m), bind_factor(m), bind_foot(m), bind_low_pass(m);
+  bind_base(m), bind_drift(m), bind_estimator(m), bind_factor(m), bind_foot(m), bind_low_pass(m);
   bind_number_table(m), bind_stepping(m), bind_stop_operator(m);
 }

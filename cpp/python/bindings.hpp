@@ -1,5 +1,5 @@
-// What all of the views from Python share, and those that have files of their own: of drift.hpp, the estimator,
-// factor.hpp, one foot, low_pass.hpp, number_table.hpp, stepping.hpp and stop_operator.hpp.
+// What all of the views from Python share, and those that have files of their own: of a floating base, drift.hpp, the
+// estimator, factor.hpp, one foot, low_pass.hpp, number_table.hpp, stepping.hpp and stop_operator.hpp.
 #pragma once
 
 #include <nanobind/nanobind.h>
@@ -14,6 +14,7 @@ inline nanobind::ndarray<nanobind::numpy, double> owned(double* data, std::initi
   return nanobind::ndarray<nanobind::numpy, double>(data, shape, owner);
 }
 
+void bind_base(nanobind::module_& m);
 void bind_drift(nanobind::module_& m);
 void bind_estimator(nanobind::module_& m);
 void bind_factor(nanobind::module_& m);

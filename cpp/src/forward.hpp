@@ -42,7 +42,8 @@ PLANTAR_INLINE LinkState root_state(const Motion& motion, std::size_t first, std
           {base[0], base[1], base[2]}};
 }
 
-// A link's place, given its parent's, with its joint at q: all but its motion. Returns the arm from the parent's origin.
+// A link's place, given its parent's, with its joint at q: all but its motion. Returns the arm from the parent's
+// origin.
 PLANTAR_INLINE Vec3 place(const Link& link, const LinkState& parent, Lanes q, LinkState& state) {
   const Mat3 rest = link.turned ? times_matrix(parent.rotation, link.placement.rotation) : parent.rotation;
   Vec3 arm = times(parent.rotation, link.placement.origin);

@@ -23,13 +23,14 @@ struct Rows {
   std::size_t n, k, first;
 };
 
-// Rows of a signal of k columns that are filtered at a time: a megabyte of them.
-inline std::size_t low_pass_block(std::size_t k) { return (std::size_t{1} << 17) / (k < 8 ? 8 : k) + 1; }
+constexpr int LOW_PASS_VECTORS = 4;            // of columns, that are filtered together at most
+constexpr std::size_t LOW_PASS_BLOCK = 1 << 14;  // vectors that are filtered forth and back before the next: a megabyte
 
-// Doubles of work that n rows take: the states of every column at both ends of every block, and LANES columns of one.
-inline std::size_t low_pass_work(std::size_t n, std::size_t k, std::size_t padding, std::size_t lanes) {
-  const std::size_t block = low_pass_block(k), rows = n + 2 * padding;
-  return (4 * (rows / block + 2) * ((k + lanes - 1) / lanes) + (rows < block ? rows : block)) * lanes;
+// Doubles of work that n rows take: the states at both ends of every block, and one block.
+inline std::size_t low_pass_work(std::size_t n, std::size_t padding, std::size_t lanes) {
+  const std::size_t vectors = (n + 2 * padding) * LOW_PASS_VECTORS;
+  const std::size_t states = 4 * (vectors / LOW_PASS_BLOCK + 2) * LOW_PASS_VECTORS;
+  return (states + (vectors < LOW_PASS_BLOCK ? vectors : LOW_PASS_BLOCK)) * lanes;
 }
 
 }  // namespace plantar

@@ -1,4 +1,7 @@
 // A zero-phase low-pass along rows of (n, k), one column a lane: Butterworth of fourth order, run forth and back.
+//
+// Each sample waits for the one before it. So several vectors of columns go through together, and the processor works
+// on one while the others wait.
 #pragma once
 
 #include "lanes.hpp"
@@ -7,45 +10,86 @@
 
 namespace plantar::PLANTAR_ISA {
 
+template <int V>
+struct Wide {
+  static constexpr std::size_t SIZE = static_cast<std::size_t>(V) * LANES;
+  Lanes part[V];
+};
+
+template <int V>
+PLANTAR_INLINE Wide<V> operator+(Wide<V> a, const Wide<V>& b) {
+  for (int i = 0; i < V; ++i) a.part[i] += b.part[i];
+  return a;
+}
+template <int V>
+PLANTAR_INLINE Wide<V> operator-(Wide<V> a, const Wide<V>& b) {
+  for (int i = 0; i < V; ++i) a.part[i] -= b.part[i];
+  return a;
+}
+template <int V>
+PLANTAR_INLINE Wide<V> operator*(double k, Wide<V> a) {
+  for (int i = 0; i < V; ++i) a.part[i] *= k;
+  return a;
+}
+template <int V>
+PLANTAR_INLINE Wide<V> load_wide(const double* p) {
+  Wide<V> x;
+  for (int i = 0; i < V; ++i) x.part[i] = load(p + i * LANES);
+  return x;
+}
+template <int V>
+PLANTAR_INLINE void store(double* p, const Wide<V>& x) {
+  for (int i = 0; i < V; ++i) store(p + i * LANES, x.part[i]);
+}
+
+template <int V>
 struct SectionState {
-  Lanes first, second;
+  Wide<V> first, second;
 };
 
 // The state in which a section answers to a signal that was always `x` with just that.
-PLANTAR_INLINE SectionState settled(const Section& section, Lanes x) {
+template <int V>
+PLANTAR_INLINE SectionState<V> settled(const Section& section, Wide<V> x) {
   return {(1.0 - section.b) * x, (section.b - section.a2) * x};
 }
 
-PLANTAR_INLINE Lanes advance(const Section& section, SectionState& state, Lanes x) {
-  const Lanes y = section.b * x + state.first;
+template <int V>
+PLANTAR_INLINE Wide<V> advance(const Section& section, SectionState<V>& state, Wide<V> x) {
+  const Wide<V> y = section.b * x + state.first;
   state.first = (2.0 * section.b * x + state.second) - section.a1 * y;  // y is last: all waits for it
   state.second = section.b * x - section.a2 * y;
   return y;
 }
 
-PLANTAR_INLINE void keep(double* at, const SectionState& state) {
+template <int V>
+PLANTAR_INLINE void keep(double* at, const SectionState<V>& state) {
   store(at, state.first);
-  store(at + LANES, state.second);
+  store(at + Wide<V>::SIZE, state.second);
 }
 
-PLANTAR_INLINE SectionState kept(const double* at) { return {load(at), load(at + LANES)}; }
+template <int V>
+PLANTAR_INLINE SectionState<V> kept(const double* at) {
+  return {load_wide<V>(at), load_wide<V>(at + Wide<V>::SIZE)};
+}
 
-// LANES columns of a signal from `column` on, point-symmetrically continued beyond both ends, again and again.
+// V * LANES columns of a signal from `column` on, point-symmetrically continued beyond both ends, again and again.
+template <int V>
 struct Columns {
   const Rows& rows;
   std::size_t column;
   std::ptrdiff_t last;
 
   // Lanes beyond the last column take what stands there, and are dropped at the end.
-  PLANTAR_INLINE Lanes read(std::ptrdiff_t row) const {
+  PLANTAR_INLINE Wide<V> read(std::ptrdiff_t row) const {
     const double* from = rows.values + static_cast<std::size_t>(row) * rows.k + column;
-    if (rows.end - from >= LANES) return load(from);
-    Lanes x = Lanes{};
-    for (std::ptrdiff_t l = 0; l < rows.end - from; ++l) x[l] = from[l];
+    const std::ptrdiff_t there = rows.end - from;
+    if (there >= V * LANES) return load_wide<V>(from);
+    Wide<V> x = {};
+    for (std::ptrdiff_t l = 0; l < there; ++l) x.part[l / LANES][l % LANES] = from[l];
     return x;
   }
 
-  Lanes beyond(std::ptrdiff_t place) const {
+  Wide<V> beyond(std::ptrdiff_t place) const {
     if (place < 0 && place >= -last) return 2.0 * read(0) - read(-place);
     if (place > last && place <= 2 * last) return 2.0 * read(last) - read(2 * last - place);
     std::ptrdiff_t turns = place / (2 * last), rest = place % (2 * last);
@@ -53,76 +97,82 @@ struct Columns {
       rest += 2 * last;
       --turns;
     }
-    const Lanes x = rest <= last ? read(rest) : 2.0 * read(last) - read(2 * last - rest);
+    const Wide<V> x = rest <= last ? read(rest) : 2.0 * read(last) - read(2 * last - rest);
     return x + static_cast<double>(turns) * (2.0 * (read(last) - read(0)));
   }
 };
 
-// Columns [column, to) of the signal, LANES at a time; `work` holds `low_pass_work` doubles. `out` has a row for each
-// sample that is kept.
+// V vectors of columns from `column` on, those before `to`; `work` holds `low_pass_work` doubles. `out` has a row for
+// each sample that is kept.
 //
 // On the way forth only the states at the beginnings of blocks are kept, and each block is filtered again on the way
-// back, all columns of one before the next: so it stays near the processor, where all of a long or a wide signal would
-// go through memory for every LANES of its columns.
-inline void low_pass(const LowPass& filter, const Rows& rows, std::size_t column, std::size_t to, double* work,
-                     double* out) {
+// back: so it stays near the processor, where all of a long signal would go through memory.
+template <int V>
+inline void low_pass_columns(const LowPass& filter, const Rows& rows, std::size_t column, std::size_t to, double* work,
+                             double* out) {
   const Section &one = filter.sections[0], &two = filter.sections[1];
   const std::ptrdiff_t last = static_cast<std::ptrdiff_t>(rows.n) - 1,
                        padding = static_cast<std::ptrdiff_t>(filter.padding),
                        every = static_cast<std::ptrdiff_t>(filter.every),
                        begin = static_cast<std::ptrdiff_t>(rows.first),
-                       block = static_cast<std::ptrdiff_t>(low_pass_block(rows.k)), end = last + 1 + padding,
+                       block = static_cast<std::ptrdiff_t>(LOW_PASS_BLOCK) / V, end = last + 1 + padding,
                        blocks = (end + padding + block - 1) / block;
-  const std::size_t groups = (to - column + LANES - 1) / LANES;
-  const auto states = [&](std::ptrdiff_t b, std::size_t group) {
-    return work + 4 * (static_cast<std::size_t>(b) * groups + group) * LANES;
-  };
-  double* const filtered = states(blocks + 1, 0);
-  SectionState first, second;
-  const auto forth = [&](const Columns& signal, std::ptrdiff_t b, bool stored) {
+  const Columns<V> signal = {rows, column, last};
+  const auto states = [&](std::ptrdiff_t b) { return work + 4 * static_cast<std::size_t>(b) * Wide<V>::SIZE; };
+  double* const filtered = states(blocks + 1);
+  SectionState<V> first, second;
+  const auto forth = [&](std::ptrdiff_t b, bool stored) {
     const std::ptrdiff_t from = b * block - padding, until = b + 1 < blocks ? from + block : end;
-    Lanes x = Lanes{};
+    Wide<V> x = {};
     for (std::ptrdiff_t i = from; i < until; ++i) {
       x = i < 0 || i > last ? signal.beyond(i) : signal.read(i);
       x = advance(two, second, advance(one, first, x));
-      if (stored) store(filtered + (i - from) * LANES, x);
+      if (stored) store(filtered + static_cast<std::size_t>(i - from) * Wide<V>::SIZE, x);
     }
     return x;
   };
-  for (std::ptrdiff_t b = 0; b < blocks; ++b) {
-    for (std::size_t group = 0; group < groups; ++group) {
-      const Columns signal = {rows, column + group * LANES, last};
-      if (b == 0) {
-        const Lanes x = signal.beyond(-padding);
-        first = settled(one, x), second = settled(two, x);
-        keep(states(0, group), first), keep(states(0, group) + 2 * LANES, second);
-      }
-      if (b + 1 == blocks) continue;
-      first = kept(states(b, group)), second = kept(states(b, group) + 2 * LANES);
-      forth(signal, b, false);
-      keep(states(b + 1, group), first), keep(states(b + 1, group) + 2 * LANES, second);
-    }
+  const auto keep_states = [&](std::ptrdiff_t b) {
+    keep(states(b), first), keep(states(b) + 2 * Wide<V>::SIZE, second);
+  };
+  const auto kept_states = [&](std::ptrdiff_t b) {
+    first = kept<V>(states(b)), second = kept<V>(states(b) + 2 * Wide<V>::SIZE);
+  };
+  const Wide<V> x = signal.beyond(-padding);
+  first = settled(one, x), second = settled(two, x);
+  keep_states(0);
+  for (std::ptrdiff_t b = 0; b + 1 < blocks; ++b) {
+    forth(b, false);
+    keep_states(b + 1);
   }
   for (std::ptrdiff_t b = blocks - 1; b >= 0; --b) {
     const std::ptrdiff_t from = b * block - padding, until = b + 1 < blocks ? from + block : end;
     if (until <= begin) break;
-    for (std::size_t group = 0; group < groups; ++group) {
-      const std::size_t place = column + group * LANES, count = to - place < LANES ? to - place : LANES;
-      double* const after = states(b + 1, group);  // the way back begins where that of the block behind ended
-      first = kept(states(b, group)), second = kept(states(b, group) + 2 * LANES);
-      const Lanes x = forth({rows, place, last}, b, true);
-      if (b + 1 == blocks) {
-        first = settled(one, x), second = settled(two, x);
-      } else {
-        first = kept(after), second = kept(after + 2 * LANES);
-      }
-      std::ptrdiff_t row = until <= begin ? -1 : ((until - 1 < last ? until - 1 : last) - begin) / every;
-      for (std::ptrdiff_t i = until - 1; i >= (from > begin ? from : begin); --i) {
-        const Lanes y = advance(two, second, advance(one, first, load(filtered + (i - from) * LANES)));
-        if (i == begin + row * every) scatter(out + row-- * rows.k + place, y, count);
-      }
-      keep(states(b, group), first), keep(states(b, group) + 2 * LANES, second);
+    kept_states(b);
+    const Wide<V> x = forth(b, true);
+    if (b + 1 == blocks) {
+      first = settled(one, x), second = settled(two, x);
+    } else {
+      kept_states(b + 1);  // the way back begins where that of the block behind ended
     }
+    std::ptrdiff_t row = until <= begin ? -1 : ((until - 1 < last ? until - 1 : last) - begin) / every;
+    for (std::ptrdiff_t i = until - 1; i >= (from > begin ? from : begin); --i) {
+      const double* at = filtered + static_cast<std::size_t>(i - from) * Wide<V>::SIZE;
+      const Wide<V> y = advance(two, second, advance(one, first, load_wide<V>(at)));
+      if (i != begin + row * every) continue;
+      double* const kept_row = out + static_cast<std::size_t>(row--) * rows.k;
+      for (std::size_t v = 0, c = column; v < V && c < to; ++v, c += LANES) scatter(kept_row + c, y.part[v], to - c);
+    }
+    keep_states(b);
+  }
+}
+
+// Columns [column, to) of the signal, else as in `low_pass_columns`.
+inline void low_pass(const LowPass& filter, const Rows& rows, std::size_t column, std::size_t to, double* work,
+                     double* out) {
+  while (column < to) {
+    const bool many = to - column > 2 * LANES;
+    (many ? low_pass_columns<LOW_PASS_VECTORS> : low_pass_columns<1>)(filter, rows, column, to, work, out);
+    column += (many ? LOW_PASS_VECTORS : 1) * LANES;
   }
 }
 

@@ -27,7 +27,7 @@ ESTIMATION = (
     ),
     Mutant(
         "estimation/delays/delay.py", "no longest delay where a pair is tried for closing",
-        "np.clip(delay, -LONGEST, LONGEST) * rate", "delay * rate",
+        "np.clip(delay, -LONGEST, LONGEST)[..., None, None]", "delay[..., None, None]",
     ),
     Mutant(
         "estimation/errors_in_variables.py", "noise of one sample instead of all",

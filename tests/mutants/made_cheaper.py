@@ -51,7 +51,7 @@ MADE_CHEAPER = (
     ),
     Mutant(
         "estimation/delays/delay.py", "a late signal is moved the other way",
-        "np.clip(delay, -LONGEST, LONGEST) * rate", "np.clip(-delay, -LONGEST, LONGEST) * rate",
+        "np.clip(delay, -LONGEST, LONGEST)[", "np.clip(-delay, -LONGEST, LONGEST)[",
         ("estimation/delays/test_delay.py",),
     ),
     Mutant(

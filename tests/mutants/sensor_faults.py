@@ -154,7 +154,7 @@ SENSOR_FAULTS = (
     ),
     Mutant(
         "sensors/attitude_scale.py", "what an attitude drifts by is a scale",
-        "without(drift_basis(every * np.arange(len(flat), dtype=np.float64)), flat - flat.mean(axis=0))",
+        "without(drift_basis(step * np.arange(len(flat), dtype=np.float64)), flat - flat.mean(axis=0))",
         "flat - flat.mean(axis=0)", ("sensors/test_attitude_scale.py",),
     ),
     Mutant(

@@ -78,21 +78,23 @@ def load_errors(
     gain from each of these errors; late (k, n, 6): what they gain from delays, as large as they like; missing (n, 6):
     the rows as measured, without the prediction; period [s] of the samples.
     """
-    feet = len(columns)
-    rows = np.concatenate([columns.reshape(6 * feet, *missing.shape), np.asarray(late)])
-    precision = np.zeros((len(rows), len(rows)))
+    feet, count = len(columns), 6 * len(columns) + len(late)
+    rows = np.concatenate([columns.reshape(6 * feet, *missing.shape), np.asarray(late), missing[None]])
+    rows = np.ascontiguousarray(rows.transpose(2, 0, 1))
+    products = rows @ rows.transpose(0, 2, 1)  # of the law's rows each, with what is missing last
+    precision = np.zeros((count, count))
     for foot, direction in enumerate(directions):
         own = slice(6 * foot, 6 * foot + 6)
         precision[own, own] = np.linalg.inv(_prior(uncertainty, direction))
     precision[6 * feet :, 6 * feet :] = np.eye(len(late)) / LONGEST**2
-    left, found = missing, np.zeros(len(rows))
+    found, left = np.zeros(count), products[:, -1, -1]
     least = LEAST**2 * float(np.mean(columns**2)) + np.finfo(float).eps
     for _ in range(ROUNDS):
-        weights = period / APART / (np.mean(left**2, axis=0) + least)
-        weighted = (rows * weights).reshape(len(rows), -1)
-        flat = rows.reshape(len(rows), -1)
-        found = np.linalg.solve(weighted @ flat.T + precision, weighted @ missing.ravel())
-        left = missing - np.einsum("k,knr->nr", found, rows)
+        weights = period / APART / (left / len(missing) + least)
+        both = np.einsum("r,rij->ij", weights, products)
+        found = np.linalg.solve(both[:-1, :-1] + precision, both[:-1, -1])
+        share = np.append(-found, 1.0)
+        left = products @ share @ share
     return found[: 6 * feet].reshape(feet, 6)
 
 

@@ -157,8 +157,10 @@ def _along(
 def _known_runs(robot: RobotModel, signals: InertialSignals, wrenches: Array) -> list[slice]:
     """The runs in which all is known and no sole slaps the floor, or, were all short, the longest one in which all is
     known."""
-    sides = np.hstack([signals.positions, signals.rate, signals.proper, wrenches])
-    whole, period = np.asarray(np.isfinite(sides).all(axis=1)), signals.period
+    sides, period = (signals.positions, signals.rate, signals.proper, wrenches), signals.period
+    whole = np.isfinite(
+        np.sum([side.sum(axis=1) for side in sides], axis=0)
+    )  # unlike its values, one for each sample
     calm = runs(whole & ~_struck(robot, wrenches, period))
     long = [run for run in calm if (run.stop - run.start) * period >= SHORTEST + 2 * EDGE]
     return long or [longest_run(whole)]

@@ -83,11 +83,8 @@ def moving(sides: Sequence[Array], period: float) -> Array:
 def longest_closed(measured: Array, rate: Array, predicted: Array, period: float) -> slice:
     """The longest segment in which nobody pushes and nothing strikes: there the forces follow from the prediction."""
     width = round(WINDOW / period)
-    measured, rate, predicted = measured[:, FORCE], rate[:, FORCE], predicted[:, FORCE]
-    usual = float(np.mean(np.sum(measured**2, axis=1)))
-    closed = np.zeros(len(measured), dtype=bool)
-    for window in (slice(i * width, (i + 1) * width) for i in range(len(measured) // width)):
-        power = float(np.mean(np.sum(measured[window] ** 2, axis=1)))
-        missing = unexplained(measured[window], rate[window], predicted[window]) / width
-        closed[window] = missing < (1 - LEAST_CLOSED) * max(power, usual)
-    return longest_run(closed)
+    usual, count = float(np.mean(np.sum(measured[:, FORCE] ** 2, axis=1))), len(measured) // width
+    windows = [side[: count * width, FORCE].reshape(count, width, -1) for side in (measured, rate, predicted)]
+    power = np.sum(windows[0] ** 2, axis=(1, 2)) / width
+    follows = unexplained(*windows) / width < (1 - LEAST_CLOSED) * np.maximum(power, usual)
+    return longest_run(np.repeat(follows, width))

@@ -114,6 +114,12 @@ def test_a_pair_that_only_a_delay_of_half_a_second_would_close_does_not() -> Non
     assert not closes(tone(0.15, 0.5))
 
 
+def test_a_pair_that_a_delay_closes_does() -> None:
+    """A tenth of its squares is missed as it is, and hardly any along its rate."""
+    assert closes(tone(1.2, 0.045))
+    assert closes(tone(1.2, -0.045))
+
+
 def test_a_delay_of_little_freedom_is_as_wide_as_student_says() -> None:
     """At 97.5 %: 4.303 with two degrees of freedom, 1.960 with endless."""
     assert Delay(0.0, 0.002, 2.0, 3).wide_std == pytest.approx(0.002 * 4.3027 / 1.95996, rel=1e-4)

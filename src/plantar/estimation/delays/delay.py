@@ -199,14 +199,15 @@ def closes(pair: Pair) -> bool:
         part[:, FORCE] - part[:, FORCE].mean(axis=0) for part in (pair.measured, pair.rate, pair.predicted)
     )
     missed = unexplained(measured, rate, predicted)
-    return missed <= (1 - LEAST_CLOSED) * float(np.sum(measured**2))
+    return bool(missed <= (1 - LEAST_CLOSED) * np.sum(measured**2))
 
 
-def unexplained(measured: Array, rate: Array, predicted: Array) -> float:
-    """Squares that the prediction misses at the delay that suits it best."""
-    missing, power = measured - predicted, float(np.sum(rate**2))
-    delay = -float(np.sum(missing * rate)) / power if power > 0 else 0.0
-    return float(np.sum((missing + np.clip(delay, -LONGEST, LONGEST) * rate) ** 2))
+def unexplained(measured: Array, rate: Array, predicted: Array) -> Array:
+    """Squares (...) that the prediction misses at the delay that suits it best, of each of the signals (..., n, k)."""
+    missing, power = measured - predicted, np.sum(rate**2, axis=(-2, -1))
+    delay = -np.sum(missing * rate, axis=(-2, -1)) / np.where(power > 0, power, np.inf)
+    delay = np.clip(delay, -LONGEST, LONGEST)[..., None, None]
+    return np.asarray(np.sum((missing + delay * rate) ** 2, axis=(-2, -1)))
 
 
 def _cells(band: _Band, delay: float) -> list[_Cell]:
