@@ -79,7 +79,7 @@ MODEL_SELECTION = (
     ),
     Mutant(
         "estimation/slow_drift.py", "drift about the first sample, so that means change",
-        "columns - columns.mean(axis=0)", "columns - columns[0]",
+        "columns -= columns.mean(axis=1, keepdims=True)", "columns -= columns[:, :1]",
     ),
     Mutant(
         "model_selection/partialled_out.py", "offsets' influence with the wrong sign",

@@ -14,5 +14,7 @@ def solved(products: Array, right: Array) -> Array:
     where columns depend on each other, the smallest ones."""
     length = np.sqrt(np.diag(products))
     length[length == 0] = 1.0
-    inverse = np.linalg.pinv(products / np.outer(length, length), rcond=RESOLVED, hermitian=True)
-    return np.asarray((inverse / np.outer(length, length)) @ right)
+    told, turn = np.linalg.eigh(products / np.outer(length, length))
+    clear = told > RESOLVED * np.max(told, initial=0.0)
+    axes = turn[:, clear] / length[:, None]
+    return np.asarray((axes / told[clear]) @ (axes.T @ right))

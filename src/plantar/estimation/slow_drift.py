@@ -29,9 +29,15 @@ def _basis(since: bytes) -> Array:
         return np.zeros((0, 1))
     length = float(time[-1])
     share = time / max(length, 1e-9)
-    orders = np.arange(1, min(int(2 * length / DRIFT_PERIOD), MOST_COSINES) + 1)
-    columns = np.column_stack([time, np.cos(np.pi * np.outer(share, orders))])
-    basis = orthonormal(columns - columns.mean(axis=0))
+    columns = np.empty((1 + min(int(2 * length / DRIFT_PERIOD), MOST_COSINES), len(time)))
+    columns[0] = time
+    # Each cosine from those before it: cos(k + 1)x = 2 cos x · cos kx - cos(k - 1)x.
+    twice, before, last = 2 * np.cos(np.pi * share), np.cos(np.pi * share), np.ones(len(time))
+    for cosine in columns[1:]:
+        cosine[:] = twice * last - before
+        before, last = last, cosine
+    columns -= columns.mean(axis=1, keepdims=True)
+    basis = orthonormal(columns.T)
     basis.setflags(write=False)
     return basis
 

@@ -21,7 +21,7 @@ from plantar.notes import Note
 from plantar.results.walk_rows import SwingZero
 from plantar.sensors.attitude_scale import AttitudeScale
 from plantar.signals.filters import SHORTEST_STANCE_RUN, differentiate, low_pass
-from plantar.signals.segments import run_ends
+from plantar.signals.segments import complete, run_ends
 
 FILTER_EDGE = 1.0  # of the filter's period, left out where a run of samples begins or ends
 SAMPLES_PER_CYCLE = 8  # of the cutoff, that a fit takes
@@ -167,9 +167,8 @@ def filtered_recording(recording: Recording, cutoff: float) -> Recording:
     for name, state in recording.raw.items():
         stances = recording.stances[name]
         signals = np.column_stack([state.deflection, state.rate, state.torque])
-        smooth[name] = _with_signals(state, within_stances(signals, period, cutoff, stances))
-        values = np.column_stack([smooth[name].deflection, smooth[name].rate, smooth[name].torque])
-        valid = np.asarray(np.isfinite(values).all(axis=1))
+        passed = within_stances(signals, period, cutoff, stances)
+        smooth[name], valid = _with_signals(state, passed), complete(passed)
         recording = recording.without(name, ~valid, Reason.NOT_RECORDED)
         if stances is None:
             edges = run_ends(valid, round(FILTER_EDGE / cutoff / period))
