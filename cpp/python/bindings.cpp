@@ -327,5 +327,5 @@ NB_MODULE(_core, m) {
       .def("factor", &StreamObject::factor, nb::arg("group"))
       .def("parameters", &StreamObject::parameters, nb::arg("group"));
   bind_drift(m), bind_estimator(m), bind_factor(m), bind_low_pass(m);
-  bind_number_table(m), bind_stepping(m), bind_stop_operator(m);
+  bind_hysteresis(m), bind_number_table(m), bind_stepping(m);
 }

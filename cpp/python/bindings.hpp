@@ -1,5 +1,5 @@
 // What all of the views from Python share, and those that have files of their own: of drift.hpp, the estimator,
-// factor.hpp, low_pass.hpp, number_table.hpp, stepping.hpp and stop_operator.hpp.
+// factor.hpp, branched_path.hpp and what follows it, low_pass.hpp, number_table.hpp and stepping.hpp.
 #pragma once
 
 #include <nanobind/nanobind.h>
@@ -17,7 +17,7 @@ inline nanobind::ndarray<nanobind::numpy, double> owned(double* data, std::initi
 void bind_drift(nanobind::module_& m);
 void bind_estimator(nanobind::module_& m);
 void bind_factor(nanobind::module_& m);
+void bind_hysteresis(nanobind::module_& m);
 void bind_low_pass(nanobind::module_& m);
 void bind_number_table(nanobind::module_& m);
 void bind_stepping(nanobind::module_& m);
-void bind_stop_operator(nanobind::module_& m);
