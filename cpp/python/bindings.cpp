@@ -170,6 +170,6 @@ NB_MODULE(_core, m) {
            nb::arg("threads") = 0, nb::arg("isa") = "")
       .def("factor", &StreamObject::factor, nb::arg("group"))
       .def("parameters", &StreamObject::parameters, nb::arg("group"));
-  bind_base(m), bind_drift(m), bind_estimator(m), bind_factor(m), bind_foot(m), bind_low_pass(m);
-  bind_number_table(m), bind_stepping(m), bind_stop_operator(m);
+  bind_base(m), bind_drift(m), bind_estimator(m), bind_factor(m), bind_foot(m), bind_hysteresis(m);
+  bind_low_pass(m), bind_number_table(m), bind_stepping(m);
 }

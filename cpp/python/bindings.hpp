@@ -1,5 +1,6 @@
 // What all of the views from Python share, and those that have files of their own: of a floating base, drift.hpp, the
-// estimator, factor.hpp, one foot, low_pass.hpp, number_table.hpp, stepping.hpp and stop_operator.hpp.
+// estimator, factor.hpp, one foot, branched_path.hpp and what follows it, low_pass.hpp, number_table.hpp and
+// stepping.hpp.
 #pragma once
 
 #include <nanobind/nanobind.h>
@@ -19,7 +20,7 @@ void bind_drift(nanobind::module_& m);
 void bind_estimator(nanobind::module_& m);
 void bind_factor(nanobind::module_& m);
 void bind_foot(nanobind::module_& m);
+void bind_hysteresis(nanobind::module_& m);
 void bind_low_pass(nanobind::module_& m);
 void bind_number_table(nanobind::module_& m);
 void bind_stepping(nanobind::module_& m);
-void bind_stop_operator(nanobind::module_& m);

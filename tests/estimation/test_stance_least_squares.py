@@ -82,7 +82,7 @@ def test_leaving_a_stance_or_a_recording_out_is_fitting_the_rest() -> None:
         common_nuisance=blocks[1].common_nuisance[kept],
     )
     rest = StanceProblem.of([blocks[0], less, blocks[2]], 4.0).solve().values
-    assert problem.without_each_stance()[8 + 2] == pytest.approx(rest, rel=1e-9)
+    assert problem.without_each_stance[8 + 2] == pytest.approx(rest, rel=1e-9)
     rest = StanceProblem.of(blocks[:2], 4.0).solve().values
     assert problem.without_each_recording()[2] == pytest.approx(rest, rel=1e-9)
 

@@ -187,7 +187,7 @@ def test_a_hysteretic_state_starts_as_a_spring_and_ends_at_one(name: str) -> Non
 
 @pytest.mark.parametrize("start", [-1.0, -0.4, 0.0, 0.8])
 def test_jenkins_element_against_a_stepped_one(start: float) -> None:
-    moved, state, states = path(), start, []
+    moved, state, states = np.repeat(path(), 2), start, []  # a pause after every sample
     for step in np.diff(moved, prepend=moved[0]) / 0.012:
         state = min(max(state + step, -1.0), 1.0)
         states.append(state)

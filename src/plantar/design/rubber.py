@@ -9,7 +9,7 @@ import numpy as np
 
 from plantar.conventions import Array
 from plantar.models.elastoplastic import jenkins_states
-from plantar.models.hysteresis import Branches
+from plantar.models.hysteresis import Path
 
 # Until it slips the element is a spring of this share of the bush's own, in pitch and roll: the hysteresis of HRP-2's
 # feet is 7 to 10 % of their largest torques.
@@ -23,6 +23,8 @@ NEARBY: Final = 1.05  # times: another angle, whose difference shows what the an
 
 def remembered(deflections: Array, slip_angles: Sequence[float]) -> Array:
     """The stretch [rad] of elements with slip angles (a,) [rad] beside deflections (R, N), from rest, (R, a, N)."""
-    angles = np.array(slip_angles)
-    states = jenkins_states(Branches.of(list(deflections)), angles, np.zeros((len(deflections), angles.size)))
-    return np.moveaxis(states * angles, 0, -1)
+    angles, (count, samples) = np.array(slip_angles), deflections.shape
+    ends = samples * np.arange(count + 1)
+    path = Path(np.ascontiguousarray(deflections).ravel(), np.column_stack([ends[:-1], ends[1:]]))
+    states = jenkins_states(path, angles, np.zeros((count, angles.size)))
+    return np.moveaxis(states.reshape(count, samples, -1) * angles, 1, -1)

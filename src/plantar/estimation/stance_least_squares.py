@@ -85,7 +85,7 @@ class _Prior:
         )
         if not known or len(problem.products) == 1:
             return cls((), (), np.zeros((size, 0)), np.zeros((size, size)))
-        variance = np.diag(jackknife(problem.without_each_stance())[0])
+        variance = np.diag(jackknife(problem.without_each_stance)[0])
         keeps, follows, unsure = [], [], np.zeros((size, size))
         for place in known:
             prior = float(spread[place - first]) ** 2 if spread is not None else 0.0
@@ -111,7 +111,7 @@ def _deviations(problem: StanceProblem, values: Array, towards: _Prior) -> tuple
     size = len(values)
     if len(problem.products) == 1:  # nothing to compare with: anything is possible
         return np.diag(values**2), np.ones(size)
-    covariance, freedom = jackknife(towards.drawn(problem.without_each_stance()))
+    covariance, freedom = jackknife(towards.drawn(problem.without_each_stance))
     if problem.recordings >= FEWEST_RECORDINGS:
         between, of_between = jackknife(towards.drawn(problem.without_each_recording()))
         least = np.maximum(np.diag(covariance), np.finfo(float).tiny)

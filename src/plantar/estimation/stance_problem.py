@@ -76,17 +76,17 @@ class StanceProblem:
     def recordings(self) -> int:
         return int(self.recording.max()) + 1
 
-    def solve(self, total: Array | None = None) -> Solution:
-        """The solution of all recordings, or of other reduced sums `total` (k + 1, k + 1)."""
-        total = self._total if total is None else total
+    def solve(self) -> Solution:
+        """The solution of all recordings."""
+        total, back = self._total, self._parts[1]
         values, inverse = _solved(total)
-        own = np.array([back[:, -1] - back[:, :-1] @ values for _, back in self._parts])
+        own = back[:, :, -1] - back[:, :, :-1] @ values
         return Solution(values, own, inverse, float(total[-1, -1] - values @ total[:-1, -1]))
 
     def influences(self, blocks: Sequence[Block]) -> list[Array]:
         """How far the response of each row of the problem's blocks moves the values, (k, n) of each block."""
         found, inverse = [], self.solve().inverse
-        for place, (block, (_, back)) in enumerate(zip(blocks, self._parts, strict=True)):
+        for place, (block, back) in enumerate(zip(blocks, self._parts[1], strict=True)):
             assert block.stances is not None, "blocks of a foot that steps"
             stances, drawn = self.products[self.recording == place], design(block, len(back) - 1)
             for rows, ones, share in zip(
@@ -97,6 +97,7 @@ class StanceProblem:
             found.append(inverse @ (block.stances.weight[:, None] * common).T)
         return found
 
+    @cached_property
     def without_each_stance(self) -> Array:
         """Values (S, k) of the fits that lack one stance each."""
         found = []
@@ -104,22 +105,23 @@ class StanceProblem:
             stances = np.flatnonzero(self.recording == place)
             drawn = self._drawn(stances)
             less = self._own_eliminated(drawn.sum(axis=0) - drawn)[0] if len(stances) > 1 else 0.0
-            totals = self._total - self._parts[place][0] + less
+            totals = self._total - self._parts[0][place] + less
             found.append(_solved(np.broadcast_to(totals, (len(stances), *self._total.shape)))[0])
         return np.concatenate(found)
 
     def without_each_recording(self) -> Array:
         """Values (R, k) of the fits that lack one recording each."""
-        return np.array([self.solve(self._total - part).values for part, _ in self._parts])
+        return _solved(self._total - self._parts[0])[0]
 
     @cached_property
-    def _parts(self) -> list[tuple[Array, Array]]:
+    def _parts(self) -> tuple[Array, Array]:
+        """`_own_eliminated` of each recording's stances, (R, ...)."""
         each = (np.flatnonzero(self.recording == place) for place in range(self.recordings))
-        return [self._own_eliminated(self._drawn(stances).sum(axis=0)) for stances in each]
+        return self._own_eliminated(np.array([self._drawn(stances).sum(axis=0) for stances in each]))
 
     @cached_property
     def _total(self) -> Array:
-        return np.asarray(np.sum([part for part, _ in self._parts], axis=0))
+        return np.asarray(self._parts[0].sum(axis=0))
 
     def _drawn(self, stances: NDArray[np.intp]) -> Array:
         """Products (s, ...) of each of one recording's stances, their offsets drawn together."""
@@ -184,14 +186,12 @@ def _offset_prior(blocks: Sequence[Block], free: Solution) -> float:
     for block, own in zip(blocks, free.own, strict=True):
         assert block.stances is not None, "blocks of a foot that steps"
         left = block.response - (design(block, own.size - 1) @ np.concatenate([free.values, own[:-1], [0.0]]))
-        halves = []
-        for rows in block.stances.split():
-            if len(rows) >= 2 * SHORTEST_HALF:
-                half = (len(rows) + 1) // 2
-                halves.append([left[rows[:half]].mean(), left[rows[half:]].mean()])
-                weight += float(block.stances.weight[rows].sum())
-        if len(halves) > 1:
-            apart = np.array(halves) - np.mean(halves)
+        long = [rows for rows in block.stances.split() if len(rows) >= 2 * SHORTEST_HALF]
+        if long:
+            weight += float(block.stances.weight[np.concatenate(long)].sum())
+        if len(long) > 1:
+            halves = _means_of_halves(left, long)
+            apart = halves - halves.mean()
             together += float(np.sum(apart[:, 0] * apart[:, 1]))
             scattered += float(np.sum(apart.mean(axis=1) ** 2))
             count += len(halves)
@@ -199,3 +199,11 @@ def _offset_prior(blocks: Sequence[Block], free: Solution) -> float:
         return 0.0
     share = min(max(together / scattered, LEAST_SHARE), 1.0)
     return weight / count * (1 / share - 1)
+
+
+def _means_of_halves(values: Array, stances: Sequence[NDArray[np.intp]]) -> Array:
+    """Means (s, 2) of the first and the second half of each of some stances' values."""
+    lengths = np.array([len(rows) for rows in stances])
+    sizes = np.column_stack([(lengths + 1) // 2, lengths // 2])
+    firsts = np.cumsum(sizes) - sizes.ravel()
+    return np.asarray(np.add.reduceat(values[np.concatenate(stances)], firsts).reshape(-1, 2) / sizes)

@@ -8,9 +8,10 @@ from typing import ClassVar
 
 import numpy as np
 
+from plantar import _core
 from plantar.conventions import Array
 from plantar.models.bush_model import BushMotion
-from plantar.models.hysteresis import Branches, Hysteretic
+from plantar.models.hysteresis import Hysteretic, Path
 
 TABLE = 2001
 STEPS = 8000  # of the integrals behind it
@@ -34,25 +35,13 @@ class BoucWen(Hysteretic):
         angles = super().candidates(motions)[:, 0]
         return np.array([(angle, sharpness) for sharpness in SHARPNESS for angle in angles[::2]])
 
-    def states(self, branches: Branches, shapes: Array, initial_states: Array) -> Array:
-        """z (n, r, b)."""
-        runs = np.arange(branches.length.shape[1])
-        direction = branches.direction[branches.branch, runs]
-        result = np.empty((*branches.branch.shape, len(shapes)))
+    def states(self, path: Path, shapes: Array, initial_states: Array) -> Array:
+        """z (N, b)."""
+        result = np.empty((len(path.deflection), len(shapes)))
         for sharpness in np.unique(shapes[:, 1]):
             chosen = np.flatnonzero(shapes[:, 1] == sharpness)
             curve, pace = branch_curve(round(float(sharpness), 9)), sharpness / shapes[chosen, 0]
-            left = np.exp(-branches.length[:, :, None] * pace)
-            begins = np.empty_like(left)
-            place = curve.place(
-                branches.direction[0][:, None] * np.clip(initial_states[:, chosen], -1.0, 1.0)
-            )
-            for turn, remaining in enumerate(left):
-                begins[turn] = place
-                place = curve.turned(1.0 - (1.0 - place) * remaining)
-            gone = np.exp(-branches.travelled[:, :, None] * pace)
-            placed = 1.0 - (1.0 - begins[branches.branch, runs]) * gone
-            result[:, :, chosen] = direction[:, :, None] * curve.state(placed)
+            result[:, chosen] = curve.states(path, pace, initial_states[:, chosen])
         return result
 
 
@@ -76,19 +65,11 @@ class BranchCurve:
         way = np.concatenate([[0.0], zero - under, zero + over, [np.inf]])
         self._state = np.concatenate([[-1.0], -z[:0:-1], z, [1.0]])
         self._place = -np.expm1(-sharpness * way)
-        self._turned = self._place[::-1]
 
-    def place(self, state: Array) -> Array:
-        """p of z."""
-        return np.asarray(np.interp(state, self._state, self._place))
-
-    def state(self, place: Array) -> Array:
-        """z at p."""
-        return np.asarray(np.interp(place, self._place, self._state))
-
-    def turned(self, place: Array) -> Array:
-        """p on the way back from p."""
-        return np.asarray(np.interp(place, self._place, self._turned))
+    def states(self, path: Path, pace: Array, initial_states: Array) -> Array:
+        """z (N, b) of b variants whose 1 - p falls by exp(-pace·way), `pace` (b,); NaN outside the runs."""
+        starts = np.ascontiguousarray(initial_states)
+        return _core.branch_curve(path.deflection, path.runs, pace, starts, self._place, self._state)
 
 
 def _integral(values: Array, ends: Array) -> Array:

@@ -8,22 +8,14 @@ import numpy as np
 
 from plantar import _core
 from plantar.conventions import Array
-from plantar.models.hysteresis import Branches, Hysteretic
+from plantar.models.hysteresis import Hysteretic, Path
 
 
-def jenkins_states(branches: Branches, slip_angles: Array, initial_states: Array) -> Array:
-    """z (n, r, b): moves with deflection / slip angle (b,) and stops at ±1; `initial_states` (r, b).
-
-    Zero where `branches` are padded behind the end of a run.
-    """
-    return _core.stop_operator(
-        branches.direction,
-        branches.length,
-        branches.branch,
-        branches.travelled,
-        np.ascontiguousarray(slip_angles, dtype=np.float64),
-        np.ascontiguousarray(initial_states, dtype=np.float64),
-    )
+def jenkins_states(path: Path, slip_angles: Array, initial_states: Array) -> Array:
+    """z (N, b): moves with deflection / slip angle (b,) and stops at ±1, from `initial_states` (r, b); NaN where there
+    is no run."""
+    slips, starts = np.ascontiguousarray(slip_angles), np.ascontiguousarray(initial_states)
+    return _core.stop_operator(path.deflection, path.runs, slips, starts)
 
 
 class Elastoplastic(Hysteretic):
@@ -31,6 +23,6 @@ class Elastoplastic(Hysteretic):
 
     name: ClassVar[str] = "elastoplastic"
 
-    def states(self, branches: Branches, shapes: Array, initial_states: Array) -> Array:
-        """z (n, r, b) of one Jenkins element."""
-        return jenkins_states(branches, shapes[:, 0], initial_states)
+    def states(self, path: Path, shapes: Array, initial_states: Array) -> Array:
+        """z (N, b) of one Jenkins element."""
+        return jenkins_states(path, shapes[:, 0], initial_states)

@@ -32,6 +32,7 @@ class HardeningElastoplastic(Elastoplastic):
         """The state z and the cube, (N, 2, b)."""
         columns = []
         for motion, slip in zip(motions, super().basis_columns(motions, shapes, initial_states), strict=True):
-            cube = np.where(np.isfinite(slip), (motion.deflection**3)[:, None, None], np.nan)
-            columns.append(np.concatenate([slip, cube], axis=1))
+            both = np.repeat(slip, 2, axis=1)
+            both[:, 1] = np.where(np.isfinite(slip[:, 0, :1]), motion.deflection[:, None] ** 3, np.nan)
+            columns.append(both)
         return columns

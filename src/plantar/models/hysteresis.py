@@ -1,16 +1,14 @@
 """Rate-independent memory: a state z in [-1, 1] that depends on the path of the deflection, not on its speed.
 
-Between two turning points of the path, z runs along one curve, mirrored for the way back; so the only
-sequential work is from turning point to turning point, and everything between them is computed at once.
+Between two turning points of the path, z runs along one curve, mirrored for the way back: the native core walks along
+the path and keeps where on its curve each branch began.
 """
 
 from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import lru_cache
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,50 +25,17 @@ RARE = 0.5  # of the reach
 TRIED, TRIED_RARE = 14, 14
 
 
-@dataclass(frozen=True)
-class Branches:
-    """Runs of deflection cut at their turning points, packed side by side; T branches at most, r runs, n samples.
+class Path(NamedTuple):
+    """A deflection (N,), and where its r runs begin and end, (r, 2), one after the other: each has its own memory."""
 
-    `direction` (T, r) is ±1 in turn; `length` (T, r) the way from turning point to turning point [rad], zero after the
-    last. For each sample of each run, `branch` (n, r) and `travelled` (n, r), the way since that branch began.
-    """
-
-    direction: Array
-    length: Array
-    branch: NDArray[np.intp]
-    travelled: Array
+    deflection: Array
+    runs: NDArray[np.int64]
 
     @classmethod
-    def of(cls, paths: Sequence[Array]) -> Branches:
-        """Cut every path (n_i,) where it turns back."""
-        cut = [_turning_points(path) for path in paths]
-        count, samples = max(len(turns) for turns, _ in cut), max(len(path) for path in paths)
-        direction, length = np.ones((count, len(paths))), np.zeros((count, len(paths)))
-        branch, travelled = np.zeros((samples, len(paths)), dtype=np.intp), np.zeros((samples, len(paths)))
-        for column, (path, (turns, first)) in enumerate(zip(paths, cut, strict=True)):
-            ends = np.append(turns[1:], len(path) - 1)
-            direction[:, column] = first * (-1.0) ** np.arange(count)
-            length[: len(turns), column] = np.abs(path[ends] - path[turns])
-            place = np.searchsorted(turns, np.arange(len(path)), side="right") - 1
-            branch[: len(path), column] = place
-            travelled[: len(path), column] = np.abs(path - path[turns[place]])
-        return cls(direction, length, branch, travelled)
-
-
-@lru_cache(maxsize=32)
-def _branches_of(motions: tuple[BushMotion, ...]) -> Branches:
-    """The branches of all runs of these motions: a fit asks for them again with each of its steps."""
-    return Branches.of([motion.deflection[run] for motion in motions for run in motion.runs])
-
-
-def _turning_points(path: Array) -> tuple[NDArray[np.intp], float]:
-    """Where each monotonic branch begins, and the first branch's direction. A pause belongs to the branch before."""
-    step = np.sign(np.diff(path))
-    moving = np.flatnonzero(step)
-    if moving.size == 0:
-        return np.zeros(1, dtype=np.intp), 1.0
-    turned = moving[1:][step[moving[1:]] != step[moving[:-1]]]
-    return np.concatenate([[0], turned]).astype(np.intp), float(step[moving[0]])
+    def of(cls, motion: BushMotion) -> Path:
+        """The path of a motion."""
+        runs = np.array([(run.start, run.stop) for run in motion.runs], dtype=np.int64)
+        return cls(np.ascontiguousarray(motion.deflection), runs.reshape(-1, 2))
 
 
 class Hysteretic(BushModel):
@@ -88,8 +53,8 @@ class Hysteretic(BushModel):
     units: ClassVar[dict[str, tuple[str, str]]] = {"slip_torque": ("N.m", "N"), "slip_angle": ("rad", "m")}
 
     @abstractmethod
-    def states(self, branches: Branches, shapes: Array, initial_states: Array) -> Array:
-        """z (n, r, b) along r runs, for b variants of shape (b, s) and initial state (r, b)."""
+    def states(self, path: Path, shapes: Array, initial_states: Array) -> Array:
+        """z (N, b) along a path of r runs, for b variants of shape (b, s) and initial state (r, b); NaN elsewhere."""
 
     def candidates(self, motions: Sequence[BushMotion]) -> Array:
         """Slip angles in equal ratios, from what looks like dry friction to what hardly slips in these motions."""
@@ -112,11 +77,8 @@ class Hysteretic(BushModel):
         self, motions: Sequence[BushMotion], shapes: Array, initial_states: Sequence[Array]
     ) -> list[Array]:
         """The state z, (N, 1, b)."""
-        places = [(m, run) for m, motion in enumerate(motions) for run in motion.runs]
-        columns = [np.full((len(motion), 1, len(shapes)), np.nan) for motion in motions]
-        if places:
-            branches = _branches_of(tuple(motions))
-            state = self.states(branches, shapes, np.concatenate([start.T for start in initial_states]))
-            for column, (m, run) in enumerate(places):
-                columns[m][run, 0] = state[: run.stop - run.start, column]
-        return columns
+        paths = (Path.of(motion) for motion in motions)
+        return [
+            self.states(path, shapes, start.T)[:, None, :]
+            for path, start in zip(paths, initial_states, strict=True)
+        ]

@@ -8,7 +8,7 @@ import numpy as np
 
 from plantar.conventions import Array
 from plantar.models.elastoplastic import jenkins_states
-from plantar.models.hysteresis import Branches, Hysteretic
+from plantar.models.hysteresis import Hysteretic, Path
 
 ELEMENTS = 8
 
@@ -23,10 +23,10 @@ class Iwan(Hysteretic):
     name: ClassVar[str] = "iwan"
     elaborates: ClassVar[str | None] = "elastoplastic"
 
-    def states(self, branches: Branches, shapes: Array, initial_states: Array) -> Array:
-        """z (n, r, b): torques of the elements, each its slip angle's share."""
+    def states(self, path: Path, shapes: Array, initial_states: Array) -> Array:
+        """z (N, b): torques of the elements, each its slip angle's share."""
         spread = 2.0 * (np.arange(ELEMENTS) + 0.5) / ELEMENTS  # slip angles over their mean
         total: Array = np.zeros(())
         for ratio in spread:
-            total = total + ratio * jenkins_states(branches, ratio * shapes[:, 0], initial_states)
+            total = total + ratio * jenkins_states(path, ratio * shapes[:, 0], initial_states)
         return np.asarray(total / ELEMENTS)

@@ -7,6 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from plantar import _core
 from plantar.conventions import Array
 from plantar.models.bush_model import BESIDE, BushModel, BushMotion, reach
 
@@ -51,19 +52,12 @@ class StandardLinearSolid(BushModel):
             column = np.full((len(motion), 1, len(shapes)), np.nan)
             scale = reach([motion])
             for place, run in enumerate(motion.runs):
-                step = np.diff(motion.deflection[run], prepend=motion.deflection[run.start])
                 ratio = motion.period / shapes[:, 0]
-                added = step[:, None] * (-np.expm1(-ratio) / ratio)
-                added[0] += start[:, place] * scale
-                column[run, 0] = _decaying(np.exp(-ratio), added)
+                column[run, 0] = _core.relaxation(
+                    np.ascontiguousarray(motion.deflection[run]),
+                    np.exp(-ratio),
+                    -np.expm1(-ratio) / ratio,
+                    start[:, place] * scale,
+                )
             columns.append(column)
         return columns
-
-
-def _decaying(decay: Array, added: Array) -> Array:
-    """x (n, b) with x_i = decay·x_{i-1} + added_i, nothing before: sums over 2, 4, 8, ... samples."""
-    x, reach = added.copy(), 1
-    while reach < len(x):
-        x[reach:] += decay * x[:-reach]
-        decay, reach = decay * decay, 2 * reach
-    return x
