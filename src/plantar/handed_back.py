@@ -63,7 +63,7 @@ def hand_back(found: Any, held: Mapping[int, Any], file: int) -> None:
 
 
 def taken(file: int, held: Mapping[int, Any]) -> Any:
-    """What `hand_back` wrote. No number is copied: its arrays lie in the file, whose memory goes with the last of them."""
+    """What `hand_back` wrote. No number is copied: arrays lie in the file, whose memory goes with the last of them."""
     whole = memoryview(mmap.mmap(file, 0, access=mmap.ACCESS_COPY))
     end = len(whole) - SIZE.size
     size = SIZE.unpack(whole[end:])[0]
