@@ -1,6 +1,7 @@
 // Lines of numbers, as in a CSV: the plain ones only, what else a text may hold is left to others.
 #pragma once
 
+#include <algorithm>
 #include <charconv>
 #include <cstddef>
 #include <limits>
@@ -14,19 +15,19 @@ namespace plantar {
 constexpr std::ptrdiff_t NOWHERE = -1;
 constexpr std::ptrdiff_t NOT_PLAIN = -1;
 
-// Whether a cell is a number in digits, or one of the names of a hole.
-inline bool plain_number(std::string_view cell, double& value) {
-  if (cell.empty() || cell == "nan" || cell == "NaN") {
-    value = std::numeric_limits<double>::quiet_NaN();
-    return true;
-  }
+// Where the number in digits, or the name of a hole, ends that begins at `at`, before `end`; nullptr for anything else.
+inline const char* plain_number(const char* at, const char* end, double& value) {
+  value = std::numeric_limits<double>::quiet_NaN();
+  if (*at == ',' || *at == '\n' || *at == '\r') return at;
+  const std::string_view name(at, std::min<std::size_t>(3, static_cast<std::size_t>(end - at)));
+  if (name == "nan" || name == "NaN") return at + name.size();
 #ifdef __cpp_lib_to_chars
-  const char first = cell[cell.size() > 1 && cell[0] == '-' ? 1 : 0];
-  if (first != '.' && (first < '0' || first > '9')) return false;  // infinity has names, too
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  return error == std::errc() && end == cell.data() + cell.size();
+  const char first = at[*at == '-' && at + 1 < end ? 1 : 0];
+  if (first != '.' && (first < '0' || first > '9')) return nullptr;  // infinity has names, too
+  const auto [behind, error] = std::from_chars(at, end, value);
+  return error == std::errc() ? behind : nullptr;
 #else
-  return false;
+  return nullptr;
 #endif
 }
 
@@ -40,17 +41,17 @@ inline std::ptrdiff_t read_numbers(std::string_view text, const std::vector<std:
   while (at < end) {
     if (line == most || *at == '\n' || *at == '\r') return NOT_PLAIN;
     for (std::size_t column = 0; column < places.size(); ++column) {
-      const char* const begin = at;
-      while (at < end && *at != ',' && *at != '\n' && *at != '\r' && *at != '"') ++at;
-      if (at == end || *at == '"' || (*at == ',') != (column + 1 < places.size())) return NOT_PLAIN;
-      if (places[column] != NOWHERE) {
-        double& value = values[static_cast<std::size_t>(places[column]) * stride + line];
-        if (!plain_number({begin, static_cast<std::size_t>(at - begin)}, value)) return NOT_PLAIN;
+      if (at == end) return NOT_PLAIN;
+      if (places[column] == NOWHERE) {
+        while (at < end && *at != ',' && *at != '\n' && *at != '\r' && *at != '"') ++at;
+      } else {
+        at = plain_number(at, end, values[static_cast<std::size_t>(places[column]) * stride + line]);
       }
-      if (*at == ',') ++at;
+      if (at == nullptr || at == end) return NOT_PLAIN;
+      if (column + 1 < places.size() && *at++ != ',') return NOT_PLAIN;
     }
-    if (*at == '\r' && (++at == end || *at != '\n')) return NOT_PLAIN;
-    ++at;
+    if (*at == '\r' && ++at == end) return NOT_PLAIN;
+    if (*at++ != '\n') return NOT_PLAIN;
     ++line;
   }
   return static_cast<std::ptrdiff_t>(line);

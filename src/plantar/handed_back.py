@@ -7,6 +7,7 @@ both, and is found again as the very same object.
 from __future__ import annotations
 
 import io
+import mmap
 import os
 import pickle
 import struct
@@ -17,6 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 SIZE = struct.Struct("<q")
+ALIGNED = 64  # bytes: where an array may begin, as in memory of its own
 PLAIN = (str, bytes, int, float, bool, type(None))
 
 
@@ -53,6 +55,7 @@ def hand_back(found: Any, held: Mapping[int, Any], file: int) -> None:
     with os.fdopen(file, "wb", closefd=False) as out:
         for buffer in buffers:
             with buffer.raw() as raw:
+                first += out.write(bytes(-first % ALIGNED))
                 spans.append(_Span(first, raw.nbytes))
                 first += out.write(raw)
         table = pickle.dumps((spans, text.getvalue()))
@@ -60,19 +63,14 @@ def hand_back(found: Any, held: Mapping[int, Any], file: int) -> None:
 
 
 def taken(file: int, held: Mapping[int, Any]) -> Any:
-    """What `hand_back` wrote. Each array has memory of its own again, so that it can be given back by itself."""
-    end = os.fstat(file).st_size - SIZE.size
-    size = SIZE.unpack(os.pread(file, SIZE.size, end))[0]
-    spans, text = pickle.loads(os.pread(file, size, end - size))
-    return _Reader(io.BytesIO(text), held, (_numbers(file, span) for span in spans)).load()
-
-
-def _numbers(file: int, span: _Span) -> memoryview:
-    numbers = memoryview(bytearray(span.size))
-    done = 0
-    while done < span.size:
-        done += os.preadv(file, [numbers[done:]], span.first + done)
-    return numbers
+    """What `hand_back` wrote. No number is copied: arrays lie in the file, whose memory goes with the last of them."""
+    whole = memoryview(mmap.mmap(file, 0, access=mmap.ACCESS_COPY))
+    end = len(whole) - SIZE.size
+    size = SIZE.unpack(whole[end:])[0]
+    spans, text = pickle.loads(whole[end - size : end])
+    return _Reader(
+        io.BytesIO(text), held, (whole[span.first : span.first + span.size] for span in spans)
+    ).load()
 
 
 class _Writer(pickle.Pickler):

@@ -35,3 +35,12 @@ def test_one_or_two_samples_land_no_foot(value: float) -> None:
 def test_a_log_without_the_sensor_shows_nothing() -> None:
     assert footfalls(log(), "hand").size == 0
     assert footfalls(MotionLog("short", np.arange(3.0), {}), "sole").size == 0
+
+
+def test_changes_are_those_of_the_median_of_five_samples() -> None:
+    x = 10 * np.random.default_rng(0).exponential(size=COUNT) ** 3
+    force = np.hypot(x, np.sin(np.arange(COUNT)))
+    steady = np.median(np.lib.stride_tricks.sliding_window_view(force, 5), axis=1)
+    changes = 2 + np.flatnonzero(np.diff(steady > 0.1 * steady.max()))
+    assert changes.size > 20
+    assert footfalls(log(x=x), "sole").tolist() == changes.tolist()

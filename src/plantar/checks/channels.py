@@ -62,8 +62,10 @@ def named(columns: Sequence[str], sensor: str | None = None, of: int = 0) -> str
 
 def _carries(robot: RobotModel, foot: Foot, log: MotionLog) -> bool:
     """Whether this foot carries a tenth of the weight or more, at least half of the time."""
-    force = np.linalg.norm(log.stack(wrench_columns(foot.wrench.name)[FORCE]), axis=1)
-    return bool(np.mean(force > 0.1 * robot.mass * GRAVITY) > 0.5)
+    squares = sum(
+        (log.column(name) ** 2 for name in wrench_columns(foot.wrench.name)[FORCE]), np.zeros(len(log))
+    )
+    return bool(np.mean(squares > (0.1 * robot.mass * GRAVITY) ** 2) > 0.5)
 
 
 def _dead_encoder(joint: str, log: MotionLog) -> Iterator[Finding]:

@@ -9,15 +9,13 @@ from typing import Any, Final
 
 import numpy as np
 
-from plantar.cores import over_cores
 from plantar.files import write_text
 from plantar.notes import kinds
 from plantar.pages import on_feet
 from plantar.report import tables
-from plantar.report.charts.chart import Chart
 from plantar.report.charts.loop import loop_charts
 from plantar.report.content import Figure, Section, Table
-from plantar.report.motions import MotionView, motion_views
+from plantar.report.motions import motion_views
 from plantar.report.page import get_ready, render
 from plantar.report.verdict import foot_verdicts, limits, trust
 from plantar.report.walks import walk_section
@@ -56,13 +54,7 @@ def write_feet_report(
     else:
         tracks = read_residuals(residuals) if residuals is not None else ()
 
-    def motions_drawn() -> tuple[list[MotionView], int]:
-        return motion_views(content, tracks)
-
-    def loops_drawn() -> dict[tuple[str, str], Chart]:
-        return loop_charts(content, tracks)
-
-    (motions, stride), loops = over_cores(lambda draw: draw(), (motions_drawn, loops_drawn))
+    motions, stride = motion_views(content, tracks)
     page = render(
         TEMPLATES[0],
         styles=["uPlot.min.css", "report.css"],
@@ -71,7 +63,7 @@ def write_feet_report(
         result=content,
         verdicts=foot_verdicts(content.parameters),
         trust=trust(content),
-        loops=loops,
+        loops=loop_charts(content, tracks),
         limits=limits(content),
         read_on=on_feet(row.verdict for row in content.parameters),
         walks=walk_section(content, tracks),

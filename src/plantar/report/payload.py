@@ -25,6 +25,8 @@ SIZE_LIMIT: Final = 4_000_000
 CODES: Final = 65534
 COARSEST: Final = 1023
 TICK: Final = 1e-6
+EFFORT: Final = 2
+"""Of deflating, of 9: noise is most of what there is, and twice the time would save a twentieth of the room."""
 SUPPORTS: Final = ("double", "single", "air", "transition")
 """Support phases by their number; any other name counts as a transition."""
 
@@ -73,7 +75,7 @@ def encode_motion(tracks: Sequence[Track], stride: int = 1) -> Payload:
                 "channels": channels,
             }
         )
-    data = base64.b64encode(zlib.compress(b"".join(blocks), 6)).decode("ascii")
+    data = base64.b64encode(zlib.compress(b"".join(blocks), EFFORT)).decode("ascii")
     return Payload({"tracks": headers, "supports": list(SUPPORTS)}, data)
 
 

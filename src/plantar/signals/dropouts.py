@@ -22,6 +22,8 @@ def dropped_samples(values: Array) -> Mask:
     values: joint angles [rad], or sizes that are zero where a sensor is silent.
     """
     zero, dropped = values == 0, np.zeros(len(values), dtype=bool)
+    if np.count_nonzero(zero) < FEWEST:
+        return dropped
     inner = [run for run in runs(zero) if run.start > BESIDE and run.stop < len(values) - BESIDE]
     if len(inner) < FEWEST:
         return dropped
@@ -63,9 +65,11 @@ def dropouts_of(log: MotionLog) -> dict[tuple[str, ...], Mask]:
 
 def _silent(log: MotionLog, columns: tuple[str, ...], part: str) -> Mask:
     """`dropped_samples` of a device all of whose columns read zero, by the size of a `part` that jumps when it does."""
-    silent = np.asarray(np.all([log.column(name) == 0 for name in columns], axis=0))
-    if not silent.any():
-        return silent
+    silent = np.ones(len(log), dtype=bool)
+    for name in columns:
+        silent &= log.column(name) == 0
+        if not silent.any():
+            return silent
     return dropped_samples(np.where(silent, 0.0, np.maximum(_size(log, columns, part), LEAST)))
 
 

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
-from plantar.conventions import FORCE
+from plantar.conventions import FORCE, Array
 from plantar.logs.motion_log import MotionLog, wrench_columns
 
 LOADED = 0.1  # of a foot's largest force: where it passes this, the foot lands or leaves
@@ -18,6 +17,14 @@ def footfalls(log: MotionLog, sensor: str) -> NDArray[np.intp]:
     columns = wrench_columns(sensor)[FORCE]
     if len(log) < LONE or not log.has(*columns):
         return np.zeros(0, dtype=np.intp)
-    force = np.nan_to_num(np.linalg.norm(log.stack(columns), axis=1))
-    steady = np.median(sliding_window_view(force, LONE), axis=1)
+    squares = sum((log.column(name) ** 2 for name in columns), np.zeros(len(log)))
+    steady = _medians(np.nan_to_num(np.sqrt(squares)))
     return LONE // 2 + np.flatnonzero(np.diff(steady > LOADED * steady.max()))
+
+
+def _medians(values: Array) -> Array:
+    """Medians of LONE consecutive values: the middle one of the inner ones of two pairs and of the fifth value."""
+    a, b, c, d, e = (values[first : len(values) - LONE + 1 + first] for first in range(LONE))
+    one = np.maximum(np.minimum(a, b), np.minimum(c, d))
+    other = np.minimum(np.maximum(a, b), np.maximum(c, d))
+    return np.asarray(np.maximum(np.minimum(one, other), np.minimum(np.maximum(one, other), e)))

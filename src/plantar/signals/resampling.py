@@ -124,6 +124,9 @@ def with_continuous_quaternions(log: MotionLog) -> dict[str, Array]:
     for imu in imus:
         names = [f"{imu}.orientation.{axis}" for axis in "wxyz"]
         if log.has(*names):
+            turned = sum((columns[name][1:] * columns[name][:-1] for name in names), np.zeros(len(log) - 1))
+            if (turned >= 0).all():  # known and continuous throughout
+                continue
             quaternion = log.stack(names)
             signs, known = np.ones(len(log)), np.isfinite(quaternion).all(axis=1)
             dots = np.sum(quaternion[known][1:] * quaternion[known][:-1], axis=1)

@@ -163,14 +163,12 @@ def room_below(names: Sequence[str]) -> float:
 def line(x: Array, y: Array, kind: str) -> Path:
     """A line through points in pixels, (n,) each, with gaps where one is not finite; in steps of a tenth of a pixel."""
     tenths = np.round(10 * np.column_stack([x, y]))
-    known = np.asarray(np.isfinite(tenths).all(axis=1))
+    known = np.isfinite(x + y)
     begins = (known & ~np.concatenate([[False], known[:-1]]))[known]
     tenths = tenths[known]
     steps = np.where(begins[:, None], tenths, np.diff(tenths, axis=0, prepend=0.0)) / 10
     # A step from the point before is shorter to write than a place.
-    return Path(
-        kind, "".join(f"{'M' if m else 'l'}{dx:g} {dy:g}" for (dx, dy), m in zip(steps, begins, strict=True))
-    )
+    return Path(kind, "".join(np.where(begins, "M%g %g", "l%g %g").tolist()) % tuple(steps.ravel().tolist()))
 
 
 def thinned(
@@ -188,8 +186,8 @@ def thinned(
 
 def _moves(x: Array, y: Array, side: float) -> Array:
     """Whether a point lies in another square than the one before it, (n,)."""
-    squares = np.round(np.column_stack([x, y]) / side)
-    squares[~np.isfinite(squares).all(axis=1)] = np.inf
-    moved = np.ones(len(squares), dtype=bool)
-    moved[1:] = (squares[1:] != squares[:-1]).any(axis=1)
+    known = np.isfinite(x + y)
+    column, row = (np.where(known, np.round(along / side), np.inf) for along in (x, y))
+    moved = np.ones(len(x), dtype=bool)
+    moved[1:] = (column[1:] != column[:-1]) | (row[1:] != row[:-1])
     return moved
