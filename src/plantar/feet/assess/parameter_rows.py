@@ -18,7 +18,7 @@ from plantar.feet.fit.hidden_memory import has_memory
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.models import KelvinVoigt
-from plantar.results.feet import Parameter, ValidationRow
+from plantar.results.feet import Parameter, ValidationRow, Verdict
 
 # Slip angles that an element must slide back by to be seen from both sides: beside one that is an eighth larger, less
 # would be no slide, and a fit that ends at the smallest element which explains the motion shows none.
@@ -64,7 +64,7 @@ def axis_rows(
 def _beside_its_torque(row: Parameter, rows: Sequence[Parameter]) -> Parameter:
     """An element's angle no surer than its torque: of an element that hardly shows, the angle that was searched may be
     any."""
-    torque = next((one.verdict for one in rows if one.name == "slip_torque"), "usable")
+    torque: Verdict = next((one.verdict for one in rows if one.name == "slip_torque"), "usable")
     if torque == "usable" or row.verdict in (torque, "unidentifiable"):
         return row
     why = "not told from zero" if torque == "unidentifiable" else "hardly known"
