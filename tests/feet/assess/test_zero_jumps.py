@@ -102,6 +102,15 @@ def test_a_memory_that_was_not_chosen_still_explains_what_looks_like_a_jump() ->
     assert chosen is not None
     assert len(zero_jumps(recordings, spring, False)) == 2
     assert zero_jumps(recordings, replace(spring, choice=chosen.choice), False) == []
+    assert chosen.choice is not None
+    worse = [
+        replace(score, held_out_rms=score.held_out_rms + 9.0)
+        for score in chosen.choice.ranking
+        if score.model.remembers
+    ]
+    others = [score for score in chosen.choice.ranking if not score.model.remembers]
+    seldom = replace(spring, choice=replace(chosen.choice, ranking=(*others, *worse)))
+    assert zero_jumps(recordings, seldom, False) == [], "one turn in all logs predicts nothing held out"
     jumped = swaying(PLAIN, 6.0 * LATER)
     told = fit_axis(jumped, FOOT, "pitch", FeetSettings())
     assert told is not None

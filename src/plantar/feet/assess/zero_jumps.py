@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from plantar.contact.reasons import TIPPING
 from plantar.conventions import Array
 from plantar.estimation import Block, LinearFit, fit_blocks
-from plantar.feet.fit.hidden_memory import rival
+from plantar.feet.fit.hidden_memory import has_memory
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.regression_data import (
@@ -46,15 +46,16 @@ def zero_jumps(recordings: Sequence[Recording], fit: AxisFit, shared: bool) -> l
     if blocks[0].stances is not None or shared:
         return []
     jumps = _jumps(fit_blocks(blocks), blocks, recordings, fit.foot)
-    if (memory := rival(fit)) is not None:
+    if fit.choice is not None and not has_memory(fit.model):
         # A memory that these motions begin to show: its first turn moves the zero of spring and damper, too.
-        left = {label: float(np.mean(missed**2)) for label, missed in memory.fit.residuals.items()}
         rows = {block.label: len(block.response) for block in blocks}
-        jumps = {
-            label: jump
-            for label, jump in jumps.items()
-            if label not in left or jump.left < rows[label] * left[label]
-        }
+        for memory in (score.fit for score in fit.choice.ranking if has_memory(score.model)):
+            left = {label: float(np.mean(missed**2)) for label, missed in memory.residuals.items()}
+            jumps = {
+                label: jump
+                for label, jump in jumps.items()
+                if label not in left or jump.left < rows[label] * left[label]
+            }
     if not isinstance(fit.model, KelvinVoigt):
         # Beside a true memory, its own misfit shows a jump better. A memory that was made up for a jump leaves more
         # than the jump would; one that leaves less is what moves the means of spring and damper's misfit.
