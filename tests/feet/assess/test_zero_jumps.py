@@ -118,6 +118,14 @@ def test_a_memory_that_was_not_chosen_still_explains_what_looks_like_a_jump() ->
     assert len(zero_jumps(jumped, replace(told, model=KelvinVoigt()), False)) == 1
 
 
+def test_an_element_that_just_slips_once_is_no_jump_of_a_zero() -> None:
+    """It leans once by its slip angle, in a log without noise: from which state it began decides whether it slips."""
+    lean = 0.004 * np.clip((PERIOD * np.arange(COUNT) - 30.0) / 3.0, 0.0, 1.0)
+    angles = [swayed(COUNT, seed=0), 0.05 * swayed(COUNT, seed=1) + lean]
+    recordings = [swaying(SLIPPING, angle=angle, noise=0.0)[place] for place, angle in enumerate(angles)]
+    assert said(recordings, "elastoplastic") == []
+
+
 def test_a_foot_that_was_lifted_meanwhile_stands_elsewhere() -> None:
     recordings = swaying(PLAIN, 6.0 * LATER)
     contact = recordings[1].contacts[FOOT]
