@@ -59,7 +59,7 @@ SENSOR_FAULTS = (
     ),
     Mutant(
         "feet/prepare_log.py", "what soles have put right stays a fault",
-        "if note.code not in mended", "if note.code not in () and mended is not None", ("sensors/test_tilt_error.py",),
+        "if note.code not in noted", "if note.code not in () and noted is not None", ("sensors/test_tilt_error.py",),
     ),
     Mutant(
         "sensors/moment_errors.py", "a walk is as slow as a sway", "    if steps:", "    if False:",

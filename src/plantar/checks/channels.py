@@ -155,7 +155,7 @@ def _at_rest(log: MotionLog) -> Mask:
         if (steps > 0).any():
             apart.append(steps[ends] / np.median(steps[steps > 0]))
     for place, run in enumerate(stretches):
-        if np.median([own[place] for own in apart]) > JUMPS:
+        if apart and np.median([own[place] for own in apart]) > JUMPS:
             found[run] = False
     return found
 

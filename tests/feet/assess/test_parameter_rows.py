@@ -10,6 +10,7 @@ from scipy import stats
 
 from made_recording import FOOT, PERIOD, made_recording, predicted_torque, swayed
 from plantar.contact.reasons import Reason
+from plantar.feet.assess import parameter_rows
 from plantar.feet.assess.parameter_rows import axis_rows, missing_rows, unseen_rows
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
@@ -104,6 +105,17 @@ def test_a_slip_angle_is_worth_no_more_than_its_slip_torque(torque: float, verdi
         recording(), replace(fit, covariance=np.diag(std**2), freedom=np.full(4, 6.0), white_std=std)
     )
     assert [rows[place].verdict for place in places] == [verdict, verdict]
+
+
+@pytest.mark.parametrize(("slid", "verdict"), [(0.24, "weak"), (0.26, "usable")])
+def test_an_element_that_slips_one_way_alone_may_be_larger(
+    monkeypatch: pytest.MonkeyPatch, slid: float, verdict: str
+) -> None:
+    monkeypatch.setattr(parameter_rows, "slid_back", lambda *_: slid)
+    rows = rows_of(
+        recording(), replace(fit_of(Elastoplastic(), (400.0, 20.0, 40.0)), covariance=np.eye(4) * 1e-9)
+    )
+    assert [row.verdict for row in rows] == ["usable", "usable", verdict, verdict]
 
 
 @pytest.mark.parametrize(("share", "verdict"), [(0.9, "usable"), (1.1, "weak")])

@@ -102,11 +102,28 @@ def test_a_memory_that_was_not_chosen_still_explains_what_looks_like_a_jump() ->
     assert chosen is not None
     assert len(zero_jumps(recordings, spring, False)) == 2
     assert zero_jumps(recordings, replace(spring, choice=chosen.choice), False) == []
+    assert chosen.choice is not None
+    worse = [
+        replace(score, held_out_rms=score.held_out_rms + 9.0)
+        for score in chosen.choice.ranking
+        if score.model.remembers
+    ]
+    others = [score for score in chosen.choice.ranking if not score.model.remembers]
+    seldom = replace(spring, choice=replace(chosen.choice, ranking=(*others, *worse)))
+    assert zero_jumps(recordings, seldom, False) == [], "one turn in all logs predicts nothing held out"
     jumped = swaying(PLAIN, 6.0 * LATER)
     told = fit_axis(jumped, FOOT, "pitch", FeetSettings())
     assert told is not None
     assert told.choice is not None
     assert len(zero_jumps(jumped, replace(told, model=KelvinVoigt()), False)) == 1
+
+
+def test_an_element_that_just_slips_once_is_no_jump_of_a_zero() -> None:
+    """It leans once by its slip angle, in a log without noise: from which state it began decides whether it slips."""
+    lean = 0.004 * np.clip((PERIOD * np.arange(COUNT) - 30.0) / 3.0, 0.0, 1.0)
+    angles = [swayed(COUNT, seed=0), 0.05 * swayed(COUNT, seed=1) + lean]
+    recordings = [swaying(SLIPPING, angle=angle, noise=0.0)[place] for place, angle in enumerate(angles)]
+    assert said(recordings, "elastoplastic") == []
 
 
 def test_a_foot_that_was_lifted_meanwhile_stands_elsewhere() -> None:

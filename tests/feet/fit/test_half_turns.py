@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 from types import SimpleNamespace
 from typing import Any
 
@@ -10,10 +11,7 @@ import numpy as np
 import pytest
 
 from plantar.feet.fit import half_turns
-from plantar.feet.fit.half_turns import (
-    cautioned_if_hardly_turned,
-    slip_angles_spanned,
-)
+from plantar.feet.fit.half_turns import cautioned_if_hardly_turned, slid_back, slip_angles_spanned
 from plantar.feet.regression.axis import AxisFit
 from plantar.model_selection.selection import ModelChoice
 from plantar.models import MODELS, BushMotion
@@ -64,3 +62,34 @@ def test_only_what_is_not_turned_round_gets_a_caution(walks: Any) -> None:
     assert cautioned_if_hardly_turned(told, walks(0.9 * ROUND)) is told
     asked = replace(fit_of(), choice=None)
     assert cautioned_if_hardly_turned(asked, walks(0.9 * ROUND)) is asked
+
+
+def standing(monkeypatch: pytest.MonkeyPatch, *turns: float) -> list[Any]:
+    """A recording of a foot that stands and turns at these angles, in slip angles."""
+    ways = [np.linspace(*pair, 40)[:-1] for pair in pairwise(turns)]
+    angle = SLIP_ANGLE * np.append(np.concatenate(ways), turns[-1])
+    motion = BushMotion(angle, 0 * angle, 0.01)
+    monkeypatch.setattr(half_turns, "path_of", lambda *_: motion)
+    return [SimpleNamespace(name="walk", stances={"left": None})]
+
+
+@pytest.mark.parametrize(("turns", "slid"), [
+    ((0.0, 1.8), 0.0),  # one way alone
+    ((0.0, 1.8, 0.0, 2.5, 0.6), 0.0),  # the same way again
+    ((0.0, 1.8, -0.5), 0.3),
+    ((0.0, 1.8, -0.5, 2.2), 0.7),
+])  # fmt: skip
+def test_an_element_is_seen_whole_where_it_slides_back(
+    monkeypatch: pytest.MonkeyPatch, turns: tuple[float, ...], slid: float
+) -> None:
+    """It slides after one slip angle from rest, and after two from where it slid the other way."""
+    recordings = standing(monkeypatch, *turns)
+    fit = replace(fit_of(), initial_states={"walk": np.zeros(1)})
+    assert slid_back(fit, recordings) == pytest.approx(slid, abs=1e-6)
+
+
+def test_of_feet_that_step_and_springs_nothing_is_said_about_sliding_back(
+    monkeypatch: pytest.MonkeyPatch, walks: Any
+) -> None:
+    assert slid_back(fit_of(), walks(1.0)) == np.inf
+    assert slid_back(fit_of("kelvin_voigt"), standing(monkeypatch, 0.0, 1.8)) == np.inf

@@ -12,12 +12,17 @@ from plantar.conventions import ROTATIONAL_AXES, Array, Axis
 from plantar.estimation import interval95, relative_std_percent
 from plantar.feet.assess.left_out import why_unseen
 from plantar.feet.assess.residual_table import Predictions
-from plantar.feet.assess.verdicts import Evidence, judge, judge_term
+from plantar.feet.assess.verdicts import SWAY, Evidence, judge, judge_term
+from plantar.feet.fit.half_turns import slid_back
 from plantar.feet.fit.hidden_memory import has_memory
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.models import KelvinVoigt
-from plantar.results.feet import Parameter, ValidationRow
+from plantar.results.feet import Parameter, ValidationRow, Verdict
+
+# Slip angles that an element must slide back by to be seen from both sides: beside one that is an eighth larger, less
+# would be no slide, and a fit that ends at the smallest element which explains the motion shows none.
+ROUND_SLID = 0.25
 
 
 def axis_rows(
@@ -43,6 +48,11 @@ def axis_rows(
             verdict, reason, advice = judge(fit.foot, fit.axis, term, value, interval, evidence)
         else:
             verdict, reason, advice = judge_term(value, interval, evidence)
+            if term == "slip_torque" and verdict == "usable" and slid_back(fit, recordings) < ROUND_SLID:
+                verdict, reason = (
+                    "weak",
+                    f"the element slips one way alone: {SWAY[fit.axis]} by larger angles",
+                )
         unit = fit.model.unit(term, fit.axis)
         relative = relative_std_percent(value, float(fit.white_std[place]))
         rows.append(
@@ -54,7 +64,7 @@ def axis_rows(
 def _beside_its_torque(row: Parameter, rows: Sequence[Parameter]) -> Parameter:
     """An element's angle no surer than its torque: of an element that hardly shows, the angle that was searched may be
     any."""
-    torque = next((one.verdict for one in rows if one.name == "slip_torque"), "usable")
+    torque: Verdict = next((one.verdict for one in rows if one.name == "slip_torque"), "usable")
     if torque == "usable" or row.verdict in (torque, "unidentifiable"):
         return row
     why = "not told from zero" if torque == "unidentifiable" else "hardly known"

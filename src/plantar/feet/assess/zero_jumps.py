@@ -6,7 +6,7 @@ stands out in what spring and damper leave: the mean changes at one moment as it
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -16,10 +16,15 @@ from numpy.typing import NDArray
 from plantar.contact.reasons import TIPPING
 from plantar.conventions import Array
 from plantar.estimation import Block, LinearFit, fit_blocks
-from plantar.feet.fit.hidden_memory import rival
+from plantar.feet.fit.hidden_memory import has_memory
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
-from plantar.feet.regression.regression_data import beside, blocks_of, tangent_blocks
+from plantar.feet.regression.regression_data import (
+    beside,
+    blocks_of,
+    model_columns,
+    tangent_blocks,
+)
 from plantar.models import KelvinVoigt
 from plantar.notes import Note
 from plantar.signals.segments import run_numbers
@@ -28,6 +33,7 @@ BESIDE = 1.0  # s before and after a moment, over which means are compared
 FAR = 8.0  # times the usual difference of two such means
 EXPLAINS = 0.5  # of the squares that spring and damper leave of the recording
 WORTH = 0.03  # of the recording's spread of torque: a smaller jump does no harm
+STATES = np.linspace(-1.0, 1.0, 21)  # of a memory at the start of a log
 CODE = "zero_jump"
 
 
@@ -40,15 +46,16 @@ def zero_jumps(recordings: Sequence[Recording], fit: AxisFit, shared: bool) -> l
     if blocks[0].stances is not None or shared:
         return []
     jumps = _jumps(fit_blocks(blocks), blocks, recordings, fit.foot)
-    if (memory := rival(fit)) is not None:
+    if fit.choice is not None and not has_memory(fit.model):
         # A memory that these motions begin to show: its first turn moves the zero of spring and damper, too.
-        left = {label: float(np.mean(missed**2)) for label, missed in memory.fit.residuals.items()}
         rows = {block.label: len(block.response) for block in blocks}
-        jumps = {
-            label: jump
-            for label, jump in jumps.items()
-            if label not in left or jump.left < rows[label] * left[label]
-        }
+        for memory in (score.fit for score in fit.choice.ranking if has_memory(score.model)):
+            left = {label: float(np.mean(missed**2)) for label, missed in memory.residuals.items()}
+            jumps = {
+                label: jump
+                for label, jump in jumps.items()
+                if label not in left or jump.left < rows[label] * left[label]
+            }
     if not isinstance(fit.model, KelvinVoigt):
         # Beside a true memory, its own misfit shows a jump better. A memory that was made up for a jump leaves more
         # than the jump would; one that leaves less is what moves the means of spring and damper's misfit.
@@ -57,6 +64,10 @@ def zero_jumps(recordings: Sequence[Recording], fit: AxisFit, shared: bool) -> l
         left = {label: float(residual @ residual) for label, residual in law.residuals.items()}
         jumps = {label: jump for label, jump in jumps.items() if jump.left < left[label]}
         jumps = _jumps(law, own, recordings, fit.foot) | jumps
+        blocks = [block for block in own if block.label in jumps]
+        jumps = {
+            block.label: jumps[block.label] for block in blocks if not _starts(block, recordings, fit, left)
+        }
     return [
         Note(
             CODE,
@@ -66,6 +77,31 @@ def zero_jumps(recordings: Sequence[Recording], fit: AxisFit, shared: bool) -> l
         )
         for label, jump in jumps.items()
     ]
+
+
+def _starts(block: Block, recordings: Sequence[Recording], fit: AxisFit, left: Mapping[str, float]) -> bool:
+    """Whether another state of the memory at the start of a log explains most of what the fit has `left` of it.
+
+    An element that just reaches its slip angle, once, slips a little or does not: what nobody knows of its start makes
+    a small step there, and a search for it goes by that.
+    """
+    recording = next(one for one in recordings if one.name == block.label)
+    start, rows = fit.initial_states.get(recording.name), recording.rows(fit.foot)
+    if start is None:
+        return False
+    for state in STATES:
+        at, up, down = (
+            model_columns(
+                recording, fit.foot, fit.axis, fit, np.full(len(start), np.clip(state + by, -1.0, 1.0))
+            )[rows]
+            for by in (0.0, STATES[1] - STATES[0], STATES[0] - STATES[1])
+        )
+        moved = ((up - down) @ fit.values)[:, None]
+        started = beside(replace(block, regressor=at, noise=None), moved)
+        residual = fit_blocks([started]).residuals[block.label]
+        if residual @ residual < (1 - EXPLAINS) * left[block.label]:
+            return True
+    return False
 
 
 class _Jump(NamedTuple):

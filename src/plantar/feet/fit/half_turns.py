@@ -1,8 +1,9 @@
-"""Whether the stances of a walk turn an element of the rubber's memory round: only then is its slip torque seen.
+"""Whether motions turn an element of the rubber's memory round: only then is its slip torque seen.
 
 An element that slips one way has to be bent back by two slip angles before it slips the other way. A path that spans
 less shows at most one side of the loop, and how much of the torque is the spring's and how much the element's is a
-guess that the smallest error of sensors or mounts decides.
+guess that the smallest error of sensors or mounts decides. A foot that stands tells the spring beside an element that
+slips one way alone, but not how large the element is: twice as large, begun elsewhere, it slips as well.
 """
 
 from __future__ import annotations
@@ -12,11 +13,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from plantar.conventions import Array
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.model_columns import path_of
 
 ROUND = 2.0  # slip angles from one end of a path to the other
+STILL = 1e-6  # slip angles from sample to sample: rounding
 HARDLY_TURNED = (
     "stances bend the foot by {:.1f} slip angles from end to end, and only two turn the element round: stiffness and "
     "slip torque take from each other (record longer steps, or stand and sway)"
@@ -31,6 +34,36 @@ def slip_angles_spanned(fit: AxisFit, recordings: Sequence[Recording]) -> float 
     paths = [path_of(each, fit.foot, fit.axis, fit.imu_turned) for each in walks]
     spans = [float(np.ptp(path.deflection[run])) for path in paths for run in path.runs]
     return float(np.median(spans)) / fit.slip_angle if spans else None
+
+
+def slid_back(fit: AxisFit, recordings: Sequence[Recording]) -> float:
+    """How many slip angles a standing foot's element slides at most after it slid the other way, while the foot stands.
+
+    An element that is larger by half of that would slide one way alone. Infinite of a model without one, of a foot that
+    steps, and where no state of it is known.
+    """
+    if fit.slip_angle is None or "slip_torque" not in fit.model.terms:
+        return np.inf
+    place, ways = fit.model.terms.index("slip_torque"), list[float]()
+    for recording in recordings:
+        if recording.stances[fit.foot] is not None:
+            return np.inf
+        starts = fit.initial_states.get(recording.name)
+        path = path_of(recording, fit.foot, fit.axis, fit.imu_turned)
+        if starts is None or len(starts) != len(path.runs):
+            continue
+        slider = path.deflection - fit.slip_angle * fit.model.columns(path, fit.shape, starts)[:, place]
+        ways += [_back(slider[run] / fit.slip_angle) for run in path.runs]
+    return max(ways, default=np.inf)
+
+
+def _back(slider: Array) -> float:
+    """The longest way that a slider's path (n,) goes on in one sense after it went the other way."""
+    steps = np.diff(slider)
+    steps = steps[np.abs(steps) > STILL]
+    turns = np.flatnonzero(np.sign(steps[1:]) != np.sign(steps[:-1])) + 1
+    ways = np.abs(np.add.reduceat(steps, turns)) if turns.size else np.zeros(1)
+    return float(ways.max())
 
 
 def cautioned_if_hardly_turned(fit: AxisFit, recordings: Sequence[Recording]) -> AxisFit:
