@@ -24,9 +24,13 @@ void AxisRegression::Part::add(const Part& other) noexcept {
   rows += other.rows;
 }
 
-void AxisRegression::restart() noexcept {
+void AxisRegression::open_block() noexcept {
   open_ = {}, open_rows_ = 0, open_time_ = 0.0;
   std::fill(open_noise_, open_noise_ + NOISE_SUMS, 0.0);
+}
+
+void AxisRegression::restart() noexcept {
+  open_block();
   groups_ = {}, used_ = 1, current_ = 0, full_ = false, group_time_ = FIRST_GROUP;
   total_ = {};
   noise_ = FIRST_NOISE * prior_.scale[ASIDE];
@@ -40,21 +44,22 @@ void AxisRegression::restart() noexcept {
 // Rows are compared with what was learnt, once that is worth it; at a jump everything is learnt anew. While a jump is
 // suspected, they are compared with what was learnt before.
 void AxisRegression::watch(const RegressionRow& row, double dt) noexcept {
-  if (watch_.calm()) before_ = values_, noise_before_ = noise_;
+  if (watch_.calm() && !watch_.doubted()) before_ = values_, noise_before_ = noise_;
   const double stiffness = before_.value[STIFFNESS];
-  const double unsure = std::max(before_.std[STIFFNESS], before_.resolved[STIFFNESS]);
+  const double unsure = std::max({before_.std[STIFFNESS], before_.resolved[STIFFNESS], before_.moved[STIFFNESS]});
   if (before_.groups < GROUPS_TO_WATCH || !before_.plausible(prior_.spread[STIFFNESS])) return;
   if (!(unsure < SETTLED * stiffness)) return;
   double left = row.torque;
   for (int i = 0; i < UNKNOWNS; ++i) left -= row.columns[i] * before_.value[i];
   const double unknown = ANYWHERE * std::abs(before_.value[SLIP_TORQUE]) * row.own[BEGINNING];
-  watch_.add(row.own[OFFSET], row.columns[STIFFNESS], unknown, left, dt);
+  watch_.add(row.own[OFFSET], row.columns[DAMPING], row.columns[STIFFNESS], unknown, left, dt);
   if (watch_.full()) end_probe();
 }
 
 void AxisRegression::end_probe() noexcept {
-  if (!watch_.judge(before_.value[STIFFNESS], before_.std[STIFFNESS], noise_before_)) return;
-  jump();
+  const auto verdict = watch_.judge(before_.value[STIFFNESS], before_.std[STIFFNESS], noise_before_);
+  if (verdict == ChangeWatch::Verdict::changed) jump();
+  if (verdict == ChangeWatch::Verdict::impossible) open_block();
 }
 
 void AxisRegression::jump() noexcept {
@@ -123,9 +128,9 @@ AxisRegression::Part AxisRegression::open_part() const noexcept {
 
 void AxisRegression::close() noexcept {
   end_probe();  // of a short stance
+  watch_.believe();
   if (open_rows_ >= FEWEST_ROWS) take(open_part());
-  open_ = {}, open_rows_ = 0, open_time_ = 0.0;
-  std::fill(open_noise_, open_noise_ + NOISE_SUMS, 0.0);
+  open_block();
 }
 
 void AxisRegression::take(const Part& part) noexcept {

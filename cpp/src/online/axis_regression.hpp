@@ -103,6 +103,8 @@ class AxisRegression {
   // What speaks for a jump so far, and to believe it for other reasons.
   const ChangeWatch& suspicion() const noexcept { return watch_; }
   void jump() noexcept;
+  // Whether the last rows are those of no bush on no ground: they are thrown away with their block.
+  bool doubted() const noexcept { return watch_.doubted(); }
   void forget_suspicion() noexcept { watch_.forget(); }
   void set_spread(Unknown unknown, double spread) noexcept { prior_.spread[unknown] = spread; }
 
@@ -130,6 +132,7 @@ class AxisRegression {
 
   RootTriangle<BLOCK_UNKNOWNS> pinned() const noexcept;
   Part open_part() const noexcept;
+  void open_block() noexcept;
   void take(const Part& part) noexcept;
   void merge_pairs() noexcept;
   void sum_up() noexcept;

@@ -168,6 +168,7 @@ void FootTracker::learn(const FootKinematics& motion, double others, Doubt doubt
     restart_filter();
   }
   filter(motion, time, dt, fresh ? period : 0.0);
+  if (axes_[0].doubted() || axes_[1].doubted()) estimate_.flags |= CONTRADICTION;
   // What sensors that contradict each other have said of the ground until that showed is not believed.
   if (doubt.contradiction)
     for (AxisRegression& axis : axes_) axis.forget_suspicion();
