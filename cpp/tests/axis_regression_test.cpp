@@ -2,7 +2,6 @@
 #include "online/axis_regression.hpp"
 
 #include <cmath>
-#include <cmath>
 #include <random>
 
 #include "check.hpp"
@@ -15,7 +14,16 @@ constexpr double ROW = 0.025;  // s
 constexpr double DAMPING_TRUTH = 20.0;
 
 RegressionPrior prior() {
-  return {{0.01, 0.1, 1.0, 600.0, 60.0, 4e4, 60.0}, {}, {6e4, 6e4, 600.0, 1e-9, 1e-9, 1e-12, 1e-9}, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, ROW};
+  return {{0.01, 0.1, 1.0, 600.0, 60.0, 4e4, 60.0},
+          {},
+          {6e4, 6e4, 600.0, 1e-9, 1e-9, 1e-12, 1e-9},
+          0.0,
+          1.0,
+          0.0,
+          0.0,
+          0.0,
+          0.0,
+          ROW};
 }
 
 struct Source {

@@ -7,11 +7,11 @@ namespace plantar {
 
 namespace {
 
-constexpr double MOST_NOISE = 0.9;    // of a square: beyond, nothing of it is known
+constexpr double MOST_NOISE = 0.9;  // of a square: beyond, nothing of it is known
 constexpr int GROUPS_TO_WATCH = 6;
-constexpr double SETTLED = 0.1;       // deviation over stiffness, from which jumps are looked for
-constexpr double DRIFT = 3e-5;        // rad/s, of the attitude: a tenth of a degree in a minute
-constexpr double ANYWHERE = 0.6;      // deviation of what is anywhere between -1 and 1; an element is as stiff as the rest
+constexpr double SETTLED = 0.1;   // deviation over stiffness, from which jumps are looked for
+constexpr double DRIFT = 3e-5;    // rad/s, of the attitude: a tenth of a degree in a minute
+constexpr double ANYWHERE = 0.6;  // deviation of what is anywhere between -1 and 1; an element is as stiff as the rest
 constexpr double FIRST_NOISE = 1e-3;  // of the weight, as torque at 1 m, before any residual is known
 
 }  // namespace
@@ -112,8 +112,9 @@ AxisRegression::Part AxisRegression::open_part() const noexcept {
   const auto block = pinned();
   for (int i = 0; i <= UNKNOWNS; ++i)
     for (int j = i; j <= UNKNOWNS; ++j) part.triangle.r[i][j] = block.r[OWN + i][OWN + j];
-  // The offset has taken the noise's slowest part with it, as the others have where they are not pinned. What an element
-  // has of it is slower still: at no frequency its share is one, in the mean over those that pass `element_share`.
+  // The offset has taken the noise's slowest part with it, as the others have where they are not pinned. What an
+  // element has of it is slower still: at no frequency its share is one, in the mean over those that pass
+  // `element_share`.
   double taken = 0.0;
   for (int e = 0; e < OWN; ++e)
     if (block.r[e][e] > 0.0) taken += open_.r[e][e] * open_.r[e][e] / (block.r[e][e] * block.r[e][e]);

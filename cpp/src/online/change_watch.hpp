@@ -1,13 +1,13 @@
 // Whether the stiffness has jumped: from firm ground onto mats, or back.
 //
 // Each probe, a part of a second of rows with an offset of its own, says how far the stiffness is from what was learnt.
-// Its usual scatter beyond its own noise is followed, so that steps that differ anyway raise no alarm, and a clear probe
-// counts for what it is after many unclear ones. Evidence for a large change is added up for either direction, and taken
-// off again by probes that speak against it (CUSUM; E. S. Page, Biometrika 41, 1954). Probes that speak for a change are
-// no usual scatter until others have spoken against it: the first one of a change shall not hide the second.
+// Its usual scatter beyond its own noise is followed, so that steps that differ anyway raise no alarm, and a clear
+// probe counts for what it is after many unclear ones. Evidence for a large change is added up for either direction,
+// and taken off again by probes that speak against it (CUSUM; E. S. Page, Biometrika 41, 1954). Probes that speak for a
+// change are no usual scatter until others have spoken against it: the first one of a change shall not hide the second.
 //
-// A torque that comes late is no other stiffness: each probe lets it be later than was told. Nor is what no line through
-// deflection and rate explains, or a torque that pulls the other way: no ground does that, a sensor does.
+// A torque that comes late is no other stiffness: each probe lets it be later than was told. Nor is what no line
+// through deflection and rate explains, or a torque that pulls the other way: no ground does that, a sensor does.
 #pragma once
 
 #include <algorithm>

@@ -11,7 +11,7 @@ from plantar.conventions import DAMPING_UNIT, ROTATIONAL_AXES, STIFFNESS_UNIT, A
 from plantar.online.estimates import FIELDS, Estimated, Flag, FootEstimate, foot_estimate
 from plantar.results.feet_rows import Parameter, Verdict
 
-# Half width of the 95 % interval over the value, less than a batch result allows: 99 in 100 such dampings are within 8 %.
+# Half width of the 95 % interval over the value, less than in a batch result: 99 in 100 such dampings are within 8 %.
 USABLE = {"stiffness": 0.1, "damping": 0.06, "slip_torque": 0.1}
 UNKNOWN = 10.0  # the same, from which on a value says nothing
 TOLD = 1e-3  # half width over the compliance, that no log reaches: it was told
