@@ -57,7 +57,6 @@ struct FootEstimator::State {
   std::vector<FootEstimate> estimates;
   double time = 0.0, dt = 0.0, period = 0.0;
   int ticks = 0;       // since time last jumped
-  bool fresh = false;  // the last tick was read
   bool known = false;  // whether a quaternion and positions of an earlier tick are kept
   int next_work = 0;
 };
