@@ -6,8 +6,8 @@ The twin walks and tilts; then the same readings come with a fault, once for fou
 from the first tick to the last. Told are, for each fault: whether any number was not finite; the share of the fault's
 ticks at which one of the flags stands that say so; how long after the fault's end flags and deflections are again those
 of the log without it; how far K of what is called identified is off, in its half widths, at worst, and C of it, where
-its interval is narrower than a tenth. A number that is wrong should not look narrow: more than 2 half widths are told
-with an exclamation mark. Seeds below 100 were used to choose thresholds.
+its interval is narrow enough to be used. A number that is wrong should not look narrow: more than 2 half widths are
+told with an exclamation mark. Seeds below 100 were used to choose thresholds.
 """
 
 from __future__ import annotations
@@ -256,7 +256,7 @@ def _believed(twin: Twin, preset: Preset, rows: np.ndarray) -> Worst:
                     abs(one.damping.value - getattr(right, f"{axis}_damping")),
                     one.damping.half_width,
                 )
-                if half <= USABLE * abs(one.damping.value):
+                if half <= USABLE["damping"] * abs(one.damping.value):
                     c = max(c, away / half)
     return bool(np.isfinite(rows).all()), k, c
 

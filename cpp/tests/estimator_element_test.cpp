@@ -51,7 +51,8 @@ FootEstimate after(double seconds, double rate_hz, bool always, double first_sta
     }
     const double p = angle(t), rate = (angle(t + 1e-6) - angle(t - 1e-6)) / 2e-6, noise = 1e-9 * std::sin(1e5 * t);
     const double carried = load(t), stands = carried > 0.1 * WEIGHT ? 1.0 : 0.0;
-    const double torque = stands * (STIFFNESS * p + DAMPING * rate + SLIP_TORQUE * state) + torque_noise * normal(random);
+    const double torque =
+        stands * (STIFFNESS * p + DAMPING * rate + SLIP_TORQUE * state) + torque_noise * normal(random);
     const double attitude[4] = {std::cos(p / 2), noise, -std::sin(p / 2), noise}, gyroscope[3] = {noise, -rate, noise};
     const std::array<double, 6> wrench[2] = {{0.0, noise, carried + noise, noise, torque + noise, 0.0},
                                              {0.0, noise, WEIGHT - carried + noise, noise, noise, 0.0}};

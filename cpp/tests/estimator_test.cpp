@@ -39,7 +39,8 @@ constexpr double PUSHED[2] = {30.0, 32.0};
 
 double angle(int axis, double t) {
   const bool pushed = axis == 0 && t > PUSHED[0] && t < PUSHED[1];
-  const double more = pushed ? push * std::pow(std::sin(std::numbers::pi * (t - PUSHED[0]) / (PUSHED[1] - PUSHED[0])), 2) : 0.0;
+  const double more =
+      pushed ? push * std::pow(std::sin(std::numbers::pi * (t - PUSHED[0]) / (PUSHED[1] - PUSHED[0])), 2) : 0.0;
   return more +
          swing * (axis == 0 ? 0.02 * std::sin(1.9 * t) + 0.01 * std::sin(5.1 * t) : 0.018 * std::sin(2.3 * t + 1.0));
 }
@@ -130,7 +131,8 @@ void survives(Fault fault, std::uint32_t flag, const char* what) {
     last = feet[0];
     if (i >= 20000 && i < 21000) seen |= last.flags;
     for (const FootEstimate& foot : feet) always_finite = always_finite && finite(foot);
-    if (i == 22000) check::that((last.flags & ~(PITCH_UNKNOWN | ROLL_UNKNOWN | PITCH_UNTESTED | ROLL_UNTESTED)) == 0, what);
+    if (i == 22000)
+      check::that((last.flags & ~(PITCH_UNKNOWN | ROLL_UNKNOWN | PITCH_UNTESTED | ROLL_UNTESTED)) == 0, what);
   }
   check::that((seen & flag) != 0, what);
   check::that(always_finite, what);
@@ -139,8 +141,8 @@ void survives(Fault fault, std::uint32_t flag, const char* what) {
   check::near(last.load, 300.0, 1.0, what);
 }
 
-// The torque's zero is off by 2.4 N·m: the sole is on its edge where its centre of pressure reads 8 mm inside. There the
-// foot turns on, and the torque does not.
+// The torque's zero is off by 2.4 N·m: the sole is on its edge where its centre of pressure reads 8 mm inside. There
+// the foot turns on, and the torque does not.
 void a_sole_that_tips() {
   push = 0.06;
   const double edge = (0.1 - 0.008) * 300.0;
@@ -212,7 +214,8 @@ void small_motions_exclude_no_memory() {
     FootEstimate last;
     for (int i = 0; i < 60000; ++i) last = estimator.step(Sensors(1e-3 * i).reading(1e-3 * i))[0];
     check::near(last.pitch.stiffness.value, STIFFNESS[0], 1e-3 * STIFFNESS[0], "the stiffness of small motions");
-    check::that(last.pitch.identified == told && !last.roll.identified, "identified only where a batch fit has said so");
+    check::that(last.pitch.identified == told && !last.roll.identified,
+                "identified only where a batch fit has said so");
     check::that(last.flags == (told ? ROLL_UNTESTED : PITCH_UNTESTED | ROLL_UNTESTED), "untested, and said so");
   }
   swing = 1.0;
@@ -275,15 +278,33 @@ int main() {
   survives([](Sensors&, double& t) { t = NAN_; }, TIME_FAULT, "no time");
   survives([](Sensors&, double& t) { t += 7.0; }, TIME_FAULT, "time that jumps ahead and back");
   survives([](Sensors&, double& t) { t = 20.0; }, TIME_FAULT, "time that stands still");
-  survives([](Sensors& s, double) { for (double& w : s.gyroscope) w *= 180.0 / std::numbers::pi; }, CONTRADICTION,
-           "a gyroscope in degrees");
-  survives([](Sensors& s, double) { for (double& w : s.gyroscope) w = -w; }, CONTRADICTION, "a gyroscope turned round");
-  survives([](Sensors& s, double t) { for (double& w : s.gyroscope) w = 1e-4 * std::sin(1e5 * t); }, CONTRADICTION,
-           "a gyroscope that says nothing");
-  survives([](Sensors& s, double) { for (auto& w : s.wrench) for (double& part : w) part *= 0.4; }, CONTRADICTION,
-           "feet that do not carry the robot");
+  survives(
+      [](Sensors& s, double) {
+        for (double& w : s.gyroscope) w *= 180.0 / std::numbers::pi;
+      },
+      CONTRADICTION, "a gyroscope in degrees");
+  survives(
+      [](Sensors& s, double) {
+        for (double& w : s.gyroscope) w = -w;
+      },
+      CONTRADICTION, "a gyroscope turned round");
+  survives(
+      [](Sensors& s, double t) {
+        for (double& w : s.gyroscope) w = 1e-4 * std::sin(1e5 * t);
+      },
+      CONTRADICTION, "a gyroscope that says nothing");
+  survives(
+      [](Sensors& s, double) {
+        for (auto& w : s.wrench)
+          for (double& part : w) part *= 0.4;
+      },
+      CONTRADICTION, "feet that do not carry the robot");
   survives([](Sensors& s, double) { s.wrench[0][4] = 3.0; }, FROZEN, "one channel that is stuck");
-  survives([](Sensors& s, double) { for (double& part : s.wrench[0]) part = -part; }, NOT_STANDING, "a wrench turned round");
+  survives(
+      [](Sensors& s, double) {
+        for (double& part : s.wrench[0]) part = -part;
+      },
+      NOT_STANDING, "a wrench turned round");
   a_sole_that_tips();
   notices_other_ground();
   notices_a_memory();

@@ -65,6 +65,21 @@ def test_behind_an_edge_a_log_whose_time_begins_anew_teaches_at_once(robot: Robo
     )
 
 
+def test_a_torque_that_turns_over_for_some_seconds_is_no_other_ground(robot: RobotModel) -> None:
+    log = record(sway(duration=60.0))
+    turned = slice(4000, 4400)
+    torque = log.column("wrench.left.torque.y")[turned]
+    replay = replayed(robot, spoilt(log, "wrench.left.torque.y", -2 * torque, turned))
+    doubted = told(replay, Flag.CONTRADICTION)
+    assert doubted[4100:4400].mean() > 0.5
+    assert not doubted[:4000].any()
+    assert not doubted[4500:].any(), "a second after the fault's end"
+    assert not told(replay, Flag.GROUND_CHANGED).any()
+    assert replay.estimate("left").pitch.stiffness.value == pytest.approx(
+        TRUTH["left", "pitch"].stiffness, rel=0.01
+    )
+
+
 def test_an_impact_is_left_out(robot: RobotModel) -> None:
     shaken = 40.0 * np.random.default_rng(0).normal(size=200)
     replay = replayed(robot, spoilt(record(sway(duration=60.0)), "wrench.left.force.z", shaken))

@@ -47,7 +47,10 @@ def test_a_compliance_that_was_told_is_not_called_learnt() -> None:
     "name", ["pitch_stiffness", "pitch_damping", "roll_stiffness", "roll_slip_torque", "z"]
 )
 def test_a_number_may_be_used_once_it_is_known_within_a_tenth(name: str) -> None:
-    """Whatever its size and sign of doubt; beyond its own value it is not known, and beyond ten times not said."""
+    """A damping once it is known within 6 %.
+
+    Whatever its size and sign of doubt; beyond its own value it is not known, and beyond ten times not said.
+    """
 
     def judged(share: float) -> Parameter:
         key = "compliance" if name == "z" else name
@@ -56,18 +59,17 @@ def test_a_number_may_be_used_once_it_is_known_within_a_tenth(name: str) -> None
         axis, _, number = name.partition("_")
         return next(row for row in replay.parameters if (row.axis, row.name) == (axis, number or "stiffness"))
 
-    verdicts = {share: judged(share).verdict for share in (0.099, 0.101, 0.99, 1.01, 9.9)}
-    assert verdicts == {
-        0.099: "usable",
-        0.101: "weak",
-        0.99: "weak",
-        1.01: "unidentifiable",
-        9.9: "unidentifiable",
-    }
+    most = 0.06 if name == "pitch_damping" else 0.1
+    assert [judged(share * most).verdict for share in (0.99, 1.01)] == ["usable", "weak"]
+    assert [judged(share).verdict for share in (0.99, 1.01, 9.9)] == [
+        "weak",
+        "unidentifiable",
+        "unidentifiable",
+    ]
     assert judged(10.1).value is None
     near, far = judged(0.05), judged(0.4)
     assert near.reason == ""
-    assert "± 40 % so far; known from ± 10 % on" in far.reason
+    assert f"± 40 % so far; known from ± {100 * most:.0f} % on" in far.reason
     assert far.value is not None
     assert far.interval95 is not None
     if name == "z":

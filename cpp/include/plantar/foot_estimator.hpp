@@ -51,8 +51,10 @@ enum Flag : std::uint32_t {
   ROLL_MEMORY = 1 << 12,     // the same of roll
   PITCH_UNTESTED = 1 << 13,  // its motions were too small to show a memory, or to test the slip torque that was told
   ROLL_UNTESTED = 1 << 14,   // the same of roll
-  CONTRADICTION = 1 << 15,   // gyroscope and attitude turn differently, or the feet do not carry the weight
-  LATE_WRENCH = 1 << 16      // torques follow deflections as if the force sensors' delay were not the one that was told
+  // Gyroscope and attitude turn differently, the feet do not carry the weight, or a torque follows no bush's
+  // deflection.
+  CONTRADICTION = 1 << 15,
+  LATE_WRENCH = 1 << 16  // torques follow deflections as if the force sensors' delay were not the one that was told
 };
 
 // A parameter with its standard deviation and half of its 95 % interval (wider than 1.96 deviations while data are

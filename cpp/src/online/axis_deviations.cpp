@@ -1,15 +1,15 @@
 // How far an axis' values may be off, and by how much its torques are late: from groups that are left out, from the
 // rows' scatter, and from what the prior may be off by.
-#include "online/axis_regression.hpp"
-
 #include <algorithm>
 #include <cmath>
+
+#include "online/axis_regression.hpp"
 
 namespace plantar {
 
 namespace {
 
-constexpr double LEAST_LEFT = 1e-3;   // share of what is known that must stay when one group is left out
+constexpr double LEAST_LEFT = 1e-3;  // share of what is known that must stay when one group is left out
 
 void squares_of(const RootTriangle<UNKNOWNS>& root, double (&a)[UNKNOWNS][UNKNOWNS]) noexcept {
   for (int i = 0; i < UNKNOWNS; ++i)
@@ -39,7 +39,8 @@ void solve_positive(double (&m)[UNKNOWNS][UNKNOWNS], double (&b)[UNKNOWNS], doub
 
 void AxisRegression::find_moved() noexcept {
   for (int i = 0; i < UNKNOWNS; ++i)
-    values_.moved[i] = used_ < FEWEST_GROUPS ? 0.0 : std::min(std::abs(values_.value[i] - closed_[i]), prior_.spread[i]);
+    values_.moved[i] =
+        used_ < FEWEST_GROUPS ? 0.0 : std::min(std::abs(values_.value[i] - closed_[i]), prior_.spread[i]);
 }
 
 void AxisRegression::find_deviations() noexcept {

@@ -7,11 +7,11 @@ namespace plantar {
 
 namespace {
 
-constexpr double MOST_NOISE = 0.9;    // of a square: beyond, nothing of it is known
+constexpr double MOST_NOISE = 0.9;  // of a square: beyond, nothing of it is known
 constexpr int GROUPS_TO_WATCH = 6;
-constexpr double SETTLED = 0.1;       // deviation over stiffness, from which jumps are looked for
-constexpr double DRIFT = 3e-5;        // rad/s, of the attitude: a tenth of a degree in a minute
-constexpr double ANYWHERE = 0.6;      // deviation of what is anywhere between -1 and 1; an element is as stiff as the rest
+constexpr double SETTLED = 0.1;   // deviation over stiffness, from which jumps are looked for
+constexpr double DRIFT = 3e-5;    // rad/s, of the attitude: a tenth of a degree in a minute
+constexpr double ANYWHERE = 0.6;  // deviation of what is anywhere between -1 and 1; an element is as stiff as the rest
 constexpr double FIRST_NOISE = 1e-3;  // of the weight, as torque at 1 m, before any residual is known
 
 }  // namespace
@@ -24,9 +24,13 @@ void AxisRegression::Part::add(const Part& other) noexcept {
   rows += other.rows;
 }
 
-void AxisRegression::restart() noexcept {
+void AxisRegression::open_block() noexcept {
   open_ = {}, open_rows_ = 0, open_time_ = 0.0;
   std::fill(open_noise_, open_noise_ + NOISE_SUMS, 0.0);
+}
+
+void AxisRegression::restart() noexcept {
+  open_block();
   groups_ = {}, used_ = 1, current_ = 0, full_ = false, group_time_ = FIRST_GROUP;
   total_ = {};
   noise_ = FIRST_NOISE * prior_.scale[ASIDE];
@@ -40,21 +44,22 @@ void AxisRegression::restart() noexcept {
 // Rows are compared with what was learnt, once that is worth it; at a jump everything is learnt anew. While a jump is
 // suspected, they are compared with what was learnt before.
 void AxisRegression::watch(const RegressionRow& row, double dt) noexcept {
-  if (watch_.calm()) before_ = values_, noise_before_ = noise_;
+  if (watch_.calm() && !watch_.doubted()) before_ = values_, noise_before_ = noise_;
   const double stiffness = before_.value[STIFFNESS];
-  const double unsure = std::max(before_.std[STIFFNESS], before_.resolved[STIFFNESS]);
+  const double unsure = std::max({before_.std[STIFFNESS], before_.resolved[STIFFNESS], before_.moved[STIFFNESS]});
   if (before_.groups < GROUPS_TO_WATCH || !before_.plausible(prior_.spread[STIFFNESS])) return;
   if (!(unsure < SETTLED * stiffness)) return;
   double left = row.torque;
   for (int i = 0; i < UNKNOWNS; ++i) left -= row.columns[i] * before_.value[i];
   const double unknown = ANYWHERE * std::abs(before_.value[SLIP_TORQUE]) * row.own[BEGINNING];
-  watch_.add(row.own[OFFSET], row.columns[STIFFNESS], unknown, left, dt);
+  watch_.add(row.own[OFFSET], row.columns[DAMPING], row.columns[STIFFNESS], unknown, left, dt);
   if (watch_.full()) end_probe();
 }
 
 void AxisRegression::end_probe() noexcept {
-  if (!watch_.judge(before_.value[STIFFNESS], before_.std[STIFFNESS], noise_before_)) return;
-  jump();
+  const auto verdict = watch_.judge(before_.value[STIFFNESS], before_.std[STIFFNESS], noise_before_);
+  if (verdict == ChangeWatch::Verdict::changed) jump();
+  if (verdict == ChangeWatch::Verdict::impossible) open_block();
 }
 
 void AxisRegression::jump() noexcept {
@@ -107,8 +112,9 @@ AxisRegression::Part AxisRegression::open_part() const noexcept {
   const auto block = pinned();
   for (int i = 0; i <= UNKNOWNS; ++i)
     for (int j = i; j <= UNKNOWNS; ++j) part.triangle.r[i][j] = block.r[OWN + i][OWN + j];
-  // The offset has taken the noise's slowest part with it, as the others have where they are not pinned. What an element
-  // has of it is slower still: at no frequency its share is one, in the mean over those that pass `element_share`.
+  // The offset has taken the noise's slowest part with it, as the others have where they are not pinned. What an
+  // element has of it is slower still: at no frequency its share is one, in the mean over those that pass
+  // `element_share`.
   double taken = 0.0;
   for (int e = 0; e < OWN; ++e)
     if (block.r[e][e] > 0.0) taken += open_.r[e][e] * open_.r[e][e] / (block.r[e][e] * block.r[e][e]);
@@ -123,9 +129,9 @@ AxisRegression::Part AxisRegression::open_part() const noexcept {
 
 void AxisRegression::close() noexcept {
   end_probe();  // of a short stance
+  watch_.believe();
   if (open_rows_ >= FEWEST_ROWS) take(open_part());
-  open_ = {}, open_rows_ = 0, open_time_ = 0.0;
-  std::fill(open_noise_, open_noise_ + NOISE_SUMS, 0.0);
+  open_block();
 }
 
 void AxisRegression::take(const Part& part) noexcept {

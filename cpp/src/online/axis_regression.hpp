@@ -19,8 +19,8 @@
 namespace plantar {
 
 // Columns of a row beside the offset's: what each unknown multiplies. The bush's centre is ASIDE of and ABOVE its
-// place, and higher the more it is loaded (COMPLIANCE). A torque that is later than was told lacks what it changes by in
-// that time (LATE): the values do not follow that, each group tells it beside values of its own.
+// place, and higher the more it is loaded (COMPLIANCE). A torque that is later than was told lacks what it changes by
+// in that time (LATE): the values do not follow that, each group tells it beside values of its own.
 enum Unknown : int { STIFFNESS, DAMPING, SLIP_TORQUE, ASIDE, ABOVE, COMPLIANCE, LATE };
 constexpr int UNKNOWNS = 7;
 // What each block has of its own: an offset, its drift, the zero of the yaw torque, which pitch turns into roll, and
@@ -66,7 +66,7 @@ struct RegressionPrior {
   double element_lag;    // what it follows of the rate's noise [s]
   double load_arm;       // torque that the sensor's load and horizontal force bring with them to the bush [m]
   double horizontal_arm;
-  double twist;  // how far the yaw torque's zero may be off [N·m]; 0: of no account about this axis
+  double twist;       // how far the yaw torque's zero may be off [N·m]; 0: of no account about this axis
   double noise_time;  // rows' noise hangs together for so long [s]
 };
 
@@ -77,11 +77,12 @@ struct AxisValues {
   std::array<double, UNKNOWNS> grouped = {}, white = {}, told = {};
   std::array<double, UNKNOWNS> std = {};       // all of it
   std::array<double, UNKNOWNS> resolved = {};  // what the rows' scatter and the prior alone would leave
-  std::array<double, UNKNOWNS> moved = {};     // by the block that is open, of which no group has told yet how it differs
-  double by_element = 0.0;                     // of the stiffness, by what was told of the element's torque
+  std::array<double, UNKNOWNS> moved = {};  // by the block that is open, of which no group has told yet how it differs
+  double by_element = 0.0;                  // of the stiffness, by what was told of the element's torque
   double offset = 0.0;
-  double late = 0.0, late_grouped = 0.0, late_white = 0.0;  // than was told, as groups tell it, each beside values of its own [s]
-  double pace = 0.0;  // squares of the rate over those of the deflection [1/s²]
+  double late = 0.0, late_grouped = 0.0,
+         late_white = 0.0;  // than was told, as groups tell it, each beside values of its own [s]
+  double pace = 0.0;        // squares of the rate over those of the deflection [1/s²]
   int groups = 0;
 
   // Whether the stiffness is one of a bush: where nothing moves, what is left beside the noise can be anything.
@@ -103,6 +104,8 @@ class AxisRegression {
   // What speaks for a jump so far, and to believe it for other reasons.
   const ChangeWatch& suspicion() const noexcept { return watch_; }
   void jump() noexcept;
+  // Whether the last rows are those of no bush on no ground: they are thrown away with their block.
+  bool doubted() const noexcept { return watch_.doubted(); }
   void forget_suspicion() noexcept { watch_.forget(); }
   void set_spread(Unknown unknown, double spread) noexcept { prior_.spread[unknown] = spread; }
 
@@ -130,6 +133,7 @@ class AxisRegression {
 
   RootTriangle<BLOCK_UNKNOWNS> pinned() const noexcept;
   Part open_part() const noexcept;
+  void open_block() noexcept;
   void take(const Part& part) noexcept;
   void merge_pairs() noexcept;
   void sum_up() noexcept;
@@ -155,7 +159,7 @@ class AxisRegression {
   bool full_ = false;
   double group_time_ = FIRST_GROUP;
   Part total_;
-  double noise_ = 0.0;  // of a row, as much as rows that hang together leave [N·m]
+  double noise_ = 0.0;     // of a row, as much as rows that hang together leave [N·m]
   double together_ = 1.0;  // rows with the same noise
   bool changed_ = false, unsure_ = false, fresh_ = false;
   std::array<double, UNKNOWNS> closed_ = {};  // values without the open block

@@ -1,10 +1,13 @@
 // Whether the stiffness has jumped: from firm ground onto mats, or back.
 //
 // Each probe, a part of a second of rows with an offset of its own, says how far the stiffness is from what was learnt.
-// Its usual scatter beyond its own noise is followed, so that steps that differ anyway raise no alarm, and a clear probe
-// counts for what it is after many unclear ones. Evidence for a large change is added up for either direction, and taken
-// off again by probes that speak against it (CUSUM; E. S. Page, Biometrika 41, 1954). Probes that speak for a change are
-// no usual scatter until others have spoken against it: the first one of a change shall not hide the second.
+// Its usual scatter beyond its own noise is followed, so that steps that differ anyway raise no alarm, and a clear
+// probe counts for what it is after many unclear ones. Evidence for a large change is added up for either direction,
+// and taken off again by probes that speak against it (CUSUM; E. S. Page, Biometrika 41, 1954). Probes that speak for a
+// change are no usual scatter until others have spoken against it: the first one of a change shall not hide the second.
+//
+// A torque that comes late is no other stiffness: each probe lets it be later than was told. Nor is what no line
+// through deflection and rate explains, or a torque that pulls the other way: no ground does that, a sensor does.
 #pragma once
 
 #include <algorithm>
@@ -15,23 +18,30 @@
 namespace plantar {
 
 constexpr double PROBE_TIME = 0.75;      // s of rows: a usual stance
+constexpr double WARY_TIME = 0.25;       // s of rows behind one that no ground makes, until a probe is clear again
 constexpr int PROBE_ROWS = 8;            // as of a block; fewer say nothing
 constexpr double CHANGE = 0.4;           // of the stiffness: half of it and less the regression follows by itself
 constexpr double SURE_OF_CHANGE = 15.0;  // log-likelihood: three million to one
 constexpr double MOST_OF_ONE = 7.5;      // of one probe: a single one may be a stumble
 constexpr double SHOWS = 0.15;           // deviation over stiffness, beyond which a probe shows nothing
+constexpr double UNTOLD_DELAY = 0.03;    // s: deviation of how late torques may be beyond what was told, in one probe
+constexpr double UNEXPLAINED = 10.0;     // times a row's usual noise: what is left is no noise
+constexpr double SURELY = 2.0;           // deviations
+constexpr double ROWS_ALIKE = 8.0;       // rows in a cycle of the filter: so many say the same
 constexpr double FIRST_SCATTER = 0.1;    // of the stiffness, before any probe
 constexpr double SCATTER_NEWS = 0.05;    // by how much one probe changes the usual scatter
 constexpr double ODD = 9.0;              // squares of the scatter: what is farther is no usual scatter
 
 class ChangeWatch {
  public:
+  enum class Verdict { usual, changed, impossible };
+
   void restart() noexcept { *this = {}; }
 
-  // A row: what the filter has made of a constant, the deflection, what an element's torque may be off by, and what the
-  // model leaves of the torque.
-  void add(double one, double deflection, double unknown, double left, double dt) noexcept {
-    double row[4] = {one, deflection, unknown, left};
+  // A row: what the filter has made of a constant, the deflection and its rate, what an element's torque may be off by,
+  // and what the model leaves of the torque.
+  void add(double one, double rate, double deflection, double unknown, double left, double dt) noexcept {
+    double row[5] = {one, rate, deflection, unknown, left};
     probe_.add(row);
     ++rows_, time_ += dt;
   }
@@ -41,17 +51,27 @@ class ChangeWatch {
   // What speaks for a change to either side [log-likelihood].
   double softer() const noexcept { return softer_; }
   double stiffer() const noexcept { return stiffer_; }
-  bool full() const noexcept { return time_ >= PROBE_TIME; }
+  bool full() const noexcept { return time_ >= (wary_ ? WARY_TIME : PROBE_TIME); }
+  // Whether the last probe was none that any ground makes.
+  bool doubted() const noexcept { return doubted_; }
+  void believe() noexcept { doubted_ = false; }
   void drop() noexcept { probe_ = {}, rows_ = 0, time_ = 0.0; }
 
-  // Ends a probe; whether the stiffness has changed from what was learnt, with its deviation. noise: of a row [N·m].
-  bool judge(double stiffness, double deviation, double noise) noexcept {
-    const double shown = probe_.r[1][1];
+  // Ends a probe: has the stiffness changed from what was learnt, with its deviation? noise: of a row [N·m].
+  Verdict judge(double stiffness, double deviation, double noise) noexcept {
+    double line[5] = {0.0, stiffness > 0.0 ? noise / (UNTOLD_DELAY * stiffness) : 0.0};
+    probe_.add(line, 1);
+    const double shown = probe_.r[2][2];
     const bool enough = rows_ >= PROBE_ROWS && shown > 0.0 && stiffness > 0.0;
-    const double away = enough ? probe_.r[1][3] / shown / stiffness : 0.0;
-    const double own = enough ? std::hypot(noise, probe_.r[1][2]) / shown / stiffness : 1.0;
+    const double away = enough ? probe_.r[2][4] / shown / stiffness : 0.0;
+    const double left = enough ? probe_.r[4][4] * std::sqrt(ROWS_ALIKE / rows_) : 0.0;
+    const double own = enough ? std::hypot(std::max(noise, left), probe_.r[2][3]) / shown / stiffness : 1.0;
     drop();
-    if (own > SHOWS) return false;
+    const bool explained = left <= std::max(UNEXPLAINED * noise, SHOWS * shown * stiffness);
+    doubted_ = !explained || (own < SHOWS && away + SURELY * own < -1.0);
+    wary_ = doubted_ || (wary_ && own > SHOWS);
+    if (doubted_) return Verdict::impossible;
+    if (own > SHOWS) return Verdict::usual;
     const double known = deviation / stiffness;
     const double variance = scatter_ + own * own + known * known;
     const auto evidence = [&](double change) {
@@ -65,11 +85,12 @@ class ChangeWatch {
       const double mean = suspected_ / probes_;
       scatter_ += SCATTER_NEWS * (mean - scatter_), suspected_ -= mean;
     }
-    return std::max(softer_, stiffer_) >= SURE_OF_CHANGE;
+    return std::max(softer_, stiffer_) < SURE_OF_CHANGE ? Verdict::usual : Verdict::changed;
   }
 
  private:
-  RootTriangle<3> probe_;
+  RootTriangle<4> probe_;
+  bool doubted_ = false, wary_ = false;
   int rows_ = 0, probes_ = 0;  // since nothing was suspected
   double suspected_ = 0.0;     // sum of what these were off beyond their noise
   double time_ = 0.0, softer_ = 0.0, stiffer_ = 0.0, scatter_ = FIRST_SCATTER * FIRST_SCATTER;

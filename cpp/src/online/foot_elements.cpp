@@ -7,7 +7,7 @@ namespace plantar {
 
 namespace {
 
-constexpr double NEWLY_KNOWN = 0.005;   // of an element's range: less changes no offset
+constexpr double NEWLY_KNOWN = 0.005;  // of an element's range: less changes no offset
 
 }  // namespace
 

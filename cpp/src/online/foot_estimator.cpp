@@ -1,27 +1,15 @@
-#include "plantar/foot_estimator.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
 
-#include "kernels.hpp"
-#include "online/attitude_filter.hpp"
-#include "online/channel_watch.hpp"
-#include "online/contradiction.hpp"
-#include "online/delay_watch.hpp"
-#include "online/foot_tracker.hpp"
+#include "online/estimator_state.hpp"
 
 namespace plantar {
 
 namespace {
 
-constexpr double GAP = 0.1;  // s without a sample, at least: what was before is past
-constexpr double GAP_PERIODS = 5.0;
-constexpr int FIRST_TICKS = 10;       // until the period is known
-constexpr double PERIOD_NEWS = 0.05;  // by how much one tick changes the period
-constexpr double UNREAD = LARGEST;    // stands for a position that the last tick did not have
-constexpr int TICKS = 3;  // columns of the kinematics: this tick, half a period before, and the gyroscope alone
+constexpr int FIRST_TICKS = 10;  // until the period is known
 
 double checked_weight(const EstimatorModel& model) {
   const auto bad = [](const char* what) { throw std::invalid_argument(std::string("model: ") + what); };
@@ -51,184 +39,34 @@ std::vector<int> twins(const EstimatorModel& model) {
 
 }  // namespace
 
-struct FootEstimator::State {
-  explicit State(const EstimatorModel& given)
-      : model(given),
-        weight(checked_weight(given)),
-        kernels(**runnable_kernels()),
-        weight_watch(weight),
-        position(TICKS * given.joints.size()),
-        velocity(TICKS * given.joints.size()),
-        last_position(given.joints.size()),
-        joint_watch(given.joints.size()),
-        joint_bad(given.joints.size()),
-        joint_dead(given.joints.size()),
-        twin(twins(given)),
-        wrench_watch(given.feet.size()),
-        motion(given.feet.size()),
-        bad(given.feet.size()),
-        was_bad(given.feet.size(), true),
-        estimates(given.feet.size()) {
-    for (const FootModel& foot : model.feet) {
-      std::vector<ChainStep>& chain = steps.emplace_back();
-      for (const PathJoint& joint : foot.path)
-        chain.push_back({joint.frame,
-                         joint.slides,
-                         joint.sign,
-                         {position.data() + TICKS * joint.joint, 1},
-                         {velocity.data() + TICKS * joint.joint, 1}});
-      feet.emplace_back(model, foot);
-    }
-    for (std::size_t f = 0; f < feet.size(); ++f) estimates[f] = feet[f].estimate();
+FootEstimator::State::State(const EstimatorModel& given)
+    : model(given),
+      weight(checked_weight(given)),
+      kernels(**runnable_kernels()),
+      weight_watch(weight),
+      position(TICKS * given.joints.size()),
+      velocity(TICKS * given.joints.size()),
+      last_position(given.joints.size()),
+      joint_watch(given.joints.size()),
+      joint_bad(given.joints.size()),
+      joint_dead(given.joints.size()),
+      twin(twins(given)),
+      wrench_watch(given.feet.size()),
+      motion(given.feet.size()),
+      bad(given.feet.size()),
+      was_bad(given.feet.size(), true),
+      estimates(given.feet.size()) {
+  for (const FootModel& foot : model.feet) {
+    std::vector<ChainStep>& chain = steps.emplace_back();
+    for (const PathJoint& joint : foot.path)
+      chain.push_back({joint.frame,
+                       joint.slides,
+                       joint.sign,
+                       {position.data() + TICKS * joint.joint, 1},
+                       {velocity.data() + TICKS * joint.joint, 1}});
+    feet.emplace_back(model, foot);
   }
-
-  void step(const Reading& reading) noexcept;
-  enum class Time { onward, still, jumped };
-  Time keep_time(double now) noexcept;
-  bool imu(const Reading& reading) noexcept;
-  void joints(const Reading& reading) noexcept;
-  void kinematics(std::size_t foot) noexcept;
-  void miss_all(std::uint32_t reason) noexcept;
-  void watch_ground() noexcept;
-  bool weight_differs(double total) noexcept;
-
-  const EstimatorModel model;
-  const double weight;
-  const Kernels& kernels;
-  WeightWatch weight_watch;
-  TurnWatch turn_watch;
-  bool turns_differ = false;
-  DelayWatch delay_watch;
-  std::vector<std::vector<ChainStep>> steps;
-  std::vector<FootTracker> feet;
-  std::vector<double> position, velocity, last_position;
-  std::vector<JointWatch> joint_watch;
-  std::vector<std::uint32_t> joint_bad;
-  std::vector<bool> joint_dead;
-  std::vector<int> twin;
-  std::vector<DeviceWatch<6>> wrench_watch;
-  DeviceWatch<4> attitude_watch;
-  DeviceWatch<3> gyroscope_watch;
-  AttitudeFilter filter;
-  SlipGate slip;
-  bool gyroscope = false;
-  double quaternion[4][TICKS] = {}, angular_velocity[3][TICKS] = {};
-  double last_quaternion[4] = {1.0, 0.0, 0.0, 0.0}, last_rate[3] = {};
-  double out[CHAIN_OUTPUTS][TICKS] = {};
-  std::vector<FootKinematics> motion;
-  std::vector<std::uint32_t> bad;
-  std::vector<bool> was_bad;
-  std::vector<FootEstimate> estimates;
-  double time = 0.0, dt = 0.0, period = 0.0;
-  int ticks = 0;       // since time last jumped
-  bool fresh = false;  // the last tick was read
-  bool known = false;  // whether a quaternion and positions of an earlier tick are kept
-  int next_work = 0;
-};
-
-FootEstimator::State::Time FootEstimator::State::keep_time(double now) noexcept {
-  if (!(std::abs(now) < LARGEST)) return Time::still;
-  const double passed = now - time;
-  const bool first = ticks == 0;
-  if (!first && passed == 0.0) return Time::still;
-  time = now;
-  if (first || passed < 0.0 || passed > std::max(GAP, GAP_PERIODS * period)) {
-    ticks = 1, known = false;
-    slip.restart(), filter.restart(), turn_watch.restart(), weight_watch.restart();
-    for (JointWatch& watch : joint_watch) watch.restart();
-    return first ? Time::onward : Time::jumped;
-  }
-  dt = passed;
-  period = ticks == 1 ? dt : period + PERIOD_NEWS * (dt - period);
-  ++ticks;
-  return Time::onward;
-}
-
-bool FootEstimator::State::imu(const Reading& reading) noexcept {
-  gyroscope = reading.angular_velocity.size() == 3;
-  double q[4], w[3] = {0.0, 0.0, 0.0};
-  if (gyroscope) std::copy_n(reading.angular_velocity.data(), 3, w);
-  if (reading.attitude.size() == 4) {
-    std::copy_n(reading.attitude.data(), 4, q);
-  } else {
-    double mean[3];
-    for (int i = 0; i < 3; ++i) mean[i] = known ? 0.5 * (w[i] + last_rate[i]) : w[i];
-    const AttitudeFilter::Quaternion& found = filter.step(mean, reading.acceleration.data(), dt);
-    std::copy(found.begin(), found.end(), q);
-  }
-  const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-  if (!(length > 0.0)) return false;
-  double dot = 0.0;
-  for (int i = 0; i < 4; ++i) q[i] /= length, dot += q[i] * last_quaternion[i];
-  const double same = dot < 0.0 ? -1.0 : 1.0;  // q and -q are one attitude
-  for (int i = 0; i < 4; ++i) {
-    quaternion[i][0] = q[i];
-    quaternion[i][1] = known ? q[i] + same * last_quaternion[i] : q[i];
-    quaternion[i][2] = q[i];
-  }
-  if (!gyroscope && known) {  // the turn since the last tick, over its time
-    const double* p = last_quaternion;
-    const double turn[3] = {p[0] * q[1] - p[1] * q[0] - p[2] * q[3] + p[3] * q[2],
-                            p[0] * q[2] - p[2] * q[0] - p[3] * q[1] + p[1] * q[3],
-                            p[0] * q[3] - p[3] * q[0] - p[1] * q[2] + p[2] * q[1]};
-    for (int i = 0; i < 3; ++i) w[i] = 2.0 * same * turn[i] / dt;
-  }
-  for (int i = 0; i < 3; ++i) {
-    angular_velocity[i][0] = angular_velocity[i][2] = w[i];
-    angular_velocity[i][1] = gyroscope && known ? 0.5 * (w[i] + last_rate[i]) : w[i];
-    last_rate[i] = w[i];
-  }
-  if (!known) turn_watch.restart();
-  const TurnWatch::Vector up = {2.0 * (q[1] * q[3] - q[0] * q[2]), 2.0 * (q[2] * q[3] + q[0] * q[1]),
-                                1.0 - 2.0 * (q[1] * q[1] + q[2] * q[2])};
-  const double turning[3] = {angular_velocity[0][1], angular_velocity[1][1], angular_velocity[2][1]};
-  turns_differ = gyroscope && reading.attitude.size() == 4 && dt > 0.0 && turn_watch.differ(up, turning, dt);
-  std::copy_n(q, 4, last_quaternion);
-  return true;
-}
-
-void FootEstimator::State::joints(const Reading& reading) noexcept {
-  const std::size_t n = model.joints.size();
-  const bool given = reading.velocity.size() == n;
-  for (std::size_t j = 0; j < n; ++j) {
-    const double q = reading.position[j], v = given ? reading.velocity[j] : 0.0;
-    joint_bad[j] = 0;
-    if (!all_finite({&q, 1}) || !all_finite({&v, 1})) {
-      joint_bad[j] = INPUT_MISSING;
-      last_position[j] = UNREAD;
-      continue;
-    }
-    if (joint_watch[j].frozen(q, v, dt)) joint_bad[j] = FROZEN;
-    const bool read = known && last_position[j] != UNREAD;
-    const double difference = read ? (q - last_position[j]) / dt : 0.0;
-    position[TICKS * j] = position[TICKS * j + 2] = q;
-    position[TICKS * j + 1] = read ? 0.5 * (q + last_position[j]) : q;
-    velocity[TICKS * j] = given ? v : difference, velocity[TICKS * j + 1] = difference;
-    last_position[j] = q;
-  }
-  for (std::size_t j = 0; j < n; ++j) {
-    joint_dead[j] = twin[j] >= 0 && joint_watch[j].dead(joint_watch[twin[j]]);
-    if (joint_dead[j]) joint_bad[j] |= FROZEN;
-  }
-}
-
-void FootEstimator::State::kinematics(std::size_t foot) noexcept {
-  const Chain chain = {steps[foot].data(), steps[foot].size(), model.feet[foot].bush, model.feet[foot].sole};
-  Attitude attitude;
-  for (int i = 0; i < 4; ++i) attitude.quaternion[i] = {quaternion[i], 1};
-  for (int i = 0; i < 3; ++i) attitude.angular_velocity[i] = {angular_velocity[i], 1};
-  double* rows[CHAIN_OUTPUTS];
-  for (int r = 0; r < CHAIN_OUTPUTS; ++r) rows[r] = out[r];
-  kernels.chain(chain, attitude, 0, TICKS, rows);
-  FootKinematics& to = motion[foot];
-  for (int i = 0; i < 3; ++i) to.up[i] = out[UP + i][0];
-  for (int i = 0; i < 2; ++i) {
-    to.angle[i] = out[DEFLECTION + i][0], to.mean_angle[i] = out[DEFLECTION + i][1];
-    to.rate[i] = out[RATE + i][0], to.mean_rate[i] = out[RATE + i][1];
-    to.turning[i] = out[RATE + i][2];
-  }
-  to.gyroscope = gyroscope;
-  to.place = {out[SOLE_POSITION][0], out[SOLE_POSITION + 1][0], out[HEADING][0]};
+  for (std::size_t f = 0; f < feet.size(); ++f) estimates[f] = feet[f].estimate();
 }
 
 void FootEstimator::State::miss_all(std::uint32_t reason) noexcept {

@@ -8,23 +8,21 @@ namespace plantar {
 
 namespace {
 
-constexpr double ROWS_PER_CYCLE = 8.0;  // of the cutoff: more say the same
 constexpr double LEAST_LOAD = 0.02;     // of the weight: a foot that carries less has no centre of pressure
 constexpr double ROLLING_SHARE = 0.1;   // of the sole's half width: a sole that lands may roll so near its outline
 constexpr double LONGEST_STANCE = 5.0;  // s: a foot that stands longer does not step now
 constexpr int STEPS = 3;                // stances, from which a foot counts as one that steps
 constexpr double USUAL_ANGLE = 0.01;    // rad, rad/s: what columns are scaled by
 constexpr double USUAL_RATE = 0.1;
-constexpr double USUAL_SLOPE = 0.1;    // horizontal force over weight
-constexpr double SLOWEST = 1.0;        // s: damping over stiffness before any data
-constexpr double TWIST_ZERO = 2e-3;    // m, times the weight: zero of a yaw torque
-constexpr double NEVER = 1e-9;         // s: the values follow the delay that was told
-constexpr double HARDLY_SLIPS = 0.99;  // of an element's largest state: below it noise moves it as the deflection
-constexpr double STEEPEST = 0.35;      // rad: no sole lies so on a ground that a robot stands on
-constexpr double FASTEST = 20.0;       // rad/s: no bush is bent so fast
-constexpr double CHANGE_TOLD = 5.0;    // s for which the flag of a change stands
-constexpr std::uint32_t OF_LEARNING =
-    NEVER_LOADED | PITCH_UNKNOWN | ROLL_UNKNOWN | PITCH_MEMORY | ROLL_MEMORY | PITCH_UNTESTED | ROLL_UNTESTED;  // they outlast a tick
+constexpr double USUAL_SLOPE = 0.1;  // horizontal force over weight
+constexpr double SLOWEST = 1.0;      // s: damping over stiffness before any data
+constexpr double TWIST_ZERO = 2e-3;  // m, times the weight: zero of a yaw torque
+constexpr double NEVER = 1e-9;       // s: the values follow the delay that was told
+constexpr double STEEPEST = 0.35;    // rad: no sole lies so on a ground that a robot stands on
+constexpr double FASTEST = 20.0;     // rad/s: no bush is bent so fast
+constexpr double CHANGE_TOLD = 5.0;  // s for which the flag of a change stands
+constexpr std::uint32_t OF_LEARNING = NEVER_LOADED | PITCH_UNKNOWN | ROLL_UNKNOWN | PITCH_MEMORY | ROLL_MEMORY |
+                                      PITCH_UNTESTED | ROLL_UNTESTED;  // they outlast a tick
 
 double outline_middle_depth(const FootModel& foot) noexcept {
   Point middle = {0.0, 0.0};
@@ -38,12 +36,16 @@ RegressionPrior prior_of(const EstimatorModel& model, const FootModel& foot, int
   const bool known = has_element(foot, axis);
   const double torque_std = known && foot.slip_torque_std[axis] > 0.0 ? foot.slip_torque_std[axis] : w;
   RegressionPrior prior;
-  prior.scale = {USUAL_ANGLE, USUAL_RATE, 1.0, w, USUAL_SLOPE * w, USUAL_SLOPE * w * w,
-                 USUAL_SLOPE * w};
+  prior.scale = {USUAL_ANGLE, USUAL_RATE, 1.0, w, USUAL_SLOPE * w, USUAL_SLOPE * w * w, USUAL_SLOPE * w};
   prior.mean = {};
   if (known) prior.mean[SLIP_TORQUE] = foot.slip_torque[axis];
-  prior.spread = {STIFFEST * w, SLOWEST * STIFFEST * w, torque_std, std::max(foot.place_std[0], 1e-9),
-                  std::max(foot.place_std[1], 1e-9), std::max(foot.compliance_std, 1e-9 / w), NEVER};
+  prior.spread = {STIFFEST * w,
+                  SLOWEST * STIFFEST * w,
+                  torque_std,
+                  std::max(foot.place_std[0], 1e-9),
+                  std::max(foot.place_std[1], 1e-9),
+                  std::max(foot.compliance_std, 1e-9 / w),
+                  NEVER};
   prior.twist = axis == 1 ? TWIST_ZERO * w : 0.0;
   prior.element_slope = slip > 0.0 ? 1.0 / slip : 0.0;
   prior.element_share = smooth_share(model.cutoff), prior.element_lag = smooth_lag(model.cutoff);
@@ -95,11 +97,6 @@ void FootTracker::read(const FootKinematics& motion, const std::array<double, 6>
   estimate_.roll.torque = std::cos(pitch) * (wrench_[3] + z * wrench_[1]) - std::sin(pitch) * wrench_[5];
   Point centre;
   if (centre_of_pressure(wrench_, pitch, roll, foot_->sole, least_load_, centre)) estimate_.centre_of_pressure = centre;
-}
-
-void FootTracker::restart_filter() noexcept {
-  running_ = false;
-  row_ticks_ = 0, row_time_ = 0.0;
 }
 
 void FootTracker::close_blocks() noexcept {
@@ -168,6 +165,7 @@ void FootTracker::learn(const FootKinematics& motion, double others, Doubt doubt
     restart_filter();
   }
   filter(motion, time, dt, fresh ? period : 0.0);
+  if (axes_[0].doubted() || axes_[1].doubted()) estimate_.flags |= CONTRADICTION;
   // What sensors that contradict each other have said of the ground until that showed is not believed.
   if (doubt.contradiction)
     for (AxisRegression& axis : axes_) axis.forget_suspicion();
@@ -189,89 +187,6 @@ bool FootTracker::leans(const FootKinematics& motion, double inside, double dt) 
     bent[a] = (torque[a] - found.value[DAMPING] * motion.rate[a] - element) / found.value[STIFFNESS];
   }
   return edge_.step(inside, estimate_.load, angle, bent, dt);
-}
-
-// The tick's signals in the middle of its period, where differences are exact, each as late as the latest of them.
-void FootTracker::filter(const FootKinematics& motion, double time, double dt, double period) noexcept {
-  const std::array<double, 5> now = {estimate_.load, wrench_[0], wrench_[1], estimate_.pitch.torque,
-                                     estimate_.roll.torque};
-  std::array<double, 7> mean = {}, forces;
-  for (int i = 0; i < 5; ++i) mean[i] = 0.5 * (now[i] + before_[i]);
-  for (int a = 0; a < 2; ++a) mean[5 + a] = dt > 0.0 ? (now[3 + a] - before_[3 + a]) / dt : 0.0;
-  before_ = now;
-  if (period <= 0.0) return;
-  const double *angle = motion.mean_angle, *rate = motion.mean_rate;
-  std::array<double, 6> angles = {angle[0], angle[1], rate[0], rate[1], 0.0, 0.0};
-  for (int a = 0; a < 2; ++a) angles[4 + a] = smooth_[a].pass(angle[a], rate[a], dt);
-  const bool reaches = angles_.pass(time, angles, delay_, angles) && forces_.pass(time, mean, -delay_, forces);
-  if (!reaches) return;
-  follow_elements(angles.data() + 4, angles.data() + 2, time, dt);
-  const bool paused = pause_ > 0.0;
-  pause_ -= std::min(pause_, dt);
-  if (estimate_.contact != ContactState::stance) return;
-  if (estimate_.flags & (EDGE | SLIP | IMPACT | CONTRADICTION)) {
-    pause_ = std::abs(delay_) + 0.5 * dt;  // one tick, and the delay
-    return;
-  }
-  // The delay lines and the mean over a period still hold what was left out.
-  if (paused) return;
-  if (!running_) {
-    filter_.design(cutoff_, period);
-    filter_.restart();
-    running_ = true, begun_ = time;
-  }
-  const double load = forces[0], x = forces[1], y = forces[2];
-  double channels[CHANNELS] = {1.0,       time - begun_, load,                x,         y,         load * x,
-                               load * y,  -std::sin(angles[0]),
-                               angles[0], angles[2],     element_[0].state(), element_[0].gap(), forces[3], forces[5],
-                               angles[1], angles[3],     element_[1].state(), element_[1].gap(), forces[4], forces[6]};
-  filter_.pass(channels);
-  row_time_ += dt;
-  const int stride = std::max(1, static_cast<int>(1.0 / (ROWS_PER_CYCLE * cutoff_ * period)));
-  if (++row_ticks_ < stride) return;
-  hold(time, row_time_, channels);
-  row_ticks_ = 0, row_time_ = 0.0;
-}
-
-void FootTracker::hold(double time, double dt, const double* channels) noexcept {
-  if (held_count_ == HELD) {
-    give(held_[first_held_]);
-    first_held_ = (first_held_ + 1) % HELD, --held_count_;
-  }
-  HeldRow& row = held_[(first_held_ + held_count_++) % HELD];
-  row.time = time, row.dt = dt;
-  std::copy_n(channels, CHANNELS, row.channels);
-}
-
-void FootTracker::commit(double before) noexcept {
-  while (held_count_ > 0 && held_[first_held_].time <= before) {
-    give(held_[first_held_]);
-    first_held_ = (first_held_ + 1) % HELD, --held_count_;
-  }
-}
-
-void FootTracker::give(const HeldRow& row) noexcept {
-  const double* c = row.channels;
-  for (int a = 0; a < 2; ++a) {
-    const double* own = c + FIRST_AXIS + AXIS_CHANNELS * a;
-    // A centre that is higher takes its share of the horizontal force: F_x off the pitch torque, F_y onto the roll
-    // torque.
-    const double across = a == 0 ? c[FORCE_X] : -c[FORCE_Y], loaded = a == 0 ? c[LOAD_X] : -c[LOAD_Y];
-    const bool known = has_element(*foot_, a), sticks = std::abs(own[ELEMENT]) < HARDLY_SLIPS * c[ONE];
-    RegressionRow line = {{c[ONE], c[TIME], a == 1 ? c[TURN] : 0.0, own[GAP]},
-                          {own[ANGLE], own[ANGLE_RATE], own[ELEMENT], c[LOAD], across, loaded, -own[TORQUE_RATE]},
-                          own[TORQUE],
-                          {0.0, 0.0, 0.0, 0.0, noise_.of_force[0], noise_.of_force[1 + a]}};
-    line.noise[sticks ? OF_ANGLE_AND_ELEMENT : OF_ANGLE] = noise_.of_angle[a];
-    line.noise[sticks && noise_.gyroscope ? OF_RATE_AND_ELEMENT : OF_RATE] = noise_.of_rate[a];
-    if (!known) {
-      memories_[a].add(line, row.dt);
-      line.columns[SLIP_TORQUE] = line.own[BEGINNING] = 0.0;
-      line.noise[OF_ANGLE_AND_ELEMENT] = line.noise[OF_RATE_AND_ELEMENT] = 0.0;
-      line.noise[OF_ANGLE] = noise_.of_angle[a], line.noise[OF_RATE] = noise_.of_rate[a];
-    }
-    axes_[a].add(line, row.dt);
-  }
 }
 
 void FootTracker::work(int piece) noexcept {

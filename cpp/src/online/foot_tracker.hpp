@@ -22,7 +22,7 @@
 
 namespace plantar {
 
-constexpr double STIFFEST = 100.0;     // m, times the weight: stiffness before any data
+constexpr double STIFFEST = 100.0;  // m, times the weight: stiffness before any data
 
 inline bool has_element(const FootModel& foot, int axis) noexcept { return foot.slip_angle[axis] > 0.0; }
 
@@ -33,8 +33,8 @@ struct FootKinematics {
   double rate[2];        // [rad/s], of the tick, for the controller
   double mean_angle[2];  // half a period before: there the joints' differences are exact
   double mean_rate[2];
-  double turning[2];     // what the gyroscope alone adds to the rates [rad/s]
-  bool gyroscope;        // else rates come from the attitude
+  double turning[2];  // what the gyroscope alone adds to the rates [rad/s]
+  bool gyroscope;     // else rates come from the attitude
   SolePlace place;
 };
 
@@ -79,7 +79,7 @@ class FootTracker {
 
  private:
   static constexpr int CHANNELS = 20;
-  static constexpr int HELD = 32;      // rows that wait until the foot has not lifted behind them
+  static constexpr int HELD = 32;  // rows that wait until the foot has not lifted behind them
   // What the filter passes: constant, time, load, horizontal forces, the load times each, what turns with the pitch;
   // then of each axis.
   enum Channel : int { ONE, TIME, LOAD, FORCE_X, FORCE_Y, LOAD_X, LOAD_Y, TURN, FIRST_AXIS };
@@ -120,22 +120,22 @@ class FootTracker {
   Parameter learnt_compliance_[2];       // of the slide beside the model's, as each axis has it
   double slip_angle_[2];                 // of the model's element, or of the one that a memory is looked for with
   std::array<double, 6> raw_ = {}, wrench_ = {};
-  std::array<double, 5> before_ = {};  // load, force x, y, both torques, of the last tick
+  std::array<double, 5> before_ = {};     // load, force x, y, both torques, of the last tick
   ElementState element_[2], hanging_[2];  // now, and in the air
-  double opened_[2] = {};  // the elements' gaps when the offset of the rows began
-  Lateness late_[2];          // as its own axes show it
-  bool told_late_ = false;    // as all feet's do: one delay was told for them
-  bool flat_ = false;         // the centre of pressure is inside the sole
-  bool stood_ = false;        // it stood at the last tick
-  bool lifted_ = false;       // its elements are followed from its last stance, through the air
-  bool rolled_ = false;       // the sole was rolling over its edge at the last tick
+  double opened_[2] = {};                 // the elements' gaps when the offset of the rows began
+  Lateness late_[2];                      // as its own axes show it
+  bool told_late_ = false;                // as all feet's do: one delay was told for them
+  bool flat_ = false;                     // the centre of pressure is inside the sole
+  bool stood_ = false;                    // it stood at the last tick
+  bool lifted_ = false;                   // its elements are followed from its last stance, through the air
+  bool rolled_ = false;                   // the sole was rolling over its edge at the last tick
   double angles_before_[2] = {}, rates_before_[2] = {};  // of the last tick that the elements have followed
-  bool begun_elements_ = false;  // their bounds are those of a bush somewhere on its way
-  bool running_ = false;      // the filter has begun
-  double begun_ = 0.0;        // at this time
-  double pause_ = 0.0;        // s for which the lines still hold ticks that were left out
-  double told_change_ = 0.0;  // s for which a change of ground is still told
-  double row_time_ = 0.0;     // since the last row
+  bool begun_elements_ = false;                          // their bounds are those of a bush somewhere on its way
+  bool running_ = false;                                 // the filter has begun
+  double begun_ = 0.0;                                   // at this time
+  double pause_ = 0.0;                                   // s for which the lines still hold ticks that were left out
+  double told_change_ = 0.0;                             // s for which a change of ground is still told
+  double row_time_ = 0.0;                                // since the last row
   int row_ticks_ = 0;
   std::array<HeldRow, HELD> held_;
   int first_held_ = 0, held_count_ = 0;

@@ -1,7 +1,7 @@
 // Rubber with a memory, of which the model knows nothing: its torque depends on the way that it has come.
 //
-// The same rows are fitted once more with a Jenkins element of a usual slip angle beside spring and damper. Whatever the
-// rubber's own slip angle is, such an element then takes a part of the torque, where motions go beyond that angle;
+// The same rows are fitted once more with a Jenkins element of a usual slip angle beside spring and damper. Whatever
+// the rubber's own slip angle is, such an element then takes a part of the torque, where motions go beyond that angle;
 // beside a spring and a damper alone it takes none. Within its slip angle rubber is a stiffer spring, and nothing tells
 // both apart: what has not moved that far stays untested.
 #pragma once
@@ -53,7 +53,7 @@ class MemoryWatch {
  private:
   AxisRegression regression_;
   bool seen_ = false, excluded_ = false;
-  bool begun_ = false;                          // a row of this block was seen
+  bool begun_ = false;                         // a row of this block was seen
   double low_ = 0.0, high_ = 0.0, way_ = 0.0;  // of the deflection in this block, and the longest way in any [rad]
 };
 

@@ -11,7 +11,8 @@ from plantar.conventions import DAMPING_UNIT, ROTATIONAL_AXES, STIFFNESS_UNIT, A
 from plantar.online.estimates import FIELDS, Estimated, Flag, FootEstimate, foot_estimate
 from plantar.results.feet_rows import Parameter, Verdict
 
-USABLE = 0.1  # half width of the 95 % interval over the value, narrower than a batch result's
+# Half width of the 95 % interval over the value, less than in a batch result: 99 in 100 such dampings are within 8 %.
+USABLE = {"stiffness": 0.1, "damping": 0.06, "slip_torque": 0.1}
 UNKNOWN = 10.0  # the same, from which on a value says nothing
 TOLD = 1e-3  # half width over the compliance, that no log reaches: it was told
 AS_TOLD = "as in the batch result, not learnt here"
@@ -95,12 +96,18 @@ def _vertical(foot: str, compliance: Estimated) -> Parameter:
             foot, "z", "stiffness", STIFFNESS_UNIT["z"], None, None, None, None, "unidentifiable", LEVEL, WALK
         )
     interval = (1 / (value + half), 1 / (value - half))
-    reason = f"± {100 * half / value:.0f} % so far; known from ± {100 * USABLE:.0f} % on"
-    usable = half <= USABLE * value
+    reason = _too_wide("stiffness", half / value)
     return Parameter(
         foot, "z", "stiffness", STIFFNESS_UNIT["z"], 1 / value, compliance.std / value**2, interval, None,
-        "usable" if usable else "weak", "" if usable else reason,
+        "weak" if reason else "usable", reason,
     )  # fmt: skip
+
+
+def _too_wide(name: str, share: float) -> str:
+    """Why a number whose interval is `share` of it to either side may not be used; empty where it may."""
+    if share <= USABLE[name]:
+        return ""
+    return f"± {100 * share:.0f} % so far; known from ± {100 * USABLE[name]:.0f} % on"
 
 
 def _weakened(row: Parameter, reason: str, advice: str) -> Parameter:
@@ -113,14 +120,8 @@ def _parameter(foot: str, axis: Axis, name: str, unit: str, found: Estimated) ->
     if half >= UNKNOWN * abs(value):
         reason = "nothing has excited it yet"
         return Parameter(foot, axis, name, unit, None, None, None, None, "unidentifiable", reason)
-    verdict: Verdict = "usable" if half <= USABLE * abs(value) else "weak"
-    if half >= abs(value):
-        verdict = "unidentifiable"
-    reason = (
-        ""
-        if verdict == "usable"
-        else f"± {100 * half / abs(value):.0f} % so far; known from ± {100 * USABLE:.0f} % on"
-    )
+    reason = _too_wide(name, half / abs(value))
+    verdict: Verdict = "unidentifiable" if half >= abs(value) else "weak" if reason else "usable"
     return Parameter(
         foot, axis, name, unit, value, found.std, (value - half, value + half), None, verdict, reason
     )

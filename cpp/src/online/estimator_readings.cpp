@@ -1,0 +1,123 @@
+// One tick's readings, before anything is learnt from them: time, IMU, joints, and where they put each foot.
+#include <algorithm>
+#include <cmath>
+
+#include "online/estimator_state.hpp"
+
+namespace plantar {
+
+namespace {
+
+constexpr double GAP = 0.1;  // s without a sample, at least: what was before is past
+constexpr double GAP_PERIODS = 5.0;
+constexpr double PERIOD_NEWS = 0.05;  // by how much one tick changes the period
+constexpr double UNREAD = LARGEST;    // stands for a position that the last tick did not have
+
+}  // namespace
+
+FootEstimator::State::Time FootEstimator::State::keep_time(double now) noexcept {
+  if (!(std::abs(now) < LARGEST)) return Time::still;
+  const double passed = now - time;
+  const bool first = ticks == 0;
+  if (!first && passed == 0.0) return Time::still;
+  time = now;
+  if (first || passed < 0.0 || passed > std::max(GAP, GAP_PERIODS * period)) {
+    ticks = 1, known = false;
+    slip.restart(), filter.restart(), turn_watch.restart(), weight_watch.restart();
+    for (JointWatch& watch : joint_watch) watch.restart();
+    return first ? Time::onward : Time::jumped;
+  }
+  dt = passed;
+  period = ticks == 1 ? dt : period + PERIOD_NEWS * (dt - period);
+  ++ticks;
+  return Time::onward;
+}
+
+bool FootEstimator::State::imu(const Reading& reading) noexcept {
+  gyroscope = reading.angular_velocity.size() == 3;
+  double q[4], w[3] = {0.0, 0.0, 0.0};
+  if (gyroscope) std::copy_n(reading.angular_velocity.data(), 3, w);
+  if (reading.attitude.size() == 4) {
+    std::copy_n(reading.attitude.data(), 4, q);
+  } else {
+    double mean[3];
+    for (int i = 0; i < 3; ++i) mean[i] = known ? 0.5 * (w[i] + last_rate[i]) : w[i];
+    const AttitudeFilter::Quaternion& found = filter.step(mean, reading.acceleration.data(), dt);
+    std::copy(found.begin(), found.end(), q);
+  }
+  const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  if (!(length > 0.0)) return false;
+  double dot = 0.0;
+  for (int i = 0; i < 4; ++i) q[i] /= length, dot += q[i] * last_quaternion[i];
+  const double same = dot < 0.0 ? -1.0 : 1.0;  // q and -q are one attitude
+  for (int i = 0; i < 4; ++i) {
+    quaternion[i][0] = q[i];
+    quaternion[i][1] = known ? q[i] + same * last_quaternion[i] : q[i];
+    quaternion[i][2] = q[i];
+  }
+  if (!gyroscope && known) {  // the turn since the last tick, over its time
+    const double* p = last_quaternion;
+    const double turn[3] = {p[0] * q[1] - p[1] * q[0] - p[2] * q[3] + p[3] * q[2],
+                            p[0] * q[2] - p[2] * q[0] - p[3] * q[1] + p[1] * q[3],
+                            p[0] * q[3] - p[3] * q[0] - p[1] * q[2] + p[2] * q[1]};
+    for (int i = 0; i < 3; ++i) w[i] = 2.0 * same * turn[i] / dt;
+  }
+  for (int i = 0; i < 3; ++i) {
+    angular_velocity[i][0] = angular_velocity[i][2] = w[i];
+    angular_velocity[i][1] = gyroscope && known ? 0.5 * (w[i] + last_rate[i]) : w[i];
+    last_rate[i] = w[i];
+  }
+  if (!known) turn_watch.restart();
+  const TurnWatch::Vector up = {2.0 * (q[1] * q[3] - q[0] * q[2]), 2.0 * (q[2] * q[3] + q[0] * q[1]),
+                                1.0 - 2.0 * (q[1] * q[1] + q[2] * q[2])};
+  const double turning[3] = {angular_velocity[0][1], angular_velocity[1][1], angular_velocity[2][1]};
+  turns_differ = gyroscope && reading.attitude.size() == 4 && dt > 0.0 && turn_watch.differ(up, turning, dt);
+  std::copy_n(q, 4, last_quaternion);
+  return true;
+}
+
+void FootEstimator::State::joints(const Reading& reading) noexcept {
+  const std::size_t n = model.joints.size();
+  const bool given = reading.velocity.size() == n;
+  for (std::size_t j = 0; j < n; ++j) {
+    const double q = reading.position[j], v = given ? reading.velocity[j] : 0.0;
+    joint_bad[j] = 0;
+    if (!all_finite({&q, 1}) || !all_finite({&v, 1})) {
+      joint_bad[j] = INPUT_MISSING;
+      last_position[j] = UNREAD;
+      continue;
+    }
+    if (joint_watch[j].frozen(q, v, dt)) joint_bad[j] = FROZEN;
+    const bool read = known && last_position[j] != UNREAD;
+    const double difference = read ? (q - last_position[j]) / dt : 0.0;
+    position[TICKS * j] = position[TICKS * j + 2] = q;
+    position[TICKS * j + 1] = read ? 0.5 * (q + last_position[j]) : q;
+    velocity[TICKS * j] = given ? v : difference, velocity[TICKS * j + 1] = difference;
+    last_position[j] = q;
+  }
+  for (std::size_t j = 0; j < n; ++j) {
+    joint_dead[j] = twin[j] >= 0 && joint_watch[j].dead(joint_watch[twin[j]]);
+    if (joint_dead[j]) joint_bad[j] |= FROZEN;
+  }
+}
+
+void FootEstimator::State::kinematics(std::size_t foot) noexcept {
+  const Chain chain = {steps[foot].data(), steps[foot].size(), model.feet[foot].bush, model.feet[foot].sole};
+  Attitude attitude;
+  for (int i = 0; i < 4; ++i) attitude.quaternion[i] = {quaternion[i], 1};
+  for (int i = 0; i < 3; ++i) attitude.angular_velocity[i] = {angular_velocity[i], 1};
+  double* rows[CHAIN_OUTPUTS];
+  for (int r = 0; r < CHAIN_OUTPUTS; ++r) rows[r] = out[r];
+  kernels.chain(chain, attitude, 0, TICKS, rows);
+  FootKinematics& to = motion[foot];
+  for (int i = 0; i < 3; ++i) to.up[i] = out[UP + i][0];
+  for (int i = 0; i < 2; ++i) {
+    to.angle[i] = out[DEFLECTION + i][0], to.mean_angle[i] = out[DEFLECTION + i][1];
+    to.rate[i] = out[RATE + i][0], to.mean_rate[i] = out[RATE + i][1];
+    to.turning[i] = out[RATE + i][2];
+  }
+  to.gyroscope = gyroscope;
+  to.place = {out[SOLE_POSITION][0], out[SOLE_POSITION + 1][0], out[HEADING][0]};
+}
+
+}  // namespace plantar

@@ -1,0 +1,64 @@
+// What the estimator keeps from tick to tick: its feet, the watches over its sensors, the last readings.
+#pragma once
+
+#include <vector>
+
+#include "kernels.hpp"
+#include "online/attitude_filter.hpp"
+#include "online/channel_watch.hpp"
+#include "online/contradiction.hpp"
+#include "online/delay_watch.hpp"
+#include "online/foot_tracker.hpp"
+#include "plantar/foot_estimator.hpp"
+
+namespace plantar {
+
+constexpr int TICKS = 3;  // columns of the kinematics: this tick, half a period before, and the gyroscope alone
+
+struct FootEstimator::State {
+  explicit State(const EstimatorModel& given);
+
+  void step(const Reading& reading) noexcept;
+  enum class Time { onward, still, jumped };
+  Time keep_time(double now) noexcept;
+  bool imu(const Reading& reading) noexcept;
+  void joints(const Reading& reading) noexcept;
+  void kinematics(std::size_t foot) noexcept;
+  void miss_all(std::uint32_t reason) noexcept;
+  void watch_ground() noexcept;
+  bool weight_differs(double total) noexcept;
+
+  const EstimatorModel model;
+  const double weight;
+  const Kernels& kernels;
+  WeightWatch weight_watch;
+  TurnWatch turn_watch;
+  bool turns_differ = false;
+  DelayWatch delay_watch;
+  std::vector<std::vector<ChainStep>> steps;
+  std::vector<FootTracker> feet;
+  std::vector<double> position, velocity, last_position;
+  std::vector<JointWatch> joint_watch;
+  std::vector<std::uint32_t> joint_bad;
+  std::vector<bool> joint_dead;
+  std::vector<int> twin;
+  std::vector<DeviceWatch<6>> wrench_watch;
+  DeviceWatch<4> attitude_watch;
+  DeviceWatch<3> gyroscope_watch;
+  AttitudeFilter filter;
+  SlipGate slip;
+  bool gyroscope = false;
+  double quaternion[4][TICKS] = {}, angular_velocity[3][TICKS] = {};
+  double last_quaternion[4] = {1.0, 0.0, 0.0, 0.0}, last_rate[3] = {};
+  double out[CHAIN_OUTPUTS][TICKS] = {};
+  std::vector<FootKinematics> motion;
+  std::vector<std::uint32_t> bad;
+  std::vector<bool> was_bad;
+  std::vector<FootEstimate> estimates;
+  double time = 0.0, dt = 0.0, period = 0.0;
+  int ticks = 0;       // since time last jumped
+  bool known = false;  // whether a quaternion and positions of an earlier tick are kept
+  int next_work = 0;
+};
+
+}  // namespace plantar

@@ -1,0 +1,121 @@
+// From the signals of a foot's ticks to rows of its regressions: one filter for all of them, rows that wait until the
+// foot has not lifted behind them.
+#include <algorithm>
+#include <cmath>
+
+#include "online/foot_tracker.hpp"
+
+namespace plantar {
+
+namespace {
+
+constexpr double ROWS_PER_CYCLE = 8.0;  // of the cutoff: more say the same
+constexpr double HARDLY_SLIPS = 0.99;   // of an element's largest state: below it noise moves it as the deflection
+
+}  // namespace
+
+void FootTracker::restart_filter() noexcept {
+  running_ = false;
+  row_ticks_ = 0, row_time_ = 0.0;
+}
+
+// The tick's signals in the middle of its period, where differences are exact, each as late as the latest of them.
+void FootTracker::filter(const FootKinematics& motion, double time, double dt, double period) noexcept {
+  const std::array<double, 5> now = {estimate_.load, wrench_[0], wrench_[1], estimate_.pitch.torque,
+                                     estimate_.roll.torque};
+  std::array<double, 7> mean = {}, forces;
+  for (int i = 0; i < 5; ++i) mean[i] = 0.5 * (now[i] + before_[i]);
+  for (int a = 0; a < 2; ++a) mean[5 + a] = dt > 0.0 ? (now[3 + a] - before_[3 + a]) / dt : 0.0;
+  before_ = now;
+  if (period <= 0.0) return;
+  const double *angle = motion.mean_angle, *rate = motion.mean_rate;
+  std::array<double, 6> angles = {angle[0], angle[1], rate[0], rate[1], 0.0, 0.0};
+  for (int a = 0; a < 2; ++a) angles[4 + a] = smooth_[a].pass(angle[a], rate[a], dt);
+  const bool reaches = angles_.pass(time, angles, delay_, angles) && forces_.pass(time, mean, -delay_, forces);
+  if (!reaches) return;
+  follow_elements(angles.data() + 4, angles.data() + 2, time, dt);
+  const bool paused = pause_ > 0.0;
+  pause_ -= std::min(pause_, dt);
+  if (estimate_.contact != ContactState::stance) return;
+  if (estimate_.flags & (EDGE | SLIP | IMPACT | CONTRADICTION)) {
+    pause_ = std::abs(delay_) + 0.5 * dt;  // one tick, and the delay
+    return;
+  }
+  // The delay lines and the mean over a period still hold what was left out.
+  if (paused) return;
+  if (!running_) {
+    filter_.design(cutoff_, period);
+    filter_.restart();
+    running_ = true, begun_ = time;
+  }
+  const double load = forces[0], x = forces[1], y = forces[2];
+  double channels[CHANNELS] = {1.0,
+                               time - begun_,
+                               load,
+                               x,
+                               y,
+                               load * x,
+                               load * y,
+                               -std::sin(angles[0]),
+                               angles[0],
+                               angles[2],
+                               element_[0].state(),
+                               element_[0].gap(),
+                               forces[3],
+                               forces[5],
+                               angles[1],
+                               angles[3],
+                               element_[1].state(),
+                               element_[1].gap(),
+                               forces[4],
+                               forces[6]};
+  filter_.pass(channels);
+  row_time_ += dt;
+  const int stride = std::max(1, static_cast<int>(1.0 / (ROWS_PER_CYCLE * cutoff_ * period)));
+  if (++row_ticks_ < stride) return;
+  hold(time, row_time_, channels);
+  row_ticks_ = 0, row_time_ = 0.0;
+}
+
+void FootTracker::hold(double time, double dt, const double* channels) noexcept {
+  if (held_count_ == HELD) {
+    give(held_[first_held_]);
+    first_held_ = (first_held_ + 1) % HELD, --held_count_;
+  }
+  HeldRow& row = held_[(first_held_ + held_count_++) % HELD];
+  row.time = time, row.dt = dt;
+  std::copy_n(channels, CHANNELS, row.channels);
+}
+
+void FootTracker::commit(double before) noexcept {
+  while (held_count_ > 0 && held_[first_held_].time <= before) {
+    give(held_[first_held_]);
+    first_held_ = (first_held_ + 1) % HELD, --held_count_;
+  }
+}
+
+void FootTracker::give(const HeldRow& row) noexcept {
+  const double* c = row.channels;
+  for (int a = 0; a < 2; ++a) {
+    const double* own = c + FIRST_AXIS + AXIS_CHANNELS * a;
+    // A centre that is higher takes its share of the horizontal force: F_x off the pitch torque, F_y onto the roll
+    // torque.
+    const double across = a == 0 ? c[FORCE_X] : -c[FORCE_Y], loaded = a == 0 ? c[LOAD_X] : -c[LOAD_Y];
+    const bool known = has_element(*foot_, a), sticks = std::abs(own[ELEMENT]) < HARDLY_SLIPS * c[ONE];
+    RegressionRow line = {{c[ONE], c[TIME], a == 1 ? c[TURN] : 0.0, own[GAP]},
+                          {own[ANGLE], own[ANGLE_RATE], own[ELEMENT], c[LOAD], across, loaded, -own[TORQUE_RATE]},
+                          own[TORQUE],
+                          {0.0, 0.0, 0.0, 0.0, noise_.of_force[0], noise_.of_force[1 + a]}};
+    line.noise[sticks ? OF_ANGLE_AND_ELEMENT : OF_ANGLE] = noise_.of_angle[a];
+    line.noise[sticks && noise_.gyroscope ? OF_RATE_AND_ELEMENT : OF_RATE] = noise_.of_rate[a];
+    if (!known) {
+      memories_[a].add(line, row.dt);
+      line.columns[SLIP_TORQUE] = line.own[BEGINNING] = 0.0;
+      line.noise[OF_ANGLE_AND_ELEMENT] = line.noise[OF_RATE_AND_ELEMENT] = 0.0;
+      line.noise[OF_ANGLE] = noise_.of_angle[a], line.noise[OF_RATE] = noise_.of_rate[a];
+    }
+    axes_[a].add(line, row.dt);
+  }
+}
+
+}  // namespace plantar

@@ -1,0 +1,95 @@
+// What is other ground, what is a stumble, and what no ground does.
+#include "online/change_watch.hpp"
+
+#include <cmath>
+
+#include "check.hpp"
+
+using namespace plantar;
+using Verdict = ChangeWatch::Verdict;
+
+namespace {
+
+constexpr double ROW = 0.025;  // s
+constexpr double STIFFNESS = 800.0;
+
+// One probe of `rows` in which the foot is bent to 10 mrad, and finds `change` of what was learnt, beside noise [N·m].
+Verdict probed(ChangeWatch& watch, double change, double noise, int rows = PROBE_ROWS) {
+  for (int i = 0; i < rows; ++i) {
+    const double angle = 0.01 * i / rows;
+    watch.add(1.0, 0.0, angle, 0.0, STIFFNESS * change * angle, ROW);
+  }
+  return watch.judge(STIFFNESS, 1.0, noise);
+}
+
+// What an element's state splits to a quarter of a second speaks of other ground, if it is clear.
+void a_short_probe_speaks() {
+  ChangeWatch watch;
+  check::that(probed(watch, -0.5, 0.02) == Verdict::usual, "one probe alone may be a stumble");
+  check::that(watch.softer() > 5.0 && watch.stiffer() == 0.0, "a short probe of half the stiffness");
+  watch.forget();
+  check::that(watch.calm(), "what was said is forgotten");
+}
+
+// After unclear probes, and after the first one of the change itself.
+void two_clear_probes_are_enough() {
+  ChangeWatch watch;
+  for (int i = 0; i < 60; ++i) probed(watch, i % 2 ? 0.12 : -0.12, 0.8);
+  check::that(watch.calm(), "unclear probes say nothing");
+  check::that(probed(watch, -0.69, 0.2) == Verdict::usual && probed(watch, -0.37, 0.2) == Verdict::changed,
+              "two clear ones do");
+}
+
+// Steps that differ are usual, once contrary ones have followed.
+void steps_that_differ_become_usual() {
+  ChangeWatch watch;
+  for (int i = 0; i < 60; ++i)
+    check::that(probed(watch, i % 2 ? 0.25 : -0.25, 0.05) == Verdict::usual, "steps that differ");
+  probed(watch, -0.37, 0.05);
+  check::that(watch.softer() < 7.0, "so that one more says less");
+}
+
+// Parts of a motion at 1 Hz, in which a torque that is 30 ms late lacks up to half of what the spring has.
+void a_late_torque_is_no_other_ground() {
+  ChangeWatch watch;
+  const double omega = 2.0 * std::acos(-1.0), late = 0.03;
+  bool usual = true;
+  for (int probe = 0; probe < 20; ++probe) {
+    for (int i = 0; i < 12; ++i) {
+      const double phase = omega * ROW * i + 0.6;
+      watch.add(1.0, 0.01 * omega * std::cos(phase), 0.01 * std::sin(phase), 0.0,
+                -STIFFNESS * late * 0.01 * omega * std::cos(phase), ROW);
+    }
+    usual = usual && watch.judge(STIFFNESS, 1.0, 0.01) == Verdict::usual;
+  }
+  check::that(usual, "no change is told");
+}
+
+void no_ground_pulls_the_other_way() {
+  ChangeWatch watch;
+  check::that(probed(watch, -2.0, 0.02) == Verdict::impossible && watch.doubted(), "a spring that pushes on");
+  check::that(watch.softer() == 0.0, "which is no softer ground");
+  check::that(probed(watch, -0.9, 0.02) == Verdict::usual && !watch.doubted(), "one of a tenth is soft");
+}
+
+void what_no_line_explains_is_no_ground() {
+  ChangeWatch watch;
+  for (int i = 0; i < 30; ++i) watch.add(1.0, 0.0, 0.01 * i / 30, 0.0, i % 2 ? 3.0 : -3.0, ROW);
+  check::that(watch.judge(STIFFNESS, 1.0, 0.02) == Verdict::impossible, "a torque of its own");
+  check::that(!watch.full(), "no probe");
+  probed(watch, 0.0, 10.0, 12);
+  for (int i = 0; i < 12; ++i) watch.add(1.0, 0.0, 0.0, 0.0, 0.0, ROW);
+  check::that(watch.full(), "probes are short until one is clear");
+}
+
+}  // namespace
+
+int main() {
+  a_short_probe_speaks();
+  two_clear_probes_are_enough();
+  steps_that_differ_become_usual();
+  a_late_torque_is_no_other_ground();
+  no_ground_pulls_the_other_way();
+  what_no_line_explains_is_no_ground();
+  return check::result();
+}
