@@ -19,12 +19,8 @@ from plantar.estimation import Block, LinearFit, fit_blocks
 from plantar.feet.fit.hidden_memory import has_memory
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
-from plantar.feet.regression.regression_data import (
-    beside,
-    blocks_of,
-    model_columns,
-    tangent_blocks,
-)
+from plantar.feet.regression.model_columns import model_columns
+from plantar.feet.regression.regression_data import beside, blocks_of, tangent_blocks
 from plantar.models import KelvinVoigt
 from plantar.notes import Note
 from plantar.signals.segments import run_numbers
