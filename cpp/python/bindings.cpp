@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "aligned.hpp"
+#include "arrays.hpp"
 #include "bindings.hpp"
 #include "bound_tree.hpp"
 #include "parallel.hpp"
@@ -29,34 +30,6 @@ std::vector<std::string> instruction_sets() {
   std::vector<std::string> names;
   for (const Kernels* const* table = runnable_kernels(); *table != nullptr; ++table) names.push_back((*table)->name);
   return names;
-}
-
-// frames: per step the joint's frame; slides, signs: per step; positions, velocities: per step one column.
-nb::ndarray<nb::numpy, double> foot_chain(const std::vector<Packed>& frames, const std::vector<bool>& slides,
-                                          const std::vector<double>& signs, const Packed& bush, const Packed& sole,
-                                          const std::vector<Vector>& positions, const std::vector<Vector>& velocities,
-                                          const Matrix& orientation, const Matrix& angular_velocity, unsigned threads,
-                                          const std::string& isa) {
-  const std::size_t n = orientation.shape(0), k = frames.size();
-  if (slides.size() != k || signs.size() != k || positions.size() != k || velocities.size() != k)
-    throw std::invalid_argument("every joint of the path needs a frame, a sign, a position and a velocity");
-  std::vector<ChainStep> steps(k);
-  for (std::size_t i = 0; i < k; ++i)
-    steps[i] = {frame(frames[i]), slides[i], signs[i], column(positions[i], n), column(velocities[i], n)};
-  const Chain chain = {steps.data(), k, frame(bush), frame(sole)};
-  Attitude attitude;
-  columns(orientation, n, attitude.quaternion);
-  columns(angular_velocity, n, attitude.angular_velocity);
-  const Kernels& table = kernels(isa);
-  std::unique_ptr<double[]> data(new double[CHAIN_OUTPUTS * std::max<std::size_t>(n, 1)]);
-  double* rows[CHAIN_OUTPUTS];
-  for (std::size_t r = 0; r < CHAIN_OUTPUTS; ++r) rows[r] = data.get() + r * n;
-  {
-    nb::gil_scoped_release release;
-    parallel_parts(n, 64, worthwhile_threads(n, 2048, threads),
-                   [&](unsigned, std::size_t begin, std::size_t end) { table.chain(chain, attitude, begin, end, rows); });
-  }
-  return owned(data.release(), {CHAIN_OUTPUTS, n});
 }
 
 // (rows, columns, N): every row with the columns of every kept parameter; zero where it does not depend on one.
@@ -180,9 +153,6 @@ class StreamObject {
 NB_MODULE(_core, m) {
   m.doc() = "plantar's native core";
   m.def("instruction_sets", &instruction_sets, "The instruction sets that can run here, the one in use first.");
-  m.def("foot_chain", &foot_chain, nb::arg("frames"), nb::arg("slides"), nb::arg("signs"), nb::arg("bush"),
-        nb::arg("sole"), nb::arg("positions"), nb::arg("velocities"), nb::arg("orientation"),
-        nb::arg("angular_velocity"), nb::arg("threads") = 0, nb::arg("isa") = "");
   nb::class_<TreeObject>(m, "Tree")
       .def(nb::init<const std::vector<int>&, const std::vector<bool>&, const std::vector<Packed>&,
                     const std::vector<Packed>&, bool>(),
@@ -200,6 +170,6 @@ NB_MODULE(_core, m) {
            nb::arg("threads") = 0, nb::arg("isa") = "")
       .def("factor", &StreamObject::factor, nb::arg("group"))
       .def("parameters", &StreamObject::parameters, nb::arg("group"));
-  bind_base(m), bind_drift(m), bind_estimator(m), bind_factor(m), bind_low_pass(m);
+  bind_base(m), bind_drift(m), bind_estimator(m), bind_factor(m), bind_foot(m), bind_low_pass(m);
   bind_number_table(m), bind_stepping(m), bind_stop_operator(m);
 }

@@ -1,5 +1,5 @@
 // What all of the views from Python share, and those that have files of their own: of a floating base, drift.hpp, the
-// estimator, factor.hpp, low_pass.hpp, number_table.hpp, stepping.hpp and stop_operator.hpp.
+// estimator, factor.hpp, one foot, low_pass.hpp, number_table.hpp, stepping.hpp and stop_operator.hpp.
 #pragma once
 
 #include <nanobind/nanobind.h>
@@ -18,6 +18,7 @@ void bind_base(nanobind::module_& m);
 void bind_drift(nanobind::module_& m);
 void bind_estimator(nanobind::module_& m);
 void bind_factor(nanobind::module_& m);
+void bind_foot(nanobind::module_& m);
 void bind_low_pass(nanobind::module_& m);
 void bind_number_table(nanobind::module_& m);
 void bind_stepping(nanobind::module_& m);

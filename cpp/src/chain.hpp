@@ -34,7 +34,9 @@ enum ChainOutput {
   RATE = 5,             // 2
   SOLE_POSITION = 7,    // 3: from the IMU, world axes
   HEADING = 10,         // 1: of the sole's x axis in the world
-  CHAIN_OUTPUTS = 11
+  ENCODER_RATE = 11,    // 2: the part of RATE that the joints turn
+  IMU_TURN = 13,        // 6: change of pitch, then of roll, with a turn of the IMU about its x, y and z
+  CHAIN_OUTPUTS = 19
 };
 
 }  // namespace plantar

@@ -6,6 +6,7 @@
 #include "kernels.hpp"
 #include "low_pass_kernel.hpp"
 #include "qr_kernel.hpp"
+#include "sole_load_kernel.hpp"
 
 #define PLANTAR_STRING_(x) #x
 #define PLANTAR_STRING(x) PLANTAR_STRING_(x)
@@ -17,6 +18,7 @@ const Kernels kernels = {PLANTAR_STRING(PLANTAR_ISA),
                          sizeof(LinkState) + sizeof(Wrench),
                          qr_work,
                          chain,
+                         sole_load,
                          regressor,
                          inverse_dynamics,
                          base_wrenches,

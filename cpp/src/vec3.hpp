@@ -31,6 +31,16 @@ PLANTAR_INLINE Vec3 operator*(const Mat3& m, Vec3 a) {
 PLANTAR_INLINE Vec3 transposed(const Mat3& m, Vec3 a) { return {dot(m.x, a), dot(m.y, a), dot(m.z, a)}; }
 PLANTAR_INLINE Mat3 operator*(const Mat3& a, const Mat3& b) { return {a * b.x, a * b.y, a * b.z}; }
 
+// By a constant rotation, row-major, the same for all lanes, and back.
+PLANTAR_INLINE Vec3 turned(const double* r, Vec3 a) {
+  return {r[0] * a.x + r[1] * a.y + r[2] * a.z, r[3] * a.x + r[4] * a.y + r[5] * a.z,
+          r[6] * a.x + r[7] * a.y + r[8] * a.z};
+}
+PLANTAR_INLINE Vec3 turned_back(const double* r, Vec3 a) {
+  return {r[0] * a.x + r[3] * a.y + r[6] * a.z, r[1] * a.x + r[4] * a.y + r[7] * a.z,
+          r[2] * a.x + r[5] * a.y + r[8] * a.z};
+}
+
 // Times a constant matrix or vector, row-major, the same for all lanes.
 PLANTAR_INLINE Vec3 times(const Mat3& m, const double* v) { return v[0] * m.x + v[1] * m.y + v[2] * m.z; }
 PLANTAR_INLINE Mat3 times_matrix(const Mat3& m, const double* r) {

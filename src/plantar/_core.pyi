@@ -21,6 +21,16 @@ def foot_chain(
     threads: int = 0,
     isa: str = "",
 ) -> Array: ...
+def sole_load(
+    sensor: Array,
+    sign: float,
+    wrench: Array,
+    up: Array,
+    sole: Array,
+    least: float,
+    threads: int = 0,
+    isa: str = "",
+) -> Array: ...
 
 class Tree:
     def __init__(

@@ -68,6 +68,13 @@ def rotation_from_rpy(rpy: Array) -> Array:
     )
 
 
+def rotated(orientation: Array, vectors: Array) -> Array:
+    """Vectors (N, 3) in the axes that unit quaternions w x y z (N, 4) take theirs to."""
+    axis = orientation[:, 1:]
+    half = cross(axis, vectors)
+    return np.asarray(vectors + 2 * (orientation[:, :1] * half + cross(axis, half)))
+
+
 def rotation_from_quaternion(quaternion: Array) -> Array:
     """Quaternions w x y z, (N, 4), of any length > 0, to rotation matrices body to world, (N, 3, 3)."""
     w, x, y, z = np.moveaxis(quaternion / np.linalg.norm(quaternion, axis=-1, keepdims=True), -1, 0)

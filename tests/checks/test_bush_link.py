@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 
 from biped import record, sway
-from plantar.checks.bush_link import TURNED, check_bush_link
+from plantar.checks.bush_link import check_bush_link
 from plantar.checks.log_checks import check_log
 from plantar.feet.identify import identify_feet
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
+
+TURNED = 0.02
 
 
 @pytest.fixture(scope="module")

@@ -105,6 +105,43 @@ def test_a_force_that_stands_still_is_told_with_its_column(robot: RobotModel) ->
     assert any("wrench.left.force.x" in finding.text for finding in found)
 
 
+def resting(start: int, seconds: float, missed: int) -> MotionLog:
+    """A simulated sway, in which nothing changes for a while; `missed`: steps that the motion goes on by meanwhile."""
+    log = record(sway())
+    rows = np.concatenate(
+        [
+            np.arange(start),
+            np.full(round(seconds / log.period), start),
+            np.arange(start + 1 + missed, len(log)),
+        ]
+    )
+    rests = np.arange(len(rows)) - start < round(seconds / log.period)
+    columns = {
+        name: np.where(rests & name.endswith(".velocity"), 0.0, values[rows])
+        for name, values in log.columns.items()
+    }
+    return MotionLog(log.name, log.period * np.arange(len(rows)), columns)
+
+
+def test_a_simulated_robot_at_rest_has_no_dead_channel(robot: RobotModel) -> None:
+    (found,) = check_channels(robot, resting(0, 2.0, 0))
+    assert (found.code, found.severity) == ("at_rest", "info")
+    assert found.text.startswith("t = 0 to 1.99 s: nothing changes")
+    log = resting(0, 2.0, 0)
+    name = "wrench.left.force.x"
+    both = log.with_columns(
+        {name: np.where(np.arange(len(log)) < 800, log.column(name)[0], log.column(name))}
+    )
+    assert [one.code for one in check_channels(robot, both)] == ["at_rest", "stuck_channel"]
+
+
+def test_a_logger_that_freezes_is_no_robot_at_rest(robot: RobotModel) -> None:
+    """Behind it all channels jump, where a motion begins slowly."""
+    codes = {one.code for one in check_channels(robot, resting(1000, 0.5, 100))}
+    assert "stuck_channel" in codes
+    assert "at_rest" not in codes
+
+
 def test_force_cells_are_named_and_not_called_dead(robot: RobotModel) -> None:
     log = record(sway("cells", 1, duration=8.0))
     none = {f"wrench.left.{part}": np.zeros(len(log)) for part in ("force.x", "force.y", "torque.z")}

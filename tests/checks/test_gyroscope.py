@@ -7,10 +7,16 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from biped import record, sines, sway
-from plantar.checks.gyroscope import SCALE_OFF, TURNED, Turns, check_gyroscope
+from plantar.checks.gyroscope import (
+    Turns,
+    check_gyroscope,
+)
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding
 from plantar.signals.resampling import shifted
+
+SCALE_OFF = 0.05
+TURNED = 0.1
 
 GYROSCOPE = [f"imu.chest.angular_velocity.{axis}" for axis in "xyz"]
 
@@ -109,3 +115,19 @@ def test_what_is_told_has_its_number(log: MotionLog) -> None:
         ]
         assert len(told) == 1
         assert said in told[0]
+
+
+@pytest.mark.parametrize(("share", "said"), [(0.45, False), (0.55, True), (-1.0, False)])
+def test_an_axis_is_called_reversed_where_the_accelerometer_feels_half_of_the_tilt(
+    log: MotionLog, share: float, said: bool
+) -> None:
+    """Else the orientation may be the wrong one."""
+    names = [f"imu.chest.linear_acceleration.{axis}" for axis in "xyz"]
+    orientation = log.orientation("chest")
+    assert orientation is not None
+    up = Rotation.from_quat(orientation, scalar_first=True).inv().apply([0.0, 0.0, 9.80665])
+    felt = up.mean(axis=0) + share * (up - up.mean(axis=0))
+    turned = changed(log, log.stack(GYROSCOPE) * [1, -1, 1]).with_columns(
+        dict(zip(names, felt.T, strict=True))
+    )
+    assert ("sign" in codes(turned)) == said

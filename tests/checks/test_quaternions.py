@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from plantar.checks.quaternions import readings, turns_between
+from plantar.checks.quaternions import misread, readings, turns_between
 
 
 def test_turns_are_those_of_a_library_small_large_and_through_either_sign() -> None:
@@ -28,3 +28,10 @@ def test_readings_of_a_quaternion() -> None:
     assert turns["as it is"] == pytest.approx([0, 0, 0.2])
     assert turns["inverted"] == pytest.approx([0, 0, -0.2])
     assert turns["read as x y z w"] == pytest.approx([np.pi - 0.2, 0, 0])
+
+
+def test_each_misreading_says_what_is_valid() -> None:
+    for reading, valid in (("read as x y z w", "w x y z"), ("inverted", "body to world")):
+        found = misread("chest", "turns", reading)
+        assert found.text == f"columns 'imu.chest.orientation.*': turns; {reading} it agrees (valid: {valid})"
+        assert (found.code, found.fatal) == ("quaternion_order", True)

@@ -134,3 +134,16 @@ def test_inspect_says_once_what_is_wrong_and_what_the_weight_holds(
     assert "kg on average, in which the zeros named below are still inside" in said
     assert run("inspect", campaign / "robot.yaml", campaign / "first.csv") == 0
     assert "kg on average; the URDF weighs" in " ".join(capsys.readouterr().out.split())
+
+
+def test_plain_numbers_of_a_csv_are_read_without_arrow(tmp_path: Path) -> None:
+    log = tmp_path / "still.csv"
+    log.write_text("time,joint.knee.position\n0,0.5\n0.01,0.5\n")
+    code = f"""
+import sys
+import plantar
+import plantar.cli.identify.feet
+plantar.open_log({str(log)!r})
+print("pyarrow" in sys.modules)
+"""
+    assert python(code).strip() == "False"

@@ -10,7 +10,7 @@ import pytest
 
 import example_robots
 from plantar import _core
-from plantar.contact.deflection import BushState, bush_states
+from plantar.contact.deflection import BushState, bush_states, foot_motions
 from plantar.contact.relative_pose import relative_pose
 from plantar.conventions import Array, rotation_from_rpy
 from plantar.errors import DataError, RobotError
@@ -204,6 +204,16 @@ def test_rates_are_the_derivatives_of_the_angles() -> None:
         np.testing.assert_allclose(state.rate[1:-1], slope, atol=1e-7)
 
 
+def test_encoders_have_their_part_in_the_rates() -> None:
+    model = talos()
+    moved = motion(model, 5)
+    whole = foot_motions(model, **moved)
+    held = foot_motions(model, **{**moved, "angular_velocity": np.zeros((SAMPLES, 3))})
+    for name in model.feet:
+        assert np.abs(whole[name].rate - whole[name].encoder_rate).max() > 0.1
+        np.testing.assert_allclose(whole[name].encoder_rate, held[name].rate, atol=1e-13)
+
+
 def test_a_known_deflection_comes_back() -> None:
     """A foot held level while the ankle pitches and rolls: the angles are those put in, with their signs."""
     rest = np.zeros(3)
@@ -256,6 +266,15 @@ def test_every_instruction_set_and_thread_count_agree() -> None:
         for threads in (1, 3):
             np.testing.assert_allclose(
                 _core.foot_chain(*arguments, threads=threads, isa=isa), reference, rtol=1e-12, atol=1e-12
+            )
+    load = (frame, -1.0, 100 * rng.normal(size=(samples, 6)), reference[:3].T, frame, 50.0)
+    reference = _core.sole_load(*load, threads=1, isa="baseline")
+    assert np.isnan(reference).any()
+    assert not np.isnan(reference[:9]).any()
+    for isa in _core.instruction_sets():
+        for threads in (1, 3):
+            np.testing.assert_allclose(
+                _core.sole_load(*load, threads=threads, isa=isa), reference, rtol=1e-12, atol=1e-10
             )
 
 

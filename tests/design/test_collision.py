@@ -8,8 +8,10 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from plantar.design.collision import EVERY, self_collision
+from plantar.design.collision import self_collision
 from plantar.twin.robots import hrp2
+
+EVERY = 10
 
 BOX = '<collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision>'
 INERTIA = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'

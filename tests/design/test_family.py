@@ -5,7 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from plantar.design.family import CHANNELS, LINES, MIRRORED, RAMP, REST, Lines
+from plantar.design.family import (
+    CHANNELS,
+    MIRRORED,
+    Lines,
+)
+
+LINES = 2
+RAMP = 4.0
+REST = 2.0
 
 LINES_OF = Lines.drawn(40.0, np.random.default_rng(3))
 

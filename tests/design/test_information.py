@@ -13,8 +13,6 @@ from plantar.conventions import NORMAL95
 from plantar.design import information as objective
 from plantar.design.family import CHANNELS, Lines
 from plantar.design.information import (
-    MISSED,
-    UNCLOSED,
     Criterion,
     badness,
     delay_half_width,
@@ -22,12 +20,27 @@ from plantar.design.information import (
     information,
     vertical_half_width,
 )
-from plantar.design.reach import BEND, LIFT, RATE, Reach, margin_kept
-from plantar.design.rubber import NEARBY, SECANT, SHARE, SLIP_ANGLE, remembered
+from plantar.design.reach import (
+    Reach,
+    margin_kept,
+)
+from plantar.design.rubber import (
+    SHARE,
+    remembered,
+)
 from plantar.design.search import best_motion
 from plantar.design.soft_feet import Softness
 from plantar.twin.presets import SLIP_TORQUE
 from plantar.twin.robots import hrp2
+
+MISSED = 0.1
+UNCLOSED = 0.2
+BEND = 0.1
+LIFT = 0.35
+RATE = 20.0
+NEARBY = 1.05
+SECANT = 0.6
+SLIP_ANGLE = 0.01
 
 
 def test_an_element_slips_as_its_definition_says() -> None:

@@ -8,9 +8,12 @@ import numpy as np
 import pytest
 
 from plantar.conventions import NORMAL95
-from plantar.design.known import SPRING, WIDER, Known
+from plantar.design.known import Known
 from plantar.errors import DataError
 from plantar.results.feet import FeetResult, Parameter
+
+SPRING = 0.5
+WIDER = 1.1
 
 
 def found() -> FeetResult:

@@ -18,7 +18,10 @@ import command_line
 import design_samples
 from plantar.design import story
 from plantar.design.rehearsal import Rehearsal
-from plantar.design.story import EFFORT, FRICTION, KEPT, SPARE, DesignSettings, design_motion
+from plantar.design.story import (
+    DesignSettings,
+    design_motion,
+)
 from plantar.design.writing.outputs import content_of, write_design
 from plantar.design.writing.sheet import sheet
 from plantar.errors import MotionError, SettingsError
@@ -28,6 +31,11 @@ from plantar.motions.plan import Plan
 from plantar.robot.model import load_robot
 from plantar.twin.own_motion import own_plan
 from plantar.twin.robots import hrp2
+
+EFFORT = 0.9
+FRICTION = 0.3
+KEPT = 0.0055
+SPARE = 0.005
 
 
 @pytest.fixture(scope="module")

@@ -4,7 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from plantar.estimation.slow_drift import MOST_COSINES, drift_basis, drift_beside
+from plantar.estimation.slow_drift import (
+    drift_basis,
+    drift_beside,
+)
+
+MOST_COSINES = 60
 
 TIME = 0.05 * np.arange(720) + 12.0  # s
 

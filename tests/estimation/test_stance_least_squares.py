@@ -194,3 +194,15 @@ def test_a_common_column_without_anything_in_it_is_as_if_it_were_not_there() -> 
     assert found.values == pytest.approx(plain.values)
     assert found.std[:2] == pytest.approx(plain.std[:2])
     assert found.common_nuisance[1] == 0.0
+
+
+def test_one_offset_for_all_takes_no_heed_of_stances() -> None:
+    """Information, influences and fit with a shared offset are those of the same rows without stances."""
+    stepping = replace(walk(0), common_nuisance=None)
+    plain = replace(stepping, stances=None)
+    for found in (information_inverse, lambda blocks, **one: influences_of(blocks, **one)[0]):
+        assert found([stepping], shared_offset=True) == pytest.approx(found([plain], shared_offset=True))
+        assert found([stepping]) != pytest.approx(found([plain]))
+    assert fit_blocks([stepping], shared_offset=True).values == pytest.approx(
+        fit_blocks([plain], shared_offset=True).values
+    )

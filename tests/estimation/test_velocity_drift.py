@@ -80,7 +80,7 @@ def test_causes_of_constant_size_are_taken_off() -> None:
     drift, noise, jump = scene(5)
     cause = np.sin(2 * np.pi * 0.4 * TIME)[:, None] * np.array([1.0, 0.3])
     idle = np.zeros_like(cause)
-    value, _ = fitted(drift + noise + 0.02 * cause, jump, np.array([cause, idle]))
+    value, _ = fitted(drift + noise + 0.02 * cause, jump, np.array([cause, idle, cause]))
     assert np.abs(value - drift - 0.02 * cause).max() < 0.001
 
 

@@ -24,7 +24,12 @@ from plantar.exporters.contact.fit import LOADS, STEPS, fitted
 from plantar.exporters.contact.points import Sides, points_for, sides_of
 from plantar.exporters.job import LEAST_LOAD as EDGES
 from plantar.exporters.openhrp import read_customizer
-from plantar.exporters.spring import SWAY, Slip, Spring
+from plantar.exporters.spring import (
+    Slip,
+    Spring,
+)
+
+SWAY = 3.0
 
 mujoco = pytest.importorskip("mujoco")
 ROTATIONS: tuple[Axis, ...] = ("pitch", "roll")

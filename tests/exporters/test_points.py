@@ -11,11 +11,10 @@ import pytest
 from plantar.conventions import Axis
 from plantar.exporters.bush import FootBush
 from plantar.exporters.contact import fit
-from plantar.exporters.contact.alone import MARKED, Measured
+from plantar.exporters.contact.alone import Measured
 from plantar.exporters.contact.fit import LOADS
 from plantar.exporters.contact.points import PointFoot, points_for, sides_of
 from plantar.exporters.contact.springs import (
-    FRICTION,
     placed,
     pushes,
     said,
@@ -26,6 +25,9 @@ from plantar.exporters.contact.springs import (
     vertical_note,
 )
 from plantar.exporters.spring import Spring
+
+MARKED = 0.25
+FRICTION = 1.0
 
 WEIGHT = 600.0
 SOLE = np.array([[0.13, 0.06, -0.1], [-0.09, 0.06, -0.1], [-0.09, -0.05, -0.1], [0.13, -0.05, -0.1]])

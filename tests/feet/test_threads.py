@@ -7,8 +7,10 @@ from threading import current_thread, main_thread
 import numpy as np
 import pytest
 
-from plantar.feet.first_look import LONG, over_logs
+from plantar.feet.first_look import over_logs
 from plantar.logs.motion_log import MotionLog
+
+LONG = 50000
 
 
 @pytest.mark.parametrize(("samples", "here"), [(LONG, True), (LONG + 1, False)])

@@ -14,7 +14,6 @@ from plantar.model_selection.cross_validation import folds_of
 from plantar.model_selection.data_sets import FilteredDataSet, prepare_data_sets
 from plantar.model_selection.model_fit import ModelFit, fit_model
 from plantar.model_selection.selection import (
-    LEAST_GAIN,
     ModelScore,
     _adds,
     _caution,
@@ -23,6 +22,8 @@ from plantar.model_selection.selection import (
     _winner,
 )
 from plantar.models import Elastoplastic, Hardening, HardeningElastoplastic, KelvinVoigt
+
+LEAST_GAIN = 0.1
 
 
 @pytest.fixture(scope="module")

@@ -22,7 +22,7 @@ from plantar.errors import DataError
 from plantar.model_selection.data_sets import DataSet, prepare_data_sets
 from plantar.model_selection.grid import Pieces
 from plantar.model_selection.model_fit import fit_model, refine
-from plantar.model_selection.partialled_out import Linearised
+from plantar.model_selection.partialled_out import Linearised, Memory
 from plantar.model_selection.selection import choose_model
 from plantar.model_selection.variable_projection import Problem, best_candidate
 from plantar.models import MODELS, BoucWen, BushMotion, Elastoplastic, Hardening, KelvinVoigt
@@ -107,7 +107,9 @@ def test_nuisances_projected_out_are_the_same_as_fitted(shared: bool) -> None:
     responses = [rng.standard_normal(n) + 2 for n in sizes]
     runs = [np.sort(rng.integers(0, count, n)) for n, count in zip(sizes, run_counts, strict=True)]
     memories = [np.exp(-0.05 * np.arange(n)) + 0.2 * rng.random(n) for n in sizes]
-    found = Linearised(designs, responses, shared, memories, runs, run_counts)
+    run = np.concatenate([runs[0], run_counts[0] + runs[1]])
+    memory = Memory(np.concatenate(memories), run, run_counts)
+    found = Linearised(np.vstack(designs), np.concatenate(responses), sizes, shared, memory)
     rows = sum(sizes)
     offsets = np.zeros((rows, 1 if shared else 2))
     initial_states = np.zeros((rows, sum(run_counts)))
@@ -126,7 +128,7 @@ def test_nuisances_projected_out_are_the_same_as_fitted(shared: bool) -> None:
     np.testing.assert_allclose(influence[:, :width], pseudo[:, :width], atol=1e-10)
     np.testing.assert_allclose(influence[:, width:][:, : offsets.shape[1]], pseudo[:, width:], atol=1e-10)
     if not shared:
-        change = np.concatenate(found.initial_states(expected[:width]))
+        change = found.initial_states(expected[:width])
         np.testing.assert_allclose(change, expected[width + 2 :], atol=1e-9)
 
 

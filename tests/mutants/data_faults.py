@@ -174,6 +174,15 @@ DATA_FAULTS = (
         "gyroscope is not None and gyroscope.shown and std < np.inf", "False", ("sensors/test_accelerometer_delay.py",),
     ),
     Mutant(
+        "sensors/accelerometer_delay.py", "an orientation drawn to its accelerometer passes for a late one",
+        "abs(gyroscope.late) + SURE * gyroscope.std < early / 2", "True", ("sensors/test_accelerometer_delay.py",),
+    ),
+    Mutant(
+        "sensors/accelerometer_delay.py", "a late orientation is taken for an early accelerometer",
+        "device_delay(told, ORIENTATION)", "(-device_delay(told)[0], device_delay(told)[1])",
+        ("sensors/test_accelerometer_delay.py",),
+    ),
+    Mutant(
         "feet/assess/contradiction.py", "drift contradicts the fit",
         "[beside_drift(row, fitted, by_name[row.motion], predictions, mount) for row in scores]", "scores",
         ("feet/assess/test_contradiction.py",),

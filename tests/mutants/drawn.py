@@ -54,7 +54,7 @@ MODEL_SELECTION = (
     ),
     Mutant(
         "model_selection/grid.py", "a held-out piece gets the first recording's offset",
-        "fits.offsets[shape, pieces.data_set[piece]]", "fits.offsets[shape, 0]",
+        "fits.offsets[shape, pieces.data_set[held], None]", "fits.offsets[shape, 0 * pieces.data_set[held], None]",
     ),
     Mutant(
         "model_selection/selection.py", "a term is told from zero by its variance",
@@ -67,7 +67,7 @@ MODEL_SELECTION = (
     ),
     Mutant(
         "model_selection/variable_projection.py", "the initial state's slope has the wrong sign",
-        "(variants[1] - variants[2])[each.run_of]", "(variants[2] - variants[1])[each.run_of]",
+        "(variants[1] - variants[2])[self.run]", "(variants[2] - variants[1])[self.run]",
     ),
     Mutant(
         "model_selection/model_fit.py", "white variance of a shape scaled like a deviation",
@@ -83,7 +83,7 @@ MODEL_SELECTION = (
     ),
     Mutant(
         "model_selection/partialled_out.py", "offsets' influence with the wrong sign",
-        "offsets = -own @ np.array(slopes).T", "offsets = own @ np.array(slopes).T",
+        "offsets = -own @ slopes.T", "offsets = own @ slopes.T",
     ),
 )  # fmt: skip
 
@@ -106,7 +106,7 @@ EXCLUSION = (
     ),
     Mutant(
         "feet/exclusion/sole_velocity.py", "the attitude's noise is added twice",
-        "arm[:, :2] - np.cross(noise_of_attitude, arm)", "arm[:, :2] + np.cross(noise_of_attitude, arm)",
+        "arm - cross(noise_of_attitude, arm)", "arm + cross(noise_of_attitude, arm)",
     ),
     Mutant(
         "feet/exclusion/sole_velocity.py", "friction turned by minus the heading",
@@ -140,8 +140,8 @@ FIT = (
         "seconds / len(stances) > SHORT_STANCE", "seconds > SHORT_STANCE",
     ),
     Mutant(
-        "feet/regression/regression_data.py", "columns of a model with memory unfiltered",
-        "low_pass(columns[:, 2:], recording.period, recording.cutoff, shortest)", "columns[:, 2:]",
+        "feet/regression/model_columns.py", "columns of a model with memory unfiltered",
+        "low_pass(columns, recording.period, recording.cutoff, _shortest_run(recording, fit.foot))", "columns",
     ),
 )  # fmt: skip
 

@@ -12,6 +12,7 @@ from drawn_last import DRAWN_LAST
 from engine_exports import ENGINE_EXPORTS
 from fleet_statistics import FLEET
 from handed_on import HANDED_ON
+from literal_edges import LITERAL_EDGES
 from made_cheaper import MADE_CHEAPER
 from of_their_kinds import OF_THEIR_KINDS
 from once_unnoticed import ONCE_UNNOTICED
@@ -34,4 +35,5 @@ LISTS = {
     "handed_on": HANDED_ON,
     "at_their_edges": AT_THEIR_EDGES,
     "drawn_last": DRAWN_LAST,
+    "literal_edges": LITERAL_EDGES,
 }

@@ -27,7 +27,7 @@ SHARED_WORK = (
         ("feet/test_shared_work.py",),
     ),
     Mutant(
-        "logs/readers/tables/csv_file.py", "plain lines are counted anew in each piece", "self._count += plain",
-        "self._count = plain", ("logs/readers/test_tables_in_pieces.py",),
+        "logs/readers/tables/csv_file.py", "plain lines are counted anew in each piece", "count += plain",
+        "count = plain", ("logs/readers/test_tables_in_pieces.py",),
     ),
 )  # fmt: skip

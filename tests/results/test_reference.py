@@ -69,3 +69,26 @@ def test_the_command_lists_them(capsys: pytest.CaptureFixture[str]) -> None:
     assert "JAXON" in out
     assert "configured" in out
     assert run("show", "nothing") == 2
+
+
+# Pitch, roll [N·m/rad], z [N/m], damping [N·m·s/rad]. Of the paper's table 1 the damping is the mean of 15.9 and 17.5,
+# of 24.3 and 28.2; the others are the robots' public configurations.
+PUBLISHED = {
+    ("HRP-2, right foot", 434, 323, None, 16.7), ("HRP-2, left foot", 480, 352, None, 26.2),
+    ("HRP-2", 502, 707, 239018, None), ("HRP-2", 600, 600, 40000, 60),
+    ("any, Kinetics Observer's default", 400, 400, 40000, 12), ("JAXON", 2500, 2500, 1.1e6, 2.5),
+    ("JVRC-1", 3000, 3000, 1.3e6, 2.5), ("OpenHRP's sample robot", 1000, 1000, 5e5, 25), ("TALOS", 1e8, 1e8, 1e8, None),
+}  # fmt: skip
+
+
+def test_references_are_as_published_and_a_number_without_a_value_is_none() -> None:
+    assert {(one.robot, one.pitch, one.roll, one.z, one.damping) for one in REFERENCES} == PUBLISHED
+    k, other, damper = (
+        row("left", "pitch", "stiffness", 500.0),
+        row("left", "roll", "stiffness", 500.0),
+        OWN[2],
+    )
+    (own,) = [one.reference for one in neighbours([k, other, damper, replace(OWN[3], value=None)]) if one.own]
+    assert (own.rotation, own.damping) == (500.0, None)
+    (own,) = [one.reference for one in neighbours([k, replace(other, value=700.0), *OWN[2:4]]) if one.own]
+    assert (own.rotation, own.damping) == (600.0, 20.0)

@@ -7,7 +7,7 @@ from dataclasses import asdict
 import numpy as np
 import pytest
 
-from plantar.results.scores import first_second, score
+from plantar.results.scores import error_measures, first_second, score
 
 
 def test_a_row_by_hand() -> None:
@@ -39,3 +39,10 @@ def test_the_opening_is_one_second_of_samples_that_serve() -> None:
     assert time[first].min() == pytest.approx(1.0)
     assert time[first].max() == pytest.approx(1.99)
     assert not first_second(time, np.zeros(400, dtype=bool)).any()
+
+
+def test_a_percentage_is_the_mean_error_over_the_largest_value() -> None:
+    found = error_measures(np.array([8.0, -10.0]), np.array([5.0, -8.0]), 1.0)
+    assert (found["mean_abs_error"], found["max_abs"]) == (2.5, 10.0)
+    assert found["percent_of_max"] == pytest.approx(25.0)
+    assert found["zero_mean_abs"] == pytest.approx(9.0)

@@ -1,4 +1,4 @@
-"""An accelerometer that its own filter delays is told from the orientation over standing soles, and read on time."""
+"""An accelerometer and an orientation that a filter sets apart are told by standing soles, and read on time."""
 
 from __future__ import annotations
 
@@ -15,17 +15,19 @@ from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.robot.model import RobotModel
 from plantar.sensors.accelerometer_delay import (
-    ALIKE,
-    COLUMNS,
-    RATE,
-    STRAY,
+    ORIENTATION,
     AccelerometerDelay,
     accelerometer_delay,
     device_delay,
     filter_delay,
-    with_accelerometers_on_time,
+    with_imus_on_time,
 )
 from plantar.sensors.imu_filter import ImuFilter
+
+ALIKE = 0.001
+COLUMNS = 11
+RATE = 1.5
+STRAY = 0.0005
 
 ACCELERATION = imu_columns("chest", "linear_acceleration")
 TORSO = (
@@ -56,12 +58,12 @@ def late_by(delay: float, noise: float = 0.02, tilt: float = 2e-4) -> MotionLog:
 
 
 def on_time(robot: RobotModel, logs: list[MotionLog]) -> list[MotionLog]:
-    return with_accelerometers_on_time(robot, logs, [accelerometer_delay(robot, log) for log in logs])
+    return with_imus_on_time(robot, logs, [accelerometer_delay(robot, log) for log in logs])
 
 
 @pytest.mark.parametrize("delay", [0.004, 0.0, -0.003])
 def test_standing_soles_tell_how_late_it_is(robot: RobotModel, delay: float) -> None:
-    found, std = accelerometer_delay(robot, late_by(delay)).late
+    found, std = accelerometer_delay(robot, late_by(delay)).late()
     assert 0 < std < 0.0007
     assert abs(found - delay) < 3 * std
 
@@ -96,7 +98,7 @@ def test_without_an_accelerometer_or_a_stance_nothing_is_told(robot: RobotModel)
         {name: np.zeros(len(SWAY)) for name in SWAY.columns if name.startswith("wrench.")}
     )
     for log in (SWAY.with_columns({name: np.full(len(SWAY), np.nan) for name in ACCELERATION}), hung):
-        assert accelerometer_delay(robot, log).late == (0.0, np.inf)
+        assert accelerometer_delay(robot, log).late() == (0.0, np.inf)
     assert device_delay([AccelerometerDelay()]) == (0.0, np.inf)
     assert filter_delay((0.0, np.inf), ImuFilter(0.004, 1e-4, True))[0] == 0.0
 
@@ -105,7 +107,7 @@ def test_an_imu_out_of_place_is_no_delay(tmp_path: Path) -> None:
     """The robot file has the IMU 5 cm lower than it is."""
     x, y, z = AS_USUAL.imu.xyz
     told = make_robot(tmp_path, replace(AS_USUAL, imu=replace(AS_USUAL.imu, xyz=(x, y, z - 0.05))))
-    found, std = accelerometer_delay(told, late_by(0.0)).late
+    found, std = accelerometer_delay(told, late_by(0.0)).late()
     assert abs(found) < 3 * std
 
 
@@ -113,6 +115,68 @@ def test_identify_says_that_it_reads_the_accelerometer_earlier(robot: RobotModel
     settings = FeetSettings(model="kelvin_voigt", wrench_delay=0.0)
     found = identify_feet(robot, [late_by(0.004)], settings=settings)
     assert sum(note.code == "accelerometer_delay" for note in found.notes) == 1
+
+
+@pytest.mark.parametrize(("gyroscope", "moved"), [
+    (ImuFilter(0.0, 0.0003, True), True),
+    (ImuFilter(0.0002, 0.0005, True), True),
+    (ImuFilter(0.0002, 0.0007, True), False),  # may be as early
+    (ImuFilter(-0.004, 0.0003, True), False),
+    (ImuFilter(0.0, 0.0003, False), False),
+    (None, False),
+])  # fmt: skip
+def test_early_beside_an_orientation_that_the_gyroscope_keeps_to_it_is_right(
+    gyroscope: ImuFilter | None, moved: bool
+) -> None:
+    """Either a filter delays both, or the orientation follows the accelerometer and the gyroscope does not."""
+    late, std = filter_delay((-0.006, 0.0002), gyroscope, (0.004, 0.0003))
+    assert late == (-0.004 if moved else 0.0)
+    assert not moved or std == pytest.approx(np.hypot(0.0003, STRAY))
+    assert filter_delay((0.0, 0.0002), gyroscope, (0.004, 0.0003))[0] == 0.0  # no accelerometer is early
+
+
+def orientation_late_by(delay: float) -> MotionLog:
+    """The sway with orientation and gyroscope late [s]; the quaternion's sign turns, and turns back."""
+    sign = np.where((SWAY.time > 12) & (SWAY.time < 13), -1.0, 1.0)
+    at, moved = SWAY.time - delay, imu_columns("chest", "orientation", "angular_velocity")
+    return SWAY.with_columns(
+        {
+            name: np.interp(at, SWAY.time, SWAY.columns[name]) * (sign if "orientation" in name else 1.0)
+            for name in moved
+        }
+    )
+
+
+@pytest.mark.parametrize("delay", [0.002, 0.004])
+def test_a_trunk_that_turns_shows_a_late_orientation_otherwise_than_an_early_accelerometer(
+    robot: RobotModel, delay: float
+) -> None:
+    found = accelerometer_delay(robot, orientation_late_by(delay))
+    late, std = found.late(ORIENTATION)
+    assert late == pytest.approx(delay, abs=0.0003)
+    assert std < 0.0003
+    assert found.late()[0] < -1.5 * delay
+
+
+@pytest.mark.parametrize("without", [(), ("linear_acceleration",), ("angular_velocity",)])
+def test_orientation_and_gyroscope_behind_one_filter_are_read_on_time(
+    robot: RobotModel, without: tuple[str, ...]
+) -> None:
+    """In every log of the device, also where a sensor is missing."""
+    late = orientation_late_by(0.004)
+    kept = {name: values for name, values in late.columns.items() if name.split(".")[-2] not in without}
+    told = [accelerometer_delay(robot, late)] * 2
+    logs = [late, MotionLog(late.name, late.time, kept)]
+    _, read = with_imus_on_time(robot, logs, told, ImuFilter(0.0, 0.0003, True))
+    assert [note.code for note in read.notes] == ["orientation_delay"]
+    shown = float(read.notes[0].text.split("gyroscope ")[1].split(" ±")[0])
+    assert shown == pytest.approx(4.0, abs=0.3)
+    for name in imu_columns("chest", "orientation", "angular_velocity"):
+        if name in kept:
+            before, after = (np.abs(one.columns[name]) - np.abs(SWAY.columns[name]) for one in (late, read))
+            assert np.abs(after[200:-200]).mean() < 0.2 * np.abs(before).mean()
+    for name in ACCELERATION:
+        assert name not in kept or read.columns[name] is SWAY.columns[name]
 
 
 def told(late: float, std: float) -> AccelerometerDelay:
@@ -124,7 +188,7 @@ def told(late: float, std: float) -> AccelerometerDelay:
 
 
 def test_what_sums_tell() -> None:
-    np.testing.assert_allclose(told(0.004, 0.0005).late, (0.004, 0.0005), rtol=1e-9)
+    np.testing.assert_allclose(told(0.004, 0.0005).late(), (0.004, 0.0005), rtol=1e-9)
 
 
 def test_logs_of_one_device_tell_by_weight_and_less_where_they_disagree() -> None:
@@ -140,7 +204,7 @@ def test_logs_of_one_device_tell_by_weight_and_less_where_they_disagree() -> Non
 def test_a_gyroscope_behind_its_filter_tells_of_the_accelerometer_beside_it() -> None:
     """2.0 ± 1.2 ms and, from the gyroscope, 3.5 ± 1.0 ms: their mean by weight, which is sure, as neither stray is."""
     own, usual = np.hypot(0.0012, STRAY), np.hypot(0.0002, ALIKE)
-    assert filter_delay((0.002, 0.0012), None) == (0.0, pytest.approx(own))
+    assert filter_delay((0.002, 0.0012)) == (0.0, pytest.approx(own))
     late, std = filter_delay((0.002, 0.0012), ImuFilter(0.0035, 0.0002, True))
     assert late == pytest.approx((0.002 / own**2 + 0.0035 / usual**2) / (own**-2 + usual**-2))
     assert std == pytest.approx((own**-2 + usual**-2) ** -0.5)
@@ -150,7 +214,7 @@ def test_a_gyroscope_behind_its_filter_tells_of_the_accelerometer_beside_it() ->
 def test_without_a_filter_or_against_it_the_accelerometer_is_believed(gyroscope: ImuFilter | None) -> None:
     """Of 1.0 ± 0.2 ms, 4.9 ms are 3.4 deviations away; 1.8 ms alone is sure."""
     assert filter_delay((0.001, 0.0002), gyroscope)[0] == 0.0
-    assert filter_delay((0.0018, 0.0002), None)[0] == 0.0018
+    assert filter_delay((0.0018, 0.0002))[0] == 0.0018
 
 
 def test_an_orientation_that_follows_the_accelerometer_makes_it_late_for_nothing() -> None:
@@ -161,4 +225,4 @@ def test_an_orientation_that_follows_the_accelerometer_makes_it_late_for_nothing
 
 @pytest.mark.parametrize(("late", "moved"), [(0.0099, True), (0.0101, False), (-0.004, False)])
 def test_only_a_filter_s_delay_is_undone(late: float, moved: bool) -> None:
-    assert (filter_delay((late, 0.0001), None)[0] != 0.0) is moved
+    assert (filter_delay((late, 0.0001))[0] != 0.0) is moved

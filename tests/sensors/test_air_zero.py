@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from plantar.conventions import Array
 from plantar.sensors.air_zero import air_zero
 
 WEIGHT, PERIOD = 700.0, 0.02
@@ -119,3 +120,50 @@ def test_swings_too_short_to_be_flat_leave_no_rest_for_a_zero() -> None:
     rest = ((time > 7.0) & (time < 8.0)) | (time > 15.0)
     wrench[:, 2] = ZERO[2] + WEIGHT * np.where(rest, 0.3, share)
     assert air_zero(time, wrench, wrench[:, 2], WEIGHT) is None
+
+
+def stepped(
+    high: float = WEIGHT, low: float = 0.0, swing: float = 1.0, rough: float = 0.0, rest: float | None = None
+) -> tuple[Array, Array]:
+    """Eight stances of a second and swings of `swing` [s], in which the load varies by `rough`; one may read `rest`."""
+    period = 0.01
+    one = np.concatenate([np.full(100, high), low + rough * np.tile([1.0, -1.0], round(50 * swing))])
+    force = np.tile(one, 8)
+    if rest is not None:
+        force[100 : one.size] = rest
+    wrench = np.zeros((force.size, 6))
+    wrench[:, 2], wrench[:, 5] = force, 0.7
+    return period * np.arange(force.size), wrench
+
+
+@pytest.mark.parametrize(
+    ("changes", "swings"),
+    [({"high": 0.51 * WEIGHT}, 8), ({"high": 0.49 * WEIGHT}, None), ({"low": 0.19 * WEIGHT}, 8),
+     ({"low": 0.21 * WEIGHT}, None), ({"low": -0.21 * WEIGHT}, None), ({"swing": 0.24}, 8), ({"swing": 0.16}, None),
+     ({"rough": 0.0145 * WEIGHT}, 8), ({"rough": 0.0155 * WEIGHT}, None), ({"rest": 0.09 * WEIGHT}, 8),
+     ({"rest": 0.11 * WEIGHT}, 7)],
+)  # fmt: skip
+def test_a_zero_is_read_in_swings_that_are_long_flat_and_alike(
+    changes: dict[str, float], swings: int | None
+) -> None:
+    time, wrench = stepped(**changes)
+    found = air_zero(time, wrench, wrench[:, 2], WEIGHT)
+    assert (found and found.swings) == swings
+    assert found is None or found.middle[5] == pytest.approx(0.7)
+
+
+@pytest.mark.parametrize(("drift", "followed"), [(0.9, False), (1.1, True)])
+def test_a_zero_s_drift_is_three_of_its_deviations(drift: float, followed: bool) -> None:
+    """Eight swings 2 s apart, by turns 1 N above and below the line: a slope's deviation is 1 / √(Σ t²)."""
+    time, wrench = stepped()
+    when = 1.495 + 2.0 * np.arange(8)
+    usual = 1 / np.sqrt(np.sum((when - when.mean()) ** 2))
+    above = np.tile([1.0, -1.0, -1.0, 1.0], 2)
+    wrench[:, 0] = np.repeat(above, 200) + 3 * drift * usual * np.repeat(when - when.mean(), 200)
+    found = air_zero(time, wrench, wrench[:, 2], WEIGHT)
+    assert found is not None
+    assert bool(found.drift[0]) == followed
+    assert "in the air its force sensor reads " in found.text
+    x, _, z = found.middle[:3]
+    told = f"reads {x:.3g}, 0, {z:.3g} N (8 swings, which differ by {found.scatter[0]:.2g} N)"
+    assert told in found.text

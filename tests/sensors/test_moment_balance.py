@@ -16,11 +16,14 @@ from plantar.robot.uncertainty import EXACT
 from plantar.sensors.moment_balance import TorqueGain, torque_gain_notes, torque_gains
 from plantar.sensors.moment_errors import moment_errors, prior_deviations
 from plantar.sensors.moment_fit import MomentFit, Part, solved
-from plantar.sensors.newton_euler import EDGE, SHORTEST, newton_euler_residuals
+from plantar.sensors.newton_euler import newton_euler_residuals
 from plantar.signals.resampling import shifted
 from plantar.twin import PAPER, play_all
 from plantar.twin.robots import hrp2
 from twin_samples import walked
+
+EDGE = 0.3
+SHORTEST = 8.0
 
 
 @pytest.fixture(scope="module")

@@ -52,6 +52,17 @@ def test_deviations_are_as_large_as_errors_where_many_columns_follow_few_frequen
     assert 0.6 < np.sqrt(np.mean(np.square(told))) < 1.2
 
 
+def test_a_log_in_which_a_hand_steadies_the_robot_says_little_beside_one_without() -> None:
+    """A hand's moment goes with the sway, and passes for a gain where it counts as much as no hand does."""
+    random = np.random.default_rng(0)
+    alone, held = swaying(random), swaying(random)
+    noise = [0.01 * low_pass(random.normal(size=SAMPLES), PERIOD, 1.0) for _ in range(2)]
+    logs = [log_of(alone, noise[0]), log_of(held, noise[1] + 0.3 * held[0] + 0.3 * swaying(random)[0])]
+    values, parts = solved(logs, np.full(COLUMNS, 3.0))
+    assert abs(values[0]) < 0.01
+    assert np.sqrt(sum(part.covariance[0, 0] for part in parts)) < 0.05
+
+
 def test_a_walk_of_which_a_part_is_used_misses_what_its_columns_say() -> None:
     """Two per cent more torque adds two per cent of the torques' own columns, and nothing at the ends of the part."""
     robot, log = hrp2.robot(), checked(hrp2.robot(), walked())

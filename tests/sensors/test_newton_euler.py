@@ -12,12 +12,14 @@ from plantar.dynamics.inertial_motion import InertialSignals
 from plantar.estimation.delays.delay import Pair
 from plantar.feet.prepare_log import checked
 from plantar.logs.motion_log import MotionLog
-from plantar.sensors.delays.sensor_delay import CLOCK, estimate_wrench_delay
+from plantar.sensors.delays.sensor_delay import estimate_wrench_delay
 from plantar.sensors.newton_euler import NewtonEulerResidual, newton_euler_residuals
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.resampling import interpolate, shifted
 from plantar.twin import PAPER, play_all
 from plantar.twin.robots import hrp2
+
+CLOCK = 0.06
 
 PERIOD = 0.005
 

@@ -16,9 +16,14 @@ from plantar.robot.model import RobotModel
 from plantar.sensors.moment_errors import turn_columns
 from plantar.sensors.moment_fit import MomentFit, Part
 from plantar.sensors.newton_euler import newton_euler_residuals
-from plantar.sensors.sensor_turns import LEAST, TURNED, sensor_turn_notes
+from plantar.sensors.sensor_turns import (
+    TURNED,
+    sensor_turn_notes,
+)
 from plantar.twin.robots import hrp2
 from twin_samples import walked
+
+LEAST = 0.05
 
 
 @pytest.fixture(scope="module")

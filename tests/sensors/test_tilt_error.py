@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -16,8 +17,17 @@ from plantar.conventions import GRAVITY
 from plantar.feet.identify import identify_feet
 from plantar.feet.prepare_log import checked, prepare
 from plantar.feet.settings import FeetSettings
-from plantar.logs.motion_log import MotionLog
-from plantar.sensors.tilt_error import enough_of, lean_of, log_tilt_error, stance_leans, tilt_error_of
+from plantar.logs.motion_log import MotionLog, imu_columns
+from plantar.notes import Note
+from plantar.sensors.tilt_error import (
+    TiltError,
+    enough_of,
+    lean_of,
+    log_tilt_error,
+    stance_leans,
+    tilt_error_of,
+)
+from plantar.signals.resampling import shifted
 from plantar.twin.sensing import attitude_filter
 from plantar.twin.sensing.attitude_filter import filtered_attitude
 
@@ -162,6 +172,35 @@ def test_a_gyroscope_s_scale_is_judged_beside_the_attitude_that_the_soles_have_p
     found = prepare(robot, log, "fit", log_tilt_error(log, robot.imu))
     assert any(note.code == "attitude_tilted" for note in found.notes)
     assert any(note.code == "gyroscope_scale" for note in found.notes) == (scale != 1.0)
+
+
+def test_a_late_gyroscope_is_told_by_how_much_it_is_behind_the_attitude_that_was_put_right(
+    tmp_path: Path,
+) -> None:
+    """An attitude that leans with the motion is late itself: what both are apart by before says nothing of either."""
+    log = filtered(record(sway("sway", seed=1, duration=30.0)))
+    rates = np.nan_to_num(shifted(log.angular_velocity("chest"), log.period, -0.04))
+    robot = make_robot(tmp_path)
+    log = checked(
+        robot, log.with_columns(dict(zip(imu_columns("chest", "angular_velocity"), rates.T, strict=True)))
+    )
+
+    def apart(notes: Iterable[Note]) -> float:
+        (note,) = [note for note in notes if note.code == "imu_late"]
+        return float(note.text.split("gyroscope is ")[1].split(" ms behind the orientation")[0])
+
+    assert apart(log.notes) < 35
+    assert robot.imu is not None
+    found = prepare(robot, log, "fit", TiltError(1.0, 1.0, 1.0, 30.0))
+    assert any(note.code == "attitude_tilted" for note in found.notes)
+    assert apart(found.notes) == pytest.approx(40, abs=2)
+
+
+def test_a_gyroscope_that_was_read_on_time_is_late_no_more(tmp_path: Path) -> None:
+    """All logs of a device tell of its filter; one alone may have seemed a little later than a filter is."""
+    log, robot = record(sway("sway", seed=1, duration=30.0)), make_robot(tmp_path)
+    said = Note("imu_late", "warning", "sway: the gyroscope is 6 ms behind the orientation")
+    assert said not in prepare(robot, checked(robot, log.with_columns({}, said)), "fit").notes
 
 
 def without_accelerometer(log: MotionLog) -> MotionLog:

@@ -6,7 +6,13 @@ import numpy as np
 import pytest
 from scipy.signal import butter, sosfiltfilt
 
-from plantar.signals.filters import PADDED, differentiate, gain, low_pass
+from plantar.signals.filters import (
+    differentiate,
+    gain,
+    low_pass,
+)
+
+PADDED = 3.0
 
 PERIOD = 0.005
 

@@ -6,8 +6,13 @@ import numpy as np
 import pytest
 
 from plantar.logs.motion_log import MotionLog
-from plantar.signals.held import SHORTEST, held_samples, without_held
+from plantar.signals.held import (
+    held_samples,
+    without_held,
+)
 from plantar.signals.segments import runs
+
+SHORTEST = 0.2
 
 PERIOD = 0.01
 TIME = np.arange(0.0, 20.0, PERIOD)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from plantar.signals.segments import runs, steps_in
+from plantar.signals.segments import complete, runs, steps_in
 
 
 def test_runs_are_the_stretches_of_true() -> None:
@@ -15,3 +15,16 @@ def test_runs_are_the_stretches_of_true() -> None:
 
 def test_a_time_takes_at_least_one_sample() -> None:
     assert [steps_in(0.05, period) for period in (0.001, 0.02, 0.1, 0.5)] == [50, 2, 1, 1]
+
+
+def test_samples_are_complete_without_nan_and_infinity() -> None:
+    values = np.ones((5, 3))
+    values[[1, 2, 3], [0, 1, 2]] = [np.nan, np.inf, -np.inf]
+    values[3, 0] = np.inf
+    assert complete(values).tolist() == [True, False, False, False, True]
+
+
+def test_samples_are_complete_where_no_column_of_any_table_is_empty() -> None:
+    one, other = np.ones((5, 2)), np.ones((5, 1))
+    one[1, 0] = one[3, 1] = other[3, 0] = np.nan
+    assert complete(one, other).tolist() == [True, False, True, False, True]

@@ -90,3 +90,12 @@ def test_spikes_are_bridged_and_told_with_their_time() -> None:
     assert next(note.severity for note in again.notes if note.code == "spikes") == "warning"
     fine = MotionLog("walk", TIME, {names[0]: clean})
     assert without_spikes(fine) is fine
+
+
+@pytest.mark.parametrize("at", [1000, 4090])
+def test_a_spike_is_bridged_also_in_what_is_left_of_the_last_second(at: int) -> None:
+    values = np.append(signal(), 0.05 * np.random.default_rng(1).standard_normal(100))
+    values[at] += 5.0
+    log = MotionLog("spiked", PERIOD * np.arange(len(values)), {"imu.chest.angular_velocity.x": values})
+    bridged = without_spikes(log).column("imu.chest.angular_velocity.x")
+    assert np.flatnonzero(bridged != values).tolist() == [at]

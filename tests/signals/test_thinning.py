@@ -6,7 +6,12 @@ import numpy as np
 import pytest
 
 from plantar.logs.motion_log import MotionLog
-from plantar.signals.thinning import LOWEST_RATE, picked, thinned
+from plantar.signals.thinning import (
+    picked,
+    thinned,
+)
+
+LOWEST_RATE = 200.0
 
 
 def log_of(rate: float, **signals: object) -> MotionLog:

@@ -19,9 +19,16 @@ from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import open_log
 from plantar.results.dynamics import DynamicsResult
 from plantar.robot.model import RobotModel, load_robot
-from plantar.whole_body.dataset import COULOMB_SPEED
-from plantar.whole_body.joints import OFFSET_SHARE, Inertia, _held_out, _judge, identify_joints
+from plantar.whole_body.joints import (
+    Inertia,
+    _held_out,
+    _judge,
+    identify_joints,
+)
 from plantar.whole_body.regularised_fit import HeldOutError, errors_of
+
+COULOMB_SPEED = 0.02
+OFFSET_SHARE = 0.05
 
 VISCOUS, COULOMB, OFFSET = 3.0, 2.0, 0.5
 TERMS = "".join(

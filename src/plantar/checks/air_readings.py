@@ -9,7 +9,7 @@ import numpy as np
 from plantar.conventions import GRAVITY, Array
 from plantar.notes import Finding
 from plantar.robot.model import RobotModel
-from plantar.signals.segments import longest_run
+from plantar.signals.segments import complete, longest_run
 
 STANDS = 0.8  # of the weight, that the other feet carry
 HANGS = 0.15  # of the weight, that a foot in the air may read
@@ -30,7 +30,7 @@ def check_air_readings(
     for name, load in loads.items():
         others = sum((load for other, load in loads.items() if other != name), np.zeros(len(load)))
         hanging = (others > STANDS * weight) & (np.abs(load) < HANGS * weight)
-        run = longest_run(hanging & np.isfinite(wrenches[name]).all(axis=1))
+        run = longest_run(hanging & complete(wrenches[name]))
         if (run.stop - run.start) * period < LONG or robot.feet[name].contact == "always":
             continue
         usual = np.median(wrenches[name][run], axis=0)

@@ -6,10 +6,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from plantar.conventions import Array
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding
 from plantar.robot.model import RobotModel
 
+SAMPLES = 500  # spread over the log: enough to tell its usual posture
 BEFORE = 3.0  # times as far before or behind as beside: no posture of a whole log
 
 
@@ -20,7 +22,7 @@ def check_bush_axes(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     """
     if len(robot.feet) != 2:
         return
-    positions = np.nan_to_num(np.nanmedian(np.atleast_2d(log.positions(robot)), axis=0))[None]
+    positions = np.array([[_usual(log.joint(name, "position")) for name in robot.joint_names]])
     rotations, places = robot.tree.poses(positions)
     frames = {}
     for name, foot in robot.feet.items():
@@ -36,3 +38,9 @@ def check_bush_axes(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
                 "exchanged (valid: x to the toes, y to the left, z up)"
             )
             yield Finding("bush_axes", text)
+
+
+def _usual(position: Array | None) -> float:
+    """The joint's usual position, 0 where it was not recorded."""
+    known = np.zeros(0) if position is None else position[np.isfinite(position)]
+    return float(np.median(known[:: max(1, len(known) // SAMPLES)])) if known.size else 0.0

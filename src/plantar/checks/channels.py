@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from plantar.conventions import FORCE, GRAVITY, Array
+from plantar.conventions import FORCE, GRAVITY, Array, Mask
 from plantar.logs.motion_log import MotionLog, wrench_columns
 from plantar.notes import Finding
 from plantar.robot.model import Foot, RobotModel
@@ -19,23 +19,30 @@ TURNED = 0.02  # rad by which a joint moves, whose position stands still
 STEPS = 5.0  # of a coarse encoder: likewise
 BEYOND_DOUBT = 5.0  # times what the velocity is off by in such a time: no noise adds up to as much
 LEAST_ELSEWHERE = 0.2  # of a run's length, for the rest of the log to show the velocity's bias
+JUMPS = 5.0  # usual steps, of most channels behind a standstill: motions begin slowly, a logger that froze missed many
 
 
 def check_channels(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     """Columns of the IMU and of the wrenches that stand at one value for a while, joints that do while they turn.
 
     Columns of one sensor that stop together are one finding. Encoders read in steps: of one that stands for a while
-    nothing can be said.
+    nothing can be said. Where nothing at all changes, a simulated robot without noise is at rest.
     """
     if robot.imu is None:
         return
     for name in sorted(loaded_path(robot, log)):
         yield from _dead_encoder(name, log)
+    rest = _at_rest(log)
+    if rest.any():
+        longest = longest_run(rest)
+        when = f"t = {log.time[longest.start]:g} to {log.time[longest.stop - 1]:g} s"
+        text = f"{when}: nothing changes, as of a simulated robot at rest; {100 * np.mean(rest):.0f} % of the log"
+        yield Finding("at_rest", f"{text}, left out", severity="info")
     for sensor in (
         f"imu.{robot.imu.name}.",
         *(f"wrench.{foot.wrench.name}." for foot in robot.feet.values()),
     ):
-        yield from _stuck(sensor, log)
+        yield from _stuck(sensor, log, rest)
 
 
 def loaded_path(robot: RobotModel, log: MotionLog) -> frozenset[str]:
@@ -127,12 +134,37 @@ def _noise_path(turns: Array) -> float:
     return float(np.std(np.diff(turns)) / np.sqrt(2) * np.sqrt(len(turns)))
 
 
-def _stuck(sensor: str, log: MotionLog) -> Iterator[Finding]:
-    """A finding for each stretch over which columns of this sensor stand still while they change elsewhere."""
+def _at_rest(log: MotionLog) -> Mask:
+    """Samples (N,) in stretches in which no column changes and behind which most do not jump."""
+    columns = [log.column(name) for name in log.columns if name.startswith(("imu.", "wrench.", "joint."))]
+    still, found = np.ones(len(log) - 1, dtype=bool), np.zeros(len(log), dtype=bool)
+    for column in columns:
+        still &= np.diff(column) == 0
+        if not still.any():  # the first noisy one says it
+            return found
+    for run in runs(still):
+        if run.stop - run.start >= max(FEWEST, round(SHORTEST / log.period)):
+            found[run.start : run.stop + 1] = True
+    stretches = runs(found)
+    ends = [run.stop - 1 for run in stretches]
+    apart = list[Array]()
+    for column in columns if stretches else ():
+        steps = np.append(np.abs(np.diff(column)), 0.0)
+        if (steps > 0).any():
+            apart.append(steps[ends] / np.median(steps[steps > 0]))
+    for place, run in enumerate(stretches):
+        if np.median([own[place] for own in apart]) > JUMPS:
+            found[run] = False
+    return found
+
+
+def _stuck(sensor: str, log: MotionLog, rest: Mask) -> Iterator[Finding]:
+    """A finding for each stretch over which columns of this sensor stand still while they change elsewhere, or while
+    others do."""
     columns = [column for column in log.columns if column.startswith(sensor) and can_be_held(column)]
     together: defaultdict[tuple[int, int], list[tuple[str, float]]] = defaultdict(list)
     for column in columns:
-        held = held_in(log, column)
+        held = held_in(log, column) & ~rest
         if held.any():
             longest = longest_run(held)
             together[longest.start, longest.stop - 1].append((column, float(np.mean(held))))

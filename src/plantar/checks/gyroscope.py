@@ -14,6 +14,7 @@ from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding
 from plantar.signals.gyroscope_delay import USUAL, gyroscope_delay
 from plantar.signals.orientation import rates_from
+from plantar.signals.segments import complete
 
 WINDOW = 0.5  # s over which the orientation's turn is compared with the gyroscope's integral
 OVERLAP = 5  # windows begin in each window's time
@@ -57,10 +58,8 @@ class Turns:
         total = np.vstack([np.zeros(3), np.cumsum(steps, axis=0)])
         starts = np.arange(0, len(log) - stride, max(1, stride // OVERLAP))
         ends = starts + stride
-        whole = np.isfinite(
-            np.column_stack([total[ends] - total[starts], orientation[starts], orientation[ends]])
-        )
-        starts, ends = starts[whole.all(axis=1)], ends[whole.all(axis=1)]
+        whole = complete(total[ends] - total[starts], orientation[starts], orientation[ends])
+        starts, ends = starts[whole], ends[whole]
         if starts.size == 0:
             return None
         before, after = readings(orientation[starts]), readings(orientation[ends])
@@ -153,15 +152,16 @@ def check_gyroscope(name: str, log: MotionLog, orientation: Array, turns: Turns)
         yield Finding(FRAME, text)
 
 
-def put_right_by(name: str, log: MotionLog, orientation: Array) -> frozenset[str]:
-    """Codes of findings that another orientation of the same IMU, as soles that stand have it, does not show."""
+def beside_leans(name: str, log: MotionLog, orientation: Array) -> list[Finding]:
+    """What a log whose gyroscope was put right, or another orientation of the same IMU, as soles that stand have it,
+    still shows of the findings that an orientation which leans makes as well."""
     turns = Turns.of(log, name, orientation)
     found = (
         check_gyroscope(name, log, orientation, turns)
         if turns is not None
         else imu_late(name, log, orientation)
     )
-    return BY_LEANS - {finding.code for finding in found}
+    return [finding for finding in found if finding.code in BY_LEANS]
 
 
 def _axes_and_scale(where: str, turns: Turns) -> Iterator[Finding]:
@@ -232,7 +232,7 @@ def _upside_down(name: str, log: MotionLog, orientation: Array) -> bool:
     if not log.has(*columns):
         return True
     acceleration = log.linear_acceleration(name)
-    whole = np.flatnonzero(np.isfinite(np.column_stack([orientation, acceleration])).all(axis=1))
+    whole = np.flatnonzero(complete(orientation, acceleration))
     if whole.size < 10:
         return True
     rows = whole[:: max(1, whole.size // 2000)]

@@ -11,6 +11,7 @@ from plantar.checks.quaternions import misread, readings
 from plantar.conventions import GRAVITY, Array, rotation_from_quaternion
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding
+from plantar.signals.segments import complete
 
 WRONG_ANGLE = np.radians(25)  # between the accelerometer's up and the quaternion's: more is not noise
 RIGHT_ANGLE = np.radians(8)
@@ -46,7 +47,7 @@ def check_imu(name: str, log: MotionLog) -> Iterator[Finding]:
 
 
 def _dead_channels(log: MotionLog, columns: list[str], orientation: Array | None) -> Iterator[Finding]:
-    whole = orientation[np.isfinite(orientation).all(axis=1)] if orientation is not None else np.zeros((0, 4))
+    whole = orientation[complete(orientation)] if orientation is not None else np.zeros((0, 4))
     moves = len(whole) > 0 and bool(np.max(np.std(whole, axis=0)) > 1e-3)
     for column in columns:
         values = log.column(column)
@@ -77,7 +78,7 @@ def _accelerometer_size(name: str, log: MotionLog) -> Finding | None:
 def _accelerometer_agrees(name: str, log: MotionLog, orientation: Array, turns: bool) -> Iterator[Finding]:
     """The accelerometer's up against the quaternion's, which is as the columns say where the gyroscope `turns` so."""
     acceleration = log.linear_acceleration(name)
-    whole = np.flatnonzero(np.isfinite(np.column_stack([orientation, acceleration])).all(axis=1))
+    whole = np.flatnonzero(complete(orientation, acceleration))
     if whole.size < 10:
         return
     rows = whole[:: max(1, whole.size // 2000)]

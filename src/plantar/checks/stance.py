@@ -12,6 +12,7 @@ from plantar.conventions import GRAVITY, Array, rotation_from_quaternion
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.kinematics import centre_of_mass
 from plantar.robot.model import Imu, RobotModel
+from plantar.signals.segments import complete
 
 SAMPLES = 50  # spread over the log: enough to tell
 LEAST_TILT = np.radians(0.5)  # usual: less of it is noise of the forces
@@ -122,7 +123,7 @@ def stance_of(robot: RobotModel, log: MotionLog) -> Stance | None:
         return None
     wrenches = [foot.wrench.sign * log.wrench(foot.wrench.name) for foot in robot.feet.values()]
     positions = log.positions(robot)
-    whole = np.isfinite(np.column_stack([orientation, positions, *wrenches])).all(axis=1)
+    whole = complete(orientation, positions, *wrenches)
     whole &= np.linalg.norm(np.nan_to_num(orientation), axis=1) > 0.5
     loaded = whole & (sum(np.abs(w[:, 2]) for w in wrenches) > 0.3 * robot.mass * GRAVITY)
     rows = np.flatnonzero(loaded)[:: max(1, int(loaded.sum() // SAMPLES))]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 from importlib import import_module
@@ -45,6 +46,8 @@ GROUPS = {
     "fleet": "Many logs of many robots: plan, run, report.",
 }
 
+GARBAGE = 100_000  # objects, not freed by their counts, after which the collector is worth its time
+
 EPILOG = "Example: plantar identify feet robot.yaml sway_*.csv --validate squat.csv --out out/feet"
 
 
@@ -54,6 +57,8 @@ def main(arguments: list[str] | None = None) -> None:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     # Arrow's own pool keeps what it has freed, beside what NumPy keeps: a tenth of all memory.
     os.environ.setdefault("ARROW_DEFAULT_MEMORY_POOL", "system")
+    # Arrays are freed without the collector, which would walk over every module again and again.
+    gc.set_threshold(GARBAGE)
     arguments = _spread(sys.argv[1:] if arguments is None else arguments)
     try:
         _application(arguments)(args=arguments, prog_name="plantar")

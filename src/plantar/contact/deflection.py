@@ -18,7 +18,7 @@ import numpy as np
 import pinocchio as pin
 
 from plantar import _core
-from plantar.conventions import FORCE, GRAVITY, TORQUE, Array, cross, skew
+from plantar.conventions import GRAVITY, Array, skew
 from plantar.errors import DataError
 from plantar.robot.kinematics import KinematicTree, packed_frame
 from plantar.robot.model import Placement, RobotModel
@@ -51,13 +51,17 @@ class BushState:
 
 @dataclass(frozen=True)
 class FootMotion:
-    """What the kinematics alone say: `up` (N, 3), in the bush frame; the others as in `BushState`."""
+    """What the kinematics alone say: `up` (N, 3), in the bush frame; `encoder_rate` (N, 2), the part of the rate that
+    joints turn, the IMU held [rad/s]; `imu_turn` (N, 2, 3), change of pitch and roll with a turn of the IMU about its
+    own x, y and z [rad/rad]; the others as in `BushState`."""
 
     up: Array
     deflection: Array
     rate: Array
     sole_position: Array
     heading: Array
+    encoder_rate: Array
+    imu_turn: Array
 
 
 @dataclass(frozen=True)
@@ -93,31 +97,52 @@ def bush_states(
 
     Raises RobotError when the robot file has no IMU, DataError when an array has the wrong shape.
     """
+    motions = foot_motions(robot, positions, velocities, orientation, angular_velocity, threads)
+    return loaded(robot, motions, wrenches, threads)
+
+
+def foot_motions(
+    robot: RobotModel,
+    positions: Array,
+    velocities: Array,
+    orientation: Array,
+    angular_velocity: Array,
+    threads: int = 0,
+) -> dict[str, FootMotion]:
+    """What the kinematics say of every foot; arguments and errors as of `bush_states`."""
     samples, joints = len(orientation), len(robot.joint_names)
     _expect("positions", positions, (samples, joints))
     _expect("velocities", velocities, (samples, joints))
     _expect("orientation", orientation, (samples, 4))
     _expect("angular velocity", angular_velocity, (samples, 3))
+    arrays = positions, velocities, orientation, angular_velocity
+    return {name: foot_motion(path_to(robot, name)[0], *arrays, threads) for name in robot.feet}
+
+
+def loaded(
+    robot: RobotModel, motions: Mapping[str, FootMotion], wrenches: Mapping[str, Array], threads: int = 0
+) -> dict[str, BushState]:
+    """What the force sensors say added to the motions; `wrenches` and errors as of `bush_states`."""
     least = LEAST_LOAD * max(robot.mass * GRAVITY, 1.0)
     states = {}
     for name, foot in robot.feet.items():
-        _expect(f"wrench of foot '{name}'", wrenches[name], (samples, 6))
-        path, sole, to_bush = path_to(robot, name)
-        sensor = to_bush * robot.frame(foot.wrench.placement)[1]
-        motion = foot_motion(path, positions, velocities, orientation, angular_velocity, threads)
-        states[name] = bush_state(motion, moved_wrench(wrenches[name], sensor, foot.wrench.sign), sole, least)
+        motion, to_bush = motions[name], robot.frame(foot.bush)[1].inverse()
+        _expect(f"wrench of foot '{name}'", wrenches[name], (len(motion.up), 6))
+        sensor, sole = (
+            packed_frame(to_bush * robot.frame(part.placement)[1]) for part in (foot.wrench, foot.sole)
+        )
+        rows = _core.sole_load(sensor, foot.wrench.sign, wrenches[name], motion.up, sole, least, threads)
+        states[name] = BushState(
+            deflection=motion.deflection,
+            rate=motion.rate,
+            wrench=rows[0:6].T,
+            torque=rows[6:8].T,
+            force_z=rows[8],
+            cop=rows[9:11].T,
+            sole_position=motion.sole_position,
+            heading=motion.heading,
+        )
     return states
-
-
-def encoder_rates(
-    robot: RobotModel, positions: Array, velocities: Array, orientation: Array
-) -> dict[str, Array]:
-    """Rate of each foot's deflection as far as joints turn, the IMU held, (N, 2) [rad/s]; see `bush_states`."""
-    held = np.zeros((len(orientation), 3))
-    return {
-        name: foot_motion(path_to(robot, name)[0], positions, velocities, orientation, held).rate
-        for name in robot.feet
-    }
 
 
 def path_to(
@@ -186,50 +211,18 @@ def foot_motion(
         angular_velocity,
         threads,
     )
-    return FootMotion(rows[0:3].T, rows[3:5].T, rows[5:7].T, rows[7:10].T, rows[10])
-
-
-def moved_wrench(wrench: Array, sensor: pin.SE3, sign: float = 1.0) -> Array:
-    """Wrenches (N, 6) from a sensor's frame to the frame in which `sensor` is its placement."""
-    force = sign * wrench[:, FORCE] @ sensor.rotation.T
-    torque = sign * wrench[:, TORQUE] @ sensor.rotation.T + force @ skew(sensor.translation).T
-    return np.hstack([force, torque])
-
-
-def bush_state(motion: FootMotion, wrench: Array, sole: pin.SE3, least: float) -> BushState:
-    """Add what the force sensor says to what the kinematics say.
-
-    wrench: of the environment at the bush centre in the bush frame, (N, 6); sole: its placement in the bush
-    frame; least: the force along the sole's normal below which there is no centre of pressure [N].
-    """
-    force, torque = wrench[:, FORCE], wrench[:, TORQUE]
-    pitch, roll = motion.deflection.T
-    # The pitch axis is fixed to the ankle; the roll axis turns with the pitch: Ry(pitch) e_x.
-    about_roll = np.cos(pitch) * torque[:, 0] - np.sin(pitch) * torque[:, 2]
-    return BushState(
-        deflection=motion.deflection,
-        rate=motion.rate,
-        wrench=wrench,
-        torque=np.column_stack([torque[:, 1], about_roll]),
-        force_z=np.einsum("ni,ni->n", motion.up, force),
-        cop=_centre_of_pressure(force, torque, pitch, roll, sole, least),
-        sole_position=motion.sole_position,
-        heading=motion.heading,
+    return FootMotion(
+        rows[0:3].T,
+        rows[3:5].T,
+        rows[5:7].T,
+        rows[7:10].T,
+        rows[10],
+        rows[11:13].T,
+        rows[13:19].T.reshape(-1, 2, 3),
     )
 
 
-def _centre_of_pressure(
-    force: Array, torque: Array, pitch: Array, roll: Array, sole: pin.SE3, least: float
-) -> Array:
-    """Where the ground's force passes through the sole's plane, in the sole frame, (N, 2)."""
-    force, torque = _onto_sole(force, pitch, roll), _onto_sole(torque, pitch, roll)
-    moment = (torque - cross(sole.translation, force)) @ sole.rotation
-    normal = force @ sole.rotation[:, 2]
-    normal = np.where(normal >= least, normal, np.nan)
-    return np.column_stack([-moment[:, 1] / normal, moment[:, 0] / normal])
-
-
-def _onto_sole(vector: Array, pitch: Array, roll: Array) -> Array:
+def onto_sole(vector: Array, pitch: Array, roll: Array) -> Array:
     """From the bush frame to the deflected one: (Ry(pitch) Rx(roll))ᵀ, (N, 3)."""
     x, y, z = vector.T
     cp, sp, cr, sr = np.cos(pitch), np.sin(pitch), np.cos(roll), np.sin(roll)

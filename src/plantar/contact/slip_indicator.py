@@ -10,6 +10,7 @@ import numpy as np
 from plantar.contact.phases import joined
 from plantar.conventions import Array, Mask
 from plantar.signals.filters import differentiate, low_pass
+from plantar.signals.medians import running_median
 from plantar.signals.segments import runs
 
 SLIP_CUTOFF = 10.0  # Hz: motion of the soles above it is noise
@@ -84,7 +85,7 @@ def apart_speed(position: Array, yaw: Array, both: Mask, period: float) -> SlipI
     apart = np.column_stack([position, YAW_MOMENT_ARM * np.unwrap(np.nan_to_num(yaw))])
     apart[~both] = np.nan
     velocity = differentiate(low_pass(apart, period, SLIP_CUTOFF), period)
-    return as_usual(np.asarray(np.linalg.norm(velocity, axis=1)))
+    return as_usual(np.sqrt(np.einsum("ni,ni->n", velocity, velocity)))
 
 
 def twist_speed(heading: Array, standing: Mask, period: float) -> Array:
@@ -150,6 +151,6 @@ def _without_drift(values: Array, period: float) -> Array:
     window = min(round(DRIFT_WINDOW / step / period), len(places)) | 1
     half = min(window // 2, len(places) - 1)
     padded = np.pad(thinned, half, mode="reflect", reflect_type="odd")
-    around = np.lib.stride_tricks.sliding_window_view(np.pad(padded, window // 2, mode="edge"), window)
-    drift = np.median(around[half : half + len(places)], axis=1)
+    around = np.pad(padded, window // 2, mode="edge")[half : half + len(places) + window - 1]
+    drift = running_median(around, window)
     return np.asarray(values - np.interp(np.arange(len(values)), places, drift))

@@ -99,30 +99,25 @@ class Legs:
         message = "the legs cannot carry the body over its feet with bent knees"
         raise MotionError(located(message, path=self.body.robot.name, valid="legs of six joints each"))
 
+    @cached_property
+    def _bounded(self) -> list[tuple[int, float, float]]:
+        """Of the legs' joints that have limits, the place in a configuration and both limits."""
+        low, high = self.model.lowerPositionLimit, self.model.upperPositionLimit
+        places = [
+            joint.idx_q for joint in self.model.joints[2:] if joint.nq == 1 and joint.idx_v in self.columns
+        ]
+        return [(place, low[place], high[place]) for place in places if low[place] < high[place]]
+
     def _bent(self, q: Array) -> Array:
         """A configuration with every joint of the legs towards the middle of its range: knees bend the right way."""
         bent = q.copy()
-        for joint in self.model.joints[2:]:
-            if joint.nq == 1 and joint.idx_v in self.columns:
-                low, high = (
-                    self.model.lowerPositionLimit[joint.idx_q],
-                    self.model.upperPositionLimit[joint.idx_q],
-                )
-                if low < high:
-                    bent[joint.idx_q] = np.clip((low + high) / 2, -BENT, BENT)
+        for place, low, high in self._bounded:
+            bent[place] = np.clip((low + high) / 2, -BENT, BENT)
         return bent
 
     def _inside(self, q: Array) -> bool:
         """Whether every bounded joint of the legs is within its limits, with a little room."""
-        for joint in self.model.joints[2:]:
-            if joint.nq == 1 and joint.idx_v in self.columns:
-                low, high = (
-                    self.model.lowerPositionLimit[joint.idx_q],
-                    self.model.upperPositionLimit[joint.idx_q],
-                )
-                if low < high and not low + SPARE <= q[joint.idx_q] <= high - SPARE:
-                    return False
-        return True
+        return all(low + SPARE <= q[place] <= high - SPARE for place, low, high in self._bounded)
 
     def follow(self, displacements: Array) -> Array:
         """Configurations (N, nq) of displacements (channels, N), each found from the one before."""

@@ -8,13 +8,17 @@ products (W. A. Fuller, Measurement Error Models, Wiley 1987).
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 
 from plantar.conventions import Array, Mask
 from plantar.estimation.blocks import Block
 from plantar.estimation.linear import information_inverse
+from plantar.estimation.normal_equations import solved
 from plantar.signals.filters import gain, low_pass
+from plantar.signals.medians import median
+from plantar.signals.segments import complete
 
 ABOVE = 4.0  # cutoffs: from there on a signal counts as noise
 NORMAL = 1.4826  # standard deviation over median absolute value, of normal noise
@@ -29,30 +33,36 @@ def noise_after_filter(raw: Array, response: Array, period: float, cutoff: float
     lower of two densities, just below and above `ABOVE` cutoffs: what rings at one frequency is not white. Zero
     where the samples are too slow to show any frequency without motion.
     """
-    highest = 0.5 / period
-    if ABOVE * cutoff > 0.8 * highest:
+    if ABOVE * cutoff > 0.8 * 0.5 / period:
         return np.zeros(raw.shape[1])
     both = np.column_stack([raw, response])
     smooth, smoother = (low_pass(both, period, share * cutoff) for share in (ABOVE, ABOVE / 2))
-    whole = np.asarray(np.isfinite(smoother).all(axis=1) & np.isfinite(both).all(axis=1))
+    whole = complete(smoother) & complete(both)
     if whole.sum() < FEWEST:
         return np.zeros(raw.shape[1])
-    frequency = np.linspace(0.0, highest, 2000, endpoint=False)
-    passed, wide, narrow = (gain(frequency, period, share * cutoff) for share in (1, ABOVE, ABOVE / 2))
-    upper, lower = 1 - wide, wide - narrow
+    passed, *bands = _mean_squares(period, cutoff)
     densities = [
-        (NORMAL * np.median(np.abs(_unexplained(part, whole, raw.shape[1])), axis=0)) ** 2 / np.mean(shape**2)
-        for part, shape in ((both - smooth, upper), (smooth - smoother, lower))
+        (NORMAL * median(np.abs(_unexplained(part, whole, raw.shape[1]).T))) ** 2 / share
+        for part, share in zip((both - smooth, smooth - smoother), bands, strict=True)
     ]
-    return np.asarray(np.minimum(*densities) * np.mean(passed**2))
+    return np.asarray(np.minimum(*densities) * passed)
+
+
+@lru_cache(maxsize=16)
+def _mean_squares(period: float, cutoff: float) -> tuple[float, float, float]:
+    """What is left of white noise behind the filter at `cutoff`, above `ABOVE` cutoffs, and just below."""
+    frequency = np.linspace(0.0, 0.5 / period, 2000, endpoint=False)
+    passed, wide, narrow = (gain(frequency, period, share * cutoff) for share in (1, ABOVE, ABOVE / 2))
+    return float(np.mean(passed**2)), float(np.mean((1 - wide) ** 2)), float(np.mean((wide - narrow) ** 2))
 
 
 def _unexplained(band: Array, whole: Mask, count: int) -> Array:
     """The first `count` columns of a band less what the other columns and their rates explain, the whole samples."""
-    rates = np.gradient(band[:, count:], axis=0)
-    clear = whole & np.asarray(np.isfinite(rates).all(axis=1))
-    values, explaining = band[clear, :count], np.column_stack([band[:, count:], rates])[clear]
-    return np.asarray(values - explaining @ np.linalg.lstsq(explaining, values, rcond=None)[0])
+    joint = np.column_stack([band, np.gradient(band[:, count:], axis=0)])
+    joint = joint[whole & complete(joint)]
+    values, explaining = joint[:, :count], joint[:, count:]
+    products = explaining.T @ joint
+    return np.asarray(values - explaining @ solved(products[:, count:], products[:, :count]))
 
 
 def attenuation(blocks: Sequence[Block], values: Array, *, shared_offset: bool = False) -> Array | None:

@@ -14,6 +14,7 @@ import numpy as np
 
 from plantar import _core
 from plantar.conventions import Array
+from plantar.estimation.normal_equations import solved
 
 OUTLYING = 5.0  # usual deviations: beyond them a sample is motion rather than drift
 ANNEALED = 2.0  # by which the weights' reach shrinks in a step
@@ -48,19 +49,17 @@ def fit_drift(
     [m²/s²]; wander: of its slope, variance in a second [(m/s²)²/s]; noise: deviation of the velocity [m/s], of which a
     share `independent` of the samples shows new one.
     """
-    seen = np.isfinite(velocity).all(axis=1)
-    known = np.nan_to_num(np.concatenate([velocity[None], columns]))
-    stacked = known.transpose(1, 0, 2).reshape(len(velocity), -1)
+    seen, n = np.isfinite(velocity).all(axis=1), len(velocity)
+    known = np.nan_to_num(np.concatenate([velocity[None], columns])).transpose(1, 2, 0).reshape(n, -1)
     most = independent / noise**2
     weight = np.asarray(seen * most / STIFF)
     # From one sample to the next the drift goes on by its slope, plus a step; the slope takes one, too.
     chain = (np.maximum(jump, LEAST_JUMP), wander * period, period, (FIRST_DRIFT**-2, FIRST_SLOPE**-2))
     reach, settled = np.inf, 0
     while True:
-        smooth = _core.smooth_drift(weight, *chain, stacked).reshape(len(velocity), -1, 2).transpose(1, 0, 2)
-        size = _sizes(known - smooth, weight)
-        left = known[0] - smooth[0] - np.tensordot(size, known[1:] - smooth[1:], 1)
-        square = seen * (np.sum(left**2, axis=1) / (2 * noise**2) + unrest)
+        beyond = known - _core.smooth_drift(weight, *chain, known)
+        left = beyond.reshape(2 * n, -1) @ np.append(1.0, -_sizes(beyond, weight))
+        square = seen * (np.sum(left.reshape(n, 2) ** 2, axis=1) / (2 * noise**2) + unrest)
         if settled == SETTLED:
             break
         reach = max(1.0, min(2 * float(square.max()) / OUTLYING**2, reach / ANNEALED))
@@ -69,12 +68,14 @@ def fit_drift(
         weight = np.asarray(
             seen * (allowed / (square + allowed)) ** 2 * most / reach**2
         )  # Geman and McClure's
-    return Drift(known[0] - left, np.sqrt(_core.drift_variance(weight, *chain)))
+    drift = (known.reshape(2 * n, -1)[:, 0] - left).reshape(n, 2)
+    return Drift(drift, np.sqrt(_core.drift_variance(weight, *chain)))
 
 
 def _sizes(left: Array, weight: Array) -> Array:
-    """How much of each column, (m,), is in the velocity, from what the smoother leaves of both, (1 + m, n, 2)."""
-    flat = (left * np.sqrt(weight)[:, None]).reshape(len(left), -1)
-    length = np.linalg.norm(flat, axis=1) + 1e-12
-    solved = np.linalg.lstsq((flat[1:] / length[1:, None]).T, flat[0], rcond=1e-6)[0]
-    return np.asarray(solved / length[1:])
+    """How much of each column, (m,), is in the velocity, from what the smoother leaves of both: of each sample along x,
+    then along y, the velocity's and the columns', (n, 2·(1 + m))."""
+    m = left.shape[1] // 2
+    both = ((left * weight[:, None]).T @ left).reshape(2, m, 2, m)
+    products = both[0, :, 0] + both[1, :, 1]
+    return solved(products[1:, 1:], products[1:, 0])

@@ -37,6 +37,7 @@ from plantar.feet.place.turned_bush import turned_bush_note
 from plantar.feet.prepare import PreparedLogs
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
+from plantar.feet.regression.regression_data import tangent_blocks
 from plantar.models import BushModel, KelvinVoigt
 from plantar.notes import Note
 from plantar.results.feet import Diagnosis, Parameter, ValidationRow
@@ -137,8 +138,9 @@ def _with_causes(fit: AxisFit, fitted: FittedFoot) -> AxisFit:
     """The fit with the deviations of what is unsure, but for gains and mounts that other logs and feet tell of."""
     ready, recordings = fitted.ready, fitted.thin.fitted
     shared = ready.settings.offset == "shared"
-    causes = systematic_causes(fit, recordings, ready.sensor_delay, ready.vertical, shared)
-    return inflated(fit, causes + robot_causes(fit, recordings, ready.robot.uncertainty, shared))
+    blocks = tangent_blocks(recordings, fit, drift=not shared)
+    causes = systematic_causes(fit, blocks, recordings, ready.sensor_delay, ready.vertical, shared)
+    return inflated(fit, causes + robot_causes(fit, blocks, ready.robot.uncertainty, shared))
 
 
 def assess_foot(fitted: FittedFoot) -> FootFit:
@@ -164,10 +166,11 @@ def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit) -> FootFit:
     """What was found, and one axis: its fit widened, scored, judged and diagnosed."""
     ready, thin = fitted.ready, fitted.thin
     shared = ready.settings.offset == "shared"
-    causes = systematic_causes(fit, thin.fitted, ready.sensor_delay, ready.vertical, shared)
-    causes += robot_causes(fit, thin.fitted, ready.robot.uncertainty, shared)
+    blocks = tangent_blocks(thin.fitted, fit, drift=not shared)
+    causes = systematic_causes(fit, blocks, thin.fitted, ready.sensor_delay, ready.vertical, shared)
+    causes += robot_causes(fit, blocks, ready.robot.uncertainty, shared)
     causes += slip_angle_causes(fit, thin.fitted, shared)
-    causes += encoder_delay_causes(fit, thin.fitted, shared)
+    causes += encoder_delay_causes(fit, blocks, thin.fitted, shared)
     causes += imu_turn_causes(fit, thin.fitted, ready.imu_turn)
     causes += force_gain_causes(fit, ready.gain_errors)
     causes += torque_gain_causes(fit, ready.torque_gains)
@@ -179,7 +182,7 @@ def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit) -> FootFit:
     rows = axis_rows(wide, ready.fitted, predictions, contradicted)
     limits = diagnose_axis(fit, wide, causes, rows)
     gain = {foot: error for foot, error in ready.gain_errors.items() if foot == fit.foot}
-    play = play_notes(thin.fitted, fit, shared)
+    play = play_notes(thin.fitted, fit, blocks, shared)
     faults = [
         *data_faults(ready.fitted, fit),
         *fitted.jumps,  # of both axes: an encoder that slips about one tilts the other as well

@@ -26,7 +26,7 @@ from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note, unique
 from plantar.robot.guesses import guess_notes, naming_notes
 from plantar.robot.model import RobotModel
-from plantar.sensors.accelerometer_delay import with_accelerometers_on_time
+from plantar.sensors.accelerometer_delay import with_imus_on_time
 from plantar.sensors.attitude_scale import AttitudeScale, attitude_scale_notes
 from plantar.sensors.bandwidth import fading, fading_notes
 from plantar.sensors.delays.sensor_delay import SensorDelay, estimate_wrench_delay, in_time, known_delay
@@ -164,7 +164,7 @@ def _on_time(robot: RobotModel, looks: Sequence[FirstLook], timed: bool) -> list
     before, name = [look.log for look in looks], "" if robot.imu is None else robot.imu.name
     imu = imu_filter([look.gyroscope for look in looks])
     read = with_gyroscopes_on_time(before, name, imu)
-    after = with_accelerometers_on_time(robot, read, [look.accelerometer for look in looks], imu)
+    after = with_imus_on_time(robot, read, [look.accelerometer for look in looks], imu)
     if all(one is other for one, other in zip(before, after, strict=True)):
         return [*looks]
     with over_logs(after) as each:

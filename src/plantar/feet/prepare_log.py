@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from plantar.checks.gyroscope import put_right_by
+from plantar.checks.gyroscope import BY_LEANS, beside_leans
 from plantar.checks.log_checks import check_log, finding_notes, refuse_impossible
-from plantar.contact.deflection import BushState, bush_states, encoder_rates
+from plantar.contact.deflection import BushState, foot_motions, loaded
 from plantar.contact.imu_turn import imu_turn_effects
 from plantar.contact.phases import FootContact, carried_weight, detect_contact, shaken
 from plantar.contact.reasons import Reason
@@ -74,11 +74,12 @@ def prepare(
     orientation, rates = attitude(log, imu, notes)
     positions = log.positions(robot)
     wrenches = {name: log.wrench(foot.wrench.name) for name, foot in robot.feet.items()}
-    raw = bush_states(robot, positions, velocities, orientation, rates, wrenches)
+    motions = foot_motions(robot, positions, velocities, orientation, rates)
+    raw = loaded(robot, motions, wrenches)
     zeros = _air_zeros(robot, log, wrenches, raw)
     if zeros:
         wrenches = wrenches | {name: wrenches[name] - zero.at(log.time) for name, zero in zeros.items()}
-        raw = bush_states(robot, positions, velocities, orientation, rates, wrenches)
+        raw = loaded(robot, motions, wrenches)
         notes += [
             Note("air_zero", "info", f"{log.name}: {name} foot: {zero.text}") for name, zero in zeros.items()
         ]
@@ -86,13 +87,16 @@ def prepare(
     places = {name: state.sole_position[:, :2] for name, state in raw.items()}
     if (right := right_attitude(log, imu, orientation, (own_tilt, tilt_error), raw, contacts)) is not None:
         orientation = right[0]
-        raw = bush_states(robot, positions, velocities, orientation, rates, wrenches)
-        mended = put_right_by(imu.name, log, orientation)
-        notes = [note for note in notes if note.code not in mended]
+        motions = foot_motions(robot, positions, velocities, orientation, rates)
+        raw = loaded(robot, motions, wrenches)
         notes.append(right[1])
         scale = AttitudeScale()
     else:
         scale = log_attitude_scale(log, imu, orientation, raw, contacts)
+    if noted := BY_LEANS & {note.code for note in notes}:
+        # What was said of the sensors as recorded is said of them as they are used.
+        left = [one for one in beside_leans(imu.name, log, orientation) if one.code in noted]
+        notes = [note for note in notes if note.code not in noted] + finding_notes(log, left)
     return Recording(
         log=log,
         role=role,
@@ -104,8 +108,8 @@ def prepare(
         noise={name: np.zeros((2, 2)) for name in raw},
         places=places,
         notes=tuple(notes),
-        imu_turns=imu_turn_effects(robot, positions, orientation, log.period),
-        encoder_rates=encoder_rates(robot, positions, velocities, orientation),
+        imu_turns=imu_turn_effects(motions),
+        encoder_rates={name: motion.encoder_rate for name, motion in motions.items()},
         attitude_scale=scale,
         zeros=tuple(row for name, zero in zeros.items() for row in zero.rows(log.name, name)),
     )

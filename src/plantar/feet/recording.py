@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Literal
+from typing import Literal, cast
 
 import numpy as np
 
@@ -94,28 +94,23 @@ class Recording:
 
     def drift(self, foot: str) -> Array:
         """Orthonormal columns (n, m) of what drifts slowly over `rows`."""
-        if foot not in self._drifts:
-            self._drifts[foot] = drift_basis(self.time[self.rows(foot)])
-        return self._drifts[foot]
-
-    @cached_property
-    def _drifts(self) -> dict[str, Array]:
-        """Those columns by foot, once they were asked for: every fit of the recording does."""
-        return {}
+        if ("drift", foot) not in self.kept:
+            self.kept["drift", foot] = drift_basis(self.time[self.rows(foot)])
+        return cast(Array, self.kept["drift", foot])
 
     def loads(self, foot: str) -> Array:
         """Forces along the bush's x and y and the vertical, and the torque about its third axis, through the filter of
         the torque, (N, 4); 0 where they are not known: where nothing is used."""
-        if foot not in self._loads:
+        if ("loads", foot) not in self.kept:
             bush = self.bushes[foot]
             rows = np.column_stack([bush.wrench[:, :2], bush.force_z, bush.wrench[:, 5]])
             smooth = within_stances(rows, self.period, self.cutoff, self.stances[foot])
-            self._loads[foot] = np.nan_to_num(smooth)
-        return self._loads[foot]
+            self.kept["loads", foot] = np.nan_to_num(smooth)
+        return cast(Array, self.kept["loads", foot])
 
     @cached_property
-    def _loads(self) -> dict[str, Array]:
-        """Those forces by foot, once they were asked for: both axes and every stage of a fit do."""
+    def kept(self) -> dict[Hashable, object]:
+        """What was worked out of the recording, by its name, once it was asked for: every stage of a fit asks again."""
         return {}
 
     def decimated(self, foot: str) -> Recording:

@@ -112,6 +112,7 @@ def inertia_over(
         [client.submit(_scored, known, log, settings, calibration, *found, pure=False) for log in used]
     )
     trust = uncertainty_from(fit, scored)
+    left_out = [Note("log_left_out", "warning", failure.error) for failure in total.failures]
     rank, condition, excitation = excitation_of(fit)
     urdf, moved = identified_urdf(model, fit)
     return DynamicsResult(
@@ -129,14 +130,10 @@ def inertia_over(
         inertial_parameters=inertial_rows(fit),
         parameters=(),
         validation=(),
-        notes=unique([*_left_out(total.failures), UNSCORED, *notes, *excitation, *fit_notes(fit), *moved]),
+        notes=unique([*left_out, UNSCORED, *notes, *excitation, *fit_notes(fit), *moved]),
         urdf=urdf,
         residuals=None,
     )
-
-
-def _left_out(failures: Sequence[Failure]) -> list[Note]:
-    return [Note("log_left_out", "warning", failure.error) for failure in failures]
 
 
 @dataclass(frozen=True)

@@ -41,9 +41,9 @@ class StepColumns:
 
         place: (n,), the number of each row's stance, in order.
         """
-        stances = np.split(rows, np.flatnonzero(np.diff(place)) + 1)
-        means = np.array([stance.mean(axis=0) for stance in stances])
-        return np.asarray(rows - self.share * (means[place] - rows.mean(axis=0)))
+        count = np.bincount(place)
+        means = np.add.reduceat(rows, np.cumsum(count) - count) / count[:, None]
+        return np.asarray(rows - self.share * np.repeat(means - rows.mean(axis=0), count, axis=0))
 
 
 @dataclass(frozen=True)
@@ -152,6 +152,11 @@ class FilteredDataSet:
             return rows
         return without(own, flat).reshape(rows.shape)
 
+    @property
+    def shortest_run(self) -> int:
+        """Samples that a run must exceed to be filtered."""
+        return SHORTEST_RUN if self.steps is None else SHORTEST_STANCE_RUN
+
     @cached_property
     def _nuisance(self) -> Array:
         """Orthonormal columns (n, m) of what is the recording's own, about their means; of a foot that steps."""
@@ -189,16 +194,15 @@ def prepare_data_sets(
 
 def filtered_columns(
     model: BushModel, prepared: Sequence[FilteredDataSet], shapes: Array, initial_states: Sequence[Array]
-) -> list[Array]:
-    """A model's columns beside the linear two through the filter, at the used samples: (n, e, b) for each data set."""
-    found = []
-    for each, extra in zip(
-        prepared, model.basis_columns([each.path for each in prepared], shapes, initial_states), strict=True
-    ):
+) -> Array:
+    """A model's columns beside the linear two through the filter, at the used samples: (n, e, b), those of all data
+    sets one below the other."""
+    extras = model.basis_columns([each.path for each in prepared], shapes, initial_states)
+    found, first = np.empty((sum(len(each.response) for each in prepared), *extras[0].shape[1:])), 0
+    for each, extra in zip(prepared, extras, strict=True):
+        last = first + len(each.response)
         if extra.shape[1]:
-            shortest = SHORTEST_RUN if each.steps is None else SHORTEST_STANCE_RUN
-            smooth = low_pass(extra.reshape(len(extra), -1), each.motion.period, each.cutoff, shortest)
-            found.append(each.without_nuisance(smooth[each.used].reshape(-1, *extra.shape[1:])))
-        else:
-            found.append(extra[each.used])
+            smooth = low_pass(extra, each.motion.period, each.cutoff, each.shortest_run)
+            found[first:last] = each.without_nuisance(smooth[each.used])
+        first = last
     return found

@@ -67,26 +67,22 @@ class Pieces:
         for place, each in enumerate(prepared):
             middle = np.zeros(len(each.motion.runs)) if around is None else around[place]
             begin.append(np.clip(tried[:, None] + middle[None, :], -1.0, 1.0))
-        parts: list[list[Mask]] = []
-        data_set, run, fold, rows, first = [], [], [], [], 0
-        for place, each in enumerate(prepared):
-            key = each.run_of * (1 + int(folds[place].max(initial=0))) + folds[place]
-            parts.append([key == value for value in np.unique(key)])
-            for mine in parts[-1]:
-                data_set.append(place)
-                run.append(first + int(each.run_of[mine][0]))
-                fold.append(int(folds[place][mine][0]))
-                rows.append(int(mine.sum()))
-            first += len(each.motion.runs)
+        firsts = np.cumsum([0, *(len(each.motion.runs) for each in prepared)])
+        run = np.concatenate([first + each.run_of for first, each in zip(firsts, prepared, strict=False)])
+        fold, common = np.concatenate(folds), np.concatenate([_common(each) for each in prepared])
+        first = np.flatnonzero(np.append(True, (np.diff(run) != 0) | (np.diff(fold) != 0)))
         samples = sum(len(each.motion) for each in prepared)
         together = max(1, TOGETHER // max(1, count * samples))
         grams = []
         for some in np.split(shapes, range(together, len(shapes), together)):
             variants, tiled = np.repeat(some, count, axis=0), [np.tile(own, (len(some), 1)) for own in begin]
             extras = filtered_columns(model, prepared, variants, tiled)
-            grams.append(_grams(prepared, extras, parts).reshape(-1, len(some), count, *_square(extras)))
-        numbers = (np.array(values, dtype=np.intp) for values in (data_set, run, fold, rows))
-        return cls(model, shapes, begin, np.concatenate(grams, axis=1), *numbers)
+            own = grams_of(common, extras, first)
+            grams.append(own.reshape(len(first), len(some), count, *own.shape[2:]))
+        data_set = np.searchsorted(firsts, run[first], side="right") - 1
+        rows = np.diff(np.append(first, len(run)))
+        products = np.concatenate(grams, axis=1)
+        return cls(model, shapes, begin, products, data_set, run[first], fold[first], rows)
 
     @property
     def size(self) -> int:
@@ -125,12 +121,13 @@ def fit_pieces(pieces: Pieces, chosen: Mask, *, shared_offset: bool = False) -> 
     shapes, count = pieces.grams.shape[1:3]
     runs, first = np.unique(pieces.run[chosen], return_index=True)
     grams, data_set = np.add.reduceat(pieces.grams[chosen], first), pieces.data_set[chosen][first]
+    begins = np.flatnonzero(np.diff(data_set, prepend=-1))
     states = np.full((len(runs), shapes), count // 2, dtype=np.intp)
     for _ in range(ROUNDS if count > 1 else 1):
         current = grams[np.arange(len(runs))[:, None], np.arange(shapes), states]
         totals = np.zeros((int(pieces.data_set.max()) + 1, *current.shape[1:]))
-        np.add.at(totals, data_set, current)
-        values, offsets, squares = _solve(totals, shared_offset)
+        totals[data_set[begins]] = np.add.reduceat(current, begins)
+        values, offsets, squares = solve(totals, shared_offset)
         if count == 1:
             break
         before, states = states, _best_states(grams, totals[data_set] - current, values)
@@ -148,46 +145,44 @@ def held_out_squares(pieces: Pieces, fits: Fits, held: Mask, shape: int, *, whol
     `whole`: the pieces are recordings that the fit has not seen, with an offset and an initial state of their own; else
     the offset comes from the rest of the same recording, and so does an initial state that does not fade.
     """
-    values, squares = fits.values[shape], []
-    for piece in np.flatnonzero(held):
-        grams = pieces.grams[piece, shape]
-        if whole:
-            squares.append(min(_profiled(gram, values) for gram in grams))
-            continue
-        vector = np.concatenate([values, [fits.offsets[shape, pieces.data_set[piece]], -1.0]])
-        tried = grams if pieces.model.fading_memory else grams[[fits.initial_states[piece, shape]]]
-        squares.append(min(float(vector @ gram @ vector) for gram in tried))
-    return np.array(squares)
+    grams, values = pieces.grams[held, shape], fits.values[shape]
+    if whole:
+        vectors, grams = np.append(values, -1.0)[None, :], _without_offset(grams)
+    else:
+        offsets = fits.offsets[shape, pieces.data_set[held], None]
+        one = np.ones_like(offsets)
+        vectors = np.hstack([one * values, offsets, -one])
+        if not pieces.model.fading_memory:
+            grams = grams[np.arange(len(grams)), fits.initial_states[held, shape], None]
+    return np.asarray(np.einsum("pi,pcij,pj->pc", vectors, grams, vectors).min(axis=1))
 
 
-def _grams(
-    prepared: Sequence[FilteredDataSet], extras: Sequence[Array], parts: Sequence[Sequence[Mask]]
-) -> Array:
-    """Products (pieces, b, k + 2, k + 2) of every part of every data set; extras: (n, e, b) of each."""
-    found = []
-    for each, extra, own in zip(prepared, extras, parts, strict=True):
-        common = np.column_stack([each.base, np.ones(len(extra)), each.response])
-        found += [_gram(common[mine], extra if mine.all() else extra[mine]) for mine in own]
-    return np.array(found)
+def _common(each: FilteredDataSet) -> Array:
+    return np.column_stack([each.base, np.ones(len(each.response)), each.response])
 
 
-def _square(extras: Sequence[Array]) -> tuple[int, int]:
-    """Shape of a Gram of deflection, rate, the model's own columns, 1 and response."""
-    size = extras[0].shape[1] + 4
-    return size, size
+def grams_of(common: Array, extra: Array, first: Numbers) -> Array:
+    """Products (pieces, b, k + 2, k + 2), in the order deflection, rate, extra..., 1, response, of every piece.
 
-
-def _gram(common: Array, extra: Array) -> Array:
-    """Products (b, k + 2, k + 2) in the order deflection, rate, extra..., 1, response."""
+    common: deflection, rate, 1 and response, (n, 4); extra: the model's own columns (n, e, b); first (pieces,): the
+    first row of each piece.
+    """
     samples, own, variants = extra.shape
-    others, mine = [0, 1, own + 2, own + 3], range(2, own + 2)
-    gram = np.empty((own + 4, own + 4, variants))
-    gram[np.ix_(others, others)] = (common.T @ common)[:, :, None]
-    across = (common.T @ extra.reshape(samples, -1)).reshape(4, own, variants)
-    gram[np.ix_(others, mine)], gram[np.ix_(mine, others)] = across, np.swapaxes(across, 0, 1)
-    for row, column in np.ndindex(own, own):
-        gram[2 + row, 2 + column] = np.einsum("nb,nb->b", extra[:, row], extra[:, column])
-    return np.ascontiguousarray(np.moveaxis(gram, 2, 0))
+    flat, ends = extra.reshape(samples, -1), np.append(first[1:], samples)
+    across = np.empty((len(first), 4, own, variants))
+    inner = np.empty((len(first), own, own, variants))
+    outer = np.empty((len(first), 4, 4))
+    for place, piece in enumerate(map(slice, first, ends)):
+        outer[place] = common[piece].T @ common[piece]
+        across[place] = (common[piece].T @ flat[piece]).reshape(4, own, variants)
+        np.einsum("neb,nfb->efb", extra[piece], extra[piece], out=inner[place])
+    gram = np.empty((len(first), variants, own + 4, own + 4))
+    others, mine = np.array([0, 1, own + 2, own + 3]), np.arange(2, own + 2)
+    gram[:, :, others[:, None], others] = outer[:, None]
+    gram[:, :, others[:, None], mine] = np.moveaxis(across, 3, 1)
+    gram[:, :, mine[:, None], others] = np.moveaxis(across, 3, 1).swapaxes(2, 3)
+    gram[:, :, mine[:, None], mine] = np.moveaxis(inner, 3, 1)
+    return gram
 
 
 def _without_offset(gram: Array) -> Array:
@@ -199,7 +194,8 @@ def _without_offset(gram: Array) -> Array:
     return np.asarray(centred[..., keep, :][..., keep])
 
 
-def _solve(totals: Array, shared_offset: bool) -> tuple[Array, Array, Array]:
+def solve(totals: Array, shared_offset: bool) -> tuple[Array, Array, Array]:
+    """Values (g, k), offsets (g, data sets) and squares (g,) of products (data sets, g, k + 2, k + 2)."""
     centred = _without_offset(totals.sum(axis=0)) if shared_offset else _without_offset(totals).sum(axis=0)
     inner, right = centred[:, :-1, :-1], centred[:, :-1, -1]
     square = np.einsum("gii->gi", inner)
@@ -230,8 +226,3 @@ def _best_states(own: Array, rest: Array, values: Array) -> Numbers:
     sums += np.einsum("rgi,gi->rg", rest[..., -2, :], vector)[:, :, None]
     squares = missed - sums**2 / np.maximum(rest[:, :, None, -2, -2] + own[..., -2, -2], 1e-300)
     return np.asarray(np.argmin(squares, axis=2))
-
-
-def _profiled(gram: Array, values: Array) -> float:
-    vector = np.append(values, -1.0)
-    return float(vector @ _without_offset(gram) @ vector)

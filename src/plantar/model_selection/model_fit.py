@@ -130,7 +130,7 @@ def fit_again(before: ModelFit, data_sets: Sequence[DataSet]) -> ModelFit:
     """The fit of the same recordings with other torques, from where it came to rest before."""
     prepared = prepare_data_sets(data_sets, before.cutoff, drift=not before.shared_offset)
     problem = Problem(before.model, prepared, before.shared_offset)
-    states = [before.initial_states[each.label] for each in prepared]
+    states = np.concatenate([before.initial_states[each.label] for each in prepared])
     return refine(problem, problem.at(before.shape, states), before.limits, landings=0)
 
 
@@ -172,11 +172,12 @@ def refine(
 def _finished(problem: Problem, point: Point, limits: Array) -> ModelFit:
     linear = problem.linearised(point)
     scale = np.concatenate([np.ones(len(point.values)), point.shape])
-    durations = [len(r) * e.motion.period for e, r in zip(problem.prepared, point.residuals, strict=True)]
-    covariance, freedom = robust_covariance(linear, point.residuals, durations)
+    residuals = np.split(point.residuals, np.cumsum(problem.rows[:-1]))
+    durations = [len(r) * e.motion.period for e, r in zip(problem.prepared, residuals, strict=True)]
+    covariance, freedom = robust_covariance(linear, residuals, durations)
     wide = np.concatenate([scale, np.ones(len(covariance) - len(scale))])
     covariance = covariance * wide[:, None] * wide[None, :]
-    count, rows = len(scale), sum(len(residual) for residual in point.residuals)
+    count, rows = len(scale), len(point.residuals)
     white = point.squares / max(rows - len(covariance), 1) * linear.inverse_diagonal() * scale**2
     labels = [each.label for each in problem.prepared]
     spread = np.sqrt(np.diag(covariance)[count:])
@@ -189,8 +190,8 @@ def _finished(problem: Problem, point: Point, limits: Array) -> ModelFit:
         white_std=np.sqrt(white),
         offsets=dict(zip(labels, point.offsets.tolist(), strict=True)),
         offset_std=dict(zip(labels, spread.tolist(), strict=True)),
-        initial_states=dict(zip(labels, point.initial_states, strict=True)),
-        residuals=dict(zip(labels, point.residuals, strict=True)),
+        initial_states=dict(zip(labels, problem.by_recording(point.initial_states), strict=True)),
+        residuals=dict(zip(labels, residuals, strict=True)),
         limits=limits,
         cutoff=problem.prepared[0].cutoff,
         shared_offset=problem.shared_offset,

@@ -7,14 +7,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from plantar.conventions import Array
 from plantar.model_selection.data_sets import FilteredDataSet, filtered_columns
-from plantar.model_selection.grid import Pieces, fit_pieces
+from plantar.model_selection.grid import Pieces, fit_pieces, grams_of, solve
 from plantar.model_selection.landing import STATE, Hysteresis, landing_states
-from plantar.model_selection.partialled_out import Linearised
+from plantar.model_selection.partialled_out import Linearised, Memory
 from plantar.models import BushModel
 
 ITERATIONS = 16
@@ -27,83 +29,119 @@ WIDEST_SCAN, NARROWEST_SCAN, NARROWING = (
 SCANNED_RATIO = (
     0.25  # of a nonlinear parameter's logarithm, to either side at the widest scan: a step of the grid's
 )
-HALVINGS = 4
+SHARES = np.array([1.0, 0.4, 0.16, 0.064])  # of a step: the longest that is better is taken
 SETTLED = 1e-4  # relative fall of the squares below which the refinement has arrived
 BOLDEST = 0.4  # largest step of a nonlinear parameter's logarithm
+ROUNDING = 1e-10  # of the torque's squares, in what products leave of them
 SHAPE_STEP, STATE_STEP = 0.01, 0.02  # of the differences that stand for derivatives
 
 
 @dataclass(frozen=True)
 class Point:
-    """Nonlinear parameters (`shape`) and initial states, with the linear parameters that fit best there."""
+    """Nonlinear parameters (`shape`) and initial states (runs,) of all recordings, with the linear parameters that fit
+    best there, each recording's offset, and the residuals (n,)."""
 
     shape: Array
-    initial_states: list[Array]
+    initial_states: Array
     values: Array
     offsets: Array
-    residuals: list[Array]
+    residuals: Array
     squares: float
 
 
 @dataclass(frozen=True)
 class Problem:
-    """What is fitted: a model to recordings, with an offset each or a shared one."""
+    """What is fitted: a model to recordings, with an offset each or a shared one.
+
+    Samples and runs of all recordings stand one below the other.
+    """
 
     model: BushModel
     prepared: Sequence[FilteredDataSet]
     shared_offset: bool
 
-    def at(self, shape: Array, initial_states: list[Array], extras: Sequence[Array] | None = None) -> Point:
-        """Solve the linear part. extras: the model's own columns there, (n, e, 1) of each recording, if known."""
-        if extras is None:
-            starts = [start[None, :] for start in initial_states]
-            extras = filtered_columns(self.model, self.prepared, shape[None, :], starts)
-        designs = [np.column_stack([e.base, x[:, :, 0]]) for e, x in zip(self.prepared, extras, strict=True)]
-        problem = Linearised(designs, [e.response for e in self.prepared], self.shared_offset)
+    @cached_property
+    def rows(self) -> list[int]:
+        """Used samples of each recording."""
+        return [len(each.response) for each in self.prepared]
+
+    @cached_property
+    def counts(self) -> list[int]:
+        """Runs of each recording."""
+        return [len(each.motion.runs) for each in self.prepared]
+
+    @cached_property
+    def base(self) -> Array:
+        """Deflection and rate of every used sample, (n, 2)."""
+        return np.concatenate([each.base for each in self.prepared])
+
+    @cached_property
+    def response(self) -> Array:
+        """The torque of every used sample, (n,)."""
+        return np.concatenate([each.response for each in self.prepared])
+
+    @cached_property
+    def run(self) -> NDArray[np.intp]:
+        """The run of every used sample, (n,)."""
+        firsts = np.cumsum([0, *self.counts[:-1]])
+        return np.concatenate(
+            [first + each.run_of for first, each in zip(firsts, self.prepared, strict=True)]
+        )
+
+    def by_recording(self, states: Array) -> list[Array]:
+        """Initial states (..., runs) of each recording."""
+        return np.split(states, np.cumsum(self.counts[:-1]), axis=-1)
+
+    def extras(self, shapes: Array, initial_states: Array) -> Array:
+        """The model's own columns (n, e, b) of b variants of shape (b, s) and initial states (b, runs)."""
+        return filtered_columns(self.model, self.prepared, shapes, self.by_recording(initial_states))
+
+    def squares(self, extras: Array) -> Array:
+        """What is left with each of b variants of the model's own columns (n, e, b), (b,), up to `ROUNDING`."""
+        common = np.column_stack([self.base, np.ones(len(extras)), self.response])
+        grams = grams_of(common, extras, np.cumsum([0, *self.rows[:-1]]))
+        return solve(grams, self.shared_offset)[2]
+
+    def at(self, shape: Array, initial_states: Array, extra: Array | None = None) -> Point:
+        """Solve the linear part. extra: the model's own columns there, (n, e), if known."""
+        if extra is None:
+            extra = self.extras(shape[None, :], initial_states[None, :])[:, :, 0]
+        design = np.column_stack([self.base, extra])
+        problem = Linearised(design, self.response, self.rows, self.shared_offset)
         values = problem.solve()
         offsets = problem.offsets(values)
-        residuals = [y - x @ values - o for x, y, o in zip(designs, problem.responses, offsets, strict=True)]
-        return Point(shape, initial_states, values, offsets, residuals, float(sum(r @ r for r in residuals)))
+        residuals = self.response - design @ values - np.repeat(offsets, self.rows)
+        return Point(shape, initial_states, values, offsets, residuals, float(residuals @ residuals))
 
     def linearised(self, point: Point) -> Linearised:
         """Columns of values and log shape about a point, residuals as response; initial states are projected out."""
-        model, shape, count = self.model, point.shape, len(point.shape)
-        shapes = np.repeat(shape[None, :], 3 + 2 * count, axis=0)
+        count = len(point.shape)
+        shapes = np.repeat(point.shape[None, :], 3 + 2 * count, axis=0)
         for place in range(count):
             shapes[3 + 2 * place : 5 + 2 * place, place] *= np.exp([SHAPE_STEP, -SHAPE_STEP])
-        initial_states = []
-        for start in point.initial_states:
-            variants = np.repeat(start[None, :], len(shapes), axis=0)
-            variants[1:3] = np.clip([start + STATE_STEP, start - STATE_STEP], -1.0, 1.0)
-            initial_states.append(variants)
-        extras = filtered_columns(model, self.prepared, shapes, initial_states)
-        designs, memories = [], []
-        for each, extra, variants in zip(self.prepared, extras, initial_states, strict=True):
-            torque = np.einsum("neb,e->nb", extra, point.values[2:])
-            slopes = (torque[:, 3::2] - torque[:, 4::2]) / (2 * SHAPE_STEP)
-            designs.append(np.column_stack([each.base, extra[:, :, 0], slopes]))
-            width = (variants[1] - variants[2])[each.run_of]
-            memories.append((torque[:, 1] - torque[:, 2]) / width)
-        runs = [each.run_of for each in self.prepared]
-        if not model.remembers:
-            return Linearised(designs, point.residuals, self.shared_offset)
-        counts = [len(each.motion.runs) for each in self.prepared]
-        return Linearised(designs, point.residuals, self.shared_offset, memories, runs, counts)
+        variants = np.repeat(point.initial_states[None, :], len(shapes), axis=0)
+        variants[1:3] = np.clip(
+            [point.initial_states + STATE_STEP, point.initial_states - STATE_STEP], -1.0, 1.0
+        )
+        extra = self.extras(shapes, variants)
+        torque = np.einsum("neb,e->nb", extra, point.values[2:])
+        slopes = (torque[:, 3::2] - torque[:, 4::2]) / (2 * SHAPE_STEP)
+        design = np.column_stack([self.base, extra[:, :, 0], slopes])
+        memory = None
+        if self.model.remembers:
+            effect = (torque[:, 1] - torque[:, 2]) / (variants[1] - variants[2])[self.run]
+            memory = Memory(effect, self.run, self.counts)
+        return Linearised(design, point.residuals, self.rows, self.shared_offset, memory)
 
 
 def best_candidate(problem: Problem, pieces: Pieces) -> Point:
     """The best candidate of `pieces`: nonlinear parameters and initial states."""
     rough = fit_pieces(pieces, np.ones(len(pieces.grams), dtype=bool), shared_offset=problem.shared_offset)
     best = int(np.argmin(rough.squares))
-    begin = [np.zeros(len(each.motion.runs)) for each in problem.prepared]
+    begin = np.zeros(sum(problem.counts))
     if problem.model.remembers:
-        runs = np.concatenate([[0], np.cumsum([len(each) for each in begin])])
-        for data_set, run, start in zip(
-            pieces.data_set, pieces.run, rough.initial_states[:, best], strict=True
-        ):
-            begin[data_set][run - runs[data_set]] = pieces.initial_states[data_set][
-                start, run - runs[data_set]
-            ]
+        tried = np.concatenate(pieces.initial_states, axis=1)
+        begin[pieces.run] = tried[rough.initial_states[:, best], pieces.run]
     return problem.at(pieces.shapes[best], begin)
 
 
@@ -116,10 +154,11 @@ def landed(problem: Problem, point: Point) -> Point | None:
     if STATE not in problem.model.terms or any(each.steps is None for each in problem.prepared):
         return None
     states = []
-    for each, begin, offset in zip(problem.prepared, point.initial_states, point.offsets, strict=True):
+    begins = problem.by_recording(point.initial_states)
+    for each, begin, offset in zip(problem.prepared, begins, point.offsets, strict=True):
         bush = Hysteresis(problem.model, point.values, point.shape, float(offset))
         states.append(landing_states(bush, [each.path.deflection[run] for run in each.path.runs], begin))
-    return problem.at(point.shape, states)
+    return problem.at(point.shape, np.concatenate(states))
 
 
 def step(problem: Problem, point: Point, limits: Array) -> Point | None:
@@ -128,16 +167,14 @@ def step(problem: Problem, point: Point, limits: Array) -> Point | None:
     change = linear.solve()
     move = np.clip(change[len(point.values) :], -BOLDEST, BOLDEST)
     moves = linear.initial_states(change)
-    share = 1.0
-    for _ in range(HALVINGS):
-        shape = np.clip(point.shape * np.exp(share * move), limits[0], limits[1])
-        initial_states = [
-            np.clip(s + share * m, -1.0, 1.0) for s, m in zip(point.initial_states, moves, strict=True)
-        ]
-        tried = problem.at(shape, initial_states)
+    shapes = np.clip(point.shape * np.exp(SHARES[:, None] * move), limits[0], limits[1])
+    states = np.clip(point.initial_states + SHARES[:, None] * moves, -1.0, 1.0)
+    extras = problem.extras(shapes, states)
+    bound = point.squares + ROUNDING * float(problem.response @ problem.response)
+    for place in np.flatnonzero(problem.squares(extras) < bound):
+        tried = problem.at(shapes[place], states[place], extras[:, :, place])
         if tried.squares < point.squares:
             return tried
-        share *= 0.4
     return None
 
 
@@ -147,21 +184,19 @@ def scan_shape(problem: Problem, point: Point, limits: Array, width: float) -> P
     Where an element begins to slip the squares have corners too, and more than one minimum.
     """
     ratios = np.exp(width * SCANNED_RATIO * np.linspace(-1.0, 1.0, 9))
-    shapes = [
-        _with_ratio(point.shape, place, ratio, limits)
-        for place in range(len(point.shape))
-        for ratio in ratios[ratios != 1.0]
-    ]
-    if not shapes:
+    shapes = np.array(
+        [
+            _with_ratio(point.shape, place, ratio, limits)
+            for place in range(len(point.shape))
+            for ratio in ratios[ratios != 1.0]
+        ]
+    )
+    if not len(shapes):
         return None
-    starts = [np.tile(start, (len(shapes), 1)) for start in point.initial_states]
-    extras = filtered_columns(problem.model, problem.prepared, np.array(shapes), starts)
-    tried = [
-        problem.at(shape, point.initial_states, [extra[:, :, place, None] for extra in extras])
-        for place, shape in enumerate(shapes)
-    ]
-    best = min(tried, key=lambda each: each.squares, default=point)
-    return best if best.squares < (1 - SETTLED) * point.squares else None
+    extras = problem.extras(shapes, np.tile(point.initial_states, (len(shapes), 1)))
+    best = int(np.argmin(problem.squares(extras)))
+    tried = problem.at(shapes[best], point.initial_states, extras[:, :, best])
+    return tried if tried.squares < (1 - SETTLED) * point.squares else None
 
 
 def _with_ratio(shape: Array, place: int, ratio: float, limits: Array) -> Array:
@@ -176,16 +211,16 @@ def scan(problem: Problem, point: Point, width: float) -> Point | None:
     A state that stops at its ends makes corners, at which the derivative by the initial state misleads.
     """
     around = np.linspace(-width, width, 9)
-    initial_states = [np.clip(start[None, :] + around[:, None], -1.0, 1.0) for start in point.initial_states]
-    shapes = np.repeat(point.shape[None, :], len(around), axis=0)
-    extras = filtered_columns(problem.model, problem.prepared, shapes, initial_states)
-    best = []
-    for place, (each, extra, tried) in enumerate(zip(problem.prepared, extras, initial_states, strict=True)):
-        linear = each.base @ point.values[:2] + point.offsets[place]
-        missing = each.response[:, None] - linear[:, None] - np.einsum("neb,e->nb", extra, point.values[2:])
-        if tried.shape[1] == 1 and not problem.shared_offset:
-            missing = missing - missing.mean(axis=0)
-        squares = np.array([np.bincount(each.run_of, column**2, tried.shape[1]) for column in missing.T])
-        best.append(tried[np.argmin(squares, axis=0), np.arange(tried.shape[1])])
+    tried = np.clip(point.initial_states + around[:, None], -1.0, 1.0)
+    extras = problem.extras(np.repeat(point.shape[None, :], len(around), axis=0), tried)
+    linear = problem.base @ point.values[:2] + np.repeat(point.offsets, problem.rows)
+    missing = (problem.response - linear)[:, None] - np.einsum("neb,e->nb", extras, point.values[2:])
+    runs = tried.shape[1]
+    squares = np.array([np.bincount(problem.run, column**2, runs) for column in missing.T])
+    if not problem.shared_offset:  # of a recording of one run the offset follows
+        sums = np.array([np.bincount(problem.run, column, runs) for column in missing.T])
+        alone = np.repeat(np.equal(problem.counts, 1), problem.counts)
+        squares -= np.where(alone, sums**2 / np.bincount(problem.run, minlength=runs).clip(1), 0.0)
+    best = tried[np.argmin(squares, axis=0), np.arange(runs)]
     moved = problem.at(point.shape, best)
     return moved if moved.squares < (1 - SETTLED) * point.squares else None

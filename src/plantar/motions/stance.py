@@ -80,7 +80,7 @@ def on_one_leg(body: Body, start: Stance, foot: str, arms: Mapping[str, float]) 
     for name in soles:
         if name != foot:
             soles[name] = soles[name] * pin.SE3(np.eye(3), np.array([0.0, 0.0, RAISED]))
-    centre = _sole_centre(body, start, foot)
+    centre = np.array(start.soles[foot].act(_middle(body, foot)))  # of the sole's outline, in the world
     rest = q
     for share in np.linspace(0.1, 1.0, 10):
         moved = {
@@ -130,11 +130,6 @@ def _check_apart(body: Body, targets: Mapping[str, pin.SE3]) -> None:
     if gap <= 0:
         message = f"the soles would stand on each other, {-1e3 * gap:.0f} mm deep"
         raise MotionError(located(message, path=body.robot.name, valid="feet farther apart"))
-
-
-def _sole_centre(body: Body, start: Stance, foot: str) -> Array:
-    """Middle of a sole's outline in the world, (3,)."""
-    return np.array(start.soles[foot].act(_middle(body, foot)))
 
 
 def _middle(body: Body, foot: str) -> Array:

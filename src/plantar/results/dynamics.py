@@ -7,9 +7,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any, Final
-
-import pyarrow as pa
+from typing import TYPE_CHECKING, Any, Final
 
 from plantar import __version__
 from plantar.errors import PlantarError, located
@@ -22,6 +20,9 @@ from plantar.results.io import RESULT_LIMIT, dump_json, finite, read_result, res
 from plantar.results.residuals import read_table, residuals_path, write_table
 from plantar.results.stored import rows_of, value_of
 
+if TYPE_CHECKING:
+    import pyarrow as pa
+
 __all__ = [
     "INERTIA_SCHEMA", "JOINTS_SCHEMA", "URDF", "BaseParameter", "DynamicsResult", "DynamicsScore",
     "InertialParameter", "JointParameter",
@@ -30,16 +31,6 @@ __all__ = [
 INERTIA_SCHEMA: Final = "plantar.inertia/1"
 JOINTS_SCHEMA: Final = "plantar.joints/1"
 URDF: Final = "identified.urdf"  # beside result.json: the robot with the inertias found
-
-_INERTIAL_TABLE: Final = pa.schema(
-    [(name, pa.string()) for name in ("link", "name", "unit")]
-    + [(name, pa.float64()) for name in ("value", "cad")]
-)
-_JOINT_TABLE: Final = pa.schema(
-    [(name, pa.string()) for name in ("joint", "name", "unit")]
-    + [(name, pa.float64()) for name in ("value", "std", "low", "high")]
-    + [(name, pa.string()) for name in ("verdict", "reason")]
-)
 
 
 @dataclass(frozen=True, repr=False)
@@ -126,14 +117,23 @@ class DynamicsResult:
         Columns: joint, name, unit, value, std, low, high (of the 95 % interval), verdict, reason; or link, name, unit,
         value, cad (the URDF's).
         """
+        import pyarrow as pa  # costs start-up
+
         if self.schema != JOINTS_SCHEMA:
-            return pa.Table.from_pylist(
-                [asdict(row) for row in self.inertial_parameters], schema=_INERTIAL_TABLE
+            schema = pa.schema(
+                [(name, pa.string()) for name in ("link", "name", "unit")]
+                + [(name, pa.float64()) for name in ("value", "cad")]
             )
+            return pa.Table.from_pylist([asdict(row) for row in self.inertial_parameters], schema=schema)
+        schema = pa.schema(
+            [(name, pa.string()) for name in ("joint", "name", "unit")]
+            + [(name, pa.float64()) for name in ("value", "std", "low", "high")]
+            + [(name, pa.string()) for name in ("verdict", "reason")]
+        )
         rows = [
             asdict(row) | {"low": row.interval95[0], "high": row.interval95[1]} for row in self.parameters
         ]
-        return pa.Table.from_pylist(rows, schema=_JOINT_TABLE)
+        return pa.Table.from_pylist(rows, schema=schema)
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data for JSON; numbers that are not finite become None."""

@@ -7,9 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any, Final
-
-import pyarrow as pa
+from typing import TYPE_CHECKING, Any, Final
 
 import plantar
 from plantar.contact.phases import Phase
@@ -32,6 +30,9 @@ from plantar.results.residuals import read_table, residuals_path, write_table
 from plantar.results.stored import row_of, rows_of, value_of
 from plantar.results.walk_rows import StanceStiffness, SwingZero, WalkStiffness
 
+if TYPE_CHECKING:
+    import pyarrow as pa
+
 __all__ = [
     "FEET_SCHEMA", "AxisModel", "Comparison", "DelayEstimate", "Diagnosis", "FeetResult", "Input", "Offset",
     "Parameter", "ValidationRow", "Verdict",
@@ -44,12 +45,6 @@ _IF_ANY: Final = (
     "walks",
     "swing_zeros",
 )  # keys of the file only where there are rows
-
-_TABLE: Final = pa.schema(
-    [(name, pa.string()) for name in ("foot", "axis", "name", "unit")]
-    + [(name, pa.float64()) for name in ("value", "std", "low", "high", "relative_std_percent")]
-    + [(name, pa.string()) for name in ("verdict", "reason", "advice")]
-)
 
 
 @dataclass(frozen=True, repr=False)
@@ -163,13 +158,20 @@ class FeetResult:
             >>> plantar.FeetResult.load("out/feet").to_table().column("unit")[0].as_py()
             'N.m/rad'
         """
+        import pyarrow as pa  # costs start-up
+
+        schema = pa.schema(
+            [(name, pa.string()) for name in ("foot", "axis", "name", "unit")]
+            + [(name, pa.float64()) for name in ("value", "std", "low", "high", "relative_std_percent")]
+            + [(name, pa.string()) for name in ("verdict", "reason", "advice")]
+        )
         rows = []
         for row in self.parameters:
             low, high = row.interval95 or (None, None)
             entry = asdict(row)
             del entry["interval95"]
             rows.append(entry | {"low": low, "high": high})
-        return pa.Table.from_pylist(rows, schema=_TABLE)
+        return pa.Table.from_pylist(rows, schema=schema)
 
     def plot(self, foot: str, axis: str, *, motions: str | Sequence[str] = (), axes: Any = None) -> Any:
         """Torque over angle of one foot and axis, measured and model, as matplotlib axes; see `plantar.plot_torque`."""

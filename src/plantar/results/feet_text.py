@@ -82,9 +82,10 @@ def prediction_cells(rows: Sequence[ValidationRow]) -> list[tuple[str, ...]]:
             axis,
             number(_mean([row.mean_abs_error for row in group], group), 3),
             number(_mean([row.zero_mean_abs for row in group], group), 3),
-            "" if all(row.mean_abs_error < row.zero_mean_abs for row in group) else _lost(group),
+            f"no better than the offset alone: {', '.join(lost)}" if lost else "",
         )
         for (kind, foot, axis), group in groups.items()
+        for lost in [[row.motion for row in group if not row.has_skill]]
     ]
 
 
@@ -100,8 +101,3 @@ def delay_line(delay: DelayEstimate | None) -> list[str]:
 def _mean(values: Sequence[float], group: Sequence[ValidationRow]) -> float:
     samples = [row.samples for row in group]
     return sum(value * count for value, count in zip(values, samples, strict=True)) / max(sum(samples), 1)
-
-
-def _lost(group: Sequence[ValidationRow]) -> str:
-    names = [row.motion for row in group if not row.mean_abs_error < row.zero_mean_abs]
-    return f"no better than the offset alone: {', '.join(names)}"

@@ -5,6 +5,10 @@ the one and not the other, delays of force sensors come out against the one and 
 a 60 Hz filter are 6 to 20 % of it. Over a sole that stands the IMU's acceleration is known (`tilt_error`), and one that
 is read τ late leaves a lean of the believed vertical which goes with the tilt's rate. What else leans with the robot's
 own motion is fitted beside it: a scale of the attitude, an IMU that is higher than the robot file says, or turned.
+
+No filter makes a sensor early. An accelerometer ahead of the orientation is either right, beside an orientation and a
+gyroscope that one filter delays together, or it has drawn the orientation after itself (`tilt_error`): then the
+gyroscope is ahead as well.
 """
 
 from __future__ import annotations
@@ -24,7 +28,7 @@ from plantar.robot.model import RobotModel
 from plantar.sensors.imu_filter import ImuFilter
 from plantar.sensors.tilt_error import CORRECTED, DERIVED, enough_of, lean_of, stance_leans, unit_quaternions
 from plantar.signals.filters import differentiate, low_pass
-from plantar.signals.resampling import shifted
+from plantar.signals.resampling import shifted, with_continuous_quaternions
 from plantar.signals.segments import runs
 
 SLOW = 0.15  # Hz: below it an attitude's wander leans more than any delay
@@ -34,7 +38,8 @@ SURE = 3.0  # deviations
 ALIKE = 0.001  # s: standard deviation by which the filters of a device's two sensors differ
 STRAY = 0.0005  # s: what encoders that are a millisecond off, or legs that are, make of it
 LARGEST = 0.01  # s: a device's own filter; later is a fault, and `sensor_delay` searches for it
-COLUMNS = 10  # the lean, and what goes with it
+COLUMNS = 11  # the lean, and what goes with it
+ACCELEROMETER, ORIENTATION = 1, 2  # columns: what a late one of them makes of the lean
 SINGULAR = (
     1e-10  # of the columns' products, scaled to 1: one pace of sway does not tell scale and height apart
 )
@@ -42,7 +47,7 @@ SINGULAR = (
 
 @dataclass(frozen=True)
 class AccelerometerDelay:
-    """Sums over the stances of a log: `products` (10, 10) of the lean and of what goes with it, delay first; `seconds`
+    """Sums over the stances of a log: `products` (11, 11) of the lean and of what goes with it, delays first; `seconds`
     of all axes."""
 
     products: Array = field(default_factory=lambda: np.zeros((COLUMNS, COLUMNS)))
@@ -51,14 +56,20 @@ class AccelerometerDelay:
     def __add__(self, other: AccelerometerDelay) -> AccelerometerDelay:
         return AccelerometerDelay(self.products + other.products, self.seconds + other.seconds)
 
-    @property
-    def late(self) -> tuple[float, float]:
-        """How far the accelerometer is behind the orientation, and its deviation [s]; 0 and inf where none tells."""
-        size = np.sqrt(np.diag(self.products))
+    def late(self, sensor: int = ACCELEROMETER) -> tuple[float, float]:
+        """How far the accelerometer is behind the orientation, or the ORIENTATION behind the accelerometer, and its
+        deviation [s]; 0 and inf where none tells.
+
+        Either, not both: a robot that sways as a stick shows only how far they are apart. One whose trunk turns shows
+        the one otherwise than the other.
+        """
+        asked = [0, sensor, *range(ORIENTATION + 1, COLUMNS)]
+        products = self.products[np.ix_(asked, asked)]
+        size = np.sqrt(np.diag(products))
         if size[0] == 0 or size[1] == 0 or self.seconds == 0:
             return 0.0, np.inf
         scale = np.where(size > 0, size, 1.0)
-        scaled = self.products / np.outer(scale, scale)
+        scaled = products / np.outer(scale, scale)
         inverse = np.linalg.pinv(scaled[1:, 1:], rcond=SINGULAR, hermitian=True)
         found = inverse @ scaled[1:, 0]
         left = max(1.0 - float(found @ scaled[1:, 0]), 0.0)
@@ -66,27 +77,31 @@ class AccelerometerDelay:
         return float(found[0]) * unit, unit * float(np.sqrt(left * inverse[0, 0] / (RATE * self.seconds)))
 
 
-def device_delay(found: Sequence[AccelerometerDelay]) -> tuple[float, float]:
-    """How far one device's accelerometer is behind its orientation and its deviation [s]: a filter's delay is the same
+def device_delay(found: Sequence[AccelerometerDelay], sensor: int = ACCELEROMETER) -> tuple[float, float]:
+    """How far a sensor of one device is behind the other, as in `AccelerometerDelay.late`: a filter's delay is the same
     in all logs. Inf where none tells.
 
     What else leans goes its own way in each log: a turned IMU shows otherwise in a squat than in a sway. So each log
     tells by itself, and where logs disagree the deviation grows.
     """
-    told = [one for one in (each.late for each in found) if 0 < one[1] < np.inf]
+    told = [one for one in (each.late(sensor) for each in found) if 0 < one[1] < np.inf]
     if not told:
         return 0.0, np.inf
     mean = weighted_mean(*zip(*told, strict=True))
     return mean.value, mean.std
 
 
-def filter_delay(told: tuple[float, float], gyroscope: ImuFilter | None) -> tuple[float, float]:
-    """The delay to read an accelerometer earlier by and its deviation [s]; 0 where it is not told from none, or larger
-    than a filter's.
+def filter_delay(
+    told: tuple[float, float],
+    gyroscope: ImuFilter | None = None,
+    behind: tuple[float, float] = (0.0, np.inf),
+) -> tuple[float, float]:
+    """The delay to read an accelerometer earlier by, or, where it is < 0, orientation and gyroscope, and its deviation
+    [s]; 0 where it is not told from none, or larger than a filter's. `told`, `behind`: the `device_delay` of either.
 
     A device filters both of its sensors much alike: a gyroscope whose delay is `shown` tells of the accelerometer,
-    unless the two contradict each other. One whose logs disagree shows an orientation that follows the accelerometer,
-    and so does an accelerometer that is early: no filter makes it so (`tilt_error`).
+    unless the two contradict each other. One whose logs disagree shows an orientation that follows the accelerometer.
+    So does an accelerometer that is early, unless the gyroscope keeps to the orientation.
     """
     late, std = told[0], float(np.hypot(told[1], STRAY))
     if gyroscope is not None and not gyroscope.steady:
@@ -96,34 +111,49 @@ def filter_delay(told: tuple[float, float], gyroscope: ImuFilter | None) -> tupl
         if abs(late - gyroscope.late) < SURE * float(np.hypot(std, usual)):
             share = usual**2 / (usual**2 + std**2)
             late, std = share * late + (1 - share) * gyroscope.late, std * float(np.sqrt(share))
-    return (late, std) if SURE * std < late < LARGEST else (0.0, std)
+    if SURE * std < late < LARGEST:
+        return late, std
+    early, unsure = behind[0], float(np.hypot(behind[1], STRAY))
+    kept = gyroscope is not None and abs(gyroscope.late) + SURE * gyroscope.std < early / 2
+    return (-early, unsure) if kept and late < 0 and SURE * unsure < early < LARGEST else (0.0, std)
 
 
-def with_accelerometers_on_time(
+def with_imus_on_time(
     robot: RobotModel,
     logs: Sequence[MotionLog],
     told: Sequence[AccelerometerDelay],
     gyroscope: ImuFilter | None = None,
 ) -> list[MotionLog]:
-    """Checked logs of one IMU with its accelerometer read at the moments of its orientation, and a note of it.
+    """Checked logs of one IMU with its accelerometer and its orientation read at the same moments, and a note of it.
 
-    All logs tell together, each of them as `told`: a filter belongs to the device. As they are where that is not sure.
-    `gyroscope`: what they tell of the filter of the same device.
+    The later of the two is read earlier; the gyroscope goes with the orientation. All logs tell together, each of them
+    as `told`: a filter belongs to the device. As they are where that is not sure. `gyroscope`: what they tell of the
+    filter of the same device.
     """
-    late, std = filter_delay(device_delay(told), gyroscope)
+    late, std = filter_delay(device_delay(told), gyroscope, device_delay(told, ORIENTATION))
     if robot.imu is None or not late:
         return [*logs]
-    how = f"{1e3 * late:.1f} ± {1e3 * NORMAL95 * std:.1f} ms behind the IMU's orientation (95 %)"
-    note = Note(
-        "accelerometer_delay", "info", f"accelerometer {how} over soles that stand, read earlier by as much"
+    by = f"{1e3 * abs(late):.1f} ± {1e3 * NORMAL95 * std:.1f} ms behind"
+    end = "(95 %) over soles that stand, read earlier by as much"
+    code, text = (
+        ("accelerometer_delay", f"accelerometer {by} the IMU's orientation {end}")
+        if late > 0
+        else ("orientation_delay", f"the IMU's orientation and gyroscope {by} its accelerometer {end}")
     )
-    columns, read = imu_columns(robot.imu.name, "linear_acceleration"), list[MotionLog]()
-    for log in logs:
-        if log.has(*columns):
-            on_time = shifted(log.linear_acceleration(robot.imu.name), log.period, late)
-            log = log.with_columns(dict(zip(columns, on_time.T, strict=True)), note)
-        read.append(log)
-    return read
+    note = Note(code, "info", text)
+    return [_read_earlier(log, robot.imu.name, late, note) for log in logs]
+
+
+def _read_earlier(log: MotionLog, imu: str, late: float, note: Note) -> MotionLog:
+    """The log with its accelerometer read `late` [s] earlier, or orientation and gyroscope where that is < 0; itself
+    where it has none."""
+    kinds = ("linear_acceleration",) if late > 0 else ("orientation", "angular_velocity")
+    columns = [name for name in imu_columns(imu, *kinds) if log.has(name)]
+    if not columns:
+        return log
+    own = with_continuous_quaternions(log)
+    on_time = shifted(np.column_stack([own[name] for name in columns]), log.period, abs(late))
+    return log.with_columns(dict(zip(columns, on_time.T, strict=True)), note)
 
 
 def accelerometer_delay(robot: RobotModel, log: MotionLog) -> AccelerometerDelay:
@@ -150,7 +180,7 @@ def accelerometer_delay(robot: RobotModel, log: MotionLog) -> AccelerometerDelay
 def _leans(
     robot: RobotModel, log: MotionLog, orientation: Array, acceleration: Array, every: int
 ) -> Iterator[Array]:
-    """Of each stance the lean about both axes and what goes with it, (n, 2, 10) [rad, and per unit], at `every` nth
+    """Of each stance the lean about both axes and what goes with it, (n, 2, 11) [rad, and per unit], at `every` nth
     sample."""
     period, (feet, forces) = log.period, _feet(robot, log, orientation)
     contacts = detect_contact(
@@ -162,11 +192,14 @@ def _leans(
     rotation, smooth = rotation_from_quaternion(orientation), low_pass(acceleration, period, DERIVED)
     earlier = -differentiate(smooth, period)
     pushed, tilt = np.einsum("nij,nj->ni", rotation[:, :2], earlier), rotation[:, :2, 2]
+    # What an orientation believes a moment ago was up.
+    up = differentiate(low_pass(rotation[:, 2], period, DERIVED), period)
+    before = np.einsum("nij,nj->ni", rotation[:, :2], up)
     rising = np.einsum("nj,nj->n", rotation[:, 2], smooth)
     for run, lean, height in stance_leans(orientation, acceleration, feet, contacts, period, every):
         place = np.mean([foot.sole_position[run, :2] for foot in feet.values()], axis=0)
         none = np.zeros_like(place)
-        tilted = low_pass(tilt[run], period, CORRECTED, every=every)
+        tilted, behind = (low_pass(each[run], period, CORRECTED, every=every) for each in (tilt, before))
         turning = np.column_stack([-place[:, 1], place[:, 0]])
         # An IMU that leans in its mount takes a part of what rises for what goes to the side.
         aside = [np.outer(rising[run], side) for side in np.eye(2)]
@@ -175,7 +208,7 @@ def _leans(
         higher, turned, late, *leant = np.split(lean_of(pushes, places, height, period, every), 5, axis=1)
         about, across = ([each * side for each in (tilted, higher)] for side in np.eye(2))
         swapped = np.column_stack([-tilted[:, 1], tilted[:, 0]])
-        yield np.stack([lean, late, *about, *across, turned, swapped, *leant], axis=2)
+        yield np.stack([lean, late, behind, *about, *across, turned, swapped, *leant], axis=2)
 
 
 def _feet(

@@ -88,15 +88,9 @@ def _positive(products: Array) -> Array:
 
 
 def _weights(logs: Sequence[MomentErrors], left: Sequence[Array]) -> list[Array]:
-    """Of each log's rows, (6,), by what logs of its kind have `left` (6, n): standing and walking miss differently."""
-    power = {
-        kind: np.mean(
-            np.hstack([own for own, log in zip(left, logs, strict=True) if log.independent == kind]) ** 2,
-            axis=1,
-        )
-        for kind in {log.independent for log in logs}
-    }
-    return [np.asarray(log.independent / power[log.independent]) for log in logs]
+    """Of each log's rows, (6,), by what the fit has `left` of it (6, n): a robot that walks, or that a hand steadies,
+    misses more than one that stands alone."""
+    return [log.independent / np.mean(own**2, axis=1) for own, log in zip(left, logs, strict=True)]
 
 
 def _beside_zeros(log: MomentErrors, weights: Array) -> Weighted:

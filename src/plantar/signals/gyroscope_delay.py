@@ -10,7 +10,7 @@ from plantar.conventions import Array
 from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.orientation import rates_from
-from plantar.signals.segments import longest_run
+from plantar.signals.segments import complete, longest_run
 
 BAND = 8.0  # Hz, in which rates are compared
 EDGE, LEAST_EDGES = 0.5, 10  # s that a filter's ends take; how many of them a run must hold
@@ -51,7 +51,7 @@ def gyroscope_delay(rates: Array, turning: Array, period: float) -> GyroscopeDel
     Of the longest run without NaN; None where that is short, or still.
     """
     edge = round(EDGE / period)
-    run = longest_run(np.asarray(np.isfinite(np.column_stack([rates, turning])).all(axis=1)))
+    run = longest_run(complete(rates, turning))
     if run.stop - run.start < LEAST_EDGES * edge:
         return None
     apart = low_pass(rates[run] - turning[run], period, BAND)[edge:-edge]

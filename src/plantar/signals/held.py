@@ -23,7 +23,9 @@ def held_samples(values: Array, period: float, *, full_scale: bool = True) -> Ma
     that repeats it is held, however short the stretch. `full_scale`: whether the channel has one; a unit quaternion's
     components have not.
     """
-    still = (np.diff(values) == 0) & (values[1:] != 0)  # a foot in the air may read zero
+    still = (values[1:] == values[:-1]) & (values[1:] != 0)  # a foot in the air may read zero
+    if 2 * np.count_nonzero(still) <= NOTABLE * len(values):  # each belongs to two samples at most
+        return np.zeros(len(values), dtype=bool)
     least = max(FEWEST, round(SHORTEST / period))
     held = np.zeros(len(values), dtype=bool)
     limits = (np.nanmin(values), np.nanmax(values)) if full_scale and np.isfinite(values).any() else ()

@@ -5,7 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from plantar.conventions import Mask
+from plantar.conventions import Array, Mask
+
+
+def complete(*values: Array) -> Mask:
+    """The samples (N,) at which no number of `values`, (N, k) each, is NaN or infinite."""
+    with np.errstate(invalid="ignore", over="ignore"):  # one sum of each sample says what its values would
+        return np.asarray(np.isfinite(sum(part @ np.ones(part.shape[1]) for part in values)))
 
 
 def runs(valid: Mask) -> list[slice]:

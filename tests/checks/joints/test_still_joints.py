@@ -6,15 +6,24 @@ import numpy as np
 import pytest
 
 from biped import record, sway
+from feet_trials import noisy
 from plantar.checks.joints.still_joints import check_still_joints
 from plantar.feet.assess.data_faults import UNMENDED
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
 
 
-def log_of(robot: RobotModel, still: list[str], reach: float = 0.1) -> MotionLog:
-    """Of ten joints between IMU and feet, of which these stand and the others turn by `reach` [rad]."""
-    log = record(sway())
+def log_of(robot: RobotModel, still: list[str], reach: float = 0.1, noise: float = 1.0) -> MotionLog:
+    """Of ten joints between IMU and feet, of which these stand and the others turn by `reach` [rad]; `noise`: of the
+    sensors, times a usual one."""
+    exact = record(sway())
+    loud = noisy(exact, 1)
+    log = exact.with_columns(
+        {
+            name: exact.column(name) + noise * (loud.column(name) - exact.column(name))
+            for name in exact.columns
+        }
+    )
     assert robot.imu is not None
     moving = {f"joint.{name}.position": np.linspace(0.0, reach, len(log)) for name in robot.path_joints}
     assert len(moving) == 10
@@ -27,6 +36,15 @@ def test_a_joint_that_stands_while_the_other_legs_turns_is_doubted(robot: RobotM
     assert (found.code, found.severity, found.fatal) == ("stuck_channel", "warning", False)
     assert found.text.startswith(f"column 'joint.left_ankle_{axis}.position': never changes while")
     assert found.code in UNMENDED, "no number of such a log is usable"
+
+
+@pytest.mark.parametrize(("noise", "code"), [(0.001, "stuck_channel"), (0.0003, "still_joint")])
+def test_motors_of_a_simulation_without_noise_may_hold_as_they_are_told(
+    robot: RobotModel, noise: float, code: str
+) -> None:
+    """A usual noise is a sixth of what these sensors read."""
+    (found,) = check_still_joints(robot, log_of(robot, ["left_ankle_roll"], noise=noise))
+    assert found.code == code
 
 
 def test_joints_of_both_legs_that_stand_are_at_rest(robot: RobotModel) -> None:

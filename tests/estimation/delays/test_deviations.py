@@ -7,8 +7,13 @@ import pytest
 
 from plantar.conventions import Array
 from plantar.estimation.delays.delay import Delay, Pair, estimate_delay
-from plantar.estimation.delays.sensor_delays import FEWEST_CELLS, Balance, estimate_delays
+from plantar.estimation.delays.sensor_delays import (
+    Balance,
+    estimate_delays,
+)
 from plantar.signals.filters import differentiate, low_pass
+
+FEWEST_CELLS = 6
 
 PERIOD, SAMPLES = 0.01, 6000
 INNER = slice(100, -100)

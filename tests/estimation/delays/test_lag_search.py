@@ -67,3 +67,26 @@ def test_lags_beyond_the_grid_are_missed_and_no_lag_is_better_than_others() -> N
 
 def test_at_the_end_of_the_grid_it_says_so() -> None:
     assert search_lags([grid((STEPS, STEPS, 0))]).at_edge
+
+
+@pytest.mark.parametrize(("second", "near"), [(1.29, 1), (1.31, 0)])
+def test_lags_that_miss_a_third_more_are_as_good(second: float, near: int) -> None:
+    """One foot at five lags, of which the third is best; what it misses is a tone beside the predicted one.
+
+    The deviation is that of the lags as good, about the best one, and of a step of the grid.
+    """
+    time = 0.05 * np.arange(240)
+    tone, other = np.sin(2 * np.pi * 0.5 * time), np.sin(2 * np.pi * 0.75 * time)
+    predicted = np.tile(tone[:, None], 6)
+    missed = [0.5, 0.1 * np.sqrt(second), 0.1, 0.1 * np.sqrt(second), 0.6]
+    measured = np.array([[np.tile((tone + one * other)[:, None], 6) for one in missed]])
+    lags = np.array([-0.1, -0.05, 0.0, 0.05, 0.1])
+    encoders = np.array([0.0, 0.05])  # of which nothing is told
+    grid = LagGrid(np.array([predicted] * 2), np.array([measured] * 2), encoders, lags, 0.05)
+    found = search_lags([grid])
+    assert found.values[0] == 0.0
+    assert found.missed[0] == pytest.approx(0.01)
+    assert not found.at_edge
+    spread = np.sqrt(2 * near * 0.05**2 / (1 + 2 * near))
+    assert found.std[0] == pytest.approx(np.hypot(spread, 0.05 / np.sqrt(12)))
+    assert found.power[0] == pytest.approx(1 / 1.01)

@@ -10,11 +10,12 @@ import pytest
 from feet_trials import LINEAR
 from made_recording import FOOT, PERIOD, made_recording, swayed
 from plantar.conventions import Array
-from plantar.estimation.slow_drift import DRIFT_PERIOD
 from plantar.feet.assess.contradiction import contradiction, missed_motions
 from plantar.feet.assess.scores import score_axis
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.results.feet import ValidationRow
+
+DRIFT_PERIOD = 20.0
 
 STIFFNESS, COUNT = 400.0, 6000
 MOUNT = 0.01  # rad

@@ -10,6 +10,7 @@ from made_recording import FOOT, PERIOD, made_recording, swayed
 from plantar.feet.assess.play import CODE, play_notes
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.recording import Recording
+from plantar.feet.regression.regression_data import tangent_blocks
 from plantar.feet.settings import FeetSettings
 from plantar.notes import Note
 
@@ -32,7 +33,7 @@ def swaying(rubber: Rubber, play: float = 0.0) -> list[Recording]:
 def said(recordings: list[Recording]) -> list[Note]:
     fit = fit_axis(recordings, FOOT, "pitch", FeetSettings())
     assert fit is not None
-    return play_notes(recordings, fit, False)
+    return play_notes(recordings, fit, tangent_blocks(recordings, fit), False)
 
 
 @pytest.mark.parametrize("play", [0.004, 0.01])
@@ -53,3 +54,19 @@ def test_play_is_told_with_its_size(play: float) -> None:
 )
 def test_no_foot_without_play_is_told_of_it(rubber: Rubber) -> None:
     assert said(swaying(rubber)) == []
+
+
+@pytest.mark.parametrize(("play", "told"), [(0.0023, False), (0.0033, True)])
+def test_play_is_told_where_half_as_much_again_is_left_without_it(play: float, told: bool) -> None:
+    """Of a step of the torque, half a play times the stiffness, spring and damper leave a fifth of the squares."""
+    made = []
+    for seed in (0, 1):
+        angle, random = swayed(COUNT, seed=seed), np.random.default_rng(seed)
+        rate = np.gradient(angle, PERIOD)
+        noise = 0.35 * random.standard_normal(COUNT)
+        torque = PLAIN.torque(angle, rate) + noise
+        read = angle + play / 2 * np.tanh(10 * torque / np.std(torque))
+        made.append(made_recording(f"sway_{seed}", read, torque, rate=rate))
+    fit = fit_axis(made, FOOT, "pitch", FeetSettings(model="kelvin_voigt"))
+    assert fit is not None
+    assert bool(play_notes(made, fit, False)) == told

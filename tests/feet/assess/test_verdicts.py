@@ -10,12 +10,19 @@ import pytest
 
 from biped import record, sines, sway
 from biped_robot import FEET, make_robot, robot_entry
-from plantar.feet.assess.verdicts import NOISY, SIGNS, Evidence, judge, judge_term
+from plantar.feet.assess.verdicts import (
+    SIGNS,
+    Evidence,
+    judge,
+    judge_term,
+)
 from plantar.feet.identify import identify_feet
 from plantar.feet.settings import FeetSettings
 from plantar.logs.readers import open_log
 from plantar.results.feet import ValidationRow
 from plantar.robot.model import load_robot
+
+NOISY = 0.13
 
 GOOD = Evidence(seconds=60.0, excitation=0.02, explained=0.98)
 

@@ -15,9 +15,10 @@ from plantar.feet.exclusion.slip import _shared, without_slip
 from plantar.feet.exclusion.sole_velocity import sole_motion
 from plantar.feet.prepare_log import checked, prepare
 from plantar.feet.recording import Recording, filtered_recording
-from plantar.feet.settings import DEFAULT_CUTOFF
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel, load_robot
+
+DEFAULT_CUTOFF = 5.0
 
 STANDING = noisy(record(sway(duration=25.0)), 1)
 TIME, PERIOD = STANDING.time, STANDING.period

@@ -14,7 +14,7 @@ from plantar.feet.fit.angle_drift import beside_drift
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AngleDrift, AxisFit
-from plantar.feet.regression.regression_data import model_columns
+from plantar.feet.regression.model_columns import model_columns
 from plantar.feet.settings import FeetSettings
 
 COUNT = 6000

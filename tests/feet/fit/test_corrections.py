@@ -157,3 +157,20 @@ def test_an_offset_about_an_unknown_zero_is_no_better_known() -> None:
     assert about_true_zero(fit, [recording], shared=False).offset_std["sway"] > 1e-4
     sure = about_true_zero(replace(fit, offset_std={"sway": 5.0}), [recording], shared=False)
     assert sure.offset_std["sway"] == 5.0
+
+
+def test_a_correction_worth_it_is_a_tenth_of_a_deviation_and_a_thousandth_of_a_value() -> None:
+    """One of both numbers is enough; the spring and damper nearest to a richer model stay what they are."""
+    recordings, fit = noisy_angles(0.004)
+    taken = unattenuated(fit, recordings, shared=False).values - fit.values
+    for share, left in ((0.98, False), (1.02, True)):
+        wide = replace(fit, covariance=np.diag((share * np.abs(taken) / 0.1) ** 2))
+        assert (unattenuated(wide, recordings, shared=False) is wide) == left
+    moved = unattenuated(fit, recordings, shared=False)
+    own = moved.offsets["sway"] - fit.offsets["sway"]
+    assert moved.offset_std["sway"] == pytest.approx(np.hypot(0.1, 0.3 * own))
+    richer = replace(
+        fit, model=MODELS["elastoplastic"], values=np.append(fit.values, 1.0), shape=np.array([0.01]),
+        covariance=1e-6 * np.eye(4), equivalent=(123.0, 4.0),
+    )  # fmt: skip
+    assert unattenuated(richer, recordings, shared=False).equivalent == (123.0, 4.0)

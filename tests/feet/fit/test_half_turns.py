@@ -10,10 +10,15 @@ import numpy as np
 import pytest
 
 from plantar.feet.fit import half_turns
-from plantar.feet.fit.half_turns import ROUND, cautioned_if_hardly_turned, slip_angles_spanned
+from plantar.feet.fit.half_turns import (
+    cautioned_if_hardly_turned,
+    slip_angles_spanned,
+)
 from plantar.feet.regression.axis import AxisFit
 from plantar.model_selection.selection import ModelChoice
 from plantar.models import MODELS, BushMotion
+
+ROUND = 2.0
 
 SLIP_ANGLE = 0.01
 
@@ -43,7 +48,7 @@ def walks(monkeypatch: pytest.MonkeyPatch) -> Any:
 
 
 def test_the_usual_stance_counts(walks: Any) -> None:
-    assert slip_angles_spanned(fit_of(), walks(1.0, 2.5, 4.0)) == pytest.approx(2.5)
+    assert slip_angles_spanned(fit_of(), walks(1.0, 2.5, 9.0)) == pytest.approx(2.5)
     assert slip_angles_spanned(fit_of(), walks(2.5, steps=False)) is None
     assert slip_angles_spanned(fit_of("kelvin_voigt"), walks(2.5)) is None
 

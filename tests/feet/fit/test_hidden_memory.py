@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from plantar.feet.fit.hidden_memory import (
-    SMALL,
     UNTIMED,
     cautioned,
     may_hide_a_memory,
@@ -21,6 +20,8 @@ from plantar.feet.regression.axis import AxisFit
 from plantar.model_selection.model_fit import ModelFit
 from plantar.model_selection.selection import ModelChoice, ModelScore
 from plantar.models import MODELS, BushMotion
+
+SMALL = 0.015
 
 SPRING = (500.0, 20.0)
 OTHER = (400.0, 14.0, 2.0)  # with an element of slip torque 2 N.m

@@ -20,6 +20,7 @@ from plantar.feet.interval_width.between_recordings import (
     recordings_apart,
 )
 from plantar.feet.prepare import prepare_all
+from plantar.feet.regression.regression_data import tangent_blocks
 from plantar.robot.model import RobotModel
 
 LINEAR = replace(PUNCTUAL, model="kelvin_voigt")
@@ -34,7 +35,7 @@ def share(robot: RobotModel, shares: list[float], prior: float = 0.0) -> float:
     ready = prepare_all(robot, logs, [], LINEAR, lambda _: None)
     fit = fit_axis(ready.fitted, "left", "pitch", LINEAR)
     assert fit is not None
-    (cause,) = between_recordings(fit, ready.fitted, prior, False)
+    (cause,) = between_recordings(fit, tangent_blocks(ready.fitted, fit), prior, False)
     return float(cause.share[0] / fit.values[0])
 
 
@@ -85,7 +86,7 @@ def test_a_prior_that_few_recordings_hold_up_is_no_more_sure_than_these() -> Non
     recordings = [made_recording(f"sway_{k}", own, 400.0 * own) for k, own in enumerate(angle)]
     fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
     assert fit is not None
-    (cause,) = between_recordings(fit, recordings, 0.05, False)
+    (cause,) = between_recordings(fit, tangent_blocks(recordings, fit), 0.05, False)
     assert (cause.std, cause.freedom) == (0.05, 2.0)
 
 
@@ -100,7 +101,7 @@ def test_many_that_differ_say_it_by_what_each_moves() -> None:
         recordings.append(made_recording(f"sway_{seed}", angle, own * angle + slow))
     fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
     assert fit is not None
-    (cause,) = between_recordings(fit, recordings, 0.0, False)
+    (cause,) = between_recordings(fit, tangent_blocks(recordings, fit), 0.0, False)
     assert cause.freedom == pytest.approx(5.0)
     without = [fit_axis([*recordings[:k], *recordings[k + 1 :]], FOOT, "pitch", LINEAR) for k in range(6)]
     values = np.array([one.values for one in without if one is not None])

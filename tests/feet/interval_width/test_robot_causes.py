@@ -13,6 +13,7 @@ from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.identify import identify_feet
 from plantar.feet.interval_width.robot_causes import robot_causes
 from plantar.feet.prepare import prepare_all
+from plantar.feet.regression.regression_data import tangent_blocks
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
 from plantar.robot.uncertainty import Uncertainty
@@ -71,7 +72,8 @@ def test_a_turned_sensor_reads_less_by_its_cosine(robot: RobotModel) -> None:
     ready = prepare_all(robot, logs, [], LINEAR, lambda _: None)
     fit = fit_axis(ready.fitted, "left", "pitch", LINEAR)
     assert fit is not None
-    assert [cause.name for cause in robot_causes(fit, ready.fitted, NOTHING, False)] == ["between recordings"]
-    cause, _ = robot_causes(replace(fit, turned=0.2), ready.fitted, NOTHING, False)
+    blocks = tangent_blocks(ready.fitted, fit)
+    assert [cause.name for cause in robot_causes(fit, blocks, NOTHING, False)] == ["between recordings"]
+    cause, _ = robot_causes(replace(fit, turned=0.2), blocks, NOTHING, False)
     assert cause.std == pytest.approx(1 - np.cos(0.2))
     np.testing.assert_array_equal(cause.effect, fit.values)

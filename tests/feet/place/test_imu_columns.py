@@ -8,10 +8,12 @@ import numpy as np
 import pytest
 
 from made_recording import FOOT, PERIOD, made_recording, swayed
+from plantar.conventions import Array
 from plantar.estimation import Block
 from plantar.feet.place.imu_columns import imu_columns, that_show
 from plantar.feet.regression.axis import AxisFit
-from plantar.models import KelvinVoigt
+from plantar.feet.regression.model_columns import model_columns
+from plantar.models import MODELS, KelvinVoigt
 
 STIFFNESS, DAMPING = 400.0, 10.0
 FIT = AxisFit(
@@ -36,6 +38,27 @@ def test_a_turn_bends_the_bush_by_what_the_joints_make_of_it() -> None:
     assert imu_columns(recording, turned)[inner] == pytest.approx(wanted[inner], abs=2e-3), (
         "the law is linear"
     )
+
+
+def test_a_turn_moves_the_path_of_a_memory() -> None:
+    """Against the columns of the model about an IMU that is turned a little more and a little less."""
+    deflection, step = swayed(amplitude=0.02), 1e-3
+    turns = np.zeros((len(deflection), 2, 3))
+    turns[:, 0] = np.outer(0.2 * np.sin(0.02 * np.arange(len(deflection))), [1 / 3, 0.5, -1.0])
+    recording = replace(made_recording("sway", deflection, STIFFNESS * deflection), imu_turns={FOOT: turns})
+    values, shape = np.array([STIFFNESS, DAMPING, 5.0]), np.array([0.01])
+    fit = replace(
+        FIT, model=MODELS["elastoplastic"], values=values, shape=shape, imu_turned=(0.02, 0.0, 0.01)
+    )
+
+    def torque(sign: float, axis: Array) -> Array:
+        x, y, z = np.array(fit.imu_turned) + sign * step * axis
+        return model_columns(recording, FOOT, "pitch", replace(fit, imu_turned=(x, y, z))) @ values
+
+    wanted = [(torque(1, axis) - torque(-1, axis)) / (2 * step) for axis in np.eye(3)]
+    found = imu_columns(recording, fit)
+    np.testing.assert_allclose(found, np.column_stack(wanted), atol=1e-7)
+    assert np.abs(found - imu_columns(recording, replace(FIT, values=values[:2]))).max() > 1.0, "it slips"
 
 
 def test_a_column_shows_by_what_no_offset_takes_up() -> None:

@@ -13,9 +13,11 @@ import pytest
 from biped_robot import make_robot
 from plantar.errors import LogError
 from plantar.logs.readers import open_log
-from plantar.logs.readers.read_limit import SMALL, ReadLimit
+from plantar.logs.readers.read_limit import ReadLimit
 from plantar.logs.readers.tables import csv_text, parquet_file
 from plantar.logs.readers.tables.parquet_pages import BrokenPage, check_pages
+
+SMALL = 2**28
 
 
 @pytest.fixture(params=[(7, 20), (64, 64), (2**20, 2**23)])

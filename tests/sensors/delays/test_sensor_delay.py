@@ -14,13 +14,15 @@ from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
 from plantar.robot.uncertainty import Uncertainty
 from plantar.sensors.delays import sensor_delay
-from plantar.sensors.delays.lagged_log import STEP, lagged_log
+from plantar.sensors.delays.lagged_log import lagged_log
 from plantar.sensors.delays.refined_delays import refined_delays
 from plantar.sensors.delays.sensor_delay import estimate_wrench_delay
 from plantar.signals.resampling import shifted
 from plantar.twin import PAPER, play_all
 from plantar.twin.robots import hrp2
 from twin_samples import plan, short
+
+STEP = 0.05
 
 
 @pytest.fixture(scope="module")

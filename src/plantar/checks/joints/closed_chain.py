@@ -22,7 +22,7 @@ from plantar.conventions import GRAVITY, Array, Mask
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding
 from plantar.robot.model import RobotModel
-from plantar.signals.segments import longest_run, run_numbers
+from plantar.signals.segments import complete, longest_run, run_numbers
 
 LOADED = 0.1  # of the weight: a foot that carries more holds its sole still
 CARRIES, IN_AIR = 0.6, 0.2  # of the weight: a foot that carries the robot alone, the other one with its zero
@@ -77,7 +77,7 @@ def check_closed_chain(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         return
     wrenches = {name: log.wrench(foot.wrench.name) for name, foot in robot.feet.items()}
     positions = log.positions(robot)
-    whole = np.isfinite(np.column_stack([orientation, positions, *wrenches.values()])).all(axis=1)
+    whole = complete(orientation, positions, *wrenches.values())
     whole &= np.linalg.norm(np.nan_to_num(orientation), axis=1) > 0.5
     loads = np.array([np.linalg.norm(np.nan_to_num(each[:, :3]), axis=1) for each in wrenches.values()])
     loads /= robot.mass * GRAVITY

@@ -69,6 +69,8 @@ def run(
 
 def _get_rest_ready() -> None:
     """Import what comes behind the logs, and make the report ready: cores wait for the last log."""
+    import pyarrow.parquet  # noqa: F401
+
     import plantar.feet.identify  # noqa: F401
     from plantar.report.feet import get_report_ready
 

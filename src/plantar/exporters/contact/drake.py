@@ -11,7 +11,7 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 from typing import TYPE_CHECKING, Final
 
-from plantar.conventions import GRAVITY, Array
+from plantar.conventions import GRAVITY
 from plantar.exporters.bush import FootBush
 from plantar.exporters.comment import head, mesh_note
 from plantar.exporters.contact.springs import FRICTION, RADIUS, Placed, placed, said, spring_foot
@@ -69,7 +69,7 @@ def _silenced(tree: SdfTree, foot: FootBush, notes: list[Note]) -> float:
             points = tree.points(shape)
             if points is None:
                 notes.append(mesh_note(foot))
-            elif not reaches_sole(_moved(place, points), foot):
+            elif not reaches_sole(points @ place[:3, :3].T + place[:3, 3], foot):
                 continue
             tree.links[name].remove(shape)
             if friction is None:
@@ -80,10 +80,6 @@ def _silenced(tree: SdfTree, foot: FootBush, notes: list[Note]) -> float:
         text = f"{foot.name}: these shapes are left out, the points touch instead: {', '.join(quiet)}"
         notes.append(Note("export_silent", "info", text))
     return FRICTION if friction is None else friction
-
-
-def _moved(place: Array, points: Array) -> Array:
-    return points @ place[:3, :3].T + place[:3, 3]
 
 
 def _friction(shape: ET.Element) -> float | None:

@@ -52,13 +52,13 @@ def axis_rows(
 
 
 def _beside_its_torque(row: Parameter, rows: Sequence[Parameter]) -> Parameter:
-    """An element's angle as unsure as its torque: where none is told from zero, at no angle does anything slip."""
-    told = all(one.verdict != "unidentifiable" for one in rows if one.name == "slip_torque")
-    return (
-        row
-        if told
-        else replace(row, verdict="unidentifiable", reason="its slip torque is not told from zero")
-    )
+    """An element's angle no surer than its torque: of an element that hardly shows, the angle that was searched may be
+    any."""
+    torque = next((one.verdict for one in rows if one.name == "slip_torque"), "usable")
+    if torque == "usable" or row.verdict in (torque, "unidentifiable"):
+        return row
+    why = "not told from zero" if torque == "unidentifiable" else "hardly known"
+    return replace(row, verdict=torque, reason=f"its slip torque is {why}")
 
 
 def unseen_rows(foot: str, axis: Axis, recordings: Sequence[Recording]) -> list[Parameter]:

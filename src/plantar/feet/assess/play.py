@@ -14,7 +14,7 @@ from plantar.conventions import ROTATIONAL_AXES, Array
 from plantar.estimation import Block, fit_blocks
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
-from plantar.feet.regression.regression_data import beside, blocks_of, tangent_blocks
+from plantar.feet.regression.regression_data import beside, blocks_of
 from plantar.notes import Note
 
 SOFT = 0.1  # of a recording's spread of torque, within which its sign changes: behind a filter it is no step
@@ -23,11 +23,16 @@ SURE = 5.0  # deviations of the play
 CODE = "play"
 
 
-def play_notes(recordings: Sequence[Recording], fit: AxisFit, shared: bool) -> list[Note]:
-    """A warning where play explains a standing foot's torque far better than the model that was found."""
-    blocks = blocks_of(recordings, fit.foot, fit.axis, drift=not shared)
-    if blocks[0].stances is not None:
+def play_notes(
+    recordings: Sequence[Recording], fit: AxisFit, tangents: Sequence[Block], shared: bool
+) -> list[Note]:
+    """A warning where play explains a standing foot's torque far better than the model that was found.
+
+    tangents: the recordings' `tangent_blocks`.
+    """
+    if tangents[0].stances is not None:
         return []
+    blocks = blocks_of(recordings, fit.foot, fit.axis, drift=not shared)
     column = ROTATIONAL_AXES.index(fit.axis)
     by_name = {recording.name: recording for recording in recordings}
     signs = [_sign(by_name[block.label], fit.foot, column) for block in blocks]
@@ -36,9 +41,8 @@ def play_notes(recordings: Sequence[Recording], fit: AxisFit, shared: bool) -> l
         shared_offset=shared,
     )
     stiffness, loss = float(found.values[0]), -float(found.values[2])
-    left = _squares(tangent_blocks(recordings, fit, drift=not shared), shared)
     with_play = sum(float(residual @ residual) for residual in found.residuals.values())
-    if stiffness <= 0 or loss < SURE * float(found.std[2]) or left < BETTER * with_play:
+    if stiffness <= 0 or loss < SURE * float(found.std[2]) or _squares(tangents, shared) < BETTER * with_play:
         return []
     text = (
         f"{fit.foot} {fit.axis}: the angle jumps by {2e3 * loss / stiffness:.2g} mrad where the torque changes its "

@@ -66,26 +66,13 @@ def _flat(
 ) -> list[Recording]:
     """The recordings without leans of one foot: it may tip within `margin` [m] of its border, and cannot be loaded
     `beyond` it."""
-    depths = [
-        edge_distances(low_pass(recording.bushes[name].cop, recording.period, QUICK_CUTOFF), polygon)
-        for recording in recordings
-    ]
-    moved = [
-        moved_inwards(recording, name, depth, polygon)
-        for recording, depth in zip(recordings, depths, strict=True)
-    ]
-    near = [
-        recording.contacts[name].standing
-        & (depth < margin + inwards).any(axis=1)
-        & (recording.stances[name] is None)
-        for recording, depth, inwards in zip(recordings, depths, moved, strict=True)
-    ]
-    if not any(edge.any() for edge in near):
+    edges = [_edges(recording, name, polygon, margin) for recording in recordings]
+    if not any(near.any() for _, _, near in edges):
         return list(recordings)
-    model, rest = _bush_model(recordings, name, near), []
+    model, rest = _bush_model(recordings, name, [near for _, _, near in edges]), []
     if model is None and margin > beyond:  # nothing is clear of so wide a border
         return _flat(recordings, name, polygon, beyond, beyond)
-    for recording, depth, inwards, edge in zip(recordings, depths, moved, near, strict=True):
+    for recording, (depth, inwards, edge) in zip(recordings, edges, strict=True):
         contact = recording.contacts[name]
         if not edge.any():
             rest.append(recording)
@@ -116,6 +103,19 @@ def _flat(
             )
         )
     return rest
+
+
+def _edges(recording: Recording, foot: str, polygon: Array, margin: float) -> tuple[Array, Array, Mask]:
+    """How far inside of each edge the centre of pressure is, and by how much the edge has moved, (N, n) [m]; where the
+    foot stands within `margin` of one, (N,). A foot that steps rolls on its edges, and stands near none."""
+    if recording.stances[foot] is not None:
+        nothing = np.zeros((len(recording.time), 0))
+        return nothing, nothing, np.zeros(len(nothing), dtype=bool)
+    cop = low_pass(recording.bushes[foot].cop, recording.period, QUICK_CUTOFF)
+    depth = edge_distances(cop, polygon)
+    inwards = moved_inwards(recording, foot, depth, polygon)
+    near = (depth - inwards).min(axis=1) < margin
+    return depth, inwards, np.asarray(recording.contacts[foot].standing & near)
 
 
 def leaning(excess: Array, depth: Array, load: Array, visits: Mask, flat: Mask, period: float) -> Mask:

@@ -7,6 +7,7 @@ import numpy as np
 from plantar.contact.polygon import edge_normals
 from plantar.conventions import ROTATIONAL_AXES, Array, Mask
 from plantar.feet.recording import Recording
+from plantar.signals.medians import median
 from plantar.signals.segments import steps_in
 
 FEWEST = 0.04  # s beyond an edge, in all: less may be a shock
@@ -38,7 +39,7 @@ def _passed_opposite(moments: Array, polygon: Array, fewest: int) -> Array:
     It cannot leave the sole: the torque is wrong by that distance times the load at least, and an edge on the other
     side, if it was not passed itself, is reached that much earlier.
     """
-    beyond = np.sort(-moments, axis=0)[-fewest].clip(min=0.0)
+    beyond = -np.partition(moments, fewest - 1, axis=0)[fewest - 1].clip(max=0.0)
     normals = edge_normals(polygon)
     inwards = ((-normals @ normals.T).clip(min=0.0) * beyond).max(axis=1)
     return np.where(beyond > 0, 0.0, inwards)
@@ -70,11 +71,14 @@ def _plateau(angle: Array, torque: Array) -> Mask:
     if len(angle) < SHELLS * FILLED or np.ptp(angle) < 2 * LEAST_PLATEAU:
         return none
     width = float(np.ptp(angle)) / SHELLS
-    shell = ((angle - angle.min()) / width).astype(int)
-    filled = np.flatnonzero(np.bincount(shell) >= FILLED)
+    shell = ((angle - angle.min()) / width).astype(np.int16)
+    counts = np.bincount(shell)
+    filled = np.flatnonzero(counts >= FILLED)
     if len(filled) < SHELLS // 2:
         return none
-    middles = np.array([np.median(torque[shell == one]) for one in filled])
+    ends = np.cumsum(counts)
+    by_shell = torque[np.argsort(shell, kind="stable")]
+    middles = np.array([median(by_shell[ends[one] - counts[one] : ends[one]]) for one in filled])
     slopes = np.gradient(middles, filled * width)
     growing = np.flatnonzero(slopes > STOPPED * _spread(torque) / _spread(angle))
     if not growing.size:

@@ -12,6 +12,7 @@ from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import FittedModel
 from plantar.feet.regression.prediction import predict
 from plantar.feet.regression.regression_data import FEWEST_SAMPLES
+from plantar.signals.medians import running_median
 from plantar.signals.segments import runs
 
 BIN = 0.1  # s
@@ -84,4 +85,4 @@ def _median_around(values: Array) -> Array:
     """Median of the bins (n,) around each, mirrored at the ends."""
     half = round(AROUND / 2 / BIN)
     wide = np.pad(values, half, mode="reflect")
-    return np.asarray(np.median(np.lib.stride_tricks.sliding_window_view(wide, 2 * half + 1), axis=1))
+    return running_median(wide, 2 * half + 1)

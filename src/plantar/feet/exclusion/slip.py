@@ -87,7 +87,7 @@ def _moves(
         return {foot: as_usual(np.full(len(recording.time), np.nan)) for foot in flat}
     floor, found = friction(recording, flat), {}
     for foot, velocity in motion.velocity.items():
-        moves = SlipIndicator(np.asarray(np.linalg.norm(velocity, axis=1)), motion.deviation[foot])
+        moves = SlipIndicator(np.asarray(np.hypot(*velocity.T)), motion.deviation[foot])
         against = unresisted(moves, velocity, floor, recording.period)
         found[foot] = SlipIndicator(np.where(against, np.nan, moves.speed), moves.deviation)
     return found

@@ -10,16 +10,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from plantar.contact.deflection import BushState
+from plantar.contact.deflection import BushState, onto_sole
 from plantar.contact.slip_indicator import SLIP_CUTOFF, usual_deviation
-from plantar.conventions import Array, Mask, rotation_from_quaternion
+from plantar.conventions import Array, Mask, cross, rotated
 from plantar.estimation.velocity_drift import fit_drift
 from plantar.feet.recording import Recording
 from plantar.robot.model import RobotModel
 from plantar.sensors.tilt_error import unit_quaternions
 from plantar.signals.filters import differentiate, low_pass
+from plantar.signals.medians import median
 from plantar.signals.orientation import attitude
-from plantar.signals.segments import steps_in
+from plantar.signals.segments import complete, steps_in
 
 DRIFT_RATE = 50.0  # Hz, enough for the drift
 GYROSCOPE = 2.5  # Hz, above which an attitude's change is the gyroscope's: it is the quieter one there
@@ -53,20 +54,19 @@ def sole_motion(
     (what follows the bush's rates), an IMU that is late (the acceleration), and an attitude filter that takes slow
     accelerations for tilt (the way).
     """
-    rotation, acceleration, rates = _inertial(robot, recording)
+    orientation, acceleration, rates = _inertial(robot, recording)
     if acceleration is None:
         return None
     period = recording.period
     push = np.nan_to_num(low_pass(acceleration, period, SLIP_CUTOFF))
     shaking = np.nan_to_num(acceleration - low_pass(acceleration, period, min(SHAKEN, 0.2 / period)))
-    noise_of_attitude = _attitude_noise(rotation, rates, period)
+    noise_of_attitude = _attitude_noise(orientation, rates, period)
     moved, stands = {}, {}
     for foot, bush in recording.bushes.items():
         arm = np.column_stack([recording.places[foot], bush.sole_position[:, 2]])
-        place = arm[:, :2] - np.cross(noise_of_attitude, arm)[:, :2]
+        place = (arm - cross(noise_of_attitude, arm))[:, :2]
         moved[foot] = differentiate(low_pass(place, period, SLIP_CUTOFF), period)
-        known = np.isfinite(np.column_stack([moved[foot], acceleration])).all(axis=1)
-        stands[foot] = np.asarray(flat[foot] & known)
+        stands[foot] = flat[foot] & complete(moved[foot]) & complete(acceleration)
     count = np.sum(list(stands.values()), axis=0)
     if not count.any():
         return None
@@ -90,38 +90,36 @@ def friction(recording: Recording, flat: Mapping[str, Mask]) -> Array:
     """The floor's horizontal force on the soles that stand over their load, (N, 2), in world axes."""
     total, load = np.zeros((len(recording.time), 2)), np.zeros(len(recording.time))
     for foot, bush in recording.bushes.items():
-        (x, y, z), (pitch, roll) = bush.wrench[:, :3].T, bush.deflection.T
-        down = np.sin(pitch) * x + np.cos(pitch) * z
-        along = np.cos(pitch) * x - np.sin(pitch) * z
-        across = np.cos(roll) * y + np.sin(roll) * down
+        along, across = onto_sole(bush.wrench[:, :3], *bush.deflection.T)[:, :2].T
         c, s = np.cos(bush.heading), np.sin(bush.heading)
         force = np.column_stack([c * along - s * across, s * along + c * across, bush.force_z])
-        known = flat[foot] & np.isfinite(force).all(axis=1)
+        known = flat[foot] & complete(force)
         total += np.where(known[:, None], force[:, :2], 0.0)
         load += np.where(known, force[:, 2], 0.0)
     return np.asarray(total / np.where(load > 0, load, np.nan)[:, None])
 
 
 def _inertial(robot: RobotModel, recording: Recording) -> tuple[Array, Array | None, Array]:
-    """Rotations (N, 3, 3) of the IMU to the world, its horizontal acceleration (N, 2), and its rates (N, 3), in the
+    """Unit quaternions (N, 4) of the IMU to the world, its horizontal acceleration (N, 2), and its rates (N, 3), in the
     world; no acceleration where the log has no accelerometer."""
     log, imu = recording.log, robot.imu
     assert imu is not None, "checked"
     orientation, rates = attitude(log, imu, [])
-    rotation = rotation_from_quaternion(unit_quaternions(orientation))
-    turned = np.einsum("nij,nj->ni", rotation, rates)
+    unit = unit_quaternions(orientation)
+    turned = rotated(unit, rates)
     if not log.has(*(f"imu.{imu.name}.linear_acceleration.{axis}" for axis in "xyz")):
-        return rotation, None, turned
-    proper = log.linear_acceleration(imu.name)
-    return rotation, np.asarray(np.einsum("nij,nj->ni", rotation[:, :2], proper)), turned
+        return unit, None, turned
+    return unit, rotated(unit, log.linear_acceleration(imu.name))[:, :2], turned
 
 
-def _attitude_noise(rotation: Array, rates: Array, period: float) -> Array:
+def _attitude_noise(orientation: Array, rates: Array, period: float) -> Array:
     """Small rotations (N, 3) [rad], in the world, by which the attitude is off at more than GYROSCOPE: its steps are
     compared with the gyroscope's."""
-    between = rotation[1:] @ np.swapaxes(rotation[:-1], 1, 2)
-    skew = (between - np.swapaxes(between, 1, 2)) / 2
-    step = np.column_stack([skew[:, 2, 1], skew[:, 0, 2], skew[:, 1, 0]])
+    (w, axis), (before, axis_before) = (
+        (one[:, :1], one[:, 1:]) for one in (orientation[1:], orientation[:-1])
+    )
+    turn = before * axis - w * axis_before - cross(axis, axis_before)
+    step = 2 * np.sum(orientation[1:] * orientation[:-1], axis=1, keepdims=True) * turn
     excess = np.nan_to_num(step - period * (rates[1:] + rates[:-1]) / 2)
     off = np.vstack([np.zeros(3), np.cumsum(excess, axis=0)])
     return np.asarray(off - low_pass(off, period, GYROSCOPE))
@@ -145,9 +143,9 @@ def _drift(
     lag = steps_in(LAG, period)
     noise = max(LEAST_NOISE, _usual(seen[lag:] - seen[:-lag]) / np.sqrt(2))
     far = min(steps_in(SLOPE_TIME, period), max(1, (len(seen) - 1) // 2))
-    lost = np.sum(shaking**2, axis=1) / 2 * period**2
+    lost = np.einsum("ni,ni->n", shaking, shaking) / 2 * period**2
     bent = _usual(seen[2 * far :] - 2 * seen[far:-far] + seen[: -2 * far]) ** 2
-    bent -= 6 * noise**2 + 2 * far * float(np.median(lost))
+    bent -= 6 * noise**2 + 2 * far * float(median(lost))
     wander = max(LEAST_WANDER**2, 1.5 * bent / (far * period) ** 3)
     step = steps_in(1 / DRIFT_RATE, period)
     places = np.arange(0, len(seen), step)
@@ -164,13 +162,14 @@ def _drift(
 
 def _usual(change: Array) -> float:
     """Deviation of either component of changes (n, 2) around their median, as most of them are."""
-    known = change[np.isfinite(change).all(axis=1)]
-    return 1.4826 * float(np.median(np.abs(known - np.median(known, axis=0)))) if known.size else 0.0
+    known = change[complete(change)].T
+    return 1.4826 * float(median(np.abs(known - median(known)[:, None]).ravel())) if known.size else 0.0
 
 
 def _mean_square(acceleration: Array, period: float) -> Array:
     """Mean square (N,) of the acceleration (N, 2) within NEAR [m²/s⁴]."""
-    square = np.nansum((acceleration - np.nanmedian(acceleration, axis=0)) ** 2, axis=1)
+    change = np.nan_to_num(acceleration - median(acceleration[complete(acceleration)].T))
+    square = np.einsum("ni,ni->n", change, change)
     total, reach = np.concatenate([[0.0], np.cumsum(square)]), round(NEAR / period)
     place = np.arange(len(square))
     last, first = np.minimum(place + reach + 1, len(square)), np.maximum(place - reach, 0)
@@ -180,7 +179,7 @@ def _mean_square(acceleration: Array, period: float) -> Array:
 def _deviation(velocity: Array, noise: float, of_drift: Array, strain: Array) -> Array:
     """Deviation (N,) of a velocity (N, 2): its noise, no less than what is usual, and the drift's; more where the robot
     is accelerated strongly, as far as its velocity is usually off there."""
-    speed = np.linalg.norm(velocity, axis=1)
+    speed = np.hypot(*velocity.T)
     known = np.isfinite(speed)
     least = np.hypot(max(noise, usual_deviation(speed)), of_drift)
     if not known.any():
@@ -188,5 +187,5 @@ def _deviation(velocity: Array, noise: float, of_drift: Array, strain: Array) ->
     strong = known & (strain > np.percentile(strain[known], STRESSED))
     if not strong.any():
         return np.asarray(least)
-    grows = float(np.median(((speed / MEDIAN) ** 2 - least**2)[strong] / strain[strong]))
+    grows = float(median(((speed / MEDIAN) ** 2 - least**2)[strong] / strain[strong]))
     return np.sqrt(least**2 + max(grows, 0.0) * strain)

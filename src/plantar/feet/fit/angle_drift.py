@@ -19,7 +19,8 @@ from plantar.estimation import effect_of, influences_of
 from plantar.estimation.slow_drift import drift_beside
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AngleDrift, AxisFit
-from plantar.feet.regression.regression_data import blocks_of, model_columns, tangent_blocks
+from plantar.feet.regression.model_columns import model_columns
+from plantar.feet.regression.regression_data import blocks_of, tangent_blocks
 
 ROUNDS = 6
 HALFWAY = 0.5  # from one round's drift to the next: fit and drift answer each other with the opposite, nearly as large

@@ -14,7 +14,7 @@ import numpy as np
 
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
-from plantar.feet.regression.regression_data import path_of
+from plantar.feet.regression.model_columns import path_of
 
 ROUND = 2.0  # slip angles from one end of a path to the other
 HARDLY_TURNED = (

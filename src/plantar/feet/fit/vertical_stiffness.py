@@ -18,7 +18,6 @@ from typing import NamedTuple
 import numpy as np
 
 from plantar.contact.phases import DOUBLE, SUPPORTS
-from plantar.contact.relative_pose import relative_pose
 from plantar.contact.sole_height import height_changes
 from plantar.conventions import STIFFNESS_UNIT, Array, Mask
 from plantar.estimation import Block, effect_of, fit_linear, influences_of, interval95, relative_std_percent
@@ -27,6 +26,7 @@ from plantar.notes import Note
 from plantar.results.feet import Parameter, Verdict
 from plantar.robot.model import RobotModel
 from plantar.signals.filters import low_pass
+from plantar.signals.segments import complete
 
 FEWEST_SAMPLES = 100  # in double support, of one recording
 RELIABLE = 10.0  # times its noise's variance: that of a load from which a compliance is read
@@ -193,13 +193,14 @@ def _both_stand(recording: Recording, feet: tuple[str, ...]) -> tuple[Mask, Arra
     left, right = (recording.bushes[foot] for foot in feet)
     both = recording.used(feet[0]) & recording.used(feet[1])
     both &= recording.contacts[feet[0]].support == SUPPORTS.index(DOUBLE)
-    height = relative_pose(left, right).position[:, 2]
+    height = right.sole_position[:, 2] - left.sole_position[:, 2]
     # Along the slide for the stiffness, and once more along the vertical for what the compression does to the height.
+    upright = (np.cos(bush.deflection.T) for bush in (left, right))
     loads = np.column_stack(
-        [bush.wrench[:, 2] * np.cos(bush.deflection).prod(axis=1) for bush in (left, right)]
+        [bush.wrench[:, 2] * pitch * roll for bush, (pitch, roll) in zip((left, right), upright, strict=True)]
     )
     values = low_pass(np.column_stack([height, loads]), recording.period, recording.cutoff)
-    both &= np.isfinite(values).all(axis=1) & np.isfinite(loads).all(axis=1)
+    both &= complete(values) & complete(loads)
     return both, loads, values
 
 

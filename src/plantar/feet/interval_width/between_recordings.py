@@ -71,20 +71,18 @@ def axis_differences(fit: AxisFit, recordings: Sequence[Recording], shared: bool
 
     None of a foot that steps, and where there is nothing to compare.
     """
-    blocks = _blocks(fit, recordings, shared)
-    return _differences(fit, blocks) if blocks else None
+    blocks = tangent_blocks(recordings, fit, drift=not shared)
+    return _differences(fit, blocks) if _comparable(blocks, shared) else None
 
 
-def between_recordings(
-    fit: AxisFit, recordings: Sequence[Recording], prior: float, shared: bool
-) -> list[Cause]:
+def between_recordings(fit: AxisFit, blocks: Sequence[Block], prior: float, shared: bool) -> list[Cause]:
     """By how much recordings move the fit beyond their own deviations; of feet that step `systematic` knows it.
 
     From FEWEST_RECORDINGS on refits without one of them each (jackknife) say it, whatever it is that differs. Fewer are
-    taken to differ by a share of spring and damper, as this axis shows it, at least the robot file's `prior`.
+    taken to differ by a share of spring and damper, as this axis shows it, at least the robot file's `prior`. blocks:
+    the recordings' `tangent_blocks`.
     """
-    blocks = _blocks(fit, recordings, shared)
-    if not blocks:
+    if not _comparable(blocks, shared):
         return []
     if len(blocks) >= FEWEST_RECORDINGS:
         covariance, freedom = jackknife(values_without_each(blocks))
@@ -96,10 +94,9 @@ def between_recordings(
     return [Cause(NAME, np.sqrt(np.sum(effects**2, axis=0)), apart.share, float(apart.others))]
 
 
-def _blocks(fit: AxisFit, recordings: Sequence[Recording], shared: bool) -> list[Block]:
-    """The recordings of an axis that can be told apart: of a standing foot, several, each with its own offset."""
-    blocks = tangent_blocks(recordings, fit, drift=not shared)
-    return [] if blocks[0].stances is not None or shared or len(blocks) < 2 else blocks
+def _comparable(blocks: Sequence[Block], shared: bool) -> bool:
+    """Whether the recordings of an axis can be told apart: of a standing foot, several, each with its own offset."""
+    return blocks[0].stances is None and not shared and len(blocks) > 1
 
 
 def _differences(fit: AxisFit, blocks: Sequence[Block]) -> AxisDifferences:

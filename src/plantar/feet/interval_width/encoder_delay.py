@@ -9,20 +9,24 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from plantar.estimation import effect_of, fit_blocks, influences_of
+from plantar.estimation import Block, effect_of, fit_blocks, influences_of
 from plantar.feet.interval_width.systematic import SINGULAR, Cause
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.load_torque import ENCODERS_APART, late_encoder_torque
-from plantar.feet.regression.regression_data import beside, tangent_blocks
+from plantar.feet.regression.regression_data import beside
 
 NAME = "encoders' delay"
 SUSPECTED = 3.0  # deviations from none
 
 
-def encoder_delay_causes(fit: AxisFit, recordings: Sequence[Recording], shared: bool) -> list[Cause]:
-    """By as much as the motions show encoders and IMU to be apart; none of a foot that steps, or where none shows."""
-    blocks = tangent_blocks(recordings, fit, drift=not shared)
+def encoder_delay_causes(
+    fit: AxisFit, blocks: Sequence[Block], recordings: Sequence[Recording], shared: bool
+) -> list[Cause]:
+    """By as much as the motions show encoders and IMU to be apart; none of a foot that steps, or where none shows.
+
+    blocks: the recordings' `tangent_blocks`.
+    """
     if blocks[0].stances is not None:
         return []
     by_name = {recording.name: recording for recording in recordings}

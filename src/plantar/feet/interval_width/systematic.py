@@ -17,7 +17,7 @@ from plantar.feet.fit.hidden_memory import element_slope, moved_by_memory
 from plantar.feet.fit.vertical_stiffness import VerticalStiffness
 from plantar.feet.recording import Recording, moment_arm_effect
 from plantar.feet.regression.axis import AxisFit
-from plantar.feet.regression.regression_data import beside, tangent_blocks
+from plantar.feet.regression.regression_data import beside
 from plantar.sensors.delays.sensor_delay import SensorDelay
 from plantar.signals.filters import differentiate
 from plantar.signals.resampling import shifted
@@ -54,6 +54,7 @@ class Cause:
 
 def systematic_causes(
     fit: AxisFit,
+    blocks: Sequence[Block],
     recordings: Sequence[Recording],
     sensor_delay: SensorDelay,
     vertical: VerticalStiffness,
@@ -61,9 +62,8 @@ def systematic_causes(
 ) -> list[Cause]:
     """The wrenches' delay and the moment arm of the compressed slide; of feet that step the ends of stances, what walks
     differ by and what a memory may share with the spring; of others a hardening that the model leaves out, zeros that
-    differ between stances, and for roll the zero of the yaw torque."""
+    differ between stances, and for roll the zero of the yaw torque. `blocks`: the recordings' `tangent_blocks`."""
     foot, column = fit.foot, ROTATIONAL_AXES.index(fit.axis)
-    blocks = tangent_blocks(recordings, fit, drift=not shared)
     by_name = {recording.name: recording for recording in recordings}
     parts = [(by_name[block.label], by_name[block.label].rows(foot)) for block in blocks]
     influences = influences_of(blocks, shared_offset=shared)

@@ -11,7 +11,7 @@ from plantar.conventions import ROTATIONAL_AXES, Array, Mask
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import FittedModel
 from plantar.feet.regression.load_torque import load_torque
-from plantar.feet.regression.regression_data import model_columns, motion_of
+from plantar.feet.regression.model_columns import model_columns, motion_of
 from plantar.model_selection.initial_state import initial_states_of
 from plantar.results.scores import first_second
 

@@ -13,19 +13,23 @@ from plantar.estimation.blocks import StanceRows
 from plantar.estimation.orthonormal import orthonormal
 from plantar.estimation.slow_drift import drift_beside
 from plantar.feet.recording import Recording
-from plantar.feet.regression.axis import AngleDrift, AxisFit, FittedModel
+from plantar.feet.regression.axis import AngleDrift, AxisFit
 from plantar.feet.regression.load_torque import across_force, load_of, load_torque, step_columns, yaw_torque
+from plantar.feet.regression.model_columns import (
+    UNTURNED,
+    Turn,
+    memory_path,
+    model_columns,
+    motion_of,
+    own_torque,
+    path_of,
+)
 from plantar.model_selection.data_sets import DataSet, StepColumns
-from plantar.models import BushMotion, KelvinVoigt
-from plantar.signals.filters import SHORTEST_RUN, SHORTEST_STANCE_RUN, differentiate, low_pass
 
-PATH_BAND = 4.0  # times the fit's cutoff, of the path that a memory follows through short stances
 # Before any data, of where steps find the centre [m] and how far the force sensor is turned about the vertical [rad]:
 # aside anything (the torque of the load is its own), in height some millimetres of the robot file's and of the slide
 # under load, turned or leaning by a degree, as a mount that nobody measured.
 PLACE_SPREAD = np.array([np.inf, 0.006, 0.02, 0.02])
-Turn = tuple[float, float, float]
-UNTURNED: Turn = (0.0, 0.0, 0.0)
 SHAPE_STEP = 0.01  # share of a nonlinear parameter, of the differences that stand for derivatives
 FEWEST_SAMPLES = 50  # of one recording, for it to take part in a fit
 
@@ -95,16 +99,10 @@ def beside(block: Block, columns: Array) -> Block:
 
 def _shape_slopes(recording: Recording, fit: AxisFit) -> Array:
     """Change of the torque with each nonlinear parameter at the used samples, (n, s), the states at the start held."""
-    slopes, used = [], recording.rows(fit.foot)
-    for place, value in enumerate(fit.shape):
-        ends = []
-        for share in (1 + SHAPE_STEP, 1 - SHAPE_STEP):
-            shape = fit.shape.copy()
-            shape[place] = share * value
-            columns = model_columns(recording, fit.foot, fit.axis, replace(fit, shape=shape))
-            ends.append(columns[used] @ fit.values)
-        slopes.append((ends[0] - ends[1]) / (2 * SHAPE_STEP * value))
-    return np.column_stack(slopes)
+    steps = SHAPE_STEP * np.diag(fit.shape)
+    shapes = np.concatenate([fit.shape + steps, fit.shape - steps])
+    torque = own_torque(recording, fit, [memory_path(recording, fit)], shapes)[recording.rows(fit.foot)]
+    return np.asarray((torque[:, : len(steps)] - torque[:, len(steps) :]) / (2 * np.diag(steps)))
 
 
 def _taken_off(recording: Recording, fit: AxisFit | None) -> Array | float:
@@ -130,70 +128,6 @@ def _stance_rows(recording: Recording, foot: str) -> StanceRows:
     if stances is None:
         return StanceRows(np.zeros(int(used.sum()), dtype=np.intp), np.ones(int(used.sum())))
     return StanceRows(stances.number[used], stances.weight[used])
-
-
-def model_columns(
-    recording: Recording, foot: str, axis: Axis, fit: FittedModel | None, initial_states: Array | None = None
-) -> Array:
-    """Regressor (N, k) of a fit's model along a recording, Kelvin-Voigt's without one; NaN in the air."""
-    imu_turned = UNTURNED if fit is None else fit.imu_turned
-    motion = motion_of(recording, foot, axis, imu_turned)
-    linear = np.column_stack([motion.deflection, motion.rate])
-    if fit is None or isinstance(fit.model, KelvinVoigt):
-        return linear
-    path = path_of(recording, foot, axis, imu_turned)
-    if (drift := fit.drifts.get(recording.name)) is not None:
-        path = replace(path, deflection=path.deflection - drift.at(recording.time))
-    initial_states = fit.initial_states.get(recording.name) if initial_states is None else initial_states
-    if initial_states is None or len(initial_states) != len(path.runs):
-        initial_states = fit.model.initial_states(path, fit.shape)
-    columns = fit.model.columns(path, fit.shape, initial_states)
-    columns[:, :2] = linear
-    shortest = _shortest_run(recording, foot)
-    columns[:, 2:] = low_pass(columns[:, 2:], recording.period, recording.cutoff, shortest)
-    return columns
-
-
-def _shortest_run(recording: Recording, foot: str) -> int:
-    """Samples that the fit's filter needs in one run."""
-    return SHORTEST_RUN if recording.stances[foot] is None else SHORTEST_STANCE_RUN
-
-
-def motion_of(recording: Recording, foot: str, axis: Axis, imu_turned: Turn = UNTURNED) -> BushMotion:
-    """Deflection and rate of one axis, NaN where the foot does not stand: a bush in the air forgets.
-
-    imu_turned: about each of the IMU's axes, by how much it is turned beside the robot file's mount [rad]: angles
-    and rates are put right.
-    """
-    column, bush = ROTATIONAL_AXES.index(axis), recording.bushes[foot]
-    stances = recording.stances[foot]
-    away = ~recording.contacts[foot].loaded if stances is None else stances.number < 0
-    read = np.column_stack([bush.deflection[:, column], bush.rate[:, column]])
-    right = read + _turn_effect(recording, foot, column, imu_turned)
-    right[away] = np.nan
-    return BushMotion(right[:, 0], right[:, 1], recording.period)
-
-
-def _turn_effect(recording: Recording, foot: str, column: int, imu_turned: Turn) -> Array:
-    """What a turn of the IMU adds to a foot's angle and rate, (N, 2)."""
-    if not any(imu_turned):
-        return np.zeros((len(recording.time), 2))
-    angle = recording.imu_turns[foot][:, column] @ np.array(imu_turned)
-    return np.column_stack([angle, np.nan_to_num(differentiate(angle, recording.period))])
-
-
-def path_of(recording: Recording, foot: str, axis: Axis, imu_turned: Turn = UNTURNED) -> BushMotion:
-    """The motion that a model's memory follows: of a foot that steps with a wider band, since it turns quickly."""
-    slow, stances = motion_of(recording, foot, axis, imu_turned), recording.stances[foot]
-    if stances is None:
-        return slow
-    column, raw = ROTATIONAL_AXES.index(axis), recording.raw[foot]
-    both = np.column_stack([raw.deflection[:, column], raw.rate[:, column]])
-    both[stances.number < 0] = np.nan
-    quick = low_pass(both, recording.period, PATH_BAND * recording.cutoff, SHORTEST_STANCE_RUN)
-    quick += _turn_effect(recording, foot, column, imu_turned)
-    quick[~np.isfinite(slow.deflection)] = np.nan
-    return BushMotion(quick[:, 0], quick[:, 1], recording.period)
 
 
 def data_set_of(

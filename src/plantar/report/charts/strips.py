@@ -32,18 +32,15 @@ def strip_charts(result: FeetResult) -> list[Chart]:
     for foot, axis in keys:
         stances = [row for row in result.stances if (row.foot, row.axis) == (foot, axis)]
         walks = [row for row in result.walks if (row.foot, row.axis) == (foot, axis)]
-        pooled = next(
-            row for row in (*result.parameters, _UNKNOWN) if row is _UNKNOWN or _is_stiffness(row, foot, axis)
+        known = (
+            row for row in result.parameters if (row.foot, row.axis, row.name) == (foot, axis, "stiffness")
         )
+        pooled = next(known, _UNKNOWN)
         charts.append(_chart(f"{foot} {axis}", stances, walks, pooled))
     return charts
 
 
 _UNKNOWN: Final = Parameter("", "z", "stiffness", "", None, None, None, None, "unidentifiable", "")
-
-
-def _is_stiffness(row: Parameter, foot: str, axis: str) -> bool:
-    return (row.foot, row.axis, row.name) == (foot, axis, "stiffness")
 
 
 def _chart(

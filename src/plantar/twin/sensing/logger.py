@@ -6,7 +6,6 @@ from somebody's estimator, and force sensors that were never zeroed in the air.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
@@ -77,18 +76,13 @@ def with_base_attitude(robot: RobotModel) -> RobotModel:
 
 def write_robot(robot: RobotModel, path: Path, attitude_of_base: bool) -> Path:
     """Write a robot's file, its URDF beside it; with `attitude_of_base`, that of `with_base_attitude(robot)`."""
-    file: dict[str, object] = dict(_entries(robot))
+    file: dict[str, object] = yaml.safe_load(robot.path.read_text())  # `load_robot` has found it in order
     file["urdf"] = robot.urdf_path.name
     if attitude_of_base:
         file["imu"] = {"name": BASE, "link": robot.model.frames[1].name}
     write_text(path.with_name(robot.urdf_path.name), robot.urdf)
     write_text(path, yaml.safe_dump(file, sort_keys=False, default_flow_style=None))
     return path
-
-
-def _entries(robot: RobotModel) -> Mapping[str, object]:
-    """What stands in the robot's own file, which `load_robot` has found in order."""
-    return dict(yaml.safe_load(robot.path.read_text()))
 
 
 def _device(column: str) -> str:

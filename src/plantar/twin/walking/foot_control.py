@@ -71,7 +71,7 @@ class FootControl:
         period = 1 / RATE
         carrying = [foot for foot in self.feet if self.walk.stands[foot][sample]]
         self._correct_loads(carrying, state, asked)
-        q = self._planned(sample)
+        q = self.estimator.configuration(self.positions[sample], pin.SE3(self.plan.base[sample]))
         model, data = self.estimator.model, self.estimator.data
         pin.computeJointJacobians(model, data, q)
         found = np.zeros(model.nv)
@@ -112,6 +112,3 @@ class FootControl:
         """How far a foot must be lifted, [m], to be at its height above the floor though the body leans."""
         pivot = state.place[carrying[0]]
         return -float(np.cross(state.lean, state.place[foot] - pivot)[2])
-
-    def _planned(self, sample: int) -> Array:
-        return self.estimator.configuration(self.positions[sample], pin.SE3(self.plan.base[sample]))

@@ -44,6 +44,9 @@ def read_parquet(path: Path, limit: ReadLimit, choose: Choice, *, strict: bool) 
             message = f"claims more than {2 * COLUMNS} columns or groups of rows"
             raise LogError(located(message, path=path, valid=f"at most {COLUMNS} columns")) from error
         raise LogError(located(f"is not a readable Parquet file: {reason}", path=path)) from error
+    finally:
+        # Arrow keeps what it has freed: with many logs, a tenth of all memory.
+        pa.default_memory_pool().release_unused()
 
 
 def _holds_numbers(schema: pa.Schema, name: str, path: Path, strict: bool) -> bool:

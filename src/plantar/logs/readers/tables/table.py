@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-import pyarrow as pa
 
 from plantar.conventions import Array, Mask
 from plantar.errors import LogError, located
@@ -15,7 +14,6 @@ from plantar.logs.motion_log import COLUMN, MotionLog
 from plantar.logs.readers import motion_name
 from plantar.logs.readers.read_limit import ReadLimit
 from plantar.logs.readers.tables.csv_file import Choice, read_csv
-from plantar.logs.readers.tables.parquet_file import read_parquet
 from plantar.notes import Note, listing
 from plantar.robot.model import RobotModel
 
@@ -61,13 +59,11 @@ def read_raw(path: Path, limit: ReadLimit, notes: list[Note]) -> dict[str, Array
 def _columns(
     path: Path, limit: ReadLimit, choose: Choice, notes: list[Note], *, strict: bool
 ) -> dict[str, Array]:
-    try:
-        if path.name.lower().endswith(".parquet"):
-            return read_parquet(path, limit, choose, strict=strict)
+    if not path.name.lower().endswith(".parquet"):
         return read_csv(path, limit, choose, notes, strict=strict)
-    finally:
-        # Arrow keeps what it has freed: with many logs, a tenth of all memory.
-        pa.default_memory_pool().release_unused()
+    from plantar.logs.readers.tables.parquet_file import read_parquet  # Arrow costs start-up
+
+    return read_parquet(path, limit, choose, strict=strict)
 
 
 def _known(names: Sequence[str], path: Path) -> list[str]:

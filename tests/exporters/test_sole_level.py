@@ -1,0 +1,64 @@
+"""A model whose soles lie elsewhere than the result's: said from two centimetres on, up or down."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from export_robots import write_mjcf
+from plantar.errors import ExportError
+from plantar.exporters import export
+from plantar.exporters.mjcf.file import INCLUDE_LIMIT
+
+
+@pytest.mark.parametrize(
+    ("shift", "told"), [(0.0195, False), (0.0205, True), (-0.0195, False), (-0.0205, True)]
+)
+def test_a_sole_two_centimetres_off_is_another_link_s(
+    shift: float, told: bool, feet: dict[str, Any], tmp_path: Path
+) -> None:
+    """The model's soles lie 30 mm below the bushes."""
+    pytest.importorskip("mujoco")
+    for foot in feet["robot_model"]["feet"].values():
+        foot["sole"]["xyz"] = [0.0, 0.0, shift]
+    model = write_mjcf(tmp_path / "model.xml")
+    found = export(feet, "mjcf", tmp_path / "out.xml", model=model)
+    texts = [note.text for note in found if note.code == "export_sole_level"]
+    depth = 0.03 - shift
+    said = f"lies 0.030 m below the bush, the result's sole {depth:.3f} m: is 'left_ankle' the URDF's link?"
+    assert any(said in text for text in texts) == told
+    assert len(texts) == 2 * told
+
+
+@pytest.mark.parametrize(
+    ("target", "named"),
+    [("bullet-contact", "left_ankle foot, left_sole low"),
+     ("drake-contact", "left_ankle_collision_1, left_sole_collision_0")],
+)  # fmt: skip
+def test_shapes_of_links_below_the_ankle_touch_nothing_any_more(
+    target: str, named: str, urdf: Path, feet: dict[str, Any], tmp_path: Path
+) -> None:
+    """A box on the sole's own link, and one as far above the ankle."""
+    shape = '<collision name="{}"><origin xyz="0 0 {}"/><geometry><box size="0.1 0.1 0.01"/></geometry></collision>'
+    link = f'<link name="left_sole">{shape.format("low", 0)}{shape.format("high", 0.22)}</link>'
+    urdf.write_text(urdf.read_text().replace('<link name="left_sole"/>', link))
+    notes = export(feet, target, tmp_path / "out", model=urdf)
+    (silent,) = [note.text for note in notes if note.code == "export_silent" and note.text.startswith("left")]
+    assert silent.endswith(f"touch instead: {named}")
+
+
+@pytest.mark.parametrize(("files", "valid"), [(0, True), (1, False)])
+def test_includes_are_bounded(files: int, valid: bool, tmp_path: Path) -> None:
+    from plantar.exporters.mjcf.file import load_mjcf
+
+    assert INCLUDE_LIMIT == 100
+    (tmp_path / "one.xml").write_text("<mujoco/>")
+    includes = '<include file="one.xml"/>' * (100 + files)
+    (tmp_path / "model.xml").write_text(f"<mujoco>{includes}<worldbody/></mujoco>")
+    if valid:
+        load_mjcf(tmp_path / "model.xml", [])
+    else:
+        with pytest.raises(ExportError, match="includes more than 100 files"):
+            load_mjcf(tmp_path / "model.xml", [])

@@ -1,0 +1,200 @@
+"""What readers accept, leave out and refuse at their limits, and the words with their numbers."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from plantar.errors import LogError
+from plantar.logs.motion_log import MotionLog
+from plantar.logs.readers import open_log
+from plantar.logs.readers.force_cells import wrench_of_cells
+from plantar.logs.readers.read_limit import ReadLimit
+from plantar.logs.readers.streams import Stream, increasing, merge, origin, resample
+from plantar.logs.readers.text_numbers import read_numbers
+from plantar.notes import Note
+
+LOG = Path("x")
+TIME = 0.01 * np.arange(1000)
+
+
+def joints(time: np.ndarray, name: str = "j", column: str = "joint.a.position") -> Stream:
+    return Stream(name, time, {column: np.arange(time.size, dtype=float)})
+
+
+def back(count: int, total: int = 1000) -> np.ndarray:
+    """Stamps of which so many, from the tenth on, step back by a second, every other one."""
+    time = 0.01 * np.arange(total)
+    time[10 : 10 + 2 * count : 2] -= 1.0
+    return time
+
+
+@pytest.mark.parametrize(
+    ("strays", "total", "kept"), [(10, 1000, 990), (11, 1000, None), (1, 50, 49), (2, 50, None)]
+)
+def test_one_stamp_of_a_hundred_may_step_back(strays: int, total: int, kept: int | None) -> None:
+    notes: list[Note] = []
+    if kept is None:
+        with pytest.raises(
+            LogError, match=rf"value -0\.9: j: time steps back in {strays} of {total} samples, first here"
+        ):
+            increasing(joints(back(strays, total)), LOG, notes)
+        return
+    found = increasing(joints(back(strays, total)), LOG, notes)
+    assert found.time.size == kept
+    assert found.columns["joint.a.position"][10] == 11.0
+    assert [note.text for note in notes] == [f"x: j: {strays} samples whose time steps back are left out"]
+
+
+@pytest.mark.parametrize(("strays", "fine"), [(10, True), (11, False)])
+def test_one_row_of_a_hundred_may_step_back_in_a_table(strays: int, fine: bool, tmp_path: Path) -> None:
+    rows = "\n".join(f"{time:.2f},1" for time in back(strays))
+    (tmp_path / "log.csv").write_text(f"time,joint.a.position\n{rows}\n")
+    if fine:
+        log = open_log(tmp_path / "log.csv")
+        assert len(log) == 1000 - strays
+        assert (
+            f"time does not increase in {strays} of 1000 rows (first after t = 0.09 s)" in log.notes[0].text
+        )
+    else:
+        with pytest.raises(LogError, match="does not increase in 11 of 1000 rows"):
+            open_log(tmp_path / "log.csv")
+
+
+@pytest.mark.parametrize(("periods", "bridged"), [(2.4, True), (2.6, False)])
+def test_a_hole_of_two_and_a_half_periods_stays_a_hole(periods: float, bridged: bool) -> None:
+    late = np.r_[0.1 * np.arange(20), 1.9 + 0.1 * periods + 0.1 * np.arange(20)]
+    columns, exact = resample(joints(late), np.array([1.95]))
+    assert np.isfinite(columns["joint.a.position"][0]) == bridged
+    assert not exact
+
+
+@pytest.mark.parametrize(("apart", "exact"), [(0.9e-7, True), (1.1e-7, False)])
+def test_stamps_within_a_tenth_of_a_microsecond_are_one(apart: float, exact: bool) -> None:
+    columns, found = resample(joints(np.append(TIME + apart, 11.0)), TIME[1:-1])
+    assert found == exact
+    assert np.array_equal(columns["joint.a.position"], np.arange(1.0, 999.0)) == exact
+
+
+@pytest.mark.parametrize(("start", "cut"), [(4.9, True), (5.1, False)])
+def test_a_log_is_cut_to_what_half_of_it_covers(start: float, cut: bool) -> None:
+    notes: list[Note] = []
+    late = joints(start + 0.02 * np.arange(500), "w", "wrench.l.force.z")
+    time, columns = merge([joints(TIME), late], ReadLimit(LOG, files=[]), notes)
+    codes = [note.code for note in notes]
+    if cut:
+        assert (time[0], time[-1]) == pytest.approx((start, 9.99))
+        assert notes[0].text == f"x: cut to {start:.3f} ... 9.990 s, which every stream covers"
+    else:
+        assert time.size == 1000
+        assert np.isnan(columns["wrench.l.force.z"]).sum() == 510
+        assert codes[0] == "streams_apart"
+    assert notes[-1].text == "x: resampled to the clock of j (100 Hz): w"
+
+
+@pytest.mark.parametrize(("shift", "told"), [(0.09, False), (0.11, True)])
+def test_less_than_a_tenth_of_a_second_is_cut_without_a_word(shift: float, told: bool) -> None:
+    notes: list[Note] = []
+    merge([joints(TIME), joints(TIME + shift, "w", "wrench.l.force.z")], ReadLimit(LOG, files=[]), notes)
+    assert ("log_cut_to_overlap" in [note.code for note in notes]) == told
+
+
+@pytest.mark.parametrize(("rate", "base"), [(1.009, "joint.a.position"), (1.011, "imu.c.angular_velocity.x")])
+def test_of_clocks_equal_to_a_hundredth_the_joints_one_is_the_base(rate: float, base: str) -> None:
+    streams = [joints(TIME / rate, "i", "imu.c.angular_velocity.x"), joints(TIME)]
+    time, columns = merge(streams, ReadLimit(LOG, files=[]), [])
+    assert np.all(columns[base] == np.round(columns[base]))
+    assert time[1] == pytest.approx(0.01 if base.startswith("joint") else 0.01 / rate)
+
+
+def test_stamps_since_an_epoch_lose_whole_seconds() -> None:
+    assert (origin(1_000_001.75), origin(999_999.75)) == (1_000_001.0, 0.0)
+
+
+@pytest.mark.parametrize(("broken", "fine"), [(1, True), (10, True), (11, False)])
+def test_one_line_of_a_hundred_may_be_broken(broken: int, fine: bool, tmp_path: Path) -> None:
+    lines = [f"{place} {place}" for place in range(1000)]
+    for place in range(broken):
+        lines[20 + 7 * place] = "1 2 3" if place % 2 else "1 x"
+    (tmp_path / "log.txt").write_text("# a b\n" + "\n".join(lines) + "\n")
+    notes: list[Note] = []
+    said = "line 22" if broken == 1 else f"line 22 and {broken - 1} more"
+    if fine:
+        values, names = read_numbers(tmp_path / "log.txt", ReadLimit(tmp_path / "log.txt"), notes)
+        assert (values.shape, names) == ((1000 - broken, 2), ["a", "b"])
+        assert [note.text for note in notes] == [f"log.txt: {said} left out: not 2 numbers"]
+    else:
+        with pytest.raises(LogError, match=f"{said} do not hold 2 numbers"):
+            read_numbers(tmp_path / "log.txt", ReadLimit(tmp_path / "log.txt"), notes)
+
+
+def test_names_count_where_there_are_as_many_as_columns(tmp_path: Path) -> None:
+    path = tmp_path / "log.txt"
+    path.write_text("a b c\n1 2\n3 4\n5")
+    notes: list[Note] = []
+    values, names = read_numbers(path, ReadLimit(path), notes)
+    assert (values.tolist(), names) == ([[1, 2], [3, 4]], [])
+    assert [note.text for note in notes] == ["log.txt ends in the middle of a line; that line is left out"]
+    path.write_text("# nothing\n\n")
+    with pytest.raises(LogError, match="holds no numbers"):
+        read_numbers(path, ReadLimit(path), notes)
+
+
+CELLS = [[0.1, 0.05], [0.1, -0.05], [-0.1, 0.0]]
+
+
+@pytest.mark.parametrize(
+    ("places", "said"),
+    [([[0.999, 0.0], *CELLS[1:]], None), ([[1.01, 0.0], *CELLS[1:]], "a cell lies 1.01 m away; are these millimetres?"),
+     ([[-0.1, 0.0], [0.0, 0.0064], [0.1, 0.0]], None), ([[-0.1, 0.0], [0.0, 0.0058], [0.1, 0.0]], "stand in one line"),
+     (CELLS[:2], "2 places for 3 cells")],
+)  # fmt: skip
+def test_force_cells_span_a_sole(places: list[list[float]], said: str | None) -> None:
+    """Three points of which the middle one is d aside spread by √(2/3) d across their line."""
+    values = np.array([[1.0, 2.0, 4.0]])
+    if said is None:
+        found = wrench_of_cells("wrench.left", values, places, LOG)
+        assert found["wrench.left.force.z"] == [7.0]
+        assert found["wrench.left.torque.x"] == pytest.approx(values[0] @ np.array(places)[:, 1])
+        assert found["wrench.left.torque.y"] == pytest.approx(-values[0] @ np.array(places)[:, 0])
+    else:
+        with pytest.raises(LogError, match=said.replace("?", r"\?")):
+            wrench_of_cells("wrench.left", values, places, LOG)
+    with pytest.raises(LogError, match="stand in one line"):
+        wrench_of_cells("wrench.left", values[:, :2], CELLS[:2], LOG)
+
+
+def test_how_large_a_log_may_be(tmp_path: Path) -> None:
+    """256 MiB and a hundred times the file, within the memory given; ten thousand columns."""
+    path = tmp_path / "log.bin"
+    path.touch()
+    os.truncate(path, 1000)
+    most = 2**28 + 100_000
+    limit = ReadLimit(path, memory=2**40)
+    assert (limit.unpacks_to, limit.left) == (most, most)
+    limit.unpack(most)
+    assert limit.left == 0
+    with pytest.raises(LogError):
+        limit.unpack(1)
+    limit.columns(10_000)
+    with pytest.raises(LogError, match="more than 10000 columns"):
+        limit.columns(10_001)
+    limit.numbers(most // 8, 1)
+    with pytest.raises(LogError):
+        limit.numbers(most // 8 + 1, 1)
+    small = ReadLimit(path, memory=1600)
+    small.numbers(100, 2)
+    small.hold(800)
+    small.hold(800)
+    for too_much in (lambda: small.numbers(201, 1), lambda: small.hold(1)):
+        with pytest.raises(LogError):
+            too_much()
+
+
+@pytest.mark.parametrize(("value", "read"), [(0.99e12, True), (1.01e12, False), (-1.01e12, False)])
+def test_what_no_sensor_reads_is_no_number(value: float, read: bool) -> None:
+    log = MotionLog("log", TIME[:3], {"joint.a.position": np.array([0.0, value, 1.0])})
+    assert np.isfinite(log.column("joint.a.position")).sum() == 2 + read

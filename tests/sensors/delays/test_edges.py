@@ -1,0 +1,126 @@
+"""Which delays differ and when steps are settled, on stubs of what Newton's law shows."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from plantar.estimation.delays.delay import Delay
+from plantar.estimation.delays.lag_search import Lags
+from plantar.estimation.delays.sensor_delays import Delays
+from plantar.robot.model import RobotModel
+from plantar.sensors.delays import refined_delays as refining
+from plantar.sensors.delays.refined_delays import RefinedDelays
+from plantar.sensors.delays.sensor_delay import _doubtful, _in_doubt, _surer
+
+LOG: Any = SimpleNamespace(period=0.005)
+RESIDUAL: Any = SimpleNamespace(balance=None, pair=None)
+
+
+def stepped(
+    monkeypatch: pytest.MonkeyPatch,
+    values: Sequence[float],
+    std: float,
+    at: Sequence[float] = (0.0, 0.0, 0.0),
+) -> RefinedDelays | None:
+    """One step, where all delays together come out as `values` with `std` each, and the common one as 4 ± 1 ms."""
+    covariance = std**2 * np.eye(3)
+
+    def delays(_: object, held: np.ndarray | None = None) -> Delays:
+        free = np.eye(3) if held is None or not len(held) else np.eye(3) - np.linalg.pinv(held) @ held
+        return Delays(free @ np.array(values), covariance, 60)
+
+    monkeypatch.setattr(refining, "estimate_delays", delays)
+    monkeypatch.setattr(refining, "estimate_delay", lambda _: Delay(0.004, 0.001, 30.0, 20))
+    return refining._step([LOG], [[RESIDUAL]], np.array(at))
+
+
+@pytest.mark.parametrize(
+    ("values", "std", "feet", "encoders"),
+    [((0.0007, -0.0007, 0.0), 1e-6, False, False), ((0.0016, -0.0016, 0.0), 1e-6, True, False),
+     ((0.0, 0.0, 0.0014), 1e-6, False, False), ((0.0, 0.0, 0.0016), 1e-6, False, True),
+     ((0.0, 0.0, 0.0080), 0.002, False, False), ((0.0, 0.0, 0.0082), 0.002, False, True)],
+)  # fmt: skip
+def test_sensors_differ_by_a_millisecond_and_a_half_and_four_deviations(
+    monkeypatch: pytest.MonkeyPatch, values: tuple[float, ...], std: float, feet: bool, encoders: bool
+) -> None:
+    """No delay is known better than to 0.3 ms: four times that and 2 ms are 8.1 ms."""
+    found = stepped(monkeypatch, values, std)
+    assert found is not None
+    assert (found.feet_differ, found.encoders_differ, found.suspect) == (feet, encoders, False)
+    if not feet and not encoders:
+        assert (found.values, found.std) == (pytest.approx([0.004, 0.004, 0.0]), 0.001)
+    else:
+        assert found.std == pytest.approx(np.hypot(std, 0.0003))
+
+
+@pytest.mark.parametrize(("std", "suspect"), [(0.0029, False), (0.0031, True)])
+def test_what_is_known_to_three_milliseconds_is_ground_for_delays_of_their_own(
+    monkeypatch: pytest.MonkeyPatch, std: float, suspect: bool
+) -> None:
+    found = stepped(monkeypatch, (0.0, 0.0, 0.02), std)
+    assert found is not None
+    assert (found.suspect, found.encoders_differ) == (suspect, not suspect)
+
+
+def test_delays_that_need_not_differ_go_together_first(monkeypatch: pytest.MonkeyPatch) -> None:
+    found = stepped(monkeypatch, (-0.002, 0.002, 0.0), 1e-6, at=(0.006, 0.002, 0.0))
+    assert found is not None
+    assert found.std == np.inf
+    assert found.values == pytest.approx([0.004, 0.004, 0.0])
+    assert refining._step([LOG], [[]], np.zeros(3)) is None
+    far = stepped(monkeypatch, (0.0, 0.0, 0.051), 1e-6)
+    assert far is None, "later than 50 ms is another fault"
+
+
+def refined(std: float, closed: int = 1, suspect: bool = False, value: float = 0.0) -> RefinedDelays:
+    mask = np.arange(2) < closed
+    return RefinedDelays(np.array([value, value, 0.0]), std, 20.0, False, False, mask, 0.005, suspect)
+
+
+def test_of_two_answers_the_unsuspected_then_the_wider_then_the_sharper_is_surer() -> None:
+    order = [refined(0.1, 1, suspect=True), refined(0.2, 1), refined(0.1, 1), refined(0.5, 2)]
+    for place, one in enumerate(order):
+        assert [_surer(one, other) for other in order] == [other < place for other in range(4)]
+
+
+def lags(
+    missed: float, power: float = 1.0, value: float = 0.0, std: float = 0.02, edge: bool = False
+) -> Lags:
+    each = np.array([missed, 0.01])
+    return Lags(np.array([value, value, 0.0]), np.full(3, std), edge, each, np.array([power, 1.0]))
+
+
+@pytest.mark.parametrize(
+    ("found", "searched", "doubt"),
+    [
+        (None, lags(0.069), False), (None, lags(0.071), True), (None, lags(0.071, 3.1), False),
+        (None, lags(0.071, 2.9), True), (None, lags(0.071, 1 / 3.1), False), (None, lags(0.071, 1 / 2.9), True),
+        (refined(0.0029, 0), lags(0.071), False), (refined(0.0031, 0), lags(0.071), True),
+        (refined(0.0031, 2), lags(0.071), False),
+        (refined(0.0005, 2), lags(0.01, value=0.099), False), (refined(0.0005, 2), lags(0.01, value=0.101), True),
+        (refined(0.0005, 2), lags(0.01, value=0.119, std=0.06), False),
+        (refined(0.0005, 2), lags(0.01, value=0.121, std=0.06), True),
+        (refined(0.0005, 2, value=0.1), lags(0.01, value=0.1), False),
+    ],
+)  # fmt: skip
+def test_delays_are_in_doubt_where_the_law_closes_elsewhere_or_nowhere(
+    found: RefinedDelays | None, searched: Lags, doubt: bool
+) -> None:
+    """7 % missed; torques threefold are a push; two steps of 50 ms or two deviations are elsewhere."""
+    assert _in_doubt(searched, found, np.ones(2, dtype=bool)) == doubt
+
+
+@pytest.mark.parametrize(("edge", "left"), [(False, np.hypot(0.02, 0.1)), (True, 0.5 / np.sqrt(12))])
+def test_what_may_be_late_by_anything_is_allowed_for(robot: RobotModel, edge: bool, left: float) -> None:
+    found = _doubtful(robot, lags(0.5, value=0.1, edge=edge))
+    std = np.hypot(robot.uncertainty.wrench_delay, left)
+    assert (found.delay, found.doubtful, found.measured) == (0.0, True, False)
+    assert found.std == pytest.approx(std)
+    assert (
+        f"sensors may be late by {1.96e3 * std:.0f} ms: no delays up to 250 ms were found" in found.note.text
+    )
