@@ -1,5 +1,6 @@
 // What one frame or the whole tree tells of a floating base, seen from Python.
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/string.h>
 
 #include <algorithm>
 #include <memory>
@@ -12,6 +13,7 @@
 #include "bound_tree.hpp"
 #include "parallel.hpp"
 
+namespace nb = nanobind;
 using namespace plantar;
 
 namespace {

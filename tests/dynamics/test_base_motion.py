@@ -1,4 +1,4 @@
-"""A frame's motion seen from the root, and the root's motion from an IMU or a sole at rest, against Pinocchio."""
+"""The root's motion from an IMU anywhere on the robot, or from a sole at rest, against Pinocchio."""
 
 from __future__ import annotations
 
@@ -6,12 +6,15 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
+from plantar import _core
 from plantar.conventions import Array
-from plantar.dynamics.base_motion import relative_motion, root_motion, root_motion_from_sole
-from plantar.robot.kinematics import KinematicTree
+from plantar.dynamics import Equation
+from plantar.dynamics.base_motion import root_motion, root_motion_from_sole
+from plantar.robot.kinematics import packed_frame
 
 PLACEMENT = pin.SE3(pin.rpy.rpyToMatrix(0.3, -0.4, 0.5), np.array([0.1, -0.2, 0.3]))
 G = 9.80665
+LINK = 3  # the last of the arm's, behind the root's own
 
 
 def arm() -> pin.Model:
@@ -49,41 +52,31 @@ def at(model: pin.Model, data: pin.Data) -> tuple[pin.SE3, pin.Motion, Array]:
     return pose, velocity, np.concatenate([classical, acceleration.angular])
 
 
-def test_a_frame_seen_from_the_root_moves_as_pinocchio_says() -> None:
-    """Through hinges and a slide, with Coriolis' and centripetal accelerations."""
-    model, q, v, a, data = moved(np.zeros((2, 6)))
-    pose, velocity, acceleration = at(model, data)
-    found = relative_motion(KinematicTree.from_model(model), 2, PLACEMENT, q[None], v[None], a[None])
-    turn = pose.rotation
-    for name, expected in (
-        ("rotation", turn), ("position", pose.translation), ("velocity", turn @ velocity.linear),
-        ("angular_velocity", turn @ velocity.angular), ("acceleration", turn @ acceleration[:3]),
-        ("angular_acceleration", turn @ acceleration[3:]),
-    ):  # fmt: skip
-        assert getattr(found, name)[0] == pytest.approx(expected, abs=1e-12), name
-
-
-def test_the_root_moves_as_an_imu_on_the_arm_tells() -> None:
-    """What the IMU reads follows from the root's motion; the root's proper acceleration and turning come back."""
+@pytest.mark.parametrize("isa", _core.instruction_sets())
+def test_the_root_moves_as_an_imu_on_the_arm_tells(isa: str) -> None:
+    """Through hinges and a slide, with Coriolis' and centripetal accelerations: the root's proper acceleration and
+    turning come back."""
     root = np.random.default_rng(3).normal(size=(2, 6))
     model, q, v, a, data = moved(root)
     pose, velocity, acceleration = at(model, data)
     read = acceleration[:3] + pose.rotation.T @ [0.0, 0.0, G]
-    seen = relative_motion(KinematicTree.from_model(model), 2, PLACEMENT, q[None], v[None], a[None])
-    found = root_motion(seen, read[None], velocity.angular[None], acceleration[None, 3:])[0]
+    seen = np.concatenate([read, velocity.angular, acceleration[3:]])
+    rows = (each[None] for each in (seen, q, v, a))
+    found = _core.root_motion(Equation(model).core, LINK, packed_frame(PLACEMENT), *rows, isa=isa)[0]
     proper = root[1, :3] + np.cross(root[0, 3:], root[0, :3]) + [0.0, 0.0, G]
     assert found == pytest.approx(np.concatenate([proper, root[0, 3:], root[1, 3:]]), abs=1e-12)
 
 
 def test_a_sole_that_stands_is_an_imu_at_rest() -> None:
     model, q, v, a, _ = moved(np.zeros((2, 6)))
-    seen = relative_motion(KinematicTree.from_model(model), 2, PLACEMENT, q[None], v[None], a[None])
-    rest = root_motion(seen, np.array([[0.0, 0.0, G]]), np.zeros((1, 3)), np.zeros((1, 3)))
-    assert root_motion_from_sole(seen) == pytest.approx(rest)
+    still, joints = np.array([[0.0, 0.0, G, *np.zeros(6)]]), (q[None], v[None], a[None])
+    rest = root_motion(Equation(model), LINK, PLACEMENT, still, *joints)
+    assert root_motion_from_sole(Equation(model), LINK, PLACEMENT, *joints) == pytest.approx(rest)
 
 
 def test_the_root_is_seen_from_itself_where_it_is() -> None:
-    found = relative_motion(KinematicTree.from_model(arm()), -1, PLACEMENT, *np.ones((3, 1, 3)))
-    assert found.position[0] == pytest.approx(PLACEMENT.translation)
-    assert found.rotation[0] == pytest.approx(PLACEMENT.rotation)
-    assert not found.velocity.any()
+    """An IMU on the root link, which does not turn: it reads what the root does, in its own axes."""
+    still, turn = np.zeros(6), PLACEMENT.rotation
+    seen = np.concatenate([turn.T @ [1.0, 2.0, 3.0], still])[None]
+    found = root_motion(Equation(arm()), 0, PLACEMENT, seen, *np.ones((3, 1, 3)))
+    assert found[0] == pytest.approx(np.concatenate([[1.0, 2.0, 3.0], still]))
