@@ -55,6 +55,7 @@ def test_compare_ends_with_the_chest_of_all_motions_and_with_falls(
     assert "chest, all motions: joints 3.54 mrad, rigid -" in lines
     assert "squat: on 'rigid' the robot falls at 1.5 s, too early to compare" in lines
     assert "sway: on 'rigid' the robot falls at 5.5 s, all are compared up to 4.5 s" in lines
+    assert not any("tips" in line for line in lines)
     assert next(line.split() for line in lines if line.startswith("squat")) == [
         "squat",
         "joints",
@@ -62,6 +63,24 @@ def test_compare_ends_with_the_chest_of_all_motions_and_with_falls(
         "4",
         "2.5",
     ]
+
+
+def test_compare_says_from_when_on_a_sole_tips_and_what_held_before(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rows = [
+        comparison.KindScore("sway", "joints", 0.003, 0.004, 2.5, 12.0, None, 7.25, 0.001),
+        comparison.KindScore("squat", "joints", 0.003, 0.004, 2.5, 12.0, None, None, 0.001),
+    ]
+    made_up(monkeypatch, compare, load_robot=None, open_together=[])
+    monkeypatch.setattr(compare.FeetResult, "load", lambda *_, **__: None)
+    made_up(monkeypatch, comparison, compare=(rows, []))
+    compare.run(Path("result.json"), Path("robot.yaml"), [Path("a.csv")], quiet=False)
+    printed = capsys.readouterr().out
+    assert "chest, all motions: joints 5 mrad" in printed
+    assert "chest, until a sole tips: joints 1 mrad" in printed
+    assert "sway: from 7.2 s on a sole of the record stands on its edge" in printed
+    assert "squat: from" not in printed
 
 
 def test_design_prints_widths_and_rehearsals_in_their_units(

@@ -102,6 +102,8 @@ def test_exported_feet_move_as_the_robot_did_and_rigid_ones_do_not(
 ) -> None:
     scores = {one.feet: one for one in compared[0]}
     assert tuple(scores) == KINDS
+    assert {one.tips for one in compared[0]} == {None}, "it leans well inside its soles"
+    assert all(one.flat_chest == one.chest for one in compared[0])
     rigid, joints, contact = (scores[kind].chest for kind in KINDS)
     assert rigid is not None
     assert joints is not None
@@ -225,6 +227,9 @@ def test_a_kind_that_falls_has_no_score_over_all_motions() -> None:
     assert pooled([stood, stood], CONTACT) == pytest.approx(5e-3)
     assert pooled([stood, fell], CONTACT) is None
     assert pooled([stood], JOINTS) is None
+    flat = replace(stood, tips=2.5, flat_chest=1e-3)
+    assert pooled([flat, flat], CONTACT, flat=True) == pytest.approx(1e-3)
+    assert pooled([flat, stood], CONTACT, flat=True) is None
 
 
 def test_the_command_says_what_it_cannot_do(

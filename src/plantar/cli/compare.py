@@ -78,12 +78,17 @@ def run(
         screen = console()
         heads = ("motion", "feet", "chest pitch [mrad]", "chest roll [mrad]", "foot torque [N·m]")
         screen.print(table("Error against the record", heads, [_cells(row) for row in scores]))
-        together = [(kind, pooled(scores, kind)) for kind in dict.fromkeys(one.feet for one in scores)]
-        text = ", ".join(
-            f"{kind} {'-' if error is None else f'{number(MILLI * error, 3)} mrad'}"
-            for kind, error in together
-        )
-        screen.print(f"chest, all motions: {text}", markup=False)
+        kinds = tuple(dict.fromkeys(one.feet for one in scores))
+        tips = {one.motion: one.tips for one in scores if one.tips is not None}
+        for flat in (False, True) if tips else (False,):
+            text = ", ".join(f"{kind} {_milli(pooled(scores, kind, flat))}" for kind in kinds)
+            screen.print(f"chest, {'until a sole tips' if flat else 'all motions'}: {text}", markup=False)
+        for motion, time in tips.items():
+            text = (
+                f"{motion}: from {time:.1f} s on a sole of the record stands on its edge and tips by itself; "
+            )
+            text += "points under the ankle do not follow that"
+            screen.print(text, markup=False, style="yellow")
         for one in scores:
             if one.fell is not None:
                 text = f"{one.motion}: on '{one.feet}' the robot falls at {one.fell:.1f} s"
@@ -91,6 +96,10 @@ def run(
                     f", all are compared up to {one.until:.1f} s" if one.until else ", too early to compare"
                 )
                 screen.print(text, markup=False, style="yellow")
+
+
+def _milli(error: float | None) -> str:
+    return "-" if error is None else f"{number(MILLI * error, 3)} mrad"
 
 
 def _cells(row: KindScore) -> tuple[str, ...]:

@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 
 from plantar.comparison.scenes import RIGID, Played, scenes
+from plantar.comparison.tipping import on_an_edge
 from plantar.errors import MotionError
 from plantar.exporters.job import USUAL, Stance
 from plantar.logs.motion_log import MotionLog
@@ -31,7 +32,8 @@ class KindScore:
     of the feet's torques [N·m], the mean over feet and axes; None where nothing is left to score.
 
     `until`: the time that is scored [s], the same for all kinds: to the end, or to `BEFORE` seconds before the first of
-    them fell. `fell`: when this one fell [s], None where it stood to the end.
+    them fell. `fell`: when this one fell [s], None where it stood to the end. `tips`: when a sole of the record first
+    stands on its edge [s], None where none does; `flat_chest`: pitch and roll together up to then [rad].
     """
 
     motion: str
@@ -41,6 +43,8 @@ class KindScore:
     torque: float | None
     until: float
     fell: float | None = None
+    tips: float | None = None
+    flat_chest: float | None = None
 
     @property
     def chest(self) -> float | None:
@@ -77,7 +81,7 @@ def compare(
         plan = plan_of(robot, log)
         record = record_of(robot, log, plan)  # before anything is played: a log may hold no attitude
         made = scenes(result, robot, plan, swing, stance)
-        played = _played(robot, plan, made)
+        played, tips = _played(robot, plan, made), on_an_edge(robot, log)
         fell = {kind: one.fell for kind, one in played.items() if isinstance(one, MotionError)}
         falls = [time for time in fell.values() if time is not None]
         if falls and (until := min(falls) - BEFORE) > SHORTEST:
@@ -88,7 +92,7 @@ def compare(
                 scores.append(KindScore(log.name, kind, None, None, None, 0.0, one.fell))
                 continue
             replayed = beside(robot, plan, kind, one, record)
-            scores.append(_score(replayed, float(plan.time[-1]), fell.get(kind)))
+            scores.append(_score(replayed, float(plan.time[-1]), fell.get(kind), tips))
             found.append(replayed)
         progress(f"played {log.name}")
     return tuple(scores), tuple(found)
@@ -113,13 +117,19 @@ def _cut(plan: Plan, until: float) -> Plan:
     return replace(plan, time=plan.time[kept], positions=plan.positions[kept], base=plan.base[kept])
 
 
-def _score(one: Replayed, until: float, fell: float | None) -> KindScore:
+def _score(one: Replayed, until: float, fell: float | None, tips: float | None) -> KindScore:
     torque = float(np.mean([one.torque_error(foot, axis) for foot, axis in one.torque]))
-    return KindScore(one.motion, one.feet, *one.chest_error(), torque, until, fell)
+    tips = tips if tips is not None and tips < until else None
+    flat = until if tips is None else tips
+    chest = float(np.hypot(*one.chest_error(flat))) if flat > SHORTEST else None
+    return KindScore(one.motion, one.feet, *one.chest_error(), torque, until, fell, tips, chest)
 
 
-def pooled(scores: Sequence[KindScore], kind: str) -> float | None:
-    """Chest error of one kind over all motions, root mean square [rad]; None where one has no score."""
-    errors = [one.chest for one in scores if one.feet == kind]
+def pooled(scores: Sequence[KindScore], kind: str, flat: bool = False) -> float | None:
+    """Chest error of one kind over all motions, root mean square [rad]; None where one has no score.
+
+    flat: only as long as no sole of the record stands on its edge.
+    """
+    errors = [one.flat_chest if flat else one.chest for one in scores if one.feet == kind]
     known = [error for error in errors if error is not None]
     return float(np.sqrt(np.mean(np.square(known)))) if known and len(known) == len(errors) else None

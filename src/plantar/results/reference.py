@@ -42,6 +42,16 @@ REFERENCES: Final = (
     Reference("HRP-2", 502, 707, 239018, None, "configured", "simple-biped, sot-torque-control"),
     Reference("HRP-2", 600, 600, 40000, 60, "configured", "sot-state-observation, sot-stabilizer"),
     Reference("any, Kinetics Observer's default", 400, 400, 40000, 12, "configured", "state-observation"),
+    # The middle of 1650 to 1850 and of 1300 to 1650, over feet and fits.
+    Reference(
+        "REEM-C, foot and leg in series",
+        1750,
+        1475,
+        None,
+        None,
+        "measured",
+        "regression on eurobench/eb_hum_bench",
+    ),
     Reference("JAXON", 2500, 2500, 1.1e6, 2.5, "configured", "hrpsys, bush customizer"),
     Reference("JVRC-1", 3000, 3000, 1.3e6, 2.5, "configured", "hrpsys, bush customizer"),
     Reference("OpenHRP's sample robot", 1000, 1000, 5e5, 25, "configured", "openhrp3, bush customizer"),

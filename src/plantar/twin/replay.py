@@ -56,9 +56,10 @@ class Replayed:
         scored = self.time > self.time[0] + REFERENCE
         return float(np.mean(np.abs(self.torque[foot, axis] - self.recorded_torque[foot, axis])[scored]))
 
-    def chest_error(self) -> tuple[float, float]:
-        """Root mean square error of the chest's pitch and roll [rad]."""
-        pitch, roll = np.sqrt(np.mean((self.chest - self.recorded_chest) ** 2, axis=0))
+    def chest_error(self, until: float = np.inf) -> tuple[float, float]:
+        """Root mean square error of the chest's pitch and roll [rad], over the first `until` seconds."""
+        scored = self.time <= self.time[0] + until
+        pitch, roll = np.sqrt(np.mean((self.chest - self.recorded_chest)[scored] ** 2, axis=0))
         return float(pitch), float(roll)
 
 

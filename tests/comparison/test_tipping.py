@@ -1,0 +1,39 @@
+"""A sole of the record that stands on its edge, by forces put where they are."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from plantar.comparison.tipping import on_an_edge
+from plantar.logs.motion_log import MotionLog, wrench_columns
+from plantar.twin.robots import hrp2
+
+FRONT, SIDE = 0.1086, 0.069  # m, the sole's half length and width
+TIME = 10.0 + np.arange(1000) / 200  # its first sample is not at zero
+
+
+def standing(forward: float, left: float, load: float = 280.0) -> MotionLog:
+    """The left push goes from the sole's middle to a place on it [m] and back, from 2 to 4 s; it leans by 30 N."""
+    robot = hrp2.robot()
+    share = np.clip(1 - np.abs(TIME - TIME[0] - 3), 0, None)
+    columns = {}
+    for name, foot in robot.feet.items():
+        x, y = (share * forward, share * left) if name == "left" else (0 * share, 0 * share)
+        sensor, sole = robot.frame(foot.wrench.placement)[1], robot.frame(foot.sole.placement)[1]
+        arm = np.column_stack([x, y, 0 * x]) + sole.translation - sensor.translation
+        force = np.tile([30.0, 0.0, load], (TIME.size, 1))
+        wrench = np.hstack([force, np.cross(arm, force)]) * foot.wrench.sign
+        columns |= dict(zip(wrench_columns(foot.wrench.name), wrench.T, strict=True))
+    return MotionLog("sway", TIME, columns)
+
+
+@pytest.mark.parametrize(("forward", "left"), [(FRONT, 0.0), (-FRONT, 0.0), (0.0, SIDE), (0.0, -SIDE)])
+def test_a_sole_that_stands_on_its_edge_is_told_with_its_time(forward: float, left: float) -> None:
+    reaches = 2 + 1 - 0.005 / np.hypot(forward, left)
+    assert on_an_edge(hrp2.robot(), standing(forward, left)) == pytest.approx(reaches, abs=0.02)
+
+
+def test_a_sole_that_stands_inside_its_edges_or_in_the_air_is_not() -> None:
+    assert on_an_edge(hrp2.robot(), standing(FRONT - 0.01, 0.0)) is None
+    assert on_an_edge(hrp2.robot(), standing(FRONT, 0.0, load=5.0)) is None
