@@ -30,8 +30,8 @@ AT_THEIR_EDGES = (
     Mutant(
         "online/replay.py",
         "usable from a fifth on",
-        "USABLE = 0.1 ",
-        "USABLE = 0.2 ",
+        '"stiffness": 0.1',
+        '"stiffness": 0.2',
         ("online/test_replay.py",),
     ),
     Mutant(

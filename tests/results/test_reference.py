@@ -72,12 +72,13 @@ def test_the_command_lists_them(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 # Pitch, roll [N·m/rad], z [N/m], damping [N·m·s/rad]. Of the paper's table 1 the damping is the mean of 15.9 and 17.5,
-# of 24.3 and 28.2; the others are the robots' public configurations.
+# of 24.3 and 28.2; REEM-C's is measured from public walks; the others are the robots' public configurations.
 PUBLISHED = {
     ("HRP-2, right foot", 434, 323, None, 16.7), ("HRP-2, left foot", 480, 352, None, 26.2),
     ("HRP-2", 502, 707, 239018, None), ("HRP-2", 600, 600, 40000, 60),
     ("any, Kinetics Observer's default", 400, 400, 40000, 12), ("JAXON", 2500, 2500, 1.1e6, 2.5),
     ("JVRC-1", 3000, 3000, 1.3e6, 2.5), ("OpenHRP's sample robot", 1000, 1000, 5e5, 25), ("TALOS", 1e8, 1e8, 1e8, None),
+    ("REEM-C, foot and leg in series", 1750, 1475, None, None),
 }  # fmt: skip
 
 

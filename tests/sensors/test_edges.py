@@ -11,7 +11,7 @@ from plantar.robot.model import RobotModel
 from plantar.sensors.accelerometer_delay import (
     AccelerometerDelay,
     filter_delay,
-    with_accelerometers_on_time,
+    with_imus_on_time,
 )
 from plantar.sensors.attitude_scale import AttitudeScale, attitude_scale_notes
 from plantar.sensors.bandwidth import Fading, fading_notes
@@ -112,14 +112,14 @@ def test_a_gyroscope_tells_of_its_accelerometer_where_they_agree(gyroscope: floa
 
 def test_an_accelerometer_read_earlier_is_told_with_its_interval(robot: RobotModel) -> None:
     """A lean of 4 ms times the tilt's rate, and as much again that is nobody's: one and a half new values a second."""
-    products = np.zeros((10, 10))
+    products = np.zeros((11, 11))
     products[0, 0], products[0, 1], products[1, 1] = 0.004**2 + 0.004**2, 0.004, 1.0
     products[1, 0] = 0.004
     one = AccelerometerDelay(products, 2e4)
-    late, std = one.late
+    late, std = one.late()
     assert late == pytest.approx(0.004)
     assert std == pytest.approx(0.004 / np.sqrt(1.5 * 2e4), rel=1e-6)
-    (read,) = with_accelerometers_on_time(robot, [imu_log("linear_acceleration")], [one])
+    (read,) = with_imus_on_time(robot, [imu_log("linear_acceleration")], [one])
     wide = 1.96e3 * np.hypot(std, 0.0005)
     assert read.notes[-1].text.startswith(
         f"accelerometer 4.0 ± {wide:.1f} ms behind the IMU's orientation (95 %)"

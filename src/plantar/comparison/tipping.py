@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from plantar.contact.balance import LOADED, zero_moment_point
-from plantar.contact.deflection import moved_wrench
 from plantar.contact.polygon import inside_distance
 from plantar.conventions import GRAVITY
 from plantar.feet.settings import FeetSettings
@@ -23,7 +22,8 @@ def on_an_edge(robot: RobotModel, log: MotionLog) -> float | None:
     found = []
     for foot in robot.feet.values():
         sole, sensor = (robot.frame(place)[1] for place in (foot.sole.placement, foot.wrench.placement))
-        wrench = moved_wrench(log.wrench(foot.wrench.name), sole.inverse() * sensor, foot.wrench.sign)
+        moved = foot.wrench.sign * (sole.inverse() * sensor).toDualActionMatrix()
+        wrench = log.wrench(foot.wrench.name) @ moved.T
         # The noise of a lightly loaded sensor moves its centre of pressure by more than the margin.
         slow = low_pass(wrench, float(np.median(np.diff(log.time))), SMOOTH)
         near = (

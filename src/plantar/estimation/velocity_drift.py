@@ -58,7 +58,11 @@ def fit_drift(
     reach, settled = np.inf, 0
     while True:
         beyond = known - _core.smooth_drift(weight, *chain, known)
-        left = beyond.reshape(2 * n, -1) @ np.append(1.0, -_sizes(beyond, weight))
+        # How much of each column is in the velocity, from what the smoother leaves of both, along x and y.
+        both = ((beyond * weight[:, None]).T @ beyond).reshape(2, 1 + len(columns), 2, 1 + len(columns))
+        products = both[0, :, 0] + both[1, :, 1]
+        sizes = solved(products[1:, 1:], products[1:, 0])
+        left = beyond.reshape(2 * n, -1) @ np.append(1.0, -sizes)
         square = seen * (np.sum(left.reshape(n, 2) ** 2, axis=1) / (2 * noise**2) + unrest)
         if settled == SETTLED:
             break
@@ -70,12 +74,3 @@ def fit_drift(
         )  # Geman and McClure's
     drift = (known.reshape(2 * n, -1)[:, 0] - left).reshape(n, 2)
     return Drift(drift, np.sqrt(_core.drift_variance(weight, *chain)))
-
-
-def _sizes(left: Array, weight: Array) -> Array:
-    """How much of each column, (m,), is in the velocity, from what the smoother leaves of both: of each sample along x,
-    then along y, the velocity's and the columns', (n, 2·(1 + m))."""
-    m = left.shape[1] // 2
-    both = ((left * weight[:, None]).T @ left).reshape(2, m, 2, m)
-    products = both[0, :, 0] + both[1, :, 1]
-    return solved(products[1:, 1:], products[1:, 0])

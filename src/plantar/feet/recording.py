@@ -173,7 +173,8 @@ def filtered_recording(recording: Recording, cutoff: float) -> Recording:
         if stances is None:
             edges = run_ends(valid, round(FILTER_EDGE / cutoff / period))
             recording = recording.without(name, edges, Reason.FILTER_EDGE)
-        noise[name] = _noise(state, period, cutoff)
+        angles = np.hstack([state.deflection, state.rate])
+        noise[name] = noise_after_filter(angles, state.torque, period, cutoff).reshape(2, 2)
     turns = {
         name: within_stances(turns.reshape(-1, 6), period, cutoff, recording.stances[name]).reshape(-1, 2, 3)
         for name, turns in recording.imu_turns.items()
@@ -209,12 +210,6 @@ def within_stances(values: Array, period: float, cutoff: float, stances: Stances
         return low_pass(values, period, cutoff)
     standing = np.where((stances.number < 0)[:, None], np.nan, values)
     return low_pass(standing, period, cutoff, SHORTEST_STANCE_RUN)
-
-
-def _noise(state: BushState, period: float, cutoff: float) -> Array:
-    """Variance (2, 2) of the noise left in deflection and rate (rows) of pitch and roll (columns)."""
-    angles = np.hstack([state.deflection, state.rate])
-    return noise_after_filter(angles, state.torque, period, cutoff).reshape(2, 2)
 
 
 def moved_centre(recording: Recording, compliance: Mapping[str, float]) -> Recording:

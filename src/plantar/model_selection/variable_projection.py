@@ -92,10 +92,6 @@ class Problem:
         """Initial states (..., runs) of each recording."""
         return np.split(states, np.cumsum(self.counts[:-1]), axis=-1)
 
-    def extras(self, shapes: Array, initial_states: Array) -> Array:
-        """The model's own columns (n, e, b) of b variants of shape (b, s) and initial states (b, runs)."""
-        return filtered_columns(self.model, self.prepared, shapes, self.by_recording(initial_states))
-
     def squares(self, extras: Array) -> Array:
         """What is left with each of b variants of the model's own columns (n, e, b), (b,), up to `ROUNDING`."""
         common = np.column_stack([self.base, np.ones(len(extras)), self.response])
@@ -105,7 +101,8 @@ class Problem:
     def at(self, shape: Array, initial_states: Array, extra: Array | None = None) -> Point:
         """Solve the linear part. extra: the model's own columns there, (n, e), if known."""
         if extra is None:
-            extra = self.extras(shape[None, :], initial_states[None, :])[:, :, 0]
+            states = self.by_recording(initial_states[None, :])
+            extra = filtered_columns(self.model, self.prepared, shape[None, :], states)[:, :, 0]
         design = np.column_stack([self.base, extra])
         problem = Linearised(design, self.response, self.rows, self.shared_offset)
         values = problem.solve()
@@ -123,7 +120,7 @@ class Problem:
         variants[1:3] = np.clip(
             [point.initial_states + STATE_STEP, point.initial_states - STATE_STEP], -1.0, 1.0
         )
-        extra = self.extras(shapes, variants)
+        extra = filtered_columns(self.model, self.prepared, shapes, self.by_recording(variants))
         torque = np.einsum("neb,e->nb", extra, point.values[2:])
         slopes = (torque[:, 3::2] - torque[:, 4::2]) / (2 * SHAPE_STEP)
         design = np.column_stack([self.base, extra[:, :, 0], slopes])
@@ -169,7 +166,7 @@ def step(problem: Problem, point: Point, limits: Array) -> Point | None:
     moves = linear.initial_states(change)
     shapes = np.clip(point.shape * np.exp(SHARES[:, None] * move), limits[0], limits[1])
     states = np.clip(point.initial_states + SHARES[:, None] * moves, -1.0, 1.0)
-    extras = problem.extras(shapes, states)
+    extras = filtered_columns(problem.model, problem.prepared, shapes, problem.by_recording(states))
     bound = point.squares + ROUNDING * float(problem.response @ problem.response)
     for place in np.flatnonzero(problem.squares(extras) < bound):
         tried = problem.at(shapes[place], states[place], extras[:, :, place])
@@ -193,7 +190,8 @@ def scan_shape(problem: Problem, point: Point, limits: Array, width: float) -> P
     )
     if not len(shapes):
         return None
-    extras = problem.extras(shapes, np.tile(point.initial_states, (len(shapes), 1)))
+    states = problem.by_recording(np.tile(point.initial_states, (len(shapes), 1)))
+    extras = filtered_columns(problem.model, problem.prepared, shapes, states)
     best = int(np.argmin(problem.squares(extras)))
     tried = problem.at(shapes[best], point.initial_states, extras[:, :, best])
     return tried if tried.squares < (1 - SETTLED) * point.squares else None
@@ -212,7 +210,8 @@ def scan(problem: Problem, point: Point, width: float) -> Point | None:
     """
     around = np.linspace(-width, width, 9)
     tried = np.clip(point.initial_states + around[:, None], -1.0, 1.0)
-    extras = problem.extras(np.repeat(point.shape[None, :], len(around), axis=0), tried)
+    shapes = np.repeat(point.shape[None, :], len(around), axis=0)
+    extras = filtered_columns(problem.model, problem.prepared, shapes, problem.by_recording(tried))
     linear = problem.base @ point.values[:2] + np.repeat(point.offsets, problem.rows)
     missing = (problem.response - linear)[:, None] - np.einsum("neb,e->nb", extras, point.values[2:])
     runs = tried.shape[1]

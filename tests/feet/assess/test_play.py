@@ -69,4 +69,4 @@ def test_play_is_told_where_half_as_much_again_is_left_without_it(play: float, t
         made.append(made_recording(f"sway_{seed}", read, torque, rate=rate))
     fit = fit_axis(made, FOOT, "pitch", FeetSettings(model="kelvin_voigt"))
     assert fit is not None
-    assert bool(play_notes(made, fit, False)) == told
+    assert bool(play_notes(made, fit, tangent_blocks(made, fit), False)) == told

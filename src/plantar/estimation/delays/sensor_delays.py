@@ -77,7 +77,7 @@ def estimate_delays(balances: Sequence[Balance], held: Array | None = None) -> D
     floor, freedom = (np.array([getattr(cell, name) for cell in cells]) for name in ("floor", "freedom"))
     columns, missing = products[:, :count, :count], products[:, :count, count]
     squares, wrong = products[:, count, count], products[:, :count, count + 1 :]
-    weights = freedom / squares
+    weights = freedom / (squares + floor)
     for _ in range(ROUNDS):
         information = np.tensordot(weights, columns, 1)
         reduced = free.T @ information @ free
