@@ -212,3 +212,12 @@ def test_values_are_wrong_beyond_what_one_of_a_hundred_are_by_chance(count: int)
     values = limit * np.array([1.0, -1.0])[:count]
     for size, wrong in ((0.99, False), (1.01, True)):
         assert is_wrong(size * values, [Part(np.eye(count), freedom)], list(range(count))) == wrong
+
+
+@pytest.mark.parametrize(("early", "told"), [(0.0024, False), (0.0026, True)])
+def test_an_orientation_that_seems_late_by_less_may_stand_beside_early_encoders(
+    early: float, told: bool
+) -> None:
+    """The gyroscope keeps to the orientation; encoders 5 ms early would look like 2.5 ms."""
+    found, _ = filter_delay((-early, 0.0), ImuFilter(0.0, 0.0, True), (early, 0.0))
+    assert found == pytest.approx(-early if told else 0.0)

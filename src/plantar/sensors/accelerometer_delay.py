@@ -36,6 +36,7 @@ EDGE = 1.0  # s at both ends of a stance: the filters'
 RATE = CORRECTED  # 1/s and axis, of values that tell something new: half of what the band holds, since wander is red
 SURE = 3.0  # deviations
 ALIKE = 0.001  # s: standard deviation by which the filters of a device's two sensors differ
+EARLY_ENCODERS = 0.0025  # s: as late an orientation seems beside encoders that are read 5 ms early
 STRAY = 0.0005  # s: what encoders that are a millisecond off, or legs that are, make of it
 LARGEST = 0.01  # s: a device's own filter; later is a fault, and `sensor_delay` searches for it
 COLUMNS = 11  # the lean, and what goes with it
@@ -115,7 +116,8 @@ def filter_delay(
         return late, std
     early, unsure = behind[0], float(np.hypot(behind[1], STRAY))
     kept = gyroscope is not None and abs(gyroscope.late) + SURE * gyroscope.std < early / 2
-    return (-early, unsure) if kept and late < 0 and SURE * unsure < early < LARGEST else (0.0, std)
+    least = max(SURE * unsure, EARLY_ENCODERS)
+    return (-early, unsure) if kept and late < 0 and least < early < LARGEST else (0.0, std)
 
 
 def with_imus_on_time(
