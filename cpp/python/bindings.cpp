@@ -1,4 +1,4 @@
-// The only file that knows Python: arrays in, arrays out, the GIL released while the core works.
+// The dynamics seen from Python, and the module itself: arrays in, arrays out, the GIL released while the core works.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/optional.h>
