@@ -10,28 +10,16 @@ import pytest
 
 from biped import WEIGHT
 from biped_robot import make_robot, robot_entry
+from loaded_log import PERIOD, made
 from plantar.checks.air_readings import check_air_readings
 from plantar.checks.bush_axes import check_bush_axes
 from plantar.checks.bush_link import check_bush_link
 from plantar.checks.stance import StanceSides
 from plantar.conventions import Array
-from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
 
-PERIOD = 0.01
 JOINT = "left_ankle_pitch"
 OTHER = "right_ankle_pitch"
-PARTS = [f"{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz"]
-
-
-def made(
-    seconds: float, columns: dict[str, Array], load: float | Array = WEIGHT / 2, period: float = PERIOD
-) -> MotionLog:
-    """A log of both feet loaded alike [N], and of `columns`."""
-    time = period * np.arange(round(seconds / period))
-    wrenches = {f"wrench.{foot}.{part}": np.zeros(time.size) for foot in ("left", "right") for part in PARTS}
-    wrenches |= {f"wrench.{foot}.force.z": load + np.zeros(time.size) for foot in ("left", "right")}
-    return MotionLog("log", time, wrenches | columns)
 
 
 @pytest.mark.parametrize(

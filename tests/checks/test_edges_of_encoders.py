@@ -8,30 +8,17 @@ import numpy as np
 import pytest
 
 from biped import WEIGHT
+from loaded_log import PARTS, PERIOD, made
 from plantar.checks.channels import check_channels, loaded_path
 from plantar.checks.gaps import check_gaps
 from plantar.checks.joints.stepping_joints import check_stepping_joints
 from plantar.checks.joints.still_joints import check_still_joints
 from plantar.conventions import Array
-from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding
 from plantar.robot.model import RobotModel
 
-PERIOD = 0.01
 JOINT = "left_ankle_pitch"
 OTHER = "right_ankle_pitch"
-PARTS = [f"{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz"]
-
-
-def made(
-    seconds: float, columns: dict[str, Array], load: float | Array = WEIGHT / 2, period: float = PERIOD
-) -> MotionLog:
-    """A log of both feet loaded alike [N], and of `columns`; its sensors have noise, unlike a simulation's."""
-    time = period * np.arange(round(seconds / period))
-    noise = 1e-3 * np.sin(np.arange(time.size))
-    wrenches = {f"wrench.{foot}.{part}": noise for foot in ("left", "right") for part in PARTS}
-    wrenches |= {f"wrench.{foot}.force.z": load + noise for foot in ("left", "right")}
-    return MotionLog("log", time, wrenches | columns)
 
 
 def encoder(position: Array, velocity: Array, joint: str = JOINT) -> dict[str, Array]:
