@@ -7,6 +7,7 @@ from data_faults import DATA_FAULTS
 from designed_motions import DESIGNED_MOTIONS
 from drawn import DRAWN
 from drawn_again import DRAWN_AGAIN
+from drawn_anew import DRAWN_ANEW
 from drawn_everywhere import DRAWN_EVERYWHERE
 from drawn_last import DRAWN_LAST
 from engine_exports import ENGINE_EXPORTS
@@ -22,6 +23,7 @@ from shared_work import SHARED_WORK
 LISTS = {
     "drawn": DRAWN,
     "drawn_again": DRAWN_AGAIN,
+    "drawn_anew": DRAWN_ANEW,
     "drawn_everywhere": DRAWN_EVERYWHERE,
     "of_their_kinds": OF_THEIR_KINDS,
     "once_unnoticed": ONCE_UNNOTICED,

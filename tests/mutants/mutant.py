@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+LIMITS = "docs/test_limits.py"
+
 
 class StaleMutant(Exception):
     """The text that a mutant replaces is not in its file exactly once: the list has to follow the source."""
@@ -35,9 +37,8 @@ class Mutant:
         return text.replace(self.before, self.after)
 
     def judges(self, tests: Path, *, near: bool = False) -> tuple[str, ...]:
-        """What pytest is to run, relative to the folder `tests`: the folder that mirrors the file's, then its room.
-
-        `near`: that folder alone, which is quicker.
+        """What pytest is to run, relative to the folder `tests`: the page of limits, the folder that mirrors the
+        file's and its room. `near`: the mirroring folder alone, which is quicker.
         """
         if self.tests:
             return self.tests
@@ -45,4 +46,5 @@ class Mutant:
         mirrored = [
             part for part in (folder, *folder.parents) if part != Path(".") and (tests / part).is_dir()
         ]
-        return tuple(str(part) for part in mirrored)[: 1 if near else None]
+        rooms = tuple(str(part) for part in mirrored)
+        return rooms[:1] if near else (LIMITS, *rooms)
