@@ -272,6 +272,19 @@ def test_scores_pool_motions_and_tell_who_falls() -> None:
     assert text["hard"][1] == "5.000"
 
 
+def test_the_mean_torque_of_a_robot_that_falls_in_one_motion_is_none() -> None:
+    fallen = [
+        ReplayRow("soft", motion, "left pitch torque", "N.m", error)
+        for motion, error in (("a", 0.5), ("b", None))
+    ]
+    stood = [
+        ReplayRow("hard", motion, "left pitch torque", "N.m", error)
+        for motion, error in (("a", 0.5), ("b", 0.7))
+    ]
+    text = {row[0].text: row[7].text for row in simulator_table([*fallen, *stood]).rows}
+    assert text == {"soft": "falls", "hard": "0.600"}
+
+
 def test_bias_and_slow_drift_of_an_attitude_are_not_the_feets() -> None:
     time = np.arange(2001) / 200.0
     turn = Rotation.from_euler(
@@ -320,6 +333,8 @@ def test_the_choice_of_motions_is_set_beside_the_papers() -> None:
     assert explained(replace(found, compared=choice(0.5, "c", "b", "a"))).endswith(
         "no other set of 3 promises more."
     )
+    as_many = replace(found, best=(choice(3.0, "a"), choice(2.0, "a", "b"), choice(0.5, "a", "b", "c")))
+    assert explained(as_many).endswith("the best set of 3 0.50 %."), "three for three is no gain"
     assert choice_rows(found)[3]["half_widths"][1]["percent"] == 2.0
 
 

@@ -109,6 +109,12 @@ def test_a_sole_that_turns_is_seen_whatever_the_other_does() -> None:
     found = turning(twist_speed(apart(np.radians(4)) + drift, BOTH, PERIOD), PERIOD)
     assert found[(TIME > 8.1) & (TIME < 8.2)].all()
     assert not found[(TIME < 7.85) | (TIME > 8.45)].any()
+    behind = twist_speed(
+        np.angle(np.exp(1j * (apart(np.radians(4)) + drift + np.pi - np.radians(2)))), BOTH, PERIOD
+    )
+    assert np.array_equal(turning(behind, PERIOD), found), (
+        "past a half turn the heading jumps, the sole does not"
+    )
     elastic = twist_speed(apart(np.radians(0.8)) + drift, BOTH, PERIOD)
     assert not turning(elastic, PERIOD).any(), "a bush's own twist"
     to_and_fro = apart(np.radians(0.8), 8.0, 8.15) - apart(np.radians(0.8), 8.15, 8.3)
