@@ -14,7 +14,7 @@ from plantar.notes import Finding
 from plantar.signals.segments import complete
 
 WRONG_ANGLE = np.radians(25)  # between the accelerometer's up and the quaternion's: more is not noise
-RIGHT_ANGLE = np.radians(8)
+RIGHT_ANGLE = np.radians(8)  # likewise: less is a mount or an estimator
 
 
 def check_imu(name: str, log: MotionLog) -> Iterator[Finding]:

@@ -12,7 +12,7 @@ from plantar.design.family import CHANNELS, SHAPES
 from plantar.design.information import Criterion, badness
 from plantar.design.reach import Reach
 
-TRIES: Final = 2000
+TRIES: Final = 2000  # changes of a motion that are tried
 SCALED: Final = 2  # times to the tightest limit: rubber that slips is not linear
 TOLD: Final = 200  # tries between two words of progress
 CHANGED: Final = 0.15  # of the coefficients in each try
@@ -20,8 +20,8 @@ BEGIN, SMALLEST = 0.5, 3e-3  # steps
 GROW, SHRINK = 1.5, 0.95  # of the step: a rule of one success in nine (after I. Rechenberg, 1973)
 # Where the search begins: over the left foot, whose ankle moves more than the other and than the body.
 START: Final = {"left": 1.0, "right": 0.3}
-BODY: Final = 0.1
-LOADED: Final = 2.0
+BODY: Final = 0.1  # for the rest of the body
+LOADED: Final = 2.0  # for the load that goes from foot to foot, which all of them need
 
 
 def best_motion(

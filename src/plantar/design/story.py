@@ -35,7 +35,7 @@ KEPT: Final = (
 # where a sole begins to roll; at most so much smaller.
 SMALLER: Final = 0.85
 SPARE: Final = 0.005  # smaller than what is just allowed
-ROUNDS: Final = 8
+ROUNDS: Final = 8  # of making it smaller or larger again
 FRICTION: Final = 0.3  # of horizontal to vertical force at most: dry rubber on any floor holds more
 EFFORT: Final = 0.9  # of a joint's torque limit
 SHORTEST, LONGEST = 20.0, 600.0  # s

@@ -14,7 +14,7 @@ from plantar.conventions import Array
 from plantar.estimation.quantiles import MOST_FREEDOM, student_quantile
 
 SCORE_BANDWIDTH = 0.10  # Hz: the scores' spectrum counts as flat below it (docs/intervals.md: coverage study)
-FEWEST_COSINES = 4
+FEWEST_COSINES = 4  # degrees of freedom of a deviation, however short the recording
 
 
 def cosine_covariance(scores: Array, duration: float) -> tuple[Array, int]:

@@ -13,7 +13,7 @@ from plantar.notes import Note
 
 PIVOTS: Final = ("ground", "bush")
 LEAST_LOAD: Final = 0.42  # of the weight: a little below the half that a foot carries on two feet
-LEAST_LOADS: Final = (0.05, 0.5)
+LEAST_LOADS: Final = (0.05, 0.5)  # of the weight: a foot that stands with the other carries half
 
 
 @dataclass(frozen=True)

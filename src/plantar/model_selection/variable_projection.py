@@ -19,7 +19,7 @@ from plantar.model_selection.landing import STATE, Hysteresis, landing_states
 from plantar.model_selection.partialled_out import Linearised, Memory
 from plantar.models import BushModel
 
-ITERATIONS = 16
+ITERATIONS = 16  # at most, of a refinement
 LANDINGS = 3  # times that the states at landings are found anew with better parameters
 WIDEST_SCAN, NARROWEST_SCAN, NARROWING = (
     1.0,

@@ -13,7 +13,7 @@ from plantar.conventions import Array
 from plantar.models.bush_model import BushMotion
 from plantar.models.hysteresis import Hysteretic, Path
 
-TABLE = 2001
+TABLE = 2001  # of the element's torque from 0 to 1, between which it is interpolated
 STEPS = 8000  # of the integrals behind it
 DEEPEST = 30.0  # -log(1 - z) at which z counts as 1
 SHARPNESS = (1.0, 2.0, 4.0)  # tried by the search; 1 is Dahl's friction, large ones are a Jenkins element

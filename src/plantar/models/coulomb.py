@@ -11,7 +11,7 @@ from plantar.conventions import Array
 from plantar.models.bush_model import BESIDE, BushModel, BushMotion
 
 SMOOTHEST = 0.3  # of the motions' fast rate: wider than that, friction is a damper
-SHARPEST = 0.003
+SHARPEST = 0.003  # likewise: sharper looks the same to sensors
 
 
 class Coulomb(BushModel):

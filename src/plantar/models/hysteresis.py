@@ -22,7 +22,7 @@ SURE_SLIP_ANGLE = 0.8  # of the reach: beyond it few turns make the element slip
 # Slip angles that are tried, a quarter apart, and closer where few turns are as long: of coarser ones the best led to
 # another minimum.
 RARE = 0.5  # of the reach
-TRIED, TRIED_RARE = 14, 14
+TRIED, TRIED_RARE = 14, 14  # slip angles on either side of that: steps between them are refined later
 
 
 class Path(NamedTuple):

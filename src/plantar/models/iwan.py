@@ -10,7 +10,7 @@ from plantar.conventions import Array
 from plantar.models.elastoplastic import jenkins_states
 from plantar.models.hysteresis import Hysteretic, Path
 
-ELEMENTS = 8
+ELEMENTS = 8  # in parallel, whose slip angles spread from near zero to twice their mean
 
 
 class Iwan(Hysteretic):

@@ -24,7 +24,7 @@ ROOM = 0.008  # m, kept to the edge even by soles so narrow that the shares woul
 STEADIED = 520.0  # N·m, weight times height of a robot that a hand can lead so far; a heavier one less
 ASIDE = 0.2  # of the sway goes across the wanted axis: no hand moves in a plane
 TEMPOS = (0.23, 0.41, 0.67)  # Hz: slow, brisk and quick swings of one hand
-SHARES = (0.5, 0.35, 0.15)
+SHARES = (0.5, 0.35, 0.15)  # of the swing that each of them has
 
 
 def manual_plan(

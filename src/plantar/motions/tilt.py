@@ -18,7 +18,7 @@ from plantar.motions.track import track
 PERIOD = 10.0  # s
 REST = 2.0  # s before and after
 SQUAT_PERIOD = 4.0  # s
-SQUATS = 4
+SQUATS = 4  # of one motion
 
 
 def tilt_plan(body: Body, name: str, start: Stance, sway: float, vertical: float) -> Plan:

@@ -21,9 +21,9 @@ from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
 from plantar.signals.filters import low_pass
 
-FEWEST_SAMPLES = 200
+FEWEST_SAMPLES = 200  # of loaded feet: a height is a fit's, which fewer do not carry
 AGREE = 0.015  # m: standard deviation of the heights that feet and axes give, beyond which none is believed
-FEWEST_HEIGHTS = 3
+FEWEST_HEIGHTS = 3  # of feet and axes: of two nobody knows which is wrong
 LEAST_SPREAD = 0.01  # m: a loaded bush sinks by millimetres, and its centre with it
 EXPLAINED = 0.05  # of the torque's variance at most is left by a spring and damper about a bush that is one
 

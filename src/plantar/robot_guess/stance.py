@@ -16,7 +16,7 @@ from plantar.robot_guess.feet import Sole
 from plantar.signals.filters import low_pass
 
 SAMPLES = 400  # of one log: gravity, balance and outline change slowly
-FEWEST = 20
+FEWEST = 20  # samples of a robot that stands: fewer say nothing of how
 CARRIES = 0.5  # of the weight: force on both feet together of a robot that stands
 SHARES = 0.15  # of the weight on a foot that takes part
 CALM = 1.0  # Hz: what an accelerometer reads below this is mostly gravity

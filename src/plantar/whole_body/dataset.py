@@ -22,7 +22,7 @@ from plantar.signals.resampling import evenly_sampled
 from plantar.signals.segments import run_ends
 from plantar.whole_body.settings import DynamicsSettings
 
-FEWEST_SAMPLES = 50
+FEWEST_SAMPLES = 50  # of a log: fewer are no motion
 COULOMB_SPEED = (
     0.02  # rad/s: Coulomb friction is tanh(v / this); the sign alone would follow an encoder's noise
 )

@@ -18,7 +18,7 @@ from plantar.dynamics.consistency import Normal, Prior, consistent_fit
 from plantar.whole_body.folds import Folds, Samples
 
 REGULARISATIONS = tuple(float(regularisation) for regularisation in 10.0 ** np.arange(-1.0, 6.5))
-WEIGHTING_ROUNDS = 2
+WEIGHTING_ROUNDS = 2  # in which rows are weighed by what they missed
 HOPELESS = 3.0  # times the smallest held-out error: larger weights are not tried any more
 FIRST_REGULARISATION = 10.0  # of the fit that gives the first weights
 LEAST_ERROR = 1e-5  # N, N.m: what a row misses by less is rounding, and its weight would drown all others

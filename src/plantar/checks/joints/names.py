@@ -12,7 +12,7 @@ from plantar.notes import Finding, listing
 from plantar.robot.joint_names import propose_names, propose_order
 from plantar.robot.model import RobotModel
 
-MOST_NAMED = 3
+MOST_NAMED = 3  # names in one line
 
 
 def check_joint_names(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:

@@ -19,7 +19,7 @@ from plantar.exporters.urdf.geometry import box_corners, mesh_points
 from plantar.exporters.xml_file import load_xml, numbers, vector
 
 OLDEST = (1, 5)  # before it a joint's axis stood in another frame
-FRAME_DEPTH = 100
+FRAME_DEPTH = 100  # frames within frames: no model has so many
 
 
 class SdfTree:

@@ -47,7 +47,7 @@ OTHER_MOTION_HELPS = (
     "torque gain", "imu turn",
 )  # fmt: skip
 GAINS = ("force_gain", "torque_gain")  # codes of warnings on a sensor's gain
-NEARLY_ALL = 0.9
+NEARLY_ALL = 0.9  # of the variance
 MODEL_SHARE = 10.0  # times the white deviation: residuals this coloured are the model's, not noise
 
 

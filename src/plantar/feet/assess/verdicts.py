@@ -10,12 +10,12 @@ from plantar.conventions import Axis
 from plantar.results.feet import ValidationRow, Verdict
 
 USABLE_WIDTH = 0.15  # half width of the 95 % interval over the value, at most
-WEAK_WIDTH = 0.5
+WEAK_WIDTH = 0.5  # likewise: beyond it the value is not told from half or twice as much
 LEAST_SECONDS = 3.0  # of used samples
 LEAST_EXCITATION = 1e-7  # rad rms: no sensor tells as little, it is rounding
 SHORT_SECONDS = 10.0  # likewise: in less, what is slower than 0.1 Hz, as drift is, has not shown itself
 LEAST_EXPLAINED = 0.3  # share of the torque's variance that the model must explain
-GOOD_EXPLAINED = 0.8
+GOOD_EXPLAINED = 0.8  # likewise, for a number to be usable
 SIGNS = "check sign and rpy of this foot's wrench, link and rpy of the IMU, signs of the joints: no motion helps here"
 NOISY = 0.13  # of the slip angle: of simulated robots with more noise of the angle one in three had a wrong slip angle
 # Share of its slope that a spring may lose as it bends. Rubber hardens; a sole that begins to turn about its edge takes

@@ -22,7 +22,7 @@ from plantar.feet.regression.axis import AngleDrift, AxisFit
 from plantar.feet.regression.model_columns import model_columns
 from plantar.feet.regression.regression_data import blocks_of, tangent_blocks
 
-ROUNDS = 6
+ROUNDS = 6  # at most
 HALFWAY = 0.5  # from one round's drift to the next: fit and drift answer each other with the opposite, nearly as large
 NEGLIGIBLE = 0.1  # of a deviation
 

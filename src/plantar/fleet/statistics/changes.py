@@ -23,7 +23,7 @@ SHORTEST: Final = MONTH  # days: in less, a trend and a step are one
 BESIDE: Final = 60.0  # days before and behind a step that its size is taken from
 AGAIN: Final = 2.1 * MONTH  # days within which another trend of the same direction is the same one
 BENDS: Final = 25  # places where a line may begin
-TINY: Final = 1e-300
+TINY: Final = 1e-300  # for zero in a denominator
 LARGEST_SHARE: Final = 0.2  # of days that may be called one thing, where days are few and alarms many
 
 

@@ -20,7 +20,7 @@ from plantar.conventions import Array
 
 Labels = np.ndarray[tuple[int], np.dtype[np.intp]]
 
-LEVEL: Final = 0.95
+LEVEL: Final = 0.95  # of intervals
 LEAST: Final = 1e-12  # of the mean square, so that values without any deviation of their own can be weighed
 
 

@@ -34,7 +34,7 @@ MAGIC = b"ANN"
 NEWEST = 10  # versions that may be tried
 ENTRY_LIMIT = 4 * 2**20  # bytes of one entry: a sample of a humanoid takes some ten thousand
 WIDTH_LIMIT = 1000  # numbers in one vector
-KEY_LIMIT = 100_000
+KEY_LIMIT = 100_000  # signals that may come and go in one file
 BATCH = 512  # entries turned into arrays at a time, or fewer where they are long
 FORCE_VECTOR = 19
 

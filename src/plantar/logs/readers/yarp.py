@@ -26,7 +26,7 @@ from plantar.notes import Note
 if TYPE_CHECKING:
     from plantar.robot.model import RobotModel
 
-PORT_LIMIT = 500
+PORT_LIMIT = 500  # of a recording's ports that are read
 DEPTH = 5  # directories below the one given
 INFO_LIMIT = 4096  # bytes of info.log that are looked at
 
