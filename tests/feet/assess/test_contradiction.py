@@ -55,6 +55,24 @@ def found(error: Array, waist: Array | None = None, turned: float = 0.0) -> Vali
     return contradiction(scores, fit, [seen, unseen], predictions, MOUNT)
 
 
+def test_of_two_motions_the_one_that_is_missed_more_is_named() -> None:
+    lively, quiet = swayed(COUNT), swayed(COUNT, 0.006, seed=1)
+    swing = np.sin(2 * np.pi * 0.8 * TIME)
+    recordings = [
+        made_recording("sway", lively, STIFFNESS * lively),
+        made_recording("lean", quiet, STIFFNESS * quiet + 5.0 * swing, role="validate"),
+        made_recording("squat", quiet, STIFFNESS * quiet + 7.0 * swing, role="validate"),
+        made_recording("tilt", quiet, STIFFNESS * quiet + 6.0 * swing, role="validate"),
+    ]
+    recordings = [replace(one, imu_turns={FOOT: np.zeros((COUNT, 2, 3))}) for one in recordings]
+    fit = fit_axis(recordings[:1], FOOT, "pitch", LINEAR)
+    assert fit is not None
+    scores, predictions = score_axis(recordings, fit)
+    row = contradiction(scores, fit, recordings, predictions, 0.0)
+    assert row is not None
+    assert row.motion == "squat"
+
+
 def test_a_motion_that_fits_contradicts_nothing() -> None:
     assert found(np.zeros(COUNT)) is None
 

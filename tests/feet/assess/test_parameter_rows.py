@@ -107,6 +107,16 @@ def test_a_slip_angle_is_worth_no_more_than_its_slip_torque(torque: float, verdi
     assert [rows[place].verdict for place in places] == [verdict, verdict]
 
 
+def test_an_angle_that_is_not_known_stays_so_beside_a_torque_that_hardly_is() -> None:
+    fit = fit_of(Elastoplastic(), (400.0, 20.0, 30.0))
+    std = np.array([4.0, 1.0, 4.0, 0.05])
+    rows = rows_of(
+        recording(), replace(fit, covariance=np.diag(std**2), freedom=np.full(4, 6.0), white_std=std)
+    )
+    assert [row.verdict for row in rows] == ["usable", "usable", "weak", "unidentifiable"]
+    assert "slip torque" not in rows[3].reason, "its own reason"
+
+
 @pytest.mark.parametrize(("slid", "verdict"), [(0.24, "weak"), (0.26, "usable")])
 def test_an_element_that_slips_one_way_alone_may_be_larger(
     monkeypatch: pytest.MonkeyPatch, slid: float, verdict: str
