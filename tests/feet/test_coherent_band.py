@@ -58,6 +58,15 @@ def test_the_unit_of_the_torque_does_not_matter() -> None:
     assert coherent_band([other]) == pytest.approx(coherent_band([one]))
 
 
+def test_straight_lines_in_a_stance_do_not_matter() -> None:
+    """Attitudes drift and zeros creep: each by its own line within a stance, far larger than what belongs together."""
+    plain, drifting = walk(6.0), walk(6.0)
+    place, random = np.arange(STANCES * ROWS) % ROWS, np.random.default_rng(5)
+    for values in (drifting.raw["left"].deflection, drifting.raw["left"].torque):
+        values += 20 * np.repeat(random.normal(size=(STANCES, 2)), ROWS, axis=0) * place[:, None]
+    assert coherent_band([drifting]) == pytest.approx(coherent_band([plain]), rel=1e-9)
+
+
 def test_chance_alone_is_no_coherence() -> None:
     """Of twelve windows without any relation the squared coherence is one twelfth on average: that is taken off."""
     random = np.random.default_rng(0)

@@ -12,7 +12,7 @@ from feet_trials import noisy, without
 from plantar.contact.reasons import Reason
 from plantar.contact.slip_indicator import SlipIndicator
 from plantar.feet.exclusion.slip import _shared, without_slip
-from plantar.feet.exclusion.sole_velocity import sole_motion
+from plantar.feet.exclusion.sole_velocity import _drift, sole_motion
 from plantar.feet.prepare_log import checked, prepare
 from plantar.feet.recording import Recording, filtered_recording
 from plantar.logs.motion_log import MotionLog
@@ -137,6 +137,15 @@ def test_the_velocity_is_that_of_the_soles_with_its_deviation(robot: RobotModel)
         error = (motion.velocity[foot] - true)[inner]
         assert np.std(error / motion.deviation[foot][inner][:, None]) == pytest.approx(1.0, abs=0.35)
         assert np.abs(error).max() < 0.006
+
+
+@pytest.mark.parametrize("noise", [0.002, 0.02])
+def test_the_noise_of_a_velocity_is_read_off_its_differences(noise: float) -> None:
+    """White noise of either component, beside a drift and a slide that move no median."""
+    seen = noise * np.random.default_rng(1).normal(size=(TIME.size, 2)) + 0.01 * TIME[:, None]
+    seen[1000:1100] += 0.5
+    none = np.zeros((TIME.size, 2))
+    assert _drift(seen, none[None], none[:, 0], none, PERIOD)[2] == pytest.approx(noise, rel=0.05)
 
 
 def test_a_gyroscope_takes_the_attitudes_noise_off(robot: RobotModel) -> None:

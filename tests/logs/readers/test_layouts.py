@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from plantar.logs.readers.ros.layouts import IMU, JOINT_STATE, WRENCH, BrokenMessage, layout_of
+from plantar.logs.readers.ros.topics import Topic
 
 
 def cdr_joint_state(
@@ -53,6 +54,17 @@ def test_a_message_of_the_same_size_with_other_names_is_another_layout() -> None
     assert len(one) == len(two)
     rows = np.stack([np.frombuffer(one, np.uint8), np.frombuffer(two, np.uint8)])
     assert layout_of(JOINT_STATE, "cdr", one).matches(rows).tolist() == [True, False]
+
+
+@pytest.mark.parametrize(("frames", "broken"), [(200, 0), (201, 1), (230, 30)])
+def test_a_topic_has_two_hundred_layouts_at_most(frames: int, broken: int) -> None:
+    """A file that changes the frame with every message would take an hour: what is beyond counts as broken."""
+    sent = [cdr_joint_state(["hip"], [1.0], frame=f"{number:04d}") for number in range(frames)]
+    buffer, size = np.frombuffer(b"".join(sent), np.uint8), len(sent[0])
+    topic = Topic("/joint_states", JOINT_STATE, "cdr")
+    starts = [size * place for place in range(frames)]
+    topic.add(buffer, starts, [start + size for start in starts], list(range(frames)))
+    assert (topic.broken, len(topic.layouts)) == (broken, min(frames, 200))
 
 
 @pytest.mark.parametrize("kind", [JOINT_STATE, IMU, WRENCH])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -96,6 +97,22 @@ def test_zeros_of_swings_stand_where_they_were_read() -> None:
         -38.0, abs=0.5
     )
     assert zero_charts([]) == []
+
+
+def test_lines_part_the_recordings() -> None:
+    (force, _) = zero_charts(walk_result().swing_zeros)
+    at = [dot.x for dot in dots(force, "component z")]
+    lines = [
+        float(mark.points[1:].split()[0])
+        for mark in force.panels[0].marks
+        if getattr(mark, "kind", "") == "grid"
+    ]
+    parted = [[line for line in lines if before < line < after] for before, after in pairwise(at)]
+    assert [len(each) for each in parted] == [int((place + 1) % STANCES == 0) for place in range(len(at) - 1)]
+    for (line,), place in zip(
+        (each for each in parted if each), range(STANCES - 1, len(at) - 1, STANCES), strict=True
+    ):
+        assert line == pytest.approx((at[place] + at[place + 1]) / 2), "in the middle of the gap"
 
 
 def test_one_swing_is_a_chart_too() -> None:
