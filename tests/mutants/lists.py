@@ -10,6 +10,7 @@ from drawn_again import DRAWN_AGAIN
 from drawn_anew import DRAWN_ANEW
 from drawn_everywhere import DRAWN_EVERYWHERE
 from drawn_last import DRAWN_LAST
+from drawn_once_more import DRAWN_ONCE_MORE
 from engine_exports import ENGINE_EXPORTS
 from fleet_statistics import FLEET
 from handed_on import HANDED_ON
@@ -37,5 +38,6 @@ LISTS = {
     "handed_on": HANDED_ON,
     "at_their_edges": AT_THEIR_EDGES,
     "drawn_last": DRAWN_LAST,
+    "drawn_once_more": DRAWN_ONCE_MORE,
     "literal_edges": LITERAL_EDGES,
 }

@@ -118,6 +118,13 @@ def test_feet_that_are_told_apart_are_judged_each_by_itself(twin: RobotModel) ->
     assert [*found["pitch"].shares.values()] == pytest.approx([-0.2, 1 / 3])
 
 
+def test_gains_are_known_to_a_hundredth_at_best(twin: RobotModel) -> None:
+    """A robot file that calls gains exact is believed that far: each foot's may be off by 1 %, their mean by 0.7."""
+    exact, part = replace(twin, uncertainty=EXACT), Part(1e-8 * np.eye(4), 1e6)
+    found = torque_gains(exact, MomentFit(np.array([0.2, 0.2, 0.0, 0.0]), [part]))
+    assert found["pitch"].std == pytest.approx(0.01 / np.sqrt(2), rel=1e-3)
+
+
 def test_no_log_shows_no_gain(twin: RobotModel) -> None:
     assert torque_gains(twin, fit_moments(twin, [], ())) == {}
 

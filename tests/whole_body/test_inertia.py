@@ -206,6 +206,10 @@ def test_crosstalk_of_a_force_channel_is_found_mended_and_said(
     assert "wrench_polarity" not in {note.code for note in found.notes}
     assert "force.y" in note
     assert "torque.x" in note
+    before, after = (
+        float(part.split()[0].rstrip(",")) for part in note.split("force.y by ")[1].split("and by ")
+    )
+    assert before > 3 * after, "what mends it leaves less"
     for side, share in shares.items():
         said = float(note.split(f"{side} ")[1].split()[0].rstrip(","))
         assert said == pytest.approx(share, rel=0.1)

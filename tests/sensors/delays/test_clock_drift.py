@@ -13,13 +13,13 @@ from plantar.signals.filters import differentiate, low_pass
 PERIOD, SAMPLES = 0.01, 4000
 
 
-def pair(share: float, seed: int, late: float = 0.0) -> Pair:
+def pair(share: float, seed: int, late: float = 0.0, noise: float = 1.0) -> Pair:
     """A random wrench below 1.5 Hz, read `late` [s] and by a `share` of the time since the middle later."""
     random = np.random.default_rng(seed)
     time = PERIOD * (np.arange(SAMPLES) - SAMPLES / 2)
     true = 300 * low_pass(random.standard_normal((SAMPLES, 6)), PERIOD, 1.5)
     read = np.column_stack([np.interp(time * (1 - share) - late, time, column) for column in true.T])
-    measured = read + low_pass(random.standard_normal(read.shape), PERIOD, 8.0)
+    measured = read + noise * low_pass(random.standard_normal(read.shape), PERIOD, 8.0)
     return Pair(f"sweep_{seed}", measured, differentiate(measured, PERIOD), true, PERIOD)
 
 
@@ -36,6 +36,13 @@ def test_a_clock_that_runs_apart_is_found(share: float) -> None:
 def test_clocks_that_agree_are_left_alone() -> None:
     assert clock_drift([pair(0.0, seed) for seed in range(4)]) is None
     assert clock_drift([]) is None
+
+
+@pytest.mark.parametrize(("milliseconds", "told"), [(1.5, False), (2.5, True)])
+def test_two_milliseconds_from_the_middle_to_an_end_matter(milliseconds: float, told: bool) -> None:
+    """However surely less is seen: here without noise, of 40 s."""
+    share = 1e-3 * milliseconds / 20
+    assert (clock_drift([pair(share, seed, noise=0.01) for seed in range(4)]) is not None) is told
 
 
 def test_logs_with_delays_of_their_own_are_told_with_each() -> None:
