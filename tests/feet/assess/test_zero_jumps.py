@@ -177,7 +177,7 @@ def test_a_step_explains_most_of_what_is_missed(share: float, told: bool) -> Non
 
 
 def test_a_stiffness_of_the_recordings_own_is_no_jump_of_its_zero() -> None:
-    """What the common stiffness misses goes with the angle; a step that hardly shows beside noise explains none of it."""
+    """What the common stiffness misses goes with the angle; a step that hardly shows beside noise explains little."""
     random = np.random.default_rng(0)
     angle, noise = random.standard_normal((2, 2000))
     block = Block("sway", angle[:, None], 10 * angle, PERIOD, 1)
