@@ -146,3 +146,27 @@ def test_the_logs_to_fit_alone_choose_the_filter(
     found = prepared(robot, logs, replace(PUNCTUAL, cutoff=None))
     assert asked == ["first", "second"]
     assert {one.cutoff for one in found.recordings} == {found.settings.cutoff} == {3.0}
+
+
+def test_a_late_accelerometer_leaves_the_sensors_delay_as_unsure_as_its_own(
+    robot: RobotModel, logs: list[MotionLog]
+) -> None:
+    """Newton's law tells delays against the accelerometer: what is unsure of that one is unsure of damping."""
+    late = [
+        log.with_columns(
+            {
+                name: np.interp(log.time - 0.004, log.time, log.column(name))
+                for name in imu_columns("chest", "linear_acceleration")
+            }
+        )
+        for log in logs
+    ]
+    settings = replace(PUNCTUAL, wrench_delay=None)
+    found = prepared(robot, late, settings)
+    (text,) = {
+        note.text for one in found.recordings for note in one.notes if note.code == "accelerometer_delay"
+    }
+    own = float(text.split("± ")[1].split(" ")[0]) / 1960
+    assert own > 0.0004
+    added = found.sensor_delay.std**2 - prepared(robot, logs, settings).sensor_delay.std ** 2
+    assert np.sqrt(added) == pytest.approx(own, rel=0.1)

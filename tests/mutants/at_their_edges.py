@@ -149,8 +149,8 @@ AT_THEIR_EDGES = (
     Mutant(
         "feet/interval_width/between_recordings.py",
         "a deviation taken off a variance",
-        "np.diag(covariance) - fit_blocks(blocks).std ** 2",
-        "np.diag(covariance) - fit_blocks(blocks).std",
+        "refits - fit_blocks(blocks).std ** 2",
+        "refits - fit_blocks(blocks).std",
         ("feet/interval_width/test_between_recordings.py",),
     ),
     Mutant(

@@ -20,6 +20,7 @@ from plantar.sensors.accelerometer_delay import (
     accelerometer_delay,
     device_delay,
     filter_delay,
+    imu_delay,
     with_imus_on_time,
 )
 from plantar.sensors.imu_filter import ImuFilter
@@ -58,7 +59,7 @@ def late_by(delay: float, noise: float = 0.02, tilt: float = 2e-4) -> MotionLog:
 
 
 def on_time(robot: RobotModel, logs: list[MotionLog]) -> list[MotionLog]:
-    return with_imus_on_time(robot, logs, [accelerometer_delay(robot, log) for log in logs])
+    return with_imus_on_time(robot, logs, imu_delay([accelerometer_delay(robot, log) for log in logs]))
 
 
 @pytest.mark.parametrize("delay", [0.004, 0.0, -0.003])
@@ -167,7 +168,7 @@ def test_orientation_and_gyroscope_behind_one_filter_are_read_on_time(
     kept = {name: values for name, values in late.columns.items() if name.split(".")[-2] not in without}
     told = [accelerometer_delay(robot, late)] * 2
     logs = [late, MotionLog(late.name, late.time, kept)]
-    _, read = with_imus_on_time(robot, logs, told, ImuFilter(0.0, 0.0003, True))
+    _, read = with_imus_on_time(robot, logs, imu_delay(told, ImuFilter(0.0, 0.0003, True)))
     assert [note.code for note in read.notes] == ["orientation_delay"]
     shown = float(read.notes[0].text.split("gyroscope ")[1].split(" ±")[0])
     assert shown == pytest.approx(4.0, abs=0.3)

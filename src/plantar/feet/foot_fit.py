@@ -118,8 +118,8 @@ def between_all(feet: Sequence[FittedFoot]) -> Apart:
     return recordings_apart(told, max(one.ready.robot.uncertainty.between_recordings for one in feet))
 
 
-def without_needless(fitted: FittedFoot) -> FittedFoot:
-    """The foot with spring and damper alone where a richer model hardly matters."""
+def without_needless(fitted: FittedFoot, between: Apart) -> FittedFoot:
+    """The foot with spring and damper alone where a richer model hardly matters. between: as in `assess_foot`."""
     ready, recordings = fitted.ready, fitted.thin.fitted
     fits = dict(fitted.fits)
     for axis, fit in fitted.fits.items():
@@ -127,29 +127,32 @@ def without_needless(fitted: FittedFoot) -> FittedFoot:
             continue
         with gives_up(axis, fitted.given_up):
             spring = fit_axis(recordings, fit.foot, axis, ready.settings, KelvinVoigt(), fitted.place)
-            if spring is None or not hardly_matters(unsure := _with_causes(fit, fitted), spring):
+            if spring is None or not hardly_matters(unsure := _with_causes(fit, fitted, between), spring):
                 continue
-            if not too_sure(unsure, _with_causes(spring, fitted)):
+            if not too_sure(unsure, _with_causes(spring, fitted, between)):
                 fits[axis] = in_place_of(fit, spring)
     return replace(fitted, fits=fits)
 
 
-def _with_causes(fit: AxisFit, fitted: FittedFoot) -> AxisFit:
+def _with_causes(fit: AxisFit, fitted: FittedFoot, between: Apart) -> AxisFit:
     """The fit with the deviations of what is unsure, but for gains and mounts that other logs and feet tell of."""
     ready, recordings = fitted.ready, fitted.thin.fitted
     shared = ready.settings.offset == "shared"
     blocks = tangent_blocks(recordings, fit, drift=not shared)
     causes = systematic_causes(fit, blocks, recordings, ready.sensor_delay, ready.vertical, shared)
-    return inflated(fit, causes + robot_causes(fit, blocks, ready.robot.uncertainty, shared))
+    return inflated(
+        fit, causes + robot_causes(fit, blocks, ready.robot.uncertainty.wrench_gain, between, shared)
+    )
 
 
-def assess_foot(fitted: FittedFoot) -> FootFit:
-    """Each axis of a fitted foot widened, scored, judged and diagnosed, or why it is given up."""
+def assess_foot(fitted: FittedFoot, between: Apart) -> FootFit:
+    """Each axis of a fitted foot widened, scored, judged and diagnosed, or why it is given up. between: what all axes
+    show recordings to differ by."""
     found = FootFit(notes=tuple(fitted.jumps))
     for axis in ROTATIONAL_AXES:
         if axis in fitted.fits and axis not in fitted.given_up:
             with gives_up(axis, fitted.given_up):
-                found = _with_axis(found, fitted, fitted.fits[axis])
+                found = _with_axis(found, fitted, fitted.fits[axis], between)
         if axis in fitted.given_up:
             found.parameters.extend(missing_rows(fitted.foot, axis, fitted.given_up[axis]))
         elif axis not in fitted.fits:
@@ -162,13 +165,13 @@ def _thin(ready: PreparedLogs, foot: str) -> PreparedLogs:
     return replace(ready, fitted=tuple(recording.decimated(foot) for recording in ready.fitted))
 
 
-def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit) -> FootFit:
+def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit, between: Apart) -> FootFit:
     """What was found, and one axis: its fit widened, scored, judged and diagnosed."""
     ready, thin = fitted.ready, fitted.thin
     shared = ready.settings.offset == "shared"
     blocks = tangent_blocks(thin.fitted, fit, drift=not shared)
     causes = systematic_causes(fit, blocks, thin.fitted, ready.sensor_delay, ready.vertical, shared)
-    causes += robot_causes(fit, blocks, ready.robot.uncertainty, shared)
+    causes += robot_causes(fit, blocks, ready.robot.uncertainty.wrench_gain, between, shared)
     causes += slip_angle_causes(fit, thin.fitted, shared)
     causes += encoder_delay_causes(fit, blocks, thin.fitted, shared)
     causes += imu_turn_causes(fit, thin.fitted, ready.imu_turn)

@@ -78,9 +78,9 @@ def fit_prepared(
     ready, feet = _with_imu_right(ready, progress)
     fitted = with_memory_of_others(feet)
     between = between_all(list(fitted.values()))
-    fitted = {foot: without_needless(one) for foot, one in fitted.items()}
+    fitted = {foot: without_needless(one, between) for foot, one in fitted.items()}
     with over_logs([recording.log for recording in ready.recordings]) as each:
-        found = list(each(assess_foot, fitted.values()))
+        found = list(each(assess_foot, fitted.values(), [between] * len(fitted)))
     ready = _merged(ready, {foot: one.ready for foot, one in fitted.items()})
     return feet_result(robot, ready, found, between)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
+from math import hypot
 from typing import NamedTuple
 
 from plantar.conventions import Axis
@@ -26,7 +27,7 @@ from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note, unique
 from plantar.robot.guesses import guess_notes, naming_notes
 from plantar.robot.model import RobotModel
-from plantar.sensors.accelerometer_delay import with_imus_on_time
+from plantar.sensors.accelerometer_delay import imu_delay, with_imus_on_time
 from plantar.sensors.attitude_scale import AttitudeScale, attitude_scale_notes
 from plantar.sensors.bandwidth import fading, fading_notes
 from plantar.sensors.delays.sensor_delay import SensorDelay, estimate_wrench_delay, in_time, known_delay
@@ -98,11 +99,13 @@ def prepare_checked(
 ) -> PreparedLogs:
     """Correct `checked` logs for delay, leave out what cannot be used, move torques to the loaded centre."""
     progress("estimate the sensors' delays")
-    looks = _on_time(robot, [*logs, *validate], settings.wrench_delay is None)
+    looks, unsure = _on_time(robot, [*logs, *validate], settings.wrench_delay is None)
     if settings.wrench_delay is None:
         even = [look.log for look in looks]
         with over_logs(even) as each:
             delay = estimate_wrench_delay(robot, even, each, [look.residuals for look in looks])
+        # Newton's law tells delays against the accelerometer, and a bush has its angle from the orientation.
+        delay = replace(delay, std=hypot(delay.std, unsure))
     else:
         delay = known_delay(settings.wrench_delay)
     for look in (*logs, *validate, *looks):
@@ -153,22 +156,24 @@ def prepare_unseen(
     if not looks:
         return []
     check_names([look.log for look in looks])
-    looks = _on_time(robot, looks, False)
+    looks, _ = _on_time(robot, looks, False)
     recordings = _recordings(robot, looks, 0, settings, delay, progress).recordings
     return [moved_centre(recording, compliance) for recording in recordings]
 
 
-def _on_time(robot: RobotModel, looks: Sequence[FirstLook], timed: bool) -> list[FirstLook]:
-    """The logs with what the IMU's own filter delays read at the moments of its orientation; looked at again where that
-    moves them."""
+def _on_time(robot: RobotModel, looks: Sequence[FirstLook], timed: bool) -> tuple[list[FirstLook], float]:
+    """The logs with what the IMU's own filter delays read at the moments of its orientation, and how unsure these are
+    beside the accelerometer's [s]; looked at again where that moves them."""
     before, name = [look.log for look in looks], "" if robot.imu is None else robot.imu.name
     imu = imu_filter([look.gyroscope for look in looks])
     read = with_gyroscopes_on_time(before, name, imu)
-    after = with_imus_on_time(robot, read, [look.accelerometer for look in looks], imu)
+    late, std = imu_delay([look.accelerometer for look in looks], imu)
+    after = with_imus_on_time(robot, read, (late, std))
+    unsure = std if late else 0.0
     if all(one is other for one, other in zip(before, after, strict=True)):
-        return [*looks]
+        return [*looks], unsure
     with over_logs(after) as each:
-        return list(each(partial(look_again, robot, timed), looks, after))
+        return list(each(partial(look_again, robot, timed), looks, after)), unsure
 
 
 class _Ready(NamedTuple):

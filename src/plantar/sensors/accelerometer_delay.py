@@ -120,19 +120,21 @@ def filter_delay(
     return (-early, unsure) if kept and late < 0 and least < early < LARGEST else (0.0, std)
 
 
+def imu_delay(told: Sequence[AccelerometerDelay], gyroscope: ImuFilter | None = None) -> tuple[float, float]:
+    """The `filter_delay` [s] and its deviation that logs of one device tell together, each of them as `told`.
+    `gyroscope`: what they tell of the filter of the same device."""
+    return filter_delay(device_delay(told), gyroscope, device_delay(told, ORIENTATION))
+
+
 def with_imus_on_time(
-    robot: RobotModel,
-    logs: Sequence[MotionLog],
-    told: Sequence[AccelerometerDelay],
-    gyroscope: ImuFilter | None = None,
+    robot: RobotModel, logs: Sequence[MotionLog], delay: tuple[float, float]
 ) -> list[MotionLog]:
     """Checked logs of one IMU with its accelerometer and its orientation read at the same moments, and a note of it.
 
-    The later of the two is read earlier; the gyroscope goes with the orientation. All logs tell together, each of them
-    as `told`: a filter belongs to the device. As they are where that is not sure. `gyroscope`: what they tell of the
-    filter of the same device.
+    The later of the two is read earlier by the `imu_delay`; the gyroscope goes with the orientation. As they are where
+    it is 0.
     """
-    late, std = filter_delay(device_delay(told), gyroscope, device_delay(told, ORIENTATION))
+    late, std = delay
     if robot.imu is None or not late:
         return [*logs]
     by = f"{1e3 * abs(late):.1f} ± {1e3 * NORMAL95 * std:.1f} ms behind"

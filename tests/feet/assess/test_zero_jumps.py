@@ -174,3 +174,13 @@ def test_a_step_explains_most_of_what_is_missed(share: float, told: bool) -> Non
     assert (left is not None) == told
     if left is not None:
         assert left == pytest.approx((1 - share) * float(whole @ whole), rel=0.05)
+
+
+def test_a_stiffness_of_the_recordings_own_is_no_jump_of_its_zero() -> None:
+    """What the common stiffness misses goes with the angle; a step that hardly shows beside noise explains little."""
+    random = np.random.default_rng(0)
+    angle, noise = random.standard_normal((2, 2000))
+    block = Block("sway", angle[:, None], 10 * angle, PERIOD, 1)
+    step = np.where(np.arange(2000) >= 1000, 0.5, 0.0)
+    assert _left_beside(3 * angle + step + 0.5 * noise, 1000, block) is None
+    assert _left_beside(3 * angle + step + 0.1 * noise, 1000, block) is not None

@@ -35,7 +35,7 @@ def share(robot: RobotModel, shares: list[float], prior: float = 0.0) -> float:
     ready = prepare_all(robot, logs, [], LINEAR, lambda _: None)
     fit = fit_axis(ready.fitted, "left", "pitch", LINEAR)
     assert fit is not None
-    (cause,) = between_recordings(fit, tangent_blocks(ready.fitted, fit), prior, False)
+    (cause,) = between_recordings(fit, tangent_blocks(ready.fitted, fit), Apart(prior, 2), False)
     return float(cause.share[0] / fit.values[0])
 
 
@@ -86,8 +86,9 @@ def test_a_prior_that_few_recordings_hold_up_is_no_more_sure_than_these() -> Non
     recordings = [made_recording(f"sway_{k}", own, 400.0 * own) for k, own in enumerate(angle)]
     fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
     assert fit is not None
-    (cause,) = between_recordings(fit, tangent_blocks(recordings, fit), 0.05, False)
-    assert (cause.std, cause.freedom) == (0.05, 2.0)
+    (cause,) = between_recordings(fit, tangent_blocks(recordings, fit), Apart(0.05, 2), False)
+    assert cause.freedom == 2.0
+    assert cause.share[0] == pytest.approx(0.05 * 400.0 / np.sqrt(3), rel=0.1)
 
 
 def test_many_that_differ_say_it_by_what_each_moves() -> None:
@@ -101,10 +102,37 @@ def test_many_that_differ_say_it_by_what_each_moves() -> None:
         recordings.append(made_recording(f"sway_{seed}", angle, own * angle + slow))
     fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
     assert fit is not None
-    (cause,) = between_recordings(fit, tangent_blocks(recordings, fit), 0.0, False)
+    (cause,) = between_recordings(fit, tangent_blocks(recordings, fit), Apart(0.0, 5), False)
     assert cause.freedom == pytest.approx(5.0)
     without = [fit_axis([*recordings[:k], *recordings[k + 1 :]], FOOT, "pitch", LINEAR) for k in range(6)]
     values = np.array([one.values for one in without if one is not None])
     jackknife = np.sqrt(5 * np.var(values, axis=0))
     assert cause.share[0] > fit.std[0] > 1.0
     assert np.hypot(cause.share, fit.std) == pytest.approx(jackknife, rel=0.01)
+
+
+def test_a_number_that_hangs_on_one_recording_takes_what_recordings_differ_by() -> None:
+    """Five hardly move and one does: a refit without it is the noise of the others, a hundred times too wide."""
+    random = np.random.default_rng(5)
+    angles = [size * swayed(3000, seed=seed) for seed, size in enumerate([1.0, *[0.003] * 5])]
+    recordings = [
+        made_recording(f"sway_{k}", own, 400.0 * own + 0.1 * random.standard_normal(3000))
+        for k, own in enumerate(angles)
+    ]
+    fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
+    assert fit is not None
+    blocks = tangent_blocks(recordings, fit)
+    alike, apart = (between_recordings(fit, blocks, Apart(share, 5), False)[0] for share in (0.0, 0.03))
+    assert alike.share[0] < 0.005 * 400.0
+    assert apart.share[0] == pytest.approx(0.03 * 400.0, rel=0.02)
+    assert apart.freedom == 5.0
+
+
+def test_few_recordings_differ_by_what_other_axes_show() -> None:
+    angle = [swayed(3000, seed=seed) for seed in range(3)]
+    recordings = [made_recording(f"sway_{k}", own, 400.0 * own) for k, own in enumerate(angle)]
+    fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
+    assert fit is not None
+    (cause,) = between_recordings(fit, tangent_blocks(recordings, fit), Apart(0.02, 7), False)
+    assert cause.freedom == 7.0
+    assert cause.share[0] == pytest.approx(0.02 * 400.0 / np.sqrt(3), rel=0.1)

@@ -28,7 +28,6 @@ from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.models import KelvinVoigt
 from plantar.robot.model import RobotModel
-from plantar.robot.uncertainty import EXACT
 
 FIT = AxisFit(
     foot=FOOT, axis="pitch", model=KelvinVoigt(), values=np.array([400.0, 20.0]), shape=np.zeros(0),
@@ -98,15 +97,11 @@ def sways(*stiffness: float) -> list[Recording]:
 def test_a_gain_and_a_turned_sensor_add_up(turned: float) -> None:
     """A sensor turned by ψ reads cos ψ of the torque."""
     fit = replace(FIT, turned=turned, offsets={"sway_0": 0.0})
-    causes = robot_causes(fit, sways(400.0), replace_gain(0.003), shared=False)
+    causes = robot_causes(fit, sways(400.0), 0.003, Apart(0.0, 1), shared=False)
     assert [cause.name for cause in causes] == ["sensor gain"]
     assert causes[0].std == pytest.approx(np.hypot(0.003, 1 - np.cos(turned)))
     assert list(causes[0].share) == pytest.approx([400 * causes[0].std, 20 * causes[0].std])
-    assert bool(robot_causes(fit, sways(400.0), EXACT, shared=False)) == (turned > 0)
-
-
-def replace_gain(gain: float):  # type: ignore[no-untyped-def]
-    return EXACT.model_copy(update={"wrench_gain": gain})
+    assert bool(robot_causes(fit, sways(400.0), 0.0, Apart(0.0, 1), shared=False)) == (turned > 0)
 
 
 def test_causes_add_to_the_covariance_and_share_their_freedom() -> None:

@@ -146,10 +146,13 @@ def _jump(missed: Array, stands: NDArray[np.intp], period: float) -> int | None:
 
 def _left_beside(missed: Array, row: int, block: Block) -> float | None:
     """What a step at this row leaves of the squares that are `missed` (n,), beside the block's own columns; None where
-    it is not most of them, or small."""
+    it does not explain most of what these leave, or is small."""
     step = np.where(np.arange(len(missed)) >= row, 1.0, 0.0)[:, None]
-    fit = fit_blocks([beside(replace(block, response=missed, noise=None), step)])
+    own = replace(block, response=missed, noise=None)
+    # A recording's own stiffness explains much of what the common one misses, without any step.
+    without, fit = (fit_blocks([each]) for each in (own, beside(own, step)))
+    before, left = (each.residuals[block.label] for each in (without, fit))
+    most = left @ left < (1 - EXPLAINS) * float(before @ before)
     # The drift has taken most of the step: only beside it does the step have its size.
-    left, size = fit.residuals[block.label], abs(float(fit.values[-1]))
-    most = left @ left < (1 - EXPLAINS) * float(missed @ missed)
+    size = abs(float(fit.values[-1]))
     return float(left @ left) if most and size > WORTH * float(np.std(block.response)) else None

@@ -19,6 +19,7 @@ from plantar.feet.regression.regression_data import beside, tangent_blocks
 from plantar.notes import Note
 
 NAME = "between recordings"
+MOST = 0.5  # of what tells a number: a recording that has more tells more than all others together
 
 
 class Apart(NamedTuple):
@@ -75,23 +76,30 @@ def axis_differences(fit: AxisFit, recordings: Sequence[Recording], shared: bool
     return _differences(fit, blocks) if _comparable(blocks, shared) else None
 
 
-def between_recordings(fit: AxisFit, blocks: Sequence[Block], prior: float, shared: bool) -> list[Cause]:
+def between_recordings(fit: AxisFit, blocks: Sequence[Block], every: Apart, shared: bool) -> list[Cause]:
     """By how much recordings move the fit beyond their own deviations; of feet that step `systematic` knows it.
 
     From FEWEST_RECORDINGS on refits without one of them each (jackknife) say it, whatever it is that differs. Fewer are
-    taken to differ by a share of spring and damper, as this axis shows it, at least the robot file's `prior`. blocks:
-    the recordings' `tangent_blocks`.
+    taken to differ by a share of spring and damper, as this axis shows it, or `every` axis together where that is more;
+    so are they for a number that one recording tells more of than all others together: a refit without it is the
+    others' noise. blocks: the recordings' `tangent_blocks`.
     """
     if not _comparable(blocks, shared):
         return []
-    if len(blocks) >= FEWEST_RECORDINGS:
-        covariance, freedom = jackknife(values_without_each(blocks))
-        beyond = np.diag(covariance) - fit_blocks(blocks).std ** 2
-        return [Cause(NAME, np.sqrt(np.maximum(beyond, 0.0)), 1.0, float(freedom[0]))]
-    apart = recordings_apart([_differences(fit, blocks)], prior)
-    each = zip(influences_of(blocks), _torques(fit, blocks), strict=True)
-    effects = np.array([own @ torque for own, torque in each])
-    return [Cause(NAME, np.sqrt(np.sum(effects**2, axis=0)), apart.share, float(apart.others))]
+    influences = influences_of(blocks)
+    told = np.array([np.sum(own**2, axis=1) for own in influences])
+    few = (len(blocks) < FEWEST_RECORDINGS) | (told.max(axis=0) > MOST * told.sum(axis=0))
+    std, freedom = np.zeros(len(few)), len(blocks) - 1
+    if few.any():
+        apart = max(recordings_apart([_differences(fit, blocks)], 0.0), every, key=lambda each: each.share)
+        each = zip(influences, _torques(fit, blocks), strict=True)
+        std = apart.share * np.sqrt(np.sum([(own @ torque) ** 2 for own, torque in each], axis=0))
+        freedom = apart.others
+    if not few.all():
+        refits = np.diag(jackknife(values_without_each(blocks))[0])
+        beyond = np.sqrt(np.maximum(refits - fit_blocks(blocks).std ** 2, 0.0))
+        std = np.where(few, std, beyond)
+    return [Cause(NAME, std, 1.0, freedom)]
 
 
 def _comparable(blocks: Sequence[Block], shared: bool) -> bool:
