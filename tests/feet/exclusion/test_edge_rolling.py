@@ -12,6 +12,7 @@ from plantar.feet.exclusion.edge_rolling import leaning, without_edge_rolling
 from plantar.feet.prepare_log import prepare
 from plantar.feet.recording import filtered_recording
 from plantar.feet.settings import FeetSettings
+from plantar.results.walk_rows import SwingZero
 from plantar.robot.model import RobotModel
 
 PERIOD = 0.005
@@ -95,3 +96,23 @@ def test_a_foot_zeroed_under_load_has_no_centre_of_pressure_to_be_judged_by(
     (rest,) = without_edge_rolling(robot, [recording], FeetSettings())
     assert (rest.used("left").sum() < recording.used("left").sum()) == (not always)
     assert rest.used("right").sum() == recording.used("right").sum()
+
+
+def test_an_angles_zero_moves_no_edge_of_a_sensor_whose_zero_was_read_in_the_air(robot: RobotModel) -> None:
+    """A turned IMU gives the torque an offset of tens of N.m, a sole's half length of the centre of pressure."""
+    recording = filtered_recording(prepare(robot, record(sway(duration=12.0)), "fit"), 5.0)
+    state, near = recording.bushes["left"], np.abs(recording.time - 6.0) < 0.5
+    front = robot.feet["left"].sole.polygon[:, 0].max() - 0.002
+    cop = np.where(near[:, None], [front, 0.0], state.cop)
+    turned = replace(state, cop=cop, deflection=state.deflection + 0.1)
+    raw = replace(recording.raw["left"], deflection=recording.raw["left"].deflection + 0.1)
+    recording = replace(
+        recording, bushes={**recording.bushes, "left": turned}, raw={**recording.raw, "left": raw}
+    )
+    read = SwingZero("sway", "left", 1.0, *[(0.0, 0.0, 0.0)] * 4)
+    (unsure,), (sure,) = (
+        without_edge_rolling(robot, [replace(recording, zeros=zeros)], FeetSettings())
+        for zeros in ((), (read,))
+    )
+    assert sure.used("left")[~near].mean() > 0.9
+    assert unsure.used("left")[~near].mean() < 0.5

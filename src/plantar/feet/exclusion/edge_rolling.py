@@ -86,7 +86,9 @@ def _flat(
                 )
             )
             continue
-        stiffness, damping, zero = model
+        stiffness, damping, usual = model
+        # What a fit takes for a zero of the torque is mostly one of the angle, which moves no edge.
+        zero = 0.0 if name in {swing.foot for swing in recording.zeros} else usual
         bush = filtered(recording.raw[name], recording.period, QUICK_CUTOFF)
         load = np.maximum(bush.force_z, 1.0)
         excess = bush.deflection - (bush.torque - damping * bush.rate) / stiffness
