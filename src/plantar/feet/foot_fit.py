@@ -22,6 +22,7 @@ from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.fit.worth import hardly_matters, in_place_of, too_sure
 from plantar.feet.internal_error import gives_up, internal_errors
 from plantar.feet.interval_width.between_recordings import (
+    UNKNOWN,
     Apart,
     AxisDifferences,
     axis_differences,
@@ -67,7 +68,8 @@ class FootFit:
 @dataclass(frozen=True)
 class FittedFoot:
     """Both axes of one foot as fitted about its `place`: `fits` by axis, `given_up` with the reasons; the logs without
-    outliers, `ready`, and `thin`, with no more samples than the fit needs; warnings of `jumps` of a zero."""
+    outliers, `ready`, and `thin`, with no more samples than the fit needs; warnings of `jumps` of a zero; by how much
+    recordings are `apart` in all axes of all feet."""
 
     foot: str
     place: PlaceSpread
@@ -76,6 +78,7 @@ class FittedFoot:
     ready: PreparedLogs
     thin: PreparedLogs
     jumps: Sequence[Note]
+    apart: Apart = UNKNOWN
 
 
 def fit_foot(ready: PreparedLogs, foot: str, place: PlaceSpread) -> FittedFoot:
@@ -141,7 +144,7 @@ def _with_causes(fit: AxisFit, fitted: FittedFoot) -> AxisFit:
     shared = ready.settings.offset == "shared"
     blocks = tangent_blocks(recordings, fit, drift=not shared)
     causes = systematic_causes(fit, blocks, recordings, ready.sensor_delay, ready.vertical, shared)
-    return inflated(fit, causes + robot_causes(fit, blocks, ready.robot.uncertainty, shared))
+    return inflated(fit, causes + robot_causes(fit, blocks, ready.robot.uncertainty, shared, fitted.apart))
 
 
 def assess_foot(fitted: FittedFoot) -> FootFit:
@@ -170,7 +173,7 @@ def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit) -> FootFit:
     shared = ready.settings.offset == "shared"
     blocks = tangent_blocks(thin.fitted, fit, drift=not shared)
     causes = systematic_causes(fit, blocks, thin.fitted, ready.sensor_delay, ready.vertical, shared)
-    causes += robot_causes(fit, blocks, ready.robot.uncertainty, shared)
+    causes += robot_causes(fit, blocks, ready.robot.uncertainty, shared, fitted.apart)
     causes += slip_angle_causes(fit, thin.fitted, shared)
     causes += encoder_delay_causes(fit, blocks, thin.fitted, shared)
     causes += imu_turn_causes(fit, thin.fitted, ready.imu_turn)

@@ -78,7 +78,7 @@ def fit_prepared(
     ready, feet = _with_imu_right(ready, progress)
     fitted = with_memory_of_others(feet)
     between = between_all(list(fitted.values()))
-    fitted = {foot: without_needless(one) for foot, one in fitted.items()}
+    fitted = {foot: without_needless(replace(one, apart=between)) for foot, one in fitted.items()}
     with over_logs([recording.log for recording in ready.recordings]) as each:
         found = list(each(assess_foot, fitted.values()))
     ready = _merged(ready, {foot: one.ready for foot, one in fitted.items()})

@@ -135,7 +135,7 @@ def _lifted(robot: RobotModel, raw: Mapping[str, BushState], foot: str) -> Mask:
     others = [state for name, state in raw.items() if name != foot]
     carried = CARRIES * robot.mass * GRAVITY
     above = [(sole > other.sole_position[:, 2]) & (other.force_z > carried) for other in others]
-    return np.logical_or.reduce([np.zeros(len(sole), dtype=bool), *above])
+    return np.asarray(np.logical_or.reduce([np.zeros(len(sole), dtype=bool), *above]))
 
 
 def _require(robot: RobotModel) -> Imu:

@@ -19,6 +19,10 @@ from plantar.feet.regression.regression_data import beside, tangent_blocks
 from plantar.notes import Note
 
 NAME = "between recordings"
+# Of what is known of the stiffness. Without a recording that says as much, a refit is three times as unsure as the fit;
+ALL_BUT_ALL = 0.9
+# one that says less has a stiffness that is all else that is wrong, divided by a small motion.
+TELLS = 0.05
 
 
 class Apart(NamedTuple):
@@ -30,6 +34,9 @@ class Apart(NamedTuple):
     share: float
     others: int
     shown: tuple[float, float] | None = None
+
+
+UNKNOWN = Apart(0.0, 1)
 
 
 class AxisDifferences(NamedTuple):
@@ -69,29 +76,41 @@ def apart_notes(apart: Apart) -> list[Note]:
 def axis_differences(fit: AxisFit, recordings: Sequence[Recording], shared: bool) -> AxisDifferences | None:
     """Shares by which spring and damper of each recording are beside the first one's: what all share is K's own.
 
-    None of a foot that steps, and where there is nothing to compare.
+    Of recordings that tell the stiffness. None of a foot that steps, and where there is nothing to compare.
     """
     blocks = tangent_blocks(recordings, fit, drift=not shared)
-    return _differences(fit, blocks) if _comparable(blocks, shared) else None
+    return _differences(fit, blocks, _effects(fit, blocks)) if _comparable(blocks, shared) else None
 
 
-def between_recordings(fit: AxisFit, blocks: Sequence[Block], prior: float, shared: bool) -> list[Cause]:
+def between_recordings(
+    fit: AxisFit, blocks: Sequence[Block], prior: float, shared: bool, of_all: Apart = UNKNOWN
+) -> list[Cause]:
     """By how much recordings move the fit beyond their own deviations; of feet that step `systematic` knows it.
 
     From FEWEST_RECORDINGS on refits without one of them each (jackknife) say it, whatever it is that differs. Fewer are
-    taken to differ by a share of spring and damper, as this axis shows it, at least the robot file's `prior`. blocks:
-    the recordings' `tangent_blocks`.
+    taken to differ by a share of spring and damper, as this axis shows it, at least the robot file's `prior`. Where one
+    recording knows all but all of the stiffness, nothing shows there how far that one is off: all axes do (`of_all`).
+    blocks: the recordings' `tangent_blocks`.
     """
     if not _comparable(blocks, shared):
         return []
-    if len(blocks) >= FEWEST_RECORDINGS:
-        covariance, freedom = jackknife(values_without_each(blocks))
+    effects = _effects(fit, blocks)
+    first = int(np.argmax(np.abs(effects[:, 0])))
+    alone = abs(float(effects[first, 0])) > ALL_BUT_ALL * abs(float(fit.values[0]))
+    causes = []
+    if many := len(blocks) >= FEWEST_RECORDINGS:
+        refits = values_without_each(blocks)
+        covariance, freedom = jackknife(np.delete(refits, first, axis=0) if alone else refits)
         beyond = np.diag(covariance) - fit_blocks(blocks).std ** 2
-        return [Cause(NAME, np.sqrt(np.maximum(beyond, 0.0)), 1.0, float(freedom[0]))]
-    apart = recordings_apart([_differences(fit, blocks)], prior)
-    each = zip(influences_of(blocks), _torques(fit, blocks), strict=True)
-    effects = np.array([own @ torque for own, torque in each])
-    return [Cause(NAME, np.sqrt(np.sum(effects**2, axis=0)), apart.share, float(apart.others))]
+        causes.append(Cause(NAME, np.sqrt(np.maximum(beyond, 0.0)), 1.0, float(freedom[0])))
+    if alone or not many:
+        own = None if alone else _differences(fit, blocks, effects)
+        apart = (
+            Apart(max(prior, of_all.share), of_all.others) if own is None else recordings_apart([own], prior)
+        )
+        by_share = np.sqrt(np.sum(effects**2, axis=0))
+        causes.append(Cause(NAME, by_share, apart.share, float(apart.others)))
+    return causes
 
 
 def _comparable(blocks: Sequence[Block], shared: bool) -> bool:
@@ -99,15 +118,24 @@ def _comparable(blocks: Sequence[Block], shared: bool) -> bool:
     return blocks[0].stances is None and not shared and len(blocks) > 1
 
 
-def _differences(fit: AxisFit, blocks: Sequence[Block]) -> AxisDifferences:
-    torques, others = _torques(fit, blocks), range(1, len(blocks))
+def _differences(fit: AxisFit, blocks: Sequence[Block], effects: Array) -> AxisDifferences | None:
+    """Those of the recordings that tell the stiffness, by their `effects` on it; None where it is but one."""
+    tell = np.flatnonzero(np.abs(effects[:, 0]) > TELLS * abs(float(fit.values[0]))).tolist()
+    if len(tell) < 2:
+        return None
+    torques, others = _torques(fit, blocks), [place for place in range(len(blocks)) if place != tell[0]]
     columns = [np.column_stack(each) for each in zip(*(_alone(torques, own) for own in others), strict=True)]
     found = fit_blocks([beside(block, own) for block, own in zip(blocks, columns, strict=True)])
-    size = blocks[0].regressor.shape[1]
-    ends = slice(size, size + len(others))
+    ends = blocks[0].regressor.shape[1] + np.array([others.index(place) for place in tell[1:]])
     usual = float(fit_blocks(blocks).std[0]) / max(abs(float(fit.values[0])), 1e-300)
-    differences = Differences(found.values[ends], found.covariance[ends, ends])
-    return AxisDifferences(differences, usual, frozenset(block.label for block in blocks))
+    differences = Differences(found.values[ends], found.covariance[np.ix_(ends, ends)])
+    return AxisDifferences(differences, usual, frozenset(blocks[place].label for place in tell))
+
+
+def _effects(fit: AxisFit, blocks: Sequence[Block]) -> Array:
+    """What each recording's spring and damper add to the numbers, (blocks, k)."""
+    each = zip(influences_of(blocks), _torques(fit, blocks), strict=True)
+    return np.array([own @ torque for own, torque in each])
 
 
 def _torques(fit: AxisFit, blocks: Sequence[Block]) -> list[Array]:

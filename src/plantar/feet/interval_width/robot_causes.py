@@ -7,19 +7,20 @@ from collections.abc import Sequence
 import numpy as np
 
 from plantar.estimation import Block
-from plantar.feet.interval_width.between_recordings import between_recordings
+from plantar.feet.interval_width.between_recordings import UNKNOWN, Apart, between_recordings
 from plantar.feet.interval_width.systematic import Cause
 from plantar.feet.regression.axis import AxisFit
 from plantar.robot.uncertainty import Uncertainty
 
 
 def robot_causes(
-    fit: AxisFit, blocks: Sequence[Block], uncertainty: Uncertainty, shared: bool
+    fit: AxisFit, blocks: Sequence[Block], uncertainty: Uncertainty, shared: bool, apart: Apart = UNKNOWN
 ) -> list[Cause]:
-    """The force sensors' gain, a turned sensor, and recordings, their `tangent_blocks`, that differ."""
+    """The force sensors' gain, a turned sensor, and recordings, their `tangent_blocks`, that differ, as all axes show
+    them `apart`."""
     # A torque that reads too large by a share makes every number of the bush too large by it. A sensor turned by ψ
     # reads cos ψ of the torque; where it is the IMU that is turned, all of it, and only moving joints tell them apart.
     turned = 1 - float(np.cos(fit.turned))
     gain = float(np.hypot(uncertainty.wrench_gain, turned))
     causes = [Cause("sensor gain", fit.values, gain)] if gain else []
-    return [*causes, *between_recordings(fit, blocks, uncertainty.between_recordings, shared)]
+    return [*causes, *between_recordings(fit, blocks, uncertainty.between_recordings, shared, apart)]
