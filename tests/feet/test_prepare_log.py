@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from biped import record, sway
+from biped import drawn_up, record, sway
 from plantar.contact.reasons import Reason
 from plantar.feet.prepare_log import prepare
 from plantar.logs.motion_log import MotionLog, wrench_columns
@@ -29,7 +29,8 @@ def stepping(zero: np.ndarray) -> MotionLog:
         "right": np.where(right, 0.0, np.where(left, both, sole["right"])),
     }
     columns = {foot: dict(zip(wrench_columns(foot), read[foot].T, strict=True)) for foot in read}
-    return log.with_columns(columns["left"] | columns["right"])
+    log = log.with_columns(columns["left"] | columns["right"])
+    return drawn_up(drawn_up(log, "left", left[:, 0]), "right", right[:, 0])
 
 
 def test_what_a_sensor_reads_in_the_air_is_taken_off_and_told(robot: RobotModel) -> None:
@@ -44,6 +45,34 @@ def test_what_a_sensor_reads_in_the_air_is_taken_off_and_told(robot: RobotModel)
         assert (*row.force_zero, *row.torque_zero) == pytest.approx(ZERO)
     (note,) = [note for note in found.notes if note.code == "air_zero" and "left foot" in note.text]
     assert note.text.startswith("steps: left foot: in the air its force sensor reads 4, -3, 20 N (4 swings")
+
+
+def test_a_foot_that_sways_is_not_in_the_air(robot: RobotModel) -> None:
+    """It carries a tenth of the weight at times, and each time the same, but its sole stays where the other is."""
+    log = record(sway("sway", duration=12.0))
+    column, both = (
+        "wrench.left.force.z",
+        sum(log.column(f"wrench.{foot}.force.z") for foot in ("left", "right")),
+    )
+    light = np.mod(log.time, 3.0) < 1.0
+    left = np.where(light, 0.1 * both, log.column(column))
+    log = log.with_columns({column: left, "wrench.right.force.z": both - left})
+    assert not prepare(robot, log, "fit").zeros
+    assert {row.foot for row in prepare(robot, drawn_up(log, "left", light), "fit").zeros} == {"left"}
+
+
+def test_one_swing_is_enough_of_a_foot_that_is_lifted(robot: RobotModel) -> None:
+    """It touches the floor for a while before and behind, which is no part of the swing."""
+    log = record(sway("sway", duration=16.0))
+    column, both = (
+        "wrench.left.force.z",
+        sum(log.column(f"wrench.{foot}.force.z") for foot in ("left", "right")),
+    )
+    swing, touch = np.abs(log.time - 8.0) < 1.5, np.abs(log.time - 8.0) < 5.0
+    left = np.where(swing, 0.0, np.where(touch, 0.15 * both, log.column(column)))
+    log = log.with_columns({column: left + ZERO[2], "wrench.right.force.z": both - left})
+    (row,) = prepare(robot, drawn_up(log, "left", swing), "fit").zeros
+    assert (row.foot, row.force[2]) == ("left", pytest.approx(ZERO[2], abs=0.5))
 
 
 def always_standing(robot: RobotModel, *feet: str) -> RobotModel:

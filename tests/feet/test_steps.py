@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from biped import TRUTH, BushModel, record, sway
+from biped import TRUTH, BushModel, drawn_up, record, sway
 from biped_robot import make_robot, robot_entry
 from feet_trials import LINEAR, noisy
 from plantar.feet.identify import identify_feet
@@ -40,7 +40,7 @@ def stepping(log: MotionLog) -> MotionLog:
             if part == "force":
                 changed[f"wrench.right.{part}.{axis}"] = right + np.where(loaded, 0.0, left)
     changed["wrench.left.force.z"] = changed["wrench.left.force.z"] + ZERO
-    return log.with_columns(changed)
+    return drawn_up(log.with_columns(changed), "left", ~loaded)
 
 
 @pytest.fixture(scope="module")

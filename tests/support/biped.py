@@ -295,3 +295,15 @@ def _imu_columns(motion: Motion, mounting: Mounting, t: np.ndarray) -> dict[str,
         for kind, (axes, values) in kinds.items()
         for i, axis in enumerate(axes)
     }
+
+
+def drawn_up(log: MotionLog, foot: str, swings: np.ndarray, height: float = 0.03) -> MotionLog:
+    """The log with one leg drawn up by `height` [m] in the middle of `swings` (N,), as its encoders read it."""
+    name, step = f"joint.{foot}_leg_z", float(np.median(np.diff(log.time)))
+    window = np.hanning(round(0.1 / step) + 2)
+    up = height * np.convolve(swings.astype(float), window / window.sum(), mode="same")
+    changed = {
+        f"{name}.position": log.column(f"{name}.position") + up,
+        f"{name}.velocity": log.column(f"{name}.velocity") + np.gradient(up, log.time),
+    }
+    return log.with_columns(changed)

@@ -10,6 +10,7 @@ from plantar.conventions import ROTATIONAL_AXES, Axis, Mask
 from plantar.feet.assess.contradiction import contradiction
 from plantar.feet.assess.data_faults import OF_MOMENTS, data_faults, doubted
 from plantar.feet.assess.diagnosis import advised, diagnose_axis, mend_first
+from plantar.feet.assess.left_out import ON_AN_EDGE, mostly_on_an_edge
 from plantar.feet.assess.parameter_rows import axis_rows, missing_rows, unseen_rows
 from plantar.feet.assess.play import play_notes
 from plantar.feet.assess.residual_table import Predictions
@@ -148,7 +149,8 @@ def _with_causes(fit: AxisFit, fitted: FittedFoot, between: Apart) -> AxisFit:
 def assess_foot(fitted: FittedFoot, between: Apart) -> FootFit:
     """Each axis of a fitted foot widened, scored, judged and diagnosed, or why it is given up. between: what all axes
     show recordings to differ by."""
-    found = FootFit(notes=tuple(fitted.jumps))
+    edges = mostly_on_an_edge(fitted.foot, fitted.ready.robot.feet[fitted.foot], fitted.ready.fitted)
+    found = FootFit(notes=(*edges, *fitted.jumps))
     for axis in ROTATIONAL_AXES:
         if axis in fitted.fits and axis not in fitted.given_up:
             with gives_up(axis, fitted.given_up):
@@ -197,9 +199,11 @@ def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit, between: Apart)
         *(note for foot, note in ready.turned.items() if foot == fit.foot),
         *(note for note in ready.notes if note.code in (*OF_MOMENTS, ATTITUDE_SCALE)),
     ]
+    # What is left of a foot on its edge is flat, and no number is doubted; what most of it could tell comes first.
+    first = [*(note for note in found.notes if note.code == ON_AN_EDGE), *faults]
     return FootFit(
         fits=[*found.fits, wide],
-        parameters=[*found.parameters, *mend_first(doubted(advised(rows, limits), faults), faults)],
+        parameters=[*found.parameters, *mend_first(doubted(advised(rows, limits), faults), first)],
         validation=[*found.validation, *scores],
         diagnosis=[*found.diagnosis, *limits],
         predictions={**found.predictions, **predictions},

@@ -13,7 +13,7 @@ from plantar.contact.imu_turn import imu_turn_effects
 from plantar.contact.phases import FootContact, carried_weight, detect_contact, shaken
 from plantar.contact.reasons import Reason
 from plantar.contact.stances import Stances, stances_of, without_rolling
-from plantar.conventions import FORCE, GRAVITY, Array
+from plantar.conventions import FORCE, GRAVITY, Array, Mask
 from plantar.errors import RobotError, located
 from plantar.feet.recording import Recording, Role
 from plantar.feet.settings import DEFAULT_CUTOFF
@@ -35,6 +35,8 @@ from plantar.signals.thinning import thinned
 VELOCITY_BAND = 4.0  # times the fit's cutoff, up to which joint angles are differentiated
 CONTACT_BAND = 2.0  # times the fit's cutoff, up to which a force tells landing from lifting
 FEWEST_READINGS = 10  # of a force sensor in a stance: fewer miss how its torque changes
+LIFTED = 0.05  # of a sole's length: a bush that is let go rises by less, and steps rise higher
+CARRIES = 0.5  # of the weight, by the other foot
 WEIGHT_MISMATCH = 0.15  # share by which the feet may carry more or less than the model weighs
 
 
@@ -121,10 +123,19 @@ def _air_zeros(
     """The zeros that sensors show while their feet swing; of feet that do not swing none."""
     weight, found = robot.mass * GRAVITY, {}
     for name, foot in robot.feet.items():
-        zero = air_zero(log.time, wrenches[name], raw[name].force_z, weight)
+        zero = air_zero(log.time, wrenches[name], raw[name].force_z, weight, _lifted(robot, raw, name))
         if zero is not None and foot.contact != "always":
             found[name] = zero
     return found
+
+
+def _lifted(robot: RobotModel, raw: Mapping[str, BushState], foot: str) -> Mask:
+    """Where a sole is clearly above that of another foot which carries the robot, (N,)."""
+    sole = raw[foot].sole_position[:, 2] - LIFTED * float(np.ptp(robot.feet[foot].sole.polygon, axis=0).max())
+    others = [state for name, state in raw.items() if name != foot]
+    carried = CARRIES * robot.mass * GRAVITY
+    above = [(sole > other.sole_position[:, 2]) & (other.force_z > carried) for other in others]
+    return np.asarray(np.logical_or.reduce([np.zeros(len(sole), dtype=bool), *above]))
 
 
 def _require(robot: RobotModel) -> Imu:

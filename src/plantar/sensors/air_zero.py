@@ -10,11 +10,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from plantar.conventions import FORCE, TORQUE, Array
+from plantar.conventions import FORCE, TORQUE, Array, Mask
 from plantar.results.walk_rows import SwingZero
 from plantar.signals.segments import runs
 
-FEWEST_SWINGS = 2  # fewer do not tell a zero from a robot that is lifted, or a foot that slides along
+FEWEST_SWINGS = 2  # of a foot that nobody sees lifted: fewer may be a foot that slides along
 FEWEST_FOR_DRIFT = 4  # swings: a line through fewer follows their scatter
 CLEAR_DRIFT = 3.0  # times its own deviation: a smaller drift is what single swings differ by
 SHORTEST_SWING = 0.1  # s of the middle of a swing: its first and last quarter may still touch the ground
@@ -46,9 +46,10 @@ class AirZero:
     def text(self) -> str:
         """What was found, in a sentence."""
         x, y, z = self.middle[:3]
+        differ = f"{self.swings} swings, which differ by {np.max(self.scatter[:3]):.2g} N"
+        swings = differ if self.swings > 1 else "1 swing"
         return (
-            f"in the air its force sensor reads {x:.3g}, {y:.3g}, {z:.3g} N ({self.swings} swings, which differ by "
-            f"{np.max(self.scatter[:3]):.2g} N): taken off as its zero"
+            f"in the air its force sensor reads {x:.3g}, {y:.3g}, {z:.3g} N ({swings}): taken off as its zero"
         )
 
     def at(self, time: Array) -> Array:
@@ -66,10 +67,14 @@ class AirZero:
         ]
 
 
-def air_zero(time: Array, wrench: Array, force_z: Array, weight: float) -> AirZero | None:
+def air_zero(
+    time: Array, wrench: Array, force_z: Array, weight: float, lifted: Mask | None = None
+) -> AirZero | None:
     """The zero of a sensor whose foot swings; None where it does not.
 
-    time: (N,) [s]; wrench: as recorded, (N, 6); force_z: its vertical force (N,) [N]; weight: the robot's [N].
+    time: (N,) [s]; wrench: as recorded, (N, 6); force_z: its vertical force (N,) [N]; weight: the robot's [N];
+    lifted: where the sole is above that of another foot which carries the robot, (N,): a foot that sways reads little
+    at times, too. None where nobody knows: then FEWEST_SWINGS have to look alike.
     """
     known = np.isfinite(force_z) & np.isfinite(wrench).all(axis=1)
     if not known.any():
@@ -77,21 +82,13 @@ def air_zero(time: Array, wrench: Array, force_z: Array, weight: float) -> AirZe
     low, high = np.percentile(force_z[known], [2, 98])
     if high < LOADED * weight or abs(low) > LARGEST_ZERO * weight:
         return None
-    places, values, loads = [], [], []
-    for swing in runs(known & (force_z < low + IN_AIR * (high - low))):
-        quarter = (swing.stop - swing.start) // 4
-        middle = slice(swing.start + quarter, swing.stop - quarter)
-        long_enough = time[middle.stop - 1] - time[middle.start] >= SHORTEST_SWING
-        if long_enough and np.std(force_z[middle]) < FLAT * weight:
-            places.append(float(np.mean(time[middle])))
-            values.append(np.median(wrench[middle], axis=0))
-            loads.append(float(np.median(force_z[middle])))
-    # A robot that stands still before its first step and after its last one reads the same for a while, too: all that
-    # does, where no swing is long enough to be flat. So what counts is what the foot reads at its lightest.
-    swung = np.array(loads) < low + ALIKE * weight
-    if np.count_nonzero(swung) < FEWEST_SWINGS:
+    light = known & (force_z < low + IN_AIR * (high - low))
+    fewest = FEWEST_SWINGS if lifted is None else 1
+    when, seen = _swings(time, wrench, force_z, light, lifted, low, weight)
+    if lifted is not None and not len(when):  # before or after its swing the foot stands, with hardly a load
+        when, seen = _swings(time, wrench, force_z, light & lifted, lifted, low, weight)
+    if len(when) < fewest:
         return None
-    seen, when = np.array(values)[swung], np.array(places)[swung]
     about, drift = float(when.mean()), np.zeros(6)
     if len(seen) >= FEWEST_FOR_DRIFT:
         slope = _usual_slope(when, seen)
@@ -102,6 +99,25 @@ def air_zero(time: Array, wrench: Array, force_z: Array, weight: float) -> AirZe
     usual = np.median(left, axis=0)
     scatter = 1.4826 * np.median(np.abs(left - usual), axis=0)
     return AirZero(usual, drift, scatter, about, when, seen)
+
+
+def _swings(
+    time: Array, wrench: Array, force_z: Array, light: Mask, lifted: Mask | None, low: float, weight: float
+) -> tuple[Array, Array]:
+    """When a foot swings that is `light`, (S,) [s], and what its sensor reads then, (S, 6)."""
+    places, values = [], []
+    for swing in runs(light):
+        quarter = (swing.stop - swing.start) // 4
+        middle = slice(swing.start + quarter, swing.stop - quarter)
+        long_enough = time[middle.stop - 1] - time[middle.start] >= SHORTEST_SWING
+        flat = long_enough and np.std(force_z[middle]) < FLAT * weight
+        flat = flat and (lifted is None or lifted[middle].any())
+        # A robot that stands still before its first step and after its last one reads the same for a while, too: all
+        # that does, where no swing is long enough to be flat. So what counts is what the foot reads at its lightest.
+        if flat and np.median(force_z[middle]) < low + ALIKE * weight:
+            places.append(float(np.mean(time[middle])))
+            values.append(np.median(wrench[middle], axis=0))
+    return np.array(places), np.array(values)
 
 
 def _vector(three: Array) -> tuple[float, float, float]:

@@ -9,8 +9,9 @@ import pytest
 
 from made_recording import FOOT, made_recording, swayed
 from plantar.contact.reasons import Reason
-from plantar.feet.assess.left_out import UNUSED, unused_logs, why_unseen
+from plantar.feet.assess.left_out import UNUSED, mostly_on_an_edge, unused_logs, why_unseen
 from plantar.feet.recording import Recording
+from plantar.robot.model import Foot, Placement, Sole, WrenchSensor
 
 
 def left_out(share: float, reason: Reason) -> Recording:
@@ -49,3 +50,26 @@ def test_nothing_is_said_of_a_log_with_one_used_sample_or_that_is_alone() -> Non
     used = replace(one, contacts={FOOT: replace(one.contacts[FOOT], code=code)})
     assert unused_logs([used, used]) == []
     assert unused_logs([one]) == []
+
+
+@pytest.mark.parametrize(("share", "told"), [(0.4, False), (0.6, True)])
+def test_a_foot_that_mostly_stands_on_an_edge_is_told_which(share: float, told: bool) -> None:
+    """Its centre of pressure is 8 mm outside of the left edge; the rest of the time it is in the middle."""
+    angle = swayed(3000)
+    one = made_recording("sway", angle, 400.0 * angle)
+    tips = np.arange(len(angle)) < share * len(angle)
+    cop = np.column_stack([np.zeros(len(angle)), np.where(tips, 0.058, 0.0)])
+    one = replace(
+        one,
+        bushes={FOOT: replace(one.bushes[FOOT], cop=cop)},
+        contacts={FOOT: one.contacts[FOOT].without(tips, Reason.OUTSIDE_THE_SOLE)},
+    )
+    corners = np.array([[0.1, 0.05], [-0.1, 0.05], [-0.1, -0.05], [0.1, -0.05]])
+    placed = Placement("ankle", np.zeros(3), np.zeros(3))
+    foot = Foot(FOOT, "ankle", placed, WrenchSensor(FOOT, placed, 1), Sole(placed, corners), "auto")
+    found = mostly_on_an_edge(FOOT, foot, [one])
+    assert bool(found) == told
+    if told:
+        assert found[0].severity == "warning"
+        assert "left foot: 18 of the 30 s in which it stands" in found[0].text
+        assert "usually 8 mm outside of the left edge of feet.left.sole.polygon" in found[0].text

@@ -12,6 +12,7 @@ from plantar.feet.exclusion.edge_rolling import leaning, without_edge_rolling
 from plantar.feet.prepare_log import prepare
 from plantar.feet.recording import filtered_recording
 from plantar.feet.settings import FeetSettings
+from plantar.results.walk_rows import SwingZero
 from plantar.robot.model import RobotModel
 
 PERIOD = 0.005
@@ -95,3 +96,27 @@ def test_a_foot_zeroed_under_load_has_no_centre_of_pressure_to_be_judged_by(
     (rest,) = without_edge_rolling(robot, [recording], FeetSettings())
     assert (rest.used("left").sum() < recording.used("left").sum()) == (not always)
     assert rest.used("right").sum() == recording.used("right").sum()
+
+
+@pytest.mark.parametrize(
+    ("depth", "read", "used"), [(0.03, False, True), (0.01, False, False), (0.01, True, True)]
+)
+def test_an_angles_zero_moves_edges_by_a_usual_zero_of_the_torque_at_most(
+    robot: RobotModel, depth: float, read: bool, used: bool
+) -> None:
+    """A turned IMU gives the torque an offset of tens of N.m, a sole's half length of the centre of pressure: a sensor
+    is off by 6 mm of the weight, 12 mm on two feet; one whose zero was read in the air is not."""
+    recording = filtered_recording(prepare(robot, record(sway(duration=12.0)), "fit"), 5.0)
+    near = np.abs(recording.time - 6.0) < 0.5
+    front = robot.feet["left"].sole.polygon[:, 0].max()
+    cop = np.column_stack([front - np.where(near, 0.002, depth), 0.0 * recording.time])
+    turned = replace(recording.bushes["left"], cop=cop, deflection=recording.bushes["left"].deflection + 0.1)
+    raw = replace(recording.raw["left"], deflection=recording.raw["left"].deflection + 0.1)
+    recording = replace(
+        recording,
+        bushes={**recording.bushes, "left": turned},
+        raw={**recording.raw, "left": raw},
+        zeros=(SwingZero("sway", "left", 1.0, *[(0.0, 0.0, 0.0)] * 4),) if read else (),
+    )
+    (rest,) = without_edge_rolling(robot, [recording], FeetSettings())
+    assert (rest.used("left")[~near].mean() > 0.9) == used

@@ -16,6 +16,7 @@ from plantar.feet.interval_width.between_recordings import (
     Apart,
     AxisDifferences,
     apart_notes,
+    axis_differences,
     between_recordings,
     recordings_apart,
 )
@@ -136,3 +137,30 @@ def test_few_recordings_differ_by_what_other_axes_show() -> None:
     (cause,) = between_recordings(fit, tangent_blocks(recordings, fit), Apart(0.02, 7), False)
     assert cause.freedom == 7.0
     assert cause.share[0] == pytest.approx(0.02 * 400.0 / np.sqrt(3), rel=0.1)
+
+
+def test_recordings_that_hardly_move_say_nothing_of_how_recordings_differ() -> None:
+    """One moves and knows the stiffness; in the others, fifty times smaller, half of the torque is a crosstalk. How far
+    the one is off is what all axes show, and a refit without it shows nothing."""
+    recordings = []
+    for seed in range(6):
+        angle = swayed(3000, seed=seed) / (50.0 if seed else 1.0)
+        noise = 0.02 * np.random.default_rng(seed).standard_normal(3000)
+        recordings.append(made_recording(f"sway_{seed}", angle, (800.0 if seed else 400.0) * angle + noise))
+    fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
+    assert fit is not None
+    (cause,) = between_recordings(fit, tangent_blocks(recordings, fit), Apart(0.01, 3), False)
+    assert cause.share[0] == pytest.approx(0.01 * fit.values[0], rel=0.1)
+    assert cause.freedom == 3.0
+    assert axis_differences(fit, recordings, False) is None
+
+
+def test_a_recording_that_knows_a_twentieth_is_compared() -> None:
+    """Two recordings by the square of their sizes: a share of a thirtieth, of a twelfth."""
+    for size, compared in ((0.18, False), (0.3, True)):
+        angle = [swayed(3000, seed=0), size * swayed(3000, seed=1)]
+        noise = np.random.default_rng(0).standard_normal((2, 3000))
+        recordings = [made_recording(f"sway_{k}", angle[k], 400.0 * angle[k] + noise[k]) for k in range(2)]
+        fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
+        assert fit is not None
+        assert (axis_differences(fit, recordings, False) is not None) == compared

@@ -1,4 +1,4 @@
-"""Why nothing of a foot, or of a whole log, could be used: the reason that took most of its samples."""
+"""Why most or all of a foot, or of a whole log, could not be used: the reason that took most of its samples."""
 
 from __future__ import annotations
 
@@ -6,12 +6,16 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from plantar.contact.reasons import Reason
+from plantar.contact.polygon import edge_distances, edge_normals
+from plantar.contact.reasons import EDGES, Reason
 from plantar.feet.recording import Recording
 from plantar.notes import Note
 from plantar.pages import REASONS
+from plantar.robot.model import Foot
 
 UNUSED = "log_unused"
+ON_AN_EDGE = "on_an_edge"
+MOSTLY = 0.5  # of the time in which a foot stands
 
 
 def most_left_out(recordings: Sequence[Recording], foot: str) -> tuple[Reason, str] | None:
@@ -54,3 +58,30 @@ def unused_logs(recordings: Sequence[Recording]) -> list[Note]:
         told = "; ".join(f"{foot} foot: {found[1]}" for foot, found in why.items() if found is not None)
         notes.append(Note(UNUSED, "warning", f"{one.name}: nothing of this log can be used. {told}"))
     return notes
+
+
+def mostly_on_an_edge(name: str, foot: Foot, recordings: Sequence[Recording]) -> list[Note]:
+    """A warning that most of what a foot stands was left out at an edge of its sole, and at which."""
+    stands = left = 0.0
+    depths = []
+    for one in recordings:
+        contact = one.contacts[name]
+        tips = contact.standing & contact.left_out_for(EDGES)
+        stands += float(contact.standing.sum()) * one.period
+        left += float(tips.sum()) * one.period
+        depths.append(edge_distances(one.bushes[name].cop[tips], foot.sole.polygon))
+    if left <= MOSTLY * stands:
+        return []
+    depth = np.concatenate(depths)
+    edge = int(np.bincount(depth.argmin(axis=1)).argmax())
+    outwards = -edge_normals(foot.sole.polygon)[edge]
+    along = int(np.argmax(np.abs(outwards)))
+    side = (("front", "back"), ("left", "right"))[along][int(outwards[along] < 0)]
+    inside = 1e3 * float(np.median(depth[:, edge]))
+    text = (
+        f"{name} foot: {left:.0f} of the {stands:.0f} s in which it stands are left out, since a sole that tips turns "
+        f"further than its bush: its centre of pressure is usually {abs(inside):.0f} mm "
+        f"{'inside' if inside > 0 else 'outside'} of the {side} edge of feet.{name}.sole.polygon. Measure the sole; if "
+        "the outline is right, the foot stands on that edge, and its weight belongs further inwards"
+    )
+    return [Note(ON_AN_EDGE, "warning", text)]

@@ -13,10 +13,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from plantar.checks.air_readings import TORQUE_OFF
 from plantar.contact.phases import joined, widened
 from plantar.contact.polygon import edge_distances
 from plantar.contact.reasons import Reason
-from plantar.conventions import ROTATIONAL_AXES, Array, Mask
+from plantar.conventions import GRAVITY, ROTATIONAL_AXES, Array, Mask
 from plantar.estimation import fit_blocks
 from plantar.feet.exclusion.moved_edges import moved_inwards
 from plantar.feet.recording import Recording, filtered
@@ -37,6 +38,9 @@ NEAR = 0.1  # s before and behind the edge, in which the excess is that of a fla
 SMEAR = 0.02  # s that this filter spreads a lean
 FLAT_SEARCH = 0.5  # s: how far a flat sole is looked for
 VISIT_PAUSE = 0.05  # s: visits to the edge that are closer are one
+LARGEST_ZERO = (
+    TORQUE_OFF  # m, times the weight: the torque's zero; a sensor that is farther off is told to be zeroed
+)
 FEWEST = 0.04  # s of sure lean, for the edge to be known
 # By how much an outline that is a guess may be too large [m, and of half the sole's width]: a sole tips before it seems
 # to be at its edge.
@@ -51,27 +55,27 @@ def without_edge_rolling(
     Feet with `contact: always` are left as they are: their centre of pressure means nothing. So are feet that step:
     they roll while they land and lift, and what is left there weighs little.
     """
-    rest = list(recordings)
+    rest, largest = list(recordings), LARGEST_ZERO * robot.mass * GRAVITY
     for name, foot in robot.feet.items():
         if foot.contact != "always":
             guessed = any(guess.key.startswith(f"feet.{name}.sole") for guess in robot.guesses)
             inner = min(GUESSED, GUESSED_SHARE * float(np.ptp(foot.sole.polygon, axis=0).min()) / 2)
             margin = settings.edge_margin + (inner if guessed else 0.0)
-            rest = _flat(rest, name, foot.sole.polygon, settings.edge_margin, margin)
+            rest = _flat(rest, name, foot.sole.polygon, settings.edge_margin, margin, largest)
     return rest
 
 
 def _flat(
-    recordings: Sequence[Recording], name: str, polygon: Array, beyond: float, margin: float
+    recordings: Sequence[Recording], name: str, polygon: Array, beyond: float, margin: float, largest: float
 ) -> list[Recording]:
     """The recordings without leans of one foot: it may tip within `margin` [m] of its border, and cannot be loaded
-    `beyond` it."""
+    `beyond` it; no zero of the torque is taken to be larger than `largest` [N·m]."""
     edges = [_edges(recording, name, polygon, margin) for recording in recordings]
     if not any(near.any() for _, _, near in edges):
         return list(recordings)
     model, rest = _bush_model(recordings, name, [near for _, _, near in edges]), []
     if model is None and margin > beyond:  # nothing is clear of so wide a border
-        return _flat(recordings, name, polygon, beyond, beyond)
+        return _flat(recordings, name, polygon, beyond, beyond, largest)
     for recording, (depth, inwards, edge) in zip(recordings, edges, strict=True):
         contact = recording.contacts[name]
         if not edge.any():
@@ -86,7 +90,9 @@ def _flat(
                 )
             )
             continue
-        stiffness, damping, zero = model
+        stiffness, damping, usual = model
+        # Of a stiff bush most of a torque's offset is the angle's zero, which moves no edge.
+        zero = 0.0 if name in {swing.foot for swing in recording.zeros} else min(usual, largest)
         bush = filtered(recording.raw[name], recording.period, QUICK_CUTOFF)
         load = np.maximum(bush.force_z, 1.0)
         excess = bush.deflection - (bush.torque - damping * bush.rate) / stiffness

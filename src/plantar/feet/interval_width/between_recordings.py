@@ -20,6 +20,8 @@ from plantar.notes import Note
 
 NAME = "between recordings"
 MOST = 0.5  # of what tells a number: a recording that has more tells more than all others together
+# Of the stiffness: in a recording that makes less of it, all else that is wrong is divided by a small motion.
+TELLS = 0.05
 
 
 class Apart(NamedTuple):
@@ -70,10 +72,10 @@ def apart_notes(apart: Apart) -> list[Note]:
 def axis_differences(fit: AxisFit, recordings: Sequence[Recording], shared: bool) -> AxisDifferences | None:
     """Shares by which spring and damper of each recording are beside the first one's: what all share is K's own.
 
-    None of a foot that steps, and where there is nothing to compare.
+    Of recordings that tell the stiffness. None of a foot that steps, and where there is nothing to compare.
     """
     blocks = tangent_blocks(recordings, fit, drift=not shared)
-    return _differences(fit, blocks) if _comparable(blocks, shared) else None
+    return _differences(fit, blocks, _effects(fit, blocks)) if _comparable(blocks, shared) else None
 
 
 def between_recordings(fit: AxisFit, blocks: Sequence[Block], every: Apart, shared: bool) -> list[Cause]:
@@ -86,15 +88,15 @@ def between_recordings(fit: AxisFit, blocks: Sequence[Block], every: Apart, shar
     """
     if not _comparable(blocks, shared):
         return []
-    influences = influences_of(blocks)
-    told = np.array([np.sum(own**2, axis=1) for own in influences])
+    told = np.array([np.sum(own**2, axis=1) for own in influences_of(blocks)])
     few = (len(blocks) < FEWEST_RECORDINGS) | (told.max(axis=0) > MOST * told.sum(axis=0))
     std, freedom = np.zeros(len(few)), len(blocks) - 1
     if few.any():
-        apart = max(recordings_apart([_differences(fit, blocks)], 0.0), every, key=lambda each: each.share)
-        each = zip(influences, _torques(fit, blocks), strict=True)
-        std = apart.share * np.sqrt(np.sum([(own @ torque) ** 2 for own, torque in each], axis=0))
-        freedom = apart.others
+        effects = _effects(fit, blocks)
+        own = _differences(fit, blocks, effects)
+        here = [] if own is None else [recordings_apart([own], 0.0)]
+        apart = max([*here, every], key=lambda each: each.share)
+        std, freedom = apart.share * np.sqrt(np.sum(effects**2, axis=0)), apart.others
     if not few.all():
         refits = np.diag(jackknife(values_without_each(blocks))[0])
         beyond = np.sqrt(np.maximum(refits - fit_blocks(blocks).std ** 2, 0.0))
@@ -107,15 +109,24 @@ def _comparable(blocks: Sequence[Block], shared: bool) -> bool:
     return blocks[0].stances is None and not shared and len(blocks) > 1
 
 
-def _differences(fit: AxisFit, blocks: Sequence[Block]) -> AxisDifferences:
-    torques, others = _torques(fit, blocks), range(1, len(blocks))
+def _differences(fit: AxisFit, blocks: Sequence[Block], effects: Array) -> AxisDifferences | None:
+    """Those of the recordings that tell the stiffness, by their `effects` on it; None where it is but one."""
+    tell = np.flatnonzero(np.abs(effects[:, 0]) > TELLS * abs(float(fit.values[0]))).tolist()
+    if len(tell) < 2:
+        return None
+    torques, others = _torques(fit, blocks), [place for place in range(len(blocks)) if place != tell[0]]
     columns = [np.column_stack(each) for each in zip(*(_alone(torques, own) for own in others), strict=True)]
     found = fit_blocks([beside(block, own) for block, own in zip(blocks, columns, strict=True)])
-    size = blocks[0].regressor.shape[1]
-    ends = slice(size, size + len(others))
+    ends = blocks[0].regressor.shape[1] + np.array([others.index(place) for place in tell[1:]])
     usual = float(fit_blocks(blocks).std[0]) / max(abs(float(fit.values[0])), 1e-300)
-    differences = Differences(found.values[ends], found.covariance[ends, ends])
-    return AxisDifferences(differences, usual, frozenset(block.label for block in blocks))
+    differences = Differences(found.values[ends], found.covariance[np.ix_(ends, ends)])
+    return AxisDifferences(differences, usual, frozenset(blocks[place].label for place in tell))
+
+
+def _effects(fit: AxisFit, blocks: Sequence[Block]) -> Array:
+    """What each recording's spring and damper add to the numbers, (blocks, k)."""
+    each = zip(influences_of(blocks), _torques(fit, blocks), strict=True)
+    return np.array([own @ torque for own, torque in each])
 
 
 def _torques(fit: AxisFit, blocks: Sequence[Block]) -> list[Array]:
