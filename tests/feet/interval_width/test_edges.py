@@ -106,7 +106,7 @@ def test_a_gain_and_a_turned_sensor_add_up(turned: float) -> None:
 
 
 def replace_gain(gain: float):  # type: ignore[no-untyped-def]
-    return EXACT.model_copy(update={"wrench_gain": gain})
+    return replace(EXACT, wrench_gain=gain)
 
 
 def test_causes_add_to_the_covariance_and_share_their_freedom() -> None:
