@@ -37,22 +37,22 @@ def write_feet_report(
     *,
     figures: Sequence[Figure] = (),
     sections: Sequence[Section] = (),
-    table: Any = None,
+    content: FeetResult | None = None,
 ) -> Path:
     """Write `report.html` beside a `result.json` (or to `out`) and return its path.
 
-    `result` is the file or its directory. The residuals beside it (`residuals.parquet`, `.csv` or `.csv.gz`), or
-    `table` where they are still in memory (Arrow), give the plots; without them the page has none and says so.
+    `result` is the file or its directory, `content` what it holds where that is still in memory. The residuals beside
+    it (`residuals.parquet`, `.csv` or `.csv.gz`) give the plots; without them the page has none and says so.
     `sections` come after the tables, `figures` after the plots. The page is one file that needs no network. Raises
     `PlantarError` for a result or residuals that cannot be read.
     """
     path = result_path(result)
-    content = FeetResult.load(path, residuals=False)
     residuals = residuals_path(path.parent)
-    if table is not None:
-        tracks = tracks_of(table)
-    else:
+    if content is None:
+        content = FeetResult.load(path, residuals=False)
         tracks = read_residuals(residuals) if residuals is not None else ()
+    else:
+        tracks = tracks_of(content.residuals) if content.residuals is not None else ()
 
     motions, stride = motion_views(content, tracks)
     page = render(

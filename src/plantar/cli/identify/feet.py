@@ -63,7 +63,7 @@ def run(
     from plantar.report import write_feet_report
 
     result = fit_prepared(known, ready, show)
-    report = partial(write_feet_report, table=result.residuals)
+    report = partial(write_feet_report, content=result)
     identification.keep(result, out, report, print_feet, json=json, quiet=quiet)
 
 
