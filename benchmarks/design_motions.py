@@ -27,6 +27,7 @@ import time
 from collections import Counter, defaultdict
 from collections.abc import Iterator
 from contextlib import redirect_stderr, redirect_stdout
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -104,7 +105,7 @@ def played(
     if exact:
         file = folder / "robot.yaml"
         entry = yaml.safe_load(file.read_text())
-        file.write_text(yaml.safe_dump(entry | {"uncertainty": EXACT.model_dump()}))
+        file.write_text(yaml.safe_dump(entry | {"uncertainty": asdict(EXACT)}))
     logs = [folder / f"{Path(name).stem}.parquet" for name in motion.split(",")]
     plantar("identify", "feet", folder / "robot.yaml", *logs, "--out", folder)
     for log in (*folder.glob("*.parquet"), *folder.glob("*.html")):

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 from contextlib import suppress
 from pathlib import Path
 
@@ -39,9 +40,31 @@ def test_any_number_of_cores_finds_the_same_in_the_same_order(cores: int) -> Non
 
 
 def test_the_work_is_shared() -> None:
-    processes = over_cores(lambda _: os.getpid(), range(5), cores=2)
-    assert processes[1::2] == [HERE, HERE]
-    assert len({*processes[::2]} - {HERE}) == 1
+    def long(_: int) -> int:
+        time.sleep(0.1)
+        return os.getpid()
+
+    processes = over_cores(long, range(4), cores=2)
+    assert processes.count(HERE) == 2
+    assert len({*processes}) == 2
+
+
+def test_whoever_is_free_takes_the_next(tmp_path: Path) -> None:
+    """A copy does all the others while this process is at its own work, or at a long item."""
+    done = tmp_path / "done"
+
+    def wait() -> None:
+        while not done.exists():
+            time.sleep(0.01)
+
+    def work(item: int) -> int:
+        if item == 3:
+            done.touch()
+        return os.getpid()
+
+    processes = over_cores(work, range(4), cores=2, meanwhile=wait)
+    assert len({*processes}) == 1
+    assert HERE not in processes
 
 
 def test_what_both_have_is_not_sent_back_but_is_the_same_object() -> None:

@@ -1,9 +1,9 @@
 """Work that is the same for each log or foot, shared between the machine's cores.
 
-Python runs one thread at a time, and what comes between long loops over samples is Python. So each share is done by a
-copy of this process: it has all that this one has and hands back what it found. Results are those of one core: every
-item is worked on by itself, by the same code. What a copy could not do, for whatever reason, this process does again,
-so that an error is the first one, as if nothing had been shared.
+Python runs one thread at a time, and what comes between long loops over samples is Python. So this process and copies
+of it take one item after the other, whoever is free the next; a copy has all that this one has and hands back what it
+found. Results are those of one core: every item is worked on by itself, by the same code. What a copy could not do, for
+whatever reason, this process does again, so that an error is the first one, as if nothing had been shared.
 """
 
 from __future__ import annotations
@@ -11,14 +11,16 @@ from __future__ import annotations
 import gc
 import os
 import signal
+import struct
 import sys
 import threading
-from collections.abc import Callable, Iterable, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from typing import Any, TypeVar
 
 from plantar.handed_back import hand_back, held_by, taken
 
+TURN = struct.Struct("<q")
 Found = TypeVar("Found")
 Each = Callable[..., Iterable[Any]]  # `over_cores`, a pool's map, or the usual one
 
@@ -42,39 +44,56 @@ def over_cores(
     """`list(map(function, *items))` on all cores.
 
     The function must not change what it is given, nor anything else that is read later. cores: all that are usable if
-    left out. meanwhile: called here once this process has done its share, which is the smallest. Raises what the
-    function raises, of the first item that it does so for.
+    left out. meanwhile: called here once, before this process takes items. Raises what the function raises, of the
+    first item that it does so for.
 
     Example:
         >>> over_cores(abs, [-3, 4])
         [3, 4]
     """
     rows = list(zip(*items, strict=True))
-    shares = max(1, min(usable_cores() if cores is None else cores, len(rows)))
+    processes = max(1, min(usable_cores() if cores is None else cores, len(rows)))
     found: dict[int, Found] = {}
     copies = list[_Copy]()
-    try:
-        # The last share is the smallest: this process gathers as well.
-        with suppress(OSError):  # no room for another process: its share is done below
-            for first in range(shares - 1):
-                copies.append(_Copy(function, rows, range(first, len(rows), shares)))
-        with suppress(Exception):  # it comes again below, unless an earlier item has one
-            for place in range(shares - 1, len(rows), shares):
-                found[place] = function(*rows[place])
-        if meanwhile is not None:
-            meanwhile()
-        for copy in copies:
-            found |= copy.found()
-    finally:
-        for copy in copies:
-            copy.end()
+    with _turns(len(rows)) as turns:
+        try:
+            with suppress(OSError):  # no room for another process: this one has the more to do
+                for _ in range(processes - 1):
+                    copies.append(_Copy(function, rows, turns))
+            if meanwhile is not None:
+                meanwhile()
+            with suppress(Exception):  # it comes again below, unless an earlier item has one
+                for place in turns:
+                    found[place] = function(*rows[place])
+            for copy in copies:
+                found |= copy.found()
+        finally:
+            for copy in copies:
+                copy.end()
     return [found[place] if place in found else function(*row) for place, row in enumerate(rows)]
 
 
-class _Copy:
-    """A copy of this process at work on its `own` of the rows."""
+@contextmanager
+def _turns(count: int) -> Iterator[Iterator[int]]:
+    """The numbers below `count`, each for the first process that asks: copies share where they stand in one file."""
+    if not hasattr(os, "memfd_create"):  # nor are there copies
+        yield iter(range(count))
+        return
+    file = os.memfd_create("turns")
+    try:
+        os.write(file, b"".join(map(TURN.pack, range(count))))
+        os.lseek(file, 0, os.SEEK_SET)
+        yield (TURN.unpack(taken)[0] for taken in iter(lambda: os.read(file, TURN.size), b""))
+    finally:
+        os.close(file)
 
-    def __init__(self, function: Callable[..., Any], rows: Sequence[tuple[Any, ...]], own: range) -> None:
+
+class _Copy:
+    """A copy of this process that takes rows while there are `turns`."""
+
+    def __init__(
+        self, function: Callable[..., Any], rows: Sequence[tuple[Any, ...]], turns: Iterator[int]
+    ) -> None:
         self._held = held_by([rows])
         self._file = os.memfd_create("plantar")
         self._process = os.fork()
@@ -86,7 +105,7 @@ class _Copy:
             gc.disable()  # it would touch every object, and so copy its memory
             found = {}
             with suppress(Exception):
-                for place in own:
+                for place in turns:
                     found[place] = function(*rows[place])
             hand_back(found, self._held, self._file)
             os._exit(0)

@@ -136,7 +136,7 @@ def test_inspect_says_once_what_is_wrong_and_what_the_weight_holds(
     assert "kg on average; the URDF weighs" in " ".join(capsys.readouterr().out.split())
 
 
-def test_plain_numbers_of_a_csv_are_read_without_arrow(tmp_path: Path) -> None:
+def test_plain_numbers_of_a_csv_are_read_without_arrow_and_robots_without_pydantic(tmp_path: Path) -> None:
     log = tmp_path / "still.csv"
     log.write_text("time,joint.knee.position\n0,0.5\n0.01,0.5\n")
     code = f"""
@@ -144,6 +144,16 @@ import sys
 import plantar
 import plantar.cli.identify.feet
 plantar.open_log({str(log)!r})
-print("pyarrow" in sys.modules)
+print("pyarrow" in sys.modules, "pydantic" in sys.modules)
 """
-    assert python(code).strip() == "False"
+    assert python(code).strip() == "False False"
+
+
+def test_the_collector_does_not_walk_over_every_module_when_a_command_ends() -> None:
+    code = """
+import atexit, gc
+from plantar.cli import main
+atexit.register(lambda: print("FROZEN:", gc.get_freeze_count() > 10_000))
+main(["--version"])
+"""
+    assert "FROZEN: True" in python(code)

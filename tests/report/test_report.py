@@ -13,6 +13,8 @@ import pytest
 
 from plantar.errors import PlantarError
 from plantar.report import Column, Figure, Section, Table, write_feet_report
+from plantar.report.feet import feet_page
+from plantar.results.feet import FeetResult
 from report_samples import HOSTILE, MOTIONS, Campaign, write_campaign
 
 FIVE_MEGABYTES = 5_000_000
@@ -227,3 +229,7 @@ def test_cut_residuals_are_one_line(tmp_path: Path) -> None:
     with pytest.raises(PlantarError, match=re.escape("residuals.parquet")) as error:
         write_feet_report(tmp_path)
     assert "\n" not in str(error.value)
+
+
+def test_the_page_of_a_result_in_memory_is_that_of_its_file(campaign: Campaign, page: Page) -> None:
+    assert feet_page(FeetResult.load(campaign.directory)) == page.source

@@ -20,7 +20,7 @@ from plantar.inspection import inspect_log
 from plantar.logs.readers import open_log
 from plantar.results.io import dump_json
 from plantar.robot.model import RobotModel, load_robot
-from plantar.robot.schema import read_robot_file
+from plantar.robot.schema import read_robot_file, read_yaml
 
 DEPENDENCIES = ("numpy", "scipy", "pin", "pydantic", "pyarrow", "typer", "mujoco", "clarabel", "rosbags")
 # Where a path begins: a slash or a drive behind a space, a quote, a bracket or the like, and no word before it.
@@ -80,8 +80,7 @@ def _version(package: str) -> str:
 def _settings(robot: Path) -> str:
     """What the robot file says, without its comments; which of its keys are guesses."""
     entry, guesses = read_robot_file(robot)
-    said = entry.model_dump(mode="json", exclude_unset=True)
-    said["urdf"] = Path(entry.urdf).name
+    said = read_yaml(robot)[0] | {"urdf": Path(entry["urdf"]).name}
     lines = [f"# guessed: {guess.key}" for guess in guesses]
     return "\n".join([*lines, yaml.safe_dump(said, sort_keys=False, default_flow_style=None, width=110)])
 

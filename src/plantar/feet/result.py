@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from typing import Any
 
 import numpy as np
@@ -170,5 +170,5 @@ def _robot_model(robot: RobotModel) -> dict[str, Any]:
     return {
         "urdf": str(robot.urdf_path),
         "feet": {name: described(foot) for name, foot in robot.feet.items()},
-        "uncertainty": robot.uncertainty.model_dump(),
+        "uncertainty": asdict(robot.uncertainty),
     }

@@ -58,12 +58,12 @@ def _copied(place: str, beside: str, folder: Path) -> RobotModel:
     """A remote robot file through copies of it and its URDF in a folder."""
     path = brought(place, folder)
     entry, _ = read_robot_file(path)
-    urdf = folder / entry.urdf
+    urdf = folder / entry["urdf"]
     if not urdf.resolve().is_relative_to(folder.resolve()):
         valid = "a URDF beside or below the robot file"
         raise PlantarError(located("names a URDF outside its folder", path=place, column="urdf", valid=valid))
     urdf.parent.mkdir(parents=True, exist_ok=True)
-    brought(f"{beside}/{entry.urdf}", urdf.parent)
+    brought(f"{beside}/{entry['urdf']}", urdf.parent)
     return load_robot(path)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from plantar.report.verdict import foot_verdicts, limits, trust
 from plantar.report.walks import walk_section
 from plantar.results.feet import FeetResult
 from plantar.results.io import result_path
-from plantar.results.residuals import read_residuals, residuals_path, tracks_of
+from plantar.results.residuals import FILE_NAMES, Track, read_residuals, residuals_path, tracks_of
 
 TEMPLATES: Final = ("feet.html.j2", "base.html.j2", "macros.html.j2", "charts.html.j2", "motions.html.j2")
 
@@ -37,25 +37,40 @@ def write_feet_report(
     *,
     figures: Sequence[Figure] = (),
     sections: Sequence[Section] = (),
-    table: Any = None,
 ) -> Path:
     """Write `report.html` beside a `result.json` (or to `out`) and return its path.
 
-    `result` is the file or its directory. The residuals beside it (`residuals.parquet`, `.csv` or `.csv.gz`), or
-    `table` where they are still in memory (Arrow), give the plots; without them the page has none and says so.
+    `result` is the file or its directory. The residuals beside it (`residuals.parquet`, `.csv` or `.csv.gz`) give the
+    plots; without them the page has none and says so.
     `sections` come after the tables, `figures` after the plots. The page is one file that needs no network. Raises
     `PlantarError` for a result or residuals that cannot be read.
     """
     path = result_path(result)
     content = FeetResult.load(path, residuals=False)
     residuals = residuals_path(path.parent)
-    if table is not None:
-        tracks = tracks_of(table)
-    else:
-        tracks = read_residuals(residuals) if residuals is not None else ()
+    tracks = read_residuals(residuals) if residuals is not None else ()
+    page = _page(content, residuals, tracks, figures, sections)
+    target = Path(out) if out is not None else path.parent / "report.html"
+    write_text(target, page)
+    return target
 
+
+def feet_page(result: FeetResult) -> str:
+    """The report of a result that is still in memory, as `write_feet_report` writes it once it is saved."""
+    if result.residuals is None:
+        return _page(result, None, ())
+    return _page(result, Path(FILE_NAMES[0]), tracks_of(result.residuals))
+
+
+def _page(
+    content: FeetResult,
+    residuals: Path | None,
+    tracks: Sequence[Track],
+    figures: Sequence[Figure] = (),
+    sections: Sequence[Section] = (),
+) -> str:
     motions, stride = motion_views(content, tracks)
-    page = render(
+    return render(
         TEMPLATES[0],
         styles=["uPlot.min.css", "report.css"],
         scripts=["uPlot.iife.min.js", "payload.js", "colours.js", "plots.js", "planes.js", "report.js"],
@@ -78,9 +93,6 @@ def write_feet_report(
         figures=figures,
         appendix=[tables.input_table(content.inputs), tables.settings_table(content.settings)],
     )
-    target = Path(out) if out is not None else path.parent / "report.html"
-    write_text(target, page)
-    return target
 
 
 def _soles(result: FeetResult) -> dict[str, list[list[float]]]:

@@ -6,11 +6,14 @@ import math
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
-from typing import Any, TypeVar, get_type_hints
+from typing import TYPE_CHECKING, Any, TypeVar, get_type_hints
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic_core import ValidationError
 
 from plantar.errors import PlantarError, located
+
+if TYPE_CHECKING:
+    from pydantic import TypeAdapter
 
 Row = TypeVar("Row")
 _INTERVALS = (tuple[float, float], tuple[float, float] | None)
@@ -76,4 +79,6 @@ def _hints(kind: Any) -> dict[str, Any]:
 
 @cache
 def _adapter(kind: Any) -> TypeAdapter[Any]:
+    from pydantic import TypeAdapter  # it costs start-up
+
     return TypeAdapter(kind)

@@ -19,7 +19,7 @@ from plantar.notes import Note
 from plantar.robot.guesses import Guess
 from plantar.robot.joint_names import JointNames
 from plantar.robot.kinematics import KinematicTree
-from plantar.robot.schema import FootEntry, FrameEntry, JointEntry, read_robot_file
+from plantar.robot.schema import Entry, read_robot_file
 from plantar.robot.uncertainty import Uncertainty
 from plantar.robot.urdf import parse_urdf, read_urdf, unknown_link
 from plantar.robot.weighed import check_weight, of_mass, weight_notes, weight_of
@@ -219,45 +219,44 @@ def load_robot(path: str | os.PathLike[str]) -> RobotModel:
     """
     path = Path(path)
     entry, guesses = read_robot_file(path)
-    urdf_path = path.parent / entry.urdf
-    imu = Imu(entry.imu.name, _placement(entry.imu, entry.imu.link or "")) if entry.imu else None
+    urdf_path = path.parent / entry["urdf"]
+    imu, names = entry["imu"], entry["joint_names"]
     robot = RobotModel(
-        name=entry.name,
+        name=entry["name"],
         path=path,
         urdf_path=urdf_path,
         urdf=read_urdf(urdf_path),
-        base=entry.base,
-        imu=imu,
-        feet={name: _foot(name, foot) for name, foot in entry.feet.items()},
-        joints={name: JointTerms(_terms(joint), joint.passive) for name, joint in entry.joints.items()},
-        topics=dict(entry.topics),
-        columns=dict(entry.columns),
-        joint_names_in_logs=JointNames(
-            entry.joint_names.prefix, entry.joint_names.suffix, dict(entry.joint_names.renamed)
-        ),
-        uncertainty=entry.uncertainty,
+        base=entry["base"],
+        imu=Imu(imu["name"], _placement(imu)) if imu else None,
+        feet={name: _foot(name, foot) for name, foot in entry["feet"].items()},
+        joints={name: JointTerms(_terms(joint), joint["passive"]) for name, joint in entry["joints"].items()},
+        topics=dict(entry["topics"]),
+        columns=dict(entry["columns"]),
+        joint_names_in_logs=JointNames(names["prefix"], names["suffix"], dict(names["renamed"])),
+        uncertainty=Uncertainty(**entry["uncertainty"]),
         guesses=guesses,
-        weighed=entry.mass,
+        weighed=entry["mass"],
     )
     _check(robot)
     return robot
 
 
-def _placement(entry: FrameEntry, default_link: str) -> Placement:
-    xyz, rpy = np.array(entry.xyz, dtype=float), np.array(entry.rpy, dtype=float)
-    return Placement(entry.link or default_link, xyz, rpy)
+def _placement(entry: Entry, default_link: str = "") -> Placement:
+    xyz, rpy = np.array(entry["xyz"], dtype=float), np.array(entry["rpy"], dtype=float)
+    return Placement(entry["link"] or default_link, xyz, rpy)
 
 
-def _foot(name: str, entry: FootEntry) -> Foot:
-    sensor = WrenchSensor(entry.wrench.name, _placement(entry.wrench, entry.ankle), float(entry.wrench.sign))
-    sole = Sole(_placement(entry.sole, entry.ankle), np.array(entry.sole.polygon, dtype=float))
-    return Foot(name, entry.ankle, _placement(entry.bush, entry.ankle), sensor, sole, entry.contact)
+def _foot(name: str, entry: Entry) -> Foot:
+    ankle, wrench, sole = entry["ankle"], entry["wrench"], entry["sole"]
+    sensor = WrenchSensor(wrench["name"], _placement(wrench, ankle), float(wrench["sign"]))
+    outline = Sole(_placement(sole, ankle), np.array(sole["polygon"], dtype=float))
+    return Foot(name, ankle, _placement(entry["bush"], ankle), sensor, outline, entry["contact"])
 
 
-def _terms(entry: JointEntry) -> tuple[str, ...]:
-    if entry.terms is not None:
-        return tuple(entry.terms)
-    return ("stiffness", "viscous", "offset") if entry.passive else ("viscous", "coulomb", "offset")
+def _terms(entry: Entry) -> tuple[str, ...]:
+    if entry["terms"] is not None:
+        return tuple(entry["terms"])
+    return ("stiffness", "viscous", "offset") if entry["passive"] else ("viscous", "coulomb", "offset")
 
 
 def _check(robot: RobotModel) -> None:

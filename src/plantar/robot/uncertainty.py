@@ -2,38 +2,30 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
-from pydantic import BaseModel, ConfigDict, Field
-
-Deviation = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+from dataclasses import dataclass, field
 
 
-class Uncertainty(BaseModel):
-    """Standard deviations, each the same in all recordings of one robot; the defaults are a careful lab's.
+def _deviation(default: float, meaning: str) -> float:
+    """A field whose `meaning` holds its unit and what it stands for."""
+    return field(default=default, metadata={"meaning": meaning})
 
-    A field's description holds its unit and what it stands for.
-    """
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+@dataclass(frozen=True)
+class Uncertainty:
+    """Standard deviations, each the same in all recordings of one robot; the defaults are a careful lab's."""
 
-    wrench_gain: Annotated[Deviation, Field(description="share, of each channel of a force sensor")] = 0.01
-    wrench_crosstalk: Annotated[Deviation, Field(description="N.m/N, and between channels of a kind")] = 0.004
-    wrench_delay: Annotated[
-        Deviation, Field(description="s, of the force sensors behind encoders and IMU")
-    ] = 0.0075
-    bush_position: Annotated[Deviation, Field(description="m, each of x, y, z")] = 0.003
-    encoder_zero: Annotated[Deviation, Field(description="rad, each joint")] = 0.001
-    imu_mount: Annotated[Deviation, Field(description="rad, about each axis")] = 0.01
-    link_mass: Annotated[Deviation, Field(description="share, of each link's mass")] = 0.05
-    total_mass: Annotated[
-        Deviation, Field(description="share, of the robot's `mass` where it was weighed")
-    ] = 0.005
-    link_com: Annotated[Deviation, Field(description="m, of each link's centre of mass, each axis")] = 0.005
-    between_recordings: Annotated[
-        Deviation,
-        Field(description="share by which stiffness and damping may differ from recording to recording"),
-    ] = 0.0
+    wrench_gain: float = _deviation(0.01, "share, of each channel of a force sensor")
+    wrench_crosstalk: float = _deviation(0.004, "N.m/N, and between channels of a kind")
+    wrench_delay: float = _deviation(0.0075, "s, of the force sensors behind encoders and IMU")
+    bush_position: float = _deviation(0.003, "m, each of x, y, z")
+    encoder_zero: float = _deviation(0.001, "rad, each joint")
+    imu_mount: float = _deviation(0.01, "rad, about each axis")
+    link_mass: float = _deviation(0.05, "share, of each link's mass")
+    total_mass: float = _deviation(0.005, "share, of the robot's `mass` where it was weighed")
+    link_com: float = _deviation(0.005, "m, of each link's centre of mass, each axis")
+    between_recordings: float = _deviation(
+        0.0, "share by which stiffness and damping may differ from recording to recording"
+    )
 
 
 # Of a robot that is exactly what its file says, as a simulated one is. Its sensors may be late all the same.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 import yaml
@@ -66,8 +66,8 @@ class Draft:
             lines.append("topics:")
             lines += [f"  {scalar(key)}: {scalar(topic)}" for key, topic in self.topics.items()]
         lines.append("# uncertainty:  # standard deviations; these are the defaults")
-        for key, field in Uncertainty.model_fields.items():
-            lines.append(f"#   {key}: {field.default}  # {field.description}")
+        for one in fields(Uncertainty):
+            lines.append(f"#   {one.name}: {one.default}  # {one.metadata['meaning']}")
         return "\n".join(lines) + "\n"
 
     def _imu(self) -> list[str]:

@@ -63,7 +63,7 @@ def test_a_spring_that_is_sure_and_far_off_does_not_stand_in_for_a_model_that_is
 def models(robot: RobotModel, gain: float) -> dict[tuple[str, str], tuple[str, str]]:
     """By foot and axis, the model and the reason, of rubber that slips inside, beside force sensors known to `gain`."""
     logs = [noisy(record(sway(f"sway_{seed}", seed, truth=SLIPPING)), seed) for seed in (3, 4)]
-    unsure = replace(robot, uncertainty=robot.uncertainty.model_copy(update={"wrench_gain": gain}))
+    unsure = replace(robot, uncertainty=replace(robot.uncertainty, wrench_gain=gain))
     result = identify_feet(unsure, logs, settings=PUNCTUAL)
     for row in result.models:
         assert [tried.model for tried in row.ranking if tried.chosen] == [row.model]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
@@ -17,9 +17,9 @@ from plantar.feet.prepare import prepare_all
 from plantar.feet.regression.regression_data import tangent_blocks
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
-from plantar.robot.uncertainty import Uncertainty
+from plantar.robot.uncertainty import EXACT, Uncertainty
 
-NOTHING = Uncertainty(**dict.fromkeys(Uncertainty.model_fields, 0.0))
+NOTHING = Uncertainty(**dict.fromkeys(asdict(EXACT), 0.0))
 
 
 def identified(
@@ -43,7 +43,7 @@ def sure(robot: RobotModel) -> FeetResult:
 def test_a_gain_widens_stiffness_and_damping_by_itself(
     robot: RobotModel, sure: FeetResult, gain: float
 ) -> None:
-    unsure = identified(robot, NOTHING.model_copy(update={"wrench_gain": gain}), count=2)
+    unsure = identified(robot, replace(NOTHING, wrench_gain=gain), count=2)
     for name in ("stiffness", "damping"):
         known, row = (one.parameter("left", "pitch", name) for one in (sure, unsure))
         assert row.std == pytest.approx(np.hypot(known.std, gain * row.value), rel=0.05)
@@ -63,7 +63,7 @@ def test_recordings_that_differ_widen_the_stiffness(robot: RobotModel) -> None:
 
 
 def test_few_recordings_take_what_the_robot_file_says(robot: RobotModel) -> None:
-    told = identified(robot, NOTHING.model_copy(update={"between_recordings": 0.03}), count=2)
+    told = identified(robot, replace(NOTHING, between_recordings=0.03), count=2)
     row = told.parameter("left", "roll", "stiffness")
     assert row.std == pytest.approx(0.03 / np.sqrt(2) * row.value, rel=0.1)
 

@@ -116,7 +116,7 @@ def test_another_foot_s_height_makes_this_one_s_doubtful(other: float, own: floa
 def test_what_is_guessed_may_be_farther_off(
     robot: RobotModel, guess: tuple[str, float | None] | None, expected: tuple[float, float]
 ) -> None:
-    known = EXACT.model_copy(update={"bush_position": 0.003, "imu_mount": 0.01, "wrench_crosstalk": 0.004})
+    known = replace(EXACT, bush_position=0.003, imu_mount=0.01, wrench_crosstalk=0.004)
     guesses: Any = () if guess is None else (SimpleNamespace(key=guess[0], spread=guess[1]),)
     found = PlaceSpread.of(replace(robot, uncertainty=known, guesses=guesses), "left")
     assert (found.aside, found.above, found.turned, found.between) == pytest.approx(

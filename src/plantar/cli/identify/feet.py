@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from functools import partial
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 from typing import Annotated
 
 import numpy as np
@@ -14,7 +15,7 @@ from plantar.cli.console.terminal import progress
 from plantar.cli.identify import identification
 from plantar.cli.identify.feet_tables import print_feet
 from plantar.feet.settings import AUTOMATIC, DEFAULT_CUTOFF, MODEL_CHOICES, FeetSettings, OffsetRule
-from plantar.files import refuse_file
+from plantar.files import refuse_file, write_text
 from plantar.logs.inputs import open_in_turn
 from plantar.robot.model import load_robot
 
@@ -60,11 +61,18 @@ def run(
     read, show = open_in_turn([*logs, *(validate or ())], known, kept_size, memory), progress(quiet)
     ready = prepare_all(known, read[: len(logs)], read[len(logs) :], settings, show, _get_rest_ready)
     from plantar.feet.identify import fit_prepared
-    from plantar.report import write_feet_report
+    from plantar.report.feet import feet_page
 
     result = fit_prepared(known, ready, show)
-    report = partial(write_feet_report, table=result.residuals)
-    identification.keep(result, out, report, print_feet, json=json, quiet=quiet)
+    with ThreadPoolExecutor(1) as pool:  # the page is drawn while the numbers are saved
+        page = pool.submit(feet_page, result)
+
+        def report(saved: Path) -> Path:
+            path = saved.with_name("report.html")
+            write_text(path, page.result())
+            return path
+
+        identification.keep(result, out, report, print_feet, json=json, quiet=quiet)
 
 
 def _get_rest_ready() -> None:
