@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
-from plantar.cores import over_cores
+from plantar.cores import blas_on_one_core, over_cores
 from plantar.errors import DataError
 from plantar.feet.foot_fit import FittedFoot, assess_foot, between_all, fit_foot, without_needless
 from plantar.feet.imu_of_steps import is_worth, put_right, turn_shown
@@ -22,6 +22,7 @@ from plantar.robot.model import RobotModel
 TURN_ROUNDS = 2  # of fitting again with the IMU's turn: what a fit took up of it before shows in the next
 
 
+@blas_on_one_core()
 def identify_feet(
     robot: RobotInput,
     logs: LogInputs,
