@@ -35,6 +35,19 @@ def usable_cores() -> int:
     return len(os.sched_getaffinity(0))
 
 
+@contextmanager
+def blas_on_one_core() -> Iterator[None]:
+    """BLAS without threads of its own: on matrices of some columns they mostly wait for each other, and copies of this
+    process fill the cores already."""
+    if os.environ.get("OPENBLAS_NUM_THREADS") == "1":  # as in every command
+        yield
+        return
+    from threadpoolctl import threadpool_limits  # it costs start-up
+
+    with threadpool_limits(1, user_api="blas"):
+        yield
+
+
 def over_cores(
     function: Callable[..., Found],
     *items: Iterable[Any],

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
+from plantar.cores import blas_on_one_core, over_cores
 from plantar.errors import DataError
-from plantar.feet.first_look import over_logs
 from plantar.feet.foot_fit import FittedFoot, assess_foot, between_all, fit_foot, without_needless
 from plantar.feet.imu_of_steps import is_worth, put_right, turn_shown
 from plantar.feet.memory_of_others import with_memory_of_others
@@ -22,6 +22,7 @@ from plantar.robot.model import RobotModel
 TURN_ROUNDS = 2  # of fitting again with the IMU's turn: what a fit took up of it before shows in the next
 
 
+@blas_on_one_core()
 def identify_feet(
     robot: RobotInput,
     logs: LogInputs,
@@ -79,8 +80,7 @@ def fit_prepared(
     fitted = with_memory_of_others(feet)
     between = between_all(list(fitted.values()))
     fitted = {foot: without_needless(one, between) for foot, one in fitted.items()}
-    with over_logs([recording.log for recording in ready.recordings]) as each:
-        found = list(each(assess_foot, fitted.values(), [between] * len(fitted)))
+    found = over_cores(assess_foot, fitted.values(), [between] * len(fitted))
     ready = _merged(ready, {foot: one.ready for foot, one in fitted.items()})
     return feet_result(robot, ready, found, between)
 
@@ -105,11 +105,10 @@ def _fitted_feet(ready: PreparedLogs, progress: Callable[[str], None]) -> dict[s
     places = {foot: PlaceSpread.of(ready.robot, foot) for foot in ready.robot.feet}
 
     def fit_all(places: Mapping[str, PlaceSpread]) -> dict[str, FittedFoot]:
-        with over_logs([recording.log for recording in ready.recordings]) as each:
-            for foot in places:
-                progress(f"fit {foot}")
-            found = each(fit_foot, [ready] * len(places), places, places.values())
-            return dict(zip(places, found, strict=True))
+        for foot in places:
+            progress(f"fit {foot}")
+        found = over_cores(fit_foot, [ready] * len(places), places, places.values())
+        return dict(zip(places, found, strict=True))
 
     found = fit_all(places)
     fits = {foot: [*one.fits.values()] for foot, one in found.items()}

@@ -9,6 +9,7 @@ from itertools import combinations
 import numpy as np
 
 from plantar.conventions import NORMAL95, ROTATIONAL_AXES, Array
+from plantar.cores import blas_on_one_core
 from plantar.errors import DataError
 from plantar.estimation import fit_blocks
 from plantar.estimation.residual_covariance import cosine_covariance
@@ -63,6 +64,7 @@ class Selection:
     compared: Choice | None
 
 
+@blas_on_one_core()
 def select_motions(
     robot: RobotInput,
     logs: LogInputs,

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Sequence
 import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES, Axis
+from plantar.cores import blas_on_one_core
 from plantar.errors import DataError
 from plantar.feet.assess.scores import score_axis
 from plantar.feet.prepare import prepare_unseen
@@ -22,6 +23,7 @@ from plantar.results.usage import used_shares
 from plantar.sensors.delays.sensor_delay import SensorDelay
 
 
+@blas_on_one_core()
 def validate_feet(
     result: FeetResult | str | os.PathLike[str],
     robot: RobotInput,

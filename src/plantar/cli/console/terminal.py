@@ -5,12 +5,13 @@ from __future__ import annotations
 import re
 import sys
 from collections.abc import Callable, Iterable, Sequence
-
-from rich.console import Console
-from rich.markup import escape
-from rich.table import Table
+from typing import TYPE_CHECKING
 
 from plantar.notes import Note, NoteKind, kinds
+
+if TYPE_CHECKING:  # what prints nothing does not import it
+    from rich.console import Console
+    from rich.table import Table
 
 VERDICT_STYLE = {"usable": "green", "weak": "yellow", "unidentifiable": "red"}
 SEVERITY_STYLE = {"info": "dim", "warning": "yellow"}
@@ -21,6 +22,8 @@ WORD = re.compile(r"[^\W\d_]{3}")
 
 def console() -> Console:
     """Where tables go: stdout, wide enough for a table also in a pipe."""
+    from rich.console import Console
+
     return Console(width=None if sys.stdout.isatty() else PIPE_WIDTH, highlight=False)
 
 
@@ -43,6 +46,9 @@ def table(
     title: str, columns: Sequence[str], rows: Iterable[Sequence[str]], styles: Sequence[str] = ()
 ) -> Table:
     """A table of text cells; numbers to the right, markup in any text escaped. `styles` colours whole rows."""
+    from rich.markup import escape
+    from rich.table import Table
+
     drawn = Table(title=escape(title), title_justify="left", header_style="bold", box=None, pad_edge=False)
     cells = [[escape(str(cell)) for cell in row] for row in rows]
     for place, name in enumerate(columns):
@@ -56,6 +62,8 @@ def table(
 def print_notes(out: Console, notes: Sequence[Note]) -> None:
     """Notes by their kinds, each warning in full and before the others, of other kinds the first; at most SCREENFUL
     lines, the rest counted."""
+    from rich.markup import escape
+
     warnings = [note for note in notes if note.severity == "warning"]
     remarks = [_remark(kind) for kind in kinds(notes, "info")]
     lines = [f"[{SEVERITY_STYLE['warning']}]note (warning): {escape(note.text)}[/]" for note in warnings]

@@ -13,7 +13,6 @@ from plantar.cli.console.delay import WrenchDelay
 from plantar.cli.console.memory import Memory
 from plantar.cli.console.terminal import progress
 from plantar.cli.identify import identification
-from plantar.cli.identify.feet_tables import print_feet
 from plantar.feet.settings import AUTOMATIC, DEFAULT_CUTOFF, MODEL_CHOICES, FeetSettings, OffsetRule
 from plantar.files import refuse_file, write_text
 from plantar.logs.inputs import open_in_turn
@@ -60,6 +59,7 @@ def run(
 
     read, show = open_in_turn([*logs, *(validate or ())], known, kept_size, memory), progress(quiet)
     ready = prepare_all(known, read[: len(logs)], read[len(logs) :], settings, show, _get_rest_ready)
+    from plantar.cli.identify.feet_tables import print_feet
     from plantar.feet.identify import fit_prepared
     from plantar.report.feet import feet_page
 
@@ -79,6 +79,7 @@ def _get_rest_ready() -> None:
     """Import what comes behind the logs, and make the report ready: cores wait for the last log."""
     import pyarrow.parquet  # noqa: F401
 
+    import plantar.cli.identify.feet_tables
     import plantar.feet.identify  # noqa: F401
     from plantar.report.feet import get_report_ready
 

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from rich.console import Console
-from rich.markup import escape
+from typing import TYPE_CHECKING
 
 from plantar.cli.console.advice import advised
 from plantar.cli.console.terminal import VERDICT_STYLE, number, print_notes, table
 from plantar.pages import on_feet
 from plantar.results.feet import FeetResult, Parameter, ValidationRow
 
+if TYPE_CHECKING:
+    from rich.console import Console
+
 
 def print_feet(out: Console, result: FeetResult) -> None:
     """Warnings about the logs, parameters, reasons where one is not usable, validation, other notes."""
+    from rich.markup import escape  # what prints nothing does not import it
+
     warnings = [note for note in result.notes if note.severity == "warning"]
     if warnings:
         print_notes(out, warnings)

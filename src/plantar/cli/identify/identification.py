@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Annotated, Any, Protocol, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, Protocol, TypeVar
 
 import typer
-from rich.console import Console
 
 from plantar.cli.console.terminal import console, end_progress, progress
 from plantar.files import refuse_file
@@ -16,6 +15,9 @@ from plantar.logs.inputs import open_together
 from plantar.logs.motion_log import MotionLog
 from plantar.results.io import dump_json
 from plantar.robot.model import RobotModel, load_robot
+
+if TYPE_CHECKING:
+    from rich.console import Console
 
 Robot = Annotated[Path, typer.Argument(help="Robot file (YAML).", metavar="ROBOT.yaml")]
 Logs = Annotated[list[Path], typer.Argument(help="Logs to fit.", metavar="LOG...")]

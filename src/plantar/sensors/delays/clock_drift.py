@@ -8,7 +8,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from plantar.cores import Each
 from plantar.estimation.delays.delay import Pair, estimate_delay
 from plantar.notes import Note
 
@@ -37,9 +36,9 @@ class ClockDrift(NamedTuple):
         return Note("clock_drift", "warning", text)
 
 
-def clock_drift(pairs: Sequence[Pair], each: Each = map) -> ClockDrift | None:
-    """What the delays of each log's halves say; None where they do not clearly differ. `each` maps over pairs."""
-    told = zip(pairs, each(_halves, pairs), strict=True)
+def clock_drift(pairs: Sequence[Pair]) -> ClockDrift | None:
+    """What the delays of each log's halves say; None where they do not clearly differ."""
+    told = zip(pairs, map(_halves, pairs), strict=True)
     found = [(pair, halves) for pair, halves in told if halves is not None]
     if not found:
         return None
