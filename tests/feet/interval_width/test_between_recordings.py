@@ -137,3 +137,29 @@ def test_a_recording_that_knows_a_twentieth_is_compared() -> None:
         fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
         assert fit is not None
         assert (axis_differences(fit, recordings, False) is not None) == compared
+
+
+@pytest.mark.parametrize(
+    ("second", "shown", "by_share"), [(1.0, True, True), (1.0, False, False), (0.0, True, False)]
+)
+def test_few_that_know_most_are_as_far_off_as_all_axes_show(
+    second: float, shown: bool, by_share: bool
+) -> None:
+    """Of six recordings one knows eight tenths and a second the rest, and both are alike here: by chance, if others
+    differ. Where all know as much, refits tell."""
+    recordings = []
+    for seed in range(6):
+        size = 1.0 if not second or seed == 0 else (0.5 if seed == 1 else 0.01)
+        angle = size * swayed(3000, seed=seed)
+        noise = 0.2 * np.random.default_rng(seed).standard_normal(3000)
+        recordings.append(made_recording(f"sway_{seed}", angle, 400.0 * angle + noise))
+    fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
+    assert fit is not None
+    apart = Apart(0.03, 4, (0.01, 0.06) if shown else None)
+    (cause,) = between_recordings(fit, tangent_blocks(recordings, fit), 0.0, False, apart)
+    if by_share:
+        assert (cause.std, cause.freedom) == (0.03, 4.0)
+        assert cause.share[0] == pytest.approx(0.03 * np.hypot(0.8, 0.2) * fit.values[0], rel=0.1)
+    else:
+        assert cause.freedom == 5.0
+        assert cause.share[0] < 0.002 * fit.values[0]

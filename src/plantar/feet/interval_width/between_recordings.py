@@ -90,25 +90,29 @@ def between_recordings(
     From FEWEST_RECORDINGS on refits without one of them each (jackknife) say it, whatever it is that differs. Fewer are
     taken to differ by a share of spring and damper, as this axis shows it, at least the robot file's `prior`. Where one
     recording knows all but all of the stiffness, nothing shows there how far that one is off: all axes do (`of_all`).
-    blocks: the recordings' `tangent_blocks`.
+    So they do, if they show it, where few know most of it, whose refits may be alike by chance. blocks: the recordings'
+    `tangent_blocks`.
     """
     if not _comparable(blocks, shared):
         return []
     effects = _effects(fit, blocks)
     first = int(np.argmax(np.abs(effects[:, 0])))
     alone = abs(float(effects[first, 0])) > ALL_BUT_ALL * abs(float(fit.values[0]))
+    by_share = np.sqrt(np.sum(effects**2, axis=0))
     causes = []
     if many := len(blocks) >= FEWEST_RECORDINGS:
         refits = values_without_each(blocks)
         covariance, freedom = jackknife(np.delete(refits, first, axis=0) if alone else refits)
-        beyond = np.diag(covariance) - fit_blocks(blocks).std ** 2
-        causes.append(Cause(NAME, np.sqrt(np.maximum(beyond, 0.0)), 1.0, float(freedom[0])))
+        beyond = np.sqrt(np.maximum(np.diag(covariance) - fit_blocks(blocks).std ** 2, 0.0))
+        few = by_share[0] > abs(float(fit.values[0])) / np.sqrt(FEWEST_RECORDINGS)
+        if few and of_all.shown is not None and of_all.share * by_share[0] > beyond[0]:
+            return [Cause(NAME, by_share, of_all.share, float(of_all.others))]
+        causes.append(Cause(NAME, beyond, 1.0, float(freedom[0])))
     if alone or not many:
         own = None if alone else _differences(fit, blocks, effects)
         apart = (
             Apart(max(prior, of_all.share), of_all.others) if own is None else recordings_apart([own], prior)
         )
-        by_share = np.sqrt(np.sum(effects**2, axis=0))
         causes.append(Cause(NAME, by_share, apart.share, float(apart.others)))
     return causes
 
