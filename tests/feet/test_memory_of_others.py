@@ -12,13 +12,15 @@ import pytest
 from bush_data_sets import Rubber
 from made_recording import FOOT, PERIOD, made_recording, swayed
 from plantar.contact.stances import Stances
+from plantar.conventions import Axis
 from plantar.feet.fit.axis_fit import fit_axis
+from plantar.feet.fit.hidden_memory import TOO_SMALL
 from plantar.feet.foot_fit import FittedFoot
 from plantar.feet.memory_of_others import with_memory_of_others
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.settings import FeetSettings
-from plantar.models import Hardening, KelvinVoigt
+from plantar.models import BoucWen, BushModel, Hardening, KelvinVoigt
 
 RUBBER = Rubber(stiffness=420.0, damping=18.0, slip_torque=4.0, slip_angle=0.006)
 STEPPING = Stances(np.arange(4000) // 1000, np.ones(4000))
@@ -154,3 +156,51 @@ def test_a_spring_that_hardens_elsewhere_is_no_memory(
     hardens = replace(clear, model=Hardening())
     unsure = changed(spring, refused="is hardly reached")
     assert of(unsure, hardens, recordings) is unsure
+
+
+@pytest.mark.parametrize(
+    ("axis", "elsewhere", "caution", "model", "dropped"),
+    [
+        ("roll", 0.0151, None, KelvinVoigt(), True),
+        ("roll", 0.0151, "drift", KelvinVoigt(), False),  # there it is open as well
+        (
+            "roll",
+            0.0074,
+            None,
+            KelvinVoigt(),
+            False,
+        ),  # half of the small motions' limit: roll's border is half as far
+        ("roll", 0.0151, None, BoucWen(), False),
+        (
+            "pitch",
+            0.0151,
+            None,
+            KelvinVoigt(),
+            False,
+        ),  # at pitch's border roll would have to bend twice as far
+        ("pitch", 0.0301, None, KelvinVoigt(), True),
+    ],
+)
+def test_where_the_other_axis_bends_the_rubber_and_shows_no_memory_small_motions_hide_none(
+    spring: AxisFit, axis: Axis, elsewhere: float, caution: str | None, model: BushModel, dropped: bool
+) -> None:
+    assert spring.choice is not None
+    small = replace(
+        spring, axis=axis, choice=replace(spring.choice, reach=0.012, caution=TOO_SMALL.format(0.012))
+    )
+    other: Axis = "pitch" if axis == "roll" else "roll"
+    wide = replace(
+        spring,
+        axis=other,
+        model=model,
+        shape=np.ones(len(model.shape_terms)),
+        values=np.ones(len(model.terms)),
+        choice=replace(spring.choice, reach=elsewhere, caution=caution),
+    )
+    corners = np.array([[0.1, 0.05], [-0.1, 0.05], [-0.1, -0.05], [0.1, -0.05]])
+    robot = SimpleNamespace(feet={FOOT: SimpleNamespace(sole=SimpleNamespace(polygon=corners))})
+    ready: Any = SimpleNamespace(fitted=[], settings=FeetSettings(), robot=robot)
+    one = FittedFoot(FOOT, None, {axis: small, other: wide}, {}, ready, ready, ())  # type: ignore[arg-type]
+    found = with_memory_of_others({"one": one})["one"].fits[axis]
+    assert found.choice is not None
+    assert (found.choice.caution is None) == dropped

@@ -1,7 +1,8 @@
 """The bushes of one robot are of one rubber: a memory that other axes show is taken where one shows it less clearly.
 
 In short stances, whose first states nobody knows, a memory must gain much before it is believed. Where another axis
-shows it beyond doubt it need not: spring and damper alone would come out too stiff by the element's slope.
+shows it beyond doubt it need not: spring and damper alone would come out too stiff by the element's slope. And where
+one axis bends the rubber far enough to show a memory and has none, smaller motions about the other hide none.
 """
 
 from __future__ import annotations
@@ -11,9 +12,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from plantar.conventions import ROTATIONAL_AXES
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.fit.half_turns import cautioned_if_hardly_turned
-from plantar.feet.fit.hidden_memory import has_memory, slope_share
+from plantar.feet.fit.hidden_memory import SMALL, has_memory, only_too_small, slope_share
 from plantar.feet.foot_fit import FittedFoot
 from plantar.feet.internal_error import gives_up
 from plantar.feet.regression.axis import AxisFit
@@ -41,7 +43,10 @@ def with_memory_of_others(feet: Mapping[str, FittedFoot]) -> dict[str, FittedFoo
     for foot, one in feet.items():
         fits = dict(one.fits)
         for axis, fit in one.fits.items():
-            if fit.choice is None or isinstance(fit.model, Hysteretic) or axis in one.given_up or not shown:
+            if fit.choice is None or isinstance(fit.model, Hysteretic) or axis in one.given_up:
+                continue
+            if not shown:
+                fits[axis] = _without_needless_caution(fit, fit.choice, one)
                 continue
             steps, small = _steps(one), fit.choice.reach * SURE_SLIP_ANGLE < slips < np.inf
             score = None
@@ -59,6 +64,25 @@ def with_memory_of_others(feet: Mapping[str, FittedFoot]) -> dict[str, FittedFoo
                 fits[axis] = cautioned_if_hardly_turned(fit, one.thin.fitted)
         found[foot] = replace(one, fits=fits)
     return found
+
+
+def _without_needless_caution(fit: AxisFit, choice: ModelChoice, foot: FittedFoot) -> AxisFit:
+    """The fit of small motions without the caution that larger ones may show a memory, where the other axis of the same
+    foot shows none: at the sole's border it strains the rubber as far as larger motions about this one would."""
+    if not only_too_small(choice):
+        return fit
+    half = dict(
+        zip(ROTATIONAL_AXES, np.ptp(foot.ready.robot.feet[foot.foot].sole.polygon, axis=0), strict=True)
+    )
+    shows_none = any(
+        other.choice is not None
+        and other.choice.caution is None
+        and not has_memory(other.model)
+        and other.choice.reach * half[axis] >= SMALL * half[fit.axis]
+        for axis, other in foot.fits.items()
+        if axis != fit.axis and axis not in foot.given_up
+    )
+    return replace(fit, choice=replace(choice, caution=None)) if shows_none else fit
 
 
 def _steps(foot: FittedFoot) -> bool:

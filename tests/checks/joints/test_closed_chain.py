@@ -65,6 +65,30 @@ def test_joints_that_stand_are_not_dead(robot: RobotModel) -> None:
     )
 
 
+@pytest.mark.parametrize(("apart", "told"), [(0.0101, True), (0.0099, False)])
+@pytest.mark.parametrize("mirrored", [1.0, -1.0])
+def test_legs_that_move_alike_are_not_told_exchanged(
+    robot: RobotModel, monkeypatch: pytest.MonkeyPatch, apart: float, told: bool, mirrored: float
+) -> None:
+    """Within a hundredth of a radian they read next to the same: their soles then seem to move by anything's doing."""
+    log = record(sway(duration=12.0))
+    wave = np.sin(log.time)
+    still = {name: 1e-4 * wave for name in log.columns if name.startswith("joint.")}
+    moving = {
+        "joint.left_ankle_pitch.position": 0.05 * wave,
+        "joint.right_ankle_pitch.position": mirrored * (0.05 + apart / 2) * wave,
+    }
+    reads = iter([1.0, 0.1])  # as read, and exchanged
+    monkeypatch.setattr(
+        "plantar.checks.joints.closed_chain._soles",
+        lambda states: next(reads) * np.sin(np.arange(len(states["left"].force_z)))[:, None],
+    )
+    assert (
+        bool([one for one in check_closed_chain(robot, log.with_columns(still | moving)) if one.fatal])
+        == told
+    )
+
+
 def test_exchanged_legs_are_refused() -> None:
     """The twin leans into a corner, so that its legs move each in its own way."""
     twin, sensors = hrp2.robot(), PRESETS["sensors"]

@@ -164,3 +164,29 @@ def test_a_recording_that_knows_a_twentieth_is_compared() -> None:
         fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
         assert fit is not None
         assert (axis_differences(fit, recordings, False) is not None) == compared
+
+
+@pytest.mark.parametrize(
+    ("sizes", "share", "told"),
+    [
+        ((1.0, 0.5, *[0.01] * 4), 0.03, 0.03 * np.hypot(0.8, 0.2)),
+        ((1.0, 0.5, *[0.01] * 4), 0.0, 0.0),
+        ((1.0, 0.98, *[0.01] * 4), 0.03, 0.03 / np.sqrt(2)),
+        ((1.0,) * 6, 0.03, 0.0),
+    ],
+)
+def test_few_that_know_most_are_as_far_off_as_all_axes_show(
+    sizes: tuple[float, ...], share: float, told: float
+) -> None:
+    """Of six recordings one or two know nearly all and are alike here: by chance, if others differ. Where all know as
+    much, refits tell."""
+    recordings = []
+    for seed, size in enumerate(sizes):
+        angle = size * swayed(3000, seed=seed)
+        noise = 0.2 * np.random.default_rng(seed).standard_normal(3000)
+        recordings.append(made_recording(f"sway_{seed}", angle, 400.0 * angle + noise))
+    fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
+    assert fit is not None
+    apart = Apart(share, 4, (0.01, 0.06) if share else None)
+    (cause,) = between_recordings(fit, tangent_blocks(recordings, fit), apart, False)
+    assert cause.share[0] / fit.values[0] == pytest.approx(told, rel=0.1, abs=0.003)

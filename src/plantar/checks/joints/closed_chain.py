@@ -138,6 +138,12 @@ def _exchanged_legs(stand: _Stand, support: NDArray[np.intp]) -> Iterator[Findin
         return
     positions = stand.positions.copy()
     positions[:, left], positions[:, right] = stand.positions[:, right], stand.positions[:, left]
+    # Axes of the two legs may point the same way or opposite ways.
+    alike, mirrored = (
+        np.ptp(stand.positions[:, left] + sign * stand.positions[:, right], axis=0) for sign in (-1, 1)
+    )
+    if np.minimum(alike, mirrored).max() < LEAST_ANGLE:  # exchanged, they read next to the same
+        return
     soles = [_soles(one.as_read) for one in (stand, replace(stand, positions=positions))]
     supports = [support == number for number in np.unique(support)]
     as_read, exchanged = (

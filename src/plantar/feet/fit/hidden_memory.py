@@ -100,6 +100,11 @@ def cautioned(choice: ModelChoice, *, timed: bool, steps: bool) -> ModelChoice:
     return replace(choice, caution=TOO_SMALL.format(choice.reach))
 
 
+def only_too_small(choice: ModelChoice) -> bool:
+    """Whether nothing is open about a memory but what larger motions would show."""
+    return choice.caution == TOO_SMALL.format(choice.reach)
+
+
 def _unbelieved(choice: ModelChoice) -> ModelChoice:
     """Spring and damper in the place of a memory, which stays in the ranking: `rival` says what it would change."""
     if not has_memory(choice.fit.model):

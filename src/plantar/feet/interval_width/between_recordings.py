@@ -84,22 +84,27 @@ def between_recordings(fit: AxisFit, blocks: Sequence[Block], every: Apart, shar
     From FEWEST_RECORDINGS on refits without one of them each (jackknife) say it, whatever it is that differs. Fewer are
     taken to differ by a share of spring and damper, as this axis shows it, or `every` axis together where that is more;
     so are they for a number that one recording tells more of than all others together: a refit without it is the
-    others' noise. blocks: the recordings' `tangent_blocks`.
+    others' noise. Where every axis shows that recordings differ, few that know most of a number differ no less: their
+    refits may be alike by chance. blocks: the recordings' `tangent_blocks`.
     """
     if not _comparable(blocks, shared):
         return []
     told = np.array([np.sum(own**2, axis=1) for own in influences_of(blocks)])
     few = (len(blocks) < FEWEST_RECORDINGS) | (told.max(axis=0) > MOST * told.sum(axis=0))
+    effects = _effects(fit, blocks)
+    by_share = np.sqrt(np.sum(effects**2, axis=0))
     std, freedom = np.zeros(len(few)), len(blocks) - 1
     if few.any():
-        effects = _effects(fit, blocks)
         own = _differences(fit, blocks, effects)
         here = [] if own is None else [recordings_apart([own], 0.0)]
         apart = max([*here, every], key=lambda each: each.share)
-        std, freedom = apart.share * np.sqrt(np.sum(effects**2, axis=0)), apart.others
+        std, freedom = apart.share * by_share, apart.others
     if not few.all():
         refits = np.diag(jackknife(values_without_each(blocks))[0])
         beyond = np.sqrt(np.maximum(refits - fit_blocks(blocks).std ** 2, 0.0))
+        if every.shown is not None:
+            fewer = by_share > np.abs(effects.sum(axis=0)) / np.sqrt(FEWEST_RECORDINGS)
+            beyond = np.where(fewer, np.maximum(beyond, every.share * by_share), beyond)
         std = np.where(few, std, beyond)
     return [Cause(NAME, std, 1.0, freedom)]
 
