@@ -4,19 +4,25 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from biped import record, sway
+from biped_robot import FEET
 from feet_trials import PUNCTUAL
 from plantar.errors import DataError
+from plantar.estimation.random_effects import Differences
 from plantar.estimation.residual_covariance import relative_std_percent
 from plantar.feet import foot_fit
+from plantar.feet.foot_fit import FittedFoot, between_all
 from plantar.feet.identify import fit_prepared
 from plantar.feet.internal_error import described
+from plantar.feet.interval_width.between_recordings import AxisDifferences
 from plantar.feet.prepare import PreparedLogs, prepare_all
+from plantar.feet.settings import FeetSettings
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
 
@@ -86,3 +92,24 @@ def test_an_error_is_described_by_its_innermost_place_in_plantar() -> None:
         relative_std_percent("none", 1.0)  # type: ignore[arg-type]
     assert described(caught.value).startswith("TypeError in estimation/residual_covariance.py, line ")
     assert described(ValueError("two\nlines")) == "ValueError outside plantar: two lines"
+
+
+@pytest.mark.parametrize(
+    ("differ", "share"), [((0.03, 0.03, 0.03, 0.03), True), ((0.03, 0.0, 0.0, 0.0), False)]
+)
+def test_one_axis_that_differs_alone_says_nothing_of_the_others(
+    monkeypatch: pytest.MonkeyPatch, differ: tuple[float, ...], share: bool
+) -> None:
+    """Rubber warms up in all axes; two recordings, known to 0.1 %, where the robot file allows 0.2 %."""
+    told = iter(
+        AxisDifferences(Differences(np.array([own]), np.array([[1e-6]])), 1e-3, frozenset("ab"))
+        for own in differ
+    )
+    monkeypatch.setattr(foot_fit, "axis_differences", lambda *_: next(told))
+    robot = SimpleNamespace(uncertainty=SimpleNamespace(between_recordings=0.002))
+    ready = SimpleNamespace(robot=robot, settings=FeetSettings(), fitted=())
+    feet = [FittedFoot(foot, None, {"pitch": None, "roll": None}, {}, ready, ready, ()) for foot in FEET]  # type: ignore[arg-type, dict-item]
+    found = between_all(feet)
+    assert found.others == 1
+    assert (found.shown is not None) == share
+    assert found.share > 0.01 if share else found.share == 0.002

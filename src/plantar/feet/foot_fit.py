@@ -109,14 +109,21 @@ def fit_foot(ready: PreparedLogs, foot: str, place: PlaceSpread) -> FittedFoot:
 
 
 def between_all(feet: Sequence[FittedFoot]) -> Apart:
-    """By how much recordings differ, as all axes of all feet show it together."""
+    """By how much recordings differ, where all axes of all feet show it together, also without any one of them; else
+    what the robot file allows."""
     told = list[AxisDifferences]()
     for one in feet:
         for axis, fit in one.fits.items():
             with gives_up(axis, one.given_up):
                 own = axis_differences(fit, one.thin.fitted, one.ready.settings.offset == "shared")
                 told += [] if own is None else [own]
-    return recordings_apart(told, max(one.ready.robot.uncertainty.between_recordings for one in feet))
+    prior = max(one.ready.robot.uncertainty.between_recordings for one in feet)
+    apart = recordings_apart(told, prior)
+    # What warms up is the rubber of all axes. One axis that differs alone has that in its own interval.
+    others = ([*told[:place], *told[place + 1 :]] for place in range(len(told)))
+    if all(recordings_apart(each, prior).shown for each in others):
+        return apart
+    return apart._replace(share=prior, shown=None)
 
 
 def without_needless(fitted: FittedFoot, between: Apart) -> FittedFoot:
