@@ -16,7 +16,7 @@ CRITERIA: Final = get_args(Criterion)
 MISSED: Final = 0.1
 # Bend to either side [rad] at which `identify feet` surely tells an element that slips from the spring: it asks for
 # 1.25 times the slip angle, and rehearsals make motions smaller. With this power of what is missing widths grow.
-TOLD_APART: Final = 1.7 * SLIP_ANGLE
+TOLD_APART: Final = 1.4 * SLIP_ANGLE
 STEEP: Final = 8
 # Half widths that are wanted: of stiffness and damping [share], delay [s], vertical compliance [share]. The widest is
 # the one that is farthest above.
