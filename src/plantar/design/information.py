@@ -30,7 +30,9 @@ SEEN_FORCE: Final = (
     6.0  # N rms that the motion adds to the weight: beside less, sensors' noise looks like a hand's push
 )
 USUAL_DELAY: Final = 0.0075  # s: deviation of a delay of which nothing is known, as robot files have it
-HOPELESS: Final = 30.0  # times what is wanted: a stiffness within a third is weak, however near it comes to that
+HOPELESS: Final = (
+    30.0  # times what is wanted: a stiffness within a third is weak, however near it comes to that
+)
 BEYOND: Final = 0.1  # share of what is wider still
 OTHERS: Final = 0.5  # share of all numbers beside the widest
 UNEVEN: Final = (
