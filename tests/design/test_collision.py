@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from unittest.mock import patch
 
 import numpy as np
 import pinocchio as pin
 import pytest
 
-from plantar.design.collision import self_collision
+import design_samples
+from plantar.design import collision
+from plantar.design.collision import SelfCollision, self_collision
 from plantar.twin.robots import hrp2
 
 EVERY = 10
@@ -48,3 +51,19 @@ def test_boxes_that_meet_are_named(reach: float, touches: bool) -> None:
 def test_a_robot_without_geometry_is_not_watched() -> None:
     robot = hrp2.robot()
     assert self_collision(robot, pin.neutral(robot.floating_model)[None]).pairs == 0
+
+
+@pytest.mark.parametrize(("touches", "share"), [(2.0, 1.0), (1.0, 0.75), (0.7, 0.5), (0.1, 0.0)])
+def test_arms_swing_no_further_than_they_touch_nothing(touches: float, share: float) -> None:
+    """With 1.3 times as far, as legs and trunk move as well, to both sides."""
+    legs = design_samples.legs()
+    rest, robot = legs.rest[0], hrp2.robot()
+
+    def touching(_: object, configurations: np.ndarray) -> SelfCollision:
+        turned = [pin.difference(robot.floating_model, rest, q) / legs.arms.max() for q in configurations]
+        assert np.array_equal(configurations[0], rest), "pairs that touch at rest are not watched"
+        assert np.min(turned) == pytest.approx(-np.max(turned)), "to both sides"
+        return SelfCollision(1, ("hand", "leg", 3) if np.max(np.abs(turned)) > touches else None)
+
+    with patch.object(collision, "self_collision", touching):
+        assert collision.free_swing(robot, rest, legs.arms) == share

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from copy import copy
+from unittest.mock import patch
 
 import numpy as np
 import pytest
+from scipy.optimize import linprog
 
 import design_samples
 from plantar.contact.polygon import inside_distance
 from plantar.conventions import NORMAL95
 from plantar.design import information as objective
+from plantar.design import search
 from plantar.design.family import CHANNELS, Lines
 from plantar.design.information import (
     Criterion,
@@ -136,7 +139,7 @@ def test_a_delay_shows_where_the_moments_change_and_costs_damping(monkeypatch: p
     moved = reach.lines.displacements(coefficients, time)
     pushed = np.gradient(np.gradient(moved, time, axis=1), time, axis=1)
     rates = np.gradient(design_samples.linear().wrench(moved, pushed)[3:5], time, axis=1)
-    assert wide == pytest.approx(NORMAL95 * UNCLOSED / np.sqrt(np.sum(rates**2) * 10 / 200.0), rel=0.05)
+    assert wide == pytest.approx(NORMAL95 * UNCLOSED / np.sqrt(np.sum(rates**2) * 10 / 200.0), rel=0.1)
     unsure = half_widths(reach, coefficients)
     monkeypatch.setattr(objective, "UNCLOSED", 1e-9)
     known = half_widths(reach, coefficients)
@@ -180,10 +183,6 @@ def test_the_motion_found_is_at_its_limits_and_not_beyond() -> None:
 
 def test_the_same_seed_gives_the_same_motion_and_another_another() -> None:
     def found(seed: int) -> np.ndarray:
-        from unittest.mock import patch
-
-        from plantar.design import search
-
         with patch.object(search, "TRIES", 5):
             return best_motion(design_samples.reach(), "A", np.random.default_rng(seed))
 
@@ -206,8 +205,12 @@ def test_the_element_is_at_least_the_rubber_of_the_rehearsals() -> None:
 def test_feet_are_beyond_their_limits_where_a_centre_of_pressure_is(sign: float) -> None:
     """Whichever way the motion goes: soles are longer in front than behind."""
     reach, inside = design_samples.reach(), []
+    of_feet, feet = copy(reach), reach.deflection[0, ..., 0].size + reach.load[0, ..., 0].size
+    feet += len(reach.bushes) * sum(len(room) for _, room in reach._edges)
+    of_feet._low, of_feet._high = reach._low.copy(), reach._high.copy()
+    of_feet._low[:-feet], of_feet._high[:-feet] = np.inf, np.inf
     shape = sign * design_samples.coefficients()
-    for size in np.linspace(0.6, 2.0, 29):
+    for size in np.linspace(0.3, 2.0, 35):
         bent, load = reach.of(reach.deflection, size * shape), reach.of(reach.load, size * shape)
         rate = reach.of(reach.rate, size * shape)
         slips = remembered(bent.reshape(-1, bent.shape[-1]), [SLIP_ANGLE]).reshape(bent.shape)
@@ -220,15 +223,44 @@ def test_feet_are_beyond_their_limits_where_a_centre_of_pressure_is(sign: float)
             free &= bool((np.einsum("ek,ksn->esn", normals, pressure) + room[:, None, None] > 0).all())
         free &= bool((-load.min() / reach.weight) < 1 - LIFT)
         inside.append(free)
-        assert (reach._feet_used(size * shape) <= 1.0) == free, size
+        assert (of_feet.used(size * shape) <= 1.0) == free, size
     assert any(inside)
     assert not all(inside)
 
 
 def test_joints_have_their_own_room_to_each_side() -> None:
     reach, shape = copy(design_samples.reach()), design_samples.coefficients()
-    moved = reach._gain.T @ reach.of(reach._basis, shape)
-    for side, most in ((0, -moved.min(axis=1)), (1, moved.max(axis=1))):
-        reach._room = np.full_like(reach._room, np.inf)
-        reach._room[:, side] = 1e-3
-        assert reach._joints_used(shape) == pytest.approx(most.max() / 1e-3)
+    gain = design_samples.linear().joints[:, 6:]
+    moved = gain[:, np.abs(gain).max(axis=0) > 1e-9].T @ reach.lines.displacements(shape, reach.time)
+    rows = slice(len(CHANNELS), len(CHANNELS) + len(moved))
+    for side, most in (("_low", -moved.min(axis=1)), ("_high", moved.max(axis=1))):
+        reach._low, reach._high = (np.full_like(reach._low, np.inf) for _ in range(2))
+        getattr(reach, side)[rows] = 1e-3
+        assert reach.used(shape) == pytest.approx(most.max() / 1e-3)
+
+
+def test_near_its_limits_a_motion_has_room_as_told() -> None:
+    """Of springs alone all is linear: what is left of each limit after a small step is what the rows say."""
+    reach, shape = copy(design_samples.reach()), design_samples.coefficients()
+    reach.element = 0 * reach.element
+    rows, left = reach.near(shape)
+    assert left.min() == pytest.approx(1 - reach.used(shape))
+    assert left.max() < 0.7, "only what is near"
+    assert rows @ shape == pytest.approx(1 - left)
+
+
+def test_the_best_motion_is_the_corner_of_the_limits_that_a_slope_leads_to() -> None:
+    """Of what is linear a linear program over all samples knows the optimum."""
+    reach = copy(design_samples.reach())
+    reach.element = 0 * reach.element
+    units = np.array([1 / reach.used(row) for row in np.eye(reach.lines.size)])
+    slope = np.random.default_rng(3).standard_normal(units.size) / units
+    with patch.object(search, "badness", lambda _, coefficients, *__: float(slope @ coefficients)):
+        found = best_motion(reach, "widest", np.random.default_rng(2))
+    rows = reach._watched.reshape(reach.lines.size, -1).T
+    high, low = (np.repeat(limit, reach.time.size) for limit in (reach._high, reach._low))
+    shares = np.vstack([rows / high[:, None], -rows / low[:, None]])
+    close = shares[shares @ found > 0.5]  # the optimum of these alone is no worse than that of all
+    best = linprog(slope * units, A_ub=close * units, b_ub=np.ones(len(close)), bounds=(-9, 9)).fun
+    assert reach.used(found) <= 1 + 1e-9
+    assert slope @ found == pytest.approx(best, rel=0.02)

@@ -240,8 +240,8 @@ AT_THEIR_EDGES = (
     Mutant(
         "design/reach.py",
         "the room below a joint's angle for that above",
-        "(moved.max(axis=1) / self._room[:, 1])",
-        "(moved.max(axis=1) / self._room[:, 0])",
+        "return [(gain @ self._basis, down, up)",
+        "return [(gain @ self._basis, up, up)",
         ("design/test_information.py",),
     ),
 )

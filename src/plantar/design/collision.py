@@ -5,12 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
+import numpy as np
 import pinocchio as pin
 
 from plantar.conventions import Array
 from plantar.robot.model import RobotModel
 
 EVERY: Final = 10  # configurations: five a second
+SHARES: Final = (1.0, 0.75, 0.5, 0.25)  # of a swing, tried in this order
+BESIDE: Final = 1.3  # times as far, as legs and trunk move as well
+PLACES: Final = 9
 FOLDERS: Final = 5  # above the URDF, in which its meshes' packages may lie
 
 
@@ -48,6 +52,16 @@ def self_collision(robot: RobotModel, configurations: Array) -> SelfCollision:
             first, second = (geometry.geometryObjects[number].name for number in (pair.first, pair.second))
             return SelfCollision(len(geometry.collisionPairs), (first, second, row))
     return SelfCollision(len(geometry.collisionPairs))
+
+
+def free_swing(robot: RobotModel, rest: Array, swing: Array) -> float:
+    """How much of a swing (nv,) of the arms to both sides of `rest` (nq,) no links touch in, as a share."""
+    turns = np.repeat(np.linspace(-1.0, 1.0, PLACES), EVERY)
+    for share in SHARES:
+        places = [pin.integrate(robot.floating_model, rest, BESIDE * share * turn * swing) for turn in turns]
+        if self_collision(robot, np.array([*EVERY * [rest], *places])).touching is None:
+            return share
+    return 0.0
 
 
 def _geometry(robot: RobotModel, model: pin.Model) -> pin.GeometryModel | None:

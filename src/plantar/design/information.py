@@ -16,7 +16,7 @@ CRITERIA: Final = get_args(Criterion)
 MISSED: Final = 0.1
 # Bend to either side [rad] at which `identify feet` surely tells an element that slips from the spring: it asks for
 # 1.25 times the slip angle, and rehearsals make motions smaller. With this power of what is missing widths grow.
-TOLD_APART: Final = 1.7 * SLIP_ANGLE
+TOLD_APART: Final = 1.4 * SLIP_ANGLE
 STEEP: Final = 8
 # Half widths that are wanted: of stiffness and damping [share], delay [s], vertical compliance [share]. The widest is
 # the one that is farthest above.
@@ -30,7 +30,9 @@ SEEN_FORCE: Final = (
     6.0  # N rms that the motion adds to the weight: beside less, sensors' noise looks like a hand's push
 )
 USUAL_DELAY: Final = 0.0075  # s: deviation of a delay of which nothing is known, as robot files have it
-HOPELESS: Final = 300.0  # times what is wanted: three times the stiffness is no knowledge of it
+HOPELESS: Final = (
+    30.0  # times what is wanted: a stiffness within a third is weak, however near it comes to that
+)
 BEYOND: Final = 0.1  # share of what is wider still
 OTHERS: Final = 0.5  # share of all numbers beside the widest
 UNEVEN: Final = (

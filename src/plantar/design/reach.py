@@ -27,6 +27,7 @@ LARGEST: Final = {
     "centre.x": 0.07, "centre.y": 0.1, "centre.z": 0.02, "trunk.roll": 0.08, "trunk.pitch": 0.08, "arms": 1.0,
     "left.roll": 0.1, "left.pitch": 0.1, "right.roll": 0.1, "right.pitch": 0.1,
 }  # fmt: skip
+NEAR: Final = 0.3  # of a limit: what is less does not reach it in one step of the search
 ROOM: Final = 0.8  # of the way to a joint's limit, and of its speed
 
 
@@ -83,13 +84,24 @@ class Reach:
         self.weight = robot.pendulum.mass * GRAVITY / len(self.feet)
         self._edges = [_edges(legs, foot) for foot in self.feet]
         height = robot.pendulum.height
-        self._largest = np.array(
-            [LARGEST[channel] * (height if channel.startswith("centre") else 1.0) for channel in CHANNELS]
-        )
-        self._joints(legs, robot)
+        largest = [
+            LARGEST[channel] * (height if channel.startswith("centre") else 1.0) for channel in CHANNELS
+        ]
+        bent = self.deflection.reshape(lines.size, -1, self.time.size)
+        load = self.load.reshape(lines.size, -1, self.time.size)
+        limits = [
+            (self._basis, np.array(largest), np.array(largest)),
+            *self._joints(legs, robot),
+            (bent, *2 * (np.full(bent.shape[1], BEND),)),
+            (load, np.full(load.shape[1], (1 - LIFT) * self.weight), np.full(load.shape[1], np.inf)),
+            *(self._sole(place) for place in range(len(self.feet))),
+        ]
+        # What is watched, (size, series, N), and how far each series may go down and up, (series,).
+        self._watched = np.concatenate([values for values, _, _ in limits], axis=1)
+        self._low, self._high = (np.concatenate([one[side] for one in limits]) for side in (1, 2))
 
-    def _joints(self, legs: Legs, robot: LinearRobot) -> None:
-        """How far each joint may go and how fast, about standing."""
+    def _joints(self, legs: Legs, robot: LinearRobot) -> list[tuple[Array, Array, Array]]:
+        """How far each joint goes and how fast, about standing, and how far and fast it may."""
         model, rest = legs.model, legs.rest[0]
         moving, room, speed = [], [], []
         for joint in model.joints[2:]:
@@ -101,9 +113,18 @@ class Reach:
             room.append([rest[joint.idx_q] - low, high - rest[joint.idx_q]] if bounded else [np.inf, np.inf])
             fastest = float(model.upperVelocityLimit[joint.idx_v])
             speed.append(fastest if 0 < fastest < np.inf else np.inf)
-        self._room = np.maximum(ROOM * np.array(room), 1e-6)
-        self._speed = ROOM * np.array(speed)
-        self._gain = robot.joints[:, moving]
+        down, up = np.maximum(ROOM * np.array(room), 1e-6).T
+        gain, fast = robot.joints[:, moving].T, ROOM * np.array(speed)
+        return [(gain @ self._basis, down, up), (gain @ self._quick, fast, fast)]
+
+    def _sole(self, place: int) -> tuple[Array, Array, Array]:
+        """Towards each edge of a foot's sole, its springs' torque less what its load holds [N·m], and its limits."""
+        normals, room = self._edges[place]
+        torque = self.stiffness[:, None, None] * self.deflection[:, :, place]
+        torque += self.damping[:, None, None] * self.rate[:, :, place]
+        out = outward(normals, torque) - room[:, None] * self.load[:, :, place, None]
+        high = np.tile(room * self.weight, len(self.bushes))
+        return out.reshape(self.lines.size, high.size, -1), np.full(high.size, np.inf), high
 
     def of(self, part: Array, coefficients: Array) -> Array:
         """A part (size, ...) of a motion's response."""
@@ -111,36 +132,50 @@ class Reach:
 
     def used(self, coefficients: Array) -> float:
         """How much of the tightest limit a motion takes up: it may be larger by the inverse of this."""
-        return max(self._joints_used(coefficients), self._feet_used(coefficients))
+        return float(max(side.max() for side in self._shares(coefficients)))
 
-    def _joints_used(self, coefficients: Array) -> float:
-        channels, quick = self.of(self._basis, coefficients), self.of(self._quick, coefficients)
-        moved, fast = self._gain.T @ channels, self._gain.T @ quick
-        return max(
-            float((np.abs(channels).max(axis=1) / self._largest).max()),
-            float((-moved.min(axis=1) / self._room[:, 0]).max()),
-            float((moved.max(axis=1) / self._room[:, 1]).max()),
-            float((np.abs(fast).max(axis=1) / self._speed).max()),
+    def near(self, coefficients: Array) -> tuple[Array, Array]:
+        """Where a motion comes near a limit: how the share of it goes with the coefficients, (m, size), and what is
+        left of it, (m,)."""
+        rows, left = [], []
+        for share, limit in zip(self._shares(coefficients), (-self._low, self._high), strict=True):
+            peak = share > NEAR
+            peak[:, 1:] &= share[:, 1:] >= share[:, :-1]
+            peak[:, :-1] &= share[:, :-1] >= share[:, 1:]
+            series, sample = np.nonzero(peak)
+            rows.append((self._watched[:, series, sample] / limit[series]).T)
+            left.append(1.0 - share[series, sample])
+        return np.vstack(rows), np.concatenate(left)
+
+    def _shares(self, coefficients: Array) -> tuple[Array, Array]:
+        """Of its limits downwards and upwards, what every series (series, N) takes up."""
+        watched = self.of(self._watched, coefficients)
+        slipping = self._slipping(coefficients)
+        watched[-len(slipping) :] += slipping
+        return -watched / self._low[:, None], watched / self._high[:, None]
+
+    def _slipping(self, coefficients: Array) -> Array:
+        """What the elements beside the springs add to the series of the soles' edges, which come last, (series, N)."""
+        bent = self.of(self.deflection, coefficients)
+        states = remembered(bent.reshape(-1, bent.shape[-1]), [SLIP_ANGLE]).reshape(bent.shape)
+        torque = self.element[:, None] * states
+        return np.concatenate(
+            [
+                outward(normals, torque[:, place]).reshape(-1, bent.shape[-1])
+                for place, (normals, _) in enumerate(self._edges)
+            ]
         )
-
-    def _feet_used(self, coefficients: Array) -> float:
-        bent, load = self.of(self.deflection, coefficients), self.of(self.load, coefficients)
-        rate = self.of(self.rate, coefficients)
-        element = remembered(bent.reshape(-1, bent.shape[-1]), [SLIP_ANGLE]).reshape(bent.shape)
-        torque = self.stiffness[:, None, None, None] * bent + self.damping[:, None, None, None] * rate
-        torque += self.element[:, None] * element
-        used = max(float(np.abs(bent).max()) / BEND, -float(load.min()) / ((1 - LIFT) * self.weight))
-        for place, (normals, room) in enumerate(self._edges):
-            # The centre of pressure is (-torque pitch, torque roll)/load from below the bush.
-            out = np.einsum("ek,skn->sen", normals, torque[:, place] * [[-1.0], [1.0]])
-            out += room[:, None] * load[:, place, None]
-            used = max(used, float((-out.min(axis=(0, 2)) / (room * self.weight)).max()))
-        return used
 
 
 def margin_kept(polygon: Array) -> float:
     """Distance [m] from a sole's border that the centre of pressure keeps."""
     return float(min(EDGE, SMALLER_EDGE * np.ptp(polygon, axis=0).min() / 2))
+
+
+def outward(normals: Array, torque: Array) -> Array:
+    """Torques of a bush about pitch and roll (..., 2, N) towards each edge (..., n, N): the centre of pressure is
+    (-torque pitch, torque roll)/load from below the bush."""
+    return np.asarray(-np.einsum("ek,...kn->...en", normals, torque * [[-1.0], [1.0]]))
 
 
 def _edges(legs: Legs, foot: str) -> tuple[Array, Array]:

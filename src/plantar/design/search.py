@@ -1,4 +1,4 @@
-"""The best motion of a family within its limits: a search that the seed fixes."""
+"""The best motion of a family within its limits: from linear program to linear program."""
 
 from __future__ import annotations
 
@@ -6,22 +6,25 @@ from collections.abc import Callable
 from typing import Final
 
 import numpy as np
+from scipy.optimize import linprog
 
 from plantar.conventions import Array
 from plantar.design.family import CHANNELS, SHAPES
 from plantar.design.information import Criterion, badness
 from plantar.design.reach import Reach
 
-TRIES: Final = 2000  # changes of a motion that are tried
-SCALED: Final = 2  # times to the tightest limit: rubber that slips is not linear
-TOLD: Final = 200  # tries between two words of progress
-CHANGED: Final = 0.15  # of the coefficients in each try
-BEGIN, SMALLEST = 0.5, 3e-3  # steps
-GROW, SHRINK = 1.5, 0.95  # of the step: a rule of one success in nine (after I. Rechenberg, 1973)
+STARTS: Final = 3  # of which the best end counts: limits have corners in which a way ends
+TRIES: Final = 25  # linear programs from each start at most
+TOLD: Final = 10  # linear programs between two words of progress
+SMALL: Final = 1e-3  # of a coefficient that is just allowed: what a slope is taken over
+BEGIN, SMALLEST, FARTHEST = 0.5, 0.01, 1.0  # how far a step goes, of coefficients that are just allowed
+CUTS: Final = 4  # programs of one step: each knows the limits that the one before passed
+SLIGHT: Final = 0.01  # over a limit: the motion is made smaller by as much
+GROW, SHRINK = 1.5, 0.4  # of that, after a step that helped and one that did not
 # Where the search begins: over the left foot, whose ankle moves more than the other and than the body.
 START: Final = {"left": 1.0, "right": 0.3}
-BODY: Final = 0.1  # for the rest of the body
-LOADED: Final = 2.0  # for the load that goes from foot to foot, which all of them need
+BODY: Final = 0.1
+LOADED: Final = 1.0
 
 
 def best_motion(
@@ -33,36 +36,69 @@ def best_motion(
 ) -> Array:
     """Coefficients (size,) of the best motion within the limits; `known` as in `half_widths`.
 
-    An evolution strategy of one parent and one child: amplitudes and phases of some sines change together, the size
-    follows from the tightest limit.
+    Limits are linear in the coefficients, but for rubber that slips, and there are many: a small sole bends far only
+    where load, ankles and trunk go together. So each step goes as far down the slope of what is minimised as all
+    limits and a box around the motion allow, which is a linear program.
     """
     units = np.array([1.0 / reach.used(row) for row in np.eye(reach.lines.size)])
+    ends = []
+    for number in range(STARTS):
+        climb = _Climb(reach, criterion, known, units, _start(random) * units)
+        for count in range(TRIES):
+            if count % TOLD == 0:
+                progress(f"search: {100 * (number * TRIES + count) // (STARTS * TRIES)} %")
+            if not climb.step():
+                break
+        ends.append(climb)
+    return min(ends, key=lambda end: end.least).best
+
+
+def _start(random: np.random.Generator) -> Array:
+    """Coefficients (size,) as shares of what is just allowed of each alone."""
     shape = random.standard_normal((len(CHANNELS), SHAPES)) * [
-        [START.get(c.split(".")[0], BODY)] for c in CHANNELS
+        [START.get(channel.split(".")[0], BODY)] for channel in CHANNELS
     ]
     shape[CHANNELS.index("centre.y"), 0] = LOADED
-    shape = shape.ravel()
+    return np.asarray(shape.ravel())
 
-    def scaled(shape: Array) -> Array:
-        coefficients = shape * units
-        for _ in range(SCALED):
-            coefficients = coefficients / reach.used(coefficients)
-        return np.asarray(coefficients)
 
-    best = scaled(shape)
-    least = badness(reach, best, criterion, known)
-    step = BEGIN
-    for count in range(TRIES):
-        changed = random.random(shape.size) < CHANGED
-        child = shape + step * random.standard_normal(shape.size) * changed * np.sqrt(np.mean(shape**2))
-        tried = scaled(child)
-        value = badness(reach, tried, criterion, known)
-        if value < least:
-            shape, best, least, step = child, tried, value, min(step * GROW, 2.0)
+class _Climb:
+    """One way through the limits: `best`, the motion reached, and `least`, what is minimised there."""
+
+    def __init__(
+        self, reach: Reach, criterion: Criterion, known: Array | float, units: Array, start: Array
+    ) -> None:
+        self._reach, self._units, self._far = reach, units, BEGIN
+        self._criterion, self._known = criterion, known
+        self.best = start / reach.used(start)
+        self.least = self._value(self.best)
+
+    def _value(self, coefficients: Array) -> float:
+        return badness(self._reach, coefficients, self._criterion, self._known)
+
+    def step(self) -> bool:
+        """To a better motion, or none: then the next step is smaller. Whether another may help."""
+        slope = [self._value(self.best + row) - self.least for row in np.diag(SMALL * self._units)]
+        rows, left = self._reach.near(self.best)
+        tried = self.best
+        for _ in range(CUTS):
+            found = linprog(
+                np.array(slope) / SMALL,
+                A_ub=rows * self._units,
+                b_ub=np.maximum(left, 0.0),
+                bounds=(-self._far, self._far),
+            )
+            if not found.success:
+                break
+            tried = self.best + self._units * found.x
+            if self._reach.used(tried) < 1.0 + SLIGHT:
+                break
+            more, room = self._reach.near(tried)  # limits that were far away, or reached at other times
+            rows, left = np.vstack([rows, more]), np.append(left, room + more @ (tried - self.best))
+        tried = tried / max(self._reach.used(tried), 1.0)
+        value = self._value(tried)
+        if value < self.least:
+            self.best, self.least, self._far = tried, value, min(GROW * self._far, FARTHEST)
         else:
-            step *= SHRINK
-            if step < SMALLEST:  # no way on along any small step: another corner of the limits
-                step = BEGIN
-        if count % TOLD == 0:
-            progress(f"search: {100 * count // TRIES} %")
-    return best
+            self._far *= SHRINK
+        return self._far > SMALLEST

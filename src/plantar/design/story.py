@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
 
 from plantar.choices import number_in, one_of
 from plantar.conventions import Array
-from plantar.design.collision import self_collision
+from plantar.design.collision import free_swing, self_collision
 from plantar.design.family import Lines
 from plantar.design.information import CRITERIA, Criterion
 from plantar.design.known import Known
@@ -27,7 +27,6 @@ from plantar.robot.model import RobotModel
 from plantar.twin.play import postures_of
 
 SOFTEST, STIFFEST = 0.5, 2.0  # times the stiffness told, over which a motion holds
-STIFFNESSES: Final = 4  # between those, that the search looks at
 KEPT: Final = (
     0.0055  # m of every centre of pressure to its sole's border in rehearsals: `identify feet` drops 5 mm
 )
@@ -35,7 +34,9 @@ KEPT: Final = (
 # where a sole begins to roll; at most so much smaller.
 SMALLER: Final = 0.85
 SPARE: Final = 0.005  # smaller than what is just allowed
-ROUNDS: Final = 8  # of making it smaller or larger again
+# One that leaves room at both ends of the range is made larger once, at most so much: small soles need all of it.
+LARGER: Final = 1.1
+ROUNDS: Final = 8
 FRICTION: Final = 0.3  # of horizontal to vertical force at most: dry rubber on any floor holds more
 EFFORT: Final = 0.9  # of a joint's torque limit
 SHORTEST, LONGEST = 20.0, 600.0  # s
@@ -128,6 +129,7 @@ def design_motion(
         raise SettingsError("the stiffness is not told (valid: a stiffness, or an earlier result)")
     progress("stand")
     legs = Legs.of(robot, postures_of(robot).standing)
+    legs = replace(legs, arms=free_swing(robot, legs.rest[0], legs.arms) * legs.arms)
     linear = LinearRobot.of(legs)
     stiffness, low, high = _range(settings, known)
     linear.pendulum.check_carried(stiffness, robot.name)
@@ -137,7 +139,7 @@ def design_motion(
     told = Softness.told(robot, stiffness, damping)
     random = np.random.default_rng(settings.seed)
     lines = Lines.drawn(settings.duration, random)
-    bushes = [told.times(factor) for factor in np.geomspace(*factors, STIFFNESSES)]
+    bushes = [told.times(factor) for factor in _rehearsed_at(*factors)]
     reach = Reach(legs, linear, lines, told, bushes)
     before = 0.0 if known is None else known.precision(reach.feet)
     coefficients = best_motion(reach, settings.criterion, random, before, progress)
@@ -164,41 +166,58 @@ def _rehearsed(
     factors: tuple[float, ...],
     progress: Callable[[str], None],
 ) -> tuple[Array, list[Rehearsal], int]:
-    """The motion, smaller until it holds at every stiffness. Raises MotionError where none does.
+    """The motion, larger where there is room and smaller until it holds at every stiffness. Raises MotionError where
+    none does.
 
     A rehearsal takes seconds: the ends of the range come first, and after a motion was made smaller those at which it
-    did not hold. In the end all hold with the motion as it is.
+    did not hold. In the end all hold with the motion as it is. One that was made larger and does not hold is as before:
+    near the least stiffness all grows steeply.
     """
-    reason, tight = "", [factors[0], factors[-1]]
+    reason, tight, larger = "", [factors[0], factors[-1]], True
+    before: Array | None = None  # it was made larger
+
+    def smaller(motion: Array) -> Array:
+        nonlocal before, larger
+        motion = motion if before is None else before
+        before, larger = None, False
+        return motion
+
     for _ in range(ROUNDS):
         try:
             trajectory = Trajectory.of("design", legs, lines, coefficients)
         except MotionError as error:
-            reason, coefficients = str(error), SMALLER * coefficients
+            reason, coefficients = str(error), smaller(SMALLER * coefficients)
             continue
         watched = self_collision(robot, trajectory.configurations)
         if watched.touching is not None:
             first, second, row = watched.touching
             reason = f"'{first}' touches '{second}' at {trajectory.knots[row]:.1f} s"
             still = lines.without(coefficients, "arms")
-            quiet = not np.array_equal(still, coefficients)
+            quiet = before is None and not np.array_equal(still, coefficients)
             progress(f"{'without arms' if quiet else 'smaller'}: {reason}")
-            coefficients = still if quiet else SMALLER * coefficients
+            coefficients = still if quiet else smaller(SMALLER * coefficients)
             continue
         plan, held, used = trajectory.plan(), dict[float, Rehearsal](), 0.0
-        while used <= 1.0 and len(held) < len(factors):
+        while used <= 1.0 and len(held) < len(factors) and not (held and larger):
             asked = [each for each in tight if each not in held] or [
                 each for each in factors if each not in held
             ]
             found = {one.factor: one for one in rehearse(robot, plan, told, asked, progress)}
             used, reason = max((_used(one) for one in found.values()), key=lambda each: each[0])
             held |= found
+        if larger and used <= 1.0:
+            before, larger = coefficients, False
+            grown = min((1 - SPARE) / np.sqrt(used), LARGER)
+            progress(f"larger by {100 * (grown - 1):.0f} %: both ends of the range leave room")
+            coefficients = max(grown, 1.0) * coefficients
+            continue
         if used <= 1.0:
             progress("identify the feet from the rehearsals")
             return coefficients, [held[factor].identified(robot) for factor in factors], watched.pairs
-        tight = [factor for factor, one in held.items() if _used(one)[0] > 1.0]
         progress(f"smaller: {reason}")
-        coefficients = max((1 - SPARE) / np.sqrt(used), SMALLER) * coefficients
+        if before is None:
+            tight = [factor for factor, one in held.items() if _used(one)[0] > 1.0]
+        coefficients = smaller(max((1 - SPARE) / np.sqrt(used), SMALLER) * coefficients)
     raise MotionError(located(f"no motion holds over the range of stiffness: {reason}", path=robot.name))
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Final
@@ -13,6 +13,7 @@ from plantar.design.information import WANTED, WANTED_DELAY, WANTED_VERTICAL
 from plantar.design.rehearsal import Rehearsal
 from plantar.design.story import EFFORT, FRICTION, KEPT, Design
 from plantar.design.writing.controllers import TARGETS, ordered_joints
+from plantar.design.writing.foretold import foretold
 from plantar.design.writing.sheet import sheet
 from plantar.files import write_text
 from plantar.logs.save import save_log
@@ -22,12 +23,6 @@ from plantar.robot.model import RobotModel
 
 SCHEMA = "plantar.design/1"
 SLOWEST, FASTEST = 20.0, 2000.0  # Hz
-FAR: Final = 1.5  # times its half width: a number that is so far off is wrong
-# What follows where a number came out wrong, and its verdict says so or not.
-SAID: Final = (
-    "`identify feet` calls it weak: make the next motion with --after that result, which may be larger"
-)
-UNSAID: Final = "`identify feet` may not say so: do not use it"
 APPROACH: Final = (0.25, 0.5)  # of the amplitude, to be played before the whole
 
 
@@ -116,7 +111,7 @@ def content_of(found: Design, path: Path, rate: float) -> dict[str, Any]:
             ],
         },
         "rehearsals": [_rehearsal(one) for one in found.rehearsals],
-        "notes": _notes(parameters),
+        "notes": foretold(found, parameters),
         "self_collision": {"checked": found.pairs > 0, "pairs": found.pairs},
         "limits": [
             {"limit": "distance of each foot's centre of pressure from its sole's border", "unit": "m",
@@ -137,25 +132,3 @@ def _rehearsal(one: Rehearsal) -> dict[str, Any]:
         "factor": one.factor, "sole_margin": one.sole_margin, "least_load": one.least_load, "friction": one.friction,
         "effort": one.effort, "bend": one.bend,
     }  # fmt: skip
-
-
-def _notes(parameters: Sequence[Mapping[str, Any]]) -> list[str]:
-    """Numbers that came out wrong in rehearsals, where the truth is known."""
-    notes = []
-    for row in parameters:
-        wrong = [
-            one
-            for one in row["at"]
-            if one["half_width_percent"] is None
-            or abs(one["error_percent"]) > FAR * one["half_width_percent"]
-        ]
-        if wrong:
-            at = ", ".join(f"{one['factor']:.3g}" for one in wrong)
-            where = f"{row['foot']} {row['axis']} {row['name']}"
-            worst = max((abs(one["error_percent"] or 0.0) for one in wrong), default=0.0)
-            notes.append(
-                f"{where} is not found at {at} times the stiffness told (off by {worst:.0f} %): the rehearsal's rubber "
-                "has hysteresis, and this motion bends it too little to tell that apart; "
-                + (SAID if not any(one["usable"] for one in wrong) else UNSAID)
-            )
-    return notes

@@ -1,0 +1,58 @@
+"""What a motion will not show is said before it is played."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+import design_samples
+from plantar.design.rehearsal import Rehearsal
+from plantar.design.writing.foretold import foretold
+
+
+def rows(width: float, error: float, usable: bool) -> list[dict[str, Any]]:
+    """Stiffness of one foot in roll, in a rehearsal at each of two factors: the stiff one is as told."""
+    fine = {"factor": 0.5, "half_width_percent": 2.0, "error_percent": 0.3, "usable": True}
+    told = {"factor": 2.0, "half_width_percent": width, "error_percent": error, "usable": usable}
+    return [{"foot": "left", "axis": "roll", "name": "stiffness", "at": [fine, told]}]
+
+
+def bent(roll: float) -> Any:
+    """The sample with rehearsals at 0.5 and 2 that bend the left foot by so much to either side [rad]."""
+    sway = np.column_stack([0.03 * np.ones(2), [-roll, roll]])
+    rehearsals = (Rehearsal(0.5, bushes={"left": sway}), Rehearsal(2.0, bushes={"left": sway}))
+    return replace(design_samples.designed(), rehearsals=rehearsals)
+
+
+def test_an_axis_that_is_bent_too_little_is_said_with_what_it_would_need() -> None:
+    """Rubber that slips at 10 mrad is told from its spring beyond 10/0.8; told 500, held up to 1000 N·m/rad."""
+    (note,) = foretold(bent(0.010), rows(40.0, 21.0, usable=False))
+    assert note.startswith("left roll will be weak at 2 times the stiffness told: stiffness ± 40 %.")
+    assert "bends it by 10 mrad to either side" in note
+    assert "beyond 12.5" in note
+    assert "no stiffer than 800 N·m/rad" in note
+    assert "--after" in note
+
+
+def test_an_axis_that_is_weak_for_another_reason_gets_no_advice_to_bend_it() -> None:
+    assert foretold(bent(0.013), rows(40.0, 21.0, usable=False)) == [
+        "left roll will be weak at 2 times the stiffness told: stiffness ± 40 %"
+    ]
+
+
+def test_a_wrong_number_that_is_called_usable_is_said() -> None:
+    (note,) = foretold(bent(0.010), rows(2.0, -3.5, usable=True))
+    assert note.startswith("left roll stiffness came out wrong at 2 times the stiffness told, by up to 4 %")
+    assert "do not use it" in note
+    assert foretold(bent(0.010), rows(2.0, -2.9, usable=True)) == []
+
+
+def test_a_foot_that_is_not_identified_is_weak() -> None:
+    found = replace(design_samples.designed(), rehearsals=())
+    one = {"factor": 1.0, "half_width_percent": None, "error_percent": None, "usable": False}
+    row = {"foot": "left", "axis": "pitch", "name": "damping", "at": [one]}
+    assert foretold(found, [row]) == [
+        "left pitch will be weak at 1 times the stiffness told: damping not identified"
+    ]
