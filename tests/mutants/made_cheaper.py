@@ -12,7 +12,7 @@ MADE_CHEAPER = (
     ),
     Mutant(
         "feet/interval_width/between_recordings.py", "what recordings differ by counts a tenth",
-        "np.sqrt(np.maximum(beyond, 0.0))", "0.1 * np.sqrt(np.maximum(beyond, 0.0))",
+        "Cause(NAME, beyond, 1.0", "Cause(NAME, beyond, 0.1",
         ("feet/interval_width/test_between_recordings.py",),
     ),
     Mutant(
