@@ -79,9 +79,8 @@ def test_the_other_foots_steps_do_not_interrupt_a_stance() -> None:
 
 def test_between_the_thresholds_a_foot_keeps_its_state() -> None:
     time = np.arange(1000) * PERIOD
-    load = np.interp(
-        time, [0, 2, 3, 5, 6, 10], [300, 300, 45, 45, 300, 300]
-    )  # 7.5 % of the weight from 3 s to 5 s
+    # 7.5 % of the weight from 3 s to 5 s.
+    load = np.interp(time, [0, 2, 3, 5, 6, 10], [300, 300, 45, 45, 300, 300])
     stays = detect_contact({"left": load}, {"left": False}, WEIGHT, PERIOD)["left"]
     assert stays.standing.all()
     airborne = np.where(time < 3, 0.0, load)

@@ -207,9 +207,8 @@ def _as_articulation(layer: Path) -> None:
     stage = stage_of(layer)
     UsdPhysics.Scene.Define(stage, "/scene").CreateGravityMagnitudeAttr(0.0)
     for aside, foot in enumerate(TRUTH):
-        place = pxr.Gf.Vec3d(
-            0.0, float(aside), 0.0
-        )  # each stands in its own ankle's frame: else in each other
+        # Each stands in its own ankle's frame: else in each other.
+        place = pxr.Gf.Vec3d(0.0, float(aside), 0.0)
         UsdGeom.Xformable(stage.GetPrimAtPath(f"/feet/{foot}")).AddTranslateOp().Set(place)
         ankle = stage.GetPrimAtPath(f"/feet/{foot}/{foot}_ankle")
         UsdPhysics.ArticulationRootAPI.Apply(ankle)

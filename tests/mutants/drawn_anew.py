@@ -88,9 +88,6 @@ DRAWN_ANEW = (
         '"angDamping": ("damping", ("pitch", "roll", None), 12.0)',
     ),
     Mutant(
-        "exporters/contact/alone.py", "half a period", "period = 2 * np.pi / rate", "period = np.pi / rate"
-    ),
-    Mutant(
         "feet/assess/contradiction.py",
         "the least contradicting motion",
         "return max(both, key=_share, default=None)",
@@ -159,7 +156,6 @@ DRAWN_ANEW = (
     Mutant("motions/feasible.py", "half the checks", "CHECK_RATE = 50.0", "CHECK_RATE = 25.0"),
     Mutant("motions/feasible.py", "five times the least force", "LEAST = 10.0  # N", "LEAST = 50.0  # N"),
     Mutant("motions/manual.py", "half as much across", "ASIDE = 0.2", "ASIDE = 0.1"),
-    Mutant("motions/track.py", "one knot less", "round(duration * KNOTS) + 1)", "round(duration * KNOTS))"),
     Mutant(
         "report/charts/zeros.py",
         "a gap to the wrong side",

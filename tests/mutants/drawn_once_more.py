@@ -74,8 +74,8 @@ DRAWN_ONCE_MORE = (
     Mutant(
         "feet/foot_fit.py",
         "the smallest of what robot files allow",
-        "recordings_apart(told, max(one.ready",
-        "recordings_apart(told, min(one.ready",
+        "prior = max(one.ready.robot.uncertainty",
+        "prior = min(one.ready.robot.uncertainty",
     ),
     Mutant(
         "feet/foot_fit.py",

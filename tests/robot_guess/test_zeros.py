@@ -36,9 +36,8 @@ def stepping(log: MotionLog, zero: dict[str, list[float]] | None = None) -> Moti
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_what_a_lifted_foot_reads_is_taken_off_whatever_the_sensors_axes(sign: float) -> None:
-    turn = (
-        np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]) * sign
-    )  # an axis points the other way too
+    # An axis points the other way too.
+    turn = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]) * sign
     log = talos_sways(TALOS, wrench_turn=turn)
     (tared,), (remark,) = without_zeros([stepping(log, ZERO)], SENSORS, WEIGHT)
     for foot in ZERO:

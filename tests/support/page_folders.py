@@ -121,9 +121,8 @@ def force_cells(folder: Path) -> None:
     for foot in FEET:
         cells = shown["columns"][f"wrench.{foot}.cells"]
         at, wrench = np.array(cells["at"]), log.wrench(foot)
-        made = np.vstack(
-            [np.ones(len(at)), at[:, 1], -at[:, 0]]
-        )  # force z, torques x and y of each cell's newton
+        # Force z, torques x and y of each cell's newton.
+        made = np.vstack([np.ones(len(at)), at[:, 1], -at[:, 0]])
         columns |= dict(zip(cells["from"], np.linalg.pinv(made) @ wrench[:, [2, 3, 4]].T, strict=True))
     rows = np.column_stack([log.time, *columns.values()])
     np.savetxt(

@@ -22,9 +22,8 @@ CERTAIN_MOMENT_ARM = 0.05  # m: an operator's hand adds less, and one of many jo
 CERTAIN = 0.1  # share left: no larger error of masses or mounting is undone so well by chance
 UNEXPLAINED = 0.12  # m: beyond any sole; masses, encoder zeros or the sensors' places are off
 FARTHEST = 1.5  # m: no posture and no mass is that far off
-LEANING = np.radians(
-    3.5
-)  # between the ground's usual force and the IMU's up: more than zeros of sensors make
+# Between the ground's usual force and the IMU's up: more than zeros of sensors make.
+LEANING = np.radians(3.5)
 PUSHED = 2.0  # times LEANING: more than who holds a robot leans on it
 TURNED = np.radians(10)  # accelerations turn the force by some degrees too
 IMPOSSIBLE = np.radians(30)  # no mounting, zero or push is that far off

@@ -26,8 +26,7 @@ def on_an_edge(robot: RobotModel, log: MotionLog) -> float | None:
         wrench = log.wrench(foot.wrench.name) @ moved.T
         # The noise of a lightly loaded sensor moves its centre of pressure by more than the margin.
         slow = low_pass(wrench, float(np.median(np.diff(log.time))), SMOOTH)
-        near = (
-            inside_distance(zero_moment_point(slow, least), foot.sole.polygon) < margin
-        )  # NaN in the air: no
+        # NaN in the air: no.
+        near = inside_distance(zero_moment_point(slow, least), foot.sole.polygon) < margin
         found += [float(log.time[int(np.argmax(near))] - log.time[0])] if near.any() else []
     return min(found, default=None)

@@ -14,9 +14,8 @@ from plantar.signals.filters import low_pass
 from plantar.signals.segments import runs
 
 LANDING_SHARE = 0.10  # of the weight: a foot that carries more stands
-LIFTING_SHARE = (
-    0.05  # of the weight: a foot that carries less is in the air; between the two it keeps its state
-)
+# Of the weight: a foot that carries less is in the air; between the two it keeps its state.
+LIFTING_SHARE = 0.05
 SETTLING_TIME = 0.25  # s around landing and lifting, left out: the sole is not flat yet
 SETTLING_SHARE = 0.1  # of a stance, at most: a foot that steps lands and lifts faster
 SHORTEST_STANCE = 0.5  # s: shorter contacts are scuffs or impacts, not stances

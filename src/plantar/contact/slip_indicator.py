@@ -25,9 +25,8 @@ POSSIBLE = 3.5  # deviations: part of a slide that is sure elsewhere
 LEAST_PATH = 0.0009  # m that a slide must cover
 ELASTIC = 0.02  # rad: a bush gives that much about z, and neither pitch nor roll feels it
 PAUSE = 0.1  # s: slides that are closer are one
-DRIFT_WINDOW = (
-    4.0  # s: what a sole's velocity does over it as a rule is drift; slides are shorter than half of it
-)
+# s: what a sole's velocity does over it as a rule is drift; slides are shorter than half of it.
+DRIFT_WINDOW = 4.0
 DRIFT_RATE = 20.0  # Hz, enough for the drift
 RESISTED = 0.3  # least cosine between a slide and the friction against it: zeros and attitude turn the force
 SMOOTH = 0.05  # friction over load, below which its direction is not known

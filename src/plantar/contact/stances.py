@@ -13,9 +13,8 @@ from plantar.conventions import Array
 from plantar.signals.segments import runs
 
 FEWEST_STANCES = 3  # in one recording: a robot that walks; fewer are a robot that stands and shifts its feet
-LONG_STANCE = (
-    2.0  # usual stances, as long as one offset may last: a robot that stands before it walks drifts meanwhile
-)
+# Usual stances, as long as one offset may last: a robot that stands before it walks drifts meanwhile.
+LONG_STANCE = 2.0
 ROLLING_SHARE = 0.1  # of the sole's half width: a centre of pressure so near to the outline may roll about it
 LONGEST_STANCE = 5.0  # s, their median: in longer ones a foot moves as in any standing motion, and drifts
 

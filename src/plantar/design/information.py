@@ -26,18 +26,15 @@ WANTED_VERTICAL: Final = 0.3
 # N·m by which Newton's law misses the moments on the ground, per independent sample of 0.1 s, with a careful lab's
 # sensors and masses.
 UNCLOSED: Final = 0.2
-SEEN_FORCE: Final = (
-    6.0  # N rms that the motion adds to the weight: beside less, sensors' noise looks like a hand's push
-)
+# N rms that the motion adds to the weight: beside less, sensors' noise looks like a hand's push.
+SEEN_FORCE: Final = 6.0
 USUAL_DELAY: Final = 0.0075  # s: deviation of a delay of which nothing is known, as robot files have it
-HOPELESS: Final = (
-    30.0  # times what is wanted: a stiffness within a third is weak, however near it comes to that
-)
+# Times what is wanted: a stiffness within a third is weak, however near it comes to that.
+HOPELESS: Final = 30.0
 BEYOND: Final = 0.1  # share of what is wider still
 OTHERS: Final = 0.5  # share of all numbers beside the widest
-UNEVEN: Final = (
-    1e-4  # m: what encoders and the legs' lengths may be wrong by moves the soles' heights so much
-)
+# m: what encoders and the legs' lengths may be wrong by moves the soles' heights so much.
+UNEVEN: Final = 1e-4
 
 
 def information(reach: Reach, coefficients: Array) -> Array:

@@ -18,13 +18,11 @@ from plantar.errors import MotionError, located
 from plantar.robot.model import RobotModel
 
 SILENCE: Final = 15.0  # s of rest that are added, in which a soft robot comes to rest
-SINKS: Final = (
-    0.0025  # m by which a robot's weight would press one foot's bush: published feet give 1 to 3 mm
-)
+# m by which a robot's weight would press one foot's bush: published feet give 1 to 3 mm.
+SINKS: Final = 0.0025
 DAMPED: Final = 0.04  # s, damping over stiffness where it is not told: table 1 of the paper has 0.037 to 0.08
-CARRIED: Final = (
-    1.05  # times the stiffness at which the robot just stands: nearer to it nothing can be predicted
-)
+# Times the stiffness at which the robot just stands: nearer to it nothing can be predicted.
+CARRIED: Final = 1.05
 
 
 @dataclass(frozen=True)

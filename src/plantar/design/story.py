@@ -27,9 +27,8 @@ from plantar.robot.model import RobotModel
 from plantar.twin.play import postures_of
 
 SOFTEST, STIFFEST = 0.5, 2.0  # times the stiffness told, over which a motion holds
-KEPT: Final = (
-    0.0055  # m of every centre of pressure to its sole's border in rehearsals: `identify feet` drops 5 mm
-)
+# m of every centre of pressure to its sole's border in rehearsals: `identify feet` drops 5 mm.
+KEPT: Final = 0.0055
 # A motion that does not hold is tried again, smaller by half of what it is too large, as centres of pressure run ahead
 # where a sole begins to roll; at most so much smaller.
 SMALLER: Final = 0.85

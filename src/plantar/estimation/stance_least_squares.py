@@ -16,9 +16,8 @@ from plantar.conventions import Array
 from plantar.estimation.blocks import Block, LinearFit
 from plantar.estimation.stance_problem import Solution, StanceProblem, common_columns, design
 
-FEWEST_RECORDINGS = (
-    5  # whose scatter gives a deviation of its own: of fewer, Student's t is too wide to be of use
-)
+# Whose scatter gives a deviation of its own: of fewer, Student's t is too wide to be of use.
+FEWEST_RECORDINGS = 5
 
 
 def fit_stances(blocks: Sequence[Block]) -> LinearFit:

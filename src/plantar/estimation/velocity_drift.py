@@ -69,8 +69,7 @@ def fit_drift(
         reach = max(1.0, min(2 * float(square.max()) / OUTLYING**2, reach / ANNEALED))
         settled += reach == 1.0
         allowed = reach * OUTLYING**2
-        weight = np.asarray(
-            seen * (allowed / (square + allowed)) ** 2 * most / reach**2
-        )  # Geman and McClure's
+        # Geman and McClure's.
+        weight = np.asarray(seen * (allowed / (square + allowed)) ** 2 * most / reach**2)
     drift = (known.reshape(2 * n, -1)[:, 0] - left).reshape(n, 2)
     return Drift(drift, np.sqrt(_core.drift_variance(weight, *chain)))

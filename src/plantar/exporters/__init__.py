@@ -44,9 +44,8 @@ TARGETS: dict[str, tuple[str, str]] = {
     "yaml": ("plain", "YAML with every number, its unit and its interval"),
 }
 
-WITH_JOINTS = frozenset(
-    {"mjcf", "sdf", "urdf", "drake", "usd"}
-)  # targets in which a bush is a joint for each axis
+# Targets in which a bush is a joint for each axis.
+WITH_JOINTS = frozenset({"mjcf", "sdf", "urdf", "drake", "usd"})
 
 
 def export(

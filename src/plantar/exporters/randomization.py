@@ -109,9 +109,8 @@ def _of_foot(result: Mapping[str, Any], foot: FootBush, notes: list[Note]) -> li
             where = f"{foot.name}.{spring.axis}.{name}"
             relative = _relative(row)
             if name == "damping" and spring.assumed and relative is not None:
-                mean = float(
-                    row["value"]
-                )  # unlike one number, a range holds what is not known: its width says so
+                # Unlike one number, a range holds what is not known: its width says so.
+                mean = float(row["value"])
                 text = f"{where}: unidentifiable; the range is as wide as the logs leave it, cut at 0"
                 notes.append(Note("export_wide", "warning", text))
             if relative is None:
@@ -185,9 +184,8 @@ def _zeros(result: Mapping[str, Any], feet: Iterable[FootBush]) -> list[Number]:
                 continue
             turned = spring.stiffness * mount
             unshown = float(np.hypot(turned, spring.stiffness * encoder * np.sqrt(LEG_JOINTS)))
-            std = max(
-                float(np.hypot(scatter, unshown)), float(own.min())
-            )  # an offset's own holds the mount as well
+            # An offset's own holds the mount as well.
+            std = max(float(np.hypot(scatter, unshown)), float(own.min()))
             shared = {f"imu {spring.axis}": turned / std} if std > 0 else {}
             numbers.append(Number(name, unit, float(found.mean()), std, False, shared))
     return numbers

@@ -17,9 +17,8 @@ from plantar.results.numbers import unit
 DAMPING_TIME = 0.002  # s: C/K written where none was identified, that of published bush models (5e5, 1e3)
 ASSUMED = f"K x {1e3 * DAMPING_TIME:g} ms"
 KNOWN_TERMS = ("stiffness", "damping", "offset")
-SWAY = (
-    3.0  # rad/s: half a hertz, as a standing robot sways; slip loses the same at any rate, a damper does not
-)
+# rad/s: half a hertz, as a standing robot sways; slip loses the same at any rate, a damper does not.
+SWAY = 3.0
 SLIP_TERMS = ("slip_torque", "slip_angle")
 
 

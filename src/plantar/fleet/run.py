@@ -18,9 +18,8 @@ from plantar.fleet.tables import Written, write_tables
 from plantar.fleet.unit import UNITS, Failure, contents_of, read_unit, unit_file, unit_key
 from plantar.fleet.work import Done, Task, compute
 
-QUEUED: Final = (
-    3  # groups in the cluster for each that it works on: workers never wait, the driver stays small
-)
+# Groups in the cluster for each that it works on: workers never wait, the driver stays small.
+QUEUED: Final = 3
 RECENT: Final = 200  # finished groups from which the time left is told
 
 

@@ -14,9 +14,8 @@ from plantar.model_selection.model_fit import ModelFit
 from plantar.models import BushModel
 
 FOLDS = 5  # contiguous parts that recordings are cut into where they cannot stand for one another
-SEED_REACH = (
-    2.2  # ratio to the nonlinear parameters of a simpler model, within which a richer one's are looked for
-)
+# Ratio to the nonlinear parameters of a simpler model, within which a richer one's are looked for.
+SEED_REACH = 2.2
 DOMINANT = 0.5  # share of all motion in one recording, above which the others cannot stand for it
 FEWEST_RECORDINGS = 3  # for whole recordings to be held out
 

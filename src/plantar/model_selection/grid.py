@@ -19,13 +19,11 @@ from plantar.models import BushModel
 Numbers = NDArray[np.intp]
 
 NEARBY = 0.2  # how much closer initial states are tried about one that is known already
-TOGETHER = (
-    2**20
-)  # numbers of one column of all candidates that are held at a time: all of a long log's take gigabytes
+# Numbers of one column of all candidates that are held at a time: all of a long log's take gigabytes.
+TOGETHER = 2**20
 ROUNDS = 6  # of fitting parameters and initial states in turn
-STILL = (
-    1e-14  # of a column's square about zero: what is left about its mean is rounding, the column is constant
-)
+# Of a column's square about zero: what is left about its mean is rounding, the column is constant.
+STILL = 1e-14
 RIDGE = 1e-12  # of each column's own square: keeps collinear columns solvable
 
 

@@ -11,9 +11,8 @@ from plantar.models import BESIDE, BushModel, BushMotion
 from plantar.signals.filters import low_pass
 
 TRIED = np.linspace(-1.0, 1.0, 21)  # states of the memory
-FORGOTTEN = (
-    0.02  # of the span between the torques of the extreme initial states: below it the state has faded
-)
+# Of the span between the torques of the extreme initial states: below it the state has faded.
+FORGOTTEN = 0.02
 
 
 def initial_states_of(

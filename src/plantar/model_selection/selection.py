@@ -23,9 +23,8 @@ from plantar.model_selection.variable_projection import Problem, best_candidate
 from plantar.models import MODELS, BushModel, KelvinVoigt, reach
 
 LEAST_GAIN = 0.10  # of the held-out rms error
-TELLING_GAIN = (
-    0.3  # of the held-out rms error: a model that cannot be identified but is this much better is mentioned
-)
+# Of the held-out rms error: a model that cannot be identified but is this much better is mentioned.
+TELLING_GAIN = 0.3
 TOLD = 4.0  # standard deviations from zero, of a term that a model adds to a simpler one
 HOPELESS = 6.0  # times the best model's squares, at its best candidate: such a model is not refined
 

@@ -26,14 +26,14 @@ WIDEST_SCAN, NARROWEST_SCAN, NARROWING = (
     0.05,
     0.2,
 )  # of the initial states about where the steps came to rest
-SCANNED_RATIO = (
-    0.25  # of a nonlinear parameter's logarithm, to either side at the widest scan: a step of the grid's
-)
+# Of a nonlinear parameter's logarithm, to either side at the widest scan: a step of the grid's.
+SCANNED_RATIO = 0.25
 SHARES = np.array([1.0, 0.4, 0.16, 0.064])  # of a step: the longest that is better is taken
 SETTLED = 1e-4  # relative fall of the squares below which the refinement has arrived
 BOLDEST = 0.4  # largest step of a nonlinear parameter's logarithm
 ROUNDING = 1e-10  # of the torque's squares, in what products leave of them
-SHAPE_STEP, STATE_STEP = 0.01, 0.02  # of the differences that stand for derivatives
+# Of the differences that stand for derivatives: a share of a nonlinear parameter, and of a state's range.
+SHAPE_STEP, STATE_STEP = 0.01, 0.02
 
 
 @dataclass(frozen=True)

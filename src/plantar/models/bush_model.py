@@ -63,12 +63,10 @@ class BushModel(ABC):
     elaborates: ClassVar[str | None] = (
         None  # a simpler model, without whose gain this one is not worth trying
     )
-    blind_ends: ClassVar[frozenset[tuple[str, str]]] = (
-        frozenset()
-    )  # (shape term, "low" or "high"): see `candidates`
-    zero_matters: ClassVar[bool] = (
-        False  # an error of the deflection's zero is more than an offset and an initial state
-    )
+    # (shape term, "low" or "high"): see `candidates`
+    blind_ends: ClassVar[frozenset[tuple[str, str]]] = frozenset()
+    # An error of the deflection's zero is more than an offset and an initial state.
+    zero_matters: ClassVar[bool] = False
     dissipative_terms: ClassVar[tuple[str, ...]] = ()  # below zero the bush is not passive
     units: ClassVar[dict[str, tuple[str, str]]] = {}  # of extra and shape terms: rotational, vertical
 

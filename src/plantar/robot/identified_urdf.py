@@ -13,9 +13,8 @@ from plantar.conventions import Array, skew
 from plantar.errors import PlantarError, located
 from plantar.notes import Note, listing
 
-ROUNDING: Final = (
-    1e-12  # kg·m²: principal moments may break the triangle inequality by what arithmetic leaves
-)
+# Kg·m²: principal moments may break the triangle inequality by what arithmetic leaves.
+ROUNDING: Final = 1e-12
 NAMED: Final = 12  # links named in a note; more are counted
 ENTRIES: Final = {"ixx": (0, 0), "ixy": (0, 1), "ixz": (0, 2), "iyy": (1, 1), "iyz": (1, 2), "izz": (2, 2)}
 

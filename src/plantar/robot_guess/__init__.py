@@ -55,9 +55,8 @@ def guess_robot_file(urdf: Path, logs: Sequence[Path], out: Path, columns: Path 
     if columns is not None:
         mapped = read_column_map(columns)
         blind = _first_draft(tree, soles, Sensors(), urdf)
-        reading = replace(
-            _loaded(blind, urdf, mapped), path=columns
-        )  # what is wrong with the map names its file
+        # What is wrong with the map names its file.
+        reading = replace(_loaded(blind, urdf, mapped), path=columns)
     sensors = look_at(logs, reading)
     draft = _first_draft(tree, soles, sensors, urdf)
     draft, recordings = _with_names(draft, tuple(model.names)[1:], sensors.logs)

@@ -21,9 +21,8 @@ USUAL = {"heel": -0.10, "toes": 0.15, "side": 0.065, "depth": 0.10}
 # Feet of seven humanoids whose shapes and inertia are both known: the sole lies 2.0 times as deep as the centre of mass
 # (1.4 to 2.5 times), and is 1.2 times as long and 1.35 times as wide as a solid box of the same mass and inertia.
 DEEPER, LONGER, WIDER = 2.0, 1.2, 1.35
-LONGEST = (
-    0.45  # of a leg's reach: those of six humanoids are a quarter, some a third; more is a made-up inertia
-)
+# Of a leg's reach: those of six humanoids are a quarter, some a third; more is a made-up inertia.
+LONGEST = 0.45
 INERTIA_SHARE, USUAL_SHARE = 0.25, 0.4  # by which the depth by inertia, and the usual one, may be off
 OUTLINE_SHARE = 0.2  # of its length by which an outline that is not drawn may be off
 SHAPE_SPREAD, FRAME_SPREAD = 0.005, 0.005  # m: rubber and covers that a drawing leaves out

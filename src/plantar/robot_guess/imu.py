@@ -34,12 +34,10 @@ NOT_IT = {
 TRUNK = 0.1  # m: an IMU sits so far from the origin of the link that carries it
 MOST_NAMED = 4  # other frames in a comment
 
-UPRIGHT = np.radians(
-    15
-)  # between up by the IMU and by the soles: more is no mounting tolerance and no soft foot
-MOVES = np.radians(
-    0.3
-)  # rms of the soles' tilt seen from the IMU: less tells nothing of its turn about the vertical
+# Between up by the IMU and by the soles: more is no mounting tolerance and no soft foot.
+UPRIGHT = np.radians(15)
+# Rms of the soles' tilt seen from the IMU: less tells nothing of its turn about the vertical.
+MOVES = np.radians(0.3)
 CLEARLY = 0.5  # a turn about the vertical is believed where it leaves this share of the tilt that the frame's leaves
 
 

@@ -19,9 +19,8 @@ from plantar.robot_guess.passive import that_push_back
 from plantar.robot_guess.seat import ORIGIN, Seat, sensor_pose
 from plantar.robot_guess.stance import FEWEST, Stance
 
-STEEP = np.cos(
-    np.radians(25)
-)  # under load the usual force is nearer to up than this, in the sensor's right axes
+# Under load the usual force is nearer to up than this, in the sensor's right axes.
+STEEP = np.cos(np.radians(25))
 CLEARLY, SMALL = (
     0.5,
     0.01,

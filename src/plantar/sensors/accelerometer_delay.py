@@ -41,9 +41,8 @@ STRAY = 0.0005  # s: what encoders that are a millisecond off, or legs that are,
 LARGEST = 0.01  # s: a device's own filter; later is a fault, and `sensor_delay` searches for it
 COLUMNS = 11  # the lean, and what goes with it
 ACCELEROMETER, ORIENTATION = 1, 2  # columns: what a late one of them makes of the lean
-SINGULAR = (
-    1e-10  # of the columns' products, scaled to 1: one pace of sway does not tell scale and height apart
-)
+# Of the columns' products, scaled to 1: one pace of sway does not tell scale and height apart.
+SINGULAR = 1e-10
 
 
 @dataclass(frozen=True)

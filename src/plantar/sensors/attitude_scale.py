@@ -25,16 +25,14 @@ from plantar.sensors.tilt_error import CORRECTED, enough_of, lean_of, stance_lea
 from plantar.signals.filters import low_pass
 
 ATTITUDE_SCALE = "attitude_scale"
-SCALE_OFF = (
-    0.03  # an accelerometer whose axes differ by 2 % shows as much, and so does a URDF with wrong lengths
-)
+# An accelerometer whose axes differ by 2 % shows as much, and so does a URDF with wrong lengths.
+SCALE_OFF = 0.03
 SURE = 6.0  # deviations
 SINGULAR = 1e4  # condition beyond which one pace of sway does not tell scale and height apart
 EDGE = 1.0  # s, of each stance: the filter's
 WITHOUT_LEAN = np.array([[1.0, 0.0, 0.0], [-1.0, 1.0, 0.0], [0.0, 0.0, 1.0]])  # the tilt as the soles have it
-STAYS = (
-    0.5  # of the share, beside the tilt as the soles have it: less, and most of it is the attitude's wander
-)
+# Of the share, beside the tilt as the soles have it: less, and most of it is the attitude's wander.
+STAYS = 0.5
 KEPT = 8.0  # samples for each period of CORRECTED: all of it, and few enough for minutes at a kilohertz
 RATE = 1.0  # 1/s, of samples of the lean that tell something new: it is slower than CORRECTED
 

@@ -23,9 +23,8 @@ SEGMENT = 4.0  # s of the spectra's segments, which overlap by half
 BAND = (0.5, 6.0)  # Hz: slower motion shows no low-pass, and Newton's law itself is looked at below 8 Hz
 COHERENT = 0.9  # squared coherence, from which a frequency counts
 FEWEST = 12  # axes and frequencies that do
-LEAST_DEVIATION = (
-    0.01  # of the logarithm of a gain at one frequency: masses and places of a URDF make as much
-)
+# Of the logarithm of a gain at one frequency: masses and places of a URDF make as much.
+LEAST_DEVIATION = 0.01
 SLOWEST = 9.0  # Hz: behind a low-pass above it damping is off by less than some percent
 SURE = 5.0  # deviations
 

@@ -18,9 +18,8 @@ from plantar.robot.uncertainty import Uncertainty
 
 TURN = 0.02  # rad: deviation of a force sensor's mount; crosstalk makes as much
 LEAST_GAIN = 0.01  # share, of the forces' gains and of what their places add: nuisances need a finite prior
-LEAST_BETWEEN = (
-    0.003  # N.m/N, likewise, for crosstalk and millimetres between a sensor and where the file has it
-)
+# N.m/N, likewise, for crosstalk and millimetres between a sensor and where the file has it.
+LEAST_BETWEEN = 0.003
 LEAST = 1e-4  # N/N: what no sensor is better than, and what then the law misses by
 APART = 1.0  # s, after which what the law misses is missed anew: a step's time
 ROUNDS = 2  # the first one's misses still hold the errors themselves

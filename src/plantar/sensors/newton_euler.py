@@ -158,9 +158,8 @@ def _known_runs(robot: RobotModel, signals: InertialSignals, wrenches: Array) ->
     """The runs in which all is known and no sole slaps the floor, or, were all short, the longest one in which all is
     known."""
     sides, period = (signals.positions, signals.rate, signals.proper, wrenches), signals.period
-    whole = np.isfinite(
-        np.sum([side.sum(axis=1) for side in sides], axis=0)
-    )  # unlike its values, one for each sample
+    # Unlike its values, one for each sample.
+    whole = np.isfinite(np.sum([side.sum(axis=1) for side in sides], axis=0))
     calm = runs(whole & ~_struck(robot, wrenches, period))
     long = [run for run in calm if (run.stop - run.start) * period >= SHORTEST + 2 * EDGE]
     return long or [longest_run(whole)]

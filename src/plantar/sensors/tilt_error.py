@@ -30,15 +30,13 @@ from plantar.signals.segments import runs
 BAND = 2.0  # Hz: the accelerometer-induced tilt error shows below it
 LEAST_RATE = 0.01  # 1/s: below it the damping is not affected
 EXPLAINED = 0.3  # share of the disagreement of attitude and gyroscope that shows it
-SURE = (
-    6.0  # or so many deviations: beside a noisy gyroscope it explains little, and moves the damping as much
-)
+# Or so many deviations: beside a noisy gyroscope it explains little, and moves the damping as much.
+SURE = 6.0
 AXES = 2  # of the horizontal plane, in which the vertical leans
 CORRECTED = 1.5  # Hz, up to which the attitude is put right
 DERIVED = 5.0  # Hz: filter of what is differentiated twice
-KEPT_PER_PERIOD = (
-    8.0  # samples of DERIVED's period: differences of such leave the band below CORRECTED as it is
-)
+# Samples of DERIVED's period: differences of such leave the band below CORRECTED as it is.
+KEPT_PER_PERIOD = 8.0
 SHORTEST_STANCE = 5.0  # s on the same feet
 PADDING = 2.0  # s
 

@@ -14,9 +14,8 @@ from plantar.whole_body.folds import Samples
 from plantar.whole_body.regularised_fit import RegularisedFit
 
 CHUNK = 2048  # samples whose regressor is held at a time
-GIVEN_REGULARISATION = (
-    1e12  # weight where the inertial parameters are given: they have no deviation of their own
-)
+# Weight where the inertial parameters are given: they have no deviation of their own.
+GIVEN_REGULARISATION = 1e12
 
 
 @dataclass(frozen=True)
@@ -57,9 +56,8 @@ def uncertainty_from(fit: RegularisedFit, scored: Iterable[tuple[Array, float]])
     ridge = np.concatenate([np.full(size, regularisation), np.full(len(normal.scale), 1e-9)])
     inverse = np.linalg.inv(normal.square + np.diag(ridge))
     moved = np.linalg.solve(fit.prior.spread, fit.inertial - fit.prior.cad)
-    kept = (
-        np.eye(size) - regularisation * inverse[:size, :size]
-    )  # share of the truth's distance that the fit shows
+    # Share of the truth's distance that the fit shows.
+    kept = np.eye(size) - regularisation * inverse[:size, :size]
     decided = max(float(np.sum(kept * kept.T)), 1.0)
     error = 0.0 if given else regularisation**2 * float(moved @ moved) / decided
     meat = np.diag(np.concatenate([np.full(size, error), np.zeros(len(normal.scale))]))

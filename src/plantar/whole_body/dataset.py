@@ -23,9 +23,8 @@ from plantar.signals.segments import run_ends
 from plantar.whole_body.settings import DynamicsSettings
 
 FEWEST_SAMPLES = 50  # of a log: fewer are no motion
-COULOMB_SPEED = (
-    0.02  # rad/s: Coulomb friction is tanh(v / this); the sign alone would follow an encoder's noise
-)
+# rad/s: Coulomb friction is tanh(v / this); the sign alone would follow an encoder's noise.
+COULOMB_SPEED = 0.02
 STANDING_SHARE = 0.2  # of the weight, on one foot: it stands
 
 Smooth = Callable[[Array], Array]

@@ -28,13 +28,11 @@ FRICTION = ("viscous", "coulomb", "offset")  # of a joint that the robot file do
 SPRUNG = (*FRICTION, "stiffness")  # cables and covers: taken where held-out data speak for it
 POSITIVE = ("viscous", "coulomb", "stiffness", "inertia")
 USABLE_SHARE = 0.2  # half width of the interval over the value
-OFFSET_SHARE = (
-    0.05  # of the joint's rms torque: an offset known to within it is usable even where it is near zero
-)
+# Of the joint's rms torque: an offset known to within it is usable even where it is near zero.
+OFFSET_SHARE = 0.05
 
-UNCOUNTED = (
-    "the standard deviations of the joints' terms do not include their errors"  # those of given inertias
-)
+# Those of given inertias.
+UNCOUNTED = "the standard deviations of the joints' terms do not include their errors"
 
 Inertia = Literal["together", "first", "known"]
 

@@ -15,9 +15,8 @@ from plantar.feet.settings import FeetSettings
 from plantar.robot.model import RobotModel
 
 TIME = np.arange(6000) * 0.01
-ANGLE = (
-    np.radians(2.5) * np.sin(2 * np.pi * 0.2 * TIME) ** 5
-)  # mostly at rest, out to 2.5 degrees on both sides
+# Mostly at rest, out to 2.5 degrees on both sides.
+ANGLE = np.radians(2.5) * np.sin(2 * np.pi * 0.2 * TIME) ** 5
 STIFFNESS = 400.0
 BEND = np.radians(1.2)
 

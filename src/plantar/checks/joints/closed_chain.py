@@ -35,9 +35,8 @@ LEAST_TIME = 3.0  # s at one value, both feet loaded: shorter stands are usual, 
 SAMPLES = 500  # spread over that time: enough to tell
 STEP = 1e-3  # rad, by which a joint is turned to see what that moves
 YAW_MOMENT_ARM = 0.1  # m, by which yaw [rad] counts beside the soles' distance [m]
-EXCHANGED = (
-    0.4  # share of the soles' motion that is left with the legs exchanged: what sways is seldom symmetric
-)
+# Share of the soles' motion that is left with the legs exchanged: what sways is seldom symmetric.
+EXCHANGED = 0.4
 CLOSED = 0.5  # share of the soles' motion that the joint's own angle may leave
 SURELY_CLOSED = 0.3  # likewise, where the torque does not tell
 FOLLOWED = 0.5  # share of the torque's misfit that it may leave

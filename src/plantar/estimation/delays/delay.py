@@ -22,21 +22,17 @@ SETTLED = 0.01  # of the deviation: after a smaller step the next one would be a
 LONGEST = 0.05  # s: later signals than this have another fault than a delay
 BAND_EDGES = (0.15, 0.4, 0.8, 1.6, 3.2, 6.4)  # Hz
 LEAST_EXPLAINED = 0.8  # share of an axis' variance in a band that the prediction must explain to take part
-LEAST_CLOSED = (
-    0.93  # share of the forces' variance that the prediction explains as it is: less, and somebody pushes
-)
+# Share of the forces' variance that the prediction explains as it is: less, and somebody pushes.
+LEAST_CLOSED = 0.93
 GAIN_BAND = (0.8, 1.25)  # measured over predicted, of an axis that takes part
 SAMPLES_PER_CYCLE = 8  # of a band's upper edge, that thinning keeps
-END_CYCLES = (
-    2.0  # of a band's lower edge, at both ends: a filter there sees the end itself, which no delay moves
-)
+# Of a band's lower edge, at both ends: a filter there sees the end itself, which no delay moves.
+END_CYCLES = 2.0
 MOST_ENDS = 0.5  # of a recording that ends may take
-LEAST_SHARE = (
-    1e-4  # of an axis' variance that a band must hold: less is what filters leak, an amplitude of 1 %
-)
-MODEL_ERROR = (
-    0.003  # of the amplitude, in quadrature: what any URDF and any filter get wrong; a delay of this over ω
-)
+# Of an axis' variance that a band must hold: less is what filters leak, an amplitude of 1 %.
+LEAST_SHARE = 1e-4
+# Of the amplitude, in quadrature: what any URDF and any filter get wrong; a delay of this over ω.
+MODEL_ERROR = 0.003
 
 
 @dataclass(frozen=True)

@@ -96,9 +96,8 @@ def _add(ankle: ET.Element, placed: Placed, friction: float) -> None:
     sphere = ET.SubElement(ET.SubElement(collision, "geometry"), "sphere")
     ET.SubElement(sphere, "radius").text = numbers([RADIUS])
     properties = ET.SubElement(collision, tag("proximity_properties"))
-    carried = max(
-        placed.push, 1e-3 * point.stiffness * RADIUS
-    )  # one that hardly touches must not damp without bound
+    # One that hardly touches must not damp without bound.
+    carried = max(placed.push, 1e-3 * point.stiffness * RADIUS)
     for name, value in (
         ("point_contact_stiffness", point.stiffness),
         ("relaxation_time", point.damping / point.stiffness),

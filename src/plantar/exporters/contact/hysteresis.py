@@ -22,9 +22,8 @@ from plantar.exporters.xml_file import numbers
 
 TURNS: Final[tuple[Axis, ...]] = ("roll", "pitch")  # in the order of the bush's axes x and y
 SITE, NUMBERS = "_contact_bush", "_contact_slip"
-FACING: Final = (
-    0.5  # cosine between a contact's normal and the sole's: what a sole stands on, not what a toe bumps into
-)
+# Cosine between a contact's normal and the sole's: what a sole stands on, not what a toe bumps into.
+FACING: Final = 0.5
 
 
 def take_out(root: ET.Element, foot: str) -> None:

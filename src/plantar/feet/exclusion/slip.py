@@ -25,9 +25,8 @@ from plantar.robot.model import RobotModel
 from plantar.signals.segments import runs
 
 AFTER = 0.05  # s
-UNREST = (
-    0.0007  # m/s: a speed between soles, or of a turning one, that says so much as one deviation of the IMU's
-)
+# m/s: a speed between soles, or of a turning one, that says so much as one deviation of the IMU's.
+UNREST = 0.0007
 
 
 def without_slip(robot: RobotModel, recording: Recording) -> Recording:

@@ -23,17 +23,15 @@ from plantar.model_selection.model_fit import ModelFit, fit_model
 from plantar.model_selection.selection import LEAST_GAIN, ModelChoice, choose_model
 from plantar.models import MODELS, BushModel, KelvinVoigt
 
-LEAST_EXPLAINED = (
-    0.5  # of the torque's variance by spring and damper: below it no model of the bush will help
-)
+# Of the torque's variance by spring and damper: below it no model of the bush will help.
+LEAST_EXPLAINED = 0.5
 FULLY_EXPLAINED = 0.99995  # above it what is left is the sensors' noise
 SHORT_STANCE = 5.0  # s: the usual stance of walking is shorter, and tells nothing of a memory
 # A short stance begins with an unknown state and offset and ends before it has gone far: of memories
 # it tells the simplest, and only where that one explains much.
 CANDIDATES_IN_STANCES = ("kelvin_voigt", "elastoplastic")
-LEAST_GAIN_IN_STANCES = (
-    0.5  # of the held-out rms error: states that are free in every stance take up much by themselves
-)
+# Of the held-out rms error: states that are free in every stance take up much by themselves.
+LEAST_GAIN_IN_STANCES = 0.5
 PLACE_EXPLAINS = 0.5  # of the squares that spring and damper miss: what is left of them about another place
 CANDIDATES = (
     "kelvin_voigt", "hardening", "coulomb", "elastoplastic", "hardening_elastoplastic", "bouc_wen",

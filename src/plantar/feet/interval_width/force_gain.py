@@ -33,9 +33,8 @@ SAFE = 0.5  # deviations by which a share may be larger than it looks
 BEYOND_DOUBT = 3.0  # deviations of what the robot file allows for gains and masses
 HALVINGS = 50  # of an interval: what is left of it is rounding
 FAULTY = 0.15  # of robots: their force sensors are off by more than the robot file says,
-FAULT = (
-    0.1  # by such a share (standard deviation): another unit of load, an old calibration, a wrong amplifier
-)
+# By such a share (standard deviation): another unit of load, an old calibration, a wrong amplifier.
+FAULT = 0.1
 
 
 class GainError(NamedTuple):
@@ -62,9 +61,8 @@ class GainError(NamedTuple):
         says, FAULTY of them far worse; either kind of error has a normal distribution given d. That a gain is off
         by more than d and something hides it is left out: d and the usual error are all that is added.
         """
-        safe = (
-            0.0 if self.sure else SAFE * min(self.std, abs(self.share))
-        )  # nothing is missing, nothing is off
+        # Nothing is missing, nothing is off.
+        safe = 0.0 if self.sure else SAFE * min(self.std, abs(self.share))
         seen = abs(self.share / (1 + self.share)) + safe
         sizes = np.array([self.usual, FAULT])
         total = np.hypot(sizes, self.other)

@@ -15,7 +15,8 @@ from plantar.estimation import fit_blocks
 from plantar.feet.interval_width.systematic import Cause
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
-from plantar.feet.regression.regression_data import SHAPE_STEP, blocks_of
+from plantar.feet.regression.regression_data import blocks_of
+from plantar.model_selection.variable_projection import SHAPE_STEP
 
 NAME = "slip angle"
 UNRESOLVED = SHAPE_STEP / 2  # deviation, as a share: the derivative is taken over twice as much either way

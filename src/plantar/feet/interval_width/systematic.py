@@ -28,9 +28,8 @@ SUSPECTED = 2.0  # deviations of a term that the model leaves out
 # none to 5 % about four axes, 3 % of all.
 WALKS_DIFFER = 0.03
 STANCE_END = 0.1  # of a stance at either end, without which a fit over stances is made again
-SLOPE_UNSURE = (
-    0.01  # of the slope of an element found in short stances: what its share of the spring is unsure by
-)
+# Of the slope of an element found in short stances: what its share of the spring is unsure by.
+SLOPE_UNSURE = 0.01
 FEWEST_STANDS = 2  # stances of a foot in one recording, for their zeros to differ
 SINGULAR = 1e6  # condition of the fit beyond which nothing moves enough to tell
 KNOWN = 0.2  # of the stiffness: less sure beside such a term, the motions cannot tell one from the other

@@ -13,9 +13,8 @@ WORTH_SAYING = 0.005  # m: a centre that is nearer to its place is within what d
 TURN_WORTH_SAYING = 0.02  # rad: of a mount, likewise
 BUSH_WORTH_SAYING = 0.035  # of the other axis' torque in both axes: mounts a degree off show half as much
 STEPS_WORTH_SAYING = 0.012  # rad, of what stances show: ten times what healthy feet do
-FARTHEST = np.array(
-    [0.04, 0.04, 0.12, 0.12, 0.12, 0.12]
-)  # m, m, rad: corrected without doubting all the rest
+# m, m, rad: corrected without doubting all the rest.
+FARTHEST = np.array([0.04, 0.04, 0.12, 0.12, 0.12, 0.12])
 PLACE = "bush_place"
 FAR = "bush_place_far"
 BUSH_TURNED = "bush_turned"

@@ -25,12 +25,12 @@ from plantar.feet.regression.model_columns import (
     path_of,
 )
 from plantar.model_selection.data_sets import DataSet, StepColumns
+from plantar.model_selection.variable_projection import SHAPE_STEP
 
 # Before any data, of where steps find the centre [m] and how far the force sensor is turned about the vertical [rad]:
 # aside anything (the torque of the load is its own), in height some millimetres of the robot file's and of the slide
 # under load, turned or leaning by a degree, as a mount that nobody measured.
 PLACE_SPREAD = np.array([np.inf, 0.006, 0.02, 0.02])
-SHAPE_STEP = 0.01  # share of a nonlinear parameter, of the differences that stand for derivatives
 FEWEST_SAMPLES = 50  # of one recording, for it to take part in a fit
 
 

@@ -124,9 +124,8 @@ def _slow_change(
         float(w[side] @ (y[side] - level) ** 2) for side, level in zip(sides, levels, strict=True)
     )
     bend, of_line = _bend(t, y, w)
-    fewer = (
-        2 * len(run) + 1 - 3
-    )  # a level and a place for each step, and a level; the line has a slope and a place
+    # A level and a place for each step, and a level; the line has a slope and a place.
+    fewer = 2 * len(run) + 1 - 3
     if not of_line < of_levels * len(y) ** (fewer / len(y)):
         return None
     line = trend_of(t[bend:], y[bend:], w[bend:])

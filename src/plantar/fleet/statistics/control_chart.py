@@ -21,9 +21,8 @@ from plantar.fleet.statistics.trend import ROUNDING
 BASELINE: Final = 4  # days that are compared with none: with fewer, Student's t has tails that hide any step
 ALLOWANCE: Final = 0.5  # deviations of a day: half of the smallest step that is worth finding quickly
 CLIP: Final = 3.0  # deviations by which one day may count towards a step: an outlier alone is none
-OVERSHOOT: Final = (
-    1.166  # D. Siegmund's correction for sums that end beyond their limit (Sequential Analysis, 1985)
-)
+# D. Siegmund's correction for sums that end beyond their limit (Sequential Analysis, 1985).
+OVERSHOOT: Final = 1.166
 SURE: Final = 1e-14  # probabilities below it are all the same
 
 

@@ -18,9 +18,8 @@ from plantar.errors import LogError, located
 
 FEWEST = 3  # cells: two show the moment about one axis only
 FARTHEST = 1.0  # m from the frame: no sole is longer
-LEAST_SPREAD = (
-    0.005  # m, of the cells across their longest line: nearer to a line they show no moment about it
-)
+# m, of the cells across their longest line: nearer to a line they show no moment about it.
+LEAST_SPREAD = 0.005
 
 
 def wrench_of_cells(sensor: str, values: Array, places: object, path: Path) -> dict[str, Array]:

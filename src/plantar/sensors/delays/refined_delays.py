@@ -24,9 +24,8 @@ from plantar.sensors.delays.delays_by_log import DelaysByLog, delays_by_log
 from plantar.sensors.newton_euler import NewtonEulerResidual, newton_euler_residuals
 from plantar.signals.resampling import shifted
 
-ROUNDS = (
-    6  # steps: each leaves a tenth of the one before; changing between common and own delays takes some more
-)
+# Steps: each leaves a tenth of the one before; changing between common and own delays takes some more.
+ROUNDS = 6
 SETTLED = 0.001  # s: after a smaller step the next one would be below what any log shows
 DISTINCT = 4.0  # deviations by which sensors must differ to have delays of their own
 LEAST_DISTINCT = 0.0015  # s, and by so much

@@ -35,9 +35,8 @@ from plantar.sensors.newton_euler import NewtonEulerResidual
 KNOWN_STD = 0.001  # s: better known than this, the delay is corrected without a warning
 CLOCK = 0.06  # of a period: within it, nobody knows when a sample was taken
 SIGNIFICANT = 2.5  # deviations from zero: a poorly known delay is corrected beyond, else only allowed for
-PUSHED = (
-    3.0  # predicted over measured squares of the torques, or the reverse; a delay of a second halves them
-)
+# Predicted over measured squares of the torques, or the reverse; a delay of a second halves them.
+PUSHED = 3.0
 BEYOND_SEARCH = "delay_beyond_search"
 
 

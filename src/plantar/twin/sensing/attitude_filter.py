@@ -9,9 +9,8 @@ import numpy as np
 
 from plantar.conventions import Array
 
-CORRECTION_RATE: Final = (
-    0.2  # 1/s: how fast the accelerometer corrects; slower lets the gyroscope's bias through
-)
+# 1/s: how fast the accelerometer corrects; slower lets the gyroscope's bias through.
+CORRECTION_RATE: Final = 0.2
 LEARN: Final = 0.01  # 1/s²: how fast the gyroscope's bias is learnt
 
 

@@ -26,9 +26,8 @@ CORNER: Final = 0.001  # radius of the sole's contact points [m]
 SERVO_ANGLE: Final = 0.01  # a position error that asks for the joint's full torque [rad]
 SERVO_TIME: Final = 0.01  # damping over stiffness [s]
 ROTOR: Final = 2.5e-3  # reflected rotor inertia per torque limit [kg·m²/(N·m)]
-POINT: Final = (
-    1e-9  # kg·m²: a gram at a millimetre; what a URDF gives as less is a point mass, which MuJoCo refuses
-)
+# Kg·m²: a gram at a millimetre; what a URDF gives as less is a point mass, which MuJoCo refuses.
+POINT: Final = 1e-9
 HAND: Final = ("hand.x", "hand.y", "hand.z")
 
 

@@ -22,9 +22,8 @@ LEAD: Final = 3.0  # times ξ's error; 1 stops it, more brings it back with ω (
 LEARN: Final = 1.0  # 1/s: how fast a lasting error is learnt
 MOST_LEARNT: Final = 0.02  # m
 USED: Final = 0.85  # of the sole's half size: nearer to its edge it tips
-FLAT: Final = (
-    0.35  # of the sole's half size: in double support no foot's centre of pressure leaves it without need
-)
+# Of the sole's half size: in double support no foot's centre of pressure leaves it without need.
+FLAT: Final = 0.35
 
 
 @dataclass(frozen=True)
