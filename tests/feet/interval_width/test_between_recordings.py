@@ -155,6 +155,21 @@ def test_recordings_that_hardly_move_say_nothing_of_how_recordings_differ() -> N
     assert axis_differences(fit, recordings, False) is None
 
 
+@pytest.mark.parametrize(("count", "widened"), [(4, True), (5, False)])
+def test_of_few_recordings_all_are_compared(count: int, widened: bool) -> None:
+    """One knows the stiffness, the others, which know a hundredth, differ by a tenth: of five and more, all axes tell."""
+    recordings = []
+    for seed in range(count):
+        angle = (0.1 if seed else 1.0) * swayed(3000, seed=seed)
+        stiffness = 400.0 * (1 + (0.1 if seed % 2 else -0.1) * (seed > 0))
+        noise = 0.02 * np.random.default_rng(seed).standard_normal(3000)
+        recordings.append(made_recording(f"sway_{seed}", angle, stiffness * angle + noise))
+    fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
+    assert fit is not None
+    (cause,) = between_recordings(fit, tangent_blocks(recordings, fit), Apart(0.0, 1), False)
+    assert bool(cause.share[0] > 0.02 * fit.values[0]) is widened
+
+
 def test_a_recording_that_knows_a_twentieth_is_compared() -> None:
     """Two recordings by the square of their sizes: a share of a thirtieth, of a twelfth."""
     for size, compared in ((0.18, False), (0.3, True)):

@@ -75,7 +75,7 @@ def axis_differences(fit: AxisFit, recordings: Sequence[Recording], shared: bool
     Of recordings that tell the stiffness. None of a foot that steps, and where there is nothing to compare.
     """
     blocks = tangent_blocks(recordings, fit, drift=not shared)
-    return _differences(fit, blocks, _effects(fit, blocks)) if _comparable(blocks, shared) else None
+    return _differences(fit, blocks, _effects(fit, blocks), TELLS) if _comparable(blocks, shared) else None
 
 
 def between_recordings(fit: AxisFit, blocks: Sequence[Block], every: Apart, shared: bool) -> list[Cause]:
@@ -95,7 +95,8 @@ def between_recordings(fit: AxisFit, blocks: Sequence[Block], every: Apart, shar
     by_share = np.sqrt(np.sum(effects**2, axis=0))
     std, freedom = np.zeros(len(few)), len(blocks) - 1
     if few.any():
-        own = _differences(fit, blocks, effects)
+        # Of few all are compared, however little they tell: nothing else says how far the one that tells most is off.
+        own = _differences(fit, blocks, effects, TELLS if len(blocks) >= FEWEST_RECORDINGS else 0.0)
         here = [] if own is None else [recordings_apart([own], 0.0)]
         apart = max([*here, every], key=lambda each: each.share)
         std, freedom = apart.share * by_share, apart.others
@@ -114,9 +115,11 @@ def _comparable(blocks: Sequence[Block], shared: bool) -> bool:
     return blocks[0].stances is None and not shared and len(blocks) > 1
 
 
-def _differences(fit: AxisFit, blocks: Sequence[Block], effects: Array) -> AxisDifferences | None:
-    """Those of the recordings that tell the stiffness, by their `effects` on it; None where it is but one."""
-    tell = np.flatnonzero(np.abs(effects[:, 0]) > TELLS * abs(float(fit.values[0]))).tolist()
+def _differences(
+    fit: AxisFit, blocks: Sequence[Block], effects: Array, least: float
+) -> AxisDifferences | None:
+    """Those of the recordings whose `effects` make more than the share `least` of K; None where it is but one."""
+    tell = np.flatnonzero(np.abs(effects[:, 0]) > least * abs(float(fit.values[0]))).tolist()
     if len(tell) < 2:
         return None
     torques, others = _torques(fit, blocks), [place for place in range(len(blocks)) if place != tell[0]]
