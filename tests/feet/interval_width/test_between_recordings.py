@@ -157,7 +157,7 @@ def test_recordings_that_hardly_move_say_nothing_of_how_recordings_differ() -> N
 
 @pytest.mark.parametrize(("count", "widened"), [(4, True), (5, False)])
 def test_of_few_recordings_all_are_compared(count: int, widened: bool) -> None:
-    """One knows the stiffness, the others, which know a hundredth, differ by a tenth: of five and more, all axes tell."""
+    """One knows the stiffness, the others know a hundredth and differ by a tenth: of five and more, all axes tell."""
     recordings = []
     for seed in range(count):
         angle = (0.1 if seed else 1.0) * swayed(3000, seed=seed)
