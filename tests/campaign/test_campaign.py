@@ -272,19 +272,6 @@ def test_scores_pool_motions_and_tell_who_falls() -> None:
     assert text["hard"][1] == "5.000"
 
 
-def test_the_mean_torque_of_a_robot_that_falls_in_one_motion_is_none() -> None:
-    fallen = [
-        ReplayRow("soft", motion, "left pitch torque", "N.m", error)
-        for motion, error in (("a", 0.5), ("b", None))
-    ]
-    stood = [
-        ReplayRow("hard", motion, "left pitch torque", "N.m", error)
-        for motion, error in (("a", 0.5), ("b", 0.7))
-    ]
-    text = {row[0].text: row[7].text for row in simulator_table([*fallen, *stood]).rows}
-    assert text == {"soft": "falls", "hard": "0.600"}
-
-
 def test_bias_and_slow_drift_of_an_attitude_are_not_the_feets() -> None:
     time = np.arange(2001) / 200.0
     turn = Rotation.from_euler(

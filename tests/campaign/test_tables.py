@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from plantar.campaign.compared import ParameterBeside
-from plantar.campaign.tables import table_1
+from plantar.campaign.replay import ReplayRow
+from plantar.campaign.tables import simulator_table, table_1
 from plantar.report.content import Table
 
 ROW = ParameterBeside(
@@ -28,3 +29,16 @@ def test_a_parameter_stands_beside_truth_paper_and_the_papers_way() -> None:
     }  # fmt: skip
     marks = [cell.mark for cell in table_1([ROW]).rows[0]]
     assert (marks[5], marks[8]) == ("good", "bad"), "within and beyond a per cent"
+
+
+def test_the_mean_torque_of_a_robot_that_falls_in_one_motion_is_none() -> None:
+    fallen = [
+        ReplayRow("soft", motion, "left pitch torque", "N.m", error)
+        for motion, error in (("a", 0.5), ("b", None))
+    ]
+    stood = [
+        ReplayRow("hard", motion, "left pitch torque", "N.m", error)
+        for motion, error in (("a", 0.5), ("b", 0.7))
+    ]
+    text = {row[0].text: row[7].text for row in simulator_table([*fallen, *stood]).rows}
+    assert text == {"soft": "falls", "hard": "0.600"}
