@@ -71,14 +71,14 @@ def _without_needless_caution(fit: AxisFit, choice: ModelChoice, foot: FittedFoo
     foot shows none: at the sole's border it strains the rubber as far as larger motions about this one would."""
     if not only_too_small(choice):
         return fit
-    half = dict(
+    across = dict(
         zip(ROTATIONAL_AXES, np.ptp(foot.ready.robot.feet[foot.foot].sole.polygon, axis=0), strict=True)
     )
     shows_none = any(
         other.choice is not None
         and other.choice.caution is None
         and not has_memory(other.model)
-        and other.choice.reach * half[axis] >= SMALL * half[fit.axis]
+        and other.choice.reach * across[axis] >= SMALL * across[fit.axis]
         for axis, other in foot.fits.items()
         if axis != fit.axis and axis not in foot.given_up
     )

@@ -75,7 +75,9 @@ def axis_differences(fit: AxisFit, recordings: Sequence[Recording], shared: bool
     Of recordings that tell the stiffness. None of a foot that steps, and where there is nothing to compare.
     """
     blocks = tangent_blocks(recordings, fit, drift=not shared)
-    return _differences(fit, blocks, _effects(fit, blocks), TELLS) if _comparable(blocks, shared) else None
+    if not _comparable(blocks, shared):
+        return None
+    return _differences(fit, blocks, _effects(fit, blocks, influences_of(blocks)), TELLS)
 
 
 def between_recordings(fit: AxisFit, blocks: Sequence[Block], every: Apart, shared: bool) -> list[Cause]:
@@ -89,9 +91,10 @@ def between_recordings(fit: AxisFit, blocks: Sequence[Block], every: Apart, shar
     """
     if not _comparable(blocks, shared):
         return []
-    told = np.array([np.sum(own**2, axis=1) for own in influences_of(blocks)])
+    influences = influences_of(blocks)
+    told = np.array([np.sum(own**2, axis=1) for own in influences])
     few = (len(blocks) < FEWEST_RECORDINGS) | (told.max(axis=0) > MOST * told.sum(axis=0))
-    effects = _effects(fit, blocks)
+    effects = _effects(fit, blocks, influences)
     by_share = np.sqrt(np.sum(effects**2, axis=0))
     std, freedom = np.zeros(len(few)), len(blocks) - 1
     if few.any():
@@ -131,9 +134,9 @@ def _differences(
     return AxisDifferences(differences, usual, frozenset(blocks[place].label for place in tell))
 
 
-def _effects(fit: AxisFit, blocks: Sequence[Block]) -> Array:
-    """What each recording's spring and damper add to the numbers, (blocks, k)."""
-    each = zip(influences_of(blocks), _torques(fit, blocks), strict=True)
+def _effects(fit: AxisFit, blocks: Sequence[Block], influences: Sequence[Array]) -> Array:
+    """What each recording's spring and damper add to the numbers, (blocks, k); `influences_of` the blocks."""
+    each = zip(influences, _torques(fit, blocks), strict=True)
     return np.array([own @ torque for own, torque in each])
 
 
