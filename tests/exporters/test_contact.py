@@ -19,9 +19,9 @@ from plantar.conventions import GRAVITY, Axis
 from plantar.errors import ExportError
 from plantar.exporters import export
 from plantar.exporters.bush import FootBush
-from plantar.exporters.contact.alone import Measured, measured
+from plantar.exporters.contact.alone import INERTIA_TIME, Measured, contact_attributes, measured
 from plantar.exporters.contact.fit import LOADS, STEPS, fitted
-from plantar.exporters.contact.points import Sides, points_for, sides_of
+from plantar.exporters.contact.points import Point, Sides, points_for, sides_of
 from plantar.exporters.job import LEAST_LOAD as EDGES
 from plantar.exporters.openhrp import read_customizer
 from plantar.exporters.spring import (
@@ -227,7 +227,29 @@ def test_a_second_export_takes_the_place_of_the_first(tmp_path: Path) -> None:
     one, two = (mujoco.MjModel.from_xml_path(str(tmp_path / f"{name}.xml")) for name in ("one", "two"))
     right = [name for name in (one.geom(geom).name for geom in range(one.ngeom)) if "right_contact" in name]
     assert {one.geom(name).solref[0] for name in right} == {two.geom(name).solref[0] for name in right}
-    assert one.geom("left_contact_0").solref[0] < two.geom("left_contact_0").solref[0] < 0
+    stiffer, soft = (np.prod(model.geom("left_contact_0").solref) ** -2 for model in (one, two))
+    assert soft < 0.7 * stiffer
+
+
+@pytest.mark.parametrize("damping", [0.0, 300.0, 3e5])
+def test_a_point_pushes_with_its_spring_and_damper_either_way_it_is_written(damping: float) -> None:
+    """With a damper it has a time constant, which engines beside MuJoCo read; without one stiffness and damping."""
+    written = contact_attributes(Point(0.0, 0.0, 2e4, damping), 0.5)
+    assert written["solref"].startswith("-") == (damping == 0)
+    assert damping == 0 or float(written["solref"].split()[0]) >= 2 * max(STEPS)
+    inertia = max(INERTIA_TIME * damping, 0.5 * INERTIA_TIME**2 * 2e4)
+    model = mujoco.MjModel.from_xml_string(
+        '<mujoco><option cone="elliptic" gravity="0 0 0"/><worldbody><geom type="plane" size="1 1 1"/><body>'
+        '<joint type="slide" axis="0 0 1"/><inertial pos="0 0 0" mass="2" diaginertia="1 1 1"/>'
+        '<geom type="sphere" size="0.002" pos="0 0 0.001" mass="0" priority="1" '
+        + " ".join(f'{key}="{value}"' for key, value in written.items())
+        + "/></body></worldbody></mujoco>"
+    )
+    data = mujoco.MjData(model)
+    data.qvel[0] = -0.002  # 1 mm in the ground, and sinking
+    mujoco.mj_forward(model, data)
+    # (m + inertia) a = k r - c v
+    assert (2 + inertia) * data.qacc[0] == pytest.approx(2e4 * 0.001 + damping * 0.002, rel=1e-6)
 
 
 def test_points_go_to_the_body_that_carried_the_ground(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Feet on points pushed in Drake, Bullet and PhysX, which live in Pythons of their own; a skip says which is missing.
+"""Feet on points pushed in Drake, Bullet, PhysX and Newton, in Pythons of their own; a skip says which is missing.
 
 Each program loads the file that a user gets, takes the other foot's points off the ground, presses the robot on one
 foot with a share of its weight at the bush centre of the robot file, turns it until it stands, and lets go. What the
@@ -165,6 +165,64 @@ for torque, span in ((-job["torque"], job["stand"]), (job["torque"], job["stand"
 print("\\n" + json.dumps(track), flush=True)
 """
 
+# Put down within a second: all at once the foot would hop, for Newton's ground is where the unloaded points stand.
+NEWTON = """
+import json, sys
+import xml.etree.ElementTree as ET
+import numpy as np
+import warp as wp
+wp.config.quiet = True
+import newton
+
+job = json.load(sys.stdin)
+tree = ET.parse(job["file"])
+for body in tree.getroot().iter("body"):
+    for geom in body.findall("geom"):
+        if geom.get("name", "").startswith(job["other"] + "_contact_"):
+            body.remove(geom)
+tree.write(job["file"])
+builder = newton.ModelBuilder()
+newton.solvers.SolverMuJoCo.register_custom_attributes(builder)
+builder.add_mjcf(job["file"], enable_self_collisions=False)
+builder.add_ground_plane()
+model = builder.finalize(device="cpu")
+model.set_gravity((0.0, 0.0, 0.0))
+solver = newton.solvers.SolverMuJoCo(model, use_mujoco_cpu=True, use_mujoco_contacts=True)
+body = [label.split("/")[-1] for label in model.body_label].index(job["ankle"])
+now, then, control = model.state(), model.state(), model.control()
+newton.eval_fk(model, model.joint_q, model.joint_qd, now)
+com = model.body_com.numpy()[body]
+
+def pose():
+    found = now.body_q.numpy()[body].astype(float)
+    x, y, z, w = found[3:]
+    return found[:3], np.array([[1-2*(y*y+z*z), 2*(x*y-w*z), 2*(x*z+w*y)], [2*(x*y+w*z), 1-2*(x*x+z*z), 2*(y*z-w*x)],
+                     [2*(x*z-w*y), 2*(y*z+w*x), 1-2*(x*x+y*y)]])
+
+start = pose()[1]
+axis = start @ np.array(job["axis"])
+
+def angle():
+    turned = pose()[1] @ start.T
+    return float(0.5 * axis @ [turned[2, 1] - turned[1, 2], turned[0, 2] - turned[2, 0], turned[1, 0] - turned[0, 1]])
+
+track, ramp = [], 0.0
+for torque, span in ((-job["torque"], job["stand"]), (job["torque"], job["stand"]), (0.0, job["free"])):
+    track.append([angle()])
+    for _ in range(round(span / job["step"])):
+        ramp = min(1.0, ramp + job["step"])
+        force = ramp * np.array([0, 0, -job["load"]])
+        arm = pose()[1] @ (np.array(job["centre"]) - com)
+        push = np.zeros((model.body_count, 6), np.float32)
+        push[body] = np.r_[force, np.cross(arm, force) + ramp * torque * axis]
+        now.clear_forces()
+        now.body_f.assign(push)
+        solver.step(now, then, control, None, job["step"])
+        now, then = then, now
+        track[-1].append(angle())
+print("\\n" + json.dumps(track))
+"""
+
 
 def pushed(
     python: str, program: str, file: Path, foot: str, axis: Axis, share: float, step: float, **more: object
@@ -245,6 +303,18 @@ def test_physx_turns_on_points_as_identified(
     python = other_python("PLANTAR_PHYSX_PYTHON", "ovphysx")
     out = physx_file(tmp_path, foot, solver)
     right(pushed(python, PHYSX, out, foot, axis, share, 0.004, ankle=f"/World/biped/{foot}_ankle"), k)
+
+
+@pytest.mark.parametrize(("foot", "axis", "share"), CASES)
+@pytest.mark.parametrize("step", [0.001, 0.004])
+def test_newton_turns_on_the_points_of_mujoco_as_identified(
+    tmp_path: Path, foot: str, axis: Axis, share: float, step: float
+) -> None:
+    """Newton hands `solref` and `solimp` on to MuJoCo where its builder was told to keep them."""
+    python = other_python("PLANTAR_NEWTON_PYTHON", "newton")
+    out = tmp_path / "out.xml"
+    export(result(write_urdf(tmp_path / "biped.urdf", rigid_legs=True)), "mujoco-contact", out)
+    right(pushed(python, NEWTON, out, foot, axis, share, step), k=0.02, c=0.01)
 
 
 def physx_file(folder: Path, foot: str, solver: str) -> Path:

@@ -15,6 +15,9 @@ from plantar.exporters.contact.points import Point, PointFoot
 # The contact's own inertia, as a time: an inertia of C times this stands beside the damper. It is what lets a light
 # foot stand at steps of up to this length; the bush's C/K is ten times longer.
 INERTIA_TIME: Final = 0.004  # s
+SHORTEST: Final = (
+    0.008  # s: MuJoCo raises time constants to two steps, and the longest step of the fit is 4 ms
+)
 RADIUS: Final = 0.002  # m, of the sphere that is a point
 # Friction as much harder than the normal: else a soft sole creeps under a sideways force, and a foot seems softer.
 IMPRATIO: Final = 100.0
@@ -38,8 +41,10 @@ def contact_attributes(point: Point, inverse_mass: float) -> dict[str, str]:
 
     A contact of constant impedance d pushes with (stiffness·r - damping·v) / ((1 - d) Â) and adds an inertia
     m = d / ((1 - d) Â), where Â is MuJoCo's inverse mass of the two bodies at the model's reference pose: so
-    `solref` = -(k, c)(1 - d)Â with d = mÂ / (1 + mÂ) is a spring k and a damper c (MuJoCo, Computation, solver
-    parameters). Holds for elliptic cones.
+    (stiffness, damping) = (k, c)(1 - d)Â with d = mÂ / (1 + mÂ) is a spring k and a damper c (MuJoCo, Computation,
+    solver parameters). Holds for elliptic cones. Written are the time constant 2 / damping and the damping ratio
+    damping / (2 √stiffness), which other engines read too; the inertia keeps the time constant above the two steps
+    that MuJoCo asks for. A point without damper has -stiffness and -damping, which only MuJoCo reads.
 
     Args:
         point: of the foot. inverse_mass: `body_invweight0` of the foot's body, translational [1/kg].
@@ -47,8 +52,13 @@ def contact_attributes(point: Point, inverse_mass: float) -> dict[str, str]:
     inertia = max(INERTIA_TIME * point.damping, 0.5 * INERTIA_TIME**2 * point.stiffness)
     impedance = inertia * inverse_mass / (1 + inertia * inverse_mass)
     scale = (1 - impedance) * inverse_mass
+    stiffness, damping = point.stiffness * scale, point.damping * scale
+    if damping > 0:
+        solref = f"{2 / damping:.9g} {0.5 * damping / np.sqrt(stiffness):.9g}"
+    else:
+        solref = f"{-stiffness:.9g} -1e-9"
     return {
-        "solref": f"{-point.stiffness * scale:.9g} {-max(point.damping * scale, 1e-9):.9g}",
+        "solref": solref,
         "solimp": f"{impedance:.9g} {impedance:.9g} 0.001 0.5 2",
         "margin": "0",
         "gap": "0",
