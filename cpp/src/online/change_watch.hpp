@@ -7,9 +7,9 @@
 // change are no usual scatter until others have spoken against it: the first one of a change shall not hide the second.
 //
 // A torque that comes late is no other stiffness: each probe lets it be later than was told, by what it changes in that
-// time. A late one of a bush lacks more than its spring's part, which is why another damping, that other ground may
-// have, does not stand for a delay. Nor is it other ground where no line through deflection and rate explains a torque,
-// or where one pulls the other way: no ground does that, a sensor does.
+// time. Other ground may have another damping, too; that alone explains no delay, since a late torque lacks part of the
+// damper's as well. Nor is it other ground where no line through deflection and rate explains a torque, or where one
+// pulls the other way: no ground does that, a sensor does.
 #pragma once
 
 #include <algorithm>
@@ -41,8 +41,8 @@ class ChangeWatch {
 
   void restart() noexcept { *this = {}; }
 
-  // A row: what the filter has made of a constant, the deflection's rate, what a torque lacks for each second that it is
-  // late, the deflection, what an element's torque may be off by, and what the model leaves of the torque.
+  // A row: what the filter has made of a constant, the deflection's rate, what a torque lacks for each second that it
+  // is late, the deflection, what an element's torque may be off by, and what the model leaves of the torque.
   void add(double one, double rate, double late, double deflection, double unknown, double left, double dt) noexcept {
     double row[PROBED + 1] = {one, rate, late, deflection, unknown, left};
     probe_.add(row);
