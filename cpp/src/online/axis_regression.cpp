@@ -52,7 +52,8 @@ void AxisRegression::watch(const RegressionRow& row, double dt) noexcept {
   double left = row.torque;
   for (int i = 0; i < UNKNOWNS; ++i) left -= row.columns[i] * before_.value[i];
   const double unknown = ANYWHERE * std::abs(before_.value[SLIP_TORQUE]) * row.own[BEGINNING];
-  watch_.add(row.own[OFFSET], row.columns[DAMPING], row.columns[STIFFNESS], unknown, left, dt);
+  const double* columns = row.columns;
+  watch_.add(row.own[OFFSET], columns[DAMPING], columns[LATE], columns[STIFFNESS], unknown, left, dt);
   if (watch_.full()) end_probe();
 }
 

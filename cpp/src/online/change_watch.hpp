@@ -6,8 +6,10 @@
 // and taken off again by probes that speak against it (CUSUM; E. S. Page, Biometrika 41, 1954). Probes that speak for a
 // change are no usual scatter until others have spoken against it: the first one of a change shall not hide the second.
 //
-// A torque that comes late is no other stiffness: each probe lets it be later than was told. Nor is what no line
-// through deflection and rate explains, or a torque that pulls the other way: no ground does that, a sensor does.
+// A torque that comes late is no other stiffness: each probe lets it be later than was told, by what it changes in that
+// time. Other ground may have another damping, too; that alone explains no delay, since a late torque lacks part of the
+// damper's as well. Nor is it other ground where no line through deflection and rate explains a torque, or where one
+// pulls the other way: no ground does that, a sensor does.
 #pragma once
 
 #include <algorithm>
@@ -25,6 +27,7 @@ constexpr double SURE_OF_CHANGE = 15.0;  // log-likelihood: three million to one
 constexpr double MOST_OF_ONE = 7.5;      // of one probe: a single one may be a stumble
 constexpr double SHOWS = 0.15;           // deviation over stiffness, beyond which a probe shows nothing
 constexpr double UNTOLD_DELAY = 0.03;    // s: deviation of how late torques may be beyond what was told, in one probe
+constexpr double OTHER_DAMPING = 0.05;   // s, times the stiffness: deviation of how much the damping may have changed
 constexpr double UNEXPLAINED = 10.0;     // times a row's usual noise: what is left is no noise
 constexpr double SURELY = 2.0;           // deviations
 constexpr double ROWS_ALIKE = 8.0;       // rows in a cycle of the filter: so many say the same
@@ -38,10 +41,10 @@ class ChangeWatch {
 
   void restart() noexcept { *this = {}; }
 
-  // A row: what the filter has made of a constant, the deflection and its rate, what an element's torque may be off by,
-  // and what the model leaves of the torque.
-  void add(double one, double rate, double deflection, double unknown, double left, double dt) noexcept {
-    double row[5] = {one, rate, deflection, unknown, left};
+  // A row: what the filter has made of a constant, the deflection's rate, what a torque lacks for each second that it
+  // is late, the deflection, what an element's torque may be off by, and what the model leaves of the torque.
+  void add(double one, double rate, double late, double deflection, double unknown, double left, double dt) noexcept {
+    double row[PROBED + 1] = {one, rate, late, deflection, unknown, left};
     probe_.add(row);
     ++rows_, time_ += dt;
   }
@@ -59,13 +62,14 @@ class ChangeWatch {
 
   // Ends a probe: has the stiffness changed from what was learnt, with its deviation? noise: of a row [N·m].
   Verdict judge(double stiffness, double deviation, double noise) noexcept {
-    double line[5] = {0.0, stiffness > 0.0 ? noise / (UNTOLD_DELAY * stiffness) : 0.0};
-    probe_.add(line, 1);
-    const double shown = probe_.r[2][2];
+    double damped[PROBED + 1] = {0.0, stiffness > 0.0 ? noise / (OTHER_DAMPING * stiffness) : 0.0};
+    double late[PROBED + 1] = {0.0, 0.0, noise / UNTOLD_DELAY};
+    probe_.add(damped, 1), probe_.add(late, 2);
+    const double shown = probe_.r[3][3];
     const bool enough = rows_ >= PROBE_ROWS && shown > 0.0 && stiffness > 0.0;
-    const double away = enough ? probe_.r[2][4] / shown / stiffness : 0.0;
-    const double left = enough ? probe_.r[4][4] * std::sqrt(ROWS_ALIKE / rows_) : 0.0;
-    const double own = enough ? std::hypot(std::max(noise, left), probe_.r[2][3]) / shown / stiffness : 1.0;
+    const double away = enough ? probe_.r[3][PROBED] / shown / stiffness : 0.0;
+    const double left = enough ? probe_.r[PROBED][PROBED] * std::sqrt(ROWS_ALIKE / rows_) : 0.0;
+    const double own = enough ? std::hypot(std::max(noise, left), probe_.r[3][4]) / shown / stiffness : 1.0;
     drop();
     const bool explained = left <= std::max(UNEXPLAINED * noise, SHOWS * shown * stiffness);
     doubted_ = !explained || (own < SHOWS && away + SURELY * own < -1.0);
@@ -89,7 +93,9 @@ class ChangeWatch {
   }
 
  private:
-  RootTriangle<4> probe_;
+  static constexpr int PROBED = 5;  // unknowns of a probe
+
+  RootTriangle<PROBED> probe_;
   bool doubted_ = false, wary_ = false;
   int rows_ = 0, probes_ = 0;  // since nothing was suspected
   double suspected_ = 0.0;     // sum of what these were off beyond their noise
