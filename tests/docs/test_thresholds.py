@@ -71,7 +71,7 @@ def page(name: str) -> str:
             f"{stances.LONGEST_STANCE:g} s",
         ),
         ("walking.md", f"{100 * systematic.SLOPE_UNSURE:g} % of the element's slope"),
-        ("walking.md", f"{100 * systematic.WALKS_DIFFER:g} % of K and C, over the square root"),
+        ("walking.md", f"{100 * systematic.ELEMENT_UNSURE:g} % of its slip torque and slip angle"),
         ("walks.md", f"`--period` ({gait.SHORTEST:g} to {gait.LONGEST:g} s)"),
         ("walks.md", f"about {gait.WALKING:g} s of steps"),
         ("walks.md", f"`WalkTurn` | {gait.TURN_STEP:g} m, {np.degrees(gait.TURN):.0f}° to the left"),

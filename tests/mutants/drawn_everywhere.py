@@ -34,11 +34,11 @@ DRAWN_EVERYWHERE = (
         ("feet/regression/test_regression_data.py",),
     ),
     Mutant(
-        "feet/interval_width/systematic.py",
-        "several walks are no surer than one",
-        "WALKS_DIFFER / np.sqrt(recordings)",
-        "WALKS_DIFFER",
-        ("feet/interval_width/test_systematic.py",),
+        "feet/interval_width/between_walks.py",
+        "walks that scatter are taken to be as alike as those that agree",
+        "axis.differences.resolution).share",
+        "axis.usual / 10).share",
+        ("feet/interval_width/test_between_walks.py",),
     ),
     Mutant(
         "feet/interval_width/systematic.py",

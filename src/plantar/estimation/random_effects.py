@@ -19,6 +19,11 @@ class Differences(NamedTuple):
     shares: Array
     covariance: Array
 
+    @property
+    def resolution(self) -> float:
+        """The usual deviation of a difference: what groups can be told apart by."""
+        return float(np.sqrt(np.mean(np.diag(self.covariance))))
+
 
 class ShareBetween(NamedTuple):
     """By which share (standard deviation) groups differ, and the ends of its 95 % interval."""

@@ -171,11 +171,11 @@ def test_of_few_recordings_all_are_compared(count: int, widened: bool) -> None:
 
 
 def test_a_recording_that_knows_a_twentieth_is_compared() -> None:
-    """Two recordings by the square of their sizes: a share of a thirtieth, of a twelfth."""
+    """Two of five recordings, by the square of their sizes: a share of a thirtieth, of a twelfth."""
     for size, compared in ((0.18, False), (0.3, True)):
-        angle = [swayed(3000, seed=0), size * swayed(3000, seed=1)]
-        noise = np.random.default_rng(0).standard_normal((2, 3000))
-        recordings = [made_recording(f"sway_{k}", angle[k], 400.0 * angle[k] + noise[k]) for k in range(2)]
+        angle = [own * swayed(3000, seed=seed) for seed, own in enumerate((1.0, size, *[0.001] * 3))]
+        noise = np.random.default_rng(0).standard_normal((5, 3000))
+        recordings = [made_recording(f"sway_{k}", angle[k], 400.0 * angle[k] + noise[k]) for k in range(5)]
         fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
         assert fit is not None
         assert (axis_differences(fit, recordings, False) is not None) == compared

@@ -12,6 +12,7 @@ from biped import TRUTH, Motion, record, sway
 from biped_robot import FEET
 from feet_trials import AXES, LINEAR, noisy
 from made_recording import FOOT, made_recording, swayed
+from plantar.contact.stances import Stances
 from plantar.conventions import NORMAL95
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.fit.vertical_stiffness import VerticalStiffness
@@ -19,7 +20,6 @@ from plantar.feet.identify import identify_feet
 from plantar.feet.interval_width import systematic
 from plantar.feet.interval_width.systematic import (
     Cause,
-    _between_walks,
     _by_delay,
     _ends_of_stances,
     _shared_slope,
@@ -136,17 +136,6 @@ def test_a_delay_in_doubt_is_allowed_for_as_far_as_it_may_be_off() -> None:
         )
 
 
-def test_more_walks_are_surer_until_their_own_scatter_says_it() -> None:
-    """What differs from walk to walk by chance is, in their mean, smaller by the root of their number."""
-    angle = swayed(2000)
-    fit = fit_axis([made_recording("sway", angle, 400.0 * angle)], FOOT, "pitch", LINEAR)
-    assert fit is not None
-    (one,), (four,), (many,) = (_between_walks(fit, count) for count in (1, 4, 25))
-    assert one.share[0] == pytest.approx(0.03 * 400.0, rel=1e-3)
-    assert four.share == pytest.approx(one.share / 2)
-    assert not many.share.any()
-
-
 def test_a_cause_adds_its_variance_and_brings_its_few_degrees_of_freedom() -> None:
     """Welch and Satterthwaite, by hand: (1 + 9)² / (1²/10 + 9²/2) of the stiffness; the damping is not moved."""
     angle = swayed(2000)
@@ -179,7 +168,7 @@ def test_a_cause_is_as_sure_as_what_it_comes_from() -> None:
     assert found["delay"].share[1] == pytest.approx(0.001 * 400.0, rel=0.02), "K·delay off the damping"
 
 
-def test_what_spring_and_element_take_from_each_other_leaves_their_sum() -> None:
+def test_what_spring_and_element_take_from_each_other() -> None:
     """Before it slips, the element is a spring of slip_torque / slip_angle beside the other."""
     angle = swayed(2000)
     recording = made_recording("sway", angle, 400.0 * angle)
@@ -190,7 +179,20 @@ def test_what_spring_and_element_take_from_each_other_leaves_their_sum() -> None
         linear, model=MODELS["elastoplastic"], values=np.array([400.0, 20.0, 3.0]), shape=np.array([0.01])
     )
     (cause,) = _shared_slope(fit, [recording])
-    assert cause.share == pytest.approx([0.01 * 300.0, 0.0, 0.01 * 3.0])
+    assert cause.share == pytest.approx([0.005 * 300.0, 0.0, 0.012 * 3.0, 0.012 * 0.01])
+
+
+def test_what_an_element_that_never_turns_takes_from_the_spring_leaves_their_sum() -> None:
+    """Stances of 0.5 s: a straight way of one slip angle each."""
+    angle, number = 0.01 * (np.arange(2000) % 50) / 50, np.arange(2000) // 50
+    recording = made_recording("walk", angle, 400.0 * angle, stances=Stances(number, np.ones(2000)))
+    linear = fit_axis([made_recording("walk", swayed(2000), 400.0 * swayed(2000))], FOOT, "pitch", LINEAR)
+    assert linear is not None
+    fit = replace(
+        linear, model=MODELS["elastoplastic"], values=np.array([400.0, 20.0, 3.0]), shape=np.array([0.01])
+    )
+    (cause,) = _shared_slope(fit, [recording])
+    assert cause.share[0] == pytest.approx(300.0 / np.sqrt(3))
     assert cause.effect[0] + cause.effect[2] / 0.01 == pytest.approx(0.0)
 
 

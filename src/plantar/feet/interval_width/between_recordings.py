@@ -72,16 +72,16 @@ def apart_notes(apart: Apart) -> list[Note]:
 def axis_differences(fit: AxisFit, recordings: Sequence[Recording], shared: bool) -> AxisDifferences | None:
     """Shares by which spring and damper of each recording are beside the first one's: what all share is K's own.
 
-    Of recordings that tell the stiffness. None of a foot that steps, and where there is nothing to compare.
+    Of many those are compared that tell the stiffness, of few all are; None where there is nothing to compare.
     """
     blocks = tangent_blocks(recordings, fit, drift=not shared)
     if not _comparable(blocks, shared):
         return None
-    return _differences(fit, blocks, _effects(fit, blocks, influences_of(blocks)), TELLS)
+    return differences_of(fit, blocks, effects_of(fit, blocks, influences_of(blocks)))
 
 
 def between_recordings(fit: AxisFit, blocks: Sequence[Block], every: Apart, shared: bool) -> list[Cause]:
-    """By how much recordings move the fit beyond their own deviations; of feet that step `systematic` knows it.
+    """By how much recordings of a foot that stands move the fit beyond their own deviations.
 
     From FEWEST_RECORDINGS on refits without one of them each (jackknife) say it, whatever it is that differs. Fewer are
     taken to differ by a share of spring and damper, as this axis shows it, or `every` axis together where that is more;
@@ -94,12 +94,11 @@ def between_recordings(fit: AxisFit, blocks: Sequence[Block], every: Apart, shar
     influences = influences_of(blocks)
     told = np.array([np.sum(own**2, axis=1) for own in influences])
     few = (len(blocks) < FEWEST_RECORDINGS) | (told.max(axis=0) > MOST * told.sum(axis=0))
-    effects = _effects(fit, blocks, influences)
+    effects = effects_of(fit, blocks, influences)
     by_share = np.sqrt(np.sum(effects**2, axis=0))
     std, freedom = np.zeros(len(few)), len(blocks) - 1
     if few.any():
-        # Of few all are compared, however little they tell: nothing else says how far the one that tells most is off.
-        own = _differences(fit, blocks, effects, TELLS if len(blocks) >= FEWEST_RECORDINGS else 0.0)
+        own = differences_of(fit, blocks, effects)
         here = [] if own is None else [recordings_apart([own], 0.0)]
         apart = max([*here, every], key=lambda each: each.share)
         std, freedom = apart.share * by_share, apart.others
@@ -114,27 +113,31 @@ def between_recordings(fit: AxisFit, blocks: Sequence[Block], every: Apart, shar
 
 
 def _comparable(blocks: Sequence[Block], shared: bool) -> bool:
-    """Whether the recordings of an axis can be told apart: of a standing foot, several, each with its own offset."""
-    return blocks[0].stances is None and not shared and len(blocks) > 1
+    """Whether the recordings of an axis can be told apart: several, each with its own offset. Of many walks the fit's
+    own deviation comes from refits without one of them each, which a share of that one does not survive."""
+    many = len(blocks) >= FEWEST_RECORDINGS and blocks[0].stances is not None
+    return not shared and len(blocks) > 1 and not many
 
 
-def _differences(
-    fit: AxisFit, blocks: Sequence[Block], effects: Array, least: float
-) -> AxisDifferences | None:
-    """Those of the recordings whose `effects` make more than the share `least` of K; None where it is but one."""
-    tell = np.flatnonzero(np.abs(effects[:, 0]) > least * abs(float(fit.values[0]))).tolist()
+def differences_of(fit: AxisFit, blocks: Sequence[Block], effects: Array) -> AxisDifferences | None:
+    """Those of the recordings whose `effects` make more than the share TELLS of K; None where it is but one.
+
+    Of few all are compared, however little they tell: nothing else says how far the one that tells most is off.
+    """
+    least = TELLS * abs(float(fit.values[0])) if len(blocks) >= FEWEST_RECORDINGS else 0.0
+    tell = np.flatnonzero(np.abs(effects[:, 0]) > least).tolist()
     if len(tell) < 2:
         return None
     torques, others = _torques(fit, blocks), [place for place in range(len(blocks)) if place != tell[0]]
     columns = [np.column_stack(each) for each in zip(*(_alone(torques, own) for own in others), strict=True)]
     found = fit_blocks([beside(block, own) for block, own in zip(blocks, columns, strict=True)])
     ends = blocks[0].regressor.shape[1] + np.array([others.index(place) for place in tell[1:]])
-    usual = float(fit_blocks(blocks).std[0]) / max(abs(float(fit.values[0])), 1e-300)
     differences = Differences(found.values[ends], found.covariance[np.ix_(ends, ends)])
+    usual = float(fit_blocks(blocks).std[0]) / max(abs(float(fit.values[0])), 1e-300)
     return AxisDifferences(differences, usual, frozenset(blocks[place].label for place in tell))
 
 
-def _effects(fit: AxisFit, blocks: Sequence[Block], influences: Sequence[Array]) -> Array:
+def effects_of(fit: AxisFit, blocks: Sequence[Block], influences: Sequence[Array]) -> Array:
     """What each recording's spring and damper add to the numbers, (blocks, k); `influences_of` the blocks."""
     each = zip(influences, _torques(fit, blocks), strict=True)
     return np.array([own @ torque for own, torque in each])

@@ -8,6 +8,7 @@ import numpy as np
 
 from plantar.estimation import Block
 from plantar.feet.interval_width.between_recordings import Apart, between_recordings
+from plantar.feet.interval_width.between_walks import between_walks
 from plantar.feet.interval_width.systematic import Cause
 from plantar.feet.regression.axis import AxisFit
 
@@ -22,4 +23,6 @@ def robot_causes(
     turned = 1 - float(np.cos(fit.turned))
     gain = float(np.hypot(wrench_gain, turned))
     causes = [Cause("sensor gain", fit.values, gain)] if gain else []
+    if blocks[0].stances is not None:
+        return [*causes, *between_walks(fit, blocks, apart)]
     return [*causes, *between_recordings(fit, blocks, apart, shared)]

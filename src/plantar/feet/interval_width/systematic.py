@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from plantar.conventions import NORMAL95, ROTATIONAL_AXES, UNIFORM, Array, Mask
 from plantar.estimation import Block, effect_of, fit_blocks, influences_of
 from plantar.estimation.residual_covariance import pooled_freedom
-from plantar.estimation.stance_least_squares import FEWEST_RECORDINGS
 from plantar.feet.fit.half_turns import ROUND, slip_angles_spanned
 from plantar.feet.fit.hidden_memory import element_slope, moved_by_memory
 from plantar.feet.fit.vertical_stiffness import VerticalStiffness
@@ -24,12 +23,11 @@ from plantar.signals.resampling import shifted
 from plantar.signals.segments import run_numbers
 
 SUSPECTED = 2.0  # deviations of a term that the model leaves out
-# Share of K by which walks of one robot differ, beyond what their own stances show: of eleven walks of a real humanoid
-# none to 5 % about four axes, 3 % of all.
-WALKS_DIFFER = 0.03
 STANCE_END = 0.1  # of a stance at either end, without which a fit over stances is made again
-# Of the slope of an element found in short stances: what its share of the spring is unsure by.
-SLOPE_UNSURE = 0.01
+# Of the slope of an element found in short stances, what its share of the spring is unsure by; of its slip torque and
+# slip angle, what these are: by errors on walks of two simulated robots, less what other causes make of them.
+SLOPE_UNSURE = 0.005
+ELEMENT_UNSURE = 0.012
 FEWEST_STANDS = 2  # stances of a foot in one recording, for their zeros to differ
 SINGULAR = 1e6  # condition of the fit beyond which nothing moves enough to tell
 KNOWN = 0.2  # of the stiffness: less sure beside such a term, the motions cannot tell one from the other
@@ -59,8 +57,8 @@ def systematic_causes(
     vertical: VerticalStiffness,
     shared: bool,
 ) -> list[Cause]:
-    """The wrenches' delay and the moment arm of the compressed slide; of feet that step the ends of stances, what walks
-    differ by and what a memory may share with the spring; of others a hardening that the model leaves out, zeros that
+    """The wrenches' delay and the moment arm of the compressed slide; of feet that step the ends of stances and what a
+    memory may share with the spring; of others a hardening that the model leaves out, zeros that
     differ between stances, and for roll the zero of the yaw torque. `blocks`: the recordings' `tangent_blocks`."""
     foot, column = fit.foot, ROTATIONAL_AXES.index(fit.axis)
     by_name = {recording.name: recording for recording in recordings}
@@ -87,7 +85,6 @@ def systematic_causes(
         return [
             *causes,
             _ends_of_stances(blocks),
-            *_between_walks(fit, len(blocks)),
             *_shared_slope(fit, recordings),
         ]
     causes += _suspected_hardening(fit, blocks, shared)
@@ -139,29 +136,23 @@ def _ends_of_stances(blocks: Sequence[Block]) -> Cause:
     return Cause("ends of stances", effect, UNIFORM)
 
 
-def _between_walks(fit: AxisFit, recordings: int) -> list[Cause]:
-    """By how much another walk may differ, where there are too few for their scatter to say it; a memory's numbers, of
-    which each walk's scatter is not looked at, always."""
-    few = recordings < FEWEST_RECORDINGS
-    effect = np.abs(fit.numbers)
-    effect[:2] *= few
-    return [Cause("between walks", effect, WALKS_DIFFER / np.sqrt(recordings))]
-
-
 def _shared_slope(fit: AxisFit, recordings: Sequence[Recording]) -> list[Cause]:
     """What a memory that was found in short stances may have taken from the spring, or left to it.
 
-    Until it slips, an element is a spring; each stance begins with a state that nobody knows. On walks of a simulated
-    robot whose feet are known, K is off by about a per cent of the element's slope; by any part of it where no stance
-    turns the element round.
+    Until it slips, an element is a spring; each stance begins with a state that nobody knows. Where no stance turns the
+    element round, any part of its slope may be the spring's.
     """
     if "slip_torque" not in fit.model.terms:
         return []
-    place, effect = fit.model.terms.index("slip_torque"), np.zeros(len(fit.values))
-    effect[[0, place]] = element_slope(fit), -fit.values[place]
     spanned = slip_angles_spanned(fit, recordings)
-    unsure = SLOPE_UNSURE if spanned is None or spanned >= ROUND else UNIFORM
-    return [Cause("memory in stances", effect, unsure)]
+    spring, torque = (
+        (SLOPE_UNSURE, ELEMENT_UNSURE) if spanned is None or spanned >= ROUND else (UNIFORM, UNIFORM)
+    )
+    place, effect = fit.model.terms.index("slip_torque"), np.zeros(len(fit.numbers))
+    effect[[0, place]] = spring * element_slope(fit), -torque * fit.values[place]
+    if fit.slip_angle is not None:
+        effect[len(fit.values) + fit.model.shape_terms.index("slip_angle")] = ELEMENT_UNSURE * fit.slip_angle
+    return [Cause("memory in stances", effect, 1.0)]
 
 
 def _hidden_memory(fit: AxisFit, *, steps: bool) -> list[Cause]:

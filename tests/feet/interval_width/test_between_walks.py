@@ -1,0 +1,100 @@
+"""Walks differ by what they and their stances show: no constant stands for it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from feet_trials import PUNCTUAL
+from made_recording import FOOT, made_recording, swayed
+from plantar.contact.stances import Stances
+from plantar.feet.fit.axis_fit import fit_axis
+from plantar.feet.interval_width.between_recordings import Apart, axis_differences
+from plantar.feet.interval_width.between_walks import between_walks
+from plantar.feet.interval_width.systematic import Cause
+from plantar.feet.recording import Recording
+from plantar.feet.regression.axis import AxisFit
+from plantar.feet.regression.regression_data import tangent_blocks
+from plantar.models import MODELS
+
+LINEAR = replace(PUNCTUAL, model="kelvin_voigt")
+ALIKE = Apart(0.0, 1)
+STANCE = 100  # samples, one second
+
+
+def walk(seed: int, share: float, scatter: float) -> Recording:
+    """20 stances of a spring of 400 N·m/rad that is stiffer by `share`, in each by another share of size `scatter`."""
+    angle, number = swayed(2000, seed=seed), np.arange(2000) // STANCE
+    stiffness = 400.0 * (1 + share + scatter * np.random.default_rng(seed).standard_normal(20))
+    torque = stiffness[number] * angle + 0.05 * np.random.default_rng(seed + 50).standard_normal(2000)
+    recording = made_recording(f"walk_{seed}", angle, torque, stances=Stances(number, np.ones(2000)))
+    recording.raw[FOOT].torque[:, 1] = 0.0  # else a turned sensor would explain all
+    return recording
+
+
+def cause_of(shares: list[float], scatter: float, every: Apart = ALIKE) -> tuple[AxisFit, Cause]:
+    walks = [walk(seed, own, scatter) for seed, own in enumerate(shares)]
+    fit = fit_axis(walks, FOOT, "pitch", LINEAR)
+    assert fit is not None
+    (cause,) = between_walks(fit, tangent_blocks(walks, fit), every)
+    return fit, cause
+
+
+def told(shares: list[float], scatter: float, every: Apart = ALIKE) -> float:
+    """The share of the stiffness that what walks differ by makes unsure."""
+    fit, cause = cause_of(shares, scatter, every)
+    return float(cause.share[0] / fit.values[0])
+
+
+def test_walks_that_agree_stance_by_stance_are_alike() -> None:
+    """One of three walks knows its stiffness to 0.2 / sqrt(20) and to a hundredth of that."""
+    assert told([0.0] * 3, 0.001) < 0.002
+    assert 0.01 < told([0.0] * 3, 0.2) < 0.07
+
+
+def test_walks_that_differ_show_it() -> None:
+    shares = [-0.04, 0.0, 0.04]
+    assert told(shares, 0.001) == pytest.approx(0.04 / np.sqrt(3), rel=0.4)
+
+
+@pytest.mark.parametrize("scatter", [0.02, 0.2])
+def test_a_single_walk_is_as_sure_as_its_stances_agree(scatter: float) -> None:
+    fit, cause = cause_of([0.0], scatter)
+    assert 1.0 < float(cause.share[0] / fit.std[0]) < 2.0
+    assert cause.freedom == 3.0
+
+
+def test_what_all_axes_show_holds_for_one_that_shows_less() -> None:
+    _, cause = cause_of([0.0] * 3, 0.001, Apart(0.05, 4))
+    assert cause.share[0] == pytest.approx(0.05 * 400.0 / np.sqrt(3), rel=0.05)
+    assert cause.freedom == 4.0
+
+
+def test_from_five_walks_on_the_fit_holds_what_differs() -> None:
+    """A memory's numbers are not in it: they are as unsure as refits without one walk each make the stiffness."""
+    shares = [-0.04, 0.04, 0.0, 0.04, -0.04]
+    walks = [walk(seed, own, 0.01) for seed, own in enumerate(shares)]
+    fit = fit_axis(walks, FOOT, "pitch", LINEAR)
+    assert fit is not None
+    blocks = tangent_blocks(walks, fit)
+    memory = replace(
+        fit, model=MODELS["elastoplastic"], values=np.append(fit.values, 5.0), shape=np.array([0.01])
+    )
+    (cause,) = between_walks(memory, blocks, ALIKE)
+    assert not cause.share[:2].any()
+    np.testing.assert_allclose(
+        cause.share[2:] / memory.numbers[2:], np.std(shares, ddof=1) / np.sqrt(5), rtol=0.4
+    )
+    assert cause.freedom == 4.0
+    assert axis_differences(fit, walks, False) is None
+
+
+def test_few_walks_leave_a_memory_as_unsure_as_the_stiffness() -> None:
+    walks = [walk(seed, own, 0.001) for seed, own in enumerate([-0.04, 0.0, 0.04])]
+    fit = fit_axis(walks, FOOT, "pitch", LINEAR)
+    assert fit is not None
+    (cause,) = between_walks(replace(fit, shape=np.array([0.01])), tangent_blocks(walks, fit), ALIKE)
+    assert cause.share[2] / 0.01 == pytest.approx(cause.share[0] / fit.values[0])
+    assert axis_differences(fit, walks, False) is not None
