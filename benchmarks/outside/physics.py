@@ -54,36 +54,34 @@ def play(robot: RobotModel, start: Array, targets: Array, rubber: Mapping[str, R
     model = _model(robot, rubber)
     data = mujoco.MjData(model)
     names = list(robot.joint_names)
-    places = [model.joint(name).qposadr[0] for name in names]
+    places = np.array([model.joint(name).qposadr[0] for name in names])
     data.qpos[:7], data.qpos[places] = start, targets[0]
     sliding = [_Sliding(model, foot, axis, hinge) for foot, axis, hinge in _sliding_hinges(rubber)]
-    settle = round(SETTLE / STEP)
-    rows = np.empty((len(targets), len(names) + 10 + 6 * len(rubber)))
-    tilt = 0.0
-    turns = {foot: (model.body(robot.feet[foot].ankle).id, model.body(f"{foot}.sole").id) for foot in rubber}
-    for row in range(-settle, len(targets)):
+    bodies = [i for f in rubber for i in (model.body(robot.feet[f].ankle).id, model.body(f"{f}.sole").id)]
+    joints = np.empty((len(targets), len(names)))
+    read = np.empty((len(targets), model.nsensordata))
+    axes, centres = np.empty((len(targets), len(bodies), 9)), np.empty((len(targets), len(bodies), 3))
+    for row in range(-round(SETTLE / STEP), len(targets)):
         data.ctrl[:] = targets[max(row, 0)]
         for each in sliding:
             each.push(data)
-        now = data.qpos[places]
+        if row >= 0:
+            joints[row] = data.qpos[places]
         mujoco.mj_step(model, data)  # sensors and frames are those of the state before the step
-        if row < 0:
-            continue
-        read = [now, data.sensordata[:10]]
-        for number, (foot, (ankle, sole)) in enumerate(turns.items()):
-            upper, lower = (data.xmat[body].reshape(3, 3) for body in (ankle, sole))
-            force, torque = (
-                -data.sensordata[10 + 6 * number : 16 + 6 * number].reshape(2, 3) @ (upper.T @ lower).T
-            )
-            centre = upper.T @ (data.xpos[sole] - data.xpos[ankle])
-            read += list(_moved(robot.feet[foot], force, torque, centre))
-            tilt = max(tilt, float(np.hypot(*(lower @ _sole_axes(robot.feet[foot]))[:2, 2])))
-        rows[row] = np.concatenate(read)
-    n = len(names)
-    wrenches = {f: rows[:, n + 10 + 6 * i : n + 16 + 6 * i] for i, f in enumerate(rubber)}
+        if row >= 0:
+            read[row], axes[row], centres[row] = data.sensordata, data.xmat[bodies], data.xpos[bodies]
+    turns = axes.reshape(len(targets), len(rubber), 2, 3, 3)
+    wrenches, tilt = {}, 0.0
+    for number, name in enumerate(rubber):
+        foot, (ankle, sole) = robot.feet[name], turns[:, number].transpose(1, 0, 2, 3)
+        aside = (sole @ _sole_axes(foot)[:, 2])[:, :2]
+        tilt = max(tilt, float(np.linalg.norm(aside, axis=1).max()))
+        # The ankle acts on the sole, the environment the other way round.
+        acting = -read[:, 10 + 6 * number : 16 + 6 * number].reshape(-1, 2, 3) @ (ankle.mT @ sole).mT
+        centre = np.einsum("tji,tj->ti", ankle, centres[:, 2 * number + 1] - centres[:, 2 * number])
+        wrenches[name] = _moved(foot, acting[:, 0], acting[:, 1], centre)
     time = STEP * np.arange(len(targets))
-    imu = rows[:, n : n + 10]
-    return Motion(time, rows[:, :n], imu[:, :4], imu[:, 4:7], imu[:, 7:], wrenches, tilt)
+    return Motion(time, joints, read[:, :4], read[:, 4:7], read[:, 7:10], wrenches, tilt)
 
 
 class _Sliding:
@@ -195,9 +193,9 @@ def _quaternion(placement: Placement) -> Array:
     return np.array(Rotation.from_matrix(placement.rotation).as_quat(scalar_first=True))
 
 
-def _moved(foot: Foot, force: Array, torque: Array, centre: Array) -> tuple[Array, Array]:
-    """What the ankle's axes have at the bush's `centre`, as the sensor reads it in its own place and axes."""
+def _moved(foot: Foot, force: Array, torque: Array, centre: Array) -> Array:
+    """What the ankle's axes have at the bush's `centre` (n, 3), as the sensor reads it in its own place and axes."""
     sensor = foot.wrench.placement
     torque = torque + np.cross(centre - sensor.xyz, force)
     axes = foot.wrench.sign * sensor.rotation
-    return axes.T @ force, axes.T @ torque
+    return np.hstack([force @ axes, torque @ axes])
