@@ -15,8 +15,9 @@ KNOTS = 25.0  # Hz, at which the legs are solved
 RATE = 1000.0  # Hz
 REST, EASE = 1.5, 3.0  # s still at both ends, and from still to full
 MOTIONS = ("forward", "sideways", "ankles", "squat", "arms", "mixed")  # the last one validates
-REACH = 0.34  # of the half of a sole that the centre of mass goes forward before the feet give way
-SHIFT = 0.42  # of the half of the stance's width
+PACES = (0.35, 0.8)  # Hz, of the quickest wave of a motion
+REACH = 0.42  # of the half of a sole that the centre of mass goes forward before the feet give way
+SHIFT = 0.5  # of the half of the stance's width
 DIP = 0.03  # of the leg's length
 BEND = 0.08  # rad, of the trunk
 ROLL, PITCH = 0.4, 0.25  # of half a sole over the height: turns of the ankles that soft feet take up
@@ -54,7 +55,7 @@ def plan(stance: Stance, name: str, duration: float, seed: int, size: float = 1.
         },
     }[name]  # fmt: skip
     large = {axis: size * large.get(axis, 0.0) for axis in ("x", "y", "z", "turn", "upper", "ankles")}
-    quick = 1.0 if name == "arms" else 0.45
+    quick = 1.0 if name == "arms" else random.uniform(*PACES)
     root = {axis: large[axis] * window * _waves(time, quick, random) for axis in "xyz"}
     trunk = large["turn"] * window[:, None] * np.column_stack([_waves(time, quick, random) for _ in range(3)])
     swings = (
