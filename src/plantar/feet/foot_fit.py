@@ -19,7 +19,7 @@ from plantar.feet.assess.stance_stiffness import stance_stiffness, walk_stiffnes
 from plantar.feet.assess.zero_jumps import zero_jumps
 from plantar.feet.exclusion.outliers import outlier_masks
 from plantar.feet.fit.axis_fit import fit_axis
-from plantar.feet.fit.worth import hardly_matters, in_place_of, too_sure
+from plantar.feet.fit.worth import hardly_matters, in_place_of, tells_no_more, too_sure
 from plantar.feet.internal_error import gives_up, internal_errors
 from plantar.feet.interval_width.between_recordings import (
     Apart,
@@ -39,7 +39,7 @@ from plantar.feet.prepare import PreparedLogs
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.regression_data import tangent_blocks
-from plantar.models import BushModel, KelvinVoigt
+from plantar.models import MODELS, BushModel, KelvinVoigt
 from plantar.notes import Note
 from plantar.results.feet import Diagnosis, Parameter, ValidationRow
 from plantar.results.walk_rows import StanceStiffness, WalkStiffness
@@ -127,15 +127,22 @@ def between_all(feet: Sequence[FittedFoot]) -> Apart:
 
 
 def without_needless(fitted: FittedFoot, between: Apart) -> FittedFoot:
-    """The foot with spring and damper alone where a richer model hardly matters. between: as in `assess_foot`."""
+    """The foot with simpler models where richer ones hardly matter. between: as in `assess_foot`."""
     ready, recordings = fitted.ready, fitted.thin.fitted
     fits = dict(fitted.fits)
     for axis, fit in fitted.fits.items():
         if fit.choice is None or isinstance(fit.model, KelvinVoigt) or axis in fitted.given_up:
             continue
         with gives_up(axis, fitted.given_up):
+            unsure = _with_causes(fit, fitted, between)
+            if fit.model.elaborates is not None and tells_no_more(unsure):
+                simpler = MODELS[fit.model.elaborates]
+                plain = fit_axis(recordings, fit.foot, axis, ready.settings, simpler, fitted.place)
+                if plain is not None:
+                    fit = fits[axis] = in_place_of(fit, plain)
+                    unsure = _with_causes(fit, fitted, between)
             spring = fit_axis(recordings, fit.foot, axis, ready.settings, KelvinVoigt(), fitted.place)
-            if spring is None or not hardly_matters(unsure := _with_causes(fit, fitted, between), spring):
+            if spring is None or not hardly_matters(unsure, spring):
                 continue
             if not too_sure(unsure, _with_causes(spring, fitted, between)):
                 fits[axis] = in_place_of(fit, spring)

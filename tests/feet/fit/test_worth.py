@@ -9,10 +9,10 @@ import pytest
 
 from biped import SLIPPING, record, sway
 from feet_trials import PUNCTUAL, noisy
-from plantar.feet.fit.worth import hardly_matters, in_place_of, too_sure
+from plantar.feet.fit.worth import hardly_matters, in_place_of, tells_no_more, too_sure
 from plantar.feet.identify import identify_feet
 from plantar.feet.regression.axis import AxisFit
-from plantar.models import Elastoplastic, KelvinVoigt
+from plantar.models import Elastoplastic, HardeningElastoplastic, KelvinVoigt
 from plantar.robot.model import RobotModel
 
 
@@ -76,3 +76,25 @@ def test_a_memory_that_changes_the_numbers_stays_and_one_that_hardly_does_goes(r
     for model, reason in unsure.values():
         assert model == "kelvin_voigt"
         assert "elastoplastic changes stiffness by" in reason
+
+
+@pytest.mark.parametrize(
+    ("hardening", "more"), [(0.0, False), (-1900.0, False), (2100.0, True), (-2100.0, True)]
+)
+def test_a_term_that_is_not_told_from_zero_tells_no_more(hardening: float, more: bool) -> None:
+    both = replace(
+        rich(400.0, 20.0), model=HardeningElastoplastic(), values=np.array([400.0, 20.0, 3.0, hardening]),
+        covariance=np.diag([4.0, 1.0, 1.0, 1e6, 1e-6]), freedom=np.full(5, 1e6),
+    )  # fmt: skip
+    assert tells_no_more(both) != more
+    assert not tells_no_more(rich(400.0, 20.0))  # elaborates nothing
+
+
+def test_rubber_that_slips_is_not_called_a_spring_because_a_cube_beside_it_is_unsure(
+    robot: RobotModel, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("plantar.feet.fit.axis_fit.CANDIDATES", ("kelvin_voigt", "hardening_elastoplastic"))
+    logs = [noisy(record(sway(f"sway_{seed}", seed, truth=SLIPPING)), seed) for seed in (3, 4)]
+    result = identify_feet(robot, logs, settings=PUNCTUAL)
+    assert {row.model for row in result.models} == {"elastoplastic"}
+    assert all("hardening_elastoplastic adds cannot be told from zero" in row.reason for row in result.models)

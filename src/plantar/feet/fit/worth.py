@@ -13,7 +13,7 @@ import numpy as np
 
 from plantar.estimation import interval95
 from plantar.feet.regression.axis import AxisFit
-from plantar.models import KelvinVoigt
+from plantar.models import MODELS, KelvinVoigt
 
 FAR: Final = 0.15  # of the stiffness: with an interval as wide to either side a number is no longer usable
 
@@ -30,6 +30,23 @@ def hardly_matters(fit: AxisFit, spring: AxisFit) -> bool:
     return all(low < alone < high for (low, high), alone in zip(ends, spring.numbers, strict=True))
 
 
+def tells_no_more(fit: AxisFit) -> bool:
+    """Whether a model adds terms to the one that it elaborates, none of which is told from zero.
+
+    Beside noise alone they may well be; a bush that sits a little elsewhere makes the same torque.
+
+    fit: with the deviations of all that is unsure about robot and sensors.
+    """
+    if fit.model.elaborates is None:
+        return False
+    added = range(len(MODELS[fit.model.elaborates].terms), len(fit.model.terms))
+    ends = [
+        interval95(float(fit.numbers[place]), float(fit.std[place]), float(fit.freedom[place]))
+        for place in added
+    ]
+    return bool(ends) and all(low < 0 < high for low, high in ends)
+
+
 def too_sure(fit: AxisFit, spring: AxisFit) -> bool:
     """Whether `spring` leaves a richer model's stiffness outside its own interval, and far away.
 
@@ -42,22 +59,27 @@ def too_sure(fit: AxisFit, spring: AxisFit) -> bool:
     return bool(far and not low < fit.numbers[0] < high)
 
 
-def in_place_of(fit: AxisFit, spring: AxisFit) -> AxisFit:
-    """The fit of spring and damper in place of a richer model that hardly matters, with what was tried and why."""
-    changes = 100 * np.abs(fit.numbers[:2] / spring.numbers - 1)
-    reason = (
-        f"{fit.model.name} changes stiffness by {changes[0]:.2g} % and damping by {changes[1]:.2g} % only, "
-        "less than they are unsure"
-    )
+def in_place_of(fit: AxisFit, simpler: AxisFit) -> AxisFit:
+    """The fit of a simpler model in place of a richer one that hardly matters, with what was tried and why."""
+    if isinstance(simpler.model, KelvinVoigt):
+        changes = 100 * np.abs(fit.numbers[:2] / simpler.numbers[:2] - 1)
+        reason = (
+            f"{fit.model.name} changes stiffness by {changes[0]:.2g} % and damping by {changes[1]:.2g} % only, "
+            "less than they are unsure"
+        )
+    else:
+        reason = (
+            f"what {fit.model.name} adds cannot be told from zero beside what robot and sensors may be off by"
+        )
     choice = fit.choice and replace(
         fit.choice,
         ranking=tuple(
             replace(
                 score,
-                chosen=isinstance(score.model, KelvinVoigt),
+                chosen=score.model.name == simpler.model.name,
                 refused="hardly matters" if score.chosen else score.refused,
             )
             for score in fit.choice.ranking
         ),
     )
-    return replace(spring, choice=choice, reason=reason)
+    return replace(simpler, choice=choice, reason=reason)

@@ -1,0 +1,1 @@
+"""Worlds in plain MuJoCo, made without plantar's twin: other robots, other motions, other equations."""
