@@ -44,6 +44,8 @@ RATE = 20.0
 NEARBY = 1.05
 SECANT = 0.6
 SLIP_ANGLE = 0.01
+DRIFT_PERIOD = 20.0
+LEFT = 0.87
 
 
 def test_an_element_slips_as_its_definition_says() -> None:
@@ -62,8 +64,11 @@ def test_information_is_that_of_least_squares() -> None:
     rate = reach.of(reach.firm_rate, coefficients)[1, 0, 1]
     element = remembered(bent[None], [SLIP_ANGLE, NEARBY * SLIP_ANGLE])[0]
     turned = (element[1] - element[0]) / np.log(NEARBY)
-    line = np.linspace(-1, 1, bent.size)
-    design = np.column_stack([bent, rate, element[0], turned, np.ones(bent.size), line]) / MISSED
+    share = (np.arange(bent.size) / (bent.size - 1))[:, None]
+    cosines = np.cos(np.pi * share * np.arange(1, 2 * reach.lines.duration / DRIFT_PERIOD + 1))
+    slow = np.hstack([np.ones_like(share), share, cosines])
+    design = np.column_stack([bent, rate, element[0], turned, slow]) / MISSED
+    assert slow.shape[1] > 3, "an offset, a line and cosines"
     normal = design.T @ design * 10 / RATE
     normal[2, 2] += 1 / reach.stiffness[1] ** 2
     normal[3, 3] += 4 / reach.stiffness[1] ** 2
@@ -109,6 +114,31 @@ def test_a_number_out_of_reach_is_not_all_that_counts(monkeypatch: pytest.Monkey
     half = reached.copy()
     half[:, 0, 1, 0] *= 2
     assert of(half) - of(reached) > 0.5 * np.log(2)  # of what is in reach the widest counts
+
+
+def test_what_is_narrower_than_wanted_is_bought_last(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Damping that is twice as narrow once more does not outweigh a stiffness that is not yet as wanted."""
+    reach, coefficients = design_samples.reach(), design_samples.coefficients()
+    monkeypatch.setattr(objective, "delay_half_width", lambda *_: objective.WANTED_DELAY)
+    monkeypatch.setattr(objective, "vertical_half_width", lambda *_: np.full(3, objective.WANTED_VERTICAL))
+
+    def of(stiffness: float, damping: float, criterion: Criterion) -> float:
+        widths = np.array([stiffness, damping]) * objective.WANTED * np.ones((3, 2, 2, 2))
+        monkeypatch.setattr(objective, "half_widths", lambda *_: widths)
+        return badness(reach, coefficients, criterion)
+
+    assert of(1.5, 0.25, "widest") > of(1.3, 0.5, "widest")
+    assert of(0.5, 0.25, "widest") < of(0.5, 0.5, "widest"), "it still counts"
+    assert of(1.5, 0.25, "D") < of(1.3, 0.5, "D"), "the volume of all is what it is"
+
+
+def test_widths_are_those_of_the_motion_that_rehearsals_leave(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A motion just beyond what tells spring and element apart would be too small when it is played."""
+    reach, coefficients = design_samples.reach(), design_samples.coefficients()
+    found = badness(reach, coefficients, "D")
+    monkeypatch.setattr(objective, "LEFT", 1.0)
+    assert badness(reach, LEFT * coefficients, "D") == pytest.approx(found)
+    assert badness(reach, coefficients, "D") < found
 
 
 @pytest.mark.parametrize("criterion", ["widest", "D", "A"])

@@ -85,7 +85,7 @@ def test_it_says_what_it_promises_and_what_it_kept(written: Path) -> None:
         assert one["half_width_percent"] is None or abs(one["error_percent"]) < 5.0
     page = written.with_suffix(".md").read_text()
     assert "Delay of the force sensors: " in page
-    assert "The search wanted: stiffness within 1 %" in page
+    assert "The search wanted: stiffness within 0.5 %" in page
     assert "holds from 250 to 1000 N·m/rad" in page
     assert "25 % and 50 %" in page
     needed = content["one_foot"]["least_stiffness"]
@@ -104,7 +104,7 @@ def test_limits_are_told_with_the_worst_of_the_rehearsals(written: Path) -> None
     content = content_of(replace(found, rehearsals=unlike), written, 100.0)
     assert content["wanted"] == pytest.approx(
         {
-            "stiffness_percent": 1.0,
+            "stiffness_percent": 0.5,
             "damping_percent": 4.0,
             "sensor_delay": 0.001,
             "vertical_compliance_percent": 30.0,

@@ -49,6 +49,16 @@ DESIGNED_MOTIONS = (
         "BEYOND * np.maximum", "1.0 * np.maximum", QUICK,
     ),
     Mutant(
+        "design/information.py", "a lean that a drift hides counts",
+        "drift_basis(reach.time)", "drift_basis(reach.time)[:, :1]", QUICK,
+    ),
+    Mutant(
+        "design/information.py", "rehearsals leave a motion as it is", "LEFT * coefficients", "coefficients", QUICK,
+    ),
+    Mutant(
+        "design/information.py", "more than enough counts as what is missing", "ENOUGH * widths", "widths", QUICK,
+    ),
+    Mutant(
         "design/information.py", "a second motion gives up as the first did", "np.inf if np.any(known) else", "", QUICK,
     ),
     Mutant(

@@ -9,18 +9,22 @@ import numpy as np
 from plantar.conventions import NORMAL95, Array
 from plantar.design.reach import RATE, Reach
 from plantar.design.rubber import NEARBY, SECANT, SLIP_ANGLE, remembered
+from plantar.estimation.slow_drift import drift_basis
 
 Criterion = Literal["widest", "D", "A"]
 CRITERIA: Final = get_args(Criterion)
 # N·m that a model of real rubber misses by, per independent sample of 0.1 s: sensors of a careful lab are better.
 MISSED: Final = 0.1
 # Bend to either side [rad] at which `identify feet` surely tells an element that slips from the spring: it asks for
-# 1.25 times the slip angle, and rehearsals make motions smaller. With this power of what is missing widths grow.
+# 1.25 times the slip angle, and noise of the attitude moves the corners of the path. With this power of what is missing
+# widths grow.
 TOLD_APART: Final = 1.4 * SLIP_ANGLE
 STEEP: Final = 8
+# Share of a motion that rehearsals leave: joints give way under load, of which limits that are linear know nothing.
+LEFT: Final = 0.87
 # Half widths that are wanted: of stiffness and damping [share], delay [s], vertical compliance [share]. The widest is
 # the one that is farthest above.
-WANTED: Final = (0.01, 0.04)
+WANTED: Final = (0.005, 0.04)
 WANTED_DELAY: Final = 0.001
 WANTED_VERTICAL: Final = 0.3
 # N·m by which Newton's law misses the moments on the ground, per independent sample of 0.1 s, with a careful lab's
@@ -30,8 +34,9 @@ UNCLOSED: Final = 0.2
 SEEN_FORCE: Final = 6.0
 USUAL_DELAY: Final = 0.0075  # s: deviation of a delay of which nothing is known, as robot files have it
 # Times what is wanted: a stiffness within a third is weak, however near it comes to that.
-HOPELESS: Final = 30.0
+HOPELESS: Final = 60.0
 BEYOND: Final = 0.1  # share of what is wider still
+ENOUGH: Final = 0.3  # share of what is narrower than wanted: it is bought last
 OTHERS: Final = 0.5  # share of all numbers beside the widest
 # m: what encoders and the legs' lengths may be wrong by moves the soles' heights so much.
 UNEVEN: Final = 1e-4
@@ -40,7 +45,8 @@ UNEVEN: Final = 1e-4
 def information(reach: Reach, coefficients: Array) -> Array:
     """Information matrices (S, feet, 2, 2, 2) of stiffness and damping of each foot and axis, for each of S bushes.
 
-    An offset, a drift and an element with hysteresis are eliminated, as `identify feet` does.
+    An offset, a drift in a line and slow cosines, and an element with hysteresis are eliminated, as `identify feet`
+    does: a lean that is held for half a minute shows nothing.
     """
     bent, rate = reach.of(reach.firm_deflection, coefficients), reach.of(reach.firm_rate, coefficients)
     size = bent.shape[-1]
@@ -49,8 +55,8 @@ def information(reach: Reach, coefficients: Array) -> Array:
     )
     element[..., 1, :] = (element[..., 1, :] - element[..., 0, :]) / np.log(NEARBY)
     columns = np.concatenate([bent[..., None, :], rate[..., None, :], element], axis=-2)
-    line = np.linalg.qr(np.column_stack([np.ones(size), np.linspace(-1.0, 1.0, size)]))[0]
-    free = columns - (columns @ line) @ line.T
+    slow = np.column_stack([np.full(size, size**-0.5), drift_basis(reach.time)])
+    free = columns - (columns @ slow) @ slow.T
     whole = 10.0 / RATE / MISSED**2 * free @ np.swapaxes(free, -1, -2)
     # What is known of the element before: it is about as strong as the spring, its angle within a half.
     known = np.outer(reach.stiffness, [1.0, 0.5])
@@ -103,11 +109,13 @@ def badness(reach: Reach, coefficients: Array, criterion: Criterion, known: Arra
     """What is minimised, the mean over the range of stiffness: the logarithm of the widest interval, each as a multiple
     of what is wanted of it, of the volume of all (D) or of their mean square (A).
 
+    Widths are those of the motion that rehearsals leave, a little smaller. Beside the widest, what is narrower than
+    wanted counts little.
     Small soles cannot bend stiff feet far enough for every number. One that is out of reach must not be all that
     counts: beyond HOPELESS a width counts for little, and to the widest a share of all others is added. Where others
     are `known` from before, what is weak comes first.
     """
-    count = len(reach.bushes)
+    count, coefficients = len(reach.bushes), LEFT * coefficients
     feet = (half_widths(reach, coefficients, known) / WANTED).reshape(count, -1)
     delay = np.full((count, 1), delay_half_width(reach, coefficients) / WANTED_DELAY)
     vertical = vertical_half_width(reach, coefficients)[:, None] / WANTED_VERTICAL
@@ -115,6 +123,7 @@ def badness(reach: Reach, coefficients: Array, criterion: Criterion, known: Arra
     hopeless = np.inf if np.any(known) else np.log(HOPELESS)
     widths = np.minimum(widths, hopeless) + BEYOND * np.maximum(widths - hopeless, 0.0)
     if criterion == "widest":
+        widths = np.where(widths < 0, ENOUGH * widths, widths)
         return float(((1 - OTHERS) * widths.max(axis=1) + OTHERS * widths.mean(axis=1)).mean())
     if criterion == "D":
         return float(widths.mean())
