@@ -15,6 +15,7 @@ from plantar.cli.console.terminal import progress
 from plantar.cli.identify import identification
 from plantar.feet.settings import AUTOMATIC, DEFAULT_CUTOFF, MODEL_CHOICES, FeetSettings, OffsetRule
 from plantar.files import refuse_file, write_text
+from plantar.logs.freed_memory import keep_freed
 from plantar.logs.inputs import open_in_turn
 from plantar.robot.model import load_robot
 
@@ -53,6 +54,7 @@ def run(
     reach = None if window is None else float(np.radians(window))
     settings = FeetSettings(offset, model, cutoff, window=reach, wrench_delay=wrench_delay)
     refuse_file(out)
+    keep_freed()
     known = load_robot(robot)
     from plantar.feet.prepare import prepare_all
     from plantar.signals.thinning import kept_size

@@ -10,7 +10,7 @@ import typer
 
 from plantar.cli.console.terminal import console, end_progress, progress
 from plantar.files import refuse_file
-from plantar.logs.freed_memory import return_freed
+from plantar.logs.freed_memory import keep_freed, return_freed
 from plantar.logs.inputs import open_together
 from plantar.logs.motion_log import MotionLog
 from plantar.results.io import dump_json
@@ -55,6 +55,7 @@ def opened(
 ) -> tuple[RobotModel, list[MotionLog], list[MotionLog]]:
     """The robot, the logs to fit and those to score; an `out` that cannot be used is refused before any work."""
     refuse_file(out)
+    keep_freed()
     known = load_robot(robot)
     opened = open_together([*logs, *(validate or ())], known, memory)
     return known, opened[: len(logs)], opened[len(logs) :]
