@@ -87,6 +87,25 @@ def over_cores(
 
 
 @contextmanager
+def begun(function: Callable[[], Found]) -> Iterator[Callable[[], Found]]:
+    """A function at work on another core while the block goes on: gives what waits for what it found.
+
+    It must not change anything that is read later. Asked for, it raises what the function raises.
+    """
+    copy = None
+    if usable_cores() > 1:
+        with suppress(OSError):  # no room for another process
+            copy = _Copy(function, [()], iter([0]))
+    if copy is None:
+        yield function
+        return
+    try:
+        yield lambda: (copy.found() or {0: function()})[0]
+    finally:
+        copy.end()
+
+
+@contextmanager
 def _turns(count: int) -> Iterator[Iterator[int]]:
     """The numbers below `count`, each for the first process that asks: copies share where they stand in one file."""
     if not hasattr(os, "memfd_create"):  # nor are there copies
@@ -102,7 +121,7 @@ def _turns(count: int) -> Iterator[Iterator[int]]:
 
 
 class _Copy:
-    """A copy of this process that takes rows while there are `turns`."""
+    """A copy of this process that takes rows while there are `turns`: the places of rows."""
 
     def __init__(
         self, function: Callable[..., Any], rows: Sequence[tuple[Any, ...]], turns: Iterator[int]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -13,6 +13,7 @@ from plantar.cli.console.delay import WrenchDelay
 from plantar.cli.console.memory import Memory
 from plantar.cli.console.terminal import progress
 from plantar.cli.identify import identification
+from plantar.cores import begun
 from plantar.feet.settings import AUTOMATIC, DEFAULT_CUTOFF, MODEL_CHOICES, FeetSettings, OffsetRule
 from plantar.files import refuse_file, write_text
 from plantar.logs.freed_memory import keep_freed
@@ -66,12 +67,11 @@ def run(
     from plantar.report.feet import feet_page
 
     result = fit_prepared(known, ready, show)
-    with ThreadPoolExecutor(1) as pool:  # the page is drawn while the numbers are saved
-        page = pool.submit(feet_page, result)
+    with begun(partial(feet_page, result)) as page:  # it is drawn while the numbers are saved
 
         def report(saved: Path) -> Path:
             path = saved.with_name("report.html")
-            write_text(path, page.result())
+            write_text(path, page())
             return path
 
         identification.keep(result, out, report, print_feet, json=json, quiet=quiet)
