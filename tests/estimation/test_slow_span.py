@@ -26,7 +26,9 @@ def test_rows_lose_what_the_columns_explain(seconds: float, holes: int) -> None:
     basis = drift_basis(time)
     rows = np.random.default_rng(1).normal(3.0, 1.0, (len(time), 5)) + time[:, None]
     expected = rows - basis @ np.linalg.lstsq(basis, rows, rcond=None)[0]
-    np.testing.assert_allclose(SlowSpan(basis, time, 20.0).off(rows), expected, atol=1e-10 * np.abs(rows).max())
+    np.testing.assert_allclose(
+        SlowSpan(basis, time, 20.0).off(rows), expected, atol=1e-10 * np.abs(rows).max()
+    )
 
 
 def test_columns_of_ten_minutes_are_kept_by_stretches() -> None:
