@@ -10,9 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plantar.conventions import Array, Mask
-from plantar.estimation.orthonormal import orthonormal, without
+from plantar.estimation.orthonormal import SlowSpan, orthonormal, without
 from plantar.estimation.slow_drift import DRIFT_PERIOD, drift_basis, drift_beside
-from plantar.estimation.slow_span import SlowSpan
 from plantar.models import BushModel, BushMotion
 from plantar.signals.filters import SHORTEST_RUN, SHORTEST_STANCE_RUN, low_pass
 

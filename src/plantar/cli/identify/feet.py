@@ -17,8 +17,7 @@ from plantar.cores import begun
 from plantar.feet.settings import AUTOMATIC, DEFAULT_CUTOFF, MODEL_CHOICES, FeetSettings, OffsetRule
 from plantar.files import refuse_file, write_text
 from plantar.logs.freed_memory import keep_freed
-from plantar.logs.inputs import open_in_turn
-from plantar.robot.model import load_robot
+from plantar.logs.inputs import open_in_turn, read_ahead, robot_of
 
 MODEL_HELP = (
     f"Model of the bush: {', '.join(MODEL_CHOICES)}. "
@@ -56,11 +55,13 @@ def run(
     settings = FeetSettings(offset, model, cutoff, window=reach, wrench_delay=wrench_delay)
     refuse_file(out)
     keep_freed()
-    known = load_robot(robot)
-    from plantar.feet.prepare import prepare_all
-    from plantar.signals.thinning import kept_size
+    paths, show = [*logs, *(validate or ())], progress(quiet)
+    with begun(partial(read_ahead, paths, memory)) as ahead:  # while all that works on logs is imported
+        from plantar.feet.prepare import prepare_all
+        from plantar.signals.thinning import kept_size
 
-    read, show = open_in_turn([*logs, *(validate or ())], known, kept_size, memory), progress(quiet)
+        known = robot_of(robot)
+        read = open_in_turn(paths, known, kept_size, memory, ahead())
     ready = prepare_all(known, read[: len(logs)], read[len(logs) :], settings, show, _get_rest_ready)
     from plantar.cli.identify.feet_tables import print_feet
     from plantar.feet.identify import fit_prepared
