@@ -8,17 +8,26 @@ import subprocess
 import sys
 import threading
 import time
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from plantar.cores import over_cores, usable_cores
+from plantar.cores import begun, over_cores, usable_cores
 from plantar.logs.motion_log import MotionLog
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processes are copied on Linux")
 HERE = os.getpid()
+
+
+@contextmanager
+def two_cores() -> Iterator[None]:
+    """As on a machine of two, whatever this one has."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("plantar.cores.usable_cores", lambda: 2)
+        yield
 
 
 def log(seed: int) -> MotionLog:
@@ -160,3 +169,87 @@ def test_an_interrupt_ends_all_processes_at_once() -> None:
     out, err = process.communicate(timeout=30)
     assert (out, err) == ("interrupted\n", "")
     assert not any(Path(f"/proc/{one}").exists() for one in ours)
+
+
+def test_work_inside_of_work_takes_no_core_that_is_busy(tmp_path: Path) -> None:
+    """Both items of two processes are shared out again, and each of these finds that nobody is idle."""
+
+    def inner(place: int) -> int:
+        (tmp_path / str(place)).touch()
+        while len(list(tmp_path.iterdir())) < 2:
+            time.sleep(0.01)
+        return os.getpid()
+
+    def outer(place: int) -> list[int]:
+        return over_cores(inner, [place, place])
+
+    with two_cores():
+        found = over_cores(outer, range(2))
+    assert [len({*processes}) for processes in found] == [1, 1]
+
+
+@pytest.mark.parametrize("short", [0, 1])
+def test_work_inside_of_work_takes_a_core_that_has_nothing_left(short: int, tmp_path: Path) -> None:
+    """Whichever of two items is soon done, in the copy or here, its core takes part in the other one."""
+
+    def inner(_: int) -> int:
+        time.sleep(0.05)
+        return os.getpid()
+
+    def outer(place: int) -> list[int]:
+        while len(list(tmp_path.iterdir())) < 1 and place == short:
+            time.sleep(0.01)
+        (tmp_path / str(place)).touch()
+        if place == short:
+            return []
+        time.sleep(0.5)
+        return over_cores(inner, range(6))
+
+    with two_cores():
+        found = over_cores(outer, range(2))
+    assert len({*found[1 - short]}) == 2
+
+
+def test_what_is_begun_goes_on_beside_the_block(tmp_path: Path) -> None:
+    """Neither waits for the other to end: each waits for what the other does in its middle."""
+
+    def wait(path: Path) -> None:
+        while not path.exists():
+            time.sleep(0.01)
+
+    def work() -> int:
+        (tmp_path / "begun").touch()
+        wait(tmp_path / "block")
+        return os.getpid()
+
+    with begun(work) as found:
+        wait(tmp_path / "begun")
+        (tmp_path / "block").touch()
+        assert found() != HERE
+
+
+def test_what_is_begun_fails_where_it_is_asked_for() -> None:
+    def fail() -> int:
+        raise ValueError("no number")
+
+    with begun(fail):
+        pass
+    with begun(fail) as found, pytest.raises(ValueError, match="no number"):
+        found()
+
+
+def test_what_is_begun_is_done_here_where_there_is_one_core(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("plantar.cores.usable_cores", lambda: 1)
+    with begun(os.getpid) as found:
+        assert found() == HERE
+
+
+def test_what_nobody_waits_for_is_stopped(tmp_path: Path) -> None:
+    def work() -> None:
+        time.sleep(0.3)
+        (tmp_path / "late").touch()
+
+    with begun(work):
+        pass
+    time.sleep(0.5)
+    assert not (tmp_path / "late").exists()

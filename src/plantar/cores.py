@@ -16,6 +16,7 @@ import sys
 import threading
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
+from contextvars import ContextVar
 from typing import Any, TypeVar
 
 from plantar.handed_back import hand_back, held_by, taken
@@ -56,34 +57,98 @@ def over_cores(
 ) -> list[Found]:
     """`list(map(function, *items))` on all cores.
 
-    The function must not change what it is given, nor anything else that is read later. cores: all that are usable if
-    left out. meanwhile: called here once, before this process takes items. Raises what the function raises, of the
-    first item that it does so for.
+    The function must not change what it is given, nor anything else that is read later. It may call this again, and has
+    the cores then that are idle. cores: all that are usable if left out. meanwhile: called here once, before this
+    process takes items. Raises what the function raises, of the first item that it does so for.
 
     Example:
         >>> over_cores(abs, [-3, 4])
         [3, 4]
     """
     rows = list(zip(*items, strict=True))
-    processes = max(1, min(usable_cores() if cores is None else cores, len(rows)))
     found: dict[int, Found] = {}
     copies = list[_Copy]()
-    with _turns(len(rows)) as turns:
+    with _idle_cores(cores) as idle, _turns(len(rows)) as turns:
         try:
             with suppress(OSError):  # no room for another process: this one has the more to do
-                for _ in range(processes - 1):
-                    copies.append(_Copy(function, rows, turns))
+                while len(copies) < len(rows) - 1 and idle.take():
+                    copies.append(_Copy(function, rows, turns, idle))
             if meanwhile is not None:
                 meanwhile()
             with suppress(Exception):  # it comes again below, unless an earlier item has one
                 for place in turns:
                     found[place] = function(*rows[place])
-            for copy in copies:
-                found |= copy.found()
+            if copies:
+                idle.give()  # this one's, until they are done
+                for copy in copies:
+                    found |= copy.found()
+                idle.take()
         finally:
             for copy in copies:
                 copy.end()
     return [found[place] if place in found else function(*row) for place, row in enumerate(rows)]
+
+
+@contextmanager
+def begun(function: Callable[[], Found]) -> Iterator[Callable[[], Found]]:
+    """A function at work on another core while the block goes on: gives what waits for what it found.
+
+    It must not change anything that is read later. Asked for, it raises what the function raises.
+    """
+    with _idle_cores() as idle:
+        copy = None
+        with suppress(OSError):  # no room for another process
+            copy = _Copy(function, [()], iter([0]), idle) if idle.take() else None
+        if copy is None:
+            yield function
+            return
+        try:
+            yield lambda: (copy.found() or {0: function()})[0]
+        finally:
+            copy.end()
+
+
+class _Idle:
+    """How many cores nobody is at work on: bytes in a pipe, which this process and all its copies share."""
+
+    def __init__(self, count: int) -> None:
+        self._from, self._to = os.pipe()
+        os.set_blocking(self._from, False)
+        os.write(self._to, bytes(count))
+
+    def take(self) -> bool:
+        """Whether there was one, which is the caller's now."""
+        with suppress(BlockingIOError):
+            return bool(os.read(self._from, 1))
+        return False
+
+    def give(self) -> None:
+        """One more."""
+        os.write(self._to, bytes(1))
+
+    def close(self) -> None:
+        os.close(self._from)
+        os.close(self._to)
+
+
+_IDLE: ContextVar[_Idle | None] = ContextVar("idle", default=None)
+
+
+@contextmanager
+def _idle_cores(cores: int | None = None) -> Iterator[_Idle]:
+    """Those that work around this one leaves idle; without any around it, or with so many `cores` of its own, all but
+    this one."""
+    around = _IDLE.get()
+    if around is not None and cores is None and usable_cores() > 1:
+        yield around
+        return
+    idle = _Idle(max(0, (usable_cores() if cores is None else cores) - 1))
+    before = _IDLE.set(idle)
+    try:
+        yield idle
+    finally:
+        _IDLE.reset(before)
+        idle.close()
 
 
 @contextmanager
@@ -102,10 +167,14 @@ def _turns(count: int) -> Iterator[Iterator[int]]:
 
 
 class _Copy:
-    """A copy of this process that takes rows while there are `turns`."""
+    """A copy of this process that takes rows while there are `turns`: the places of rows."""
 
     def __init__(
-        self, function: Callable[..., Any], rows: Sequence[tuple[Any, ...]], turns: Iterator[int]
+        self,
+        function: Callable[..., Any],
+        rows: Sequence[tuple[Any, ...]],
+        turns: Iterator[int],
+        idle: _Idle,
     ) -> None:
         self._held = held_by([rows])
         self._file = os.memfd_create("plantar")
@@ -121,6 +190,7 @@ class _Copy:
                 for place in turns:
                     found[place] = function(*rows[place])
             hand_back(found, self._held, self._file)
+            idle.give()
             os._exit(0)
         finally:  # nothing that this process had begun is the copy's to end
             os._exit(1)

@@ -12,7 +12,7 @@ from os import cpu_count
 import numpy as np
 
 from plantar.cores import Each, over_cores
-from plantar.feet.prepare_log import checked
+from plantar.feet.prepare_log import LONG, checked
 from plantar.logs.freed_memory import return_freed
 from plantar.logs.inputs import WaitingLogs
 from plantar.logs.motion_log import MotionLog
@@ -23,9 +23,6 @@ from plantar.sensors.delays.sensor_delay import on_force_cells
 from plantar.sensors.newton_euler import NewtonEulerResidual
 from plantar.sensors.tilt_error import NO_TILT_ERROR, TiltError, log_tilt_error
 from plantar.signals.gyroscope_delay import GyroscopeDelay, log_gyroscope_delay
-
-# Samples: with fewer, threads mostly hand Python's lock to each other; with more, copies of the process hold much.
-LONG = 50_000
 
 
 @dataclass(frozen=True)

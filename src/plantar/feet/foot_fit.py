@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from plantar.contact.reasons import Reason
 from plantar.conventions import ROTATIONAL_AXES, Axis, Mask
+from plantar.cores import over_cores
 from plantar.feet.assess.contradiction import contradiction
 from plantar.feet.assess.data_faults import OF_MOMENTS, data_faults, doubted
 from plantar.feet.assess.diagnosis import advised, diagnose_axis, mend_first
@@ -238,14 +239,19 @@ def _fits(
     timed = not ready.sensor_delay.doubtful
     steps = any(recording.stances[foot] is not None for recording in ready.fitted)
     asked: dict[Axis, PlaceSpread] = dict.fromkeys(ROTATIONAL_AXES, place)
+
+    def fitted(axis: Axis, own: PlaceSpread) -> tuple[AxisFit | None, dict[Axis, str]]:
+        fit, why = None, dict[Axis, str]()
+        with gives_up(axis, why):
+            fit = fit_axis(ready.fitted, foot, axis, ready.settings, models.get(axis), own, timed)
+        return fit, why
+
     for _ in range(2):  # about the robot file's place, then about the height that the other axis shows
-        for axis, own in asked.items():
-            if axis in given_up:
-                continue
-            with gives_up(axis, given_up):
-                fit = fit_axis(ready.fitted, foot, axis, ready.settings, models.get(axis), own, timed)
-                if fit is not None:
-                    found[axis] = fit
+        left = {axis: own for axis, own in asked.items() if axis not in given_up}
+        for axis, (fit, why) in zip(left, over_cores(fitted, left, left.values()), strict=True):
+            given_up |= why
+            if fit is not None:
+                found[axis] = fit
         both = set(ROTATIONAL_AXES) <= set(found) and not steps
         heights = {axis: place.known_from(found, axis) for axis in ROTATIONAL_AXES if both}
         asked = {axis: known for axis, known in heights.items() if known is not None}

@@ -205,22 +205,22 @@ def _recordings(
     def usable(recording: Recording, cutoff: float) -> Recording:
         return without_torque_saturation(robot, filtered_recording(recording, cutoff), settings)
 
-    def ready(
-        look: FirstLook, role: Role, own: Sequence[NewtonEulerResidual]
-    ) -> tuple[Recording, Recording | None, list[MomentErrors]]:
+    def ready(look: FirstLook, role: Role) -> tuple[Recording, Recording | None]:
         recording = prepare(robot, in_time(robot, look.log, delay), role, look.tilt, tilt_error, highest)
-        steps = has_steps(recording)
-        moments = [moment_errors(robot, residual, steps) for residual in own]
         # The cutoff may still fall where feet step.
-        done = usable(recording, highest) if settings.cutoff is not None or not steps else None
-        return recording, done, moments
+        early = settings.cutoff is not None or not has_steps(recording)
+        return recording, usable(recording, highest) if early else None
 
-    def standing(recording: Recording) -> tuple[Recording, Heights | None]:
+    def told(
+        recording: Recording, residual: NewtonEulerResidual | None
+    ) -> MomentErrors | tuple[Recording, Heights | None]:
+        if residual is not None:
+            return moment_errors(robot, residual, has_steps(recording))
         flat = without_slip(robot, recording)
         return flat, heights_of(robot, flat) if recording.role == "fit" else None
 
     with over_logs([look.log for look in looks]) as each:
-        prepared, done, moments = zip(*each(ready, looks, roles, residuals), strict=True)
+        prepared, done = zip(*each(ready, looks, roles), strict=True)
         cutoff = highest if settings.cutoff is not None else min(highest, coherent_band(prepared[:fitted]))
         settings = replace(settings, cutoff=cutoff)
         recordings = list(done)
@@ -229,6 +229,11 @@ def _recordings(
         del prepared, done
         progress("look for soles that tip or slide")
         recordings = without_edge_rolling(robot, recordings, settings)
-        recordings, heights = map(list, zip(*each(standing, recordings), strict=True))
-    told = [one for one in heights if one is not None]
-    return _Ready(recordings, settings, told, [one for own in moments for one in own])
+        # What a log's moments tell takes as long as all else that is left of it: cores share it, also of a single log.
+        balances = [(recordings[place], one) for place, own in enumerate(residuals) for one in own]
+        works = [*balances, *((recording, None) for recording in recordings)]
+        found = list(each(told, *zip(*works, strict=True)))
+    moments = [one for one in found if isinstance(one, MomentErrors)]
+    stood = [one for one in found if not isinstance(one, MomentErrors)]
+    heights = [own for _, own in stood if own is not None]
+    return _Ready([recording for recording, _ in stood], settings, heights, moments)

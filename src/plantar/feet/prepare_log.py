@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
@@ -28,10 +29,12 @@ from plantar.signals.dropouts import without_dropouts
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.held import without_held
 from plantar.signals.orientation import attitude
-from plantar.signals.resampling import evenly_sampled, without_holes
+from plantar.signals.resampling import evenly_sampled, is_even, without_holes
 from plantar.signals.spikes import without_spikes
 from plantar.signals.thinning import thinned
 
+# Samples: with fewer, threads mostly hand Python's lock to each other; with more, copies of the process hold much.
+LONG = 50_000
 VELOCITY_BAND = 4.0  # times the fit's cutoff, up to which joint angles are differentiated
 CONTACT_BAND = 2.0  # times the fit's cutoff, up to which a force tells landing from lifting
 FEWEST_READINGS = 10  # of a force sensor in a stance: fewer miss how its torque changes
@@ -49,12 +52,23 @@ def checked(robot: RobotModel, log: MotionLog, findings: Sequence[Finding] | Non
     reads something impossible (degrees for radians, a flipped sign, swapped feet; see `checks`).
     """
     _require(robot)
-    findings = check_log(robot, log) if findings is None else findings
+    # Its samples are put right while it is checked; where time is wrong, an even grid could take any memory.
+    if len(log) > LONG and findings is None and is_even(log):
+        with ThreadPoolExecutor(1) as pool:
+            pending = pool.submit(_even, log)
+            findings = check_log(robot, log)
+            even: MotionLog | None = pending.result()
+    else:
+        findings, even = check_log(robot, log) if findings is None else findings, None
     refuse_impossible(log, findings)
     odd = finding_notes(log, findings)
     return_freed(log.size)
-    even = thinned(without_spikes(without_holes(without_held(without_dropouts(evenly_sampled(log))))))
-    return even.with_columns({}, *log.joint_notes(robot), *odd)
+    return (even or _even(log)).with_columns({}, *log.joint_notes(robot), *odd)
+
+
+def _even(log: MotionLog) -> MotionLog:
+    """The log on an even grid, without held samples, dropouts and spikes."""
+    return thinned(without_spikes(without_holes(without_held(without_dropouts(evenly_sampled(log))))))
 
 
 def prepare(

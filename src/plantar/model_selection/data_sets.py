@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plantar.conventions import Array, Mask
-from plantar.estimation.orthonormal import orthonormal, without
-from plantar.estimation.slow_drift import drift_basis, drift_beside
+from plantar.estimation.orthonormal import SlowSpan, orthonormal, without
+from plantar.estimation.slow_drift import DRIFT_PERIOD, drift_basis, drift_beside
 from plantar.models import BushModel, BushMotion
 from plantar.signals.filters import SHORTEST_RUN, SHORTEST_STANCE_RUN, low_pass
 
@@ -99,7 +99,7 @@ class FilteredDataSet:
     Where the foot steps, turns are too quick for that: the state follows the wide-band `path`.
 
     Response and columns come without what drifts slowly, as the IMU's attitude does, differently in each recording: the
-    orthonormal columns `slow` (n, m), which is the same as fitting these beside the offset. Where the foot steps, it is
+    span of the columns `slow`, which is the same as fitting these beside the offset. Where the foot steps, it is
     what `steps` holds that is taken off instead.
     """
 
@@ -109,7 +109,7 @@ class FilteredDataSet:
     response: Array
     used: Mask
     cutoff: float
-    slow: Array | None
+    slow: SlowSpan | None
     steps: StepColumns | None = None
 
     @classmethod
@@ -135,7 +135,7 @@ class FilteredDataSet:
         own = None
         if drift and data_set.steps is None:
             time = np.flatnonzero(used).astype(np.float64) * motion.period
-            own = drift_beside(slow.deflection[used], drift_basis(time))
+            own = SlowSpan(drift_beside(slow.deflection[used], drift_basis(time)), time, DRIFT_PERIOD)
         raw = cls(data_set.label, slow, path, smooth[used, 2], used, cutoff, own, data_set.steps)
         return replace(raw, response=raw.without_nuisance(raw.response))
 
@@ -145,12 +145,10 @@ class FilteredDataSet:
             return rows
         flat = rows.reshape(len(rows), -1)
         if self.steps is not None:
-            flat, own = self.steps.centred(flat, self._stance), self._nuisance
+            flat = without(self._nuisance, self.steps.centred(flat, self._stance))
         elif self.slow is not None:
-            own = self.slow
-        else:
-            return rows
-        return without(own, flat).reshape(rows.shape)
+            flat = self.slow.off(flat)
+        return flat.reshape(rows.shape)
 
     @property
     def shortest_run(self) -> int:

@@ -35,16 +35,20 @@ def sampling(log: MotionLog) -> Sampling:
     return Sampling(1 / period, jitter, gaps)
 
 
+def is_even(log: MotionLog) -> bool:
+    """Whether a log stands on an even grid of its usual period."""
+    return bool(np.all(np.abs(np.diff(log.time) - log.period) < JITTER_SHARE * log.period))
+
+
 def evenly_sampled(log: MotionLog) -> MotionLog:
     """The log on an even grid of its usual period; untouched (the same object) where it already stands on one.
 
     Values are interpolated linearly, quaternions with their signs aligned; inside a gap they are NaN. Of a gap longer
     than LONG_GAP only the beginning stands on the grid: a clock that jumps by days costs no memory.
     """
-    period = log.period
-    steps = np.diff(log.time)
-    if np.all(np.abs(steps - period) < JITTER_SHARE * period):
+    if is_even(log):
         return log
+    period, steps = log.period, np.diff(log.time)
     breaks = np.flatnonzero(steps > max(LONG_GAP, 2 * GAP_PERIODS * period))
     starts, ends = log.time[[0, *(breaks + 1)]], log.time[[*breaks, -1]]
     ends[:-1] += GAP_PERIODS * period

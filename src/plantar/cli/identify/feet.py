@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -13,10 +13,11 @@ from plantar.cli.console.delay import WrenchDelay
 from plantar.cli.console.memory import Memory
 from plantar.cli.console.terminal import progress
 from plantar.cli.identify import identification
+from plantar.cores import begun
 from plantar.feet.settings import AUTOMATIC, DEFAULT_CUTOFF, MODEL_CHOICES, FeetSettings, OffsetRule
 from plantar.files import refuse_file, write_text
-from plantar.logs.inputs import open_in_turn
-from plantar.robot.model import load_robot
+from plantar.logs.freed_memory import keep_freed
+from plantar.logs.inputs import open_in_turn, read_ahead, robot_of
 
 MODEL_HELP = (
     f"Model of the bush: {', '.join(MODEL_CHOICES)}. "
@@ -53,23 +54,25 @@ def run(
     reach = None if window is None else float(np.radians(window))
     settings = FeetSettings(offset, model, cutoff, window=reach, wrench_delay=wrench_delay)
     refuse_file(out)
-    known = load_robot(robot)
-    from plantar.feet.prepare import prepare_all
-    from plantar.signals.thinning import kept_size
+    keep_freed()
+    paths, show = [*logs, *(validate or ())], progress(quiet)
+    with begun(partial(read_ahead, paths, memory)) as ahead:  # while all that works on logs is imported
+        from plantar.feet.prepare import prepare_all
+        from plantar.signals.thinning import kept_size
 
-    read, show = open_in_turn([*logs, *(validate or ())], known, kept_size, memory), progress(quiet)
+        known = robot_of(robot)
+        read = open_in_turn(paths, known, kept_size, memory, ahead())
     ready = prepare_all(known, read[: len(logs)], read[len(logs) :], settings, show, _get_rest_ready)
     from plantar.cli.identify.feet_tables import print_feet
     from plantar.feet.identify import fit_prepared
     from plantar.report.feet import feet_page
 
     result = fit_prepared(known, ready, show)
-    with ThreadPoolExecutor(1) as pool:  # the page is drawn while the numbers are saved
-        page = pool.submit(feet_page, result)
+    with begun(partial(feet_page, result)) as page:  # it is drawn while the numbers are saved
 
         def report(saved: Path) -> Path:
             path = saved.with_name("report.html")
-            write_text(path, page.result())
+            write_text(path, page())
             return path
 
         identification.keep(result, out, report, print_feet, json=json, quiet=quiet)

@@ -10,14 +10,15 @@ import typer
 
 from plantar.cli.console.terminal import console, end_progress, progress
 from plantar.files import refuse_file
-from plantar.logs.freed_memory import return_freed
-from plantar.logs.inputs import open_together
+from plantar.logs.freed_memory import keep_freed, return_freed
+from plantar.logs.inputs import open_together, robot_of
 from plantar.logs.motion_log import MotionLog
 from plantar.results.io import dump_json
-from plantar.robot.model import RobotModel, load_robot
 
 if TYPE_CHECKING:
     from rich.console import Console
+
+    from plantar.robot.model import RobotModel
 
 Robot = Annotated[Path, typer.Argument(help="Robot file (YAML).", metavar="ROBOT.yaml")]
 Logs = Annotated[list[Path], typer.Argument(help="Logs to fit.", metavar="LOG...")]
@@ -55,7 +56,8 @@ def opened(
 ) -> tuple[RobotModel, list[MotionLog], list[MotionLog]]:
     """The robot, the logs to fit and those to score; an `out` that cannot be used is refused before any work."""
     refuse_file(out)
-    known = load_robot(robot)
+    keep_freed()
+    known = robot_of(robot)
     opened = open_together([*logs, *(validate or ())], known, memory)
     return known, opened[: len(logs)], opened[len(logs) :]
 

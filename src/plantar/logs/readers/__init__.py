@@ -68,7 +68,17 @@ def open_log(
     reader: Reader = import_module(f"plantar.logs.readers.{module}").read
     with np.errstate(over="ignore", invalid="ignore"):  # a damaged file may hold any number
         log = reader(path, robot, ReadLimit(path, memory))
+    return of_robot(log, robot)
+
+
+def of_robot(log: MotionLog, robot: RobotModel | None) -> MotionLog:
+    """A log as `open_log` gives it, from one that was read without the robot where `reads_alike`."""
     return log if robot is None else with_urdf_names(log, robot.joint_names_in_logs, robot.joint_names)
+
+
+def reads_alike(path: Path, robot: RobotModel) -> bool:
+    """Whether a file is read as it is where no robot is known: the names of joints alone differ then."""
+    return _module(path, robot) == _module(path, None) == FORMATS[".csv"]
 
 
 def _module(path: Path, robot: RobotModel | None) -> str:

@@ -8,9 +8,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from plantar.estimation.delays.delay import Pair, estimate_delay
+from plantar.cores import Each
+from plantar.estimation.delays.delay import Delay, Pair, estimate_delay
 from plantar.notes import Note
 
+HALVES = (0, 1)
 SURE = 4.0  # deviations by which two halves must differ
 LEAST = 0.002  # s, and by so much: less is within what any search leaves
 
@@ -36,9 +38,11 @@ class ClockDrift(NamedTuple):
         return Note("clock_drift", "warning", text)
 
 
-def clock_drift(pairs: Sequence[Pair]) -> ClockDrift | None:
-    """What the delays of each log's halves say; None where they do not clearly differ."""
-    told = zip(pairs, map(_halves, pairs), strict=True)
+def clock_drift(pairs: Sequence[Pair], each: Each = map) -> ClockDrift | None:
+    """What the delays of each log's halves say; None where they do not clearly differ. `each` maps a function over the
+    halves, as in `estimate_wrench_delay`."""
+    delays = iter(each(_delay_of, [pair for pair in pairs for _ in HALVES], [*HALVES] * len(pairs)))
+    told = zip(pairs, map(_apart, delays, delays), strict=True)
     found = [(pair, halves) for pair, halves in told if halves is not None]
     if not found:
         return None
@@ -52,11 +56,14 @@ def clock_drift(pairs: Sequence[Pair]) -> ClockDrift | None:
     return ClockDrift(share, longest)
 
 
-def _halves(pair: Pair) -> tuple[float, float] | None:
-    """By how much the sensors are later in the second half than in the first [s], and its variance [s²]."""
+def _delay_of(pair: Pair, half: int) -> Delay | None:
+    """What one half of a log says of the sensors' delay."""
     middle = len(pair.predicted) // 2
-    delays = [estimate_delay([_part(pair, rows)]) for rows in (slice(0, middle), slice(middle, None))]
-    first, second = delays
+    return estimate_delay([_part(pair, slice(middle, None) if half else slice(0, middle))])
+
+
+def _apart(first: Delay | None, second: Delay | None) -> tuple[float, float] | None:
+    """By how much the sensors are later in the second half than in the first [s], and its variance [s²]."""
     if first is None or second is None:
         return None
     return second.value - first.value, first.wide_std**2 + second.wide_std**2

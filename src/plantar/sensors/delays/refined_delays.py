@@ -90,7 +90,7 @@ def refined_delays(
         if moved < SETTLED and step.std < np.inf:
             residuals = tuple(residual for own in tried for residual in own)
             pairs, common = [one.pair for one in residuals], float(np.mean(read_at[:-1]))
-            unsteady = clock_drift(pairs) or delays_by_log(pairs, common)
+            unsteady = clock_drift(pairs, each) or delays_by_log(pairs, common)
             residuals = tuple(replace(one, pair=one.pair.slim) for one in residuals)
             return replace(step, unsteady=unsteady, residuals=residuals)
         tried = None

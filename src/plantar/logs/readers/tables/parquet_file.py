@@ -83,18 +83,20 @@ def _check_unpacked(
 
 
 def _columns(source: pa_parquet.ParquetFile, names: list[str], path: Path) -> dict[str, Array]:
-    """One column after another: pages of all of them at once would take as much memory as their numbers."""
-    rows = source.metadata.num_rows
+    """A column for each core after another: pages of all at once would take as much memory as their numbers."""
+    rows, together = source.metadata.num_rows, pa.cpu_count()
     values = np.empty((len(names), rows))
-    for row, name in zip(values, names, strict=True):
+    for first in range(0, len(names), together):
+        some = names[first : first + together]
         count = 0
-        for batch in source.iter_batches(BATCH, columns=[name]):
+        for batch in source.iter_batches(BATCH, columns=some):
             end = count + batch.num_rows
             if end > rows:
                 break
-            row[count:end] = batch.column(name).cast(pa.float64()).to_numpy(zero_copy_only=False)
+            for row, name in zip(values[first:], some, strict=False):
+                row[count:end] = batch.column(name).cast(pa.float64()).to_numpy(zero_copy_only=False)
             count = end
         if count != rows:
             message = f"does not hold the {rows} rows that the file claims"
-            raise LogError(located(message, path=path, column=name))
+            raise LogError(located(message, path=path, column=some[0]))
     return dict(zip(names, values, strict=True))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,7 +16,9 @@ from plantar.logs.readers import motion_name
 from plantar.logs.readers.read_limit import ReadLimit
 from plantar.logs.readers.tables.csv_file import Choice, read_csv
 from plantar.notes import Note, listing
-from plantar.robot.model import RobotModel
+
+if TYPE_CHECKING:
+    from plantar.robot.model import RobotModel
 
 LATEST = 1e20  # in any unit, nanoseconds since 1970 among them: what no clock shows
 STRAY_ROWS = 0.01  # share of rows whose time may step back before the file is refused
