@@ -21,6 +21,7 @@ from plantar.feet.foot_fit import FittedFoot, between_all
 from plantar.feet.identify import fit_prepared
 from plantar.feet.internal_error import described
 from plantar.feet.interval_width.between_recordings import AxisDifferences
+from plantar.feet.place.spread import PlaceSpread
 from plantar.feet.prepare import PreparedLogs, prepare_all
 from plantar.feet.settings import FeetSettings
 from plantar.results.feet import FeetResult
@@ -113,3 +114,25 @@ def test_one_axis_that_differs_alone_says_nothing_of_the_others(
     assert found.others == 1
     assert (found.shown is not None) == share
     assert found.share > 0.01 if share else found.share == 0.002
+
+
+@pytest.mark.parametrize("steps", [False, True])
+def test_the_height_that_one_axis_shows_far_off_is_expected_of_the_other(
+    monkeypatch: pytest.MonkeyPatch, steps: bool
+) -> None:
+    """Of a standing foot; one that steps has its place from its stances. Pitch shows 30 mm, roll nothing."""
+    asked: list[tuple[str, float]] = []
+
+    def fitted(
+        recordings: Any, foot: str, axis: str, settings: Any, model: Any, place: PlaceSpread, timed: bool
+    ) -> Any:
+        asked.append((axis, place.height))
+        return SimpleNamespace(moment_arms=(0.0, 0.03 if axis == "pitch" else 0.0))
+
+    monkeypatch.setattr(foot_fit, "fit_axis", fitted)
+    recording = SimpleNamespace(stances={"left": object() if steps else None})
+    ready: Any = SimpleNamespace(
+        fitted=[recording], settings=FeetSettings(), sensor_delay=SimpleNamespace(doubtful=False)
+    )
+    foot_fit._fits(ready, "left", PlaceSpread(0.004, 0.004, 0.01), {}, {})
+    assert asked == [("pitch", 0.0), ("roll", 0.0), *([] if steps else [("roll", 0.03)])]
