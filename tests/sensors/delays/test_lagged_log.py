@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from biped import WEIGHT, record, sway
+from biped import WEIGHT, record, sway, times
 from plantar.robot.model import RobotModel
 from plantar.sensors.delays.lagged_log import _liveliest, lagged_log
 
@@ -31,3 +31,16 @@ def test_a_force_that_hardly_moves_shows_no_lag(robot: RobotModel, share: float,
     for foot in robot.feet:
         still[f"wrench.{foot}.force.x"] += push / 2
     assert (lagged_log(robot, log.with_columns(still)) is not None) == searched
+
+
+def test_a_log_is_searched_alike_at_any_rate(robot: RobotModel) -> None:
+    """What postures and drifting zeros do is taken off below one frequency, however many samples a second has."""
+    motion = sway(duration=40.0)
+    slow, fast = (lagged_log(robot, record(motion, at=times(motion, rate))) for rate in (40.0, 200.0))
+    assert slow is not None
+    assert fast is not None
+    assert fast.period == pytest.approx(slow.period)
+    np.testing.assert_allclose(fast.wrenches, slow.wrenches, atol=1e-9)
+    for side in ("predicted", "measured"):
+        one, other = (np.std(getattr(grid, side), axis=-2) for grid in (slow, fast))
+        np.testing.assert_allclose(other, one, rtol=0.05, atol=0.02 * one.max())
