@@ -148,10 +148,10 @@ DRAWN_BY_LOT = (
         "if score.held_out_rms < (1 - TELLING_GAIN)",
     ),
     Mutant(
-        "exporters/urdf/target.py",
+        "exporters/shapes.py",
         "all that has a shape goes with the sole",
-        "elif points is None or not reaches_sole(points, foot):",
-        "elif points is None:",
+        "elif corners is None or not reaches_sole(corners, foot):",
+        "elif corners is None:",
     ),
     Mutant(
         "sensors/moment_errors.py",
