@@ -131,3 +131,16 @@ def test_an_axis_is_called_reversed_where_the_accelerometer_feels_half_of_the_ti
         dict(zip(names, felt.T, strict=True))
     )
     assert ("sign" in codes(turned)) == said
+
+
+def test_a_few_wild_windows_move_no_reading_and_still_ones_have_no_part() -> None:
+    random = np.random.default_rng(0)
+    turn = 0.05 * random.standard_normal((60, 3))
+    turn[40:] *= 1e-3
+    integral = 1.1 * turn
+    integral[:5] += 9.0
+    integral[40:] += 1.0
+    found = Turns(integral, {"as it is": turn, "inverted": -turn}, turn, 0.005)
+    assert found.apart["as it is"] == pytest.approx(0.1, rel=1e-6)
+    assert found.apart["inverted"] == pytest.approx(2.1, rel=1e-6)
+    assert found.agree

@@ -183,7 +183,13 @@ def test_what_a_motion_does_not_excite_is_named_and_infinitely_uncertain() -> No
     assert np.isfinite(fit.values).all()
     (note,) = fit.notes
     assert note.code == "unexcited"
-    assert "wrist_3" in note.text
+    named = note.text.split("not determined: ")[1].split("; ")
+    unknown = [name for name, std in zip(fit.expressions, fit.std, strict=True) if np.isinf(std)]
+    assert named == unknown
+    assert any("wrist_3" in name for name in named)
+    assert note.text.startswith(
+        f"{len(fit.values) - fit.rank} of {len(fit.values)} directions are not excited"
+    )
     np.testing.assert_allclose(fit.predict(q, v, a), tau, atol=0.06)
 
 

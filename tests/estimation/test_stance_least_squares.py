@@ -161,6 +161,22 @@ def test_scaling_the_torque_scales_values_and_deviations() -> None:
     one, ten = fit_blocks(blocks), fit_blocks(scaled)
     assert ten.values == pytest.approx(10 * one.values, rel=1e-9)
     assert ten.std == pytest.approx(10 * one.std, rel=1e-9)
+    assert ten.white_std == pytest.approx(10 * one.white_std, rel=1e-9)
+    assert ten.common_nuisance == pytest.approx(10 * one.common_nuisance, rel=1e-9)
+    assert ten.offsets == pytest.approx({label: 10 * value for label, value in one.offsets.items()}, rel=1e-9)
+    assert ten.freedom == pytest.approx(one.freedom)
+
+
+def test_white_deviations_are_the_scatter_under_white_noise() -> None:
+    """Of stances with one offset and rows that all weigh alike."""
+    found = []
+    for seed in range(60):
+        plain = walk(0, scatter=0.0, noise=0.0)
+        noise = 2.0 * np.random.default_rng(seed).standard_normal(len(plain.response))
+        even = StanceRows(plain.stances.number, np.ones(len(noise)))
+        found.append(fit_stances([replace(plain, response=plain.response + noise, stances=even)]))
+    scatter = np.std([fit.values for fit in found], axis=0, ddof=1)
+    assert np.mean([fit.white_std for fit in found], axis=0)[:2] == pytest.approx(scatter, rel=0.25)
 
 
 def test_one_lone_stance_promises_nothing() -> None:

@@ -13,16 +13,20 @@ import pytest
 from biped import record, sway
 from biped_robot import FEET
 from feet_trials import PUNCTUAL
+from plantar import cores
 from plantar.errors import DataError
 from plantar.estimation.random_effects import Differences
 from plantar.estimation.residual_covariance import relative_std_percent
 from plantar.feet import foot_fit
+from plantar.feet.assess.left_out import ON_AN_EDGE
 from plantar.feet.foot_fit import FittedFoot, between_all
 from plantar.feet.identify import fit_prepared
 from plantar.feet.internal_error import described
 from plantar.feet.interval_width.between_recordings import AxisDifferences
+from plantar.feet.place.spread import PlaceSpread
 from plantar.feet.prepare import PreparedLogs, prepare_all
 from plantar.feet.settings import FeetSettings
+from plantar.notes import Note
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
 
@@ -113,3 +117,48 @@ def test_one_axis_that_differs_alone_says_nothing_of_the_others(
     assert found.others == 1
     assert (found.shown is not None) == share
     assert found.share > 0.01 if share else found.share == 0.002
+
+
+@pytest.mark.parametrize("steps", [False, True])
+def test_the_height_that_one_axis_shows_far_off_is_expected_of_the_other(
+    monkeypatch: pytest.MonkeyPatch, steps: bool
+) -> None:
+    """Of a standing foot; one that steps has its place from its stances. Pitch shows 30 mm, roll nothing."""
+    asked: list[tuple[str, float]] = []
+
+    def fitted(
+        recordings: Any, foot: str, axis: str, settings: Any, model: Any, place: PlaceSpread, timed: bool
+    ) -> Any:
+        asked.append((axis, place.height))
+        return SimpleNamespace(moment_arms=(0.0, 0.03 if axis == "pitch" else 0.0))
+
+    monkeypatch.setattr(foot_fit, "fit_axis", fitted)
+    recording = SimpleNamespace(stances={"left": object() if steps else None})
+    ready: Any = SimpleNamespace(
+        fitted=[recording], settings=FeetSettings(), sensor_delay=SimpleNamespace(doubtful=False)
+    )
+    foot_fit._fits(ready, "left", PlaceSpread(0.004, 0.004, 0.01), {}, {})
+    assert asked == [("pitch", 0.0), ("roll", 0.0), *([] if steps else [("roll", 0.03)])]
+
+
+def test_an_edge_that_takes_most_of_a_foot_comes_first_of_what_to_mend(
+    robot: RobotModel, ready: PreparedLogs, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In both axes of that foot, and of no other; no number is doubted for it."""
+    edge = Note(ON_AN_EDGE, "warning", "left foot: on its edge")
+    asked: list[tuple[str, str, list[str]]] = []
+
+    def mended(rows: Any, faults: Any) -> Any:
+        asked.append((rows[0].foot, rows[0].axis, [note.code for note in faults]))
+        return rows
+
+    monkeypatch.setattr(
+        cores, "usable_cores", lambda: 1
+    )  # what is asked in a copy of the process is not seen
+    monkeypatch.setattr(foot_fit, "mend_first", mended)
+    monkeypatch.setattr(foot_fit, "mostly_on_an_edge", lambda foot, *_: [edge] if foot == "left" else [])
+    found = fit_prepared(robot, ready)
+    first = {(foot, axis): codes[:1] == [ON_AN_EDGE] for foot, axis, codes in asked}
+    assert first == {(foot, axis): foot == "left" for foot in FEET for axis in ("pitch", "roll")}
+    assert edge in found.notes
+    assert {row.verdict for row in found.parameters if row.axis != "z"} == {"usable"}

@@ -44,6 +44,8 @@ def test_exact_logs_give_the_truth(result: FeetResult) -> None:
 def test_exact_logs_are_predicted_exactly(result: FeetResult) -> None:
     kinds = {(row.kind, row.motion) for row in result.validation}
     assert {("direct", "first"), ("direct", "second"), ("cross", "third")} <= kinds
+    told = [row.kind for row in result.validation]
+    assert told == sorted(told, key=["direct", "cross"].index), "what was fitted first"
     for row in result.validation:
         if row.axis in AXES:
             assert row.mean_abs_error < EXACT * row.max_abs

@@ -228,6 +228,7 @@ def test_a_robot_with_one_foot(tmp_path: Path) -> None:
     found = identify_feet(robot, [record(sway(duration=12.0))])
     assert_truth(found, 1.2 * (WEIGHT / 2) ** 2 / VERTICAL / 330, feet=("right",))
     assert "z_unknown" in codes(found)
+    assert "no_double_support" not in codes(found)
     assert {row.foot for row in found.parameters} == {"right"}
 
 

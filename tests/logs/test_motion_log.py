@@ -75,6 +75,45 @@ def test_vectors_are_stacked_in_the_contracts_order() -> None:
         partial.orientation("chest")
 
 
+def test_each_sensor_has_its_own_columns() -> None:
+    kinds = {"orientation": "wxyz", "angular_velocity": "xyz", "linear_acceleration": "xyz"}
+    names = [f"imu.chest.{kind}.{axis}" for kind, axes in kinds.items() for axis in axes]
+    names += [f"joint.knee.{kind}" for kind in ("position", "velocity", "acceleration", "effort")]
+    log = MotionLog("tilt", np.arange(3.0), {name: np.full(3, float(i)) for i, name in enumerate(names)})
+    orientation = log.orientation("chest")
+    assert orientation is not None
+    assert orientation[0].tolist() == [0, 1, 2, 3]
+    assert log.angular_velocity("chest")[0].tolist() == [4, 5, 6]
+    assert log.linear_acceleration("chest")[0].tolist() == [7, 8, 9]
+    read = [log.joint("knee", kind) for kind in ("position", "velocity", "acceleration", "effort")]
+    assert [values[0] for values in read if values is not None] == [10, 11, 12, 13]
+
+
+@pytest.mark.parametrize(
+    ("columns", "vertical"),
+    [
+        ({}, True),
+        ({"force.x": 1.0}, False),
+        ({"torque.z": 1.0}, False),
+        ({"force.z": 0.0}, False),
+        ({"torque.x": 2.0}, True),
+    ],
+)
+def test_vertical_cells_read_no_horizontal_force_and_no_yaw(
+    columns: dict[str, float], vertical: bool
+) -> None:
+    read = (
+        {f"{kind}.{axis}": 0.0 for kind in ("force", "torque") for axis in "xyz"}
+        | {"force.z": 300.0}
+        | columns
+    )
+    log = MotionLog(
+        "tilt", np.arange(3.0), {f"wrench.left.{name}": np.full(3, own) for name, own in read.items()}
+    )
+    assert log.vertical_only("left") == vertical
+    assert not log.vertical_only("right")
+
+
 def test_duration_and_period_survive_a_gap() -> None:
     time = np.concatenate([np.arange(10), np.arange(10) + 100]) * 0.01
     log = MotionLog("tilt", time, {})

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
+from scipy.spatial.transform import Rotation
 
 from biped import record, sway
 from biped_robot import write_robot
@@ -48,6 +49,22 @@ def test_it_is_served_here_alone_and_says_nothing_on_stdout(
         assert not view.wait_for_reader(0.0)
         show(view, replay)
     assert capsys.readouterr().out == ""
+
+
+def test_each_ankle_stands_above_its_sole_where_the_bush_is(robot: RobotModel, replay: Replay) -> None:
+    """The test biped's bush is 30 mm over its sole, and turns the other way than the sole that is drawn flat."""
+    with live.LiveView(robot, port=8491) as view:
+        for foot, side in (("left", -0.15), ("right", 0.15)):
+            assert view._feet[foot]._ankle.position == pytest.approx((0.0, side, 0.03))
+        estimate = replay.estimate("left", len(replay.time) - 1)
+        view.show(0.0, {"left": estimate})
+        ankle = view._feet["left"]._ankle
+        pitch, roll = (live.LARGER * one.deflection for one in (estimate.pitch, estimate.roll))
+        turn = Rotation.from_quat(ankle.wxyz, scalar_first=True)
+        expected = (Rotation.from_euler("y", pitch) * Rotation.from_euler("x", roll)).inv()
+        assert (turn.inv() * expected).magnitude() == pytest.approx(0.0, abs=1e-6)
+        above = turn.apply([0.0, 0.0, live.HEIGHT / 2])
+        assert ankle.position == pytest.approx([0.0 + above[0], -0.15 + above[1], 0.03 + above[2]], abs=1e-6)
 
 
 def test_a_browser_draws_it(robot: RobotModel, replay: Replay, browser: Any) -> None:

@@ -210,6 +210,22 @@ def test_a_notebook_shows_the_table(result: FeetResult) -> None:
     )
 
 
+def test_a_notebook_says_all_that_print_says_but_the_prediction(result: FeetResult) -> None:
+    """Why a number is not usable, what to record next, how late the sensors are, and every warning."""
+    told = replace(
+        result,
+        parameters=(K, C, Z),
+        sensor_delay=DelayEstimate(0.004, 0.0005, measured=True),
+        notes=(Note("gap", "warning", "a < b"), Note("model", "info", "unseen")),
+    )
+    page = told._repr_html_()
+    for line in ("left pitch damping (weak): wide", "left z stiffness (unidentifiable): no load moves",
+                 "for left pitch damping: sway faster", "Force sensors 4.0 ± 1.0 ms late, measured",
+                 "warning: a &lt; b", "further notes, in .notes: 1"):  # fmt: skip
+        assert f">{line}</div>" in page
+        assert line.replace("&lt;", "<") in str(told)
+
+
 def test_the_arrow_table_has_a_row_for_each_parameter(result: FeetResult) -> None:
     table = replace(result, parameters=(K, Z)).to_table()
     first, last = table.to_pylist()

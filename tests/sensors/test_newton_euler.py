@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from biped import record, sway
 from biped_robot import make_robot
+from feet_trials import without
 from plantar.dynamics.inertial_motion import InertialSignals
 from plantar.estimation.delays.delay import Pair
 from plantar.feet.prepare_log import checked
 from plantar.logs.motion_log import MotionLog
+from plantar.robot.model import RobotModel
 from plantar.sensors.delays.sensor_delay import estimate_wrench_delay
-from plantar.sensors.newton_euler import NewtonEulerResidual, newton_euler_residuals
+from plantar.sensors.newton_euler import NewtonEulerResidual, newton_euler_residuals, with_gyroscope
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.resampling import interpolate, shifted
 from plantar.twin import PAPER, play_all
@@ -73,3 +77,19 @@ def test_a_log_with_gaps_shows_its_delay_in_every_run() -> None:
     assert found.encoders == 0.0
     assert found.delay == pytest.approx(0.006, abs=0.001)
     assert found.std < 0.001
+
+
+def test_newtons_law_takes_its_turns_from_the_orientation_where_there_is_no_gyroscope(
+    robot: RobotModel,
+) -> None:
+    log = record(sway(duration=8.0))
+    assert with_gyroscope(robot, log) is log
+    found = with_gyroscope(robot, without(log, "angular_velocity"))
+    assert found is not None
+    inner = slice(10, -10)
+    turned, true = (each.angular_velocity("chest")[inner] for each in (found, log))
+    assert np.abs(turned - true).max() < 2e-3 * np.abs(true).max()
+    for missing in (("linear_acceleration",), ("angular_velocity", "orientation")):
+        assert with_gyroscope(robot, without(log, *missing)) is None
+    left = replace(robot.feet["left"], contact="always")
+    assert with_gyroscope(replace(robot, feet={**robot.feet, "left": left}), log) is None, "zeroed under load"

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from plantar.errors import PlantarError
 from plantar.feet.identify import identify_feet
 from plantar.feet.settings import FeetSettings
 from plantar.twin.bush import PAPER
@@ -67,3 +68,15 @@ def test_the_files_are_a_manifest_with_its_truth(tmp_path: Path) -> None:
         value = found.parameter(row["foot"], row["axis"], "stiffness").value
         allowed = 0.01 if row["axis"] == "pitch" else 0.1  # the motion sways in pitch
         assert value == pytest.approx(float(row["stiffness"]), rel=allowed)
+
+
+@pytest.mark.parametrize("preset", ["plain_log", "imperfect"])
+def test_a_preset_with_robots_or_logs_of_its_own_is_refused(tmp_path: Path, preset: str) -> None:
+    with pytest.raises(PlantarError, match=f"value '{preset}': has robots or logs of its own"):
+        write_fleet(tmp_path, 1, 1, motion=MOTION, preset=preset, seed=0)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_fleet_is_no_more_than_a_hundred_thousand_logs(tmp_path: Path) -> None:
+    with pytest.raises(PlantarError, match="are too many logs"):
+        write_fleet(tmp_path, 1001, 100, motion=MOTION, preset="sensors", seed=0)

@@ -54,14 +54,12 @@ def plates(campaign: Campaign) -> list[Plate]:
     return made
 
 
-def boxes(look: Description, plan: Plan, sample: int = 0) -> list[Box]:
-    """The robot's boxes in the world at one sample of a plan."""
+def boxes(look: Description, plan: Plan) -> list[Box]:
+    """The robot's boxes in the world where a plan begins."""
     order = [plan.joints.index(name) for name in look.joint_names]
-    base = plan.base[sample]
+    base = plan.base[0]
     found = []
-    for body, (rotation, origin) in zip(
-        look.bodies, look.placements(plan.positions[sample, order]), strict=True
-    ):
+    for body, (rotation, origin) in zip(look.bodies, look.placements(plan.positions[0, order]), strict=True):
         for shape in body.shapes:
             corners = (shape.xyz + CORNERS * shape.size) @ rotation.T + origin
             found.append(Box(corners @ base[:3, :3].T + base[:3, 3], side_of(body.name)))

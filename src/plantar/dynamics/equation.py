@@ -121,7 +121,7 @@ class Equation:
             self.core, given, m.base, m.positions, m.velocities, m.accelerations, threads
         )
 
-    def contact_transfer(self, positions: Array, contact: Contact, threads: int = 0) -> Array:
+    def contact_transfer(self, positions: Array, contact: Contact) -> Array:
         """K_B and K_J of one contact, (N, n_rows, 6): contact wrench to base wrench and joint torques."""
         samples = len(positions)
         still = np.zeros((samples, len(self.tree)))
@@ -130,7 +130,7 @@ class Equation:
         for axis in range(6):
             unit = np.zeros((samples, 6))
             unit[:, axis] = -1.0
-            columns.append(self.inverse_dynamics(motion, None, [contact], [unit], threads).T)
+            columns.append(self.inverse_dynamics(motion, None, [contact], [unit]).T)
         return np.stack(columns, axis=2)
 
     def base_transfer(self, positions: Array, contact: Contact) -> Array:

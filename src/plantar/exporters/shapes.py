@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import xml.etree.ElementTree as ET
+from collections.abc import Callable
+
 import numpy as np
 
 from plantar.conventions import Array
 from plantar.exporters.bush import FootBush
+from plantar.exporters.comment import mesh_note
+from plantar.notes import Note
 
 SOLE_MASS = 0.05  # kg: light beside any foot, heavy enough for every engine
 SOLE_INERTIA = 1e-4  # kg·m² about each axis; shifts the decay rate of K = 500, C = 20 by 0.01 %
@@ -20,6 +25,26 @@ def reaches_sole(points: Array, foot: FootBush) -> bool:
     """
     depths = (foot.centre - np.atleast_2d(points)) @ foot.rotation[:, 2]
     return float(depths.max()) > foot.sole_depth - max(0.5 * foot.sole_depth, 0.005)
+
+
+def taken_off(
+    ankle: ET.Element, points: Callable[[ET.Element], Array | None], foot: FootBush, notes: list[Note]
+) -> list[tuple[str, ET.Element]]:
+    """The ankle's shapes that reach the sole, taken off it, each with what it is called.
+
+    points: a shape's (n, 3) in the ankle's frame. A collision mesh that cannot be read goes with the sole, with a note.
+    """
+    taken = []
+    for tag in ("collision", "visual"):
+        for index, shape in enumerate(ankle.findall(tag)):
+            corners = points(shape)
+            if corners is None and tag == "collision":
+                notes.append(mesh_note(foot))
+            elif corners is None or not reaches_sole(corners, foot):
+                continue
+            ankle.remove(shape)
+            taken.append((f"{tag} {shape.get('name', index)}", shape))
+    return taken
 
 
 def plate(foot: FootBush) -> tuple[Array, Array]:

@@ -46,10 +46,10 @@ def is_walk(name: str) -> bool:
     return NAME.fullmatch(name) is not None
 
 
-def gait_of(name: str, period: float | None = None, steps: int | None = None) -> Gait:
+def gait_of(name: str, period: float | None = None) -> Gait:
     """The gait of a walk's name, which is one of WALKS or such a name with another length in cm; `_2` for trial 2.
 
-    `period` [s] and `steps` replace the name's own. Raises MotionError for a name that is no walk's and for a period
+    `period` [s] replaces the name's own. Raises MotionError for a name that is no walk's and for a period
     that no walk has.
     """
     match = NAME.fullmatch(name)
@@ -61,5 +61,4 @@ def gait_of(name: str, period: float | None = None, steps: int | None = None) ->
         raise MotionError(located(f"{name}: no period of a step", value=chosen, valid=valid))
     turns = match["kind"] == "Turn"
     length = int(match["centimetres"]) / 100 if match["centimetres"] else TURN_STEP if turns else 0.0
-    count = round(WALKING / chosen) if steps is None else steps
-    return Gait(length, chosen, TURN if turns else 0.0, count, int(match["trial"] or 0))
+    return Gait(length, chosen, TURN if turns else 0.0, round(WALKING / chosen), int(match["trial"] or 0))

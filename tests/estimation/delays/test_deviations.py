@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from plantar.conventions import Array
-from plantar.estimation.delays.delay import Delay, Pair, estimate_delay
+from plantar.estimation.delays.delay import Delay, Pair, _Cell, _pooled, estimate_delay
 from plantar.estimation.delays.sensor_delays import (
     Balance,
     estimate_delays,
@@ -103,3 +103,14 @@ def test_what_happens_to_leave_no_slow_scores_is_not_taken_for_certain() -> None
     found = estimate_delay([Pair("two", measured, differentiate(measured, PERIOD), clean.predicted, PERIOD)])
     assert isinstance(found, Delay)
     assert found.std > 0.001
+
+
+def test_the_freedom_of_a_pooled_delay_is_that_of_its_best_cells() -> None:
+    """Welch and Satterthwaite's: of n alike cells n times one's; a cell that hardly weighs hardly counts."""
+    cell, loose = _Cell(0.002, 1e-3, 10.0, np.zeros(0)), _Cell(0.002, 1e-2, 30.0, np.zeros(0))
+    assert _pooled([cell] * 4).freedom == pytest.approx(40.0)
+    weights = np.array([1.0, 0.01]) / 1.01
+    shares = weights**2 * np.array([1.0, 100.0])
+    expected = shares.sum() ** 2 / (shares[0] ** 2 / 10 + shares[1] ** 2 / 30)
+    assert _pooled([cell, loose]).freedom == pytest.approx(expected)
+    assert _pooled([cell, loose]).std == pytest.approx(1e-3 / np.sqrt(1.01))

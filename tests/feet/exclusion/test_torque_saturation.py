@@ -61,9 +61,13 @@ def test_the_window_is_about_the_resting_pose(robot: RobotModel) -> None:
     assert np.degrees([used.min(), used.max()]) == pytest.approx([-1.0, 1.0], abs=0.2)
 
 
-def test_a_short_log_is_left_as_it_is(robot: RobotModel) -> None:
-    few = made_recording("few", ANGLE[:90], STIFFNESS * np.minimum(ANGLE[:90], 0.001))
-    assert left_out(zeroed_under_load(robot), few).used(FOOT).all()
+@pytest.mark.parametrize(("samples", "whole"), [(98, True), (102, False)])
+def test_a_bend_is_looked_for_in_a_hundred_samples_or_more(
+    robot: RobotModel, samples: int, whole: bool
+) -> None:
+    angle = np.interp(np.linspace(0, 500, samples), np.arange(6000), ANGLE)  # one sway
+    few = made_recording("few", angle, STIFFNESS * np.minimum(angle, BEND))
+    assert left_out(zeroed_under_load(robot), few).used(FOOT).all() == whole
 
 
 @pytest.mark.parametrize(("share", "bent"), [(0.3, True), (0.7, False)])

@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 
 from made_recording import FOOT, LOAD, PERIOD, made_recording, swayed
+from plantar.contact.phases import AIR, SUPPORTS
 from plantar.contact.reasons import Reason
 from plantar.contact.stances import Stances
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AngleDrift, AxisFit
 from plantar.feet.regression.load_torque import late_encoder_torque, load_torque
+from plantar.feet.regression.model_columns import model_columns
 from plantar.feet.regression.prediction import predict
 from plantar.feet.regression.regression_data import blocks_of, data_set_of, motion_of, path_of
 from plantar.models import MODELS, KelvinVoigt
@@ -146,3 +148,35 @@ def test_a_fit_s_numbers_by_name() -> None:
     assert list(slips.numbers) == [400.0, 10.0, 3.0, 0.02]
     assert slips.names == ("stiffness", "damping", "slip_torque", "slip_angle")
     assert list(slips.at_place(np.array([1.0, 2.0, 3.0, 4.0])).place) == [1.0, 2.0, 3.0, 4.0]
+
+
+def test_columns_of_a_memory_are_gaps_in_the_air() -> None:
+    """Neither a zero, which would be fitted, nor what the memory had before: a bush in the air forgets."""
+    slipping = replace(
+        FIT, model=MODELS["elastoplastic"], values=np.array([400.0, 10.0, 4.0]), shape=np.array([0.006])
+    )
+    recording = made_recording("sway", ANGLE, TORQUE)
+    contact = recording.contacts[FOOT]
+    support = contact.support.copy()
+    support[900:1100] = SUPPORTS.index(AIR)
+    lifted = replace(recording, contacts={FOOT: replace(contact, support=support)})
+    for fit, count in ((FIT, 2), (slipping, 3)):
+        columns = model_columns(lifted, FOOT, "pitch", fit)
+        assert columns.shape == (COUNT, count)
+        assert np.isnan(columns[900:1100]).all()
+        assert np.isfinite(columns[100:800]).all()
+
+
+def test_each_turn_of_the_imu_has_its_own_motion() -> None:
+    """However often one or another was asked for before; angle and rate follow the turn, each axis its own."""
+    recording = made_recording("sway", ANGLE, TORQUE)
+    seen = np.random.default_rng(0).normal(0, 0.1, (2, 3)) * np.sin(TIME)[:, None, None]
+    recording = replace(recording, imu_turns={FOOT: seen})
+    plain = motion_of(recording, FOOT, "pitch")
+    for turn in ((0.01, 0.0, 0.0), (0.0, 0.02, -0.01), (0.01, 0.0, 0.0)):
+        for column, axis in enumerate(("pitch", "roll")):
+            turned = motion_of(recording, FOOT, axis, turn)
+            moved = seen[:, column] @ np.array(turn)
+            assert turned.deflection - plain.deflection == pytest.approx(moved, abs=1e-12)
+            rate = turned.rate - plain.rate
+            assert rate[2:-2] == pytest.approx(np.gradient(moved, PERIOD)[2:-2], abs=1e-6)

@@ -1,10 +1,13 @@
-"""Of a long log the stretch that moves most is searched for lags."""
+"""Which logs are searched for lags, and of a long one which stretch: the one that moves most."""
 
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
-from plantar.sensors.delays.lagged_log import _liveliest
+from biped import WEIGHT, record, sway, times
+from plantar.robot.model import RobotModel
+from plantar.sensors.delays.lagged_log import _liveliest, lagged_log
 
 
 def test_the_stretch_in_which_the_force_changes_most_is_searched() -> None:
@@ -17,3 +20,27 @@ def test_the_stretch_in_which_the_force_changes_most_is_searched() -> None:
     assert found.stop >= 700
     ahead = _liveliest(force, slice(650, 900), 40)
     assert 650 <= ahead.start < 700
+
+
+@pytest.mark.parametrize(("share", "searched"), [(0.0028, False), (0.0033, True)])
+def test_a_force_that_hardly_moves_shows_no_lag(robot: RobotModel, share: float, searched: bool) -> None:
+    """Less than three thousandths of the weight, as a deviation; half of it on each foot, the rest stands still."""
+    log = record(sway(duration=60.0))
+    still = {name: np.full(len(log), values[0]) for name, values in log.columns.items()}
+    push = np.sqrt(2) * share * WEIGHT * np.sin(np.pi * log.time)
+    for foot in robot.feet:
+        still[f"wrench.{foot}.force.x"] += push / 2
+    assert (lagged_log(robot, log.with_columns(still)) is not None) == searched
+
+
+def test_a_log_is_searched_alike_at_any_rate(robot: RobotModel) -> None:
+    """What postures and drifting zeros do is taken off below one frequency, however many samples a second has."""
+    motion = sway(duration=40.0)
+    slow, fast = (lagged_log(robot, record(motion, at=times(motion, rate))) for rate in (40.0, 200.0))
+    assert slow is not None
+    assert fast is not None
+    assert fast.period == pytest.approx(slow.period)
+    np.testing.assert_allclose(fast.wrenches, slow.wrenches, atol=1e-9)
+    for side in ("predicted", "measured"):
+        one, other = (np.std(getattr(grid, side), axis=-2) for grid in (slow, fast))
+        np.testing.assert_allclose(other, one, rtol=0.05, atol=0.02 * one.max())

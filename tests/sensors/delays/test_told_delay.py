@@ -62,6 +62,7 @@ def test_sensors_that_differ_have_delays_of_their_own(usual: RobotModel) -> None
     feet = _told(usual, replace(apart, feet_differ=True, encoders_differ=True))
     assert (feet.feet, feet.encoders) == ({"left": 0.003, "right": 0.005}, 0.002)
     assert (feet.delay, feet.std) == pytest.approx((0.004, 0.001))
+    assert (feet.measured, feet.freedom, feet.doubtful) == (True, 20.0, False)
     assert "wrenches left +3.0, right +5.0 ms, encoders +2.0 ms (± 2.0 ms, 95 %)" in feet.note.text
     encoders = _told(usual, replace(apart, encoders_differ=True))
     assert encoders.feet == {}

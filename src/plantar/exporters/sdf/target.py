@@ -14,11 +14,11 @@ import numpy as np
 
 from plantar.conventions import Array
 from plantar.exporters.bush import FootBush
-from plantar.exporters.comment import head, mesh_note, moved_note, plate_note, updated_note
+from plantar.exporters.comment import head, moved_note, plate_note, updated_note
 from plantar.exporters.poses import inverse, pose
 from plantar.exporters.sdf.from_urdf import sdf_from_urdf
 from plantar.exporters.sdf.tree import SdfTree, pose_of, relative, set_pose
-from plantar.exporters.shapes import SOLE_INERTIA, SOLE_MASS, plate, reaches_sole
+from plantar.exporters.shapes import SOLE_INERTIA, SOLE_MASS, plate, taken_off
 from plantar.exporters.spring import Spring
 from plantar.exporters.xml_file import numbers, to_text, vector
 from plantar.notes import Note
@@ -141,18 +141,10 @@ def _dynamics(joint: ET.Element, spring: Spring | None) -> None:
 def _move_shapes(
     tree: SdfTree, ankle: ET.Element, sole: ET.Element, foot: FootBush, bush: Array, notes: list[Note]
 ) -> list[str]:
-    moved = []
-    for tag in ("collision", "visual"):
-        for shape in ankle.findall(tag):
-            points = tree.points(shape)
-            if points is None and tag == "collision":
-                notes.append(mesh_note(foot))
-            elif points is None or not reaches_sole(points, foot):
-                continue
-            ankle.remove(shape)
-            place = shape.find("pose")
-            if place is None or not place.get("relative_to"):
-                set_pose(shape, inverse(bush) @ pose_of(shape))
-            sole.append(shape)
-            moved.append(f"{tag} {shape.get('name', '')}")
-    return moved
+    taken = taken_off(ankle, tree.points, foot, notes)
+    for _, shape in taken:
+        place = shape.find("pose")
+        if place is None or not place.get("relative_to"):
+            set_pose(shape, inverse(bush) @ pose_of(shape))
+        sole.append(shape)
+    return [name for name, _ in taken]

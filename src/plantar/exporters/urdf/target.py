@@ -14,9 +14,9 @@ import numpy as np
 
 from plantar.conventions import Array
 from plantar.exporters.bush import FootBush
-from plantar.exporters.comment import head, mesh_note, moved_note, plate_note, updated_note
+from plantar.exporters.comment import head, moved_note, plate_note, updated_note
 from plantar.exporters.poses import inverse, pose
-from plantar.exporters.shapes import SOLE_INERTIA, SOLE_MASS, plate, reaches_sole
+from plantar.exporters.shapes import SOLE_INERTIA, SOLE_MASS, plate, taken_off
 from plantar.exporters.spring import Spring
 from plantar.exporters.urdf.tree import UrdfTree, origin_of, set_origin
 from plantar.exporters.xml_file import numbers, to_text, vector
@@ -126,19 +126,11 @@ def _move_fixed_links(tree: UrdfTree, foot: FootBush, bush: Array) -> list[str]:
 def _move_shapes(
     tree: UrdfTree, ankle: ET.Element, sole: ET.Element, foot: FootBush, bush: Array, notes: list[Note]
 ) -> list[str]:
-    moved = []
-    for tag in ("collision", "visual"):
-        for index, shape in enumerate(ankle.findall(tag)):
-            points = tree.points(shape)
-            if points is None and tag == "collision":
-                notes.append(mesh_note(foot))
-            elif points is None or not reaches_sole(points, foot):
-                continue
-            ankle.remove(shape)
-            set_origin(shape, inverse(bush) @ origin_of(shape))
-            sole.append(shape)
-            moved.append(f"{tag} {shape.get('name', index)}")
-    return moved
+    taken = taken_off(ankle, tree.points, foot, notes)
+    for _, shape in taken:
+        set_origin(shape, inverse(bush) @ origin_of(shape))
+        sole.append(shape)
+    return [name for name, _ in taken]
 
 
 def _add_plate(sole: ET.Element, foot: FootBush) -> None:

@@ -57,14 +57,15 @@ def limits_of(outliers: float, steps: float) -> Limits:
     return Limits(float(-ndtri(outliers / 2)), float(step))
 
 
-def watch(values: Array, weights: Array, limits: Limits, start: int = 0) -> Found:
-    """Outliers and steps among values (n,) in time's order, from the place `start` on.
+def watch(values: Array, weights: Array, limits: Limits) -> Found:
+    """Outliers and steps among values (n,) in time's order.
 
     weights: (n,), one over the variance of each value up to one factor. After a step the chart starts anew with the
     days behind it; a day that is called an outlier is compared with others, but they are not compared with it.
     """
     outliers: list[int] = []
     steps: list[tuple[int, int]] = []
+    start = 0
     while True:
         alone, step = _until_step(values, weights, limits, start)
         if step is None:

@@ -42,10 +42,10 @@ def read(path: Path, robot: RobotModel | None, limit: ReadLimit) -> MotionLog:
     return MotionLog(motion_name(path), time, columns, path, sha256(bag_files(path)[0]), tuple(notes))
 
 
-def bag_topics(path: Path, robot: RobotModel | None = None) -> dict[str, list[Topic]]:
+def bag_topics(path: Path) -> dict[str, list[Topic]]:
     """What a bag's topics are taken for: keys `joints`, `imu.<name>`, `wrench.<name>`. LogError: broken."""
     notes: list[Note] = []
-    return assign(_topics(path, ReadLimit(path), notes).values(), robot, path, notes)
+    return assign(_topics(path, ReadLimit(path), notes).values(), None, path, notes)
 
 
 def _topics(path: Path, limit: ReadLimit, notes: list[Note]) -> dict[str, Topic]:
