@@ -7,10 +7,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from biped import record, sines, sway
-from plantar.checks.gyroscope import (
-    Turns,
-    check_gyroscope,
-)
+from plantar.checks import gyroscope
+from plantar.checks.gyroscope import Turns, check_gyroscope, imu_late
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding
 from plantar.signals.resampling import shifted
@@ -144,3 +142,19 @@ def test_a_few_wild_windows_move_no_reading_and_still_ones_have_no_part() -> Non
     assert found.apart["as it is"] == pytest.approx(0.1, rel=1e-6)
     assert found.apart["inverted"] == pytest.approx(2.1, rel=1e-6)
     assert found.agree
+
+
+def test_the_rate_behind_a_gap_is_not_known(log: MotionLog, monkeypatch: pytest.MonkeyPatch) -> None:
+    """There the orientation turns by what happened in the whole gap."""
+    asked: list[np.ndarray] = []
+    monkeypatch.setattr(gyroscope, "gyroscope_delay", lambda rates, turning, period: asked.append(turning))
+    kept = np.abs(log.time - 20.0) > 0.2
+    holed = log.select(kept)
+    orientation = holed.orientation("chest")
+    assert orientation is not None
+    assert list(imu_late("chest", holed, orientation)) == []
+    (turning,) = asked
+    behind = int(np.flatnonzero(np.diff(holed.time) > 0.1)[0]) + 1
+    assert np.isnan(turning[behind]).all()
+    assert np.isfinite(turning[10 : behind - 1]).all()
+    assert np.isfinite(turning[behind + 1 : -10]).all()

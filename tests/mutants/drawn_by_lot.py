@@ -1,4 +1,7 @@
-"""Careless changes at places drawn by lot from every line of every room that works something out."""
+"""Careless changes at places drawn by lot from every line of every room that works something out.
+
+Those that no test noticed at first name the test that was written for them.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +13,7 @@ DRAWN_BY_LOT = (
         "another log's period",
         "measured.append(_moving(carried, thin.period))",
         "measured.append(_moving(carried, log.period))",
+        ("sensors/delays/test_lagged_log.py",),
     ),
     Mutant(
         "twin/replay.py",
@@ -22,12 +26,14 @@ DRAWN_BY_LOT = (
         "a package's name is no folder",
         'tails = [bare, bare.split("/", 1)[-1]]',
         'tails = [bare.split("/", 1)[-1]]',
+        ("exporters/test_urdf_tree.py",),
     ),
     Mutant(
         "feet/result.py",
         "unseen motions first",
         'key=lambda row: row.kind != "direct"',
         'key=lambda row: row.kind == "direct"',
+        ("feet/test_identify.py",),
     ),
     Mutant(
         "logs/readers/ros/layouts.py",
@@ -48,28 +54,25 @@ DRAWN_BY_LOT = (
         'columns[name] - zeros[rest.removesuffix(".position")]',
     ),
     Mutant(
-        "checks/joints/closed_chain.py",
-        "a joint turned back",
-        "positions[:, joint] += angle",
-        "positions[:, joint] -= angle",
-    ),
-    Mutant(
         "logs/motion_log.py",
         "rates for accelerations",
         'return self.stack(imu_columns(imu, "linear_acceleration"))',
         'return self.stack(imu_columns(imu, "angular_velocity"))',
+        ("logs/test_motion_log.py",),
     ),
     Mutant(
         "feet/foot_fit.py",
         "an edge is nothing to mend first",
         "first = [*(note for note in found.notes if note.code == ON_AN_EDGE), *faults]",
         "first = faults",
+        ("feet/test_foot_fit.py",),
     ),
     Mutant(
         "dynamics/fit.py",
         "the excited directions are named",
         "np.flatnonzero(~solution.excited)",
         "np.flatnonzero(solution.excited)",
+        ("dynamics/test_fit.py",),
     ),
     Mutant(
         "motions/stance.py",
@@ -82,18 +85,14 @@ DRAWN_BY_LOT = (
         "an IMU's turn turns no motion",
         "turned(whole.motion, calibration.rotation) if equation.floating else whole.motion",
         "whole.motion",
-    ),
-    Mutant(
-        "conventions.py",
-        "a rotation turned over",
-        "rotation[..., i, j] = entry",
-        "rotation[..., j, i] = entry",
+        ("whole_body/test_calibrated_samples.py",),
     ),
     Mutant(
         "exporters/sdf/tree.py",
         "every joint is fixed",
         'if joint.get("type") == "fixed" and joint.findtext("parent", "").strip() == link',
         'if joint.findtext("parent", "").strip() == link',
+        ("exporters/test_sdf_tree.py",),
     ),
     Mutant(
         "twin/sensing/sensors.py",
@@ -108,13 +107,17 @@ DRAWN_BY_LOT = (
         "settling = (",
     ),
     Mutant(
-        "sensors/delays/delays_by_log.py", "two logs are too few", "if len(found) < 2:", "if len(found) < 3:"
+        "sensors/delays/delays_by_log.py",
+        "two logs are too few",
+        "if len(found) < 2:",
+        "if len(found) < 3:",
     ),
     Mutant(
         "results/feet.py",
         "a notebook gets no advice",
         "feet_text.advice(self.parameters)]\n        delay = feet_text.delay_line(self.sensor_delay)\n        return t",
         "()]\n        delay = feet_text.delay_line(self.sensor_delay)\n        return t",
+        ("results/test_feet.py",),
     ),
     Mutant(
         "checks/stance.py",
@@ -122,24 +125,25 @@ DRAWN_BY_LOT = (
         "level = np.eye(3) - up[:, :, None]",
         "level = np.eye(3) + up[:, :, None]",
     ),
-    Mutant("sensors/newton_euler.py", "zeros added", "readings - below.zeros", "readings + below.zeros"),
     Mutant(
-        "logs/save_mc_rtc.py",
-        "the body in the world for the world in the body",
-        "np.swapaxes(base[:, :3, :3], 1, 2).reshape(-1, 9)",
-        "base[:, :3, :3].reshape(-1, 9)",
+        "sensors/newton_euler.py",
+        "zeros added",
+        "readings - below.zeros",
+        "readings + below.zeros",
     ),
     Mutant(
         "twin/fleet.py",
         "presets with robots of their own",
         "if chosen.robot is not None or chosen.logger is not None:",
         "if chosen.robot is not None and chosen.logger is not None:",
+        ("twin/test_fleet.py",),
     ),
     Mutant(
         "sensors/delays/sensor_delay.py",
         "delays as from endless data",
         "return SensorDelay(mean, found.std, found.freedom, True, note, delays, encoders)",
         "return SensorDelay(mean, found.std, np.inf, True, note, delays, encoders)",
+        ("sensors/delays/test_told_delay.py",),
     ),
     Mutant(
         "model_selection/selection.py",
@@ -158,6 +162,7 @@ DRAWN_BY_LOT = (
         "an arm makes forces of torques",
         "np.block([[none, none], [cross, none]]), place)",
         "np.block([[none, cross], [none, none]]), place)",
+        ("sensors/test_sensor_errors.py",),
     ),
     Mutant(
         "model_selection/variable_projection.py",
@@ -194,6 +199,7 @@ DRAWN_BY_LOT = (
         "pitch for roll at rest",
         "[_rest(roll), _rest(pitch), 0.0]",
         "[_rest(pitch), _rest(roll), 0.0]",
+        ("exporters/test_drake_bushing.py",),
     ),
     Mutant(
         "twin/recording.py",
@@ -206,6 +212,7 @@ DRAWN_BY_LOT = (
         "a bush below its sole",
         "robot.frame(foot.sole.placement)[1].inverse() * robot.frame(foot.bush)[1]",
         "robot.frame(foot.sole.placement)[1] * robot.frame(foot.bush)[1].inverse()",
+        ("report/test_live.py",),
     ),
     Mutant(
         "motions/feasible.py",
@@ -218,6 +225,7 @@ DRAWN_BY_LOT = (
         "a run beside itself",
         "_best_states(grams, totals[data_set] - current, values)",
         "_best_states(grams, totals[data_set], values)",
+        ("model_selection/test_grid_states.py",),
     ),
     Mutant(
         "cli/identify/dynamics_tables.py",

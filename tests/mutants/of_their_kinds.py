@@ -215,4 +215,11 @@ OF_THEIR_KINDS = (
         "if first > 1e12 else",
         ("logs/readers/test_streams.py",),
     ),
+    Mutant(
+        "checks/gyroscope.py",
+        "the rate before a gap for the one behind it",
+        "np.append(False, np.diff(log.time) > 1.5 * log.period)",
+        "np.append(np.diff(log.time) > 1.5 * log.period, False)",
+        ("checks/test_gyroscope.py",),
+    ),
 )

@@ -74,6 +74,18 @@ def test_a_flat_sole_near_its_edge_serves(creep: float) -> None:
     assert not found(excess, depth).any()
 
 
+def test_what_is_usual_is_told_by_a_sole_that_is_flat() -> None:
+    """A sole that leans for seven tenths of each second, by 8 mrad: how its excess changes then is no noise."""
+    random = np.random.default_rng(0)
+    phase = np.mod(TIME, 1.0) / 0.7
+    lean = 0.008 * np.where(phase < 1, np.sin(np.pi * phase) ** 2, 0.0)
+    excess = np.column_stack([lean, 0 * lean]) + random.normal(0, 1e-4, (TIME.size, 2))
+    depth = np.where(phase < 1, 0.0, 0.03) + random.normal(0, 2e-4, TIME.size)
+    said = found(excess, depth)
+    assert said[lean > 0.005].mean() > 0.9
+    assert not said[phase > 1.05].any()
+
+
 def test_without_a_flat_stretch_nothing_is_trusted() -> None:
     excess, depth, _ = swayed(0.16)
     said = leaning(excess, depth, np.full(TIME.size, LOAD), depth < 0.005, depth < 0.005, PERIOD)

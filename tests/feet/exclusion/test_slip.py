@@ -111,6 +111,17 @@ def test_soles_that_slide_apart_are_seen_by_the_closed_chain(robot: RobotModel, 
         assert not slips(found[foot])[(START - 0.1 > TIME) | (END + 0.1 < TIME)].any()
 
 
+@pytest.mark.parametrize(("why", "slides"), [(Reason.ON_THE_EDGE, False), (Reason.OUTLIER, True)])
+def test_a_sole_that_rolls_on_its_edge_does_not_slide(robot: RobotModel, why: Reason, slides: bool) -> None:
+    """Its place is computed for a level sole: what it seems to do against the other foot says nothing of that one."""
+    name = "joint.left_leg_x.position"
+    log = without(STANDING.with_columns({name: STANDING.columns[name] + way(0.003)}), "linear_acceleration")
+    rolls = (START - 0.3 < TIME) & (END + 0.3 > TIME)
+    contacts = without_slip(robot, prepared(robot, log).without("left", rolls, why)).contacts
+    said = [reason.text for reason in contacts["right"].reasons]
+    assert any(text.startswith("slip") for text in said) == slides
+
+
 def test_without_an_accelerometer_a_slide_in_common_stays_unseen(robot: RobotModel) -> None:
     blind = without(carried(STANDING, 0.012), "linear_acceleration")
     assert not any(slips(reason).any() for reason in reasons(robot, blind).values())

@@ -78,7 +78,12 @@ def _insert(tree: SdfTree, foot: FootBush, notes: list[Note], springs: bool) -> 
         parent.text = foot.sole_link
         assert np.allclose(place, tree.in_model(joint.get("name", "")))
         moved.append(f"{'link' if tree.links[child].find('collision') is not None else 'frame'} {child}")
-    moved += _move_shapes(tree, ankle, sole, foot, bush, notes)
+    for name, shape in taken_off(ankle, tree.points, foot, notes):
+        pose_element = shape.find("pose")
+        if pose_element is None or not pose_element.get("relative_to"):
+            set_pose(shape, inverse(bush) @ pose_of(shape))
+        sole.append(shape)
+        moved.append(name)
     if moved:
         notes.append(moved_note(foot, moved))
     if not any(word.startswith(("collision", "link")) for word in moved):
@@ -136,15 +141,3 @@ def _dynamics(joint: ET.Element, spring: Spring | None) -> None:
         ET.SubElement(dynamics, "damping").text = numbers([spring.damping])
         ET.SubElement(dynamics, "spring_reference").text = numbers([spring.rest])
         ET.SubElement(dynamics, "spring_stiffness").text = numbers([spring.stiffness])
-
-
-def _move_shapes(
-    tree: SdfTree, ankle: ET.Element, sole: ET.Element, foot: FootBush, bush: Array, notes: list[Note]
-) -> list[str]:
-    taken = taken_off(ankle, tree.points, foot, notes)
-    for _, shape in taken:
-        place = shape.find("pose")
-        if place is None or not place.get("relative_to"):
-            set_pose(shape, inverse(bush) @ pose_of(shape))
-        sole.append(shape)
-    return [name for name, _ in taken]

@@ -64,7 +64,11 @@ def insert_bushes(tree: UrdfTree, feet: tuple[FootBush, ...]) -> list[Note]:
             continue
         bush = pose(foot.centre, rotation=foot.rotation)
         sole = _add_chain(tree, foot, bush)
-        moved = _move_fixed_links(tree, foot, bush) + _move_shapes(tree, ankle, sole, foot, bush, notes)
+        moved = _move_fixed_links(tree, foot, bush)
+        for name, shape in taken_off(ankle, tree.points, foot, notes):
+            set_origin(shape, inverse(bush) @ origin_of(shape))
+            sole.append(shape)
+            moved.append(name)
         if moved:
             notes.append(moved_note(foot, moved))
         if not any(word.startswith(("collision", "link")) for word in moved):
@@ -121,16 +125,6 @@ def _move_fixed_links(tree: UrdfTree, foot: FootBush, bush: Array) -> list[str]:
             else:
                 queue.append((child, here))
     return moved
-
-
-def _move_shapes(
-    tree: UrdfTree, ankle: ET.Element, sole: ET.Element, foot: FootBush, bush: Array, notes: list[Note]
-) -> list[str]:
-    taken = taken_off(ankle, tree.points, foot, notes)
-    for _, shape in taken:
-        set_origin(shape, inverse(bush) @ origin_of(shape))
-        sole.append(shape)
-    return [name for name, _ in taken]
 
 
 def _add_plate(sole: ET.Element, foot: FootBush) -> None:

@@ -1,0 +1,66 @@
+"""Initial states that a grid chooses: of each run the best, whichever offset suits its recording then."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from plantar.model_selection.grid import Fits, fit_pieces
+
+RUNS, CANDIDATES, STATES, ROWS = 4, 8, 3, 40
+VALUES = np.array([1.0, -2.0])
+
+
+def problem(better: np.ndarray, shift: float) -> np.ndarray:
+    """Rows (runs, candidates, states, rows, 4) of two columns, 1 and the response: in the `better` state (runs,)
+    it follows the columns closely, in the others it does not; each state has another constant, `shift` apart."""
+    random = np.random.default_rng(0)
+    rows = random.normal(size=(RUNS, CANDIDATES, STATES, ROWS, 4))
+    noise = np.where(np.arange(STATES) == better[:, None], 0.05, 0.6)[:, None, :, None]
+    constants = shift * (np.arange(STATES) - 1)[:, None]
+    rows[..., 3] = rows[..., :2] @ VALUES + noise * rows[..., 3] + constants + 5.0
+    rows[..., 2] = 1.0
+    return rows
+
+
+def fitted(rows: np.ndarray, data_set: np.ndarray) -> Fits:
+    grams = np.einsum("rgcni,rgcnj->rgcij", rows, rows)
+    pieces: Any = SimpleNamespace(grams=grams, data_set=data_set, run=np.arange(RUNS))
+    return fit_pieces(pieces, np.ones(RUNS, dtype=bool))
+
+
+@pytest.mark.parametrize("better", [[0, 2, 1, 0], [2, 2, 2, 2]])
+def test_a_run_alone_takes_the_state_that_fits_whatever_its_constant_is(better: list[int]) -> None:
+    """Its recording's offset follows; the state from which the search begins has no say."""
+    found = fitted(problem(np.array(better), 3.0), np.arange(RUNS))
+    assert np.array_equal(found.initial_states, np.tile(np.array(better)[:, None], CANDIDATES))
+    assert found.offsets == pytest.approx(
+        np.tile(5.0 + 3.0 * (np.array(better) - 1), (CANDIDATES, 1)), abs=0.05
+    )
+
+
+def test_runs_of_one_recording_share_its_offset() -> None:
+    """Where the better fits of both runs would need offsets that are far apart, one has to give way."""
+    better = np.array([0, 2, 1, 1])
+    found = fitted(problem(better, 3.0), np.array([0, 0, 1, 1]))
+    first, second = found.initial_states[0], found.initial_states[1]
+    assert (first == second).all()
+    assert (found.initial_states[2:] == 1).all()
+
+
+def test_values_offsets_and_squares_are_those_of_the_chosen_rows() -> None:
+    rows, data_set = problem(np.array([1, 1, 0, 0]), 0.0), np.array([0, 0, 1, 1])
+    found = fitted(rows, data_set)
+    for candidate in range(CANDIDATES):
+        chosen = np.vstack(
+            [rows[run, candidate, found.initial_states[run, candidate]] for run in range(RUNS)]
+        )
+        offsets = np.repeat(np.eye(2)[data_set], ROWS, axis=0)
+        design = np.hstack([chosen[:, :2], offsets])
+        solution = np.linalg.lstsq(design, chosen[:, 3], rcond=None)[0]
+        left = float(np.sum((chosen[:, 3] - design @ solution) ** 2))
+        told = [*found.values[candidate], *found.offsets[candidate], found.squares[candidate]]
+        assert told == pytest.approx([*solution, left], rel=1e-5)
