@@ -239,16 +239,19 @@ def _fits(
     timed = not ready.sensor_delay.doubtful
     steps = any(recording.stances[foot] is not None for recording in ready.fitted)
     asked: dict[Axis, PlaceSpread] = dict.fromkeys(ROTATIONAL_AXES, place)
-
-    def fitted(axis: Axis, own: PlaceSpread) -> tuple[AxisFit | None, dict[Axis, str]]:
-        fit, why = None, dict[Axis, str]()
-        with gives_up(axis, why):
-            fit = fit_axis(ready.fitted, foot, axis, ready.settings, models.get(axis), own, timed)
-        return fit, why
-
     for _ in range(2):  # about the robot file's place, then about the height that the other axis shows
         left = {axis: own for axis, own in asked.items() if axis not in given_up}
-        for axis, (fit, why) in zip(left, over_cores(fitted, left, left.values()), strict=True):
+        fits = over_cores(
+            lambda axis, own: (
+                why := dict[Axis, str](),
+                gives_up(axis, why)(
+                    lambda: fit_axis(ready.fitted, foot, axis, ready.settings, models.get(axis), own, timed)
+                )(),
+            ),
+            left,
+            left.values(),
+        )
+        for axis, (why, fit) in zip(left, fits, strict=True):
             given_up |= why
             if fit is not None:
                 found[axis] = fit

@@ -217,6 +217,7 @@ def _recordings(
         if residual is not None:
             return moment_errors(robot, residual, has_steps(recording))
         flat = without_slip(robot, recording)
+        return_freed()  # of a long log, whose moments still take more
         return flat, heights_of(robot, flat) if recording.role == "fit" else None
 
     with over_logs([look.log for look in looks]) as each:
@@ -232,6 +233,7 @@ def _recordings(
         # What a log's moments tell takes as long as all else that is left of it: cores share it, also of a single log.
         balances = [(recordings[place], one) for place, own in enumerate(residuals) for one in own]
         works = [*balances, *((recording, None) for recording in recordings)]
+        return_freed()
         found = list(each(told, *zip(*works, strict=True)))
     moments = [one for one in found if isinstance(one, MomentErrors)]
     stood = [one for one in found if not isinstance(one, MomentErrors)]

@@ -8,11 +8,8 @@ from collections.abc import Callable
 from functools import cache
 
 LARGE = 2**26  # bytes of a log's numbers
-
-# Options of glibc's `mallopt`, and what each is set to (mallopt(3)).
-TRIM_THRESHOLD, MMAP_THRESHOLD, ARENA_MAX = -1, -3, -8
-KEPT = 2**30  # bytes that may lie free at the end of the heap
-LARGEST_OF_HEAP = 2**25  # bytes of a block that still comes from it: the most that glibc takes
+KEPT = 2**30  # bytes that may lie free before they are handed back
+LARGEST_OF_HEAP = 2**25  # bytes of a block that may come of those: the most that glibc takes
 
 
 def keep_freed() -> None:
@@ -21,8 +18,8 @@ def keep_freed() -> None:
     By itself glibc returns large blocks at once, and the system then clears every page anew: with logs of minutes that
     is a fifth of all time. For commands, whose process is their own; a library leaves its caller's memory alone.
     """
-    options = {ARENA_MAX: 1, MMAP_THRESHOLD: LARGEST_OF_HEAP, TRIM_THRESHOLD: KEPT}
-    for option, value in options.items():
+    arenas, largest, kept = -8, -3, -1  # as mallopt(3) numbers them
+    for option, value in ((arenas, 1), (largest, LARGEST_OF_HEAP), (kept, KEPT)):
         _own("mallopt")(option, value)
 
 

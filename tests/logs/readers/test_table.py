@@ -73,6 +73,25 @@ def test_csv_gzip_and_parquet_read_alike(tmp_path: Path) -> None:
             np.testing.assert_array_equal(log.columns[name], values, err_msg=f"{path.name} {name}")
 
 
+def test_parquet_is_read_a_column_for_each_core_at_a_time(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """All columns at once would take as much memory as their numbers, and one leaves cores idle."""
+    table, asked = pa.table({"time": [0.0, 0.1], **{f"joint.{x}.position": [1.0, 2.0] for x in "abcd"}}), []
+    pa_parquet.write_table(table, tmp_path / "log.parquet")
+    batches = pa_parquet.ParquetFile.iter_batches
+
+    def iter_batches(file: pa_parquet.ParquetFile, size: int, columns: list[str]) -> object:
+        asked.append(len(columns))
+        return batches(file, size, columns=columns)
+
+    monkeypatch.setattr(pa, "cpu_count", lambda: 3)
+    monkeypatch.setattr(pa_parquet.ParquetFile, "iter_batches", iter_batches)
+    log = open_log(tmp_path / "log.parquet")
+    assert asked == [3, 2]
+    assert all(values.tolist() == [1.0, 2.0] for values in log.columns.values())
+
+
 def test_columns_may_stand_in_any_order_and_have_windows_ends(tmp_path: Path) -> None:
     text = "joint.a.position,time\r\n1,0\r\n2,0.5\r\n3,1\r\n"
     log = open_log(write(tmp_path, text))
