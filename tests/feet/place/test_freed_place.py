@@ -58,7 +58,7 @@ def test_the_file_is_as_far_from_the_fit_as_the_fit_moved(robot: RobotModel) -> 
 
 
 def test_a_place_that_is_wrong_does_not_blur_what_recordings_differ_by(robot: RobotModel) -> None:
-    """Of two recordings the second is 4 % stiffer; the fit has the force sensor turned and the bush higher than both are."""
+    """Of two recordings the second is 4 % stiffer; the fit has the sensor turned and the bush too high."""
     logs = []
     for seed, own in enumerate((0.0, 0.04), 3):
         truth = {key: replace(law, stiffness=(1 + own) * law.stiffness) for key, law in TRUTH.items()}
