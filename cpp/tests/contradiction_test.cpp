@@ -40,7 +40,7 @@ void a_fault_is_told_and_soon_over() {
     const Told told = with_gain(gain);
     check::that(!told.before, "nothing is told of sensors that agree");
     check::that(told.during > 0.8, "a gyroscope that turns otherwise");
-    check::that(told.after < 1.0, "itself again within a second");
+    check::that(told.after < 0.85, "itself again within a second");
   }
 }
 

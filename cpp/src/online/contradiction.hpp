@@ -14,6 +14,7 @@ namespace plantar {
 constexpr double TURN_BAND = 1.5;      // Hz: of the turns that are compared; an attitude's noise is smaller there
 constexpr double TURN_TIME = 0.5;      // s over which they are compared
 constexpr double TURN_SHARE = 0.3;     // of that time, in which they differ: between two swings neither turns
+constexpr double MOST_SHARE = 0.7;     // that is remembered: a fault of minutes is over as soon as one of a second
 constexpr double LEAST_TURN = 0.005;   // rad/s: less spoils no damping
 constexpr double TURN_NOISE = 4.0;     // deviations of what the attitude's noise makes of it
 constexpr double TURNS_DIFFER = 0.5;   // of the larger of both: no gain and no filter makes that
@@ -71,7 +72,7 @@ class TurnWatch {
     const double noise = TURN_NOISE * TURN_NOISE * edge * edge * variance;
     const double turns = TURNS_DIFFER * TURNS_DIFFER * std::max(attitude, gyroscope);
     const double likely = std::max({LEAST_TURN * LEAST_TURN, noise, turns});
-    share_ += one_pole(dt, TURN_TIME) * ((between > likely) - share_);
+    share_ = std::min(share_ + one_pole(dt, TURN_TIME) * ((between > likely) - share_), MOST_SHARE);
     return share_ > TURN_SHARE || between > TURNS_SURE * TURNS_SURE * std::max(likely, LEAST_SURE * LEAST_SURE);
   }
 
