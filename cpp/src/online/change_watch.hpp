@@ -9,7 +9,8 @@
 // A torque that comes late is no other stiffness: each probe lets it be later than was told, by what it changes in that
 // time. Other ground may have another damping, too; that alone explains no delay, since a late torque lacks part of the
 // damper's as well. Nor is it other ground where no line through deflection and rate explains a torque, or where one
-// pulls the other way: no ground does that, a sensor does. There no delay is looked for: it would excuse too much.
+// pulls the other way: no ground does that, a sensor does. There no delay is looked for: it would excuse too much. Nor
+// is one believed that makes other ground of what in time is none: what speaks for a change must do so both ways.
 #pragma once
 
 #include <algorithm>
@@ -72,16 +73,20 @@ class ChangeWatch {
                (plain.own < SHOWS && plain.away + SURELY * plain.own < -1.0);
     wary_ = doubted_ || (wary_ && plain.own > SHOWS);
     if (doubted_) return Verdict::impossible;
-    const double away = other.away, own = other.own;
-    if (own > SHOWS) return Verdict::usual;
+    if (std::max(plain.own, other.own) > SHOWS) return Verdict::usual;
     const double known = deviation / stiffness;
-    const double variance = scatter_ + own * own + known * known;
     const auto evidence = [&](double change) {
-      return std::clamp(change * (away - 0.5 * change) / variance, -MOST_OF_ONE, MOST_OF_ONE);
+      double least = MOST_OF_ONE;
+      for (const Finding& one : {plain, other}) {
+        const double variance = scatter_ + one.own * one.own + known * known;
+        least = std::min(least, change * (one.away - 0.5 * change) / variance);
+      }
+      return std::max(least, -MOST_OF_ONE);
     };
     softer_ = std::max(0.0, softer_ + evidence(-CHANGE));
     stiffer_ = std::max(0.0, stiffer_ + evidence(CHANGE));
-    const double beyond = std::clamp(away * away - own * own, 0.0, ODD * (scatter_ + own * own));
+    const double square = plain.away * plain.away, own = plain.own * plain.own;
+    const double beyond = std::clamp(square - own, 0.0, ODD * (scatter_ + own));
     suspected_ += beyond, ++probes_;
     for (; calm() && probes_ > 0; --probes_) {
       const double mean = suspected_ / probes_;
