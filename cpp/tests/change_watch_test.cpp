@@ -79,6 +79,7 @@ void a_late_torque_is_no_other_ground() {
   check::that(change_told(0.0, 0.5, 0.5), "half the bush");
   check::that(change_told(0.0, 2.0, 1.0) && change_told(0.0, 0.5, 1.0), "another spring alone");
   check::that(change_told(0.03, 0.5, 0.5), "half the bush, and late");
+  check::that(!change_told(0.03, 0.7, 0.7), "softer ground by a delay only");
 }
 
 void no_ground_pulls_the_other_way() {

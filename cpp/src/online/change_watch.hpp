@@ -9,7 +9,8 @@
 // A torque that comes late is no other stiffness: each probe lets it be later than was told, by what it changes in that
 // time. Other ground may have another damping, too; that alone explains no delay, since a late torque lacks part of the
 // damper's as well. Nor is it other ground where no line through deflection and rate explains a torque, or where one
-// pulls the other way: no ground does that, a sensor does.
+// pulls the other way: no ground does that, a sensor does. There no delay is looked for: it would excuse too much. Nor
+// is one believed that makes other ground of what in time is none: what speaks for a change must do so both ways.
 #pragma once
 
 #include <algorithm>
@@ -44,8 +45,8 @@ class ChangeWatch {
   // A row: what the filter has made of a constant, the deflection's rate, what a torque lacks for each second that it
   // is late, the deflection, what an element's torque may be off by, and what the model leaves of the torque.
   void add(double one, double rate, double late, double deflection, double unknown, double left, double dt) noexcept {
-    double row[PROBED + 1] = {one, rate, late, deflection, unknown, left};
-    probe_.add(row);
+    double plain[] = {one, rate, deflection, unknown, left}, delayed[] = {late, one, rate, deflection, unknown, left};
+    in_time_.add(plain), delayed_.add(delayed);
     ++rows_, time_ += dt;
   }
   void forget() noexcept { drop(), softer_ = stiffer_ = suspected_ = 0.0, probes_ = 0; }
@@ -58,32 +59,34 @@ class ChangeWatch {
   // Whether the last probe was none that any ground makes.
   bool doubted() const noexcept { return doubted_; }
   void believe() noexcept { doubted_ = false; }
-  void drop() noexcept { probe_ = {}, rows_ = 0, time_ = 0.0; }
+  void drop() noexcept { in_time_ = {}, delayed_ = {}, rows_ = 0, time_ = 0.0; }
 
   // Ends a probe: has the stiffness changed from what was learnt, with its deviation? noise: of a row [N·m].
   Verdict judge(double stiffness, double deviation, double noise) noexcept {
-    double damped[PROBED + 1] = {0.0, stiffness > 0.0 ? noise / (OTHER_DAMPING * stiffness) : 0.0};
-    double late[PROBED + 1] = {0.0, 0.0, noise / UNTOLD_DELAY};
-    probe_.add(damped, 1), probe_.add(late, 2);
-    const double shown = probe_.r[3][3];
-    const bool enough = rows_ >= PROBE_ROWS && shown > 0.0 && stiffness > 0.0;
-    const double away = enough ? probe_.r[3][PROBED] / shown / stiffness : 0.0;
-    const double left = enough ? probe_.r[PROBED][PROBED] * std::sqrt(ROWS_ALIKE / rows_) : 0.0;
-    const double own = enough ? std::hypot(std::max(noise, left), probe_.r[3][4]) / shown / stiffness : 1.0;
+    const double damped = stiffness > 0.0 ? noise / (OTHER_DAMPING * stiffness) : 0.0;
+    double line[] = {0.0, damped, 0.0, 0.0, 0.0}, its[] = {0.0, 0.0, damped, 0.0, 0.0, 0.0};
+    double late[] = {noise / UNTOLD_DELAY, 0.0, 0.0, 0.0, 0.0, 0.0};
+    in_time_.add(line), delayed_.add(its), delayed_.add(late);
+    const Finding plain = found(in_time_, stiffness, noise), other = found(delayed_, stiffness, noise);
     drop();
-    const bool explained = left <= std::max(UNEXPLAINED * noise, SHOWS * shown * stiffness);
-    doubted_ = !explained || (own < SHOWS && away + SURELY * own < -1.0);
-    wary_ = doubted_ || (wary_ && own > SHOWS);
+    doubted_ = plain.left > std::max(UNEXPLAINED * noise, SHOWS * plain.shown) ||
+               (plain.own < SHOWS && plain.away + SURELY * plain.own < -1.0);
+    wary_ = doubted_ || (wary_ && plain.own > SHOWS);
     if (doubted_) return Verdict::impossible;
-    if (own > SHOWS) return Verdict::usual;
+    if (std::max(plain.own, other.own) > SHOWS) return Verdict::usual;
     const double known = deviation / stiffness;
-    const double variance = scatter_ + own * own + known * known;
     const auto evidence = [&](double change) {
-      return std::clamp(change * (away - 0.5 * change) / variance, -MOST_OF_ONE, MOST_OF_ONE);
+      double least = MOST_OF_ONE;
+      for (const Finding& one : {plain, other}) {
+        const double variance = scatter_ + one.own * one.own + known * known;
+        least = std::min(least, change * (one.away - 0.5 * change) / variance);
+      }
+      return std::max(least, -MOST_OF_ONE);
     };
     softer_ = std::max(0.0, softer_ + evidence(-CHANGE));
     stiffer_ = std::max(0.0, stiffer_ + evidence(CHANGE));
-    const double beyond = std::clamp(away * away - own * own, 0.0, ODD * (scatter_ + own * own));
+    const double square = plain.away * plain.away, own = plain.own * plain.own;
+    const double beyond = std::clamp(square - own, 0.0, ODD * (scatter_ + own));
     suspected_ += beyond, ++probes_;
     for (; calm() && probes_ > 0; --probes_) {
       const double mean = suspected_ / probes_;
@@ -93,9 +96,24 @@ class ChangeWatch {
   }
 
  private:
-  static constexpr int PROBED = 5;  // unknowns of a probe
+  // What one probe says: how far the stiffness is from what was learnt, and its deviation, both as shares of it; what
+  // is left of a row, and the torque that the deflection makes as nothing else does [N·m].
+  struct Finding {
+    double away = 0.0, own = 1.0, left = 0.0, shown = 0.0;
+  };
 
-  RootTriangle<PROBED> probe_;
+  // The last two of N unknowns are the deflection and an element's torque.
+  template <int N>
+  Finding found(const RootTriangle<N>& probe, double stiffness, double noise) const noexcept {
+    const auto& deflection = probe.r[N - 2];
+    const double shown = deflection[N - 2] * stiffness;
+    if (rows_ < PROBE_ROWS || !(shown > 0.0)) return {};
+    const double left = probe.r[N][N] * std::sqrt(ROWS_ALIKE / rows_);
+    return {deflection[N] / shown, std::hypot(std::max(noise, left), deflection[N - 1]) / shown, left, shown};
+  }
+
+  RootTriangle<4> in_time_;  // as if torques came when it was told
+  RootTriangle<5> delayed_;  // or later
   bool doubted_ = false, wary_ = false;
   int rows_ = 0, probes_ = 0;  // since nothing was suspected
   double suspected_ = 0.0;     // sum of what these were off beyond their noise

@@ -14,11 +14,13 @@ namespace plantar {
 constexpr double TURN_BAND = 1.5;      // Hz: of the turns that are compared; an attitude's noise is smaller there
 constexpr double TURN_TIME = 0.5;      // s over which they are compared
 constexpr double TURN_SHARE = 0.3;     // of that time, in which they differ: between two swings neither turns
+constexpr double MOST_SHARE = 0.7;     // that is remembered: a fault of minutes is over as soon as one of a second
 constexpr double LEAST_TURN = 0.005;   // rad/s: less spoils no damping
 constexpr double TURN_NOISE = 4.0;     // deviations of what the attitude's noise makes of it
 constexpr double TURNS_DIFFER = 0.5;   // of the larger of both: no gain and no filter makes that
 constexpr double TURNS_SURE = 1.8;     // times that, at once: 0.9 of the larger of both
 constexpr double LEAST_SURE = 0.03;    // rad/s
+constexpr double FASTEST_TURN = 1.5;   // rad/s: no chest over standing feet turns faster; larger readings echo no longer
 constexpr double ZERO_TIME = 20.0;     // s in which a gyroscope's zero is learnt, and a usual load
 constexpr double ZERO_NEWS = 0.02;     // rad/s: the most that one reading says of it
 constexpr double LOAD_TIME = 0.4;      // s over which the feet's load is compared: a step's accelerations cancel
@@ -59,8 +61,9 @@ class TurnWatch {
     const double learnt = std::max(one_pole(dt, ZERO_TIME), dt / age_);
     double attitude = 0.0, gyroscope = 0.0, between = 0.0;  // squares
     for (int i = 0; i < 3; ++i) {
-      filtered_[0][i] += pass * ((up[i] - before[i]) / dt - filtered_[0][i]);
-      filtered_[1][i] += pass * (by_rate[i] - filtered_[1][i]);
+      const double told[2] = {(up[i] - before[i]) / dt, by_rate[i]};
+      for (int a = 0; a < 2; ++a)
+        filtered_[a][i] += pass * (std::clamp(told[a], -FASTEST_TURN, FASTEST_TURN) - filtered_[a][i]);
       const double differs = filtered_[0][i] - filtered_[1][i] - zero_[i];
       zero_[i] += learnt * std::clamp(differs, -ZERO_NEWS, ZERO_NEWS);
       attitude += filtered_[0][i] * filtered_[0][i], gyroscope += filtered_[1][i] * filtered_[1][i];
@@ -69,7 +72,7 @@ class TurnWatch {
     const double noise = TURN_NOISE * TURN_NOISE * edge * edge * variance;
     const double turns = TURNS_DIFFER * TURNS_DIFFER * std::max(attitude, gyroscope);
     const double likely = std::max({LEAST_TURN * LEAST_TURN, noise, turns});
-    share_ += one_pole(dt, TURN_TIME) * ((between > likely) - share_);
+    share_ = std::min(share_ + one_pole(dt, TURN_TIME) * ((between > likely) - share_), MOST_SHARE);
     return share_ > TURN_SHARE || between > TURNS_SURE * TURNS_SURE * std::max(likely, LEAST_SURE * LEAST_SURE);
   }
 
