@@ -96,6 +96,11 @@ DATA_FAULTS = (
         ("feet/test_memory_of_others.py",),
     ),
     Mutant(
+        "feet/fit/worth.py", "an unsure cube keeps its model",
+        "all(low < 0 < high for low, high in ends)", "all(low < -1e9 for low, high in ends)",
+        ("feet/fit/test_worth.py",),
+    ),
+    Mutant(
         "feet/fit/worth.py", "a sure spring stands in for an unsure model",
         "bool(far and not low", "bool(False and not low",
         ("feet/fit/test_worth.py",),
