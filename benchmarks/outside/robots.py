@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
+import zlib
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -52,12 +53,12 @@ def real_robot(name: str, folder: Path) -> RobotModel:
 
 
 def rubber_of(robot: RobotModel, seed: int, sliding: bool) -> dict[str, Rubber]:
-    return draw_rubber(robot, np.random.default_rng([seed, 1]), sliding)
+    return draw_rubber(robot, np.random.default_rng([seed, zlib.crc32(robot.name.encode()), 1]), sliding)
 
 
 def write_told(robot: RobotModel, spread: Spread, seed: int, folder: Path) -> Path:
     """The robot file and URDF that are told of a robot, in `folder`."""
-    random = np.random.default_rng([seed, 2])
+    random = np.random.default_rng([seed, zlib.crc32(robot.name.encode()), 2])
     urdf = folder / f"{robot.name}.urdf"
     urdf.write_text(_wrong_urdf(robot.urdf, spread, random))
     assert robot.imu is not None

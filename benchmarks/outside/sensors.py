@@ -62,7 +62,7 @@ class Drawn:
 
 def draw_sensors(robot: RobotModel, lab: Lab, seed: int, rate: float | None = None) -> Drawn:
     """The errors that stay the same in all logs of a robot."""
-    random = np.random.default_rng([seed, 3])
+    random = np.random.default_rng([seed, zlib.crc32(robot.name.encode()), 3])
     common, imu = random.uniform(*lab.wrench_delay), random.uniform(*lab.imu_delay)
     matrices, transport = {}, {}
     for name in robot.feet:
@@ -90,7 +90,7 @@ def record(
 ) -> dict[str, Array]:
     """The log's columns, `time` first."""
     assert robot.imu is not None
-    random = np.random.default_rng([seed, zlib.crc32(name.encode())])
+    random = np.random.default_rng([seed, zlib.crc32(robot.name.encode()), zlib.crc32(name.encode())])
     time = np.arange(0.05, motion.time[-1], 1 / drawn.rate)
     noise = random.standard_normal
     joints = _late(motion, motion.joints, 0.0, time) + drawn.zeros

@@ -96,6 +96,10 @@ DATA_FAULTS = (
         ("feet/test_memory_of_others.py",),
     ),
     Mutant(
+        "feet/fit/worth.py", "an unsure cube keeps its model", "len(alone) == len(fit.names)", "len(alone) > 0",
+        ("feet/fit/test_worth.py",),
+    ),
+    Mutant(
         "feet/fit/worth.py", "a sure spring stands in for an unsure model",
         "bool(far and not low", "bool(False and not low",
         ("feet/fit/test_worth.py",),

@@ -136,10 +136,10 @@ def without_needless(fitted: FittedFoot, between: Apart) -> FittedFoot:
             continue
         with gives_up(axis, fitted.given_up):
             unsure = _with_causes(fit, fitted, between)
-            if fit.model.elaborates is not None and tells_no_more(unsure):
+            if fit.model.elaborates is not None:
                 simpler = MODELS[fit.model.elaborates]
                 plain = fit_axis(recordings, fit.foot, axis, ready.settings, simpler, fitted.place)
-                if plain is not None:
+                if plain is not None and tells_no_more(unsure, plain):
                     fit = fits[axis] = in_place_of(fit, plain)
                     unsure = _with_causes(fit, fitted, between)
             spring = fit_axis(recordings, fit.foot, axis, ready.settings, KelvinVoigt(), fitted.place)

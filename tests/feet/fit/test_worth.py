@@ -79,15 +79,26 @@ def test_a_memory_that_changes_the_numbers_stays_and_one_that_hardly_does_goes(r
 
 
 @pytest.mark.parametrize(
-    ("hardening", "more"), [(0.0, False), (-1900.0, False), (2100.0, True), (-2100.0, True)]
+    ("hardening", "slip_torque", "more"),
+    [
+        (0.0, 3.0, False),
+        (-1900.0, 3.0, False),
+        (2100.0, 3.0, True),
+        (-2100.0, 3.0, True),
+        (0.0, 4.9, False),
+        (0.0, 5.1, True),
+    ],
 )
-def test_a_term_that_is_not_told_from_zero_tells_no_more(hardening: float, more: bool) -> None:
+def test_a_term_that_is_not_told_from_zero_and_moves_no_number_tells_no_more(
+    hardening: float, slip_torque: float, more: bool
+) -> None:
     both = replace(
-        rich(400.0, 20.0), model=HardeningElastoplastic(), values=np.array([400.0, 20.0, 3.0, hardening]),
+        rich(400.0, 20.0), model=HardeningElastoplastic(),
+        values=np.array([400.0, 20.0, slip_torque, hardening]),
         covariance=np.diag([4.0, 1.0, 1.0, 1e6, 1e-6]), freedom=np.full(5, 1e6),
     )  # fmt: skip
-    assert tells_no_more(both) != more
-    assert not tells_no_more(rich(400.0, 20.0))  # elaborates nothing
+    assert tells_no_more(both, rich(400.0, 20.0)) != more
+    assert not tells_no_more(rich(400.0, 20.0), rich(400.0, 20.0))  # adds nothing
 
 
 def test_rubber_that_slips_is_not_called_a_spring_because_a_cube_beside_it_is_unsure(

@@ -13,7 +13,7 @@ import numpy as np
 
 from plantar.estimation import interval95
 from plantar.feet.regression.axis import AxisFit
-from plantar.models import MODELS, KelvinVoigt
+from plantar.models import KelvinVoigt
 
 FAR: Final = 0.15  # of the stiffness: with an interval as wide to either side a number is no longer usable
 
@@ -30,21 +30,21 @@ def hardly_matters(fit: AxisFit, spring: AxisFit) -> bool:
     return all(low < alone < high for (low, high), alone in zip(ends, spring.numbers, strict=True))
 
 
-def tells_no_more(fit: AxisFit) -> bool:
-    """Whether a model adds terms to the one that it elaborates, none of which is told from zero.
+def tells_no_more(fit: AxisFit, simpler: AxisFit) -> bool:
+    """Whether what a model adds to a `simpler` one is not told from zero, nor moves a number of it.
 
-    Beside noise alone they may well be; a bush that sits a little elsewhere makes the same torque.
+    Beside noise alone it may well be told; a bush that sits a little elsewhere makes the same torque.
 
     fit: with the deviations of all that is unsure about robot and sensors.
     """
-    if fit.model.elaborates is None:
+    alone = dict(zip(simpler.names, simpler.numbers, strict=True))
+    if len(alone) == len(fit.names):  # another shape, no term
         return False
-    added = range(len(MODELS[fit.model.elaborates].terms), len(fit.model.terms))
-    ends = [
-        interval95(float(fit.numbers[place]), float(fit.std[place]), float(fit.freedom[place]))
-        for place in added
-    ]
-    return bool(ends) and all(low < 0 < high for low, high in ends)
+    for name, value, std, freedom in zip(fit.names, fit.numbers, fit.std, fit.freedom, strict=True):
+        low, high = interval95(float(value), float(std), float(freedom))
+        if not low < alone.get(name, 0.0) < high:
+            return False
+    return True
 
 
 def too_sure(fit: AxisFit, spring: AxisFit) -> bool:
