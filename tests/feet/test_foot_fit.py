@@ -132,6 +132,9 @@ def test_the_height_that_one_axis_shows_far_off_is_expected_of_the_other(
         asked.append((axis, place.height))
         return SimpleNamespace(moment_arms=(0.0, 0.03 if axis == "pitch" else 0.0))
 
+    monkeypatch.setattr(
+        cores, "usable_cores", lambda: 1
+    )  # else what is asked is asked in a copy of the process
     monkeypatch.setattr(foot_fit, "fit_axis", fitted)
     recording = SimpleNamespace(stances={"left": object() if steps else None})
     ready: Any = SimpleNamespace(
