@@ -116,7 +116,7 @@ def between_all(feet: Sequence[FittedFoot]) -> Apart:
     for one in feet:
         for axis, fit in one.fits.items():
             with gives_up(axis, one.given_up):
-                own = axis_differences(fit, one.thin.fitted, one.ready.settings.offset == "shared", one.place)
+                own = axis_differences(fit, one.thin.fitted, one.ready.settings.offset == "shared")
                 told += [] if own is None else [own]
     prior = max(one.ready.robot.uncertainty.between_recordings for one in feet)
     apart = recordings_apart(told, prior)

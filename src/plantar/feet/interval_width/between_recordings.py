@@ -13,8 +13,6 @@ from plantar.estimation.least_squares import values_without_each
 from plantar.estimation.random_effects import Differences, share_between
 from plantar.estimation.stance_least_squares import FEWEST_RECORDINGS, jackknife
 from plantar.feet.interval_width.systematic import Cause
-from plantar.feet.place.freed_place import FreedPlace
-from plantar.feet.place.spread import PlaceSpread
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.regression_data import beside, tangent_blocks
@@ -71,21 +69,15 @@ def apart_notes(apart: Apart) -> list[Note]:
     return [Note("between_recordings", "info", text)]
 
 
-def axis_differences(
-    fit: AxisFit, recordings: Sequence[Recording], shared: bool, place: PlaceSpread | None = None
-) -> AxisDifferences | None:
+def axis_differences(fit: AxisFit, recordings: Sequence[Recording], shared: bool) -> AxisDifferences | None:
     """Shares by which spring and damper of each recording are beside the first one's: what all share is K's own.
 
     Of many those are compared that tell the stiffness, of few all are; None where there is nothing to compare.
-    `place`: what the robot file's place of a standing foot's bush may be off by, beside which they are compared.
     """
     blocks = tangent_blocks(recordings, fit, drift=not shared)
     if not _comparable(blocks, shared):
         return None
-    freed = None
-    if place is not None and blocks[0].stances is None:
-        freed = FreedPlace.of(fit, recordings, blocks, place)
-    return differences_of(fit, blocks, effects_of(fit, blocks, influences_of(blocks)), freed)
+    return differences_of(fit, blocks, effects_of(fit, blocks, influences_of(blocks)))
 
 
 def between_recordings(fit: AxisFit, blocks: Sequence[Block], every: Apart, shared: bool) -> list[Cause]:
@@ -127,9 +119,7 @@ def _comparable(blocks: Sequence[Block], shared: bool) -> bool:
     return not shared and len(blocks) > 1 and not many
 
 
-def differences_of(
-    fit: AxisFit, blocks: Sequence[Block], effects: Array, place: FreedPlace | None = None
-) -> AxisDifferences | None:
+def differences_of(fit: AxisFit, blocks: Sequence[Block], effects: Array) -> AxisDifferences | None:
     """Those of the recordings whose `effects` make more than the share TELLS of K; None where it is but one.
 
     Of few all are compared, however little they tell: nothing else says how far the one that tells most is off.
@@ -140,12 +130,9 @@ def differences_of(
         return None
     torques, others = _torques(fit, blocks), [place for place in range(len(blocks)) if place != tell[0]]
     columns = [np.column_stack(each) for each in zip(*(_alone(torques, own) for own in others), strict=True)]
-    if place is not None:
-        columns = [np.hstack(both) for both in zip(columns, place.torques, strict=True)]
     found = fit_blocks([beside(block, own) for block, own in zip(blocks, columns, strict=True)])
-    values, covariance = (found.values, found.covariance) if place is None else place.drawn(found)
     ends = blocks[0].regressor.shape[1] + np.array([others.index(place) for place in tell[1:]])
-    differences = Differences(values[ends], covariance[np.ix_(ends, ends)])
+    differences = Differences(found.values[ends], found.covariance[np.ix_(ends, ends)])
     usual = float(fit_blocks(blocks).std[0]) / max(abs(float(fit.values[0])), 1e-300)
     return AxisDifferences(differences, usual, frozenset(blocks[place].label for place in tell))
 
