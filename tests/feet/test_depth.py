@@ -16,7 +16,8 @@ from biped import record, sway
 from biped_robot import make_robot
 from feet_trials import PUNCTUAL, noisy
 from plantar import cores
-from plantar.feet.foot_fit import assess_foot, between_all, fit_foot, without_needless
+from plantar.feet.foot_assessment import assess_foot
+from plantar.feet.foot_fit import between_all, fit_foot, without_needless
 from plantar.feet.identify import identify_feet
 from plantar.feet.prepare_log import checked
 from plantar.feet.settings import FeetSettings

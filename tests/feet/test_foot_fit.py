@@ -17,7 +17,7 @@ from plantar import cores
 from plantar.errors import DataError
 from plantar.estimation.random_effects import Differences
 from plantar.estimation.residual_covariance import relative_std_percent
-from plantar.feet import foot_fit
+from plantar.feet import foot_assessment, foot_fit
 from plantar.feet.assess.left_out import ON_AN_EDGE
 from plantar.feet.foot_fit import FittedFoot, between_all
 from plantar.feet.identify import fit_prepared
@@ -61,13 +61,15 @@ def test_an_unexpected_error_gives_up_its_axis_alone(
     robot: RobotModel, ready: PreparedLogs, whole: FeetResult, monkeypatch: pytest.MonkeyPatch, step: str
 ) -> None:
     fault = np.linalg.LinAlgError("Eigenvalues did\nnot converge")
-    monkeypatch.setattr(foot_fit, step, breaking(getattr(foot_fit, step), fault))
+    for place in (foot_fit, foot_assessment):
+        if hasattr(place, step):
+            monkeypatch.setattr(place, step, breaking(getattr(place, step), fault))
     found = fit_prepared(robot, ready)
     lost = [row for row in found.parameters if (row.foot, row.axis) == BROKEN]
     assert {row.name for row in lost} == {"stiffness", "damping"}
     assert {(row.verdict, row.value) for row in lost} == {("unidentifiable", None)}
     assert re.fullmatch(
-        r"an error inside plantar, please report: LinAlgError in feet/foot_fit.py, line \d+: "
+        r"an error inside plantar, please report: LinAlgError in feet/foot_(fit|assessment).py, line \d+: "
         "Eigenvalues did not converge",
         lost[0].reason,
     )
@@ -82,7 +84,7 @@ def test_an_unexpected_error_gives_up_its_axis_alone(
 def test_what_is_no_fault_of_plantar_is_raised_on(
     robot: RobotModel, ready: PreparedLogs, monkeypatch: pytest.MonkeyPatch, error: Exception
 ) -> None:
-    monkeypatch.setattr(foot_fit, "score_axis", breaking(foot_fit.score_axis, error))
+    monkeypatch.setattr(foot_assessment, "score_axis", breaking(foot_assessment.score_axis, error))
     with pytest.raises(type(error)):
         fit_prepared(robot, ready)
 
@@ -158,8 +160,10 @@ def test_an_edge_that_takes_most_of_a_foot_comes_first_of_what_to_mend(
     monkeypatch.setattr(
         cores, "usable_cores", lambda: 1
     )  # what is asked in a copy of the process is not seen
-    monkeypatch.setattr(foot_fit, "mend_first", mended)
-    monkeypatch.setattr(foot_fit, "mostly_on_an_edge", lambda foot, *_: [edge] if foot == "left" else [])
+    monkeypatch.setattr(foot_assessment, "mend_first", mended)
+    monkeypatch.setattr(
+        foot_assessment, "mostly_on_an_edge", lambda foot, *_: [edge] if foot == "left" else []
+    )
     found = fit_prepared(robot, ready)
     first = {(foot, axis): codes[:1] == [ON_AN_EDGE] for foot, axis, codes in asked}
     assert first == {(foot, axis): foot == "left" for foot in FEET for axis in ("pitch", "roll")}

@@ -54,8 +54,8 @@ DATA_FAULTS = (
         ("feet/test_steps.py",),
     ),
     Mutant(
-        "feet/foot_fit.py", "a scaled attitude takes nothing away", "in (*OF_MOMENTS, ATTITUDE_SCALE)", "in OF_MOMENTS",
-        ("sensors/test_attitude_scale.py",),
+        "feet/foot_assessment.py", "a scaled attitude takes nothing away",
+        "in (*OF_MOMENTS, ATTITUDE_SCALE)", "in OF_MOMENTS", ("sensors/test_attitude_scale.py",),
     ),
     Mutant(
         "feet/assess/zero_jumps.py", "a sole that tips keeps its zero",

@@ -61,7 +61,7 @@ DRAWN_BY_LOT = (
         ("logs/test_motion_log.py",),
     ),
     Mutant(
-        "feet/foot_fit.py",
+        "feet/foot_assessment.py",
         "an edge is nothing to mend first",
         "first = [*(note for note in found.notes if note.code == ON_AN_EDGE), *faults]",
         "first = faults",

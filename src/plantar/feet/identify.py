@@ -7,7 +7,8 @@ from dataclasses import replace
 
 from plantar.cores import blas_on_one_core, over_cores
 from plantar.errors import DataError
-from plantar.feet.foot_fit import FittedFoot, assess_foot, between_all, fit_foot, without_needless
+from plantar.feet.foot_assessment import assess_foot
+from plantar.feet.foot_fit import FittedFoot, between_all, fit_foot, without_needless
 from plantar.feet.imu_of_steps import is_worth, put_right, turn_shown
 from plantar.feet.memory_of_others import with_memory_of_others
 from plantar.feet.place.spread import PlaceSpread
