@@ -16,7 +16,7 @@ from outside.rubber import Rubber, draw_rubber
 from plantar.conventions import Array
 from plantar.robot.model import Foot, Placement, RobotModel
 
-NAMES = ("hrp2", "talos", "g1", "icub", "romeo", "alexander", "simple_humanoid")
+NAMES = ("hrp2", "talos", "g1", "icub", "romeo", "alexander")
 
 
 @dataclass(frozen=True)
