@@ -214,7 +214,9 @@ def test_what_is_begun_goes_on_beside_the_block(tmp_path: Path) -> None:
     """Neither waits for the other to end: each waits for what the other does in its middle."""
 
     def wait(path: Path) -> None:
+        end = time.monotonic() + 30
         while not path.exists():
+            assert time.monotonic() < end, path
             time.sleep(0.01)
 
     def work() -> int:
@@ -222,7 +224,7 @@ def test_what_is_begun_goes_on_beside_the_block(tmp_path: Path) -> None:
         wait(tmp_path / "block")
         return os.getpid()
 
-    with begun(work) as found:
+    with two_cores(), begun(work) as found:
         wait(tmp_path / "begun")
         (tmp_path / "block").touch()
         assert found() != HERE
@@ -232,9 +234,9 @@ def test_what_is_begun_fails_where_it_is_asked_for() -> None:
     def fail() -> int:
         raise ValueError("no number")
 
-    with begun(fail):
+    with two_cores(), begun(fail):
         pass
-    with begun(fail) as found, pytest.raises(ValueError, match="no number"):
+    with two_cores(), begun(fail) as found, pytest.raises(ValueError, match="no number"):
         found()
 
 
