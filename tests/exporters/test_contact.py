@@ -1,4 +1,4 @@
-"""Feet on points: what they turn with alone in MuJoCo, and in the file that a user gets.
+"""Feet on points in the file that a user gets.
 
 The pushes on the exported file know nothing of how the points were found: a load and a torque at the bush centre of the
 robot file, and the angle of the robot that stands on that foot.
@@ -18,111 +18,14 @@ from export_robots import CENTRE, TRUTH, bush_rotation, result, write_mjcf, writ
 from plantar.conventions import GRAVITY, Axis
 from plantar.errors import ExportError
 from plantar.exporters import export
-from plantar.exporters.bush import FootBush
-from plantar.exporters.contact.alone import INERTIA_TIME, Measured, contact_attributes, measured
-from plantar.exporters.contact.fit import LOADS, STEPS, fitted
-from plantar.exporters.contact.points import Point, Sides, points_for, sides_of
-from plantar.exporters.job import LEAST_LOAD as EDGES
+from plantar.exporters.contact.fit import STEPS
 from plantar.exporters.openhrp import read_customizer
-from plantar.exporters.spring import (
-    Slip,
-    Spring,
-)
+from plantar.exporters.spring import Slip
 
 SWAY = 3.0
 
 mujoco = pytest.importorskip("mujoco")
 ROTATIONS: tuple[Axis, ...] = ("pitch", "roll")
-FEET: dict[str, tuple[dict[Axis, tuple[float, float]], Sides, float, float]] = {
-    # K and C by axis, the sole, its depth below the bush, the robot's mass
-    "on rubber": ({"pitch": (480, 24), "roll": (352, 28)}, Sides(0.11, 0.11, 0.07, 0.07), 0.02, 57),
-    "large, ankle far back": ({"pitch": (2600, 40), "roll": (1500, 50)}, Sides(0.15, 0.07, 0.06, 0.06), 0.1, 95),
-    "stiff in roll": ({"pitch": (300, 12), "roll": (900, 9), "z": (2e5, 300)}, Sides(0.1, 0.08, 0.05, 0.06), 0.03, 40),
-}  # fmt: skip
-
-
-def bush(axes: dict[Axis, tuple[float, float]], sole: Sides, depth: float) -> FootBush:
-    springs = tuple(Spring(axis, *axes[axis], 0.0) for axis in ("z", "pitch", "roll") if axis in axes)  # type: ignore[index]
-    outline = [(x, y, -depth) for x, y in ((sole.front, sole.left), (sole.front, -sole.right),
-                                           (-sole.back, -sole.right), (-sole.back, sole.left))]  # fmt: skip
-    return FootBush("left", "ankle", springs, np.zeros(3), np.eye(3), np.array(outline))
-
-
-@pytest.mark.parametrize("name", FEET)
-def test_points_have_the_sums_that_they_were_asked_for_and_balance_about_the_bush(name: str) -> None:
-    axes, sole, depth, mass = FEET[name]
-    stiffness, damping = ({axis: pair[place] for axis, pair in axes.items()} for place in (0, 1))
-    foot = points_for(stiffness, damping, sole, depth, mass * GRAVITY, EDGES)
-    assert 4 <= len(foot.points) <= 9
-    assert all(point.stiffness > 0 and point.damping > 0 for point in foot.points)
-    for axis in ROTATIONS:
-        assert foot.turning(axis) == pytest.approx(axes[axis])
-    for moment in (lambda p: p.x, lambda p: p.y, lambda p: p.x * p.y):
-        assert sum(moment(p) * p.stiffness for p in foot.points) == pytest.approx(0, abs=1e-6)
-        assert sum(moment(p) * p.damping for p in foot.points) == pytest.approx(0, abs=1e-6)
-    if "z" in axes:
-        assert foot.vertical[0] == pytest.approx(axes["z"][0])
-    # The edges carry their part before the middle touches, and the sinking goes on without a step.
-    carried = EDGES * mass * GRAVITY
-    assert foot.sink(carried) == pytest.approx(0, abs=1e-9)
-    assert foot.sink(0.5 * carried) == pytest.approx(-0.5 * max(point.lower for point in foot.points))
-
-
-def test_one_axis_alone_stands_on_corners() -> None:
-    foot = points_for({"pitch": 400}, {"pitch": 20}, Sides(0.1, 0.1, 0.05, 0.05), 0.02, 500, EDGES)
-    assert foot.turning("pitch") == pytest.approx((400, 20))
-    assert sum(point.lower > 0 for point in foot.points) == 4
-
-
-def test_a_sole_is_taken_as_a_rectangle_of_its_area() -> None:
-    sole = bush(FEET["large, ankle far back"][0], FEET["large, ankle far back"][1], 0.1)
-    assert vars(sides_of(sole)) == pytest.approx(vars(FEET["large, ankle far back"][1]))
-    outline = 0.1 * np.array([(np.cos(a), np.sin(a), -1) for a in np.linspace(0, 2 * np.pi, 200)])
-    round_sole = FootBush("left", "ankle", (), np.zeros(3), np.eye(3), outline)
-    sides = sides_of(round_sole)
-    assert (sides.front + sides.back) * (sides.left + sides.right) == pytest.approx(np.pi * 0.01, rel=2e-3)
-
-
-@pytest.mark.parametrize("axis", ROTATIONS)
-def test_the_load_takes_its_height_off_the_stiffness(axis: Axis) -> None:
-    """About the bush centre the ground's push leans with the sole: K = Σ k x² - load x depth, by statics."""
-    axes, sole, depth, mass = FEET["on rubber"]
-    stiffness, damping = ({axis: pair[place] for axis, pair in axes.items()} for place in (0, 1))
-    foot = points_for(stiffness, damping, sole, depth, mass * GRAVITY, EDGES)
-    for load in (250.0, 600.0):
-        seen = measured(foot, axis, load, 0.001)
-        assert seen.stiffness == pytest.approx(axes[axis][0] - load * depth, rel=5e-3)
-        assert seen.damping == pytest.approx(axes[axis][1], rel=0.03)  # soles creep a little, which damps too
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", FEET)
-def test_a_fitted_foot_gives_k_and_c_back_at_every_load_and_step(name: str) -> None:
-    axes, sole, depth, mass = FEET[name]
-    found = fitted(bush(axes, sole, depth), mass * GRAVITY)
-    for check in found.checks:
-        k, c = axes[check.axis]
-        assert check.steps == STEPS
-        for load in LOADS:
-            for step in STEPS:
-                seen = measured(found.foot, check.axis, load * mass * GRAVITY, step)
-                assert seen.stiffness == pytest.approx(k, rel=0.05)
-                assert seen.damping == pytest.approx(c, rel=0.15)
-        # As far as it is said to hold, it holds; where all points have left the ground but the far ones, it does not.
-        least = LOADS[0] * mass * GRAVITY
-        share = check.angle / found.foot.touching_angle(check.axis, least)
-        assert measured(found.foot, check.axis, least, 0.001, share).stiffness == pytest.approx(k, rel=0.05)
-        beyond = measured(found.foot, check.axis, least, 0.001, 1.4)
-        assert not beyond.stiffness > 0.95 * k
-
-
-def test_a_step_that_does_not_hold_is_not_said_to() -> None:
-    foot = fitted(bush(*FEET["on rubber"][:3]), 57 * GRAVITY).foot
-    seen = measured(foot, "roll", 280, 0.02)
-    assert seen == pytest.approx(Measured(np.nan, np.nan), nan_ok=True) or abs(seen.damping / 28 - 1) > 0.15
-
-
-# --- The exported file ------------------------------------------------------------------------------------
 
 
 @pytest.fixture(scope="module", params=["mjcf", "urdf"])
@@ -229,27 +132,6 @@ def test_a_second_export_takes_the_place_of_the_first(tmp_path: Path) -> None:
     assert {one.geom(name).solref[0] for name in right} == {two.geom(name).solref[0] for name in right}
     stiffer, soft = (np.prod(model.geom("left_contact_0").solref) ** -2 for model in (one, two))
     assert soft < 0.7 * stiffer
-
-
-@pytest.mark.parametrize("damping", [0.0, 300.0, 3e5])
-def test_a_point_pushes_with_its_spring_and_damper_either_way_it_is_written(damping: float) -> None:
-    """With a damper it has a time constant, which engines beside MuJoCo read; without one stiffness and damping."""
-    written = contact_attributes(Point(0.0, 0.0, 2e4, damping), 0.5)
-    assert written["solref"].startswith("-") == (damping == 0)
-    assert damping == 0 or float(written["solref"].split()[0]) >= 2 * max(STEPS)
-    inertia = max(INERTIA_TIME * damping, 0.5 * INERTIA_TIME**2 * 2e4)
-    model = mujoco.MjModel.from_xml_string(
-        '<mujoco><option cone="elliptic" gravity="0 0 0"/><worldbody><geom type="plane" size="1 1 1"/><body>'
-        '<joint type="slide" axis="0 0 1"/><inertial pos="0 0 0" mass="2" diaginertia="1 1 1"/>'
-        '<geom type="sphere" size="0.002" pos="0 0 0.001" mass="0" priority="1" '
-        + " ".join(f'{key}="{value}"' for key, value in written.items())
-        + "/></body></worldbody></mujoco>"
-    )
-    data = mujoco.MjData(model)
-    data.qvel[0] = -0.002  # 1 mm in the ground, and sinking
-    mujoco.mj_forward(model, data)
-    # (m + inertia) a = k r - c v
-    assert (2 + inertia) * data.qacc[0] == pytest.approx(2e4 * 0.001 + damping * 0.002, rel=1e-6)
 
 
 def test_points_go_to_the_body_that_carried_the_ground(tmp_path: Path) -> None:
