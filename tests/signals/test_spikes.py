@@ -99,3 +99,12 @@ def test_a_spike_is_bridged_also_in_what_is_left_of_the_last_second(at: int) -> 
     log = MotionLog("spiked", PERIOD * np.arange(len(values)), {"imu.chest.angular_velocity.x": values})
     bridged = without_spikes(log).column("imu.chest.angular_velocity.x")
     assert np.flatnonzero(bridged != values).tolist() == [at]
+
+
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+def test_landings_that_no_sample_shows_leave_the_spikes_elsewhere() -> None:
+    values, landings = signal(), np.zeros(len(signal()), dtype=bool)
+    values[300:310] = np.nan
+    landings[302:308] = True
+    values[600] += 10.0
+    assert list(lone_spikes(values, PERIOD, landings)) == [600]

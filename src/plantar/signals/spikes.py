@@ -96,9 +96,8 @@ def lone_spikes(values: Array, period: float, landings: Mask | None = None) -> N
         return np.zeros(0, dtype=np.intp)
     steps = np.abs(np.diff(values))
     usual = _usual(steps, period)
-    if landings is not None and landings.any():
-        at = landings[1:]
-        usual[at] = np.maximum(usual[at], np.nanquantile(steps[at], QUICK))
+    if landings is not None and (at := landings[1:] & np.isfinite(steps)).any():
+        usual[at] = np.maximum(usual[at], np.quantile(steps[at], QUICK))
     far, reach = FAR_STEPS * usual, max(NEIGHBOURS, round(GROUP_GAP / period))
     # Only where a step is far is a median worth its time: in clean columns nowhere.
     jumps = np.flatnonzero(steps > far)
