@@ -15,7 +15,7 @@ from plantar.sensors.accelerometer_delay import (
     with_imus_on_time,
 )
 from plantar.sensors.attitude_scale import AttitudeScale, attitude_scale_notes
-from plantar.sensors.bandwidth import Fading, fading_notes
+from plantar.sensors.bandwidth import Fading, fading_notes, slow_filter
 from plantar.sensors.delays.clock_drift import ClockDrift
 from plantar.sensors.delays.delays_by_log import DelaysByLog
 from plantar.sensors.delays.sensor_delay import known_delay
@@ -50,12 +50,12 @@ def test_a_low_pass_is_told_up_to_nine_hertz_beyond_five_deviations(
     slope = -np.sign(corner) / (2 * corner**2)
     found = Fading(slope, abs(slope) / deviations)
     assert found.corner == pytest.approx(abs(corner))
-    notes = fading_notes(found)
+    notes = fading_notes(slow_filter(found))
     assert len(notes) == told
     sides = ("forces and torques", "IMU and encoders")[:: 1 if corner > 0 else -1]
     assert not notes or notes[0].text.startswith(f"{sides[0]} fade beside {sides[1]} as motion")
     assert not notes or "behind a low-pass of 8.9 Hz, and" in notes[0].text
-    assert fading_notes(None) == []
+    assert fading_notes(slow_filter(None)) == []
 
 
 @pytest.mark.parametrize(("apart", "steady"), [(2.45, True), (2.55, False)])

@@ -18,6 +18,7 @@ from plantar.feet.foot_fit import FittedFoot
 from plantar.feet.internal_error import gives_up, internal_errors
 from plantar.feet.interval_width.between_recordings import Apart
 from plantar.feet.interval_width.encoder_delay import encoder_delay_causes
+from plantar.feet.interval_width.fading import fading_causes
 from plantar.feet.interval_width.force_gain import force_gain_causes, force_gain_notes, torque_gain_causes
 from plantar.feet.interval_width.imu_turn import imu_turn_causes
 from plantar.feet.interval_width.robot_causes import robot_causes
@@ -72,6 +73,7 @@ def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit, between: Apart)
     causes += robot_causes(fit, blocks, ready.robot.uncertainty.wrench_gain, between, shared)
     causes += slip_angle_causes(fit, thin.fitted, shared)
     causes += encoder_delay_causes(fit, blocks, thin.fitted, shared)
+    causes += fading_causes(fit, blocks, thin.fitted, ready.slow_filter, shared)
     causes += imu_turn_causes(fit, thin.fitted, ready.imu_turn)
     causes += force_gain_causes(fit, ready.gain_errors)
     causes += torque_gain_causes(fit, ready.torque_gains)

@@ -29,7 +29,7 @@ from plantar.robot.guesses import guess_notes, naming_notes
 from plantar.robot.model import RobotModel
 from plantar.sensors.accelerometer_delay import imu_delay, with_imus_on_time
 from plantar.sensors.attitude_scale import AttitudeScale, attitude_scale_notes
-from plantar.sensors.bandwidth import fading, fading_notes
+from plantar.sensors.bandwidth import Fading, fading, fading_notes, slow_filter
 from plantar.sensors.delays.sensor_delay import SensorDelay, estimate_wrench_delay, in_time, known_delay
 from plantar.sensors.imu_filter import imu_filter, with_gyroscopes_on_time
 from plantar.sensors.moment_balance import TorqueGain, torque_gain_notes, torque_gains
@@ -48,6 +48,7 @@ class PreparedLogs:
 
     `settings` hold the cutoff that was used. `gain_errors`: see `force_gain_errors`; `torque_gains`: see there.
     `turned`: by foot, a warning that its force sensor is; `imu_turn`: by which all angles were put right.
+    `slow_filter`: that forces and torques are behind, or the others.
     """
 
     robot: RobotModel
@@ -61,6 +62,7 @@ class PreparedLogs:
     torque_gains: Mapping[Axis, TorqueGain] = field(default_factory=dict)
     turned: Mapping[str, Note] = field(default_factory=dict)
     imu_turn: ImuTurn = field(default_factory=partial(ImuTurn.unknown, 0.0))
+    slow_filter: Fading | None = None
 
     @property
     def recordings(self) -> tuple[Recording, ...]:
@@ -120,7 +122,7 @@ def prepare_checked(
     forces = force_gain_errors(robot, recordings)
     return_freed()
     moments = moments_of(robot, found.moments, any(map(has_steps, recordings)))
-    fades = fading_notes(fading(delay.residuals))
+    filtered = slow_filter(fading(delay.residuals))
     delay = replace(delay, residuals=())  # both sides of Newton's law in every log: no fit reads them
     return_freed()
     torques, turned = torque_gains(robot, moments), sensor_turn_notes(robot, moments)
@@ -132,14 +134,25 @@ def prepare_checked(
         *force_gain_notes(robot, forces),
         *torque_gain_notes(torques).values(),
         *turned.values(),
-        *fades,
+        *fading_notes(filtered),
         *attitude_scale_notes(sum((one.attitude_scale for one in recordings), AttitudeScale())),
     ]
     notes = [*odd, *(note for one in recordings for note in one.notes), delay.note, *vertical.notes]
     fitted, unseen = tuple(moved[: len(logs)]), tuple(moved[len(logs) :])
     mount = ImuTurn.unknown(robot.uncertainty.imu_mount)
     return PreparedLogs(
-        robot, fitted, unseen, settings, delay, vertical, unique(notes), forces, torques, turned, mount
+        robot,
+        fitted,
+        unseen,
+        settings,
+        delay,
+        vertical,
+        unique(notes),
+        forces,
+        torques,
+        turned,
+        mount,
+        filtered,
     )
 
 

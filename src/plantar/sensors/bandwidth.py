@@ -79,9 +79,16 @@ def _spectra(residual: NewtonEulerResidual) -> list[tuple[Array, tuple[Spectra, 
     return found
 
 
-def fading_notes(found: Fading | None) -> list[Note]:
-    """A warning where one side is behind a low-pass so slow that damping is off."""
+def slow_filter(found: Fading | None) -> Fading | None:
+    """What was found, where it is surely a low-pass so slow that damping is off."""
     if found is None or found.corner > SLOWEST or abs(found.slope) < SURE * found.std:
+        return None
+    return found
+
+
+def fading_notes(found: Fading | None) -> list[Note]:
+    """A warning where one side is behind a slow filter."""
+    if found is None:
         return []
     faded, other = ("forces and torques", "IMU and encoders")[:: 1 if found.slope < 0 else -1]
     text = (
