@@ -23,8 +23,12 @@ SCORES = '[aria-label^="Table 3"]'
 MOTION = "details.motion[open]"
 # Picture: the part of the page that it shows, how much of it [px], and what the numbers stand at.
 PICTURES: dict[str, tuple[str, int, list[tuple[int, str]]]] = {
-    "report_verdict": ("#verdict", 640, [(1, ".foot .statement"), (2, ".foot .reasons"), (3, ".foot svg")]),
-    "report_trust": ("#verdict > p", 390, [(4, "#verdict > p"), (5, "#verdict .diagnosis")]),
+    "report_verdict": (
+        "#verdict",
+        725,
+        [(1, ".trust"), (2, ".foot .statement"), (3, ".foot .reasons"), (4, ".foot svg")],
+    ),
+    "report_trust": (".feet + p", 275, [(5, ".feet + p")]),
     "report_parameters": ("#tables", 720, [(6, "#tables table")]),
     "report_scores": (SCORES, 230, [(7, f"{SCORES} caption")]),
     "report_motion": (

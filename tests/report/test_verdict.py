@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from plantar.report.verdict import foot_verdicts, limits, trust
+from plantar.report.verdict import foot_verdicts, limits, reach, trust
 from plantar.results.feet import Diagnosis, FeetResult, Parameter, ValidationRow
 from plantar.results.feet_rows import Verdict
 from report_walks import standing_result
@@ -85,11 +85,12 @@ def test_motions_that_teach_nothing_are_named_and_many_are_counted() -> None:
         return ValidationRow("cross", motion, "left", "pitch", error, error, 9.0, 1.0, 1.0, 10)
 
     result = FeetResult("b", (), {}, "kelvin_voigt", (), (), (), (row("a", 0.5), row("b", 2.0)), ())
-    assert trust(result) == (
+    assert trust(result) == ()
+    assert reach(result) == (
         "On motions it has not seen, the model beats predicting the offset alone in 1 of 2 cases; it has "
         "learnt nothing for b left pitch.",
     )
     lost = tuple(row(f"m{place}", 2.0) for place in range(8))
-    (text,) = trust(replace(result, validation=lost))
+    (text,) = reach(replace(result, validation=lost))
     assert text.endswith("m4 left pitch and 3 more (marked in the table).")
     assert "in 0 of 8 cases" in text

@@ -17,7 +17,7 @@ from plantar.report.charts.loop import loop_charts
 from plantar.report.content import Figure, Section, Table
 from plantar.report.motions import motion_views
 from plantar.report.page import get_ready, render
-from plantar.report.verdict import foot_verdicts, limits, trust
+from plantar.report.verdict import foot_verdicts, limits, reach, trust
 from plantar.report.walks import walk_section
 from plantar.results.feet import FeetResult
 from plantar.results.io import result_path
@@ -78,6 +78,7 @@ def _page(
         result=content,
         verdicts=foot_verdicts(content.parameters),
         trust=trust(content),
+        reach=reach(content),
         loops=loop_charts(content, tracks),
         limits=limits(content),
         read_on=on_feet(row.verdict for row in content.parameters),

@@ -141,7 +141,7 @@ def widest(result: FeetResult) -> Diagnosis | None:
 
 
 def trust(result: FeetResult) -> tuple[str, ...]:
-    """Sentences on what may be used, what only with care, what not, and how far the model predicts."""
+    """Sentences on what may be used, what only with care, and what not."""
     sentences = []
     for verdict, lead in (
         ("usable", "Trust"),
@@ -156,7 +156,12 @@ def trust(result: FeetResult) -> tuple[str, ...]:
             sentences.append(
                 f"{lead}: {'; '.join(f'{name} {listed(terms)}' for name, terms in subjects.items())}."
             )
-    sentences += [text for kind in ("cross", "direct") for text in _skill(result.validation, kind)]
+    return tuple(sentences)
+
+
+def reach(result: FeetResult) -> tuple[str, ...]:
+    """Sentences on how far the model predicts, and where no interval holds."""
+    sentences = [text for kind in ("cross", "direct") for text in _skill(result.validation, kind)]
     if any(row.verdict != "unidentifiable" for row in result.parameters):
         sentences.append(BEYOND)
     return tuple(sentences)
