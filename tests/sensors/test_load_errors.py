@@ -7,7 +7,7 @@ import pytest
 
 from plantar.conventions import Array
 from plantar.robot.uncertainty import Uncertainty
-from plantar.sensors.load_errors import FootLoads, load_errors
+from plantar.sensors.load_errors import FootLoads, _prior, load_errors
 from plantar.sensors.newton_sides import NewtonSides, moving
 from plantar.signals.filters import differentiate, low_pass
 
@@ -96,3 +96,16 @@ def test_loads_and_their_changes_belong_together() -> None:
     np.testing.assert_array_equal(loads.changes_without(np.zeros((2, 6))), loads.changes)
     left = loads.changes_without(np.eye(2, 6)).reshape(COUNT, 2, 6)
     np.testing.assert_allclose(loads.changes.reshape(COUNT, 2, 6)[:, 0, 0] - left[:, 0, 0], loads.steps[:, 0])
+
+
+def test_what_a_robot_file_allows_is_a_gain_along_the_load_and_a_turn_across_it() -> None:
+    """By hand: a gain of 10 %, crosstalk of 2 %, a mount turned by 0.02 rad; torques from crosstalk alone."""
+    uncertainty = Uncertainty(wrench_gain=0.1, wrench_crosstalk=0.02)
+    along = np.array([0.6, 0.0, 0.8])
+    across = np.array([0.8, 0.0, -0.6])
+    allowed = _prior(uncertainty, along)
+    assert along @ allowed[:3, :3] @ along == pytest.approx(0.1**2)
+    assert across @ allowed[:3, :3] @ across == pytest.approx(0.02**2 + 0.02**2)
+    assert along @ allowed[:3, :3] @ across == pytest.approx(0.0, abs=1e-12)
+    np.testing.assert_allclose(allowed[3:, 3:], 0.02**2 * np.eye(3))
+    assert not allowed[:3, 3:].any()
