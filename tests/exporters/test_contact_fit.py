@@ -7,7 +7,7 @@ import pytest
 
 from plantar.conventions import GRAVITY, Axis
 from plantar.exporters.bush import FootBush
-from plantar.exporters.contact.alone import INERTIA_TIME, Measured, contact_attributes, measured
+from plantar.exporters.contact.alone import INERTIA_TIME, Measured, _Alone, contact_attributes, measured
 from plantar.exporters.contact.fit import LOADS, STEPS, fitted
 from plantar.exporters.contact.points import Point, Sides, points_for, sides_of
 from plantar.exporters.job import LEAST_LOAD as EDGES
@@ -102,6 +102,25 @@ def test_a_step_that_does_not_hold_is_not_said_to() -> None:
     foot = fitted(bush(*FEET["on rubber"][:3]), 57 * GRAVITY).foot
     seen = measured(foot, "roll", 280, 0.02)
     assert seen == pytest.approx(Measured(np.nan, np.nan), nan_ok=True) or abs(seen.damping / 28 - 1) > 0.15
+
+
+@pytest.mark.parametrize(
+    ("last", "angle"),
+    [
+        (np.full(20, 0.1), 0.1),
+        (0.1 + 0.0009 * np.linspace(-0.5, 0.5, 20), 0.1),  # within a hundredth
+        (0.1 + 0.0020 * np.linspace(-0.5, 0.5, 20), np.nan),  # it still turns
+        (np.full(20, 0.51), np.nan),  # it has fallen, and lies still
+    ],
+)
+def test_a_foot_has_an_angle_where_it_stands_and_stands_still(
+    last: np.ndarray, angle: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    track = np.concatenate([np.linspace(0.0, 1.0, 180), last])
+    monkeypatch.setattr(_Alone, "_track", lambda *_: track)
+    alone = _Alone.__new__(_Alone)
+    alone.step = 0.01
+    assert alone.turned("pitch", 300.0, 5.0, 2.0) == pytest.approx(angle, nan_ok=True)
 
 
 # --- The exported file ------------------------------------------------------------------------------------

@@ -7,12 +7,15 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 import plantar
 from export_robots import CENTRE, TRUTH, bush_rotation, result, write_urdf
 from plantar.conventions import GRAVITY
 from plantar.errors import ExportError
 from plantar.exporters import export
+from plantar.exporters.contact.hysteresis import _Foot
+from plantar.exporters.spring import Slip
 
 mujoco = pytest.importorskip("mujoco")
 
@@ -167,3 +170,15 @@ def test_what_cannot_be_asked_for_is_said(tmp_path: Path) -> None:
     with pytest.raises(ExportError, match="one of the two"):
         export(made, "mujoco-contact", out, hysteresis=True, swing=0.01)
     assert not out.exists()
+
+
+def test_both_axes_at_once_push_about_the_axes_that_the_sole_turns_about() -> None:
+    """By hand: the ground's normal in the ankle's axes, the sole turned by pitch, then by roll; both stick."""
+    pitch, roll = 0.3, -0.2
+    turned = Rotation.from_euler("y", pitch)
+    up = (turned * Rotation.from_euler("x", roll)).apply([0.0, 0.0, 1.0])
+    foot = _Foot(0, 0, (Slip(5.0, 0.5), Slip(8.0, 0.4)), [0.0, 0.0])
+    torque = foot.torque(up)
+    expected = turned.apply([5.0 / 0.5 * roll, 0.0, 0.0]) + [0.0, 8.0 / 0.4 * pitch, 0.0]
+    np.testing.assert_allclose(torque, expected, atol=1e-12)
+    assert foot.yielded == pytest.approx([0.0, 0.0])
