@@ -141,11 +141,11 @@ def scored(
     yield {"kind": "compliance", "what": "sum", "error": error, "half": np.nan, "held": error is not None}
 
 
-def second_round(robot: RobotModel, folder: Path, preset: str, factor: float) -> tuple[str, Row]:
-    """The table of a motion made from what the first one found on feet of `factor`, and what it promises."""
+def second_round(robot: RobotModel, folder: Path, preset: str, factor: float, seed: int) -> tuple[str, Row]:
+    """The table of a motion made from what the first one found on feet of `factor` in `seed`, and what it promises."""
     motion = folder / f"next_{factor:g}.csv"
     if not motion.exists():
-        result = folder / f"design_{preset}_{factor:g}_1" / "result.json"
+        result = folder / f"design_{preset}_{factor:g}_{seed}" / "result.json"
         seconds = plantar("design", robot.path, "--after", result, "--out", motion)
         print(f"{robot.name}: designed after {result} in {seconds:.0f} s of CPU", flush=True)
     return str(motion), json.loads(motion.with_suffix(".json").read_text())
@@ -245,7 +245,7 @@ def play_robot(name: str, given: argparse.Namespace, table: Path) -> None:
     late = preset_named(given.preset).sensors.wrench_delay
     for factor in map(float, given.factors.split(",")):
         if given.second:
-            motion, promised = second_round(robot, folder, given.preset, factor)
+            motion, promised = second_round(robot, folder, given.preset, factor, given.first)
         for seed in range(given.first, given.first + given.seeds):
             place = folder / f"{kind}_{given.preset}_{factor:g}_{seed}"
             try:
