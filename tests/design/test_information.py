@@ -99,7 +99,7 @@ def test_a_number_out_of_reach_is_not_all_that_counts(monkeypatch: pytest.Monkey
 
     def of(changed: np.ndarray, known: float = 0.0) -> float:
         monkeypatch.setattr(objective, "half_widths", lambda *_: changed)
-        return badness(reach, coefficients, "widest", known)
+        return float(badness(reach, coefficients, "widest", known))
 
     hopeless = of(widths)
     told, less = widths.copy(), widths.copy()
@@ -125,7 +125,7 @@ def test_what_is_narrower_than_wanted_is_bought_last(monkeypatch: pytest.MonkeyP
     def of(stiffness: float, damping: float, criterion: Criterion) -> float:
         widths = np.array([stiffness, damping]) * objective.WANTED * np.ones((3, 2, 2, 2))
         monkeypatch.setattr(objective, "half_widths", lambda *_: widths)
-        return badness(reach, coefficients, criterion)
+        return float(badness(reach, coefficients, criterion))
 
     assert of(1.5, 0.25, "widest") > of(1.3, 0.5, "widest")
     assert of(0.5, 0.25, "widest") < of(0.5, 0.5, "widest"), "it still counts"
@@ -139,6 +139,17 @@ def test_widths_are_those_of_the_motion_that_rehearsals_leave(monkeypatch: pytes
     monkeypatch.setattr(objective, "LEFT", 1.0)
     assert badness(reach, LEFT * coefficients, "D") == pytest.approx(found)
     assert badness(reach, coefficients, "D") < found
+
+
+@pytest.mark.parametrize("criterion", ["widest", "D", "A"])
+def test_motions_together_count_as_one_by_one(criterion: Criterion) -> None:
+    reach, coefficients = design_samples.reach(), design_samples.coefficients()
+    several = np.linspace(0.3, 1.0, 6).reshape(2, 3, 1) * coefficients
+    several[1, :, ::3] *= -0.5
+    found = badness(reach, several, criterion)
+    alone = [[float(badness(reach, one, criterion)) for one in row] for row in several]
+    assert found == pytest.approx(np.array(alone), rel=1e-9)
+    assert len(set(np.round(found.ravel(), 6))) == 6
 
 
 @pytest.mark.parametrize("criterion", ["widest", "D", "A"])
@@ -285,7 +296,7 @@ def test_the_best_motion_is_the_corner_of_the_limits_that_a_slope_leads_to() -> 
     reach.element = 0 * reach.element
     units = np.array([1 / reach.used(row) for row in np.eye(reach.lines.size)])
     slope = np.random.default_rng(3).standard_normal(units.size) / units
-    with patch.object(search, "badness", lambda _, coefficients, *__: float(slope @ coefficients)):
+    with patch.object(search, "badness", lambda _, coefficients, *__: coefficients @ slope):
         found = best_motion(reach, "widest", np.random.default_rng(2))
     rows = reach._watched.reshape(reach.lines.size, -1).T
     high, low = (np.repeat(limit, reach.time.size) for limit in (reach._high, reach._low))

@@ -31,11 +31,11 @@ DESIGNED_MOTIONS = (
     ),
     Mutant(
         "design/information.py", "a delay that is unsure costs no damping",
-        "np.hypot(widths[..., 1], by_delay", "np.hypot(widths[..., 1], 0 * by_delay", QUICK,
+        "np.hypot(widths[..., 1], (late * firm", "np.hypot(widths[..., 1], (0 * late * firm", QUICK,
     ),
     Mutant(
         "design/information.py", "load that goes along with the other foot's",
-        "load[:, 0] - load[:, -1]", "load[:, 0] + load[:, -1]", QUICK,
+        "load[..., 0, :] - load[..., -1, :]", "load[..., 0, :] + load[..., -1, :]", QUICK,
     ),
     Mutant(
         "twin/presets.py", "a large robot on a small one's rubber",

@@ -43,7 +43,8 @@ UNEVEN: Final = 1e-4
 
 
 def information(reach: Reach, coefficients: Array) -> Array:
-    """Information matrices (S, feet, 2, 2, 2) of stiffness and damping of each foot and axis, for each of S bushes.
+    """Information matrices (..., S, feet, 2, 2, 2) of stiffness and damping of each foot and axis, for each of S
+    bushes, of motions with coefficients (..., size).
 
     An offset, a drift in a line and slow cosines, and an element with hysteresis are eliminated, as `identify feet`
     does: a lean that is held for half a minute shows nothing.
@@ -68,7 +69,7 @@ def information(reach: Reach, coefficients: Array) -> Array:
 
 
 def half_widths(reach: Reach, coefficients: Array, known: Array | float = 0.0) -> Array:
-    """95 % half widths [share of the value] of stiffness and damping, (S, feet, 2, 2).
+    """95 % half widths [share of the value] of stiffness and damping, (..., S, feet, 2, 2).
 
     `known`: information (feet, 2, 2, 2) from before. Where a bush bends less than TOLD_APART, `identify feet` may take
     a spring that slips for a part of the stiffness: the motion's own widths grow steeply. What the delay of the
@@ -83,31 +84,33 @@ def half_widths(reach: Reach, coefficients: Array, known: Array | float = 0.0) -
     values = np.column_stack([reach.stiffness, reach.damping])[:, None, None]
     widths = np.asarray(NORMAL95 * deviations / values)
     firm = reach.stiffness[:, None] + SECANT * reach.element
-    by_delay = delay_half_width(reach, coefficients) * firm / reach.damping[:, None]
-    widths[..., 1] = np.hypot(widths[..., 1], by_delay[:, None])
+    late = np.asarray(delay_half_width(reach, coefficients))[..., None, None]
+    widths[..., 1] = np.hypot(widths[..., 1], (late * firm / reach.damping[:, None])[..., None, :])
     return widths
 
 
-def delay_half_width(reach: Reach, coefficients: Array) -> float:
-    """95 % half width [s] of the force sensors' delay: Newton's law shows it where the moments on the ground change,
-    and forces are large enough to see that it holds."""
+def delay_half_width(reach: Reach, coefficients: Array) -> Array:
+    """95 % half widths (...) [s] of the force sensors' delay: Newton's law shows it where the moments on the ground
+    change, and forces are large enough to see that it holds."""
     rates, forces = reach.of(reach.moment_rates, coefficients), reach.of(reach.forces, coefficients)
-    closed = min(float(np.mean(np.sum(forces**2, axis=0))) / SEEN_FORCE**2, 1.0)
-    shown = closed**STEEP * float(np.sum(rates**2)) * 10.0 / RATE / UNCLOSED**2
-    return float(NORMAL95 * np.sqrt(1.0 / (shown + 1.0 / USUAL_DELAY**2)))
+    closed = np.minimum(np.mean(np.sum(forces**2, axis=-2), axis=-1) / SEEN_FORCE**2, 1.0)
+    shown = closed**STEEP * np.sum(rates**2, axis=(-2, -1)) * 10.0 / RATE / UNCLOSED**2
+    return np.asarray(NORMAL95 * np.sqrt(1.0 / (shown + 1.0 / USUAL_DELAY**2)))
 
 
 def vertical_half_width(reach: Reach, coefficients: Array) -> Array:
-    """95 % half widths (S,) [share] of the sum of both feet's vertical compliances: load that goes from foot to foot
-    presses one sole and frees the other."""
+    """95 % half widths (..., S) [share] of the sum of both feet's vertical compliances: load that goes from foot to
+    foot presses one sole and frees the other."""
     load = reach.of(reach.load, coefficients)
-    moved = np.std(load[:, 0] - load[:, -1], axis=-1) / reach.vertical
+    moved = np.std(load[..., 0, :] - load[..., -1, :], axis=-1) / reach.vertical
     return np.asarray(NORMAL95 * UNEVEN / np.maximum(moved, 1e-9))
 
 
-def badness(reach: Reach, coefficients: Array, criterion: Criterion, known: Array | float = 0.0) -> float:
-    """What is minimised, the mean over the range of stiffness: the logarithm of the widest interval, each as a multiple
-    of what is wanted of it, of the volume of all (D) or of their mean square (A).
+def badness(reach: Reach, coefficients: Array, criterion: Criterion, known: Array | float = 0.0) -> Array:
+    """What is minimised, (...) of motions with coefficients (..., size).
+
+    The mean over the range of stiffness: the logarithm of the widest interval, each as a multiple of what is wanted of
+    it, of the volume of all (D) or of their mean square (A).
 
     Widths are those of the motion that rehearsals leave, a little smaller. Beside the widest, what is narrower than
     wanted counts little.
@@ -115,16 +118,19 @@ def badness(reach: Reach, coefficients: Array, criterion: Criterion, known: Arra
     counts: beyond HOPELESS a width counts for little, and to the widest a share of all others is added. Where others
     are `known` from before, what is weak comes first.
     """
-    count, coefficients = len(reach.bushes), LEFT * coefficients
-    feet = (half_widths(reach, coefficients, known) / WANTED).reshape(count, -1)
-    delay = np.full((count, 1), delay_half_width(reach, coefficients) / WANTED_DELAY)
-    vertical = vertical_half_width(reach, coefficients)[:, None] / WANTED_VERTICAL
-    widths = np.log(np.hstack([feet, delay, vertical]))
+    coefficients = LEFT * coefficients
+    feet = half_widths(reach, coefficients, known) / WANTED
+    feet = feet.reshape(*feet.shape[:-3], -1)
+    vertical = vertical_half_width(reach, coefficients)[..., None] / WANTED_VERTICAL
+    delay = np.asarray(delay_half_width(reach, coefficients) / WANTED_DELAY)[..., None, None]
+    widths = np.log(np.concatenate([feet, np.broadcast_to(delay, vertical.shape), vertical], axis=-1))
     hopeless = np.inf if np.any(known) else np.log(HOPELESS)
     widths = np.minimum(widths, hopeless) + BEYOND * np.maximum(widths - hopeless, 0.0)
     if criterion == "widest":
         widths = np.where(widths < 0, ENOUGH * widths, widths)
-        return float(((1 - OTHERS) * widths.max(axis=1) + OTHERS * widths.mean(axis=1)).mean())
+        return np.asarray(
+            np.mean((1 - OTHERS) * widths.max(axis=-1) + OTHERS * widths.mean(axis=-1), axis=-1)
+        )
     if criterion == "D":
-        return float(widths.mean())
-    return float(np.log(np.mean(np.exp(2 * widths), axis=1)).mean() / 2)
+        return np.asarray(widths.mean(axis=(-2, -1)))
+    return np.asarray(np.log(np.mean(np.exp(2 * widths), axis=-1)).mean(axis=-1) / 2)

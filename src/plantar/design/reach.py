@@ -127,8 +127,9 @@ class Reach:
         return out.reshape(self.lines.size, high.size, -1), np.full(high.size, np.inf), high
 
     def of(self, part: Array, coefficients: Array) -> Array:
-        """A part (size, ...) of a motion's response."""
-        return np.asarray((coefficients @ part.reshape(coefficients.size, -1)).reshape(part.shape[1:]))
+        """A part (size, ...) of the response of motions with coefficients (..., size)."""
+        found = coefficients @ part.reshape(self.lines.size, -1)
+        return np.asarray(found.reshape(*coefficients.shape[:-1], *part.shape[1:]))
 
     def used(self, coefficients: Array) -> float:
         """How much of the tightest limit a motion takes up: it may be larger by the inverse of this."""

@@ -18,6 +18,9 @@ TRIES: Final = 25  # linear programs from each start at most
 TOLD: Final = 10  # linear programs between two words of progress
 SMALL: Final = 1e-3  # of a coefficient that is just allowed: what a slope is taken over
 BEGIN, SMALLEST, FARTHEST = 0.5, 0.01, 1.0  # how far a step goes, of coefficients that are just allowed
+AT_ONCE: Final = (
+    10  # motions beside one whose values are computed together: ten minutes of them fit into memory
+)
 CUTS: Final = 4  # programs of one step: each knows the limits that the one before passed
 SLIGHT: Final = 0.01  # over a limit: the motion is made smaller by as much
 GROW, SHRINK = 1.5, 0.4  # of that, after a step that helped and one that did not
@@ -71,19 +74,21 @@ class _Climb:
         self._reach, self._units, self._far = reach, units, BEGIN
         self._criterion, self._known = criterion, known
         self.best = start / reach.used(start)
-        self.least = self._value(self.best)
+        self.least = float(self._value(self.best))
 
-    def _value(self, coefficients: Array) -> float:
+    def _value(self, coefficients: Array) -> Array:
         return badness(self._reach, coefficients, self._criterion, self._known)
 
     def step(self) -> bool:
         """To a better motion, or none: then the next step is smaller. Whether another may help."""
-        slope = [self._value(self.best + row) - self.least for row in np.diag(SMALL * self._units)]
+        beside = self.best + np.diag(SMALL * self._units)
+        parts = np.split(beside, range(AT_ONCE, len(beside), AT_ONCE))
+        slope = np.concatenate([self._value(part) for part in parts]) - self.least
         rows, left = self._reach.near(self.best)
         tried = self.best
         for _ in range(CUTS):
             found = linprog(
-                np.array(slope) / SMALL,
+                slope / SMALL,
                 A_ub=rows * self._units,
                 b_ub=np.maximum(left, 0.0),
                 bounds=(-self._far, self._far),
@@ -96,7 +101,7 @@ class _Climb:
             more, room = self._reach.near(tried)  # limits that were far away, or reached at other times
             rows, left = np.vstack([rows, more]), np.append(left, room + more @ (tried - self.best))
         tried = tried / max(self._reach.used(tried), 1.0)
-        value = self._value(tried)
+        value = float(self._value(tried))
         if value < self.least:
             self.best, self.least, self._far = tried, value, min(GROW * self._far, FARTHEST)
         else:
