@@ -38,7 +38,7 @@ class Reach:
     roll, `load` (size, S, feet, N) [N], for S bushes; `firm_deflection` and `firm_rate` where rubber that slips stands
     beside the springs; what it asks of the ground, `forces` (size, 3, N) [N] and `moment_rates` (size, 2, N) of the
     moments about x and y [N·m/s].
-    Limits hold for the plain springs, which bend more, intervals come from the others.
+    Limits hold for the plain springs, with what slips added to their torques; intervals come from the others.
     """
 
     def __init__(

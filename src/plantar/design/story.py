@@ -185,7 +185,9 @@ def _rehearsed(
         try:
             trajectory = Trajectory.of("design", legs, lines, coefficients)
         except MotionError as error:
-            reason, coefficients = str(error), smaller(SMALLER * coefficients)
+            reason = str(error)
+            progress(f"smaller: {reason}")
+            coefficients = smaller(SMALLER * coefficients)
             continue
         watched = self_collision(robot, trajectory.configurations)
         if watched.touching is not None:
