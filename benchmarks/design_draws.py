@@ -47,10 +47,11 @@ def main() -> None:
         for one in found:
             if one.fell is not None:
                 print(f"{name} x{one.factor:.2f}: {one.fell}")
+        near = min(stood, key=lambda one: one.sole_margin)
         kept = next(limit["kept"] for limit in promised["limits"] if limit["unit"] == "m")
         print(
             f"{name}, {robot.mass * GRAVITY:.0f} N: {len(stood)} of {len(found)} draws stand; margin "
-            f"{1e3 * min(one.sole_margin for one in stood):.1f} mm (promised {1e3 * kept:.1f}), least load "
+            f"{1e3 * near.sole_margin:.1f} mm at x{near.factor:.2f} (promised {1e3 * kept:.1f}), least load "
             f"{100 * min(one.least_load for one in stood):.0f} %, friction {max(one.friction for one in stood):.2f}, "
             f"torque {100 * max(one.effort for one in stood):.0f} %, bend {max(one.bend for one in stood):.3f} rad",
             flush=True,
