@@ -134,7 +134,7 @@ class Linearised:
 
     def influences(self) -> list[Array]:
         """What each sample's response adds to parameters and offsets, (n, p + recordings) for every recording."""
-        own, count = self._columns @ self.inverse(), len(self._rows)
+        own, count = self._columns @ self._factor.information_inverse(), len(self._rows)
         if self.shared_offset:
             both = np.column_stack([own[:, :-1], np.repeat(own[:, -1:], count, axis=1)])
         else:
