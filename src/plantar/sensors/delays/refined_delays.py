@@ -142,7 +142,7 @@ def _step(
     if common is None:
         return None
     values = at + np.append(np.full(len(at) - 1, common.value), 0.0)
-    std = float(np.hypot(common.std, _by_encoders(balances, contrasts)))
+    std = common.std if free is None else float(np.hypot(common.std, _by_encoders(balances, contrasts)))
     return RefinedDelays(values, std, common.freedom, *flags, closed, slowest, suspect)
 
 
