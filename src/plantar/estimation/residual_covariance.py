@@ -26,10 +26,15 @@ def cosine_covariance(scores: Array, duration: float) -> tuple[Array, int]:
     return np.asarray(cosines.T @ cosines), len(cosines)
 
 
+def cosine_count(duration: float) -> int:
+    """How many cosines tell the covariance of scores that span `duration` [s]."""
+    return max(round(2 * SCORE_BANDWIDTH * duration), FEWEST_COSINES)
+
+
 def score_cosines(scores: Array, duration: float) -> Array:
     """The root (m, p) of `cosine_covariance`: its products are the covariance, m the degrees of freedom."""
     count = len(scores)
-    cosines = int(np.clip(round(2 * SCORE_BANDWIDTH * duration), FEWEST_COSINES, max(count - 1, 1)))
+    cosines = min(cosine_count(duration), max(count - 1, 1))
     # Orthonormal DCT-II, √(2/n) Σ s_t cos(π j (2t + 1) / 2n): every coefficient's variance is the density. As a Fourier
     # transform it is one of the even samples and, turned round, the odd ones.
     order = np.arange(1, min(cosines, count - 1) + 1)

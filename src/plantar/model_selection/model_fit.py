@@ -14,6 +14,7 @@ import numpy as np
 from plantar.conventions import Array
 from plantar.errors import DataError
 from plantar.estimation.residual_covariance import interval95
+from plantar.model_selection.absorbed_noise import lacking
 from plantar.model_selection.data_sets import DataSet, prepare_data_sets
 from plantar.model_selection.grid import Pieces
 from plantar.model_selection.partialled_out import robust_covariance
@@ -175,7 +176,8 @@ def _finished(problem: Problem, point: Point, limits: Array) -> ModelFit:
     residuals = np.split(point.residuals, np.cumsum(problem.rows[:-1]))
     durations = [len(r) * e.motion.period for e, r in zip(problem.prepared, residuals, strict=True)]
     covariance, freedom = robust_covariance(linear, residuals, durations)
-    wide = np.concatenate([scale, np.ones(len(covariance) - len(scale))])
+    lacks = lacking(linear, problem.prepared, durations)
+    wide = np.concatenate([lacks * scale, np.ones(len(covariance) - len(scale))])
     covariance = covariance * wide[:, None] * wide[None, :]
     count, rows = len(scale), len(point.residuals)
     white = point.squares / max(rows - len(covariance), 1) * linear.inverse_diagonal() * scale**2

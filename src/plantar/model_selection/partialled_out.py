@@ -87,7 +87,7 @@ class Linearised:
 
     def solve(self) -> Array:
         """Parameters (p,); the shared offset is left out."""
-        return self._factor.solve()[: self._design.shape[1]]
+        return self._factor.solve()[: self.size]
 
     def offsets(self, values: Array) -> Array:
         """Offset (recordings,) that goes with parameters (p,), initial states held."""
@@ -106,9 +106,31 @@ class Linearised:
             left = left - np.repeat(self._products(left[:, None])[:, 0] / self._square, self._rows)
         return self._shares(left[:, None])[:, 0]
 
+    @property
+    def size(self) -> int:
+        """Parameters, p; the shared offset is left out."""
+        return int(self._design.shape[1])
+
+    @property
+    def columns(self) -> Array:
+        """What is left of the design, and of a shared offset's column, beside the nuisances, (n, p or p + 1)."""
+        return self._columns
+
+    def by_recording(self, columns: Array) -> list[Array]:
+        """Columns (n, m), those of each recording."""
+        return [columns[own] for own in self._own]
+
+    def without_nuisances(self, columns: Array) -> Array:
+        """Columns (n, m) without what offsets of recordings and initial states of runs explain."""
+        return self._reduced(columns)
+
+    def inverse(self) -> Array:
+        """The inverse information of `columns`."""
+        return self._factor.information_inverse()
+
     def inverse_diagonal(self) -> Array:
         """Diagonal (p,) of the inverse information: variances for residuals of unit variance."""
-        return np.asarray(np.diag(self._factor.information_inverse())[: self._design.shape[1]])
+        return np.asarray(np.diag(self.inverse())[: self.size])
 
     def influences(self) -> list[Array]:
         """What each sample's response adds to parameters and offsets, (n, p + recordings) for every recording."""

@@ -46,7 +46,7 @@ def test_a_drift_moves_nothing_from_the_spring_to_the_element(
     beside = fitted(drifted)
     moved = beside.values[0] - fitted(still).values[0]
     found = beside.drifts["sway"].at(drifted[0].time)
-    np.testing.assert_allclose(np.ptp(found), np.ptp(DRIFT), rtol=0.25)
+    np.testing.assert_allclose(np.ptp(found), np.ptp(DRIFT), rtol=0.3)
     assert np.corrcoef(found, DRIFT)[0, 1] > 0.98
     monkeypatch.setattr("plantar.feet.fit.angle_drift.ROUNDS", 0)
     without = fitted(drifted).values[0] - fitted(still).values[0]

@@ -12,10 +12,10 @@ from functools import partial
 
 import numpy as np
 
-from plantar.conventions import Array, Mask
+from plantar.conventions import UNIFORM, Array, Mask
 from plantar.cores import Each
 from plantar.estimation.delays.delay import LONGEST, estimate_delay
-from plantar.estimation.delays.sensor_delays import estimate_delays
+from plantar.estimation.delays.sensor_delays import Balance, estimate_delays
 from plantar.logs.freed_memory import return_freed
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
@@ -142,7 +142,22 @@ def _step(
     if common is None:
         return None
     values = at + np.append(np.full(len(at) - 1, common.value), 0.0)
-    return RefinedDelays(values, common.std, common.freedom, *flags, closed, slowest, suspect)
+    std = common.std if free is None else float(np.hypot(common.std, _by_encoders(balances, contrasts)))
+    return RefinedDelays(values, std, common.freedom, *flags, closed, slowest, suspect)
+
+
+def _by_encoders(balances: Sequence[Balance], contrasts: Array) -> float:
+    """Deviation of the feet's common delay [s] for encoders that are read with the IMU, or as far apart as it seems.
+
+    It is somewhere between what it is with the one and with the other, beyond what one more delay to be found moves it
+    by chance (J. A. Hausman, Econometrica 46, 1978): too little for a delay of the encoders' own, and not nothing.
+    """
+    together, apart = (estimate_delays(balances, held) for held in (contrasts, contrasts[:-1]))
+    if together is None or apart is None:
+        return 0.0
+    moved = apart.values[0] - together.values[0]
+    chance = max(apart.covariance[0, 0] - together.covariance[0, 0], 0.0)
+    return UNIFORM * float(np.sqrt(max(moved**2 - chance, 0.0)))
 
 
 def _contrasts(feet: int) -> Array:

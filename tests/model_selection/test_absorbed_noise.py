@@ -1,0 +1,125 @@
+"""What residuals' scores say too little of a fit's deviations, against draws of noise and a dense fit of them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from bush_data_sets import PERIOD, Rubber, sway
+from plantar.model_selection.absorbed_noise import lacking
+from plantar.model_selection.data_sets import DataSet, FilteredDataSet, StepColumns, prepare_data_sets
+from plantar.model_selection.model_fit import fit_model
+from plantar.model_selection.partialled_out import Linearised, Memory
+from plantar.models import BushMotion, Elastoplastic
+
+DRAWS = 400
+RUBBER = Rubber(slip_torque=5.0, slip_angle=0.01)
+COSINES = 0.2  # of a second of a recording: those below 0.1 Hz
+
+
+def recorded(rng: np.random.Generator, size: float, duration: float) -> DataSet:
+    """A sway of `size` slip angles and its torque."""
+    angle = sway(rng, size * RUBBER.slip_angle, 0.4, duration)
+    rate = np.gradient(angle, PERIOD)
+    motion = BushMotion(angle, rate, PERIOD)
+    return DataSet(f"{size}", motion, RUBBER.torque(angle, rate), np.ones(len(angle), dtype=bool))
+
+
+def prepared_of(sizes: list[float], duration: float) -> list[FilteredDataSet]:
+    rng = np.random.default_rng(4)
+    return prepare_data_sets([recorded(rng, size, duration) for size in sizes], 5.0)
+
+
+def tangent(prepared: list[FilteredDataSet]) -> tuple[Linearised, np.ndarray]:
+    """A fit of spring, damper and element with free states at the start, and its dense columns."""
+    designs, effects = [], []
+    for each in prepared:
+        states = RUBBER.states(each.motion.deflection)
+        columns = np.column_stack([each.motion.deflection, each.motion.rate, states])
+        slid = np.cumsum(np.abs(states) == 1.0) == 0
+        designs.append(each.without_nuisance(columns[each.used]))
+        effects.append(each.without_nuisance(slid[each.used].astype(float)))
+    rows = [len(design) for design in designs]
+    run, design, effect = (
+        np.repeat(np.arange(len(rows)), rows), np.concatenate(designs), np.concatenate(effects),
+    )  # fmt: skip
+    memory = Memory(effect, run, [1] * len(rows))
+    linear = Linearised(design, np.zeros(len(design)), rows, False, memory)
+    own = (run[:, None] == np.arange(len(rows))).astype(float)
+    return linear, np.column_stack([design, effect[:, None] * own, own])
+
+
+def durations_of(prepared: list[FilteredDataSet]) -> list[float]:
+    return [each.used.sum() * each.motion.period for each in prepared]
+
+
+def drawn_ratio(prepared: list[FilteredDataSet], dense: np.ndarray) -> np.ndarray:
+    """Scatter of estimates of random walks over what the lowest cosines of their residuals' scores say of it."""
+    rng, solve, count = np.random.default_rng(8), np.linalg.pinv(dense), 3
+    real, shown = np.zeros(count), np.zeros(count)
+    rows = [len(each.response) for each in prepared]
+    ends = np.cumsum([0, *rows])
+    for _ in range(DRAWS):
+        noise = np.concatenate(
+            [
+                each.without_nuisance(np.cumsum(rng.standard_normal(n)))
+                for each, n in zip(prepared, rows, strict=True)
+            ]
+        )
+        found = solve @ noise
+        left = noise - dense @ found
+        real += found[:count] ** 2
+        for first, n, span in zip(ends, rows, durations_of(prepared), strict=False):
+            scores = (solve[:count, first : first + n] * left[first : first + n]).T
+            most = round(COSINES * span)
+            phase = np.pi * np.arange(1, most + 1)[:, None] * (np.arange(n) + 0.5) / n
+            shown += np.sum((np.sqrt(2 / most) * np.cos(phase) @ scores) ** 2, axis=0)
+    return np.sqrt(real / shown)
+
+
+@pytest.mark.parametrize(("sizes", "duration"), [([1.3, 0.6, 0.5], 24.0), ([2.0, 1.5], 100.0)])
+def test_deviations_lack_what_draws_of_noise_show(sizes: list[float], duration: float) -> None:
+    """Also where not every cosine is tried: there are 20 in 100 s."""
+    prepared = prepared_of(sizes, duration)
+    linear, dense = tangent(prepared)
+    found = lacking(linear, prepared, durations_of(prepared))
+    np.testing.assert_allclose(found, np.maximum(drawn_ratio(prepared, dense), 1.0), rtol=0.12)
+
+
+def test_a_short_recording_lacks_more_than_a_long_one() -> None:
+    short, long = (prepared_of([1.2, 0.5], duration) for duration in (24.0, 240.0))
+    few, many = (lacking(tangent(each)[0], each, durations_of(each)) for each in (short, long))
+    assert few[2] > 1.4
+    assert (many < 1.2).all()
+
+
+def test_deviations_of_a_fit_hold_what_an_attitude_wanders_by() -> None:
+    """Slip torque and slip angle of recordings in which the element hardly slips are off by what they claim."""
+    rng, told = np.random.default_rng(3), []
+    for _ in range(40):
+        data_sets = []
+        for size in (1.2, 1.1):
+            clean = recorded(rng, size, 24.0)
+            walk = 1e-5 * np.cumsum(rng.standard_normal(len(clean.torque)))
+            motion = replace(clean.motion, deflection=clean.motion.deflection + walk)
+            data_sets.append(replace(clean, motion=motion))
+        fit = fit_model(Elastoplastic(), data_sets)
+        errors = [fit.values[2] - RUBBER.slip_torque, fit.shape[0] - RUBBER.slip_angle]
+        told.append(np.array(errors) / fit.std[2:])
+    rms = np.sqrt(np.mean(np.square(told), axis=0))
+    assert (rms < 1.5).all(), rms
+
+
+def test_steps_lack_nothing() -> None:
+    prepared = prepared_of([1.3, 0.6], 24.0)
+    linear, _ = tangent(prepared)
+    steps = [
+        replace(
+            each,
+            steps=StepColumns(np.zeros(len(each.used), dtype=np.intp), np.zeros((len(each.used), 0)), 1.0),
+        )
+        for each in prepared
+    ]
+    np.testing.assert_array_equal(lacking(linear, steps, durations_of(prepared)), np.ones(3))
