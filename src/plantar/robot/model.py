@@ -219,7 +219,7 @@ def load_robot(path: str | os.PathLike[str]) -> RobotModel:
     """
     path = Path(path)
     entry, guesses = read_robot_file(path)
-    urdf_path = path.parent / entry["urdf"]
+    urdf_path = _urdf_path(path, entry["urdf"])
     imu, names = entry["imu"], entry["joint_names"]
     robot = RobotModel(
         name=entry["name"],
@@ -239,6 +239,12 @@ def load_robot(path: str | os.PathLike[str]) -> RobotModel:
     )
     _check(robot)
     return robot
+
+
+def _urdf_path(path: Path, urdf: str) -> Path:
+    if "://" in urdf or urdf[0] in "~$":  # nothing here knows ROS's packages, or a shell's names
+        raise RobotError(located("urdf", path=path, value=urdf, valid="a path from this file's folder, or a whole one"))
+    return path.parent / urdf
 
 
 def _placement(entry: Entry, default_link: str = "") -> Placement:

@@ -22,6 +22,9 @@ from plantar.robot.uncertainty import Uncertainty
 FILE_LIMIT = 2**20  # bytes
 DEPTH_LIMIT = 20  # levels of nesting: a robot file needs five
 LONGEST_SOLE = 1.0  # m from its frame to a corner: no robot walks on longer ones
+LONGEST_LINK = 3.0  # m from a link's frame to a sensor on it: no walking robot has longer ones
+FULL_TURN = 6.3  # rad, a little more than 2π
+LARGEST_DEVIATION = 1.0  # of a share, m, rad or s: whoever writes more means another unit
 
 Entry = Mapping[str, Any]  # a checked part of the file, its defaults filled in
 Grammar = dict[str, CoreSchema]  # what may stand under each key of an entry
@@ -38,6 +41,18 @@ def _polygon_with_area(polygon: list[tuple[float, float]]) -> list[tuple[float, 
     return polygon
 
 
+def _near(xyz: tuple[float, ...]) -> tuple[float, ...]:
+    if max(map(abs, xyz)) > LONGEST_LINK:
+        raise ValueError(f"{max(xyz, key=abs):.4g} m away from the link's frame; are these millimetres?")
+    return xyz
+
+
+def _within_a_turn(rpy: tuple[float, ...]) -> tuple[float, ...]:
+    if max(map(abs, rpy)) > FULL_TURN:
+        raise ValueError(f"{max(rpy, key=abs):.4g} rad is more than a turn; are these degrees?")
+    return rpy
+
+
 def _log_names_differ(entry: dict[str, Any]) -> dict[str, Any]:
     names = list(entry["renamed"].values())
     twice = next((name for name in names if names.count(name) > 1), None)
@@ -46,10 +61,13 @@ def _log_names_differ(entry: dict[str, Any]) -> dict[str, Any]:
     return entry
 
 
-def _sensor_names_differ(entry: dict[str, Any]) -> dict[str, Any]:
-    names = [foot["wrench"]["name"] for foot in entry["feet"].values()]
-    if len(set(names)) < len(names):
-        raise ValueError(f"feet share one wrench sensor: {', '.join(names)}")
+def _feet_differ(entry: dict[str, Any]) -> dict[str, Any]:
+    for what, names in (
+        ("wrench sensor", [foot["wrench"]["name"] for foot in entry["feet"].values()]),
+        ("ankle", [foot["ankle"] for foot in entry["feet"].values()]),
+    ):
+        if len(set(names)) < len(names):
+            raise ValueError(f"feet share one {what}: {', '.join(names)}")
     return entry
 
 
@@ -89,12 +107,12 @@ POLYGON = core_schema.no_info_after_validator_function(
     _polygon_with_area, core_schema.list_schema(PAIR, min_length=3, max_length=100)
 )
 TERM = _one_of("viscous", "coulomb", "offset", "stiffness", "inertia")
-DEVIATION = core_schema.float_schema(ge=0, allow_inf_nan=False)
+DEVIATION = core_schema.float_schema(ge=0, le=LARGEST_DEVIATION, allow_inf_nan=False)
 
 FRAME: Grammar = {
     "link": _or_none(NAME),
-    "xyz": _or((0.0, 0.0, 0.0), VECTOR),
-    "rpy": _or((0.0, 0.0, 0.0), VECTOR),
+    "xyz": _or((0.0, 0.0, 0.0), core_schema.no_info_after_validator_function(_near, VECTOR)),
+    "rpy": _or((0.0, 0.0, 0.0), core_schema.no_info_after_validator_function(_within_a_turn, VECTOR)),
 }
 IMU: Grammar = FRAME | {"name": NAME, "link": NAME}
 WRENCH: Grammar = FRAME | {"name": NAME, "sign": _or(1, _one_of(1, -1))}
@@ -130,7 +148,7 @@ ROBOT: Grammar = {
     "columns": _each(core_schema.any_schema()),
 }
 WHOLE_FILE = SchemaValidator(
-    core_schema.no_info_after_validator_function(_sensor_names_differ, _entry(ROBOT))
+    core_schema.no_info_after_validator_function(_feet_differ, _entry(ROBOT))
 )
 
 
@@ -157,12 +175,17 @@ def read_yaml(path: Path) -> tuple[Any, bytes]:
     content = read_bounded(path, FILE_LIMIT, RobotError)
     try:
         _refuse_bombs(content, path)
-        return yaml.safe_load(content), content
+        loader = yaml.SafeLoader(content)
+        if (node := loader.get_single_node()) is None:
+            return None, content
+        _refuse_twice(node, path)
+        return loader.construct_document(node), content
     except (yaml.YAMLError, UnicodeDecodeError, ValueError) as error:
         reason = " ".join(str(getattr(error, "problem", None) or error).split())
         mark = getattr(error, "problem_mark", None)
         line = f" at line {mark.line + 1}" if mark is not None else ""
-        raise RobotError(located(f"is not readable YAML{line}: {reason}", path=path)) from error
+        valid = "spaces, not tabs, at the beginning of a line" if "'\\t'" in reason else None
+        raise RobotError(located(f"is not readable YAML{line}: {reason}", path=path, valid=valid)) from error
 
 
 def _refuse_bombs(content: bytes, path: Path) -> None:
@@ -176,6 +199,21 @@ def _refuse_bombs(content: bytes, path: Path) -> None:
             raise RobotError(located("is nested too deeply", path=path, valid=f"{DEPTH_LIMIT} levels"))
 
 
+def _refuse_twice(node: yaml.Node, path: Path) -> None:
+    """No key twice in one entry: YAML would take the last and drop the others without a word."""
+    if isinstance(node, yaml.SequenceNode):
+        for each in node.value:
+            _refuse_twice(each, path)
+    elif isinstance(node, yaml.MappingNode):
+        lines: dict[str, int] = {}
+        for key, value in node.value:
+            line = key.start_mark.line + 1
+            if isinstance(key, yaml.ScalarNode) and lines.setdefault(key.value, line) != line:
+                twice = f"key '{key.value}' stands at line {lines[key.value]} and again at line {line}"
+                raise RobotError(located(twice, path=path, valid="each key once"))
+            _refuse_twice(value, path)
+
+
 def _explain(error: ValidationError, path: Path) -> str:
     """The first problem as one line, an unknown key with the nearest known one."""
     problems = error.errors()
@@ -185,6 +223,11 @@ def _explain(error: ValidationError, path: Path) -> str:
         known = _known_keys(first["loc"])
         near = difflib.get_close_matches(str(first["loc"][-1]), known, n=1) or known
         return located(f"unknown key '{key}'", path=path, valid=", ".join(near))
+    place = first["loc"][-1:]
+    if first["type"] in ("tuple_type", "too_long") or (first["type"] == "missing" and isinstance(*place, int)):
+        key = key.rpartition(".")[0] if first["type"] == "missing" else key
+        valid = "numbers in brackets: [x, y, z], or [x, y] for a corner of a polygon"
+        return located(f"{key}: not the right number of numbers", path=path, valid=valid)
     if first["type"] == "missing":
         return located(f"key '{key}' is missing", path=path)
     message = first["msg"].removeprefix("Value error, ")

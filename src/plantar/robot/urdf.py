@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 import difflib
+import math
 import re
+import xml.etree.ElementTree as ET
+from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import pinocchio as pin
@@ -12,6 +16,7 @@ from plantar.errors import RobotError, located
 from plantar.files import read_bounded
 
 LIMIT = 64 * 2**20  # bytes
+INERTIA = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
 
 def read_urdf(path: Path) -> str:
@@ -25,10 +30,13 @@ def read_urdf(path: Path) -> str:
 def parse_urdf(urdf: str, path: Path, *, floating: bool) -> pin.Model:
     """Pinocchio's model of a URDF's text, with a free-flyer above the root link where `floating`.
 
-    Raises RobotError, with `path` for the file, where it declares an entity or Pinocchio cannot read it.
+    Raises RobotError, with `path` for the file, where it declares an entity, is no URDF, holds a text where a number
+    must stand, or Pinocchio cannot read it.
     """
     if re.search(r"<!(DOCTYPE|ENTITY)", urdf, re.IGNORECASE):
         raise RobotError(located("declares a DOCTYPE or an entity", path=path, valid="plain URDF"))
+    with suppress(ET.ParseError):  # Pinocchio reads more than Python does, and says what it cannot read
+        _check(ET.fromstring(urdf), path)
     root = [pin.JointModelFreeFlyer()] if floating else []
     try:
         return pin.buildModelFromXML(urdf, *root)
@@ -43,3 +51,46 @@ def unknown_link(link: str, model: pin.Model, path: Path) -> str:
     near = difflib.get_close_matches(link, names, n=3)
     valid = "one of " + ", ".join(near) if near else f"a frame of the URDF, such as {', '.join(names[1:4])}"
     return located(f"link '{link}' is not in the URDF", path=path, valid=valid)
+
+
+def _check(root: ET.Element, path: Path) -> None:
+    """Refuse what Pinocchio would pass over: it leaves out an inertia or a place that it cannot read."""
+    for element in root.iter():
+        if "xacro" in element.tag or any("${" in text for text in element.attrib.values()):
+            valid = f"the URDF that `xacro {path.name} > robot.urdf` writes"
+            raise RobotError(located("is xacro that was not expanded", path=path, valid=valid))
+    if root.tag != "robot":
+        raise RobotError(located(f"is not a URDF: its root is <{root.tag}>", path=path, valid="<robot name=...>"))
+    for owner, element, key, count in _numbers(root):
+        text = element.get(key)
+        if text is not None and not _are_numbers(text, count):
+            where = f"{key} of <{element.tag}> in {owner.tag} '{owner.get('name')}'"
+            valid = "a number" if count == 1 else f"{count} numbers with spaces between"
+            raise RobotError(located(where, path=path, value=text, valid=valid))
+        if element.tag == "mass" and float(text or 0) < 0:
+            where = f"the mass of link '{owner.get('name')}' is negative"
+            raise RobotError(located(where, path=path, value=text, valid="kg, 0 or more"))
+
+
+def _numbers(root: ET.Element) -> Iterator[tuple[ET.Element, ET.Element, str, int]]:
+    """What kinematics and dynamics need: the link or joint, the element in it, the attribute, and how many numbers."""
+    for owner in root:
+        if owner.tag not in ("link", "joint"):
+            continue
+        within = owner.find("inertial") if owner.tag == "link" else owner
+        for element in within if within is not None else ():
+            if element.tag in ("origin", "axis"):
+                yield owner, element, "xyz", 3
+                yield owner, element, "rpy", 3
+            elif element.tag == "mass":
+                yield owner, element, "value", 1
+            elif element.tag == "inertia":
+                yield from ((owner, element, key, 1) for key in INERTIA)
+
+
+def _are_numbers(text: str, count: int) -> bool:
+    try:
+        values = [float(word) for word in text.split()]
+    except ValueError:
+        return False
+    return len(values) == count and all(map(math.isfinite, values))

@@ -32,7 +32,10 @@ def weight_of(model: pin.Model) -> float:
 
 
 def check_weight(path: Path, weighed: float | None, urdf: float) -> None:
-    """Raises RobotError where the weighed mass [kg] cannot be that of the URDF's robot."""
+    """Raises RobotError where the URDF weighs nothing, or the weighed mass [kg] cannot be that of its robot."""
+    if urdf <= 0:
+        valid = "links with an <inertial>: contact and delays follow from the robot's weight"
+        raise RobotError(located("urdf: its links weigh nothing", path=path, valid=valid))
     if weighed is not None and not urdf / FARTHEST <= weighed <= urdf * FARTHEST:
         text = f"mass: the URDF weighs {urdf:.4g} kg"
         raise RobotError(

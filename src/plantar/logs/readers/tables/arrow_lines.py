@@ -11,7 +11,11 @@ import pyarrow.csv as pa_csv
 from plantar.conventions import Array
 from plantar.errors import LogError, located
 
-HOLES = ["", "nan", "NaN", "null"]
+# What pandas, R, databases, spreadsheets and the C libraries write where nothing was recorded.
+HOLES = [
+    *("", "nan", "NaN", "null", "NULL", "None", "NA", "<NA>", "N/A", "n/a", "#N/A"),
+    *("-nan", "-NaN", "nan(ind)", "-nan(ind)", "1.#QNAN", "-1.#IND"),
+]
 PARSED = 2**20  # bytes of text that one core parses at a time
 UNREADABLE = (pa.ArrowInvalid, pa.ArrowKeyError)
 
@@ -110,7 +114,8 @@ class ArrowLines:
                     self.texts.add(name)
                     return None
                 at = None if time is None else float(time[row])
+                valid = "a number, or an empty cell where nothing was recorded"
                 raise LogError(
-                    located("is not a number", path=self.path, column=name, time=at, value=text)
+                    located("is not a number", path=self.path, column=name, time=at, value=text, valid=valid)
                 ) from None
         return numbers

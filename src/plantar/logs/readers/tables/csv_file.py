@@ -39,7 +39,8 @@ def read_csv(
     """
     found = survey(path, limit)
     limit.columns(len(found.names))
-    header = told_apart(found.names)
+    # A column map says names as the file has them, blanks included.
+    header = told_apart([name.strip() for name in found.names] if strict else found.names)
     names = choose(header)
     limit.numbers(found.rows, len(names))
     if found.cut is not None:

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from plantar.robot.model import RobotModel
 
 LATEST = 1e20  # in any unit, nanoseconds since 1970 among them: what no clock shows
+OTHER_MARKS = (";", "\t", "#", "%")  # of a file whose columns are not parted by commas, or that begins with a remark
 STRAY_ROWS = 0.01  # share of rows whose time may step back before the file is refused
 
 
@@ -77,14 +78,12 @@ def _known(names: Sequence[str], path: Path) -> list[str]:
             raise LogError(located("stands twice in the header", path=path, column=name.rstrip("\0")))
         seen.add(name)
     if "time" not in seen:
-        raise LogError(
-            located(
-                "is missing",
-                path=path,
-                column="time",
-                valid="a first column 'time' [s]; or `columns` in the robot file, for `plantar init` as --columns FILE",
-            )
-        )
+        begin = names[0] if names else ""
+        valid = "a first column 'time' [s]; or `columns` in the robot file, for `plantar init` as --columns FILE"
+        if any(mark in begin for mark in OTHER_MARKS):
+            valid = "a first line of column names with commas between, the first one 'time' [s]; decimal points"
+        message = f"is missing: the header begins with '{begin[:40]}'"
+        raise LogError(located(message, path=path, column="time", valid=valid))
     return [name for name in names if name == "time" or COLUMN.fullmatch(name)]
 
 
@@ -101,7 +100,7 @@ def _increasing(time: Array, path: Path, notes: list[Note]) -> Mask:
     at = float(time[first - 1]) if first else None
     if strays.size > max(1, STRAY_ROWS * time.size):
         message = f"does not increase in {strays.size} of {time.size} rows, first here"
-        valid = "seconds that increase from row to row"
+        valid = "seconds that increase from row to row, in double precision"
         raise LogError(
             located(message, path=path, column="time", time=at, value=float(time[first]), valid=valid)
         )
