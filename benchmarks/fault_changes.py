@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -93,6 +94,16 @@ def one_after_another(*changes: Change) -> Change:
         for each in changes:
             case = each(case)
         return case
+
+    return change
+
+
+def in_one_log(name: str, fault: Change) -> Change:
+    """The fault in the log called `name` (its beginning) alone, as where a driver was set otherwise on one day."""
+
+    def change(case: Case) -> Case:
+        own = {log: table for log, table in case.tables.items() if log.startswith(name)}
+        return replace(case, tables={**case.tables, **fault(replace(case, tables=own)).tables})
 
     return change
 

@@ -14,6 +14,7 @@ from fault_changes import (
     every_nth_held,
     exchanged,
     gyroscope_in_world,
+    in_one_log,
     late,
     low_passed,
     one_after_another,
@@ -40,7 +41,7 @@ KNEE, ANKLE_PITCH, ANKLE_ROLL = -3, -2, -1  # places in a leg, counted from the 
 
 UNIT = ("degrees", "looks? like", "N·mm", "unit")
 SIGN = ("sign", "reversed", "turns against", "pulls the standing foot")
-DELAY = ("delay", r"\blate\b", "behind")
+DELAY = ("delay", r"\blater?\b", "earlier", "behind")
 STUCK = ("stuck", "dead", "stands? still", "held", "saturat", "full scale", "frozen")
 QUATERNION = ("quaternion", "w x y z", "body to world", "up differs")
 GAIN = ("gain", "weight", r"carry .* kg", "scale", "balance")
@@ -151,6 +152,10 @@ TIMING = (
     Fault("left wrench 20, right 60 ms late", "timing", late((wrench("left"), 0.02), (wrench("right"), 0.06)), DELAY),
     Fault("IMU 20, wrenches 50 ms late", "timing", late((imu(), 0.02), (wrench(), 0.05)), DELAY),
     Fault("IMU 40, encoders 20 ms late", "timing", late((imu(), 0.04), (encoders(), 0.02)), DELAY),
+    # An operator holds the robot in it, so that no delay shows.
+    *(Fault(f"{what} {ms} ms late in the left sway alone", "timing",
+            in_one_log("Manual_left", late((columns, 1e-3 * ms))), DELAY)
+      for what, columns, ms in (("IMU", imu(), 8), ("IMU", imu(), 30), ("wrenches", wrench(), 13))),
     Fault("wrenches' clock 0.1 % slow", "timing", drifting_clock(wrench(), 1e-3), (*DELAY, "clock", "drift")),
     Fault("wrenches filtered at 5 Hz", "timing", low_passed(wrench(), 5), (*DELAY, "filter")),
     Fault("stamps rounded to 10 ms", "timing", timed(lambda time: np.round(time, 2)), ("time",)),

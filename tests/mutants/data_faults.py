@@ -19,6 +19,19 @@ DATA_FAULTS = (
         "np.where(same, apart, 0.0)", "apart", ("feet/assess/test_zero_jumps.py",),
     ),
     Mutant(
+        "feet/assess/late_recordings.py", "any delay within the interval is a fault",
+        "moved < NORMAL95 * wide.std[RATE]", "moved < 0.0", ("feet/assess/test_late_recordings.py",),
+    ),
+    Mutant(
+        "feet/assess/late_recordings.py", "a memory is a late recording",
+        "_left(fit_blocks(tangent)) < _left(found)", "_left(fit_blocks(tangent)) < 0.0",
+        ("feet/assess/test_late_recordings.py",),
+    ),
+    Mutant(
+        "feet/foot_assessment.py", "numbers of late recordings are usable",
+        "        *own,\n", "", ("feet/assess/test_late_recordings.py",),
+    ),
+    Mutant(
         "feet/assess/play.py", "play is as large as half of it", "{2e3 * loss", "{1e3 * loss",
         ("feet/assess/test_play.py",),
     ),

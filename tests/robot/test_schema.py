@@ -88,7 +88,12 @@ def test_paths_are_relative_to_the_robot_file(tmp_path: Path, monkeypatch: pytes
         (lambda e: e.update(base="flying"), ["base", "floating"]),
         (lambda e: e["feet"]["left"].update(contact="never"), ["feet.left.contact", "always"]),
         (lambda e: e["feet"]["left"]["wrench"].update(sign=2), ["feet.left.wrench.sign"]),
-        (lambda e: e["feet"]["left"]["bush"].update(xyz=[0, 0]), ["feet.left.bush.xyz"]),
+        (lambda e: e["feet"]["left"]["bush"].update(xyz=[0, 0]), ["feet.left.bush.xyz", "[x, y, z]"]),
+        (lambda e: e["feet"]["left"]["bush"].update(xyz="0 0 0"), ["feet.left.bush.xyz", "[x, y, z]"]),
+        (lambda e: e["feet"]["left"]["bush"].update(xyz=[0, 0, 0, 0]), ["feet.left.bush.xyz", "[x, y, z]"]),
+        (lambda e: e["feet"]["left"]["bush"].update(xyz=[0, 0, -3.1]), ["feet.left.bush.xyz", "millimetres"]),
+        (lambda e: e["imu"].update(rpy=[0, 0, -90]), ["imu.rpy", "-90 rad", "degrees"]),
+        (lambda e: e["feet"]["left"].update(ankle="right_foot"), ["share one ankle"]),
         (lambda e: e["feet"]["left"]["bush"].update(xyz=[0, 0, "low"]), ["feet.left.bush.xyz", "low"]),
         (
             lambda e: e["feet"]["left"]["bush"].update(xyz=[0, 0, float("nan")]),
@@ -101,6 +106,9 @@ def test_paths_are_relative_to_the_robot_file(tmp_path: Path, monkeypatch: pytes
         (lambda e: e.update(joints={"neck": {"terms": ["sticky"]}}), ["joints.neck.terms"]),
         (lambda e: e.update(uncertainty={"imu_mout": 0.1}), ["'uncertainty.imu_mout'", "imu_mount"]),
         (lambda e: e.update(uncertainty={"imu_mount": -0.1}), ["uncertainty.imu_mount", "-0.1"]),
+        (lambda e: e.update(uncertainty={"wrench_delay": 7.5}), ["uncertainty.wrench_delay", "7.5"]),
+        (lambda e: e.update(urdf="package://biped/biped.urdf"), ["'package://biped/biped.urdf'", "valid:"]),
+        (lambda e: e.update(urdf="~/biped.urdf"), ["'~/biped.urdf'", "valid:"]),
         (lambda e: e.update(uncertainty={"link_mass": float("inf")}), ["uncertainty.link_mass", "finite"]),
         (lambda e: e.update(joint_names={"prefx": "a"}), ["'joint_names.prefx'", "prefix"]),
         (lambda e: e.update(joint_names={"renamed": {"nek": "a"}}), ["joint_names.renamed.nek", "neck"]),
@@ -166,6 +174,36 @@ def test_hostile_or_broken_yaml(tmp_path: Path, text: str, expected: str) -> Non
     with pytest.raises(RobotError, match=expected) as caught:
         load_robot(path)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("added", "told"),
+    [
+        ("imu: {name: other, link: torso}\n", "'imu' stands at line"),
+        ("joints: {neck: {passive: true, passive: false}}\n", "'passive' stands at line"),
+        ("columns: [{a: 1, a: 1}]\n", "'a' stands at line"),
+    ],
+)
+def test_a_key_that_stands_twice_is_refused(tmp_path: Path, added: str, told: str) -> None:
+    path = write_robot(tmp_path)
+    path.write_text(path.read_text() + added)
+    with pytest.raises(RobotError, match=told):
+        load_robot(path)
+
+
+def test_tabs_are_named(tmp_path: Path) -> None:
+    path = tmp_path / "robot.yaml"
+    path.write_text("name: a\nimu:\n\tname: chest\n")
+    with pytest.raises(RobotError, match=r"line 3.*spaces, not tabs"):
+        load_robot(path)
+
+
+def test_frames_up_to_their_limits_are_taken(tmp_path: Path) -> None:
+    path = write_robot(tmp_path)
+    entry = yaml.safe_load(path.read_text())
+    entry["imu"].update(xyz=[0, 0, 2.9], rpy=[0, 0, -6.28])
+    path.write_text(yaml.safe_dump({**entry, "uncertainty": {"wrench_gain": 1.0}}))
+    assert load_robot(path).imu is not None
 
 
 def test_a_robot_file_that_is_not_text(tmp_path: Path) -> None:

@@ -8,6 +8,7 @@ from plantar.conventions import ROTATIONAL_AXES
 from plantar.feet.assess.contradiction import contradiction
 from plantar.feet.assess.data_faults import OF_MOMENTS, data_faults, doubted
 from plantar.feet.assess.diagnosis import advised, diagnose_axis, mend_first
+from plantar.feet.assess.late_recordings import late_recordings
 from plantar.feet.assess.left_out import ON_AN_EDGE, mostly_on_an_edge
 from plantar.feet.assess.parameter_rows import axis_rows, missing_rows, unseen_rows
 from plantar.feet.assess.play import play_notes
@@ -85,11 +86,11 @@ def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit, between: Apart)
     rows = axis_rows(wide, ready.fitted, predictions, contradicted)
     limits = diagnose_axis(fit, wide, causes, rows)
     gain = {foot: error for foot, error in ready.gain_errors.items() if foot == fit.foot}
-    play = play_notes(thin.fitted, fit, blocks, shared)
+    own = [*play_notes(thin.fitted, fit, blocks, shared), *late_recordings(thin.fitted, wide, blocks, shared)]
     faults = [
         *data_faults(ready.fitted, fit),
         *fitted.jumps,  # of both axes: an encoder that slips about one tilts the other as well
-        *play,
+        *own,
         *force_gain_notes(ready.robot, gain),
         # Torque channels that are wrong about one axis are trusted about neither.
         *(note for note in torque_gain_notes(ready.torque_gains).values() if note.severity == "warning"),
@@ -107,5 +108,5 @@ def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit, between: Apart)
         predictions={**found.predictions, **predictions},
         stances=[*found.stances, *stance_stiffness(ready.recordings, wide)],
         walks=[*found.walks, *walk_stiffness(ready.recordings, wide)],
-        notes=(*found.notes, *play),
+        notes=(*found.notes, *own),
     )

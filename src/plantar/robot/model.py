@@ -243,7 +243,9 @@ def load_robot(path: str | os.PathLike[str]) -> RobotModel:
 
 def _urdf_path(path: Path, urdf: str) -> Path:
     if "://" in urdf or urdf[0] in "~$":  # nothing here knows ROS's packages, or a shell's names
-        raise RobotError(located("urdf", path=path, value=urdf, valid="a path from this file's folder, or a whole one"))
+        raise RobotError(
+            located("urdf", path=path, value=urdf, valid="a path from this file's folder, or a whole one")
+        )
     return path.parent / urdf
 
 

@@ -147,9 +147,7 @@ ROBOT: Grammar = {
     "topics": _each(core_schema.str_schema()),
     "columns": _each(core_schema.any_schema()),
 }
-WHOLE_FILE = SchemaValidator(
-    core_schema.no_info_after_validator_function(_feet_differ, _entry(ROBOT))
-)
+WHOLE_FILE = SchemaValidator(core_schema.no_info_after_validator_function(_feet_differ, _entry(ROBOT)))
 
 
 def read_robot_file(path: Path) -> tuple[Entry, tuple[Guess, ...]]:
@@ -207,10 +205,11 @@ def _refuse_twice(node: yaml.Node, path: Path) -> None:
     elif isinstance(node, yaml.MappingNode):
         lines: dict[str, int] = {}
         for key, value in node.value:
-            line = key.start_mark.line + 1
-            if isinstance(key, yaml.ScalarNode) and lines.setdefault(key.value, line) != line:
-                twice = f"key '{key.value}' stands at line {lines[key.value]} and again at line {line}"
+            name, line = str(key.value), key.start_mark.line + 1
+            if name in lines:
+                twice = f"key '{name}' stands at line {lines[name]} and again at line {line}"
                 raise RobotError(located(twice, path=path, valid="each key once"))
+            lines[name] = line
             _refuse_twice(value, path)
 
 
@@ -223,9 +222,9 @@ def _explain(error: ValidationError, path: Path) -> str:
         known = _known_keys(first["loc"])
         near = difflib.get_close_matches(str(first["loc"][-1]), known, n=1) or known
         return located(f"unknown key '{key}'", path=path, valid=", ".join(near))
-    place = first["loc"][-1:]
-    if first["type"] in ("tuple_type", "too_long") or (first["type"] == "missing" and isinstance(*place, int)):
-        key = key.rpartition(".")[0] if first["type"] == "missing" else key
+    too_few = first["type"] == "missing" and isinstance(first["loc"][-1], int)
+    if too_few or first["type"] in ("tuple_type", "too_long"):
+        key = key.rpartition(".")[0] if too_few else key
         valid = "numbers in brackets: [x, y, z], or [x, y] for a corner of a polygon"
         return located(f"{key}: not the right number of numbers", path=path, valid=valid)
     if first["type"] == "missing":

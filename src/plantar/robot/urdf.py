@@ -60,7 +60,9 @@ def _check(root: ET.Element, path: Path) -> None:
             valid = f"the URDF that `xacro {path.name} > robot.urdf` writes"
             raise RobotError(located("is xacro that was not expanded", path=path, valid=valid))
     if root.tag != "robot":
-        raise RobotError(located(f"is not a URDF: its root is <{root.tag}>", path=path, valid="<robot name=...>"))
+        raise RobotError(
+            located(f"is not a URDF: its root is <{root.tag}>", path=path, valid="<robot name=...>")
+        )
     for owner, element, key, count in _numbers(root):
         text = element.get(key)
         if text is not None and not _are_numbers(text, count):

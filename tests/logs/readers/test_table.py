@@ -131,7 +131,9 @@ def test_a_text_among_ignored_columns_does_no_harm(tmp_path: Path) -> None:
 
 
 def test_missing_duplicate_and_texty_columns(tmp_path: Path) -> None:
-    assert "column 'time': is missing" in refusal(tmp_path, "t,joint.a.position\n0,1\n0.1,2\n")
+    assert "column 'time': is missing: the header begins with 't' (valid: a first column" in refusal(
+        tmp_path, "t,joint.a.position\n0,1\n0.1,2\n"
+    )
     twice = refusal(tmp_path, "time,joint.a.position,joint.a.position\n0,1,2\n0.1,2,3\n")
     assert "column 'joint.a.position': stands twice" in twice
     texty = refusal(tmp_path, "time,joint.a.position\n0,1\n0.1,2\n0.2,off\n")
@@ -275,3 +277,29 @@ def test_real_logs_read(shared_data: Path) -> None:
     log = open_log(shared_data / "icub_walking" / "walking.csv.gz")
     assert 85 < log.duration < 93
     assert log.period == pytest.approx(0.01, rel=0.05)
+
+
+@pytest.mark.parametrize("mark", [";", "\t"])
+def test_columns_that_are_parted_otherwise_are_told_so(tmp_path: Path, mark: str) -> None:
+    message = refusal(tmp_path, csv_text().replace(",", mark))
+    assert "is missing: the header begins with 'time" in message
+    assert "commas between" in message
+
+
+@pytest.mark.parametrize(
+    "hole", ["", "nan", "NaN", "NULL", "None", "NA", "<NA>", "N/A", "#N/A", "-nan", "-nan(ind)", "-1.#IND"]
+)
+def test_what_programs_write_where_nothing_was_recorded_is_a_hole(tmp_path: Path, hole: str) -> None:
+    path = write(tmp_path, f"{HEADER}\n0.0,1,2\n0.1,{hole},2\n0.2,1,2\n")
+    np.testing.assert_array_equal(open_log(path).columns["joint.a.position"], [1.0, np.nan, 1.0])
+
+
+def test_a_text_that_is_no_hole_is_an_error(tmp_path: Path) -> None:
+    assert "value '-': is not a number (valid: a number, or an empty cell" in refusal(
+        tmp_path, f"{HEADER}\n0.0,1,2\n0.1,-,2\n"
+    )
+
+
+def test_blanks_beside_names_are_not_theirs(tmp_path: Path) -> None:
+    log = open_log(write(tmp_path, csv_text(header=" time, joint.a.position ,wrench.left.force.z")))
+    assert set(log.columns) == {"joint.a.position", "wrench.left.force.z"}

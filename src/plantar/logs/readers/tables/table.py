@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from plantar.robot.model import RobotModel
 
 LATEST = 1e20  # in any unit, nanoseconds since 1970 among them: what no clock shows
-OTHER_MARKS = (";", "\t", "#", "%")  # of a file whose columns are not parted by commas, or that begins with a remark
+OTHER_MARKS = (";", "\t", "#", "%")  # of columns that are not parted by commas, or of a remark before them
 STRAY_ROWS = 0.01  # share of rows whose time may step back before the file is refused
 
 
@@ -79,9 +79,13 @@ def _known(names: Sequence[str], path: Path) -> list[str]:
         seen.add(name)
     if "time" not in seen:
         begin = names[0] if names else ""
-        valid = "a first column 'time' [s]; or `columns` in the robot file, for `plantar init` as --columns FILE"
+        valid = (
+            "a first column 'time' [s]; or `columns` in the robot file, for `plantar init` as --columns FILE"
+        )
         if any(mark in begin for mark in OTHER_MARKS):
-            valid = "a first line of column names with commas between, the first one 'time' [s]; decimal points"
+            valid = (
+                "a first line of column names with commas between, the first one 'time' [s]; decimal points"
+            )
         message = f"is missing: the header begins with '{begin[:40]}'"
         raise LogError(located(message, path=path, column="time", valid=valid))
     return [name for name in names if name == "time" or COLUMN.fullmatch(name)]

@@ -1,0 +1,61 @@
+"""Recordings whose sensors were later, or earlier, than in the others: a driver set otherwise, another network.
+
+Delays are found from the ground's wrench where nobody holds the robot. A recording in which somebody does may have
+another one, and only its damping tells: a delay d takes K·d off it. The fit of all then lies somewhere between the
+recordings, by more than its interval, or a memory is made up for what they disagree in.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from plantar.conventions import NORMAL95
+from plantar.estimation import Block, LinearFit, fit_blocks
+from plantar.feet.recording import Recording
+from plantar.feet.regression.axis import AxisFit
+from plantar.feet.regression.regression_data import beside, blocks_of
+from plantar.models import KelvinVoigt
+from plantar.notes import Note
+
+CODE = "recording_late"
+SURE = 5.0  # deviations by which a recording's damping must differ, as delays of logs that show them
+RATE = 1  # the place of the rate, and of damping, in spring and damper
+
+
+def late_recordings(
+    recordings: Sequence[Recording], wide: AxisFit, tangent: Sequence[Block], shared: bool
+) -> list[Note]:
+    """A warning of the recording whose damping differs from the others' and moves theirs out of the interval of `wide`.
+
+    tangent: the recordings' `tangent_blocks`: where a memory leaves less than a damping of its own does, it is the
+    memory that makes damping differ. Not of a foot that steps: landings shake its damping more than delays do.
+    """
+    blocks = blocks_of(recordings, wide.foot, wide.axis)
+    if blocks[0].stances is not None or shared or len(blocks) < 2:
+        return []
+    fits = [fit_blocks([_with_own_damping(each, each is block) for each in blocks]) for block in blocks]
+    sureness = [abs(own.values[-1]) / own.std[-1] for own in fits]
+    most = int(np.argmax(sureness))
+    found, together = fits[most], fit_blocks(blocks)
+    moved = abs(found.values[RATE] - together.values[RATE])
+    if sureness[most] < SURE or moved < NORMAL95 * wide.std[RATE]:
+        return []
+    if not isinstance(wide.model, KelvinVoigt) and _left(fit_blocks(tangent)) < _left(found):
+        return []
+    apart, late = found.values[-1], -1e3 * found.values[-1] / found.values[0]
+    text = (
+        f"{blocks[most].label}: {wide.foot} {wide.axis}: damping is {apart:+.3g} N.m.s/rad beside the other "
+        f"recordings', as if its force sensors were {abs(late):.2g} ms {'later' if late > 0 else 'earlier'} against "
+        "the IMU than theirs. Record it again with clocks and filters as in the others, or leave it out"
+    )
+    return [Note(CODE, "warning", text)]
+
+
+def _with_own_damping(block: Block, own: bool) -> Block:
+    return beside(block, block.regressor[:, RATE : RATE + 1] * float(own))
+
+
+def _left(fit: LinearFit) -> float:
+    return sum(float(residual @ residual) for residual in fit.residuals.values())

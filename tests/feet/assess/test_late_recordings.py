@@ -1,0 +1,94 @@
+"""A recording that is late where the others are not, and damping that differs for another reason."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from biped import record, sway
+from bush_data_sets import Rubber
+from feet_trials import LINEAR, noisy
+from made_recording import FOOT, PERIOD, made_recording, swayed
+from plantar.feet.assess.late_recordings import CODE, late_recordings
+from plantar.feet.fit.axis_fit import fit_axis
+from plantar.feet.identify import identify_feet
+from plantar.feet.recording import Recording
+from plantar.feet.regression.regression_data import tangent_blocks
+from plantar.feet.settings import FeetSettings
+from plantar.logs.motion_log import MotionLog
+from plantar.robot.model import RobotModel
+
+COUNT = 6000
+PLAIN = Rubber(stiffness=420.0, damping=18.0)
+SLIPPING = Rubber(stiffness=420.0, damping=18.0, slip_torque=4.0, slip_angle=0.006)
+
+
+def swaying(rubber: Rubber, late: float = 0.0, sizes: tuple[float, ...] = (1.0, 1.0, 1.0)) -> list[Recording]:
+    """Three sways of these sizes; the force sensors are `late` [s] in the second."""
+    made, time = [], PERIOD * np.arange(COUNT)
+    for seed, size in enumerate(sizes):
+        angle = size * swayed(COUNT, seed=seed)
+        torque = rubber.torque(angle, np.gradient(angle, PERIOD))
+        torque += 0.1 * np.random.default_rng(seed).standard_normal(COUNT)
+        torque = np.interp(time - late * (seed == 1), time, torque)
+        made.append(made_recording(f"sway_{seed}", angle, torque))
+    return made
+
+
+def said(recordings: list[Recording], model: str = "kelvin_voigt", std: float = 0.2) -> list[str]:
+    """std: of the damping [N·m·s/rad], with all that is unsure about it."""
+    fit = fit_axis(recordings, FOOT, "pitch", FeetSettings(model=model))
+    assert fit is not None
+    covariance = fit.covariance.copy()
+    covariance[1, 1] = std**2
+    wide = replace(fit, covariance=covariance)
+    return [note.text for note in late_recordings(recordings, wide, tangent_blocks(recordings, fit), False)]
+
+
+@pytest.mark.parametrize(("late", "told"), [(0.012, "12 ms later"), (-0.012, "12 ms earlier")])
+def test_a_late_recording_is_told_with_its_delay(late: float, told: str) -> None:
+    (text,) = said(swaying(PLAIN, late))
+    assert text.startswith(f"sway_1: {FOOT} pitch: damping is {'-' if late > 0 else '+'}5.")
+    assert told in text
+
+
+def test_a_delay_within_the_interval_of_damping_is_none() -> None:
+    """12 ms in one of three recordings move the damping by 420 · 0.012 / 3 = 1.7."""
+    assert len(said(swaying(PLAIN, 0.012), std=0.6)) == 1
+    assert said(swaying(PLAIN, 0.012), std=1.2) == []
+
+
+def test_recordings_that_agree_are_none() -> None:
+    assert said(swaying(PLAIN), std=0.001) == []
+
+
+def test_a_memory_makes_damping_differ_with_the_size_of_motions() -> None:
+    """As spring and damper, the small sway shows more damping; the memory explains that, and leaves less."""
+    recordings = swaying(SLIPPING, sizes=(1.0, 0.15, 1.0))
+    assert len(said(recordings, "kelvin_voigt", std=0.01)) == 1
+    assert said(recordings, "elastoplastic", std=0.01) == []
+
+
+def test_one_recording_has_none_to_differ_from() -> None:
+    assert said(swaying(PLAIN, 0.012)[1:2]) == []
+
+
+def late_by(log: MotionLog, delay: float) -> MotionLog:
+    columns = {
+        name: np.interp(log.time - delay, log.time, values) if name.startswith("wrench.left") else values
+        for name, values in log.columns.items()
+    }
+    return replace(log, columns=columns)
+
+
+def test_no_number_of_the_late_axis_is_usable(robot: RobotModel) -> None:
+    logs = [noisy(record(sway(f"sway_{seed}", seed=seed)), seed) for seed in range(3)]
+    good = identify_feet(robot, logs, settings=LINEAR)
+    assert CODE not in {note.code for note in good.notes}
+    logs[1] = late_by(logs[1], 0.04)
+    result = identify_feet(robot, logs, settings=LINEAR)
+    assert {note.text.split(":")[0] for note in result.notes if note.code == CODE} == {"sway_1"}
+    usable = {row.foot for row in result.parameters if row.axis != "z" and row.verdict == "usable"}
+    assert usable == {"right"}

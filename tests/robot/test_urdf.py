@@ -1,0 +1,62 @@
+"""URDFs of which Pinocchio would leave out a part without a word, and those that it reads as they are."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from biped_robot import write_robot
+from plantar.errors import RobotError
+from plantar.robot.model import load_robot
+from plantar.robot.urdf import parse_urdf
+
+PLAIN = """<robot name="r">
+  <link name="trunk"><inertial><origin xyz="0 0 .1"/><mass value="1e1"/>
+    <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+  <!-- made from <xacro:robot> with ${mass} -->
+  <link name="foot"/>
+  <joint name="ankle" type="revolute"><parent link="trunk"/><child link="foot"/>
+    <origin xyz=" 0 0  -1" rpy="0 0 0"/><axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="9" velocity="9"/></joint>
+</robot>"""
+FILE = Path("robot.urdf")
+
+
+def refusal(old: str, new: str) -> str:
+    assert old in PLAIN
+    with pytest.raises(RobotError) as caught:
+        parse_urdf(PLAIN.replace(old, new), FILE, floating=False)
+    return str(caught.value)
+
+
+def test_a_plain_one_is_read() -> None:
+    model = parse_urdf(PLAIN, FILE, floating=False)
+    assert model.names[1] == "ankle"
+    assert parse_urdf(PLAIN, FILE, floating=True).inertias[1].mass == pytest.approx(10.0)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ('"1e1"', '"7,26"', "robot.urdf, value '7,26': value of <mass> in link 'trunk' (valid: a number)"),
+        ('"1e1"', '"nan"', "value 'nan': value of <mass>"),
+        ('"1e1"', '"-2"', "value '-2': the mass of link 'trunk' is negative"),
+        ('iyy="1"', 'iyy="1 2"', "value '1 2': iyy of <inertia> in link 'trunk'"),
+        ('"0 0 .1"', '"0 0"', "value '0 0': xyz of <origin> in link 'trunk' (valid: 3 numbers"),
+        ('rpy="0 0 0"', 'rpy="0 0 0,5"', "rpy of <origin> in joint 'ankle'"),
+        ('"0 1 0"', '"y"', "xyz of <axis> in joint 'ankle'"),
+        ('"1e1"', '"${mass}"', "is xacro that was not expanded (valid: the URDF that `xacro robot.urdf"),
+        ('<link name="foot"/>', '<xacro:foot xmlns:xacro="http://www.ros.org/wiki/xacro"/>', "is xacro"),
+        ("robot", "sdf", "its root is <sdf>"),
+    ],
+)  # fmt: skip
+def test_what_would_be_left_out_is_named(old: str, new: str, told: str) -> None:
+    assert told in refusal(old, new)
+
+
+def test_a_robot_without_weight_is_refused(tmp_path: Path) -> None:
+    path = write_robot(tmp_path)
+    urdf = tmp_path / "biped.urdf"
+    urdf.write_text(urdf.read_text().replace("<inertial>", "<!--").replace("</inertial>", "-->"))
+    with pytest.raises(RobotError, match="its links weigh nothing"):
+        load_robot(path)
