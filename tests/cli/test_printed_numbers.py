@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from command_line import run
+from command_line import refused, run
 from plantar.cli.identify.dynamics_tables import print_joints
 from plantar.cli.identify.feet_tables import validation_table
 from plantar.cli.inspect import _foot_rows, _print
@@ -81,6 +81,24 @@ def test_a_diagnosis_has_its_shares_in_percent(tmp_path: Path, capsys: pytest.Ca
     assert "left  pitch  damping" in text
     assert " 2  delay       delay 75 %, noise 25 %\n" in text, "what makes next to nothing is left out"
     assert "Against delay: measure it." in text
+
+
+def test_a_diagnosis_of_no_parameter_is_a_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    told = Diagnosis("left", "pitch", "damping", "delay", {"delay": 1.0}, 2.04, "said", advice="measure it")
+    result = FeetResult("b", (), {}, "kelvin_voigt", (), (), (), (), (), diagnosis=(told,))
+    line = refused(capsys, "diagnose", result.save(tmp_path))
+    assert "diagnosis of left pitch damping, which is no parameter" in line
+
+
+@pytest.mark.parametrize(
+    ("schema", "valid"), [("plantar.feet/0", "plantar.feet/1"), ("plantar.arms/1", "plantar.inertia/1")]
+)
+def test_a_report_of_another_version_names_the_one_that_is_read(
+    schema: str, valid: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "result.json"
+    path.write_text(f'{{"schema": "{schema}"}}')
+    assert valid in refused(capsys, "report", path)
 
 
 def test_scores_stand_under_their_heads() -> None:

@@ -24,5 +24,7 @@ def run(
 
     Example: plantar report out/feet/result.json
     """
-    feet = read_result(result)["schema"] == FEET_SCHEMA
+    feet = read_result(result)["schema"].startswith(
+        FEET_SCHEMA.partition("/")[0]
+    )  # its reader names the version
     print(write_feet_report(result, out) if feet else write_dynamics_report(result, out))
