@@ -14,14 +14,23 @@ from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import open_log
 
 
-def log(name: str) -> MotionLog:
-    return MotionLog(name, np.arange(3.0), {})
+def log(name: str, **columns: list[float]) -> MotionLog:
+    return MotionLog(name, np.arange(3.0), {name: np.array(values) for name, values in columns.items()})
 
 
 def test_two_logs_of_one_name_are_refused() -> None:
     check_names([log("one"), log("two")])
     with pytest.raises(DataError, match="two logs are called 'one'"):
         check_names([log("one"), log("two"), log("one")])
+
+
+def test_one_recording_under_two_names_is_refused() -> None:
+    one = log("one", a=[1.0, np.nan, 3.0])
+    others = [log("value", a=[1.0, np.nan, 4.0]), log("column", b=[1.0, np.nan, 3.0])]
+    later = MotionLog("later", np.arange(3.0) + 1.0, one.columns)
+    check_names([one, *others, later])
+    with pytest.raises(DataError, match="one and copy hold the same recording"):
+        check_names([one, *others, log("copy", a=[1.0, np.nan, 3.0])])
 
 
 def test_what_is_no_log_or_no_robot_is_said_in_one_line() -> None:

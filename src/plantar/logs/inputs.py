@@ -156,13 +156,29 @@ def open_together(paths: Sequence[Path], robot: RobotModel, memory: int | None =
 
 
 def check_names(logs: Sequence[MotionLog]) -> None:
-    """DataError where two logs have one name: results name motions by them."""
+    """DataError where two logs have one name, which results name motions by, or are one recording, told twice."""
     seen: dict[str, MotionLog] = {}
     for log in logs:
         if log.name in seen:
             message = f"two logs are called '{log.name}': {seen[log.name].source} and {log.source}"
             raise DataError(f"{message} (valid: file names that differ, since results name motions by them)")
+        for other in seen.values():
+            if _alike(log, other):
+                message = f"{other.source} and {log.source} hold the same recording"
+                raise DataError(
+                    f"{message} (valid: each once; told twice, intervals come out too narrow, and a log that was "
+                    "fitted validates nothing)"
+                )
         seen[log.name] = log
+
+
+def _alike(log: MotionLog, other: MotionLog) -> bool:
+    """Whether two logs have the same times and values."""
+    if not log.columns or len(log) != len(other) or log.columns.keys() != other.columns.keys():
+        return False
+    return np.array_equal(log.time, other.time) and all(
+        np.array_equal(values, other.columns[name], equal_nan=True) for name, values in log.columns.items()
+    )
 
 
 def _bounded(logs: Sequence[LogInput], memory: int) -> bool:
