@@ -16,7 +16,7 @@ from plantar.design.information import CRITERIA, Criterion
 from plantar.design.known import Known
 from plantar.design.legs import Legs
 from plantar.design.linear import LinearRobot
-from plantar.design.reach import Reach
+from plantar.design.reach import FRICTION, Reach
 from plantar.design.rehearsal import Rehearsal, rehearse
 from plantar.design.search import best_motion
 from plantar.design.soft_feet import CARRIED, Softness
@@ -36,7 +36,6 @@ SPARE: Final = 0.005  # smaller than what is just allowed
 # One that leaves room at both ends of the range is made larger once, at most so much: small soles need all of it.
 LARGER: Final = 1.1
 ROUNDS: Final = 8
-FRICTION: Final = 0.3  # of horizontal to vertical force at most: dry rubber on any floor holds more
 EFFORT: Final = 0.9  # of a joint's torque limit
 SHORTEST, LONGEST = 20.0, 600.0  # s
 
