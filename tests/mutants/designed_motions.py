@@ -26,8 +26,8 @@ DESIGNED_MOTIONS = (
         "[[-1.0], [1.0]]", "[[-1.0], [0.0]]", QUICK,
     ),
     Mutant(
-        "design/reach.py", "feet push the same way", "place, :, :] - torque[..., other", "place, :, :] + torque[..., other",
-        ("design/test_grip.py",),
+        "design/reach.py", "feet push the same way",
+        "place, :, :] - torque[..., other", "place, :, :] + torque[..., other", ("design/test_linear.py",),
     ),
     Mutant(
         "design/information.py", "an unknown element costs nothing",

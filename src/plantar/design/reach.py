@@ -10,9 +10,8 @@ import numpy as np
 from plantar.contact.polygon import convex_hull
 from plantar.conventions import GRAVITY, Array
 from plantar.design.family import CHANNELS, Lines
-from plantar.design.grip import internal_forces
 from plantar.design.legs import Legs
-from plantar.design.linear import LinearRobot
+from plantar.design.linear import LinearRobot, internal_forces
 from plantar.design.rubber import SECANT, SHARE, SLIP_ANGLE, remembered
 from plantar.design.soft_feet import Softness, respond
 from plantar.twin.presets import DEFAULT, preset_named

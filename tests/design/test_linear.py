@@ -9,7 +9,7 @@ import pinocchio as pin
 import pytest
 
 import design_samples
-from plantar.design.grip import internal_forces
+from plantar.design.linear import internal_forces
 from plantar.design.rubber import remembered
 from plantar.twin.robots import hrp2
 from plantar.twin.robots.from_robot import describe
