@@ -32,6 +32,9 @@ KEPT: Final = 0.0055
 # A motion that does not hold is tried again, smaller by half of what it is too large, as centres of pressure run ahead
 # where a sole begins to roll; at most so much smaller.
 SMALLER: Final = 0.85
+# m: a centre of pressure never leaves a sole. One at the border, to what its computation misses by, does not say how
+# much too large a motion is: it is made as much smaller as it may.
+TIPS: Final = 0.0005
 SPARE: Final = 0.005  # smaller than what is just allowed
 # One that leaves room at both ends of the range is made larger once, at most so much: small soles need all of it.
 LARGER: Final = 1.1
@@ -232,7 +235,8 @@ def _used(one: Rehearsal) -> tuple[float, str]:
     if one.fell is not None:
         return np.inf, f"{at}: {one.fell}"
     room = one.standing_margin - KEPT
-    share = (one.standing_margin - one.sole_margin) / room if room > 0 else np.inf
+    told = room > 0 and one.sole_margin > TIPS
+    share = (one.standing_margin - one.sole_margin) / room if told else np.inf
     close = f"{at} a centre of pressure comes within {1e3 * one.sole_margin:.1f} mm of a sole's border"
     return max(
         (share, close),
