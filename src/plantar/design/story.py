@@ -225,8 +225,11 @@ def _rehearsed(
 
 
 def _rehearsed_at(low: float, high: float) -> tuple[float, ...]:
-    """Times the stiffness told: that, both ends, and between them, where a robot may resonate."""
-    return tuple(sorted({low, float(np.sqrt(low)), 1.0, float(np.sqrt(high)), high}))
+    """Times the stiffness told: that, both ends, and between them, where a robot may resonate.
+
+    Twice towards the stiff end: there quick motions of a small robot resonate within a few tenths of the stiffness.
+    """
+    return tuple(sorted({low, low**0.5, 1.0, high**0.5, high**0.75, high}))
 
 
 def _used(one: Rehearsal) -> tuple[float, str]:
