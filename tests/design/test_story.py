@@ -235,6 +235,16 @@ def test_a_motion_that_leaves_room_is_made_larger_once_and_not_if_that_does_not_
     assert sizes == pytest.approx([1.0, 1.1, 1.1] if holds else [1.0, 1.1, 1.0, 1.0], abs=0.01)
 
 
+@pytest.mark.parametrize("margin", [4e-4, 0.0, -2e-4, -1.0])
+def test_a_centre_of_pressure_at_the_border_does_not_say_how_much_too_large(margin: float) -> None:
+    """It never leaves a sole: how far beyond the limits a sole tips is not seen, so the step is the largest."""
+    used, reason = story._used(Rehearsal(2.0, sole_margin=margin, standing_margin=0.05))
+    assert used == np.inf
+    assert "of a sole's border" in reason
+    seen = story._used(Rehearsal(2.0, sole_margin=6e-4, standing_margin=0.05))[0]
+    assert seen == pytest.approx((0.05 - 6e-4) / (0.05 - KEPT))
+
+
 def test_feet_that_are_too_soft_are_refused_with_what_is_needed() -> None:
     with pytest.raises(
         MotionError, match=r"feet of 150 N·m/rad cannot hold the robot upright \(valid: at least 23"

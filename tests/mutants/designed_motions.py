@@ -26,6 +26,10 @@ DESIGNED_MOTIONS = (
         "[[-1.0], [1.0]]", "[[-1.0], [0.0]]", QUICK,
     ),
     Mutant(
+        "design/reach.py", "feet push the same way",
+        "place, :, :] - torque[..., other", "place, :, :] + torque[..., other", ("design/test_linear.py",),
+    ),
+    Mutant(
         "design/information.py", "an unknown element costs nothing",
         "whole[..., :2, :2] - across", "whole[..., :2, :2] - 0 * across", QUICK,
     ),

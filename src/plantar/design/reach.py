@@ -11,7 +11,7 @@ from plantar.contact.polygon import convex_hull
 from plantar.conventions import GRAVITY, Array
 from plantar.design.family import CHANNELS, Lines
 from plantar.design.legs import Legs
-from plantar.design.linear import LinearRobot
+from plantar.design.linear import LinearRobot, internal_forces
 from plantar.design.rubber import SECANT, SHARE, SLIP_ANGLE, remembered
 from plantar.design.soft_feet import Softness, respond
 from plantar.twin.presets import DEFAULT, preset_named
@@ -19,6 +19,8 @@ from plantar.twin.presets import DEFAULT, preset_named
 RATE: Final = 20.0  # Hz: sixteen samples in the quickest sine
 EDGE: Final = 0.007  # m, of the centre of pressure from each sole's border; `identify feet` drops 5 mm
 SMALLER_EDGE: Final = 0.2  # of a sole's half width at most: small feet need some room to be excited
+FRICTION: Final = 0.3  # of horizontal to vertical force at most: dry rubber on any floor holds more
+SIDES: Final = 8  # of the polygon that stands for the circle of friction
 LIFT: Final = 0.35  # of its load at rest that every foot keeps at least
 BEND: Final = 0.1  # rad of the bush: less than the paper's largest, where rubber may harden
 # Of each channel: share of the centre of mass' height, rad, swings. Far enough for the bushes, near enough to standing
@@ -27,6 +29,7 @@ LARGEST: Final = {
     "centre.x": 0.07, "centre.y": 0.1, "centre.z": 0.02, "trunk.roll": 0.08, "trunk.pitch": 0.08, "arms": 1.0,
     "left.roll": 0.1, "left.pitch": 0.1, "right.roll": 0.1, "right.pitch": 0.1,
 }  # fmt: skip
+_SIDES: Final = np.column_stack([trig(2 * np.pi * np.arange(SIDES) / SIDES) for trig in (np.cos, np.sin)])
 NEAR: Final = 0.3  # of a limit: what is less does not reach it in one step of the search
 ROOM: Final = 0.8  # of the way to a joint's limit, and of its speed
 
@@ -83,6 +86,7 @@ class Reach:
         self.vertical = told.vertical
         self.weight = robot.pendulum.mass * GRAVITY / len(self.feet)
         self._edges = [_edges(legs, foot) for foot in self.feet]
+        self._squeezed = internal_forces(legs)
         height = robot.pendulum.height
         largest = [
             LARGEST[channel] * (height if channel.startswith("centre") else 1.0) for channel in CHANNELS
@@ -95,6 +99,7 @@ class Reach:
             (bent, *2 * (np.full(bent.shape[1], BEND),)),
             (load, np.full(load.shape[1], (1 - LIFT) * self.weight), np.full(load.shape[1], np.inf)),
             *(self._sole(place) for place in range(len(self.feet))),
+            *(self._floor(place) for place in range(len(self.feet))),
         ]
         # What is watched, (size, series, N), and how far each series may go down and up, (series,).
         self._watched = np.concatenate([values for values, _, _ in limits], axis=1)
@@ -120,11 +125,37 @@ class Reach:
     def _sole(self, place: int) -> tuple[Array, Array, Array]:
         """Towards each edge of a foot's sole, its springs' torque less what its load holds [N·m], and its limits."""
         normals, room = self._edges[place]
-        torque = self.stiffness[:, None, None] * self.deflection[:, :, place]
-        torque += self.damping[:, None, None] * self.rate[:, :, place]
-        out = outward(normals, torque) - room[:, None] * self.load[:, :, place, None]
+        out = outward(normals, self._torque()[:, :, place]) - room[:, None] * self.load[:, :, place, None]
         high = np.tile(room * self.weight, len(self.bushes))
         return out.reshape(self.lines.size, high.size, -1), np.full(high.size, np.inf), high
+
+    def _floor(self, place: int) -> tuple[Array, Array, Array]:
+        """Towards each side, a foot's horizontal force less what friction holds under its load [N], and its limits."""
+        aside = (
+            self._aside(place, self._torque(), self.load)
+            + 0.5 * np.einsum("ek,ckn->cen", _SIDES, self.forces[:, :2])[:, None]
+        )
+        out = aside - FRICTION * self.load[:, :, place, None]
+        high = np.full(len(self.bushes) * SIDES, FRICTION * self.weight)
+        return out.reshape(self.lines.size, high.size, -1), np.full(high.size, np.inf), high
+
+    def _torque(self) -> Array:
+        """Of the springs and dampers, per unit of each coefficient, (size, S, feet, 2, N) [N·m]."""
+        return np.asarray(
+            self.stiffness[:, None, None, None] * self.deflection
+            + self.damping[:, None, None, None] * self.rate
+        )
+
+    def _aside(self, place: int, torque: Array, load: Array | None = None) -> Array:
+        """Towards each side, what one foot pushes against the other, (..., SIDES, N) [N], of torques
+        (..., feet, 2, N) and loads (..., feet, N)."""
+        other = torque.shape[-3] - 1 - place
+        odd = (torque[..., place, :, :] - torque[..., other, :, :]) / 2
+        pushed = np.einsum("ek,kj,...jn->...en", _SIDES, self._squeezed[:, :2], odd)
+        if load is not None:
+            less = (load[..., place, :] - load[..., other, :]) / 2
+            pushed += np.einsum("ek,k,...n->...en", _SIDES, self._squeezed[:, 2], less)
+        return np.asarray(pushed)
 
     def of(self, part: Array, coefficients: Array) -> Array:
         """A part (size, ...) of the response of motions with coefficients (..., size)."""
@@ -156,16 +187,14 @@ class Reach:
         return -watched / self._low[:, None], watched / self._high[:, None]
 
     def _slipping(self, coefficients: Array) -> Array:
-        """What the elements beside the springs add to the series of the soles' edges, which come last, (series, N)."""
+        """What the elements beside the springs add to the series of the soles' edges and of friction, which come last,
+        (series, N)."""
         bent = self.of(self.deflection, coefficients)
         states = remembered(bent.reshape(-1, bent.shape[-1]), [SLIP_ANGLE]).reshape(bent.shape)
         torque = self.element[:, None] * states
-        return np.concatenate(
-            [
-                outward(normals, torque[:, place]).reshape(-1, bent.shape[-1])
-                for place, (normals, _) in enumerate(self._edges)
-            ]
-        )
+        edges = [outward(normals, torque[:, place]) for place, (normals, _) in enumerate(self._edges)]
+        sides = [self._aside(place, torque) for place in range(len(self.feet))]
+        return np.concatenate([one.reshape(-1, bent.shape[-1]) for one in (*edges, *sides)])
 
 
 def margin_kept(polygon: Array) -> float:

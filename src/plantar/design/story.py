@@ -16,7 +16,7 @@ from plantar.design.information import CRITERIA, Criterion
 from plantar.design.known import Known
 from plantar.design.legs import Legs
 from plantar.design.linear import LinearRobot
-from plantar.design.reach import Reach
+from plantar.design.reach import FRICTION, Reach
 from plantar.design.rehearsal import Rehearsal, rehearse
 from plantar.design.search import best_motion
 from plantar.design.soft_feet import CARRIED, Softness
@@ -32,11 +32,13 @@ KEPT: Final = 0.0055
 # A motion that does not hold is tried again, smaller by half of what it is too large, as centres of pressure run ahead
 # where a sole begins to roll; at most so much smaller.
 SMALLER: Final = 0.85
+# m: a centre of pressure never leaves a sole. One at the border, to what its computation misses by, does not say how
+# much too large a motion is: it is made as much smaller as it may.
+TIPS: Final = 0.0005
 SPARE: Final = 0.005  # smaller than what is just allowed
 # One that leaves room at both ends of the range is made larger once, at most so much: small soles need all of it.
 LARGER: Final = 1.1
 ROUNDS: Final = 8
-FRICTION: Final = 0.3  # of horizontal to vertical force at most: dry rubber on any floor holds more
 EFFORT: Final = 0.9  # of a joint's torque limit
 SHORTEST, LONGEST = 20.0, 600.0  # s
 
@@ -223,8 +225,11 @@ def _rehearsed(
 
 
 def _rehearsed_at(low: float, high: float) -> tuple[float, ...]:
-    """Times the stiffness told: that, both ends, and between them, where a robot may resonate."""
-    return tuple(sorted({low, float(np.sqrt(low)), 1.0, float(np.sqrt(high)), high}))
+    """Times the stiffness told: that, both ends, and between them, where a robot may resonate.
+
+    Twice towards the stiff end: there quick motions of a small robot resonate within a few tenths of the stiffness.
+    """
+    return tuple(sorted({low, low**0.5, 1.0, high**0.5, high**0.75, high}))
 
 
 def _used(one: Rehearsal) -> tuple[float, str]:
@@ -233,7 +238,8 @@ def _used(one: Rehearsal) -> tuple[float, str]:
     if one.fell is not None:
         return np.inf, f"{at}: {one.fell}"
     room = one.standing_margin - KEPT
-    share = (one.standing_margin - one.sole_margin) / room if room > 0 else np.inf
+    told = room > 0 and one.sole_margin > TIPS
+    share = (one.standing_margin - one.sole_margin) / room if told else np.inf
     close = f"{at} a centre of pressure comes within {1e3 * one.sole_margin:.1f} mm of a sole's border"
     return max(
         (share, close),

@@ -10,8 +10,9 @@ from typing import Any, Final
 from plantar.choices import number_in, one_of
 from plantar.conventions import ROTATIONAL_AXES
 from plantar.design.information import WANTED, WANTED_DELAY, WANTED_VERTICAL
+from plantar.design.reach import FRICTION
 from plantar.design.rehearsal import Rehearsal
-from plantar.design.story import EFFORT, FRICTION, KEPT, Design
+from plantar.design.story import EFFORT, KEPT, Design
 from plantar.design.writing.controllers import TARGETS, ordered_joints
 from plantar.design.writing.foretold import foretold
 from plantar.design.writing.sheet import sheet
