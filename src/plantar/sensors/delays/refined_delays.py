@@ -1,7 +1,8 @@
 """Delays step by step: read the sensors at their moments, ask Newton's law what is left, until nothing is.
 
 One step follows the rates, which holds for some 50 ms. One delay common to all force sensors is the rule, with encoders
-and IMU read together; where feet or encoders clearly have delays of their own, each gets its own.
+and IMU read together. What feet and encoders show of delays beside these is drawn to none by what is usual of a robot's
+sensors; where they clearly have delays of their own, each gets its own.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -31,13 +33,15 @@ DISTINCT = 4.0  # deviations by which sensors must differ to have delays of thei
 LEAST_DISTINCT = 0.0015  # s, and by so much
 WELL_KNOWN = 0.003  # s: differences less well known than this are no ground for delays of their own
 LEAST_STD = 0.0003  # s: no robot's model shows a delay better, however fast its samples
+APART = 0.001  # s: deviation by which sensors of one robot are read apart; a cycle of a bus of 1 kHz
 
 
 @dataclass(frozen=True)
 class RefinedDelays:
-    """`values` (feet + 1,) [s]: the feet's and then the encoders' against the IMU, > 0: late; their common `std` [s].
+    """`values` (feet + 1,) [s]: the feet's and then the encoders' against the IMU, > 0: late; `std` [s] of each foot's
+    and `encoders_std` [s].
 
-    `feet_differ`, `encoders_differ`: whether they have delays of their own.
+    `feet_differ`, `encoders_differ`: whether they clearly have delays of their own.
     `closed` (logs,): in which logs Newton's law closes; `slowest`: the longest period among these [s].
     `suspect`: they seem to, and how much is not known well: steps from elsewhere may end elsewhere.
     `unsteady`: that they are not the same throughout, where these logs show it.
@@ -51,6 +55,7 @@ class RefinedDelays:
     encoders_differ: bool
     closed: Mask
     slowest: float
+    encoders_std: float = APART
     suspect: bool = False
     unsteady: ClockDrift | DelaysByLog | None = None
     residuals: tuple[NewtonEulerResidual, ...] = ()
@@ -120,44 +125,59 @@ def _step(
     slowest = max(log.period for log, own in zip(logs, tried, strict=True) if own)
     balances = [residual.balance for residual in residuals]
     contrasts, differ, suspect = _contrasts(len(at) - 1), np.zeros(len(at), dtype=bool), False
+    usual, unsure = np.zeros(len(at)), np.full(len(at), APART)
     free = estimate_delays(balances)
     if free is not None:
         apart = contrasts @ (at + free.values)
-        spread = np.sqrt(np.diag(contrasts @ free.covariance @ contrasts.T) + LEAST_STD**2)
+        variance = np.diag(contrasts @ free.covariance @ contrasts.T)
+        spread = np.sqrt(variance + LEAST_STD**2)
         seem = np.abs(apart) > np.maximum(DISTINCT * spread, LEAST_DISTINCT)
         differ, suspect = seem & (spread < WELL_KNOWN), bool((seem & (spread >= WELL_KNOWN)).any())
         differ[:-1] = differ[:-1].any()
+        share = APART**2 / (APART**2 + spread**2)
+        # What no model shows better is in the common delay's deviation already, which every foot has.
+        usual, unsure = share * apart, np.sqrt(share) * np.append(np.sqrt(variance[:-1]), spread[-1])
     flags = (bool(differ[0]), bool(differ[-1]))
     held = contrasts[~differ]
-    nearest = at - np.linalg.pinv(held) @ (held @ at) if len(held) else at
-    if np.abs(nearest - at).max() > 1e-9:
-        return RefinedDelays(nearest, np.inf, 1.0, *flags, closed, slowest)
+    nearest = at - np.linalg.pinv(held) @ (held @ at - usual[~differ]) if len(held) else at
+    found = _left(residuals, held, differ, np.where(differ, 0.0, unsure))
+    # What is left is told beside sensors that are read at moments of their own.
+    if np.abs(nearest - at).max() > LEAST_STD:
+        values = nearest if found is None else nearest + found.by
+        return RefinedDelays(values, np.inf, 1.0, *flags, closed, slowest)
+    if found is None:
+        return None
+    values, std, freedom = nearest + found.by, found.std, found.freedom
+    return RefinedDelays(values, std, freedom, *flags, closed, slowest, found.encoders_std, suspect)
+
+
+class _Left(NamedTuple):
+    """`by` (feet + 1,) [s] what the delays are more than those tried, and deviations [s] as in `RefinedDelays`."""
+
+    by: Array
+    std: float
+    encoders_std: float
+    freedom: float
+
+
+def _left(residuals: Sequence[NewtonEulerResidual], held: Array, differ: Mask, unsure: Array) -> _Left | None:
+    """What Newton's law leaves of the delays that are not `held` (c, feet + 1) together, or None where it tells none.
+
+    unsure (feet + 1,) [s]: deviations of what is held.
+    """
     if differ.any():
-        own = estimate_delays(balances, held)
+        own = estimate_delays([residual.balance for residual in residuals], held)
         if own is None or np.abs(own.values).max() > LONGEST:
             return None
-        std = float(np.hypot(np.sqrt(np.diag(own.covariance).max()), LEAST_STD))
-        return RefinedDelays(at + own.values, std, float(own.cells), *flags, closed, slowest, suspect)
+        std = np.sqrt(np.diag(own.covariance) + unsure**2)
+        least = LEAST_STD if differ[-1] else 0.0
+        feet, encoders = np.hypot(std[:-1].max(), LEAST_STD), np.hypot(std[-1], least)
+        return _Left(own.values, float(feet), float(encoders), float(own.cells))
     common = estimate_delay([residual.pair for residual in residuals])
     if common is None:
         return None
-    values = at + np.append(np.full(len(at) - 1, common.value), 0.0)
-    std = common.std if free is None else float(np.hypot(common.std, _by_encoders(balances, contrasts)))
-    return RefinedDelays(values, std, common.freedom, *flags, closed, slowest, suspect)
-
-
-def _by_encoders(balances: Sequence[Balance], contrasts: Array) -> float:
-    """Deviation of the feet's common delay [s] for encoders that are read with the IMU, or as far apart as it seems.
-
-    It is somewhere between what it is with the one and with the other, beyond what one more delay to be found moves it
-    by chance (J. A. Hausman, Econometrica 46, 1978): too little for a delay of the encoders' own, and not nothing.
-    """
-    together, apart = (estimate_delays(balances, held) for held in (contrasts, contrasts[:-1]))
-    if together is None or apart is None:
-        return 0.0
-    moved = apart.values[0] - together.values[0]
-    chance = max(apart.covariance[0, 0] - together.covariance[0, 0], 0.0)
-    return UNIFORM * float(np.sqrt(max(moved**2 - chance, 0.0)))
+    by = np.append(np.full(len(unsure) - 1, common.value), 0.0)
+    return _Left(by, float(np.hypot(common.std, unsure[:-1].max())), float(unsure[-1]), common.freedom)
 
 
 def _contrasts(feet: int) -> Array:
