@@ -115,8 +115,8 @@ def test_one_delay_is_kept_where_sensors_do_not_differ(
 ) -> None:
     found = sensor_delay(tmp_path, monkeypatch, 0.005, 0.005, 0.0)
     assert found.note.code == "delay"
-    assert found.feet == {}
-    assert found.encoders == 0.0
+    assert found.feet == pytest.approx({"left": 0.005, "right": 0.005}, abs=5e-4)
+    assert found.encoders == pytest.approx(0.0, abs=5e-4)
     assert found.delay == pytest.approx(0.005, abs=5e-4)
 
 
@@ -139,10 +139,10 @@ def test_feet_that_differ_and_encoders_that_lag_are_told(
     found = sensor_delay(tmp_path, monkeypatch, 0.012, 0.002, 0.0)
     assert found.note.code == "delays_apart"
     assert found.feet == pytest.approx({"left": 0.012, "right": 0.002}, abs=7e-4)
-    assert found.encoders == 0.0
+    assert found.encoders == pytest.approx(0.0, abs=5e-4)
     assert found.std > refined_delays.LEAST_STD, "no robot's model shows a delay better"
     lagging = sensor_delay(tmp_path, monkeypatch, 0.0, 0.0, 0.006)
-    assert lagging.feet == {}
+    assert list(lagging.feet.values()) == pytest.approx([0.0, 0.0], abs=5e-4)
     assert lagging.encoders == pytest.approx(0.006, abs=7e-4)
     assert "encoders +6" in lagging.note.text or "encoders +5.9" in lagging.note.text
 

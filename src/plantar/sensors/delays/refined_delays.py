@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import NamedTuple
 
 import numpy as np
 
@@ -38,12 +37,12 @@ APART = 0.001  # s: deviation by which sensors of one robot are read apart; a cy
 
 @dataclass(frozen=True)
 class RefinedDelays:
-    """`values` (feet + 1,) [s]: the feet's and then the encoders' against the IMU, > 0: late; `std` [s] of each foot's
-    and `encoders_std` [s].
+    """`values` (feet + 1,) [s]: the feet's and then the encoders' against the IMU, > 0: late; their common `std` [s].
 
     `feet_differ`, `encoders_differ`: whether they clearly have delays of their own.
     `closed` (logs,): in which logs Newton's law closes; `slowest`: the longest period among these [s].
     `suspect`: they seem to, and how much is not known well: steps from elsewhere may end elsewhere.
+    `feet_unsure`, `encoders_unsure` [s]: deviations of what is known of each foot beside all, and of the encoders.
     `unsteady`: that they are not the same throughout, where these logs show it.
     `residuals`: of these logs, read at these delays.
     """
@@ -55,8 +54,9 @@ class RefinedDelays:
     encoders_differ: bool
     closed: Mask
     slowest: float
-    encoders_std: float = APART
     suspect: bool = False
+    feet_unsure: float = 0.0
+    encoders_unsure: float = 0.0
     unsteady: ClockDrift | DelaysByLog | None = None
     residuals: tuple[NewtonEulerResidual, ...] = ()
 
@@ -134,50 +134,50 @@ def _step(
         seem = np.abs(apart) > np.maximum(DISTINCT * spread, LEAST_DISTINCT)
         differ, suspect = seem & (spread < WELL_KNOWN), bool((seem & (spread >= WELL_KNOWN)).any())
         differ[:-1] = differ[:-1].any()
-        share = APART**2 / (APART**2 + spread**2)
-        # What no model shows better is in the common delay's deviation already, which every foot has.
-        usual, unsure = share * apart, np.sqrt(share) * np.append(np.sqrt(variance[:-1]), spread[-1])
+        # What is known no better than by what is usual moves nothing; nor does anything beside what is much, not known.
+        known = (spread < APART) & (not suspect)
+        share = np.where(known, APART**2 / (APART**2 + spread**2), 0.0)
+        # What no model shows better is in the deviation of all feet's delay already.
+        own = np.sqrt(np.append(variance[:-1], spread[-1] ** 2))
+        usual, unsure = share * apart, np.where(share > 0, np.sqrt(share) * own, APART)
     flags = (bool(differ[0]), bool(differ[-1]))
     held = contrasts[~differ]
     nearest = at - np.linalg.pinv(held) @ (held @ at - usual[~differ]) if len(held) else at
-    found = _left(residuals, held, differ, np.where(differ, 0.0, unsure))
-    # What is left is told beside sensors that are read at moments of their own.
-    if np.abs(nearest - at).max() > LEAST_STD:
-        values = nearest if found is None else nearest + found.by
+    left = _left(residuals, held if differ.any() else None, len(at))
+    if (
+        np.abs(nearest - at).max() > LEAST_STD
+    ):  # what is left is told beside sensors read at moments of their own
+        values = nearest if left is None else nearest + left[0]
         return RefinedDelays(values, np.inf, 1.0, *flags, closed, slowest)
-    if found is None:
+    if left is None:
         return None
-    values, std, freedom = nearest + found.by, found.std, found.freedom
-    return RefinedDelays(values, std, freedom, *flags, closed, slowest, found.encoders_std, suspect)
+    by, std, freedom = left
+    unsure = np.where(differ, [*np.zeros(len(at) - 1), std], unsure)
+    beside = float(unsure[:-1].max()), float(unsure[-1])
+    return RefinedDelays(nearest + by, std, freedom, *flags, closed, slowest, suspect, *beside)
 
 
-class _Left(NamedTuple):
-    """`by` (feet + 1,) [s] what the delays are more than those tried, and deviations [s] as in `RefinedDelays`."""
+def _left(
+    residuals: Sequence[NewtonEulerResidual], held: Array | None, count: int
+) -> tuple[Array, float, float] | None:
+    """What Newton's law leaves of `count` delays [s], its deviation [s] and that one's degrees of freedom; None where
+    it tells none.
 
-    by: Array
-    std: float
-    encoders_std: float
-    freedom: float
-
-
-def _left(residuals: Sequence[NewtonEulerResidual], held: Array, differ: Mask, unsure: Array) -> _Left | None:
-    """What Newton's law leaves of the delays that are not `held` (c, feet + 1) together, or None where it tells none.
-
-    unsure (feet + 1,) [s]: deviations of what is held.
+    held: combinations (c, count) of delays that stay as they are; None: one delay common to all feet is left.
     """
-    if differ.any():
+    if held is not None:
         own = estimate_delays([residual.balance for residual in residuals], held)
         if own is None or np.abs(own.values).max() > LONGEST:
             return None
-        std = np.sqrt(np.diag(own.covariance) + unsure**2)
-        least = LEAST_STD if differ[-1] else 0.0
-        feet, encoders = np.hypot(std[:-1].max(), LEAST_STD), np.hypot(std[-1], least)
-        return _Left(own.values, float(feet), float(encoders), float(own.cells))
+        return (
+            own.values,
+            float(np.hypot(np.sqrt(np.diag(own.covariance).max()), LEAST_STD)),
+            float(own.cells),
+        )
     common = estimate_delay([residual.pair for residual in residuals])
     if common is None:
         return None
-    by = np.append(np.full(len(unsure) - 1, common.value), 0.0)
-    return _Left(by, float(np.hypot(common.std, unsure[:-1].max())), float(unsure[-1]), common.freedom)
+    return np.append(np.full(count - 1, common.value), 0.0), common.std, common.freedom
 
 
 def _contrasts(feet: int) -> Array:

@@ -14,7 +14,7 @@ from functools import partial
 
 import numpy as np
 
-from plantar.conventions import NORMAL95, Mask
+from plantar.conventions import NORMAL95, Array, Mask
 from plantar.cores import Each
 from plantar.estimation.delays.delay import LEAST_CLOSED
 from plantar.estimation.delays.lag_search import Lags, search_lags
@@ -174,12 +174,10 @@ def _unseen(robot: RobotModel, logs: Sequence[MotionLog]) -> SensorDelay:
 def _told(robot: RobotModel, found: RefinedDelays) -> SensorDelay:
     """Delays that the logs show, with what is said of them."""
     feet, encoders = found.values[:-1], float(found.values[-1])
-    value, unsure = float(np.mean(feet)), found.encoders_std
+    value, beside = float(np.mean(feet)), found.encoders_unsure
     if found.unsteady is not None:
-        std = float(np.hypot(found.std, found.unsteady.std))
-        return SensorDelay(
-            value, std, found.freedom, True, found.unsteady.note, encoders_std=unsure, doubtful=True
-        )
+        std, note = float(np.hypot(found.std, found.unsteady.std)), found.unsteady.note
+        return SensorDelay(value, std, found.freedom, True, note, encoders_std=beside, doubtful=True)
     if found.feet_differ or found.encoders_differ:
         return _apart(list(robot.feet), found)
     prior = robot.uncertainty.wrench_delay
@@ -187,32 +185,34 @@ def _told(robot: RobotModel, found: RefinedDelays) -> SensorDelay:
     usual = abs(value) < SIGNIFICANT * float(np.hypot(prior, found.std))
     gain = prior**2 / (prior**2 + found.std**2) if usual else 1.0
     clock = max(CLOCK * found.slowest, LEAST_STD)
-    delay, std = gain * value, float(np.hypot(np.sqrt(gain) * found.std, clock))
+    delay, common = gain * value, float(np.hypot(np.sqrt(gain) * found.std, clock))
+    std = float(np.hypot(common, found.feet_unsure))
     told = f"wrenches are {1e3 * delay:+.1f} ± {1e3 * NORMAL95 * std:.1f} ms late (95 %) against IMU and encoders"
     advice = "uncertain, which widens the interval of the damping: record arm sweeps of 0.3 to 1 Hz without an operator"
-    if std > KNOWN_STD and abs(delay) <= SIGNIFICANT * std:
+    if common > KNOWN_STD and abs(delay) <= SIGNIFICANT * common:
         note = Note("delay_poorly_known", "warning", f"{told}: not corrected; {advice}")
-        std, unsure = (
-            float(np.hypot(std, np.abs(delay + feet - value).max())),
-            float(np.hypot(unsure, encoders)),
-        )
-        return SensorDelay(0.0, std, found.freedom, True, note, encoders_std=unsure)
+        std, beside = float(np.hypot(delay, std)), float(np.hypot(encoders, beside))
+        return SensorDelay(0.0, std, found.freedom, True, note, encoders_std=beside)
     note = Note("delay", "info", f"{told}: corrected")
-    if std > KNOWN_STD:
+    if common > KNOWN_STD:
         note = Note("delay_poorly_known", "warning", f"{told}: corrected; {advice}")
-    each = dict(zip(robot.feet, (delay + feet - value).tolist(), strict=True)) if np.ptp(feet) else {}
-    return SensorDelay(delay, std, found.freedom, True, note, each, encoders, unsure)
+    each = _each_foot(robot.feet, feet - value + delay)
+    return SensorDelay(delay, std, found.freedom, True, note, each, encoders, beside)
+
+
+def _each_foot(names: Iterable[str], delays: Array) -> dict[str, float]:
+    """The delay of each foot where they are not all the same."""
+    return dict(zip(names, delays.tolist(), strict=True)) if np.ptp(delays) > 0 else {}
 
 
 def _apart(names: Sequence[str], found: RefinedDelays) -> SensorDelay:
     """Each foot's delay and the encoders', where some clearly differ."""
-    feet, encoders = found.values[:-1], float(found.values[-1])
-    mean, std = float(np.mean(feet)), max(found.std, found.encoders_std)
-    delays = dict(zip(names, feet.tolist(), strict=True)) if np.ptp(feet) else {}
+    mean, encoders = float(np.mean(found.values[:-1])), float(found.values[-1])
+    delays, std = _each_foot(names, found.values[:-1]), float(np.hypot(found.std, found.feet_unsure))
     each = ", ".join(f"{name} {1e3 * delay:+.1f}" for name, delay in delays.items()) or f"{1e3 * mean:+.1f}"
     text = (
         f"sensors have different delays relative to the IMU: wrenches {each} ms, encoders {1e3 * encoders:+.1f} ms "
-        f"(± {1e3 * NORMAL95 * std:.1f} ms, 95 %): corrected"
+        f"(± {1e3 * NORMAL95 * found.std:.1f} ms, 95 %): corrected"
     )
     note = Note("delays_apart", "warning", text)
-    return SensorDelay(mean, found.std, found.freedom, True, note, delays, encoders, found.encoders_std)
+    return SensorDelay(mean, std, found.freedom, True, note, delays, encoders, found.encoders_unsure)
