@@ -152,6 +152,8 @@ def _step(
     if left is None:
         return None
     by, std, freedom = left
+    if free is not None and not differ.any():
+        std = float(np.hypot(std, _by_encoders(balances, contrasts)))
     unsure = np.where(differ, [*np.zeros(len(at) - 1), std], unsure)
     beside = float(unsure[:-1].max()), float(unsure[-1])
     return RefinedDelays(nearest + by, std, freedom, *flags, closed, slowest, suspect, *beside)
@@ -178,6 +180,20 @@ def _left(
     if common is None:
         return None
     return np.append(np.full(count - 1, common.value), 0.0), common.std, common.freedom
+
+
+def _by_encoders(balances: Sequence[Balance], contrasts: Array) -> float:
+    """Deviation of the feet's common delay [s] for encoders that are read as tried, or as far apart as it seems.
+
+    It is somewhere between what it is with the one and with the other, beyond what one more delay to be found moves it
+    by chance (J. A. Hausman, Econometrica 46, 1978): too little for a delay of the encoders' own, and not nothing.
+    """
+    together, apart = (estimate_delays(balances, held) for held in (contrasts, contrasts[:-1]))
+    if together is None or apart is None:
+        return 0.0
+    moved = apart.values[0] - together.values[0]
+    chance = max(apart.covariance[0, 0] - together.covariance[0, 0], 0.0)
+    return UNIFORM * float(np.sqrt(max(moved**2 - chance, 0.0)))
 
 
 def _contrasts(feet: int) -> Array:
