@@ -141,8 +141,8 @@ DRAWN_BY_LOT = (
     Mutant(
         "sensors/delays/sensor_delay.py",
         "delays as from endless data",
-        "return SensorDelay(mean, found.std, found.freedom, True, note, delays, encoders)",
-        "return SensorDelay(mean, found.std, np.inf, True, note, delays, encoders)",
+        "SensorDelay(mean, std, found.freedom, True",
+        "SensorDelay(mean, std, np.inf, True",
         ("sensors/delays/test_told_delay.py",),
     ),
     Mutant(

@@ -75,6 +75,10 @@ LITERAL_EDGES = (
         "LEAST_DISTINCT = 0.003", ("sensors/delays/test_edges.py",),
     ),
     Mutant(
+        "sensors/delays/refined_delays.py", "sensors are apart by half as much", "APART = 0.001", "APART = 0.0005",
+        ("sensors/delays/test_edges.py",),
+    ),
+    Mutant(
         "feet/assess/verdicts.py", "a share for per cent", "loses {100 * self.softened:.0f} %",
         "loses {self.softened:.0f} %", ("feet/assess/test_texts.py",),
     ),

@@ -22,8 +22,8 @@ OF_THEIR_KINDS = (
     Mutant(
         "sensors/delays/sensor_delay.py",
         "a delay that is not corrected widens nothing",
-        "SensorDelay(0.0, float(np.hypot(delay, std)), found.freedom",
-        "SensorDelay(0.0, std, found.freedom",
+        "std, beside = float(np.hypot(delay, std)), ",
+        "std, beside = std, ",
         ("sensors/delays/test_told_delay.py",),
     ),
     Mutant(

@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from biped import TRUTH, record, sway
 from biped_robot import make_robot
+from feet_trials import PUNCTUAL
+from made_recording import FOOT, PERIOD, made_recording, swayed
+from plantar.contact.stances import Stances
+from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.identify import identify_feet
-from plantar.feet.interval_width.encoder_delay import NAME
+from plantar.feet.interval_width.encoder_delay import NAME, encoder_delay_causes
+from plantar.feet.regression.regression_data import tangent_blocks
 from plantar.feet.settings import FeetSettings
 from plantar.logs.motion_log import MotionLog
 from plantar.results.feet import FeetResult
@@ -62,3 +69,22 @@ def test_early_ones_widen_the_damping_until_it_holds_the_truth(
         without = (high - low) / 2 * np.sqrt(1 - share)
         missed.append(abs(row.value - law.damping) > without)
     assert any(missed), "without it some interval misses"
+
+
+def test_of_a_walk_encoders_late_by_what_nobody_knows_are_damping() -> None:
+    """Joints alone bend the bush of a foot that steps: K times the delay goes into C."""
+    angle = swayed(2000, seed=1)
+    rate = np.gradient(angle, PERIOD)
+    stances = Stances(np.arange(2000) // 100, np.ones(2000))
+    torque = 400.0 * angle + 20.0 * rate + 0.05 * np.random.default_rng(2).standard_normal(2000)
+    walk = replace(
+        made_recording("walk", angle, torque, stances=stances),
+        encoder_rates={FOOT: np.column_stack([rate, rate])},
+    )
+    walk.raw[FOOT].torque[:, 1] = 0.0  # else a turned sensor would explain all
+    fit = fit_axis([walk], FOOT, "pitch", replace(PUNCTUAL, model="kelvin_voigt"))
+    assert fit is not None
+    blocks = tangent_blocks([walk], fit)
+    (cause,) = encoder_delay_causes(fit, blocks, [walk], 0.0005, False)
+    assert cause.share[1] == pytest.approx(400.0 * 0.0005, rel=0.05)
+    assert encoder_delay_causes(fit, blocks, [walk], 0.0, False) == [], "a delay that is known"

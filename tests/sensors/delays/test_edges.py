@@ -52,10 +52,32 @@ def test_sensors_differ_by_a_millisecond_and_a_half_and_four_deviations(
     found = stepped(monkeypatch, values, std)
     assert found is not None
     assert (found.feet_differ, found.encoders_differ, found.suspect) == (feet, encoders, False)
-    if not feet and not encoders:
-        assert (found.values, found.std) == (pytest.approx([0.004, 0.004, 0.0]), 0.001)
-    else:
+    if feet or encoders:
         assert found.std == pytest.approx(np.hypot(std, 0.0003))
+
+
+def test_what_sensors_show_beside_the_common_delay_is_drawn_to_none_by_a_millisecond(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Two normal distributions multiplied, the one of 1 ms about none; known to 0.4 and 0.3 ms, its share is 0.8."""
+    share = 1 / (1 + 0.4**2 + 0.3**2)
+    shown = (0.0007, -0.0007, 0.0012)
+    moved = stepped(monkeypatch, shown, 0.0004)
+    assert moved is not None
+    beside = share * np.array(shown)
+    assert moved.std == np.inf, "what is common is told anew beside sensors that are read in time"
+    assert moved.values == pytest.approx(beside + [0.004, 0.004, 0.0], rel=0.2)
+    left = np.array(shown) - moved.values
+    found = stepped(monkeypatch, left, 0.0004, at=moved.values)
+    assert found is not None
+    assert found.std == 0.001
+    assert found.encoders_unsure == pytest.approx(0.0005 * np.sqrt(share))
+    assert 0.0002 < found.feet_unsure < 0.0004
+    assert found.values[-1] == pytest.approx(beside[-1])
+    unknown = stepped(monkeypatch, (0.0, 0.0, 0.0012), 0.00096)
+    assert unknown is not None
+    assert unknown.values == pytest.approx([0.004, 0.004, 0.0]), "known no better than by what is usual"
+    assert unknown.encoders_unsure == pytest.approx(0.001)
 
 
 @pytest.mark.parametrize(("std", "suspect"), [(0.0029, False), (0.0031, True)])
@@ -71,7 +93,7 @@ def test_delays_that_need_not_differ_go_together_first(monkeypatch: pytest.Monke
     found = stepped(monkeypatch, (-0.002, 0.002, 0.0), 1e-6, at=(0.006, 0.002, 0.0))
     assert found is not None
     assert found.std == np.inf
-    assert found.values == pytest.approx([0.004, 0.004, 0.0])
+    assert found.values == pytest.approx([0.008, 0.008, 0.0]), "and what is left of all goes with it"
     assert refining._step([LOG], [[]], np.zeros(3)) is None
     far = stepped(monkeypatch, (0.0, 0.0, 0.051), 1e-6)
     assert far is None, "later than 50 ms is another fault"

@@ -64,9 +64,22 @@ def test_sensors_that_differ_have_delays_of_their_own(usual: RobotModel) -> None
     assert (feet.delay, feet.std) == pytest.approx((0.004, 0.001))
     assert (feet.measured, feet.freedom, feet.doubtful) == (True, 20.0, False)
     assert "wrenches left +3.0, right +5.0 ms, encoders +2.0 ms (± 2.0 ms, 95 %)" in feet.note.text
-    encoders = _told(usual, replace(apart, encoders_differ=True))
-    assert encoders.feet == {}
+    alike = replace(apart, values=np.array([0.004, 0.004, 0.002]), encoders_unsure=0.0004)
+    encoders = _told(usual, replace(alike, encoders_differ=True))
+    assert (encoders.feet, encoders.encoders_std) == ({}, 0.0004)
     assert "wrenches +4.0 ms, encoders +2.0 ms" in encoders.note.text
+
+
+def test_small_differences_are_corrected_without_a_warning(usual: RobotModel) -> None:
+    few = replace(shown(0.004, 1e-6), values=np.array([0.0042, 0.0038, 0.0005]))
+    found = _told(usual, replace(few, feet_unsure=0.0004, encoders_unsure=0.0003))
+    assert found.feet == pytest.approx({"left": 0.0042, "right": 0.0038})
+    assert (found.encoders, found.encoders_std) == (0.0005, 0.0003)
+    assert found.std == pytest.approx(0.0005, rel=1e-4), "0.3 ms of no model and 0.4 ms"
+    assert found.note.severity == "info"
+    unsure = _told(usual, replace(few, std=0.01, encoders_unsure=0.0003))
+    assert (unsure.delay, unsure.feet, unsure.encoders) == (0.0, {}, 0.0)
+    assert unsure.encoders_std == pytest.approx(np.hypot(0.0005, 0.0003)), "what is left uncorrected"
 
 
 def test_clocks_that_run_apart_widen_by_what_they_do(usual: RobotModel) -> None:

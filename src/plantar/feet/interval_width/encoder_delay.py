@@ -2,7 +2,8 @@
 
 An IMU behind a filter of its own is late by some milliseconds, the encoders are not. Where hips or waist turn several
 times as fast as the bush, the bush's angle is off by several times what the delay makes of its own rate. Newton's law
-shows it in arm sweeps; the fit itself shows it where the joints' motion is not the bush's.
+shows it in arm sweeps; the fit itself shows it where the joints' motion is not the bush's. Where a foot steps the trunk
+hardly leans: joints alone bend the bush, and encoders that are late are as good as force sensors that are early.
 """
 
 from __future__ import annotations
@@ -21,23 +22,24 @@ SUSPECTED = 3.0  # deviations from none
 
 
 def encoder_delay_causes(
-    fit: AxisFit, blocks: Sequence[Block], recordings: Sequence[Recording], shared: bool
+    fit: AxisFit, blocks: Sequence[Block], recordings: Sequence[Recording], unsure: float, shared: bool
 ) -> list[Cause]:
-    """By as much as the motions show encoders and IMU to be apart; none of a foot that steps, or where none shows.
+    """By as much as the motions show encoders and IMU to be apart, none where these do not; of a foot that steps by as
+    much as Newton's law leaves `unsure` [s].
 
     blocks: the recordings' `tangent_blocks`.
     """
-    if blocks[0].stances is not None:
-        return []
     by_name = {recording.name: recording for recording in recordings}
     chosen = [by_name[block.label] for block in blocks]
     columns = [late_encoder_torque(one, fit)[one.rows(fit.foot)] for one in chosen]
     if not any(column.any() for column in columns):
         return []
+    influences = influences_of(blocks, shared_offset=shared)
+    if blocks[0].stances is not None:
+        return [Cause(NAME, effect_of(influences, columns), unsure)] if unsure else []
     wider = [beside(block, column[:, None]) for block, column in zip(blocks, columns, strict=True)]
     found = fit_blocks(wider, shared_offset=shared)
     late, std = float(found.values[-1]), float(found.std[-1])
     if found.condition_number > SINGULAR or abs(late) < SUSPECTED * std:
         return []
-    influences = influences_of(blocks, shared_offset=shared)
     return [Cause(NAME, effect_of(influences, columns), min(abs(late), ENCODERS_APART))]

@@ -1,7 +1,8 @@
 """Delays step by step: read the sensors at their moments, ask Newton's law what is left, until nothing is.
 
 One step follows the rates, which holds for some 50 ms. One delay common to all force sensors is the rule, with encoders
-and IMU read together; where feet or encoders clearly have delays of their own, each gets its own.
+and IMU read together. What feet and encoders show of delays beside these is drawn to none by what is usual of a robot's
+sensors; where they clearly have delays of their own, each gets its own.
 """
 
 from __future__ import annotations
@@ -31,15 +32,17 @@ DISTINCT = 4.0  # deviations by which sensors must differ to have delays of thei
 LEAST_DISTINCT = 0.0015  # s, and by so much
 WELL_KNOWN = 0.003  # s: differences less well known than this are no ground for delays of their own
 LEAST_STD = 0.0003  # s: no robot's model shows a delay better, however fast its samples
+APART = 0.001  # s: deviation by which sensors of one robot are read apart; a cycle of a bus of 1 kHz
 
 
 @dataclass(frozen=True)
 class RefinedDelays:
     """`values` (feet + 1,) [s]: the feet's and then the encoders' against the IMU, > 0: late; their common `std` [s].
 
-    `feet_differ`, `encoders_differ`: whether they have delays of their own.
+    `feet_differ`, `encoders_differ`: whether they clearly have delays of their own.
     `closed` (logs,): in which logs Newton's law closes; `slowest`: the longest period among these [s].
     `suspect`: they seem to, and how much is not known well: steps from elsewhere may end elsewhere.
+    `feet_unsure`, `encoders_unsure` [s]: deviations of what is known of each foot beside all, and of the encoders.
     `unsteady`: that they are not the same throughout, where these logs show it.
     `residuals`: of these logs, read at these delays.
     """
@@ -52,6 +55,8 @@ class RefinedDelays:
     closed: Mask
     slowest: float
     suspect: bool = False
+    feet_unsure: float = 0.0
+    encoders_unsure: float = 0.0
     unsteady: ClockDrift | DelaysByLog | None = None
     residuals: tuple[NewtonEulerResidual, ...] = ()
 
@@ -120,34 +125,65 @@ def _step(
     slowest = max(log.period for log, own in zip(logs, tried, strict=True) if own)
     balances = [residual.balance for residual in residuals]
     contrasts, differ, suspect = _contrasts(len(at) - 1), np.zeros(len(at), dtype=bool), False
+    usual, unsure = np.zeros(len(at)), np.full(len(at), APART)
     free = estimate_delays(balances)
     if free is not None:
         apart = contrasts @ (at + free.values)
-        spread = np.sqrt(np.diag(contrasts @ free.covariance @ contrasts.T) + LEAST_STD**2)
+        variance = np.diag(contrasts @ free.covariance @ contrasts.T)
+        spread = np.sqrt(variance + LEAST_STD**2)
         seem = np.abs(apart) > np.maximum(DISTINCT * spread, LEAST_DISTINCT)
         differ, suspect = seem & (spread < WELL_KNOWN), bool((seem & (spread >= WELL_KNOWN)).any())
         differ[:-1] = differ[:-1].any()
+        # What is known no better than by what is usual moves nothing; nor does anything beside what is much, not known.
+        known = (spread < APART) & (not suspect)
+        share = np.where(known, APART**2 / (APART**2 + spread**2), 0.0)
+        # What no model shows better is in the deviation of all feet's delay already.
+        own = np.sqrt(np.append(variance[:-1], spread[-1] ** 2))
+        usual, unsure = share * apart, np.where(share > 0, np.sqrt(share) * own, APART)
     flags = (bool(differ[0]), bool(differ[-1]))
     held = contrasts[~differ]
-    nearest = at - np.linalg.pinv(held) @ (held @ at) if len(held) else at
-    if np.abs(nearest - at).max() > 1e-9:
-        return RefinedDelays(nearest, np.inf, 1.0, *flags, closed, slowest)
-    if differ.any():
-        own = estimate_delays(balances, held)
+    nearest = at - np.linalg.pinv(held) @ (held @ at - usual[~differ]) if len(held) else at
+    left = _left(residuals, held if differ.any() else None, len(at))
+    if (
+        np.abs(nearest - at).max() > LEAST_STD
+    ):  # what is left is told beside sensors read at moments of their own
+        values = nearest if left is None else nearest + left[0]
+        return RefinedDelays(values, np.inf, 1.0, *flags, closed, slowest)
+    if left is None:
+        return None
+    by, std, freedom = left
+    if free is not None and not differ.any():
+        std = float(np.hypot(std, _by_encoders(balances, contrasts)))
+    unsure = np.where(differ, [*np.zeros(len(at) - 1), std], unsure)
+    beside = float(unsure[:-1].max()), float(unsure[-1])
+    return RefinedDelays(nearest + by, std, freedom, *flags, closed, slowest, suspect, *beside)
+
+
+def _left(
+    residuals: Sequence[NewtonEulerResidual], held: Array | None, count: int
+) -> tuple[Array, float, float] | None:
+    """What Newton's law leaves of `count` delays [s], its deviation [s] and that one's degrees of freedom; None where
+    it tells none.
+
+    held: combinations (c, count) of delays that stay as they are; None: one delay common to all feet is left.
+    """
+    if held is not None:
+        own = estimate_delays([residual.balance for residual in residuals], held)
         if own is None or np.abs(own.values).max() > LONGEST:
             return None
-        std = float(np.hypot(np.sqrt(np.diag(own.covariance).max()), LEAST_STD))
-        return RefinedDelays(at + own.values, std, float(own.cells), *flags, closed, slowest, suspect)
+        return (
+            own.values,
+            float(np.hypot(np.sqrt(np.diag(own.covariance).max()), LEAST_STD)),
+            float(own.cells),
+        )
     common = estimate_delay([residual.pair for residual in residuals])
     if common is None:
         return None
-    values = at + np.append(np.full(len(at) - 1, common.value), 0.0)
-    std = common.std if free is None else float(np.hypot(common.std, _by_encoders(balances, contrasts)))
-    return RefinedDelays(values, std, common.freedom, *flags, closed, slowest, suspect)
+    return np.append(np.full(count - 1, common.value), 0.0), common.std, common.freedom
 
 
 def _by_encoders(balances: Sequence[Balance], contrasts: Array) -> float:
-    """Deviation of the feet's common delay [s] for encoders that are read with the IMU, or as far apart as it seems.
+    """Deviation of the feet's common delay [s] for encoders that are read as tried, or as far apart as it seems.
 
     It is somewhere between what it is with the one and with the other, beyond what one more delay to be found moves it
     by chance (J. A. Hausman, Econometrica 46, 1978): too little for a delay of the encoders' own, and not nothing.

@@ -14,7 +14,7 @@ from functools import partial
 
 import numpy as np
 
-from plantar.conventions import NORMAL95, Mask
+from plantar.conventions import NORMAL95, Array, Mask
 from plantar.cores import Each
 from plantar.estimation.delays.delay import LEAST_CLOSED
 from plantar.estimation.delays.lag_search import Lags, search_lags
@@ -24,6 +24,7 @@ from plantar.notes import Note
 from plantar.robot.model import RobotModel
 from plantar.sensors.delays.lagged_log import SEARCHED, STEP, lagged_log
 from plantar.sensors.delays.refined_delays import (
+    APART,
     LEAST_STD,
     WELL_KNOWN,
     RefinedDelays,
@@ -44,9 +45,9 @@ BEYOND_SEARCH = "delay_beyond_search"
 class SensorDelay:
     """Delay of the wrenches against the IMU [s], > 0: late; `std` [s]; `measured` whether any log showed it.
 
-    `feet` has each foot's own delay where they differ, `encoders` that of the joints' positions; both are usually
-    empty and zero. `doubtful`: a search over SEARCHED found no delays at which Newton's law closes where it should, so
-    that the sensors may be late by anything that `std` says. `residuals`: of the logs in which it does close.
+    `feet` has each foot's own delay where they differ, `encoders` that of the joints' positions, `encoders_std` how
+    unsure that is [s]. `doubtful`: a search over SEARCHED found no delays at which Newton's law closes where it should,
+    so that the sensors may be late by anything that `std` says. `residuals`: of the logs in which it does close.
     """
 
     delay: float
@@ -56,6 +57,7 @@ class SensorDelay:
     note: Note
     feet: Mapping[str, float] = field(default_factory=dict)
     encoders: float = 0.0
+    encoders_std: float = 0.0
     doubtful: bool = False
     residuals: tuple[NewtonEulerResidual, ...] = ()
 
@@ -149,7 +151,7 @@ def _doubtful(robot: RobotModel, lags: Lags) -> SensorDelay:
         "--wrench-delay gives a delay that is known"
     )
     note = Note(BEYOND_SEARCH, "warning", text)
-    return SensorDelay(0.0, std, np.inf, False, note, doubtful=True)
+    return SensorDelay(0.0, std, np.inf, False, note, encoders_std=APART, doubtful=True)
 
 
 def _unseen(robot: RobotModel, logs: Sequence[MotionLog]) -> SensorDelay:
@@ -165,42 +167,52 @@ def _unseen(robot: RobotModel, logs: Sequence[MotionLog]) -> SensorDelay:
         f"delay of the wrenches unknown: {why}; taken as 0 ± {1e3 * prior:.1f} ms, which widens the interval of the "
         f"damping by stiffness times that. {todo}"
     )
-    return SensorDelay(0.0, prior, np.inf, False, Note("delay_unknown", "warning", text))
+    note = Note("delay_unknown", "warning", text)
+    return SensorDelay(0.0, prior, np.inf, False, note, encoders_std=APART)
 
 
 def _told(robot: RobotModel, found: RefinedDelays) -> SensorDelay:
     """Delays that the logs show, with what is said of them."""
+    feet, encoders = found.values[:-1], float(found.values[-1])
+    value, beside = float(np.mean(feet)), found.encoders_unsure
     if found.unsteady is not None:
-        mean, std = float(np.mean(found.values[:-1])), float(np.hypot(found.std, found.unsteady.std))
-        return SensorDelay(mean, std, found.freedom, True, found.unsteady.note, doubtful=True)
+        std, note = float(np.hypot(found.std, found.unsteady.std)), found.unsteady.note
+        return SensorDelay(value, std, found.freedom, True, note, encoders_std=beside, doubtful=True)
     if found.feet_differ or found.encoders_differ:
         return _apart(list(robot.feet), found)
-    value, prior = float(found.values[0]), robot.uncertainty.wrench_delay
+    prior = robot.uncertainty.wrench_delay
     # A delay far beyond what is usual shows that this robot is not usual: nothing draws it to zero.
     usual = abs(value) < SIGNIFICANT * float(np.hypot(prior, found.std))
     gain = prior**2 / (prior**2 + found.std**2) if usual else 1.0
     clock = max(CLOCK * found.slowest, LEAST_STD)
-    delay, std = gain * value, float(np.hypot(np.sqrt(gain) * found.std, clock))
+    delay, common = gain * value, float(np.hypot(np.sqrt(gain) * found.std, clock))
+    std = float(np.hypot(common, found.feet_unsure))
     told = f"wrenches are {1e3 * delay:+.1f} ± {1e3 * NORMAL95 * std:.1f} ms late (95 %) against IMU and encoders"
-    if std <= KNOWN_STD:
-        return SensorDelay(delay, std, found.freedom, True, Note("delay", "info", f"{told}: corrected"))
     advice = "uncertain, which widens the interval of the damping: record arm sweeps of 0.3 to 1 Hz without an operator"
-    if abs(delay) > SIGNIFICANT * std:
+    if common > KNOWN_STD and abs(delay) <= SIGNIFICANT * common:
+        note = Note("delay_poorly_known", "warning", f"{told}: not corrected; {advice}")
+        std, beside = float(np.hypot(delay, std)), float(np.hypot(encoders, beside))
+        return SensorDelay(0.0, std, found.freedom, True, note, encoders_std=beside)
+    note = Note("delay", "info", f"{told}: corrected")
+    if common > KNOWN_STD:
         note = Note("delay_poorly_known", "warning", f"{told}: corrected; {advice}")
-        return SensorDelay(delay, std, found.freedom, True, note)
-    note = Note("delay_poorly_known", "warning", f"{told}: not corrected; {advice}")
-    return SensorDelay(0.0, float(np.hypot(delay, std)), found.freedom, True, note)
+    each = _each_foot(robot.feet, feet - value + delay)
+    return SensorDelay(delay, std, found.freedom, True, note, each, encoders, beside)
+
+
+def _each_foot(names: Iterable[str], delays: Array) -> dict[str, float]:
+    """The delay of each foot where they are not all the same."""
+    return dict(zip(names, delays.tolist(), strict=True)) if np.ptp(delays) > 0 else {}
 
 
 def _apart(names: Sequence[str], found: RefinedDelays) -> SensorDelay:
-    """Each foot's delay and the encoders', those that differ."""
-    feet, encoders = found.values[:-1], float(found.values[-1])
-    mean = float(np.mean(feet))
-    delays = dict(zip(names, feet.tolist(), strict=True)) if found.feet_differ else {}
+    """Each foot's delay and the encoders', where some clearly differ."""
+    mean, encoders = float(np.mean(found.values[:-1])), float(found.values[-1])
+    delays, std = _each_foot(names, found.values[:-1]), float(np.hypot(found.std, found.feet_unsure))
     each = ", ".join(f"{name} {1e3 * delay:+.1f}" for name, delay in delays.items()) or f"{1e3 * mean:+.1f}"
     text = (
         f"sensors have different delays relative to the IMU: wrenches {each} ms, encoders {1e3 * encoders:+.1f} ms "
         f"(± {1e3 * NORMAL95 * found.std:.1f} ms, 95 %): corrected"
     )
     note = Note("delays_apart", "warning", text)
-    return SensorDelay(mean, found.std, found.freedom, True, note, delays, encoders)
+    return SensorDelay(mean, std, found.freedom, True, note, delays, encoders, found.encoders_unsure)
