@@ -74,7 +74,7 @@ def test_a_log_with_gaps_shows_its_delay_in_every_run() -> None:
     residuals = newton_euler_residuals(twin, log := sweep.with_columns(dict(zip(names, late.T, strict=True))))
     assert [(one.kept.start * log.period) // 10 for one in residuals] == [0, 1, 2, 3]
     found = estimate_wrench_delay(twin, [log])
-    assert found.encoders == 0.0
+    assert abs(found.encoders) < 2 * found.encoders_std
     assert found.delay == pytest.approx(0.006, abs=0.001)
     assert found.std < 0.001
 
