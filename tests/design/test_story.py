@@ -73,12 +73,12 @@ def test_it_says_what_it_promises_and_what_it_kept(written: Path) -> None:
     assert len(rows) == 8
     assert content["stiffness_range"] == pytest.approx([250.0, 1000.0])
     assert [one["factor"] for one in content["rehearsals"]] == pytest.approx(
-        [0.5, 0.5**0.5, 1.0, 2**0.5, 2.0]
+        [0.5, 0.5**0.5, 1.0, 2**0.5, 2**0.75, 2.0]
     )
     for one in content["rehearsals"]:
         assert one["sole_margin"] > KEPT
         assert one["friction"] < FRICTION
-    assert len(content["sensor_delay"]["at"]) == len(content["vertical_compliance"]["at"]) == 5
+    assert len(content["sensor_delay"]["at"]) == len(content["vertical_compliance"]["at"]) == 6
     for one in content["sensor_delay"]["at"]:
         assert one["half_width"] is None or abs(one["error"]) < 2 * one["half_width"] < 0.02
     for one in content["vertical_compliance"]["at"]:
@@ -124,7 +124,7 @@ def test_a_number_that_rehearsals_do_not_find_is_said(written: Path) -> None:
     content = content_of(blind, written, 100.0)
     said = sorted(note.partition(" will")[0] for note in content["notes"])
     assert said == ["left pitch", "left roll", "right pitch", "right roll"]
-    assert all("weak at 0.5, 0.707, 1, 1.41, 2 times" in note for note in content["notes"])
+    assert all("weak at 0.5, 0.707, 1, 1.41, 1.68, 2 times" in note for note in content["notes"])
     for row in content_of(found, written, 100.0)["parameters"]:
         for one in row["at"]:
             assert (one["half_width_percent"] is None) == (one["error_percent"] is None)
@@ -197,13 +197,15 @@ def test_a_motion_that_is_too_large_is_made_smaller_by_as_much() -> None:
     assert [factors for factors, _ in played] == [
         [0.5, 2.0],
         [2.0],
-        pytest.approx([0.5, 0.5**0.5, 1.0, 2**0.5]),
+        pytest.approx([0.5, 0.5**0.5, 1.0, 2**0.5, 2**0.75]),
     ]
     whole, less = played[0][1], played[1][1]
     allowed = (1 - SPARE) * np.sqrt((0.05 - KEPT) / (0.05 - 0.002))
     assert less == pytest.approx(allowed * whole, abs=0.01 * np.abs(whole).max())
     assert np.array_equal(played[2][1], less)
-    assert [one.factor for one in found.rehearsals] == pytest.approx([0.5, 0.5**0.5, 1.0, 2**0.5, 2.0])
+    assert [one.factor for one in found.rehearsals] == pytest.approx(
+        [0.5, 0.5**0.5, 1.0, 2**0.5, 2**0.75, 2.0]
+    )
 
 
 @pytest.mark.parametrize("holds", [True, False])
@@ -225,7 +227,7 @@ def test_a_motion_that_leaves_room_is_made_larger_once_and_not_if_that_does_not_
     ):
         design_motion(hrp2.robot(), DesignSettings(500.0, duration=20.0, seed=1))
     sizes = [size / played[0][1] for _, size in played]
-    ends, between = [0.5, 2.0], [0.5**0.5, 1.0, 2**0.5]
+    ends, between = [0.5, 2.0], [0.5**0.5, 1.0, 2**0.5, 2**0.75]
     assert [factors for factors, _ in played] == [
         ends,
         ends,

@@ -233,8 +233,8 @@ AT_THEIR_EDGES = (
     Mutant(
         "design/information.py",
         "a mean square without its root",
-        "np.mean(np.exp(2 * widths), axis=1)).mean() / 2",
-        "np.mean(np.exp(2 * widths), axis=1)).mean()",
+        "np.mean(np.exp(2 * widths), axis=-1)).mean(axis=-1) / 2",
+        "np.mean(np.exp(2 * widths), axis=-1)).mean(axis=-1)",
         ("design/test_information.py",),
     ),
     Mutant(

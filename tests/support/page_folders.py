@@ -159,7 +159,8 @@ def simulated(words: list[str]) -> None:
     bushes: dict[str, dict[str, float]] = {foot: {} for foot in FEET}
     for (foot, axis), law in TRUTH.items():
         bushes[foot] |= {f"{axis}_stiffness": law.stiffness, f"{axis}_damping": law.damping}
-    for seed, name in enumerate(Path(name).stem for name in names):
+    before = len(list(given.out.glob("*.parquet")))  # no two recordings are the same
+    for seed, name in enumerate((Path(name).stem for name in names), before):
         made = stepping(name, seed) if name.startswith("Walk") else swaying(name, seed)
         save_log(made, given.out / f"{name}.parquet")
         (given.out / f"{name}.truth.json").write_text(json.dumps({"bushes": bushes}))
