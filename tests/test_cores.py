@@ -152,7 +152,9 @@ def test_one_core_beside_threads_of_python_and_on_no_other_system(monkeypatch: p
 
 def test_an_interrupt_ends_all_processes_at_once() -> None:
     code = (
-        "import os, time\nfrom plantar.cores import over_cores\n"
+        "import os, signal, time\nfrom plantar.cores import over_cores\n"
+        # A shell lets what it starts in the background ignore interrupts.
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
         "def work(item):\n"
         "    os.write(1, b'%d\\n' % os.getpid())\n"
         "    time.sleep(60)\n"
