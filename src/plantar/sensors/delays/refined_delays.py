@@ -144,9 +144,8 @@ def _step(
     held = contrasts[~differ]
     nearest = at - np.linalg.pinv(held) @ (held @ at - usual[~differ]) if len(held) else at
     left = _left(residuals, held if differ.any() else None, len(at))
-    if (
-        np.abs(nearest - at).max() > LEAST_STD
-    ):  # what is left is told beside sensors read at moments of their own
+    # What is left is told beside sensors that were read at moments of their own.
+    if np.abs(nearest - at).max() > LEAST_STD:
         values = nearest if left is None else nearest + left[0]
         return RefinedDelays(values, np.inf, 1.0, *flags, closed, slowest)
     if left is None:
