@@ -24,7 +24,6 @@ def run(
 
     Example: plantar report out/feet/result.json
     """
-    feet = read_result(result)["schema"].startswith(
-        FEET_SCHEMA.partition("/")[0]
-    )  # its reader names the version
+    kind = FEET_SCHEMA.partition("/")[0]  # whether the version can be read, its reader says
+    feet = read_result(result)["schema"].startswith(kind)
     print(write_feet_report(result, out) if feet else write_dynamics_report(result, out))

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from plantar.conventions import Array
 from plantar.estimation import Block, effect_of, fit_blocks, influences_of
 from plantar.feet.interval_width.systematic import SINGULAR, Cause
 from plantar.feet.recording import Recording
@@ -34,12 +35,15 @@ def encoder_delay_causes(
     columns = [late_encoder_torque(one, fit)[one.rows(fit.foot)] for one in chosen]
     if not any(column.any() for column in columns):
         return []
-    influences = influences_of(blocks, shared_offset=shared)
     if blocks[0].stances is not None:
-        return [Cause(NAME, effect_of(influences, columns), unsure)] if unsure else []
+        return [_cause(blocks, columns, unsure, shared)] if unsure else []
     wider = [beside(block, column[:, None]) for block, column in zip(blocks, columns, strict=True)]
     found = fit_blocks(wider, shared_offset=shared)
     late, std = float(found.values[-1]), float(found.std[-1])
     if found.condition_number > SINGULAR or abs(late) < SUSPECTED * std:
         return []
-    return [Cause(NAME, effect_of(influences, columns), min(abs(late), ENCODERS_APART))]
+    return [_cause(blocks, columns, min(abs(late), ENCODERS_APART), shared)]
+
+
+def _cause(blocks: Sequence[Block], columns: Sequence[Array], std: float, shared: bool) -> Cause:
+    return Cause(NAME, effect_of(influences_of(blocks, shared_offset=shared), columns), std)

@@ -50,10 +50,8 @@ def with_turns(fit: AxisFit, recordings: Sequence[Recording], mount: float) -> t
     columns = turn_columns(fit, recordings, [block.label for block in blocks])
     shown = that_show(blocks, columns, np.full(3, mount))
     by_name = {recording.name: recording for recording in recordings}
-    late = [
-        late_encoder_torque(by_name[block.label], fit)[by_name[block.label].rows(fit.foot), None]
-        for block in blocks
-    ]
+    chosen = [by_name[block.label] for block in blocks]
+    late = [late_encoder_torque(one, fit)[one.rows(fit.foot), None] for one in chosen]
     if any(column.any() for column in late):
         blocks = [beside(block, column) for block, column in zip(blocks, late, strict=True)]
     return [beside(block, own[:, shown]) for block, own in zip(blocks, columns, strict=True)], shown

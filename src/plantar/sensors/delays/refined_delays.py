@@ -170,11 +170,8 @@ def _left(
         own = estimate_delays([residual.balance for residual in residuals], held)
         if own is None or np.abs(own.values).max() > LONGEST:
             return None
-        return (
-            own.values,
-            float(np.hypot(np.sqrt(np.diag(own.covariance).max()), LEAST_STD)),
-            float(own.cells),
-        )
+        std = float(np.hypot(np.sqrt(np.diag(own.covariance).max()), LEAST_STD))
+        return own.values, std, float(own.cells)
     common = estimate_delay([residual.pair for residual in residuals])
     if common is None:
         return None
