@@ -41,15 +41,15 @@ def changed(log: MotionLog, rates: np.ndarray) -> MotionLog:
     return log.with_columns(dict(zip(GYROSCOPE, rates.T, strict=True)))
 
 
-def small(log: MotionLog) -> MotionLog:
-    """The same with turns of a hundredth, in noise of a good IMU: as a walking robot's chest turns."""
+def small(log: MotionLog, share: float = 0.01) -> MotionLog:
+    """The same with turns of a share, in noise of a good IMU: as a walking robot's chest turns."""
     random, orientation = np.random.default_rng(0), log.orientation("chest")
     assert orientation is not None
-    turn = Rotation.from_rotvec(0.01 * Rotation.from_quat(orientation, scalar_first=True).as_rotvec())
+    turn = Rotation.from_rotvec(share * Rotation.from_quat(orientation, scalar_first=True).as_rotvec())
     turn = Rotation.from_rotvec(2e-5 * random.standard_normal((len(log), 3))) * turn
     quaternions = turn.as_quat(scalar_first=True).T
     names = [f"imu.chest.orientation.{part}" for part in "wxyz"]
-    rates = 0.01 * log.stack(GYROSCOPE) + 2e-4 * random.standard_normal((len(log), 3))
+    rates = share * log.stack(GYROSCOPE) + 2e-4 * random.standard_normal((len(log), 3))
     return changed(log.with_columns(dict(zip(names, quaternions, strict=True))), rates)
 
 
@@ -158,3 +158,22 @@ def test_the_rate_behind_a_gap_is_not_known(log: MotionLog, monkeypatch: pytest.
     assert np.isnan(turning[behind]).all()
     assert np.isfinite(turning[10 : behind - 1]).all()
     assert np.isfinite(turning[behind + 1 : -10]).all()
+
+
+def written_with(log: MotionLog, digits: int) -> MotionLog:
+    """The log as a text file has it whose quaternions have few digits."""
+    names = [f"imu.chest.orientation.{part}" for part in "wxyz"]
+    return log.with_columns({name: np.round(log.column(name), digits) for name in names})
+
+
+def test_few_digits_of_the_orientation_are_no_gain_of_the_gyroscope(log: MotionLog) -> None:
+    """Steps of 2 mrad beside turns of some mrad: the slope over them is too small, and tells of the steps."""
+    few = written_with(small(log, 0.03), 3)
+    orientation = few.orientation("chest")
+    assert orientation is not None
+    turns = Turns.of(few, "chest", orientation)
+    assert turns is not None
+    slope = float(np.sum(turns.integral * turns.turn) / np.sum(turns.turn**2))
+    assert slope < 0.7
+    assert codes(few) == []
+    assert codes(changed(few, 2.5 * few.stack(GYROSCOPE))) != []

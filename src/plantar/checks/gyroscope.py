@@ -180,12 +180,23 @@ def _axes_and_scale(where: str, turns: Turns) -> Iterator[Finding]:
         text = f"{where}: turns about axes {np.degrees(angle):.0f} deg beside the orientation's"
         yield Finding(FRAME, f"{text} (valid: both in the IMU's own frame)")
         return
-    scale = float(np.sum(integral * turn)) / power
+    scale = _nearest_scale(integral, turn)
     missed = float(np.sum((integral - scale * turn) ** 2))
     deviation = np.sqrt(missed / power * OVERLAP / turn.size)
     if abs(scale - 1) > max(SCALE_OFF, SURE * deviation):
         text = f"{where}: {scale:.2f} times the orientation's rate, and damping follows it (valid: 1)"
         yield Finding(SCALE, text)
+
+
+def _nearest_scale(integral: Array, turn: Array) -> float:
+    """The gyroscope's gain beside the orientation, as near to 1 as the noise of either allows.
+
+    Noise of the orientation, or its steps where it was written with few digits, makes the slope of `integral` over
+    `turn` too small; noise of the gyroscope makes the inverse of the other slope too large. The gain lies between.
+    """
+    both = float(np.sum(integral * turn))
+    slope = both / float(np.sum(turn**2))
+    return float(np.clip(1.0, slope, float(np.sum(integral**2)) / both)) if both > 0 else slope
 
 
 def _turned_onto(one: Array, other: Array) -> Array:

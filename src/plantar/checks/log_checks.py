@@ -10,6 +10,7 @@ from plantar.checks.air_readings import check_air_readings
 from plantar.checks.bush_axes import check_bush_axes
 from plantar.checks.bush_link import check_bush_link
 from plantar.checks.channels import check_channels, named
+from plantar.checks.dead_band import check_dead_bands
 from plantar.checks.gaps import check_gaps
 from plantar.checks.imu import check_imu
 from plantar.checks.joints.closed_chain import check_closed_chain
@@ -47,6 +48,7 @@ def check_log(robot: RobotModel, log: MotionLog) -> list[Finding]:
     channels = [
         *check_gaps(robot, log),
         *check_channels(robot, log),
+        *check_dead_bands(robot, log),
         *check_still_joints(robot, log),
         *check_stepping_joints(robot, log),
     ]

@@ -8,12 +8,14 @@ from plantar.conventions import ROTATIONAL_AXES
 from plantar.feet.assess.contradiction import contradiction
 from plantar.feet.assess.data_faults import OF_MOMENTS, data_faults, doubted
 from plantar.feet.assess.diagnosis import advised, diagnose_axis, mend_first
+from plantar.feet.assess.far_arms import far_arms
 from plantar.feet.assess.late_recordings import late_recordings
 from plantar.feet.assess.left_out import ON_AN_EDGE, mostly_on_an_edge
 from plantar.feet.assess.parameter_rows import axis_rows, missing_rows, unseen_rows
 from plantar.feet.assess.play import play_notes
 from plantar.feet.assess.residual_table import Predictions
 from plantar.feet.assess.scores import score_axis
+from plantar.feet.assess.sensor_hysteresis import hysteresis_notes
 from plantar.feet.assess.stance_stiffness import stance_stiffness, walk_stiffness
 from plantar.feet.foot_fit import FittedFoot
 from plantar.feet.internal_error import gives_up, internal_errors
@@ -86,9 +88,14 @@ def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit, between: Apart)
     rows = axis_rows(wide, ready.fitted, predictions, contradicted)
     limits = diagnose_axis(fit, wide, causes, rows)
     gain = {foot: error for foot, error in ready.gain_errors.items() if foot == fit.foot}
-    own = [*play_notes(thin.fitted, fit, blocks, shared), *late_recordings(thin.fitted, wide, blocks, shared)]
+    own = [
+        *play_notes(thin.fitted, fit, blocks, shared),
+        *hysteresis_notes(thin.fitted, fit, blocks, shared),
+        *late_recordings(thin.fitted, wide, blocks, shared),
+    ]
     faults = [
         *data_faults(ready.fitted, fit),
+        *far_arms([fit]),
         *fitted.jumps,  # of both axes: an encoder that slips about one tilts the other as well
         *own,
         *force_gain_notes(ready.robot, gain),

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from plantar.checks.dead_band import DEAD_BAND
 from plantar.checks.gyroscope import IMU_LATE
 from plantar.checks.standing import LEANS, LEANS_LITTLE
+from plantar.feet.assess.sensor_hysteresis import HYSTERESIS
 from plantar.feet.place.place_notes import BUSH_TURNED, FAR
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
@@ -20,11 +22,11 @@ UNMENDED = frozenset(
     {
         "sign", LEANS, LEANS_LITTLE, "imu_turned", "wrench_turned", IMU_LATE, "gyroscope_frame", "gyroscope_scale",
         "path_joint_missing", "stuck_channel", "vertical_only", "weight", "bush_axes", "bush_link", "sparse_stances",
-        FAR, BUSH_TURNED,
+        FAR, BUSH_TURNED, DEAD_BAND,
     }
 )  # fmt: skip
-# Codes of warnings on when sensors read: what they spoil is damping and memory.
-OF_MOMENTS = frozenset({FILTERED, BEYOND_SEARCH})
+# Codes of warnings on sensors that lag: what they spoil is damping and memory.
+OF_MOMENTS = frozenset({FILTERED, BEYOND_SEARCH, HYSTERESIS})
 ADVICE = "mend what the warning names, or leave this log out"
 
 

@@ -1,0 +1,61 @@
+"""A force sensor with hysteresis: what it reads stays behind at each turn of the motion, at any speed.
+
+torque = K·angle + C·rate - hysteresis·sign(rate) + offset. Rubber with dry friction pushes the other way: of a passive
+bush, the term is never negative. Spring and damper alone take it for less damping.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from plantar.conventions import ROTATIONAL_AXES, Array
+from plantar.estimation import Block, fit_blocks
+from plantar.feet.fit.hidden_memory import has_memory
+from plantar.feet.recording import Recording
+from plantar.feet.regression.axis import AxisFit
+from plantar.feet.regression.regression_data import beside
+from plantar.notes import Note
+
+SOFT = (
+    0.02  # of the fast rate (98th percentile), within which its sign changes: behind a filter it is no step
+)
+SURE = 4.0  # deviations of the hysteresis: of healthy feet it is below 3
+HYSTERESIS = "sensor_hysteresis"
+
+
+def hysteresis_notes(
+    recordings: Sequence[Recording], fit: AxisFit, tangents: Sequence[Block], shared: bool
+) -> list[Note]:
+    """A warning where a standing foot's torque stays behind its angle by the same amount at any speed.
+
+    tangents: the recordings' `tangent_blocks`.
+    """
+    if tangents[0].stances is not None or has_memory(fit.model):
+        return []
+    by_name = {recording.name: recording for recording in recordings}
+    rates = [_rate(by_name[block.label], fit) for block in tangents]
+    fast = float(np.percentile(np.abs(np.concatenate(rates)), 98))
+    if fast == 0:
+        return []
+    blocks = [
+        beside(block, np.tanh(rate / (SOFT * fast))[:, None])
+        for block, rate in zip(tangents, rates, strict=True)
+    ]
+    found = fit_blocks(blocks, shared_offset=shared)
+    behind = -float(found.values[-1])
+    if behind < SURE * float(found.std[-1]):
+        return []
+    text = (
+        f"{fit.foot} {fit.axis}: the torque stays {behind:.2g} N.m behind at each turn of the motion, at any speed: "
+        "hysteresis of the force sensor, which makes the damping too small (valid: a sensor whose hysteresis is small "
+        "beside its torques; or larger motions)"
+    )
+    return [Note(HYSTERESIS, "warning", text)]
+
+
+def _rate(recording: Recording, fit: AxisFit) -> Array:
+    """The bush's rate [rad/s] at the rows of a fit, (n,)."""
+    column = ROTATIONAL_AXES.index(fit.axis)
+    return np.asarray(recording.bushes[fit.foot].rate[recording.rows(fit.foot), column])
