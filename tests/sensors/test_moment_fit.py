@@ -110,5 +110,6 @@ def test_zeros_that_differ_between_recordings_are_no_gain_of_torques(size: float
         residuals += newton_euler_residuals(robot, log.with_columns(columns))
     fit = fit_moments(robot, residuals, ())
     assert fit is not None
-    np.testing.assert_allclose(fit.values[:4], 0.0, atol=0.05)
+    # Of both feet together: both turn alike, and hardly anything tells one from the other.
+    np.testing.assert_allclose(fit.values[:4].reshape(2, 2).mean(axis=1), 0.0, atol=0.03)
     assert torque_gains(robot, fit) == {}

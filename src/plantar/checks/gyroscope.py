@@ -39,13 +39,14 @@ class Turns:
     """Turns in windows of WINDOW, (n, 3) [rad]: the gyroscope's `integral`, and the orientation's `by_reading`.
 
     `world`: the orientation's about the world's axes. All without their means: a constant bias is no fault, the fit
-    takes it off. `least` [rad]: turns smaller than that do not count.
+    takes it off. `least` [rad]: turns smaller than that do not count. `steps` [rad]: see `_written_steps`.
     """
 
     integral: Array
     by_reading: Mapping[str, Array]
     world: Array
     least: float
+    steps: float = 0.0
 
     @classmethod
     def of(cls, log: MotionLog, name: str, orientation: Array) -> Turns | None:
@@ -71,7 +72,13 @@ class Turns:
         # As a share of what the gyroscope itself shows: it may read degrees.
         drowned = _white(rates) * np.sqrt(WINDOW * log.period) / max(float(np.std(integral)), 1e-12)
         noise = np.hypot(drowned * np.std(turns["as it is"]), np.sqrt(2) * _white(2 * orientation))
-        found = cls(integral, turns, _centred(world), min(LEAST_TURN, ABOVE_NOISE * float(noise)))
+        found = cls(
+            integral,
+            turns,
+            _centred(world),
+            min(LEAST_TURN, ABOVE_NOISE * float(noise)),
+            _written_steps(orientation),
+        )
         return found if found.moving.sum() >= FEWEST_WINDOWS else None
 
     @property
@@ -180,7 +187,7 @@ def _axes_and_scale(where: str, turns: Turns) -> Iterator[Finding]:
         text = f"{where}: turns about axes {np.degrees(angle):.0f} deg beside the orientation's"
         yield Finding(FRAME, f"{text} (valid: both in the IMU's own frame)")
         return
-    scale = _nearest_scale(integral, turn)
+    scale = float(np.sum(integral * turn)) / max(power - turn.size * turns.steps**2, 1e-12)
     missed = float(np.sum((integral - scale * turn) ** 2))
     deviation = np.sqrt(missed / power * OVERLAP / turn.size)
     if abs(scale - 1) > max(SCALE_OFF, SURE * deviation):
@@ -188,15 +195,15 @@ def _axes_and_scale(where: str, turns: Turns) -> Iterator[Finding]:
         yield Finding(SCALE, text)
 
 
-def _nearest_scale(integral: Array, turn: Array) -> float:
-    """The gyroscope's gain beside the orientation, as near to 1 as the noise of either allows.
+def _written_steps(orientation: Array) -> float:
+    """Deviation of a turn's components [rad] by the steps in which quaternions (n, 4) were written, with few digits.
 
-    Noise of the orientation, or its steps where it was written with few digits, makes the slope of `integral` over
-    `turn` too small; noise of the gyroscope makes the inverse of the other slope too large. The gain lies between.
+    A turn is twice a difference of two of them, each off by a step's rounding.
     """
-    both = float(np.sum(integral * turn))
-    slope = both / float(np.sum(turn**2))
-    return float(np.clip(1.0, slope, float(np.sum(integral**2)) / both)) if both > 0 else slope
+    steps = np.abs(np.diff(orientation, axis=0))
+    smallest = np.min(steps, axis=0, where=steps > 0, initial=np.inf)
+    known = smallest[np.isfinite(smallest)]
+    return float(2 * np.sqrt(2) * np.median(known) / np.sqrt(12)) if known.size else 0.0
 
 
 def _turned_onto(one: Array, other: Array) -> Array:

@@ -38,6 +38,7 @@ from plantar.sensors.moment_fit import moments_of
 from plantar.sensors.newton_euler import NewtonEulerResidual
 from plantar.sensors.sensor_turns import sensor_turn_notes
 from plantar.sensors.tilt_error import NO_TILT_ERROR
+from plantar.sensors.torque_delay import torque_delay_notes
 
 Progress = Callable[[str], None]
 
@@ -134,6 +135,7 @@ def prepare_checked(
         *force_gain_notes(robot, forces),
         *torque_gain_notes(torques).values(),
         *turned.values(),
+        *torque_delay_notes(moments),
         *fading_notes(filtered),
         *attitude_scale_notes(sum((one.attitude_scale for one in recordings), AttitudeScale())),
     ]

@@ -26,6 +26,7 @@ LEAST_BETWEEN = 0.001  # N.m/N, likewise
 RATE = 20.0  # Hz of the samples that take part: above it nothing has passed the filter
 BAND = 2.0  # Hz: the robot moves below it, and most of the sensors' noise is above
 LATE = 0.02  # s, of feet's sensors, encoders and gyroscope behind the accelerometer
+LATE_TORQUES = 0.005  # s, of torques behind the forces of the same sensors: mostly read together
 MOUNT = 0.1  # rad, by which sensors and IMU may be turned: wide, so that no turned mount passes for a gain
 KEPT_PER_BAND = 5.0  # samples for each period of BAND: far above what has passed the filter
 TOGETHER = 8  # signals that are filtered at once
@@ -42,11 +43,12 @@ class MomentErrors:
     The first axis is the six rows of Newton's law.
 
     The columns are, in this order: torques about pitch of each foot, torques about roll of each foot, what else each
-    foot's sensor may get wrong, the IMU's turn about its three axes, and the delays of each foot, of the encoders and
-    of the gyroscope. Behind them stand the log's own zeros of each channel of each foot, with deviations `zeros` (z,):
-    at an arm that moves with the robot, a zero does not stay a constant. `products` (parts, 6, k + 1, k + 1) are those
-    of missing and columns in each part of the log, without what the sensors' noise adds to them; `drawn` (6, k, draws)
-    those of columns and what a wrong URDF adds; `independent` is the share of samples [each `period` s] that are.
+    foot's sensor may get wrong, the IMU's turn about its three axes, and the delays of each foot, of the encoders, of
+    the gyroscope, and of all torques behind the forces. Behind them stand the log's own zeros of each channel of each
+    foot, with deviations `zeros` (z,): at an arm that moves with the robot, a zero does not stay a constant. `products`
+    (parts, 6, k + 1, k + 1) are those of missing and columns in each part of the log, without what the sensors' noise
+    adds to them; `drawn` (6, k, draws) those of columns and what a wrong URDF adds; `independent` is the share of
+    samples [each `period` s] that are.
     """
 
     columns: Array
@@ -64,12 +66,14 @@ def moment_errors(robot: RobotModel, residual: NewtonEulerResidual, steps: bool)
     Of a standing robot what is slower than BAND, without what the sensors' noise does to it. A walk moves faster, and
     so strongly that noise is small beside it.
     """
-    residual = residual.thinned(max(1, round(1 / (RATE * residual.pair.period))))
+    stride = max(1, round(1 / (RATE * residual.pair.period)))
+    rates = np.gradient(residual.readings, residual.pair.period, axis=0)[::stride]
+    residual = residual.thinned(stride)
     equation = Equation(robot.floating_model)
     motion = inertial_motion(robot, equation, residual.signals, residual.kept)
-    readings, zeros, measured = _reading_columns(robot, equation, residual)
+    readings, zeros, measured, by_torques = _reading_columns(robot, equation, residual, rates)
     by_gyroscope, by_mount = _imu_slopes(robot, equation, residual)
-    slopes = [*-by_mount, *residual.rates, residual.by_encoders, -by_gyroscope, *zeros]
+    slopes = [*-by_mount, *residual.rates, residual.by_encoders, -by_gyroscope, by_torques, *zeros]
     period, count, drawn = residual.pair.period, len(readings) + len(slopes), drawn_parameter_errors(robot)
     # Both sides anew: those of the residual lost slow parts over all of the log, what an end of it then shows of them
     # would be no column's.
@@ -148,7 +152,8 @@ def prior_deviations(robot: RobotModel) -> Array:
     """Deviations of the columns' coefficients before the moments are asked, (k,)."""
     feet = len(robot.feet)
     of_feet = np.tile(_sensor_errors(robot)[1], feet)
-    return np.concatenate([np.full(2 * feet, LOOSE), of_feet, np.full(3, MOUNT), np.full(feet + 2, LATE)])
+    late = [*np.full(feet + 2, LATE), LATE_TORQUES]
+    return np.concatenate([np.full(2 * feet, LOOSE), of_feet, np.full(3, MOUNT), late])
 
 
 def turn_columns(robot: RobotModel) -> dict[str, slice]:
@@ -161,16 +166,16 @@ def turn_columns(robot: RobotModel) -> dict[str, slice]:
 
 
 def _reading_columns(
-    robot: RobotModel, equation: Equation, residual: NewtonEulerResidual
-) -> tuple[list[Array], list[Array], Array]:
+    robot: RobotModel, equation: Equation, residual: NewtonEulerResidual, rates: Array
+) -> tuple[list[Array], list[Array], Array, Array]:
     """What gains of torques and other errors of the feet's sensors add to the measured side; what one newton or
-    newton-metre that each channel of each foot reads without any load adds to the prediction; (n, 6) each; and the
-    measured side.
+    newton-metre that each channel of each foot reads without any load adds to the prediction; (n, 6) each; the
+    measured side, and how it changes with the moment at which all torques are read. rates: of the readings (n, 6 feet).
     """
     positions = residual.signals.positions[residual.kept]
     matrices = _sensor_errors(robot)[0]
     gains: list[list[Array]] = [[], []]
-    others, zeros, measured = list[Array](), list[Array](), np.zeros(())
+    others, zeros, measured, by_torques = list[Array](), list[Array](), np.zeros(()), np.zeros(())
     for place, foot in enumerate(robot.feet.values()):
         wrench = residual.readings[:, 6 * place : 6 * place + 6]
         contact = Contact(*robot.frame(foot.wrench.placement))
@@ -184,7 +189,9 @@ def _reading_columns(
         others += [*carried[2:]]
         zeros += [*-transfer.transpose(2, 0, 1)]
         measured = measured + carried[2]  # the gain of all channels
-    return [*gains[0], *gains[1], *others], zeros, measured
+        own_rates = rates[:, 6 * place + 3 : 6 * place + 6]
+        by_torques = by_torques + np.einsum("nij,nj->ni", transfer[:, :, 3:], own_rates)
+    return [*gains[0], *gains[1], *others], zeros, measured, by_torques
 
 
 def _zero_deviations(robot: RobotModel) -> Array:

@@ -16,6 +16,7 @@ from plantar.notes import Note
 from plantar.results.feet import Parameter
 from plantar.sensors.bandwidth import FILTERED
 from plantar.sensors.delays.sensor_delay import BEYOND_SEARCH
+from plantar.sensors.torque_delay import TORQUES_LATE
 
 # Codes of warnings on a log's signs, frames, times, full scales and load, and on a bush far from its place.
 UNMENDED = frozenset(
@@ -26,7 +27,7 @@ UNMENDED = frozenset(
     }
 )  # fmt: skip
 # Codes of warnings on sensors that lag: what they spoil is damping and memory.
-OF_MOMENTS = frozenset({FILTERED, BEYOND_SEARCH, HYSTERESIS})
+OF_MOMENTS = frozenset({FILTERED, BEYOND_SEARCH, HYSTERESIS, TORQUES_LATE})
 ADVICE = "mend what the warning names, or leave this log out"
 
 

@@ -1,0 +1,63 @@
+"""Torques that are read at other moments than the forces of the same sensors are told, with how late they are."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from moments import fit_moments
+from plantar.feet.prepare_log import checked
+from plantar.logs.motion_log import MotionLog
+from plantar.notes import Note
+from plantar.robot.model import RobotModel
+from plantar.sensors.moment_fit import MomentFit, Part
+from plantar.sensors.newton_euler import newton_euler_residuals
+from plantar.sensors.torque_delay import TORQUES_LATE, torque_delay_notes
+from plantar.signals.resampling import shifted
+from plantar.twin.robots import hrp2
+from twin_samples import walked
+
+
+@pytest.fixture(scope="module")
+def twin() -> RobotModel:
+    return hrp2.robot()
+
+
+def late(log: MotionLog, quantity: str, seconds: float) -> MotionLog:
+    names = [name for name in log.columns if name.startswith("wrench.") and f".{quantity}." in name]
+    moved = shifted(log.stack(names), log.period, -seconds)
+    return log.with_columns(dict(zip(names, moved.T, strict=True)))
+
+
+def told(twin: RobotModel, log: MotionLog) -> list[Note]:
+    [residual] = newton_euler_residuals(twin, log)
+    return torque_delay_notes(fit_moments(twin, [residual], [log.name]))
+
+
+@pytest.mark.parametrize(
+    ("quantity", "seconds", "words"),
+    [("torque", 0.02, "behind"), ("torque", 0.008, "behind"), ("force", 0.02, "ahead of")],
+)
+def test_channels_read_apart_are_told_with_their_delay(
+    twin: RobotModel, quantity: str, seconds: float, words: str
+) -> None:
+    (note,) = told(twin, late(checked(twin, walked()), quantity, seconds))
+    assert (note.code, note.severity) == (TORQUES_LATE, "warning")
+    size, unit, sense = note.text.split("torques are ")[1].split(" their forces")[0].partition(" ms (95 %) ")
+    assert sense == words, unit
+    value, _, reach = size.partition(" ± ")
+    assert float(value) == pytest.approx(1e3 * seconds, rel=0.25)
+    assert float(reach) <= 3.0
+
+
+def test_sensors_read_at_one_moment_are_not_told(twin: RobotModel) -> None:
+    log = checked(twin, walked())
+    assert told(twin, log) == []
+    assert told(twin, late(late(log, "torque", 0.008), "force", 0.008)) == []
+    assert torque_delay_notes(None) == []
+
+
+@pytest.mark.parametrize(("std", "some"), [(0.001, 1), (0.01, 0)])
+def test_a_delay_that_may_be_chance_is_not_told(std: float, some: int) -> None:
+    fit = MomentFit(np.array([0.0, 0.02]), [Part(std**2 * np.eye(2), 1e6)])
+    assert len(torque_delay_notes(fit)) == some
