@@ -176,6 +176,26 @@ def low_passed(columns: Columns, cutoff: float, rate: float = 200.0) -> Change:
     return altered(columns, smooth)
 
 
+def dead_below(columns: Columns, share: float) -> Change:
+    """Readings below a share of the largest one are exactly nothing, as behind a driver's dead band."""
+    return altered(
+        columns, lambda values: np.where(np.abs(values) < share * np.abs(values).max(), 0.0, values)
+    )
+
+
+def with_hysteresis(columns: Columns, share: float) -> Change:
+    """A sensor that follows only when it is off by a share of its largest reading."""
+
+    def behind(values: Array) -> Array:
+        width, state, found = share * float(np.abs(values).max()), values[0], np.empty_like(values)
+        for place, value in enumerate(values):
+            state = min(max(state, value - width), value + width)
+            found[place] = state
+        return found
+
+    return altered(columns, behind)
+
+
 def timed(new: Callable[[Array], Array]) -> Change:
     """Another time column."""
     return lambda case: case.with_tables(lambda table: {**table, "time": new(table["time"])})

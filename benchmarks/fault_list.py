@@ -72,6 +72,7 @@ HEALTHY = (
     Fault(
         "orientation in single precision", "healthy", reoriented(lambda q: q.astype(np.float32).astype(float))
     ),
+    Fault("orientation with four digits", "healthy", reoriented(lambda q: np.round(q, 4))),
 )
 
 FAULTS = (*HEALTHY, *ALONE, *(_pair(*names) for names in PAIRED))

@@ -9,6 +9,7 @@ import numpy as np
 from fault_case import Columns, Fault, encoder, encoders, imu, wrench
 from fault_changes import (
     clipped,
+    dead_below,
     drifting_clock,
     dropouts,
     every_nth_held,
@@ -30,6 +31,7 @@ from fault_changes import (
     tared,
     thinned,
     timed,
+    with_hysteresis,
 )
 from plantar.conventions import GRAVITY
 
@@ -156,6 +158,8 @@ TIMING = (
     *(Fault(f"{what} {ms} ms late in the second log alone", "timing",
             in_one_log(late((columns, 1e-3 * ms))), DELAY)
       for what, columns, ms in (("IMU", imu(), 8), ("IMU", imu(), 30), ("wrenches", wrench(), 13))),
+    *(Fault(f"{what} 20 ms late alone", "timing", late((columns, 0.02)), DELAY)
+      for what, columns in (("forces", FORCES), ("torques", TORQUES))),
     Fault("wrenches' clock 0.1 % slow", "timing", drifting_clock(wrench(), 1e-3), (*DELAY, "clock", "drift")),
     Fault("wrenches filtered at 5 Hz", "timing", low_passed(wrench(), 5), (*DELAY, "filter")),
     Fault("stamps rounded to 10 ms", "timing", timed(lambda time: np.round(time, 2)), ("time",)),
@@ -170,6 +174,8 @@ SATURATION = (
     Fault("forces z clipped at 80 %", "saturation", clipped(wrench(quantity=r"force\.z"), 0.8), STUCK),
     Fault("left force z clipped at 50 %", "saturation", clipped(wrench("left", quantity=r"force\.z"), 0.5), STUCK),
     Fault("gyroscope clipped at 30 %", "saturation", clipped(GYROSCOPE, 0.3), STUCK),
+    Fault("torques dead below 3 %", "saturation", dead_below(TORQUES, 0.03), (*STUCK, "dead band")),
+    Fault("torques with 1 % hysteresis", "saturation", with_hysteresis(TORQUES, 0.01), ("hysteresis", *DELAY)),
 )  # fmt: skip
 
 

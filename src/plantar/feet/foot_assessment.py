@@ -95,7 +95,6 @@ def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit, between: Apart)
     ]
     faults = [
         *data_faults(ready.fitted, fit),
-        *far_arms([fit]),
         *fitted.jumps,  # of both axes: an encoder that slips about one tilts the other as well
         *own,
         *force_gain_notes(ready.robot, gain),
@@ -105,11 +104,13 @@ def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit, between: Apart)
         *(note for foot, note in ready.turned.items() if foot == fit.foot),
         *(note for note in ready.notes if note.code in (*OF_MOMENTS, ATTITUDE_SCALE)),
     ]
+    # Behind the others: a mass, a gain or a delay that is wrong looks like one. Steps hardly tell how far a bush is.
+    far = far_arms([fit]) if fitted.place.measured and blocks[0].stances is None else []
     # What is left of a foot on its edge is flat, and no number is doubted; what most of it could tell comes first.
-    first = [*(note for note in found.notes if note.code == ON_AN_EDGE), *faults]
+    first = [*(note for note in found.notes if note.code == ON_AN_EDGE), *(faults or far)]
     return FootFit(
         fits=[*found.fits, wide],
-        parameters=[*found.parameters, *mend_first(doubted(advised(rows, limits), faults), first)],
+        parameters=[*found.parameters, *mend_first(doubted(advised(rows, limits), [*faults, *far]), first)],
         validation=[*found.validation, *scores],
         diagnosis=[*found.diagnosis, *limits],
         predictions={**found.predictions, **predictions},

@@ -8,12 +8,14 @@ import pytest
 
 from biped import record, sway
 from feet_trials import LINEAR, noisy
+from plantar.feet import foot_assessment
 from plantar.feet.assess.data_faults import OF_MOMENTS, UNMENDED, data_faults, doubted
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.identify import fit_prepared
 from plantar.feet.prepare import PreparedLogs, prepare_all
 from plantar.notes import Note
 from plantar.results.feet import FeetResult
+from plantar.robot.guesses import Guess
 from plantar.robot.model import RobotModel
 
 
@@ -80,3 +82,26 @@ def test_a_force_that_leans_in_some_logs_is_somebodys_push(ready: PreparedLogs) 
     assert len(data_faults([leans, leans], fit)) == 2
     assert len(data_faults([leans, steps], fit)) == 1  # of a walk nobody can tell
     assert len(data_faults([far, stands], fit)) == 1
+
+
+@pytest.mark.parametrize("guessed", [False, True])
+def test_a_bush_too_far_from_its_place_takes_usable_away_where_the_place_is_known(
+    robot: RobotModel,
+    ready: PreparedLogs,
+    healthy: FeetResult,
+    monkeypatch: pytest.MonkeyPatch,
+    guessed: bool,
+) -> None:
+    monkeypatch.setattr("plantar.cores.usable_cores", lambda: 1)
+    monkeypatch.setattr(
+        foot_assessment, "far_arms", lambda _: [Note("bush_arm_far", "warning", "50 mm off. Measure")]
+    )
+    if guessed:
+        ready = replace(
+            ready, robot=replace(robot, guesses=(Guess("feet.left.bush", ""), Guess("feet.right.bush", "")))
+        )
+    found = fit_prepared(robot, ready)
+    numbers = [row for row in found.parameters if row.axis != "z"]
+    assert any(row.verdict == "usable" for row in healthy.parameters if row.axis != "z")
+    assert any(row.verdict == "usable" for row in numbers) == guessed
+    assert any("50 mm off" in row.reason for row in numbers) != guessed

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from plantar.conventions import Array, Axis
-from plantar.feet.place.place_notes import CLEAR, FAR, PLACE
+from plantar.feet.place.place_notes import CLEAR, FAR, FARTHEST, PLACE
 from plantar.feet.regression.axis import AxisFit
 from plantar.robot.model import RobotModel
 
@@ -33,6 +33,11 @@ class PlaceSpread:
     def deviations(self) -> Array:
         """Of the centre's place, the force sensor's yaw, and the IMU's turn about three axes, (6,)."""
         return np.array([self.aside, self.above, *[self.turned] * 4])
+
+    @property
+    def measured(self) -> bool:
+        """Whether the robot file knows the place better than FARTHEST is far: of a guess nothing is too far."""
+        return CLEAR * max(self.aside, self.above) < FARTHEST[0]
 
     @property
     def expected(self) -> Array:
