@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-from plantar.errors import SettingsError, located
+from plantar.errors import SettingsError
 
 
 def one_of(name: str, value: object, choices: Iterable[str]) -> None:
     """Raise SettingsError unless `value` is one of `choices`; `name` is what the caller set."""
     known = tuple(choices)
     if not isinstance(value, str) or value not in known:
-        raise SettingsError(located(f"{name} is not a choice", value=value, valid=", ".join(known)))
+        raise SettingsError(f"{name} is not a choice", value=value, valid=", ".join(known))
 
 
 def number_in(
@@ -28,4 +28,4 @@ def number_in(
     if not number or not low <= float(value) <= high:  # type: ignore[arg-type]
         valid = f"{low:g} to {high:g} {unit}" if math.isfinite(high) else f"at least {low:g} {unit}"
         valid += "" if optional is None else f", or None: {optional}"
-        raise SettingsError(located(f"{name} is not valid", value=value, valid=valid))
+        raise SettingsError(f"{name} is not valid", value=value, valid=valid)

@@ -7,10 +7,36 @@ the value, and says what would be valid. The command line prints that line and e
 from __future__ import annotations
 
 import os
+from typing import Any
+
+
+def located(
+    message: str,
+    *,
+    path: str | os.PathLike[str] | None = None,
+    column: str | None = None,
+    time: float | None = None,
+    value: object | None = None,
+    valid: str | None = None,
+) -> str:
+    """One line in a fixed order: file, column, time, value, message, what would be valid."""
+    where = [str(path)] if path is not None else []
+    if column is not None:
+        where.append(f"column '{column}'")
+    if time is not None:
+        where.append(f"t = {time:.6g} s")
+    if value is not None:
+        where.append(f"value {value!r}" if isinstance(value, str) else f"value {value}")
+    line = ": ".join([", ".join(where), message] if where else [message])
+    if valid is not None:
+        line += f" (valid: {valid})"
+    return " ".join(line.split())
 
 
 class PlantarError(Exception):
     """A problem with the input that the user can mend; the message is one line. The kinds below are all of this.
+
+    Args: those of `located`, which makes the line.
 
     Example:
         >>> import plantar
@@ -20,6 +46,18 @@ class PlantarError(Exception):
         ...     print(error)
         nowhere.csv: does not exist
     """
+
+    def __init__(
+        self,
+        message: str,
+        *,
+        path: str | os.PathLike[str] | None = None,
+        column: str | None = None,
+        time: float | None = None,
+        value: object | None = None,
+        valid: str | None = None,
+    ) -> None:
+        super().__init__(located(message, path=path, column=column, time=time, value=value, valid=valid))
 
 
 class RobotError(PlantarError):
@@ -45,8 +83,8 @@ class SettingsError(PlantarError):
 class MotionError(PlantarError):
     """A planned motion cannot be played: out of reach, out of limits or out of balance; then `fell` says when [s]."""
 
-    def __init__(self, message: str, fell: float | None = None) -> None:
-        super().__init__(message)
+    def __init__(self, message: str, *, fell: float | None = None, **where: Any) -> None:
+        super().__init__(message, **where)
         self.fell = fell
 
 
@@ -59,26 +97,3 @@ class MissingExtra(PlantarError):
 
     def __init__(self, package: str, extra: str, purpose: str) -> None:
         super().__init__(f"{purpose} needs the package '{package}': pip install 'plantar[{extra}]'")
-
-
-def located(
-    message: str,
-    *,
-    path: str | os.PathLike[str] | None = None,
-    column: str | None = None,
-    time: float | None = None,
-    value: object | None = None,
-    valid: str | None = None,
-) -> str:
-    """One line in a fixed order: file, column, time, value, message, what would be valid."""
-    where = [str(path)] if path is not None else []
-    if column is not None:
-        where.append(f"column '{column}'")
-    if time is not None:
-        where.append(f"t = {time:.6g} s")
-    if value is not None:
-        where.append(f"value {value!r}" if isinstance(value, str) else f"value {value}")
-    line = ": ".join([", ".join(where), message] if where else [message])
-    if valid is not None:
-        line += f" (valid: {valid})"
-    return " ".join(line.split())

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO
 
-from plantar.errors import PlantarError, located
+from plantar.errors import PlantarError
 
 READ_BLOCK = 2**24  # bytes
 
@@ -23,7 +23,7 @@ def atomic_write(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
         target.parent.mkdir(parents=True, exist_ok=True)
         descriptor, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.", suffix=".part")
     except OSError as error:
-        raise PlantarError(located(f"cannot be written: {error.strerror}", path=target)) from error
+        raise PlantarError(f"cannot be written: {error.strerror}", path=target) from error
     temporary = Path(name)
     try:
         with os.fdopen(descriptor, "wb") as handle:
@@ -48,7 +48,7 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
 def refuse_file(folder: Path) -> None:
     """PlantarError where a file stands in the place of a folder for results: said before the work, not after it."""
     if folder.exists() and not folder.is_dir():
-        raise PlantarError(located("is a file", path=folder, valid="a folder for the results"))
+        raise PlantarError("is a file", path=folder, valid="a folder for the results")
 
 
 def sha256(path: str | os.PathLike[str]) -> str:
@@ -67,7 +67,7 @@ def read_bounded(path: str | os.PathLike[str], limit: int, error: type[PlantarEr
                 size += len(block)
             content = b"".join(blocks)
     except OSError as problem:
-        raise error(located(f"cannot be read: {problem.strerror}", path=path)) from problem
+        raise error(f"cannot be read: {problem.strerror}", path=path) from problem
     if len(content) > limit:
-        raise error(located(f"is larger than {limit} bytes", path=path, valid="a smaller file"))
+        raise error(f"is larger than {limit} bytes", path=path, valid="a smaller file")
     return content

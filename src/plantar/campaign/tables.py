@@ -154,8 +154,7 @@ def _cell(row: CrossBeside) -> Cell:
 def _error(value: float | None, good: float | None) -> Cell:
     if value is None:
         return Cell(MISSING)
-    text = f"{value:+.2f} %".replace("-", "−")
-    return Cell(text, _mark(abs(value), good))
+    return Cell(f"{value:+.2f} %".replace("-", "−"), _mark(abs(value), good))
 
 
 def _mark(value: float, good: float | None) -> Mark:

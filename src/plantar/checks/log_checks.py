@@ -20,7 +20,7 @@ from plantar.checks.joints.still_joints import check_still_joints
 from plantar.checks.load_signs import check_load_signs
 from plantar.checks.standing import check_balance
 from plantar.conventions import GRAVITY
-from plantar.errors import DataError, located
+from plantar.errors import DataError
 from plantar.logs.freed_memory import return_freed
 from plantar.logs.motion_log import MotionLog, wrench_columns
 from plantar.notes import Finding, Note
@@ -62,7 +62,7 @@ def refuse_impossible(log: MotionLog, findings: Sequence[Finding]) -> None:
     """Raise DataError with the first finding after which nothing can be said of the log."""
     fatal = next((finding for finding in findings if finding.fatal), None)
     if fatal is not None:
-        raise DataError(located(fatal.text, path=log.source))
+        raise DataError(fatal.text, path=log.source)
 
 
 def finding_notes(log: MotionLog, findings: Sequence[Finding]) -> list[Note]:

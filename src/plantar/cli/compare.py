@@ -10,7 +10,7 @@ import typer
 
 from plantar.cli.console.memory import Memory
 from plantar.cli.console.terminal import console, end_progress, number, progress, table
-from plantar.errors import MissingExtra, PlantarError, located
+from plantar.errors import MissingExtra, PlantarError
 from plantar.exporters.job import LEAST_LOAD, Stance
 from plantar.files import refuse_file, write_text
 from plantar.logs.inputs import open_together
@@ -57,7 +57,7 @@ def run(
     except ImportError as error:
         raise MissingExtra(error.name or "mujoco", "twin", "plantar compare") from error
     if simulator not in SIMULATORS:
-        raise PlantarError(located("unknown simulator", value=simulator, valid=", ".join(SIMULATORS)))
+        raise PlantarError("unknown simulator", value=simulator, valid=", ".join(SIMULATORS))
     if out is not None:
         refuse_file(out)
     step = progress(quiet)

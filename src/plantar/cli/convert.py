@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from plantar.cli.console.memory import Memory
-from plantar.errors import PlantarError, located
+from plantar.errors import PlantarError
 from plantar.logs.readers import motion_name, open_log
 from plantar.logs.save import ENDINGS, save_log
 from plantar.robot.model import load_robot
@@ -45,15 +45,11 @@ def _targets(logs: list[Path], out: Path, to: str) -> list[Path]:
     if len(logs) == 1 and out.suffix.lower() in ENDINGS:
         return [out]
     if f".{to}" not in ENDINGS:
-        raise PlantarError(located(f"--to {to} is not a format", valid=", ".join(e[1:] for e in ENDINGS)))
+        raise PlantarError(f"--to {to} is not a format", valid=", ".join(e[1:] for e in ENDINGS))
     if out.suffix.lower() in ENDINGS or out.is_file():
-        raise PlantarError(
-            located("is one file for several logs", path=out, valid="a directory, and --to a format")
-        )
+        raise PlantarError("is one file for several logs", path=out, valid="a directory, and --to a format")
     names = [motion_name(path) for path in logs]
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice is not None:
-        raise PlantarError(
-            located(f"two logs are called '{twice}'", path=out, valid="logs of different names")
-        )
+        raise PlantarError(f"two logs are called '{twice}'", path=out, valid="logs of different names")
     return [out / f"{name}.{to}" for name in names]

@@ -9,7 +9,7 @@ import typer
 
 from plantar.choices import one_of
 from plantar.cli.console.terminal import console, end_progress, number, print_notes, progress, table
-from plantar.errors import MissingExtra, PlantarError, located
+from plantar.errors import MissingExtra, PlantarError
 from plantar.files import write_text
 from plantar.logs.save import save_log
 from plantar.notes import Note
@@ -84,7 +84,7 @@ def run(
     except ImportError as error:
         raise MissingExtra(error.name or "mujoco", "twin", "plantar design") from error
     if out.suffix.lower() != ".csv":
-        raise PlantarError(located("has an unknown ending", path=out, valid=".csv"))
+        raise PlantarError("has an unknown ending", path=out, valid=".csv")
     model = load_robot(robot)
     check_outputs(model, rate, to or ())
     settings = DesignSettings(stiffness, damping, duration, criterion, seed)  # type: ignore[arg-type]

@@ -11,7 +11,7 @@ from rich.markup import escape
 
 from plantar.cli.console.advice import advised
 from plantar.cli.console.terminal import VERDICT_STYLE, console, number, table
-from plantar.errors import PlantarError, located
+from plantar.errors import PlantarError
 from plantar.results.feet import FeetResult
 from plantar.results.io import dump_json
 from plantar.results.usage import used_shares
@@ -36,9 +36,7 @@ def run(
     for row in diagnosis:
         if (row.foot, row.axis, row.name) not in verdicts:
             message = f"diagnosis of {row.foot} {row.axis} {row.name}, which is no parameter of the result"
-            raise PlantarError(
-                located(message, path=result, valid="a result.json as `identify feet` writes it")
-            )
+            raise PlantarError(message, path=result, valid="a result.json as `identify feet` writes it")
     cells = [
         (row.foot, row.axis, row.name, number(row.half_width_percent, 2), row.limit,
          ", ".join(f"{cause} {100 * share:.0f} %" for cause, share in row.variance_shares.items() if share > 0.005))

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from plantar.errors import PlantarError, located
+from plantar.errors import PlantarError
 from plantar.files import write_text
 from plantar.robot.model import load_robot
 from plantar.robot_guess import guess_robot_file
@@ -29,7 +29,7 @@ def run(
     Example: plantar init talos.urdf sway_1.mcap --out talos.yaml
     """
     if out.exists() and not force:
-        raise PlantarError(located("is there already", path=out, valid="another --out, or --force"))
+        raise PlantarError("is there already", path=out, valid="another --out, or --force")
     write_text(out, guess_robot_file(urdf, logs or [], out, columns))
     guesses = load_robot(out).guesses  # what was written must be readable
     print(out.read_text(), end="")

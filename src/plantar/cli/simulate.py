@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from plantar.cli.console.terminal import console, end_progress, number, progress, table
-from plantar.errors import MissingExtra, PlantarError, located
+from plantar.errors import MissingExtra, PlantarError
 from plantar.files import refuse_file
 from plantar.robot.model import load_robot
 
@@ -92,14 +92,14 @@ def run(
         return
     for option, size in (("--sway", sway), ("--vertical", vertical), ("--apart", apart)):
         if size is not None and not 0 < size < LONGEST:
-            raise PlantarError(located(f"{option} is no length", value=size, valid=f"0 to {LONGEST:g} m"))
+            raise PlantarError(f"{option} is no length", value=size, valid=f"0 to {LONGEST:g} m")
     chosen = DEFAULT if preset is None else preset
     names = list({"campaign": CAMPAIGN, "demo": DEMO}.get(motion, tuple(motion.split(","))))
     bushes = PAPER if bush is None else _bushes(bush)
     model = None if robot is None else load_robot(robot)
     if model is not None and bush is None and model.name != "hrp2_like":
         message = f"'{model.name}' stands on unknown bushes"
-        raise PlantarError(located(message, valid="--bush K_pitch,C_pitch,K_roll,C_roll"))
+        raise PlantarError(message, valid="--bush K_pitch,C_pitch,K_roll,C_roll")
     report = _reporter(len(names), progress(quiet))
     motions = [own_plan(name, model or hrp2.robot()) if Path(name).suffix else name for name in names]
     (recordings,) = play_all(
@@ -151,9 +151,7 @@ def _bushes(text: str) -> Feet:
             raise ValueError
     except ValueError:
         message = "--bush is not four or six numbers that are at least 0"
-        raise PlantarError(
-            located(message, value=text, valid="1000,20,800,16 or 1000,20,800,16,4e5,1000")
-        ) from None
+        raise PlantarError(message, value=text, valid="1000,20,800,16 or 1000,20,800,16,4e5,1000") from None
     return {foot: Bush(*values) for foot in ("left", "right")}
 
 

@@ -14,7 +14,7 @@ import pinocchio as pin
 
 from plantar.contact.polygon import convex_hull, inside_distance
 from plantar.conventions import FORCE, GRAVITY, TORQUE, Array
-from plantar.errors import DataError, MotionError, located
+from plantar.errors import DataError, MotionError
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
 
@@ -50,7 +50,7 @@ class Balance:
         """Time [s] and margin [m] of the moment nearest to falling; DataError where the feet never carry."""
         margin = self.margin
         if not np.isfinite(margin).any():
-            raise DataError(located("no foot carries the robot", path=self.motion))
+            raise DataError("no foot carries the robot", path=self.motion)
         place = int(np.nanargmin(margin))
         return float(self.time[place]), float(margin[place])
 
@@ -64,7 +64,7 @@ def require_balance(balance: Balance, least: float = 0.005) -> None:
     if margin >= 0:
         where = f"comes within {1e3 * margin:.1f} mm of the support polygon's border"
     message = f"{balance.motion}: the zero-moment point {where}"
-    raise MotionError(located(message, time=time, valid=f"at least {1e3 * least:.0f} mm inside"))
+    raise MotionError(message, time=time, valid=f"at least {1e3 * least:.0f} mm inside")
 
 
 def sole_outlines(robot: RobotModel, soles: Mapping[str, Array]) -> dict[str, Array]:
@@ -104,7 +104,7 @@ def measured_balance(robot: RobotModel, log: MotionLog, soles: Mapping[str, Arra
     Raises DataError when the robot file has no feet.
     """
     if not robot.feet:
-        raise DataError(located("has no feet, so there is no balance to measure", path=robot.path))
+        raise DataError("has no feet, so there is no balance to measure", path=robot.path)
     poses = dict(soles) if soles is not None else flat_soles(robot, log.positions(robot)[0])
     least = LOADED * robot.mass * GRAVITY
     total, carrying = np.zeros((len(log), 6)), {}
@@ -120,7 +120,7 @@ def measured_balance(robot: RobotModel, log: MotionLog, soles: Mapping[str, Arra
         total[:, FORCE] += force
         total[:, TORQUE] += torque + np.cross(to_world[:3, 3], force)
     if not carrying:
-        raise DataError(located("no foot carries the robot", path=log.source))
+        raise DataError("no foot carries the robot", path=log.source)
     return Balance(log.name, log.time, zero_moment_point(total, least), sole_outlines(robot, carrying))
 
 

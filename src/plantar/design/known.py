@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from plantar.conventions import NORMAL95, ROTATIONAL_AXES, Array
-from plantar.errors import DataError, located
+from plantar.errors import DataError
 from plantar.models import KelvinVoigt
 from plantar.results.feet import FeetResult
 
@@ -52,7 +52,7 @@ class Known:
         found = {term: of["usable"] or of["weak"] for term, of in values.items()}
         if not all(found.values()):
             message = "the result has no stiffness and damping that could be used"
-            raise DataError(located(message, valid="a result with some, or --stiffness without --after"))
+            raise DataError(message, valid="a result with some, or --stiffness without --after")
         stiffness, damping = (float(np.exp(np.mean(np.log(found[term])))) for term in terms)
         return cls(stiffness, damping, min(reaches) / WIDER, max(reaches) * WIDER, deviations)
 

@@ -13,7 +13,7 @@ import pinocchio as pin
 from plantar.conventions import ROTATIONAL_AXES, Array
 from plantar.design.arms import arm_swing
 from plantar.design.family import CHANNELS
-from plantar.errors import MotionError, located
+from plantar.errors import MotionError
 from plantar.motions.body import Body
 from plantar.motions.stance import Stance, stand
 from plantar.motions.upper import upper_joints
@@ -97,7 +97,7 @@ class Legs:
             if self._inside(q) and self._inside(higher):
                 return q, centre, poses
         message = "the legs cannot carry the body over its feet with bent knees"
-        raise MotionError(located(message, path=self.body.robot.name, valid="legs of six joints each"))
+        raise MotionError(message, path=self.body.robot.name, valid="legs of six joints each")
 
     @cached_property
     def _bounded(self) -> list[tuple[int, float, float]]:
@@ -162,7 +162,7 @@ class Legs:
             q = pin.integrate(model, q, change)
         if missed > MISSED:
             message = f"the legs cannot reach their places, they miss by {1e3 * missed:.1f} mm or mrad"
-            raise MotionError(located(message, path=self.body.robot.name, valid="a smaller motion"))
+            raise MotionError(message, path=self.body.robot.name, valid="a smaller motion")
         return q
 
     def _missed(

@@ -10,7 +10,7 @@ import numpy as np
 from plantar.conventions import ROTATIONAL_AXES
 from plantar.design.rehearsal import SEED, bush_of
 from plantar.design.soft_feet import Softness
-from plantar.errors import MotionError, located
+from plantar.errors import MotionError
 from plantar.feet.select_motions import Selection, select_motions
 from plantar.logs.motion_log import MotionLog
 from plantar.models import KelvinVoigt
@@ -81,7 +81,7 @@ def paper_motions(
     free = [name for name, plan in played.items() if plan.hand is None]
     if not free:
         message = "can do none of the paper's motions without a hand"
-        raise MotionError(located(message, path=robot.name, valid="a design without --like"))
+        raise MotionError(message, path=robot.name, valid="a design without --like")
     selection = select_motions(robot, logs, progress=progress)
     best = next(choice.motions[0] for choice in selection.alone if choice.motions[0] in free)
     return PaperMotions(selection, refused, played[best])

@@ -14,7 +14,7 @@ from typing import Final
 import numpy as np
 
 from plantar.conventions import GRAVITY, Array
-from plantar.errors import MotionError, located
+from plantar.errors import MotionError
 from plantar.robot.model import RobotModel
 
 SILENCE: Final = 15.0  # s of rest that are added, in which a soft robot comes to rest
@@ -69,7 +69,7 @@ class Pendulum:
         least = CARRIED * self.least_stiffness
         if stiffness < least:
             message = f"feet of {stiffness:.4g} N·m/rad cannot hold the robot upright"
-            raise MotionError(located(message, path=robot, valid=f"at least {least:.4g} N·m/rad each"))
+            raise MotionError(message, path=robot, valid=f"at least {least:.4g} N·m/rad each")
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ from plantar.design.rehearsal import Rehearsal, rehearse
 from plantar.design.search import best_motion
 from plantar.design.soft_feet import CARRIED, Softness
 from plantar.design.trajectory import Trajectory
-from plantar.errors import MotionError, SettingsError, located
+from plantar.errors import MotionError, SettingsError
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
 from plantar.twin.play import postures_of
@@ -221,7 +221,7 @@ def _rehearsed(
         if before is None:
             tight = [factor for factor, one in held.items() if _used(one)[0] > 1.0]
         coefficients = smaller(max((1 - SPARE) / np.sqrt(used), SMALLER) * coefficients)
-    raise MotionError(located(f"no motion holds over the range of stiffness: {reason}", path=robot.name))
+    raise MotionError(f"no motion holds over the range of stiffness: {reason}", path=robot.name)
 
 
 def _rehearsed_at(low: float, high: float) -> tuple[float, ...]:

@@ -11,7 +11,7 @@ import os
 from importlib import import_module
 from pathlib import Path
 
-from plantar.errors import ExportError, located
+from plantar.errors import ExportError
 from plantar.exporters.bush import check_swing, feet_of_result
 from plantar.exporters.comment import joints_note
 from plantar.exporters.job import LEAST_LOAD, Job, Stance, asked
@@ -96,17 +96,15 @@ def export(
     check_swing(swing)
     stance = Stance(pivot, least_load)
     if target not in TARGETS:
-        raise ExportError(located(f"'{target}' is not a target", valid=", ".join(TARGETS)))
+        raise ExportError(f"'{target}' is not a target", valid=", ".join(TARGETS))
     data, base = open_result(result)
     path = Path(out)
     given = None if model is None else Path(model)
     if data.get("schema") == "plantar.inertia/1":
         if target != "urdf":
-            raise ExportError(
-                located("cannot hold a result of plantar.inertia/1", value=target, valid="urdf")
-            )
+            raise ExportError("cannot hold a result of plantar.inertia/1", value=target, valid="urdf")
         if given is None and "robot_model" not in data:
-            raise ExportError(located("the result names no URDF", valid="--model with the robot's URDF"))
+            raise ExportError("the result names no URDF", valid="--model with the robot's URDF")
         from plantar.exporters.urdf.inertia import with_inertial_parameters
 
         text, notes = with_inertial_parameters(data, given or robot_urdf(data, base))
@@ -120,7 +118,7 @@ def export(
             given = robot_urdf(data, base)
         takes_model = getattr(module, "EXTENDS", False) or getattr(module, "OPTIONAL_MODEL", False)
         if given is not None and not takes_model:
-            raise ExportError(located("this target takes no model", value=target, valid="no --model"))
+            raise ExportError("this target takes no model", value=target, valid="no --model")
         text, notes = module.write(Job(data, feet, given, path, with_offset, remarks, stance))
         named = (joints_note(feet),) if target in WITH_JOINTS else ()
         notes = (*remarks, *notes, *named)

@@ -20,7 +20,7 @@ from plantar.conventions import (
     Axis,
     rotation_from_rpy,
 )
-from plantar.errors import ExportError, located
+from plantar.errors import ExportError
 from plantar.exporters.source import robot_model, robot_urdf
 from plantar.exporters.spring import Spring, spring_of
 from plantar.exporters.urdf.tree import UrdfTree
@@ -85,9 +85,7 @@ def raised(foot: FootBush) -> FootBush:
 def check_swing(swing: float | None) -> None:
     """Raise ExportError where an amplitude is no angle of a foot."""
     if swing is not None and not 0 < swing < 1:
-        raise ExportError(
-            located("the swing is no angle of a foot", value=swing, valid="above 0, below 1 rad")
-        )
+        raise ExportError("the swing is no angle of a foot", value=swing, valid="above 0, below 1 rad")
 
 
 def feet_of_result(
@@ -108,7 +106,7 @@ def feet_of_result(
     rows = [row for row in result.get("parameters", ()) if isinstance(row, Mapping)]
     names = list(dict.fromkeys(str(row.get("foot")) for row in rows))
     if not names:
-        raise ExportError(located("the result holds no parameters", valid="a result of identify feet"))
+        raise ExportError("the result holds no parameters", valid="a result of identify feet")
     entries = robot_model(result).get("feet", {})
     notes = [
         Note("export_guess", "warning", str(note.get("text")))
@@ -129,7 +127,7 @@ def feet_of_result(
         )
         if not {"pitch", "roll"} & {spring.axis for spring in springs}:
             raise ExportError(
-                located(f"foot '{name}' has no stiffness in pitch or roll", valid="a result of identify feet")
+                f"foot '{name}' has no stiffness in pitch or roll", valid="a result of identify feet"
             )
         for axis in AXES:
             if axis not in {spring.axis for spring in springs}:
@@ -137,9 +135,7 @@ def feet_of_result(
                     Note("export_rigid", "info", f"{name} {axis}: not identified, so rigid in the export")
                 )
         if name not in entries:
-            raise ExportError(
-                located(f"the result's robot_model has no foot '{name}'", valid=", ".join(entries))
-            )
+            raise ExportError(f"the result's robot_model has no foot '{name}'", valid=", ".join(entries))
         centre, rotation, sole = _geometry(entries[name], result, base)
         feet.append(FootBush(name, str(entries[name]["ankle"]), springs, centre, rotation, sole))
     return tuple(feet), tuple(notes)
@@ -161,6 +157,6 @@ def _geometry(entry: Mapping[str, Any], result: Mapping[str, Any], base: Path) -
         corners = np.column_stack([outline, np.zeros(len(outline))]) @ frames[1][0].T + frames[1][1]
     except (KeyError, TypeError, ValueError, IndexError, AttributeError) as error:
         raise ExportError(
-            located(f"robot_model: a foot's entry is broken: {error}", valid="ankle, bush, sole")
+            f"robot_model: a foot's entry is broken: {error}", valid="ankle, bush, sole"
         ) from error
     return frames[0][1], frames[0][0], corners

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from plantar.errors import ExportError, located
+from plantar.errors import ExportError
 from plantar.exporters.bush import FootBush
 from plantar.notes import Note
 
@@ -52,18 +52,18 @@ def asked(module: object, target: str, hysteresis: bool, swing: float | None, st
     """
     low, high = LEAST_LOADS
     if stance.pivot not in PIVOTS:
-        raise ExportError(located("unknown pivot", value=stance.pivot, valid=", ".join(PIVOTS)))
+        raise ExportError("unknown pivot", value=stance.pivot, valid=", ".join(PIVOTS))
     if not low <= stance.least_load <= high:
         valid = f"{low:g} to {high:g} of the weight"
-        raise ExportError(located("the least load is out of range", value=stance.least_load, valid=valid))
+        raise ExportError("the least load is out of range", value=stance.least_load, valid=valid)
     if stance != USUAL and not getattr(module, "STANCE", False):
         message = "this target takes no pivot and no least load"
-        raise ExportError(located(message, value=target, valid="mujoco-contact"))
+        raise ExportError(message, value=target, valid="mujoco-contact")
     holds = bool(getattr(module, "HYSTERESIS", False))
     if hysteresis and not (holds or getattr(module, "HYSTERESIS_IN_LOOP", False)):
         valid = "mjcf, mujoco-contact, or a swing"
-        raise ExportError(located("this target holds no hysteresis", value=target, valid=valid))
+        raise ExportError("this target holds no hysteresis", value=target, valid=valid)
     if hysteresis and swing is not None and not holds:
         message = "a swing makes spring and damper of the slip that the hysteresis would keep"
-        raise ExportError(located(message, valid="one of the two"))
+        raise ExportError(message, valid="one of the two")
     return holds or hysteresis

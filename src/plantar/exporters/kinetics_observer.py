@@ -18,7 +18,7 @@ import numpy as np
 import yaml
 
 from plantar.conventions import Axis
-from plantar.errors import ExportError, located
+from plantar.errors import ExportError
 from plantar.exporters.comment import head
 from plantar.files import read_bounded
 from plantar.notes import Note
@@ -52,7 +52,7 @@ def read_contacts(path: str | os.PathLike[str]) -> dict[Axis, tuple[float, float
     try:
         data = yaml.safe_load(read_bounded(path, LIMIT, ExportError))
     except (yaml.YAMLError, ValueError, RecursionError) as error:
-        raise ExportError(located("is not YAML", path=path, valid="an observer's configuration")) from error
+        raise ExportError("is not YAML", path=path, valid="an observer's configuration") from error
     found = {}
     for key in ENTRIES:
         try:
@@ -60,8 +60,7 @@ def read_contacts(path: str | os.PathLike[str]) -> dict[Axis, tuple[float, float
         except (TypeError, KeyError, ValueError):
             values = np.empty(0)
         if values.shape != (3,) or not np.isfinite(values).all() or values.min() < 0:
-            message = f"'{key}' is not three numbers"
-            raise ExportError(located(message, path=path, valid="x, y, z, none negative"))
+            raise ExportError(f"'{key}' is not three numbers", path=path, valid="x, y, z, none negative")
         found[key] = [float(value) for value in values]
     places: tuple[tuple[Axis, str, int], ...] = (("roll", "ang", 0), ("pitch", "ang", 1), ("z", "lin", 2))
     return {

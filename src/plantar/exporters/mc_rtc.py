@@ -13,7 +13,7 @@ import os
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from plantar.errors import ExportError, located
+from plantar.errors import ExportError
 from plantar.exporters.comment import head
 from plantar.files import read_bounded
 from plantar.notes import Note
@@ -52,10 +52,10 @@ def read_flexibilities(path: str | os.PathLike[str]) -> dict[str, Flexibility]:
     try:
         data = json.loads(read_bounded(path, LIMIT, ExportError))
     except (ValueError, RecursionError) as error:
-        raise ExportError(located("is not JSON", path=path, valid="a robot module of mc_rtc")) from error
+        raise ExportError("is not JSON", path=path, valid="a robot module of mc_rtc") from error
     entries = data.get("flexibilities") if isinstance(data, dict) else None
     if not isinstance(entries, list):
-        raise ExportError(located("has no list 'flexibilities'", path=path, valid="a robot module of mc_rtc"))
+        raise ExportError("has no list 'flexibilities'", path=path, valid="a robot module of mc_rtc")
     found: dict[str, Flexibility] = {}
     for place, entry in enumerate(entries, start=1):
         try:
@@ -64,7 +64,7 @@ def read_flexibilities(path: str | os.PathLike[str]) -> dict[str, Flexibility]:
             name, values = "", [math.nan]
         if not name or name in found or not all(map(math.isfinite, values)) or min(values[:2]) < 0:
             message = f"flexibility {place} is no joint with K, C and O"
-            raise ExportError(located(message, path=path, valid="each jointName once; K, C not negative"))
+            raise ExportError(message, path=path, valid="each jointName once; K, C not negative")
         found[name] = Flexibility(*values)
     return found
 

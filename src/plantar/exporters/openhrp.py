@@ -11,7 +11,7 @@ import os
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from plantar.errors import ExportError, located
+from plantar.errors import ExportError
 from plantar.exporters.comment import head
 from plantar.files import read_bounded
 from plantar.notes import Note
@@ -52,9 +52,7 @@ def read_customizer(path: str | os.PathLike[str]) -> Customizer:
         if colon:
             found[key.strip()] = (place, value.strip())
     if "bush_config" not in found:
-        raise ExportError(
-            located("has no 'bush_config'", path=path, valid="a bush customizer's configuration")
-        )
+        raise ExportError("has no 'bush_config'", path=path, valid="a bush customizer's configuration")
     place, config = found["bush_config"]
     joints: dict[str, tuple[float, float]] = {}
     for entry in config.split():
@@ -65,7 +63,7 @@ def read_customizer(path: str | os.PathLike[str]) -> Customizer:
             spring = damper = math.nan
         if name in joints or not (0 <= spring < math.inf and 0 <= damper < math.inf):
             message = f"line {place}: '{entry[:60]}' is no entry of 'bush_config'"
-            raise ExportError(located(message, path=path, valid="each joint once: joint,spring,damping"))
+            raise ExportError(message, path=path, valid="each joint once: joint,spring,damping")
         joints[name] = (spring, damper)
     return Customizer(found.get("robot_model_name", (0, ""))[1], joints)
 

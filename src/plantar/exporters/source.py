@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from plantar.errors import ExportError, located
+from plantar.errors import ExportError
 from plantar.results.dynamics import INERTIA_SCHEMA, DynamicsResult
 from plantar.results.feet import FEET_SCHEMA, FeetResult
 from plantar.results.io import read_result, result_path
@@ -26,13 +26,11 @@ def open_result(result: ResultInput) -> tuple[Mapping[str, Any], Path]:
         base, result = file.parent, read_result(file, error=ExportError)
     elif not isinstance(result, Mapping):
         kind = type(result).__name__
-        raise ExportError(
-            located("is not a result", value=kind, valid="a FeetResult or the path of a result.json")
-        )
+        raise ExportError("is not a result", value=kind, valid="a FeetResult or the path of a result.json")
     schema = result.get("schema")
     if schema not in SCHEMAS:
         raise ExportError(
-            located("a result of this schema cannot be exported", value=str(schema), valid=", ".join(SCHEMAS))
+            "a result of this schema cannot be exported", value=str(schema), valid=", ".join(SCHEMAS)
         )
     return result, base
 
@@ -41,9 +39,7 @@ def robot_model(result: Mapping[str, Any]) -> Mapping[str, Any]:
     """The result's `robot_model`; ExportError where an older result has none."""
     entry = result.get("robot_model")
     if not isinstance(entry, Mapping):
-        raise ExportError(
-            located("the result holds no 'robot_model'", valid="a result of this version of identify")
-        )
+        raise ExportError("the result holds no 'robot_model'", valid="a result of this version of identify")
     return entry
 
 
@@ -52,10 +48,8 @@ def robot_urdf(result: Mapping[str, Any], base: Path) -> Path:
     `identify` was run in, which holds the result somewhere below."""
     named = robot_model(result).get("urdf")
     if not isinstance(named, str):
-        raise ExportError(located("the result names no URDF", valid="--model with a robot model"))
+        raise ExportError("the result names no URDF", valid="--model with a robot model")
     for folder in (base, Path(), *base.resolve().parents):
         if (folder / named).is_file():
             return folder / named
-    raise ExportError(
-        located("the result's URDF is not there", path=named, valid="--model with a robot model")
-    )
+    raise ExportError("the result's URDF is not there", path=named, valid="--model with a robot model")

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from plantar.conventions import DAMPING_UNIT, OFFSET_UNIT, STIFFNESS_UNIT, Axis
-from plantar.errors import ExportError, located
+from plantar.errors import ExportError
 from plantar.notes import Note
 from plantar.results.numbers import unit
 
@@ -101,7 +101,7 @@ def spring_of(
     stiffness = values["stiffness"]
     if stiffness <= 0:
         message = f"{where}: the stiffness is not positive; no simulator can stand on it"
-        raise ExportError(located(message, value=stiffness, valid="a result whose stiffness is usable"))
+        raise ExportError(message, value=stiffness, valid="a result whose stiffness is usable")
     extra = [name for name in values if name not in KNOWN_TERMS]
     slip = swung = None
     if set(extra) == set(SLIP_TERMS) and all(values[name] > 0 for name in SLIP_TERMS):
@@ -198,5 +198,5 @@ def _linear_equivalent(result: Mapping[str, Any], foot: str, axis: Axis) -> tupl
 
 def _number(value: object, what: str) -> float:
     if not isinstance(value, int | float) or not math.isfinite(value):
-        raise ExportError(located(f"{what} is not a number", value=str(value), valid="a finite value"))
+        raise ExportError(f"{what} is not a number", value=str(value), valid="a finite value")
     return float(value)

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.errors import ExportError, located
+from plantar.errors import ExportError
 from plantar.files import read_bounded
 
 MODEL_LIMIT = 64 * 2**20  # bytes
@@ -22,9 +22,9 @@ def load_xml(path: Path, root_tag: str) -> ET.Element:
     try:
         root = ET.fromstring(content, parser=ET.XMLParser(target=_Bounded(path)))
     except (ET.ParseError, ValueError) as error:
-        raise ExportError(located(f"is not readable XML: {error}", path=path)) from error
+        raise ExportError(f"is not readable XML: {error}", path=path) from error
     if root.tag != root_tag:
-        raise ExportError(located(f"is not a <{root_tag}> file but <{root.tag}>", path=path))
+        raise ExportError(f"is not a <{root_tag}> file but <{root.tag}>", path=path)
     return root
 
 
@@ -38,12 +38,12 @@ class _Bounded(ET.TreeBuilder):
     def start(self, tag: str, attrs: dict[str, str], /) -> ET.Element:
         self._depth += 1
         if self._depth > DEPTH_LIMIT:
-            raise ExportError(located("is nested too deeply", path=self._path, valid=f"{DEPTH_LIMIT} levels"))
+            raise ExportError("is nested too deeply", path=self._path, valid=f"{DEPTH_LIMIT} levels")
         return super().start(tag, attrs)
 
     def doctype(self, name: str, pubid: str | None, system: str | None) -> None:
         """Whatever the file's encoding, a declared DOCTYPE is seen here, before any entity is."""
-        raise ExportError(located("declares a DOCTYPE or an entity", path=self._path, valid="plain XML"))
+        raise ExportError("declares a DOCTYPE or an entity", path=self._path, valid="plain XML")
 
     def end(self, tag: str, /) -> ET.Element:
         self._depth -= 1
@@ -72,5 +72,5 @@ def vector(text: str | None, size: int, what: str, default: float = 0.0) -> Arra
     except ValueError:
         values = np.empty(0)
     if values.shape != (size,) or not np.isfinite(values).all():
-        raise ExportError(located(f"{what} is not {size} numbers", value=text[:60]))
+        raise ExportError(f"{what} is not {size} numbers", value=text[:60])
     return values

@@ -15,7 +15,7 @@ from plantar.contact.phases import FootContact, carried_weight, detect_contact, 
 from plantar.contact.reasons import Reason
 from plantar.contact.stances import Stances, stances_of, without_rolling
 from plantar.conventions import FORCE, GRAVITY, Array, Mask
-from plantar.errors import RobotError, located
+from plantar.errors import RobotError
 from plantar.feet.recording import Recording, Role
 from plantar.feet.settings import DEFAULT_CUTOFF
 from plantar.logs.freed_memory import return_freed
@@ -154,10 +154,10 @@ def _lifted(robot: RobotModel, raw: Mapping[str, BushState], foot: str) -> Mask:
 
 def _require(robot: RobotModel) -> Imu:
     if not robot.feet:
-        raise RobotError(located("names no feet", path=robot.path, valid="feet: {left: ..., right: ...}"))
+        raise RobotError("names no feet", path=robot.path, valid="feet: {left: ..., right: ...}")
     if robot.imu is None:
         message = "names no imu: bush angles need the direction of gravity"
-        raise RobotError(located(message, path=robot.path, valid="imu: {name: ..., link: ...}"))
+        raise RobotError(message, path=robot.path, valid="imu: {name: ..., link: ...}")
     return robot.imu
 
 

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from importlib.util import find_spec
 from typing import Any, Final
 
-from plantar.errors import MissingExtra, PlantarError, located
+from plantar.errors import MissingExtra, PlantarError
 from plantar.fleet.places import is_remote
 
 CONNECT: Final = 30  # s to wait for a scheduler
@@ -50,7 +50,7 @@ def connected(workers: int | None, scheduler: str | None, memory: int | None) ->
                 asyncio.run(_answer(scheduler))
             except (OSError, ValueError) as error:
                 valid = "the address that `dask scheduler` prints, such as tcp://10.0.0.1:8786"
-                raise PlantarError(located("no scheduler answers", value=scheduler, valid=valid)) from error
+                raise PlantarError("no scheduler answers", value=scheduler, valid=valid) from error
             with Client(scheduler, timeout=CONNECT, set_as_default=False) as client:
                 yield client
             return

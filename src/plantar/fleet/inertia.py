@@ -18,7 +18,7 @@ import numpy as np
 
 from plantar.conventions import Array
 from plantar.dynamics import RowFactor
-from plantar.errors import DataError, PlantarError, RobotError, located
+from plantar.errors import DataError, PlantarError, RobotError
 from plantar.fleet.places import brought
 from plantar.fleet.robots import FleetRobot, robot_at, robot_model
 from plantar.fleet.unit import Failure
@@ -78,9 +78,7 @@ def inertia_over(
     known = robot_at(robot)
     model = robot_model(known)
     if model.base == "fixed":
-        raise RobotError(
-            located("a fixed base has no base rows to identify from", path=robot, valid="a floating one")
-        )
+        raise RobotError("a fixed base has no base rows to identify from", path=robot, valid="a floating one")
     if not logs:
         raise DataError("no logs to fit (valid: at least one)")
     progress("calibrate the sensors")

@@ -11,7 +11,7 @@ from datetime import UTC, datetime
 from pathlib import Path, PurePosixPath
 from typing import Final, Literal
 
-from plantar.errors import PlantarError, located
+from plantar.errors import PlantarError
 from plantar.files import read_bounded
 from plantar.fleet.places import joined_place, name_of
 
@@ -76,10 +76,10 @@ def read_manifest(path: str | os.PathLike[str]) -> tuple[Group, ...]:
     try:
         text = read_bounded(file, LIMIT).decode().removeprefix(UTF8_MARK)
     except UnicodeDecodeError as error:
-        raise PlantarError(located("is not UTF-8 text", path=file, valid="a CSV file")) from error
+        raise PlantarError("is not UTF-8 text", path=file, valid="a CSV file") from error
     groups = grouped(_rows(text, file), file)
     if not groups:
-        raise PlantarError(located("holds no rows", path=file, valid=f"rows under {', '.join(REQUIRED)}"))
+        raise PlantarError("holds no rows", path=file, valid=f"rows under {', '.join(REQUIRED)}")
     return groups
 
 
@@ -115,33 +115,31 @@ def _rows(text: str, file: Path) -> Iterable[Row]:
                 )
     except csv.Error as error:
         message = f"line {reader.line_num} is not CSV: {error}"
-        raise PlantarError(located(message, path=file, valid="a CSV file")) from error
+        raise PlantarError(message, path=file, valid="a CSV file") from error
 
 
 def _check_head(head: Sequence[str], file: Path) -> None:
     missing = [name for name in REQUIRED if name not in head]
     if missing:
-        raise PlantarError(located("is missing", path=file, column=missing[0], valid=", ".join(COLUMNS)))
+        raise PlantarError("is missing", path=file, column=missing[0], valid=", ".join(COLUMNS))
     for place, name in enumerate(head):
         if name not in COLUMNS:
-            raise PlantarError(located("is unknown", path=file, column=name, valid=", ".join(COLUMNS)))
+            raise PlantarError("is unknown", path=file, column=name, valid=", ".join(COLUMNS))
         if name in head[:place]:
-            raise PlantarError(located("stands there twice", path=file, column=name, valid="once"))
+            raise PlantarError("stands there twice", path=file, column=name, valid="once")
 
 
 def _row(cells: dict[str, str], beyond: int, line: int, file: Path) -> Row:
     if beyond > 0:
-        raise PlantarError(
-            located(f"line {line} has {beyond} cells more than the head", path=file, valid="as many")
-        )
+        raise PlantarError(f"line {line} has {beyond} cells more than the head", path=file, valid="as many")
     values = {name: cell.strip() for name, cell in cells.items()}
     for name in REQUIRED:
         if not values.get(name):
-            raise PlantarError(located(f"is empty in line {line}", path=file, column=name, valid="a value"))
+            raise PlantarError(f"is empty in line {line}", path=file, column=name, valid="a value")
     role = values.get("role") or ROLES[0]
     if role not in ROLES:
         message = f"is no role in line {line}"
-        raise PlantarError(located(message, path=file, column="role", value=role, valid=" or ".join(ROLES)))
+        raise PlantarError(message, path=file, column="role", value=role, valid=" or ".join(ROLES))
     log = Log(joined_place(file, values["log"]), "fit" if role == ROLES[0] else "validate")
     robot = joined_place(file, values["robot"])
     time = _time(values.get("time", ""), line, file)
@@ -158,7 +156,7 @@ def _time(text: str, line: int, file: Path) -> datetime | None:
         return time.replace(tzinfo=UTC) if time.tzinfo is None else time.astimezone(UTC)
     except (ValueError, OverflowError) as error:
         message, valid = f"is no time in line {line}", "ISO 8601, such as 2026-05-04T09:30:00Z"
-        raise PlantarError(located(message, path=file, column="time", value=text, valid=valid)) from error
+        raise PlantarError(message, path=file, column="time", value=text, valid=valid) from error
 
 
 def _group(name: str, rows: Sequence[Row], file: Path) -> Group:
@@ -166,20 +164,18 @@ def _group(name: str, rows: Sequence[Row], file: Path) -> Group:
     for row in rows:
         if row.robot != first.robot:
             message = f"line {row.line} gives group '{name}' another robot than line {first.line}"
-            raise PlantarError(located(message, path=file, column="robot", valid="one robot a group"))
+            raise PlantarError(message, path=file, column="robot", valid="one robot a group")
         if row.unit != first.unit:
             message = f"line {row.line} gives group '{name}' another unit than line {first.line}"
-            raise PlantarError(located(message, path=file, column="unit", valid="one unit a group"))
+            raise PlantarError(message, path=file, column="unit", valid="one unit a group")
     logs = tuple(row.log for row in rows)
     places = [log.place for log in logs]
     twice = next((row for k, row in enumerate(rows) if row.log.place in places[:k]), None)
     if twice is not None:
         message = f"line {twice.line} names a log of group '{name}' again"
-        raise PlantarError(
-            located(message, path=file, column="log", value=twice.log.place, valid="each log once")
-        )
+        raise PlantarError(message, path=file, column="log", value=twice.log.place, valid="each log once")
     if all(log.role != ROLES[0] for log in logs):
         message = f"group '{name}' has no log to fit"
-        raise PlantarError(located(message, path=file, column="role", valid="at least one row with role fit"))
+        raise PlantarError(message, path=file, column="role", valid="at least one row with role fit")
     times = [row.time for row in rows if row.time is not None]
     return Group(name, first.robot, logs, min(times, default=None), first.unit)

@@ -11,7 +11,7 @@ from datetime import UTC, datetime
 from pathlib import Path, PurePosixPath
 from typing import Any, Final
 
-from plantar.errors import MissingExtra, PlantarError, located
+from plantar.errors import MissingExtra, PlantarError
 from plantar.files import READ_BLOCK, atomic_write
 
 WHOLE_PUTS: Final = {"s3", "s3a", "gs", "gcs", "abfs", "abfss", "az", "memory"}
@@ -92,7 +92,7 @@ def brought(place: str, folder: Path) -> Path:
     """The file or folder at `place` on this machine: itself, or a copy of the same name in `folder`."""
     if not is_remote(place):
         if not Path(place).exists():
-            raise PlantarError(located("does not exist", path=place))
+            raise PlantarError("does not exist", path=place)
         return Path(place)
     system, path = _system(place)
     target = folder / name_of(place)
@@ -204,7 +204,7 @@ class Store:
         if isinstance(error, PlantarError):
             return PlaceError(str(error))
         reason = getattr(error, "strerror", None) or str(error) or type(error).__name__
-        return PlaceError(located(f"{what}: {reason}", path=self.path(name)))
+        return PlaceError(f"{what}: {reason}", path=self.path(name))
 
 
 def _system(place: str) -> tuple[Any, str]:
@@ -216,7 +216,7 @@ def _system(place: str) -> tuple[Any, str]:
     try:
         system, path = fsspec.core.url_to_fs(place)
     except ImportError as error:
-        raise PlantarError(located(f"needs a package: {error}", path=place)) from error
+        raise PlantarError(f"needs a package: {error}", path=place) from error
     except Exception as error:  # each store's package has errors of its own
         raise _unreadable(place, error) from error
     return system, str(path)
@@ -241,6 +241,6 @@ def _unreadable(place: str, error: Exception) -> PlantarError:
     if isinstance(error, PlantarError):
         return error
     if isinstance(error, FileNotFoundError):
-        return PlantarError(located("does not exist", path=place))
+        return PlantarError("does not exist", path=place)
     reason = getattr(error, "strerror", None) or str(error) or type(error).__name__
-    return PlantarError(located(f"cannot be read: {reason}", path=place))
+    return PlantarError(f"cannot be read: {reason}", path=place)

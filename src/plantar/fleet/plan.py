@@ -11,7 +11,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Final, Literal
 
-from plantar.errors import PlantarError, located
+from plantar.errors import PlantarError
 from plantar.fleet.manifest import Group, Log
 from plantar.fleet.places import found_at, is_remote, name_of, time_of
 from plantar.logs.readers import FORMATS, motion_name, open_log
@@ -50,7 +50,7 @@ def find_logs(patterns: Sequence[str]) -> tuple[str, ...]:
         logs = [place for place in places if _is_log(place)]
         if not logs:
             valid = "a path, or a pattern in quotes such as 'logs/**/*.mcap'"
-            raise PlantarError(located("names no log", value=pattern, valid=valid))
+            raise PlantarError("names no log", value=pattern, valid=valid)
         found |= dict.fromkeys(place if is_remote(place) else str(Path(place).resolve()) for place in logs)
     return tuple(found)
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
-from plantar.errors import PlantarError, located
+from plantar.errors import PlantarError
 from plantar.fleet.places import brought, is_remote
 from plantar.robot.model import RobotModel, load_robot
 from plantar.robot.schema import read_robot_file
@@ -37,9 +37,7 @@ def robot_model(robot: FleetRobot) -> RobotModel:
     """The robot, read once a process. Raises PlantarError where its file is not the one that was asked for any more."""
     found, model = _loaded(robot.place)
     if found != robot:
-        raise PlantarError(
-            located("changed while the fleet was running", path=robot.place, valid="a new run")
-        )
+        raise PlantarError("changed while the fleet was running", path=robot.place, valid="a new run")
     return model
 
 
@@ -61,7 +59,7 @@ def _copied(place: str, beside: str, folder: Path) -> RobotModel:
     urdf = folder / entry["urdf"]
     if not urdf.resolve().is_relative_to(folder.resolve()):
         valid = "a URDF beside or below the robot file"
-        raise PlantarError(located("names a URDF outside its folder", path=place, column="urdf", valid=valid))
+        raise PlantarError("names a URDF outside its folder", path=place, column="urdf", valid=valid)
     urdf.parent.mkdir(parents=True, exist_ok=True)
     brought(f"{beside}/{entry['urdf']}", urdf.parent)
     return load_robot(path)

@@ -11,7 +11,7 @@ from typing import Any, Final
 import pyarrow as pa
 import pyarrow.parquet as pa_parquet
 
-from plantar.errors import PlantarError, located
+from plantar.errors import PlantarError
 from plantar.fleet.manifest import Group
 from plantar.fleet.places import Store
 from plantar.fleet.unit import Failure, Unit, read_unit, unit_file
@@ -127,16 +127,12 @@ def _failures(group: Group, unit: Unit) -> Iterator[Failure]:
 def _read(store: Store, name: str, schema: pa.Schema) -> pa.Table:
     content = store.read(name)
     if content is None:
-        raise PlantarError(
-            located("does not exist", path=store.path(name), valid="the --out of `plantar fleet run`")
-        )
+        raise PlantarError("does not exist", path=store.path(name), valid="the --out of `plantar fleet run`")
     try:
         return pa_parquet.read_table(io.BytesIO(content)).select(schema.names).cast(schema)
     except (pa.ArrowException, KeyError, ValueError) as error:
         valid = "the --out of `plantar fleet run`"
-        raise PlantarError(
-            located(f"is not such a table: {error}", path=store.path(name), valid=valid)
-        ) from error
+        raise PlantarError(f"is not such a table: {error}", path=store.path(name), valid=valid) from error
 
 
 class _Table:

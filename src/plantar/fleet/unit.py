@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Final
 
 from plantar import __version__
-from plantar.errors import PlantarError, located
+from plantar.errors import PlantarError
 from plantar.feet.settings import FeetSettings
 from plantar.fleet.manifest import Role
 from plantar.fleet.places import Stamp
@@ -78,9 +78,9 @@ def read_unit(content: bytes, place: str) -> Unit:
     try:
         found = json.loads(content)
     except (ValueError, RecursionError) as error:
-        raise PlantarError(located(f"is not JSON: {error}", path=path)) from error
+        raise PlantarError(f"is not JSON: {error}", path=path) from error
     if not isinstance(found, dict) or found.get("schema") != SCHEMA:
-        raise PlantarError(located("is not a unit of a fleet", path=path, valid=f"schema '{SCHEMA}'"))
+        raise PlantarError("is not a unit of a fleet", path=path, valid=f"schema '{SCHEMA}'")
     return row_of(Unit, found, "unit", path)
 
 

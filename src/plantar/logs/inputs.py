@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from plantar.errors import DataError, LogError, NoRoom, RobotError, located
+from plantar.errors import DataError, LogError, NoRoom, RobotError
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import of_robot, open_log, reads_alike
 from plantar.logs.readers.read_limit import NUMBER, shown, usual_memory
@@ -40,7 +40,7 @@ def robot_of(robot: RobotInput) -> RobotModel:
     if isinstance(robot, str | os.PathLike):
         return load_robot(robot)
     kind = type(robot).__name__
-    raise RobotError(located("is not a robot", value=kind, valid="a RobotModel or the path of a robot file"))
+    raise RobotError("is not a robot", value=kind, valid="a RobotModel or the path of a robot file")
 
 
 @dataclass(frozen=True)
@@ -120,7 +120,7 @@ def open_in_turn(
             if left == whole:
                 raise
             message = f"does not fit beside the other logs, which leave {shown(left)}"
-            raise NoRoom(located(message, path=path, valid=FEWER_LOGS)) from error
+            raise NoRoom(message, path=path, valid=FEWER_LOGS) from error
         left = max(0, left - kept(log))
         return log
 
@@ -146,7 +146,7 @@ def open_together(paths: Sequence[Path], robot: RobotModel, memory: int | None =
             left -= log.size
             if left < 0:
                 message = f"does not fit beside the other logs: {shown(-left)} too much"
-                raise NoRoom(located(message, path=path, valid=FEWER_LOGS))
+                raise NoRoom(message, path=path, valid=FEWER_LOGS)
         return log
 
     if all(path.suffix.lower() == ".csv" for path in paths):  # each is parsed on all cores
@@ -203,6 +203,4 @@ def _log_of(log: LogInput, robot: RobotModel) -> MotionLog:
 
 def _no_log(given: object) -> LogError:
     kind = type(given).__name__
-    return LogError(
-        located("is not a log", value=kind, valid="a MotionLog, the path of a log, or a list of them")
-    )
+    return LogError("is not a log", value=kind, valid="a MotionLog, the path of a log, or a list of them")

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from plantar.conventions import Array, Mask
-from plantar.errors import LogError, located
+from plantar.errors import LogError
 from plantar.notes import Note, listing
 
 if TYPE_CHECKING:
@@ -86,16 +86,14 @@ class MotionLog:
         for name, values in columns.items():
             if values.shape != time.shape:
                 message = f"has {values.size} values where time has {time.size}"
-                raise LogError(located(message, path=self.source, column=name))
+                raise LogError(message, path=self.source, column=name)
         if time.size < 2:
-            raise LogError(located("holds fewer than two samples", path=self.source, column="time"))
+            raise LogError("holds fewer than two samples", path=self.source, column="time")
         bad = np.flatnonzero(~(np.diff(time) > 0))
         if bad.size:
             at, value = time[bad[0]], time[bad[0] + 1]
             message = "does not increase"
-            raise LogError(
-                located(message, path=self.source, column="time", time=float(at), value=float(value))
-            )
+            raise LogError(message, path=self.source, column="time", time=float(at), value=float(value))
         object.__setattr__(self, "time", time)
         object.__setattr__(self, "columns", MappingProxyType(columns))
 
@@ -136,7 +134,7 @@ class MotionLog:
         except KeyError:
             near = difflib.get_close_matches(name, self.columns, n=2)
             valid = f"the log has {', '.join(near)}" if near else None
-            raise LogError(located("is missing", path=self.source, column=name, valid=valid)) from None
+            raise LogError("is missing", path=self.source, column=name, valid=valid) from None
 
     def stack(self, names: Iterable[str]) -> Array:
         """Several columns side by side, (N, k)."""

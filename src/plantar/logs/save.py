@@ -14,7 +14,7 @@ import pyarrow.csv as pa_csv
 import pyarrow.parquet as pa_parquet
 
 from plantar.conventions import Array
-from plantar.errors import LogError, MissingExtra, located
+from plantar.errors import LogError, MissingExtra
 from plantar.files import atomic_write
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers.ros.layouts import IMU, JOINT_STATE, WRENCH, Bytes, layout_of
@@ -38,7 +38,7 @@ def save_log(log: MotionLog, path: Path, robot: RobotModel | None = None) -> tup
     if ending == ".mcap":
         return _save_mcap(log, path, frames_of(robot))
     if ending not in ENDINGS:
-        raise LogError(located("has an unknown ending", path=path, valid=", ".join(ENDINGS)))
+        raise LogError("has an unknown ending", path=path, valid=", ".join(ENDINGS))
     table = pa.table({"time": log.time, **log.columns})
     with atomic_write(path) as handle:
         if ending == ".csv":
@@ -65,9 +65,7 @@ def _save_mcap(log: MotionLog, path: Path, frames: Mapping[str, str]) -> tuple[N
         raise MissingExtra("rosbags", "logs", "writing MCAP") from error
     stamps = np.rint(log.time * 1e9).astype(np.int64)
     if stamps[0] < 0 or stamps[-1] >= 2**31 * 10**9:
-        raise LogError(
-            located("lies outside what a ROS stamp can hold", path=log.source, time=float(log.time[0]))
-        )
+        raise LogError("lies outside what a ROS stamp can hold", path=log.source, time=float(log.time[0]))
     store = get_typestore(Stores.ROS2_HUMBLE)
     with tempfile.TemporaryDirectory() as folder:
         bag = Path(folder) / "bag"

@@ -13,7 +13,7 @@ from pink.limits import ConfigurationLimit
 from pink.tasks import ComTask, FrameTask, PostureTask, Task
 
 from plantar.conventions import Array
-from plantar.errors import MotionError, located
+from plantar.errors import MotionError
 from plantar.robot.model import Placement, RobotModel
 
 CHEST = "plantar.chest"
@@ -31,9 +31,7 @@ class Body:
     def __init__(self, robot: RobotModel) -> None:
         if robot.imu is None or set(robot.feet) != {"left", "right"}:
             message = "motions are planned for a left and a right foot and a chest that carries an IMU"
-            raise MotionError(
-                located(message, path=robot.path, valid="a robot file with imu, left and right")
-            )
+            raise MotionError(message, path=robot.path, valid="a robot file with imu, left and right")
         self.robot = robot
         self.model = robot.floating_model.copy()
         self.chest_link = robot.imu.placement.link

@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from plantar.contact.balance import Balance
-from plantar.errors import MotionError, located
+from plantar.errors import MotionError
 from plantar.motions.body import Body
 from plantar.motions.feasible import check
 from plantar.motions.gait import WALKS, gait_of, is_walk
@@ -61,7 +61,7 @@ def plan_motion(
     balance lost.
     """
     if name not in CAMPAIGN and not is_walk(name):
-        raise MotionError(located(f"unknown motion '{name}'", valid=", ".join((*CAMPAIGN, *WALKS))))
+        raise MotionError(f"unknown motion '{name}'", valid=", ".join((*CAMPAIGN, *WALKS)))
     gait = gait_of(name, period) if is_walk(name) else None
     body, postures = Body(robot), postures or Postures()
     if gait is not None:

@@ -8,7 +8,7 @@ from scipy.interpolate import CubicSpline
 
 from plantar.contact.balance import Balance, planned_wrench, require_balance, sole_outlines, zero_moment_point
 from plantar.conventions import Array
-from plantar.errors import MotionError, located
+from plantar.errors import MotionError
 from plantar.motions.body import Body
 from plantar.motions.plan import Plan
 
@@ -127,7 +127,7 @@ def _check_limits(body: Body, plan: Plan) -> None:
 def _refuse(plan: Plan, joint: str, quantity: str, past: Array, valid: str) -> None:
     row = int(past.argmax())
     message = f"{plan.name}: joint '{joint}' passes its {quantity} limit by {past[row]:.3g}"
-    raise MotionError(located(message, time=float(plan.time[row]), valid=valid))
+    raise MotionError(message, time=float(plan.time[row]), valid=valid)
 
 
 def _check_torques(body: Body, plan: Plan, q: Array, v: Array, a: Array, time: Array) -> None:
@@ -147,6 +147,4 @@ def _check_torques(body: Body, plan: Plan, q: Array, v: Array, a: Array, time: A
         if past.max() > 0:
             joint = int(past.argmax())
             message = f"{plan.name}: joint '{body.joints[joint]}' needs {abs(torque[joint]):.4g} N·m"
-            raise MotionError(
-                located(message, time=float(time[row]), valid=f"at most {limits[joint]:.4g} N·m")
-            )
+            raise MotionError(message, time=float(time[row]), valid=f"at most {limits[joint]:.4g} N·m")

@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from plantar.errors import MotionError, located
+from plantar.errors import MotionError
 
 WALKS: Final = (
     "Walk8", "Walk12", "Walk16", "Walk20", "WalkSlow8", "WalkSlow12", "WalkQuick8", "WalkQuick12", "WalkTurn",
@@ -54,11 +54,11 @@ def gait_of(name: str, period: float | None = None) -> Gait:
     """
     match = NAME.fullmatch(name)
     if match is None:
-        raise MotionError(located(f"unknown walk '{name}'", valid=", ".join(WALKS)))
+        raise MotionError(f"unknown walk '{name}'", valid=", ".join(WALKS))
     chosen = PERIODS[match["pace"]] if period is None else period
     if not SHORTEST <= chosen <= LONGEST:
         valid = f"{SHORTEST:g} to {LONGEST:g} s"
-        raise MotionError(located(f"{name}: no period of a step", value=chosen, valid=valid))
+        raise MotionError(f"{name}: no period of a step", value=chosen, valid=valid)
     turns = match["kind"] == "Turn"
     length = int(match["centimetres"]) / 100 if match["centimetres"] else TURN_STEP if turns else 0.0
     return Gait(length, chosen, TURN if turns else 0.0, round(WALKING / chosen), int(match["trial"] or 0))

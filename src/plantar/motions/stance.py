@@ -11,7 +11,7 @@ import pinocchio as pin
 from plantar.contact.balance import sole_outlines
 from plantar.contact.polygon import separation
 from plantar.conventions import Array
-from plantar.errors import MotionError, located
+from plantar.errors import MotionError
 from plantar.motions.body import CHEST, REACHED, Body
 
 KNEE_BEND = 0.94  # of the straight leg's height, where no posture is given
@@ -114,7 +114,7 @@ def check_reached(
         miss = float(np.linalg.norm(body.pose(q, body.sole(name)).translation - target.translation))
         if miss > REACHED:
             message = f"{what}: the {name} foot cannot reach its place, it misses by {1e3 * miss:.1f} mm"
-            raise MotionError(located(message, path=body.robot.name, time=time, valid="a smaller motion"))
+            raise MotionError(message, path=body.robot.name, time=time, valid="a smaller motion")
 
 
 def _facing_forward(body: Body, q: Array) -> Array:
@@ -129,7 +129,7 @@ def _check_apart(body: Body, targets: Mapping[str, pin.SE3]) -> None:
     gap = separation(*soles.values())
     if gap <= 0:
         message = f"the soles would stand on each other, {-1e3 * gap:.0f} mm deep"
-        raise MotionError(located(message, path=body.robot.name, valid="feet farther apart"))
+        raise MotionError(message, path=body.robot.name, valid="feet farther apart")
 
 
 def _middle(body: Body, foot: str) -> Array:

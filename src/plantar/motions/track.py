@@ -10,7 +10,7 @@ from pink.tasks import FrameTask, Task
 from scipy.interpolate import CubicSpline
 
 from plantar.conventions import Array
-from plantar.errors import MotionError, located
+from plantar.errors import MotionError
 from plantar.motions.body import CHEST, REACHED, STEPS, Body
 from plantar.motions.plan import RATE, Hand, Plan
 from plantar.motions.stance import Stance, check_reached
@@ -89,4 +89,4 @@ def _check_body(body: Body, q: Array, tasks: list[Task], name: str, time: float)
         if short > REACHED:
             message = f"{name}: the chest cannot reach its place, it falls short by {1e3 * short:.1f} mm"
             valid = "a smaller motion, or one that moves the arms only, such as Myrand5"
-            raise MotionError(located(message, path=body.robot.name, time=time, valid=valid))
+            raise MotionError(message, path=body.robot.name, time=time, valid=valid)

@@ -13,7 +13,7 @@ import numpy as np
 from plantar.contact.deflection import FootPath, path_to
 from plantar.contact.polygon import convex_hull
 from plantar.conventions import GRAVITY, ROTATIONAL_AXES, Array, Axis
-from plantar.errors import RobotError, located
+from plantar.errors import RobotError
 from plantar.robot.model import RobotModel
 
 SCHEMA = "plantar.foot_estimator/1"
@@ -48,9 +48,7 @@ def estimator_model(
     """
     if robot.imu is None or not robot.feet:
         message = "the estimator needs an IMU and feet"
-        raise RobotError(
-            located(message, path=robot.path, valid="imu: {...} and feet: {left: ..., right: ...}")
-        )
+        raise RobotError(message, path=robot.path, valid="imu: {...} and feet: {left: ..., right: ...}")
     known = robot.uncertainty
     lines = [
         SCHEMA,

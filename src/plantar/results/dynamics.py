@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from plantar import __version__
-from plantar.errors import PlantarError, located
+from plantar.errors import PlantarError
 from plantar.files import read_bounded, write_text
 from plantar.notes import Note
 from plantar.results import dynamics_text, text
@@ -192,7 +192,7 @@ class DynamicsResult:
         schema = content["schema"]
         if schema not in (INERTIA_SCHEMA, JOINTS_SCHEMA):
             valid = f"{INERTIA_SCHEMA}, {JOINTS_SCHEMA}"
-            raise PlantarError(located("is another kind of result", path=file, value=schema, valid=valid))
+            raise PlantarError("is another kind of result", path=file, value=schema, valid=valid)
         residuals = residuals_path(file.parent) if beside else None
         return cls(
             schema=schema,

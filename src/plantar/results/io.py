@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from plantar.errors import PlantarError, located
+from plantar.errors import PlantarError
 from plantar.files import read_bounded
 
 RESULT_LIMIT = 256 * 2**20  # bytes
@@ -45,10 +45,8 @@ def read_result(
     try:
         content = json.loads(read_bounded(file, RESULT_LIMIT, error))
     except (ValueError, RecursionError) as problem:
-        raise error(
-            located(f"is not readable JSON: {problem}", path=file, valid="a result.json")
-        ) from problem
+        raise error(f"is not readable JSON: {problem}", path=file, valid="a result.json") from problem
     found = content.get("schema") if isinstance(content, dict) else None
     if not isinstance(found, str) or not found.startswith(schema):
-        raise error(located("is not such a result", path=file, value=found, valid=f"schema '{schema}...'"))
+        raise error("is not such a result", path=file, value=found, valid=f"schema '{schema}...'")
     return dict(content)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plantar.conventions import AXES, Array, Mask
-from plantar.errors import PlantarError, located
+from plantar.errors import PlantarError
 from plantar.files import atomic_write
 
 FILE_NAMES: Final = ("residuals.parquet", "residuals.csv", "residuals.csv.gz")
@@ -81,7 +81,7 @@ def read_residuals(path: str | os.PathLike[str]) -> tuple[Track, ...]:
     if file.is_dir():
         found = residuals_path(file)
         if found is None:
-            raise PlantarError(located("holds no residuals", path=file, valid=", ".join(FILE_NAMES)))
+            raise PlantarError("holds no residuals", path=file, valid=", ".join(FILE_NAMES))
         file = found
     return tracks_of(read_table(file), file)
 
@@ -93,14 +93,14 @@ def tracks_of(table: Any, path: Path | None = None) -> tuple[Track, ...]:
     """
     missing = [name for name in _REQUIRED if name not in table.column_names]
     if missing:
-        raise PlantarError(located("is missing", path=path, column=missing[0], valid=", ".join(_REQUIRED)))
+        raise PlantarError("is missing", path=path, column=missing[0], valid=", ".join(_REQUIRED))
     names = {"force_z", "cop_x", "cop_y"} | {f"{axis}.{what}" for axis in AXES for what in _QUANTITIES}
     motion, motions = _labels(table, "motion")
     foot, feet = _labels(table, "foot")
     text = {name: _labels(table, name) for name in ("role", "support") if name in table.column_names}
     time = _floats(table, "time", path)
     if not np.isfinite(time).all():
-        raise PlantarError(located("is not finite", path=path, column="time", valid="seconds"))
+        raise PlantarError("is not finite", path=path, column="time", valid="seconds")
     used = _floats(table, "used", path) > 0.5
     tracks: list[Track] = []
     rows_of: list[NDArray[np.intp]] = []
@@ -144,15 +144,13 @@ def read_table(path: Path) -> Any:
 
     try:
         if path.stat().st_size > SIZE_LIMIT:
-            raise PlantarError(
-                located(f"is larger than {SIZE_LIMIT} bytes", path=path, valid="a smaller file")
-            )
+            raise PlantarError(f"is larger than {SIZE_LIMIT} bytes", path=path, valid="a smaller file")
         if path.suffix == ".parquet":
             return pyarrow.parquet.read_table(path)
         text = {name: pa.string() for name in ("motion", "role", "foot", "support")}
         return pyarrow.csv.read_csv(path, convert_options=pyarrow.csv.ConvertOptions(column_types=text))
     except (OSError, pa.ArrowException) as error:
-        raise PlantarError(located(f"cannot be read: {error}", path=path)) from error
+        raise PlantarError(f"cannot be read: {error}", path=path) from error
 
 
 def _labels(table: Any, name: str) -> tuple[NDArray[np.intp], list[str]]:
@@ -194,4 +192,4 @@ def _floats(table: Any, name: str, path: Path | None) -> Array:
             column = column.cast("bool")
         return np.asarray(column.cast("float64").to_numpy(zero_copy_only=False), dtype=np.float64)
     except pa.ArrowException as error:
-        raise PlantarError(located(f"is not numeric: {error}", path=path, column=name)) from error
+        raise PlantarError(f"is not numeric: {error}", path=path, column=name) from error

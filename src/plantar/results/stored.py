@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, get_type_hints
 
 from pydantic_core import ValidationError
 
-from plantar.errors import PlantarError, located
+from plantar.errors import PlantarError
 
 if TYPE_CHECKING:
     from pydantic import TypeAdapter
@@ -48,7 +48,7 @@ def value_of(
     if key not in content:
         if missing is not None:
             return missing
-        raise PlantarError(located("is missing", path=path, column=key, valid="a whole result.json"))
+        raise PlantarError("is missing", path=path, column=key, valid="a whole result.json")
     return _checked(kind, _infinite(content[key], kind), key, path)
 
 
@@ -58,7 +58,7 @@ def _checked(kind: type[Row], entry: object, place: str, path: Path | None) -> R
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         where = ".".join(map(str, (place, *first["loc"])))
-        raise PlantarError(located(first["msg"], path=path, column=where)) from error
+        raise PlantarError(first["msg"], path=path, column=where) from error
     return checked
 
 

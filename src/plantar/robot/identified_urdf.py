@@ -10,7 +10,7 @@ import numpy as np
 import pinocchio as pin
 
 from plantar.conventions import Array, skew
-from plantar.errors import PlantarError, located
+from plantar.errors import PlantarError
 from plantar.notes import Note, listing
 
 # Kg·m²: principal moments may break the triangle inequality by what arithmetic leaves.
@@ -42,10 +42,10 @@ def write_inertias(root: ET.Element, model: pin.Model, bodies: Mapping[str, Arra
     notes: list[Note] = []
     for name, parameters in bodies.items():
         if name not in links:
-            raise PlantarError(located(f"the URDF has no link '{name}'", valid=", ".join(list(links)[:5])))
+            raise PlantarError(f"the URDF has no link '{name}'", valid=", ".join(list(links)[:5]))
         if parameters[0] < 0:
             message = f"link '{name}' has the identified mass {parameters[0]:.4g} kg"
-            raise PlantarError(located(message, valid="a mass that is not negative"))
+            raise PlantarError(message, valid="a mass that is not negative")
         own = model.frames[model.getFrameId(name, pin.FrameType.BODY)]
         fixed = [
             frame

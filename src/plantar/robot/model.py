@@ -14,7 +14,7 @@ import numpy as np
 import pinocchio as pin
 
 from plantar.conventions import Array, rotation_from_rpy
-from plantar.errors import RobotError, located
+from plantar.errors import RobotError
 from plantar.notes import Note
 from plantar.robot.guesses import Guess
 from plantar.robot.joint_names import JointNames
@@ -187,7 +187,7 @@ class RobotModel:
     def required_imu(self) -> Imu:
         """The IMU. Raises RobotError where the robot file names none."""
         if self.imu is None:
-            raise RobotError(located("names no imu", path=self.path, valid="imu: {name: ..., link: ...}"))
+            raise RobotError("names no imu", path=self.path, valid="imu: {name: ..., link: ...}")
         return self.imu
 
     @cached_property
@@ -244,7 +244,7 @@ def load_robot(path: str | os.PathLike[str]) -> RobotModel:
 def _urdf_path(path: Path, urdf: str) -> Path:
     if "://" in urdf or urdf[0] in "~$":  # nothing here knows ROS's packages, or a shell's names
         raise RobotError(
-            located("urdf", path=path, value=urdf, valid="a path from this file's folder, or a whole one")
+            "urdf", path=path, value=urdf, valid="a path from this file's folder, or a whole one"
         )
     return path.parent / urdf
 
@@ -277,11 +277,11 @@ def _check(robot: RobotModel) -> None:
         for part, placement in parts.items():
             if robot.frame(placement)[0] != ankle:
                 message = f"feet.{foot.name}.{part} is not rigidly fixed to the ankle link '{foot.ankle}'"
-                raise RobotError(located(message, path=robot.path, valid="a link without a joint in between"))
+                raise RobotError(message, path=robot.path, valid="a link without a joint in between")
     keys = [("joints", name) for name in robot.joints]
     keys += [("joint_names.renamed", name) for name in robot.joint_names_in_logs.renamed]
     for key, name in keys:
         if name not in robot.joint_names:
             near = difflib.get_close_matches(name, robot.joint_names, n=3) or robot.joint_names[:3]
             message = f"{key}.{name}: the URDF has no such movable joint"
-            raise RobotError(located(message, path=robot.path, valid="one of " + ", ".join(near)))
+            raise RobotError(message, path=robot.path, valid="one of " + ", ".join(near))

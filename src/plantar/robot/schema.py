@@ -157,7 +157,7 @@ def read_robot_file(path: Path) -> tuple[Entry, tuple[Guess, ...]]:
     """
     data, content = read_yaml(path)
     if not isinstance(data, dict):
-        raise RobotError(located("holds no keys", path=path, valid="name, urdf, imu, feet"))
+        raise RobotError("holds no keys", path=path, valid="name, urdf, imu, feet")
     try:
         entry: Entry = WHOLE_FILE.validate_python(data)
     except ValidationError as error:
@@ -183,7 +183,7 @@ def read_yaml(path: Path) -> tuple[Any, bytes]:
         mark = getattr(error, "problem_mark", None)
         line = f" at line {mark.line + 1}" if mark is not None else ""
         valid = "spaces, not tabs, at the beginning of a line" if "'\\t'" in reason else None
-        raise RobotError(located(f"is not readable YAML{line}: {reason}", path=path, valid=valid)) from error
+        raise RobotError(f"is not readable YAML{line}: {reason}", path=path, valid=valid) from error
 
 
 def _refuse_bombs(content: bytes, path: Path) -> None:
@@ -191,10 +191,10 @@ def _refuse_bombs(content: bytes, path: Path) -> None:
     depth = 0
     for event in yaml.parse(content, Loader=yaml.SafeLoader):
         if isinstance(event, yaml.AliasEvent):
-            raise RobotError(located("uses a YAML alias", path=path, valid="values written out"))
+            raise RobotError("uses a YAML alias", path=path, valid="values written out")
         depth += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
         if depth > DEPTH_LIMIT:
-            raise RobotError(located("is nested too deeply", path=path, valid=f"{DEPTH_LIMIT} levels"))
+            raise RobotError("is nested too deeply", path=path, valid=f"{DEPTH_LIMIT} levels")
 
 
 def _refuse_twice(node: yaml.Node, path: Path) -> None:
@@ -208,7 +208,7 @@ def _refuse_twice(node: yaml.Node, path: Path) -> None:
             name, line = str(key.value), key.start_mark.line + 1
             if name in lines:
                 twice = f"key '{name}' stands at line {lines[name]} and again at line {line}"
-                raise RobotError(located(twice, path=path, valid="each key once"))
+                raise RobotError(twice, path=path, valid="each key once")
             lines[name] = line
             _refuse_twice(value, path)
 

@@ -24,7 +24,7 @@ def read_urdf(path: Path) -> str:
     try:
         return read_bounded(path, LIMIT, RobotError).decode()
     except UnicodeDecodeError as error:
-        raise RobotError(located("is not UTF-8 text", path=path, valid="a URDF")) from error
+        raise RobotError("is not UTF-8 text", path=path, valid="a URDF") from error
 
 
 def parse_urdf(urdf: str, path: Path, *, floating: bool) -> pin.Model:
@@ -34,7 +34,7 @@ def parse_urdf(urdf: str, path: Path, *, floating: bool) -> pin.Model:
     must stand, or Pinocchio cannot read it.
     """
     if re.search(r"<!(DOCTYPE|ENTITY)", urdf, re.IGNORECASE):
-        raise RobotError(located("declares a DOCTYPE or an entity", path=path, valid="plain URDF"))
+        raise RobotError("declares a DOCTYPE or an entity", path=path, valid="plain URDF")
     with suppress(ET.ParseError):  # Pinocchio reads more than Python does, and says what it cannot read
         _check(ET.fromstring(urdf), path)
     root = [pin.JointModelFreeFlyer()] if floating else []
@@ -42,7 +42,7 @@ def parse_urdf(urdf: str, path: Path, *, floating: bool) -> pin.Model:
         return pin.buildModelFromXML(urdf, *root)
     except (ValueError, RuntimeError, IndexError) as error:
         reason = str(error).splitlines()[0] if str(error) else "unreadable"
-        raise RobotError(located(f"is not a readable URDF: {reason}", path=path)) from error
+        raise RobotError(f"is not a readable URDF: {reason}", path=path) from error
 
 
 def unknown_link(link: str, model: pin.Model, path: Path) -> str:
@@ -58,20 +58,18 @@ def _check(root: ET.Element, path: Path) -> None:
     for element in root.iter():
         if "xacro" in element.tag or any("${" in text for text in element.attrib.values()):
             valid = f"the URDF that `xacro {path.name} > robot.urdf` writes"
-            raise RobotError(located("is xacro that was not expanded", path=path, valid=valid))
+            raise RobotError("is xacro that was not expanded", path=path, valid=valid)
     if root.tag != "robot":
-        raise RobotError(
-            located(f"is not a URDF: its root is <{root.tag}>", path=path, valid="<robot name=...>")
-        )
+        raise RobotError(f"is not a URDF: its root is <{root.tag}>", path=path, valid="<robot name=...>")
     for owner, element, key, count in _numbers(root):
         text = element.get(key)
         if text is not None and not _are_numbers(text, count):
             where = f"{key} of <{element.tag}> in {owner.tag} '{owner.get('name')}'"
             valid = "a number" if count == 1 else f"{count} numbers with spaces between"
-            raise RobotError(located(where, path=path, value=text, valid=valid))
+            raise RobotError(where, path=path, value=text, valid=valid)
         if element.tag == "mass" and float(text or 0) < 0:
             where = f"the mass of link '{owner.get('name')}' is negative"
-            raise RobotError(located(where, path=path, value=text, valid="kg, 0 or more"))
+            raise RobotError(where, path=path, value=text, valid="kg, 0 or more")
 
 
 def _numbers(root: ET.Element) -> Iterator[tuple[ET.Element, ET.Element, str, int]]:

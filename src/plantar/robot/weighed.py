@@ -7,7 +7,7 @@ from pathlib import Path
 import pinocchio as pin
 
 from plantar.conventions import NORMAL95
-from plantar.errors import RobotError, located
+from plantar.errors import RobotError
 from plantar.notes import Note
 
 FARTHEST = 2.0  # times the URDF's weight, or its half: beyond, the number is another unit or another robot
@@ -35,12 +35,10 @@ def check_weight(path: Path, weighed: float | None, urdf: float) -> None:
     """Raises RobotError where the URDF weighs nothing, or the weighed mass [kg] cannot be that of its robot."""
     if urdf <= 0:
         valid = "links with an <inertial>: contact and delays follow from the robot's weight"
-        raise RobotError(located("urdf: its links weigh nothing", path=path, valid=valid))
+        raise RobotError("urdf: its links weigh nothing", path=path, valid=valid)
     if weighed is not None and not urdf / FARTHEST <= weighed <= urdf * FARTHEST:
         text = f"mass: the URDF weighs {urdf:.4g} kg"
-        raise RobotError(
-            located(text, path=path, value=weighed, valid="what a balance says of this robot, in kg")
-        )
+        raise RobotError(text, path=path, value=weighed, valid="what a balance says of this robot, in kg")
 
 
 def weight_notes(file: str, weighed: float | None, urdf: float, deviation: float) -> list[Note]:

@@ -17,7 +17,7 @@ import pinocchio as pin
 from plantar.checks.joints.names import recorded_joints
 from plantar.checks.log_checks import check_log
 from plantar.conventions import GRAVITY, Array
-from plantar.errors import LogError, located
+from plantar.errors import LogError
 from plantar.exporters.urdf.tree import UrdfTree
 from plantar.files import write_text
 from plantar.logs.motion_log import MotionLog
@@ -96,8 +96,7 @@ def _first_draft(tree: UrdfTree, soles: Sequence[Sole], sensors: Sensors, urdf: 
 
 def _usual_bush(sole: Sole) -> BushHeight:
     above = min(THIN, abs(sole.depth) / 2)
-    reason = f"{1e3 * above:.0f} mm above the sole; the URDF cannot know"
-    return BushHeight(sole.depth + above, above, reason)
+    return BushHeight(sole.depth + above, above, f"{1e3 * above:.0f} mm above the sole; the URDF cannot know")
 
 
 def _with_names(
@@ -120,7 +119,7 @@ def _refuse_other_robot(draft: Draft, urdf: Path, logs: Sequence[MotionLog]) -> 
     for log in logs:
         problem = next((one for one in check_log(robot, log) if one.code == "joint_names"), None)
         if problem is not None:
-            raise LogError(located(problem.text, path=log.source))
+            raise LogError(problem.text, path=log.source)
 
 
 def _seen_standing(draft: Draft, tree: UrdfTree, model: pin.Model, logs: Sequence[MotionLog]) -> Draft:

@@ -15,7 +15,7 @@ import numpy as np
 import pinocchio as pin
 
 from plantar.conventions import Array
-from plantar.errors import RobotError, located
+from plantar.errors import RobotError
 from plantar.exporters.urdf.tree import UrdfTree
 
 ALIKE = 0.03  # share of a leg's reach by which the ends of two legs may be nearer or farther
@@ -72,12 +72,12 @@ def find_biped(tree: UrdfTree, model: pin.Model) -> Biped:
     if not limbs:
         links = list(tree.links)
         if not links:
-            raise RobotError(located("has no links", path=tree.path, valid="a biped"))
+            raise RobotError("has no links", path=tree.path, valid="a biped")
         children = {tree.ends(joint)[1] for joint in tree.joints.values()}
         root = next((name for name in links if name not in children), links[0])
         if not FEET.search(root):
             message = f"is no biped: it has no joints, and '{root}' is not called a foot"
-            raise RobotError(located(message, path=tree.path, valid="two legs, or one foot"))
+            raise RobotError(message, path=tree.path, valid="two legs, or one foot")
         foot = Limb(root, (), np.zeros(3), np.eye(3))
         return Biped((replace(foot, side=_side(foot) or "right"),), np.eye(3), ())
     ends = _pair(tree, limbs)
@@ -117,18 +117,16 @@ def _pair(tree: UrdfTree, limbs: Sequence[Limb]) -> tuple[Limb, Limb]:
     pairs = [pair for pair in combinations(able, 2) if _alike(*pair)]
     if many is not None:
         names = ", ".join(limb.link for limb in many)
-        raise RobotError(
-            located(f"is no biped: {len(many)} legs alike ({names})", path=tree.path, valid="two legs")
-        )
+        raise RobotError(f"is no biped: {len(many)} legs alike ({names})", path=tree.path, valid="two legs")
     if not pairs:
         message = f"is no biped: no two of its chains' ends ({ends}) are alike as two feet are"
-        raise RobotError(located(message, path=tree.path, valid="two legs; hands and wheels do not count"))
+        raise RobotError(message, path=tree.path, valid="two legs; hands and wheels do not count")
     # What is called a leg comes before what is not; then the farther from the root link.
     best = max(pairs, key=lambda pair: (_called_leg(pair[0]), float(np.linalg.norm(pair[0].place))))
     if len(best[0].joints) < FEWEST_JOINTS:
         names = " and ".join(f"{limb.link} ({len(limb.joints)})" for limb in best)
         message = f"has no flat feet: {names} joints from the root link, where an ankle needs more"
-        raise RobotError(located(message, path=tree.path, valid=f"{FEWEST_JOINTS} joints a leg or more"))
+        raise RobotError(message, path=tree.path, valid=f"{FEWEST_JOINTS} joints a leg or more")
     return best
 
 
@@ -189,4 +187,4 @@ def _nothing_below(tree: UrdfTree, model: pin.Model, pair: tuple[Limb, ...], up:
     if data.oMf[lowest].translation @ up < depth - LOWEST * max(abs(depth), 0.1) or depth > 0:
         names = " and ".join(leg.link for leg in pair)
         message = f"is no biped: {names} are not the lowest, '{model.frames[lowest].name}' is"
-        raise RobotError(located(message, path=tree.path, valid="two legs on which it stands"))
+        raise RobotError(message, path=tree.path, valid="two legs on which it stands")

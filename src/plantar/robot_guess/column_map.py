@@ -6,7 +6,7 @@ from pathlib import Path
 
 import yaml
 
-from plantar.errors import RobotError, located
+from plantar.errors import RobotError
 from plantar.robot.schema import read_yaml
 
 KEY = "columns"
@@ -20,9 +20,7 @@ def read_column_map(path: Path) -> str:
     """
     data, content = read_yaml(path)
     if not isinstance(data, dict) or set(data) != {KEY} or not isinstance(data[KEY], dict):
-        raise RobotError(
-            located("is no map of columns", path=path, valid=f"one key, {KEY}:, and the map below it")
-        )
+        raise RobotError("is no map of columns", path=path, valid=f"one key, {KEY}:, and the map below it")
     written_anew = yaml.safe_dump(data, sort_keys=False, allow_unicode=True)
     try:
         text = content.decode("utf-8-sig")

@@ -165,8 +165,7 @@ def _least_turn(mount: Mount, soles: Array, felt: Array, apart: float) -> Mount:
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     turn = np.eye(3) + cross + cross @ cross / (1 + cosine)
     how = f"turned by {np.degrees(apart):.0f} deg to agree with gravity, its turn about the vertical unknown"
-    reason = f"{mount.reason}; {how}"
-    return replace(mount, rotation=turn @ mount.rotation, guess=True, reason=reason)
+    return replace(mount, rotation=turn @ mount.rotation, guess=True, reason=f"{mount.reason}; {how}")
 
 
 def _apart(soles: Array, felt: Array) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from plantar.conventions import Array, cross
-from plantar.errors import DataError, located
+from plantar.errors import DataError
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.robot.model import Imu
@@ -26,7 +26,7 @@ def attitude(log: MotionLog, imu: Imu, notes: list[Note]) -> tuple[Array, Array]
     rates, acceleration = log.angular_velocity(name), log.linear_acceleration(name)
     whole = np.isfinite(np.column_stack([rates, acceleration])).all(axis=1)
     if not whole.any():
-        raise DataError(located(f"imu '{name}' has no sample with all values", path=log.source))
+        raise DataError(f"imu '{name}' has no sample with all values", path=log.source)
     filled = [
         interpolate(log.time, log.time[whole], column[whole], np.inf)
         for column in (*rates.T, *acceleration.T)

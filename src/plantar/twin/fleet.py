@@ -16,7 +16,7 @@ from typing import Final
 
 import numpy as np
 
-from plantar.errors import PlantarError, located
+from plantar.errors import PlantarError
 from plantar.files import write_text
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.save import save_log
@@ -89,9 +89,9 @@ def write_fleet(
     """
     chosen = preset_named(preset)
     if chosen.robot is not None or chosen.logger is not None:
-        raise PlantarError(located("has robots or logs of its own", value=preset, valid="sensors, realistic"))
+        raise PlantarError("has robots or logs of its own", value=preset, valid="sensors, realistic")
     if robots * days > MOST:
-        raise PlantarError(located("are too many logs", value=robots * days, valid=f"at most {MOST}"))
+        raise PlantarError("are too many logs", value=robots * days, valid=f"at most {MOST}")
     robot = hrp2.robot()
     robot_file = hrp2.write(folder)
     physics = chosen.physics(PAPER)

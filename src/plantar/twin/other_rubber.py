@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from plantar.errors import RobotError, located
+from plantar.errors import RobotError
 from plantar.robot.model import RobotModel
 from plantar.twin.simulation.rollout import Rollout
 
@@ -53,5 +53,5 @@ def ankle_joints(robot: RobotModel, foot: str) -> tuple[str, str]:
     kinds = (model.joints[before].shortname(), model.joints[last].shortname())
     if kinds != ("JointModelRY", "JointModelRX"):
         message = f"the {foot} ankle does not turn in pitch, then in roll"
-        raise RobotError(located(message, path=robot.path, valid="the built-in robot"))
+        raise RobotError(message, path=robot.path, valid="the built-in robot")
     return model.names[before], model.names[last]

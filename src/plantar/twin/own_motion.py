@@ -9,7 +9,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from plantar.contact.balance import flat_soles, soles_in_root
-from plantar.errors import LogError, MotionError, located
+from plantar.errors import LogError, MotionError
 from plantar.logs.readers import open_log
 from plantar.motions.plan import RATE, Plan
 from plantar.robot.model import RobotModel
@@ -29,27 +29,24 @@ def own_plan(path: str | os.PathLike[str], robot: RobotModel) -> Plan:
     if not known:
         first = next(iter(robot.joint_names), "")
         message = "holds no position of a joint of this robot"
-        raise LogError(located(message, path=path, valid=f"columns such as 'joint.{first}.position'"))
+        raise LogError(message, path=path, valid=f"columns such as 'joint.{first}.position'")
     if not SHORTEST <= log.duration <= LONGEST:
-        message = f"lasts {log.duration:.4g} s"
-        raise LogError(located(message, path=path, valid=f"{SHORTEST:g} to {LONGEST:g} s"))
+        raise LogError(f"lasts {log.duration:.4g} s", path=path, valid=f"{SHORTEST:g} to {LONGEST:g} s")
     values = log.positions(robot)
     bad = np.flatnonzero(~np.isfinite(values).all(axis=1))
     if bad.size:
         message = "a joint has no position"
-        raise LogError(
-            located(message, path=path, time=float(log.time[bad[0]]), valid="a number in every row")
-        )
+        raise LogError(message, path=path, time=float(log.time[bad[0]]), valid="a number in every row")
     time = np.arange(int(log.duration * RATE + 1e-6) + 1) / RATE
     positions = CubicSpline(log.time - log.time[0], values)(time)
     if not robot.feet:
-        raise MotionError(located("has no feet to stand on", path=robot.path, valid="a robot file with feet"))
+        raise MotionError("has no feet to stand on", path=robot.path, valid="a robot file with feet")
     in_root, soles = soles_in_root(robot, positions[0]), flat_soles(robot, positions[0])
     foot = min(soles)
     base = soles[foot] @ np.linalg.inv(in_root[foot])
     heights = [(base @ pose)[2, 3] for pose in in_root.values()]
     if np.ptp(heights) > LEVEL:
         message = f"the first row has one foot {1e3 * np.ptp(heights):.0f} mm above the other"
-        raise MotionError(located(message, path=path, valid=f"level feet, within {1e3 * LEVEL:.0f} mm"))
+        raise MotionError(message, path=path, valid=f"level feet, within {1e3 * LEVEL:.0f} mm")
     bases = np.tile(base, (time.size, 1, 1))
     return Plan(log.name, time, robot.joint_names, positions, bases, frozenset(soles), soles)

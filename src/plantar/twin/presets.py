@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from plantar.errors import PlantarError, located
+from plantar.errors import PlantarError
 from plantar.robot.model import RobotModel
 from plantar.twin.bush import Feet
 from plantar.twin.robots import hrp2
@@ -166,5 +166,5 @@ DEFAULT: Final = "realistic"
 def preset_named(name: str) -> Preset:
     """The preset of that name; PlantarError lists what there is."""
     if name not in PRESETS:
-        raise PlantarError(located(f"unknown preset '{name}'", valid=", ".join(PRESETS)))
+        raise PlantarError(f"unknown preset '{name}'", valid=", ".join(PRESETS))
     return PRESETS[name]

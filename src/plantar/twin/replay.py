@@ -12,7 +12,7 @@ from scipy.signal import detrend
 
 from plantar.contact.balance import LOADED, flat_soles, soles_in_root
 from plantar.conventions import GRAVITY, ROTATIONAL_AXES, Array, rotation_from_quaternion
-from plantar.errors import DataError, MotionError, PlantarError, located
+from plantar.errors import DataError, MotionError, PlantarError
 from plantar.logs.motion_log import MotionLog
 from plantar.motions.plan import RATE, Hand, Plan
 from plantar.results.feet import FeetResult
@@ -85,7 +85,7 @@ def chest_attitude(robot: RobotModel, log: MotionLog) -> Array:
     """The IMU's attitude, body to world, (N, 3, 3). Raises DataError where the log has none."""
     quaternions = log.orientation(robot.imu.name) if robot.imu is not None else None
     if quaternions is None:
-        raise DataError(located("holds no attitude to compare with", path=log.source))
+        raise DataError("holds no attitude to compare with", path=log.source)
     return rotation_from_quaternion(quaternions)
 
 
@@ -163,7 +163,7 @@ def feet_of(result: FeetResult) -> Feet:
     for foot, own in values.items():
         missing = {f"{axis}_{term}" for axis in ROTATIONAL_AXES for term in REQUIRED} - own.keys()
         if missing:
-            raise PlantarError(located(f"the result has no {min(missing)} of the {foot} foot"))
+            raise PlantarError(f"the result has no {min(missing)} of the {foot} foot")
     return {foot: Bush(**own) for foot, own in values.items()}
 
 
@@ -191,7 +191,7 @@ def plan_of(robot: RobotModel, log: MotionLog, hand: Hand | None = None) -> Plan
         if np.nanmedian(_bush_wrench(robot, foot, recorded)[0][:, 2]) > least
     )
     if not standing:
-        raise DataError(located("no foot carries the robot", path=log.source))
+        raise DataError("no foot carries the robot", path=log.source)
     base = np.tile(_root(robot, recorded.positions(robot)[0], soles, standing), (time.size, 1, 1))
     stance = {name: soles[name] for name in standing}
     return Plan(log.name, time, robot.joint_names, positions, base, standing, stance, hand)

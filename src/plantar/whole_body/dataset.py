@@ -13,7 +13,7 @@ from plantar.conventions import GRAVITY, Array, Mask
 from plantar.dynamics import BaseParameters, Equation, Motion, base_parameters, model_parameters
 from plantar.dynamics.base_motion import root_motion, root_motion_from_sole
 from plantar.dynamics.consistency import Prior
-from plantar.errors import DataError, RobotError, located
+from plantar.errors import DataError, RobotError
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
@@ -76,7 +76,7 @@ def prepare_whole(body: Body, log: MotionLog, settings: DynamicsSettings) -> Who
     names = tree.names
     moving = [name for name in names if even.has(f"joint.{name}.position")]
     if not moving:
-        raise DataError(located("holds no joint positions", path=log.source, valid="joint.<joint>.position"))
+        raise DataError("holds no joint positions", path=log.source, valid="joint.<joint>.position")
     given = all(even.has(f"joint.{name}.velocity", f"joint.{name}.acceleration") for name in moving)
     period = even.period
 
@@ -115,11 +115,7 @@ def prepare_whole(body: Body, log: MotionLog, settings: DynamicsSettings) -> Who
     left_out = int(np.sum(~valid))
     if valid.sum() < FEWEST_SAMPLES:
         raise DataError(
-            located(
-                f"has {valid.sum()} samples that can be used",
-                path=log.source,
-                valid=f"{FEWEST_SAMPLES} or more",
-            )
+            f"has {valid.sum()} samples that can be used", path=log.source, valid=f"{FEWEST_SAMPLES} or more"
         )
     if left_out > 2 * edge:
         text = f"{log.name}: {left_out} of {len(even)} samples left out (NaN, gaps and their surroundings)"
@@ -133,9 +129,7 @@ def _root(
     """The root frame's motion (N, 9) and where it is known: from the IMU, else from a sole that stands still."""
     robot = body.robot
     if not robot.feet:
-        raise RobotError(
-            located("names no feet", path=robot.path, valid="feet whose sensors carry the robot")
-        )
+        raise RobotError("names no feet", path=robot.path, valid="feet whose sensors carry the robot")
     imu = robot.imu
     if imu is not None and log.has_imu(imu.name, "angular_velocity", "linear_acceleration"):
         link, placement = robot.frame(imu.placement)
@@ -148,7 +142,7 @@ def _root(
     name = max(standing, key=lambda foot: int(standing[foot].sum()))
     if standing[name].sum() < FEWEST_SAMPLES:
         valid = "IMU columns angular_velocity and linear_acceleration, or a foot that stands still"
-        raise DataError(located("does not tell how the root link moves", path=log.source, valid=valid))
+        raise DataError("does not tell how the root link moves", path=log.source, valid=valid)
     link, placement = robot.frame(robot.feet[name].sole.placement)
     text = (
         f"{log.name}: no IMU acceleration and angular velocity; the root's motion comes from the {name} sole, taken as "

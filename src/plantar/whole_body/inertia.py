@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from plantar.conventions import WRENCH_AXES
-from plantar.errors import RobotError, located
+from plantar.errors import RobotError
 from plantar.logs.inputs import LogInputs, RobotInput, logs_of, robot_of
 from plantar.results.dynamics import INERTIA_SCHEMA, DynamicsResult
 from plantar.whole_body.covariance import uncertainty
@@ -53,7 +53,7 @@ def identify_inertia(
     settings = settings or DynamicsSettings()
     if robot.base == "fixed":
         message = "a fixed base has no base rows to identify from"
-        raise RobotError(located(message, path=robot.path, valid="plantar identify joints"))
+        raise RobotError(message, path=robot.path, valid="plantar identify joints")
     made = prepare_logs(
         robot, tuple(logs_of(logs, robot)), tuple(logs_of(validate, robot)), settings, progress
     )

@@ -9,7 +9,7 @@ import numpy as np
 
 from plantar.choices import one_of
 from plantar.conventions import Array
-from plantar.errors import DataError, RobotError, located
+from plantar.errors import DataError, RobotError
 from plantar.estimation.residual_covariance import interval95
 from plantar.logs.inputs import LogInputs, RobotInput, logs_of, robot_of
 from plantar.notes import Note
@@ -79,7 +79,7 @@ def identify_joints(
     settings = settings or DynamicsSettings()
     if inertia == "first" and robot.base == "fixed":
         message = "a fixed base has no base rows to identify inertias from first"
-        raise RobotError(located(message, path=robot.path, valid="inertia: together, known"))
+        raise RobotError(message, path=robot.path, valid="inertia: together, known")
     made = prepare_logs(
         robot, tuple(logs_of(logs, robot)), tuple(logs_of(validate, robot)), settings, progress
     )
@@ -167,11 +167,11 @@ def _measured_joints(made: WholeLogs) -> tuple[str, ...]:
     )
     if not names:
         valid = "joint.<joint>.effort, or passive: true in the robot file"
-        raise DataError(located("holds no joint torques", path=made.fitted[0].log.source, valid=valid))
+        raise DataError("holds no joint torques", path=made.fitted[0].log.source, valid=valid)
     for whole in made.unseen:
         for name in names:
             if name not in passive and name not in whole.efforts:
-                raise DataError(located("is missing", path=whole.log.source, column=f"joint.{name}.effort"))
+                raise DataError("is missing", path=whole.log.source, column=f"joint.{name}.effort")
     return names
 
 

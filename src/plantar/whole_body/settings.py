@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 from typing import Any, Final
 
 from plantar.choices import number_in
-from plantar.errors import SettingsError, located
+from plantar.errors import SettingsError
 
 LOWEST_CUTOFF: Final = 0.1  # Hz: below it nothing of a motion is left
 
@@ -36,9 +36,7 @@ class DynamicsSettings:
     def __post_init__(self) -> None:
         number_in("cutoff", self.cutoff, LOWEST_CUTOFF, math.inf, "Hz")
         if not isinstance(self.as_recorded, bool):
-            raise SettingsError(
-                located("as_recorded is not valid", value=self.as_recorded, valid="True, False")
-            )
+            raise SettingsError("as_recorded is not valid", value=self.as_recorded, valid="True, False")
 
     def to_dict(self) -> dict[str, Any]:
         """The settings as they stand in `result.json`."""

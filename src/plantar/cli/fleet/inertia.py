@@ -11,7 +11,7 @@ from plantar.cli.console.terminal import progress
 from plantar.cli.fleet.run import Scheduler, WorkerMemory, Workers
 from plantar.cli.identify import identification
 from plantar.cli.identify.dynamics_tables import print_inertia
-from plantar.errors import PlantarError, located
+from plantar.errors import PlantarError
 from plantar.files import refuse_file
 from plantar.fleet.cluster import connected, seen_by_workers
 from plantar.fleet.inertia import inertia_over
@@ -41,7 +41,7 @@ def run(
     robots = list(dict.fromkeys(group.robot for group in groups))
     if len(robots) > 1:
         message = f"names {len(robots)} robot files"
-        raise PlantarError(located(message, path=manifest, column="robot", valid="one for `fleet inertia`"))
+        raise PlantarError(message, path=manifest, column="robot", valid="one for `fleet inertia`")
     logs = list(dict.fromkeys(log.place for group in groups for log in group.logs if log.role == "fit"))
     step = progress(quiet)
     with connected(workers, scheduler, memory) as client:

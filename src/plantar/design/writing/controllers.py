@@ -12,7 +12,7 @@ from scipy.interpolate import CubicSpline
 
 from plantar.conventions import Array
 from plantar.design.trajectory import Trajectory
-from plantar.errors import SettingsError, located
+from plantar.errors import SettingsError
 from plantar.files import write_text
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers.column_map import joint_order
@@ -30,9 +30,7 @@ def ordered_joints(robot: RobotModel) -> tuple[str, ...]:
     unknown = next((name for name in order if name not in robot.joint_names), None)
     if unknown is not None:
         message = f"columns.joints names '{unknown}', which the URDF lacks"
-        raise SettingsError(
-            located(message, path=robot.path, valid="joints of the URDF, in the controller's order")
-        )
+        raise SettingsError(message, path=robot.path, valid="joints of the URDF, in the controller's order")
     return order
 
 

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from plantar.conventions import Axis
-from plantar.errors import ExportError, located
+from plantar.errors import ExportError
 from plantar.exporters.bush import FootBush
 from plantar.exporters.contact.alone import MARKED, Measured, measured
 from plantar.exporters.contact.points import PointFoot, points_for, sides_of
@@ -71,7 +71,7 @@ def fitted(bush: FootBush, weight: float, edges: float = LEAST_LOAD) -> Fitted:
             seen = measured(foot, axis, load, FIT_STEP)
             if not np.isfinite(seen.stiffness) or seen.stiffness <= 0:
                 message = f"the foot '{bush.name}' falls over in MuJoCo on {axis} K = {stiffness[axis]:.4g}"
-                raise ExportError(located(message, valid="a result whose stiffness carries the robot"))
+                raise ExportError(message, valid="a result whose stiffness carries the robot")
             wanted_k[axis] *= stiffness[axis] / seen.stiffness
             if damping[axis] > 0 and seen.damping > 0:
                 wanted_c[axis] *= damping[axis] / seen.damping

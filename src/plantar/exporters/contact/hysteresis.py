@@ -14,7 +14,7 @@ from typing import Any, Final
 import numpy as np
 
 from plantar.conventions import Array, Axis
-from plantar.errors import ExportError, located
+from plantar.errors import ExportError
 from plantar.exporters.bush import FootBush
 from plantar.exporters.mjcf.file import Compiled
 from plantar.exporters.spring import Slip
@@ -104,7 +104,7 @@ class FootHysteresis:
         self._feet = tuple(_feet(model))
         if not self._feet:
             valid = "a file of --to mujoco-contact --hysteresis, of rubber that slips"
-            raise ExportError(located("the model carries no slip of its feet", valid=valid))
+            raise ExportError("the model carries no slip of its feet", valid=valid)
 
     def __call__(self, model: Any, data: Any) -> None:
         contact = data.contact

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from plantar.conventions import GRAVITY
-from plantar.errors import ExportError, located
+from plantar.errors import ExportError
 from plantar.exporters.bush import FootBush
 from plantar.exporters.comment import head
 from plantar.exporters.contact.springs import (
@@ -41,9 +41,7 @@ def write(job: Job) -> tuple[str, tuple[Note, ...]]:
     MissingExtra: no usd-core.
     """
     if job.model is None:
-        raise ExportError(
-            located("PhysX' contact goes onto a stage", valid="--model with the robot's USD stage")
-        )
+        raise ExportError("PhysX' contact goes onto a stage", valid="--model with the robot's USD stage")
     layer, stage = layer_above(job.model)
     notes: list[Note] = []
     weight = _mass(stage, job.model) * GRAVITY
@@ -68,7 +66,7 @@ def _mass(stage: Any, model: Path) -> float:
     bare = [path for path, mass in masses.items() if mass <= 0]
     if bare or not masses:
         message = f"a rigid body has no mass: {bare[0] if bare else 'there is none'}"
-        raise ExportError(located(message, path=model, valid="physics:mass on every rigid body"))
+        raise ExportError(message, path=model, valid="physics:mass on every rigid body")
     return float(sum(masses.values()))
 
 

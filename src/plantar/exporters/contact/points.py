@@ -19,7 +19,7 @@ from scipy.optimize import linprog
 from scipy.spatial import ConvexHull, QhullError
 
 from plantar.conventions import Array, Axis
-from plantar.errors import ExportError, located
+from plantar.errors import ExportError
 from plantar.exporters.bush import FootBush
 from plantar.exporters.spring import DAMPING_TIME
 
@@ -105,11 +105,11 @@ def sides_of(foot: FootBush) -> Sides:
     try:
         area = float(ConvexHull(outline).volume)  # of a plane figure, its area
     except (QhullError, ValueError) as error:
-        raise ExportError(located(f"the sole of '{foot.name}' has no area")) from error
+        raise ExportError(f"the sole of '{foot.name}' has no area") from error
     low, high = outline.min(axis=0), outline.max(axis=0)
     if low.max() >= 0 or high.min() <= 0:
         message = f"the bush of '{foot.name}' does not stand over its sole"
-        raise ExportError(located(message, valid="a bush between the sole's edges"))
+        raise ExportError(message, valid="a bush between the sole's edges")
     share = float(np.sqrt(area / np.prod(high - low)))
     return Sides(*(share * float(side) for side in (high[0], -low[0], high[1], -low[1])))
 

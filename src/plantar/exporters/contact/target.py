@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from plantar.conventions import GRAVITY, rotation_from_rpy
-from plantar.errors import ExportError, located
+from plantar.errors import ExportError
 from plantar.exporters.bush import FootBush, raised
 from plantar.exporters.comment import head
 from plantar.exporters.contact.alone import IMPRATIO, RADIUS, contact_attributes
@@ -131,7 +131,7 @@ def _silence(
         name = inner.get("name")
         if name is None:
             message = f"a body below '{foot.ankle}' has no name"
-            raise ExportError(located(message, path=model.path, valid="named bodies"))
+            raise ExportError(message, path=model.path, valid="named bodies")
         for element, geom in model.geom_elements(inner, name):
             touches = bool(compiled.geom_contype[geom] or compiled.geom_conaffinity[geom])
             low = reaches_sole(model.geom_points(geom, foot.ankle), foot)

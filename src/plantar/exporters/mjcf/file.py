@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.errors import ExportError, located
+from plantar.errors import ExportError
 from plantar.exporters.bush import FootBush
 from plantar.exporters.shapes import reaches_sole
 from plantar.exporters.urdf.geometry import box_corners
@@ -44,7 +44,7 @@ def _paste(parent: ET.Element, base: Path, pasted: list[str]) -> None:
     for index, child in reversed(list(enumerate(parent))):
         if child.tag == "include":
             if len(pasted) >= INCLUDE_LIMIT:
-                raise ExportError(located(f"includes more than {INCLUDE_LIMIT} files", path=base))
+                raise ExportError(f"includes more than {INCLUDE_LIMIT} files", path=base)
             name = child.get("file", "")
             pasted.append(name)
             inner = ET.Element("mujoco")
@@ -88,7 +88,7 @@ class Compiled:
             mujoco.mj_kinematics(self.model, self.data)
         except (ValueError, TypeError, mujoco.FatalError) as error:
             reason = " ".join(str(error).split())[:300]
-            raise ExportError(located(f"MuJoCo refuses the model: {reason}", path=path)) from error
+            raise ExportError(f"MuJoCo refuses the model: {reason}", path=path) from error
         self._mesh_type = mujoco.mjtGeom.mjGEOM_MESH
         self._plane_type = int(mujoco.mjtGeom.mjGEOM_PLANE)
         self.degrees = bool(spec.compiler.degree)
@@ -113,7 +113,7 @@ class Compiled:
         if name not in elements:
             near = difflib.get_close_matches(name, elements, n=3) or list(elements)[:5]
             message = f"has no body '{name}' (the ankle link of the robot file)"
-            raise ExportError(located(message, path=self.path, valid=", ".join(near)))
+            raise ExportError(message, path=self.path, valid=", ".join(near))
         return elements[name]
 
     def geom_elements(self, body: ET.Element, name: str) -> Iterator[tuple[ET.Element, int]]:
@@ -123,7 +123,7 @@ class Compiled:
         elements = body.findall("geom")
         if len(elements) != count:
             message = f"body '{name}' makes its geoms by <frame>, <replicate> or <composite>"
-            raise ExportError(located(message, path=self.path, valid="geoms that stand in the body itself"))
+            raise ExportError(message, path=self.path, valid="geoms that stand in the body itself")
         return zip(elements, range(first, first + count), strict=True)
 
     def _in_body(self, points: Array, body: str) -> Array:

@@ -6,7 +6,7 @@ import xml.etree.ElementTree as ET
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from plantar.errors import ExportError, MissingExtra, located
+from plantar.errors import ExportError, MissingExtra
 from plantar.exporters.bush import FootBush
 from plantar.exporters.mjcf.file import load_mjcf
 from plantar.exporters.urdf.tree import UrdfTree
@@ -67,7 +67,7 @@ def mjcf_from_urdf(path: Path, feet: tuple[FootBush, ...], notes: list[Note]) ->
         text = spec.to_xml()
     except (ValueError, TypeError, StopIteration, AttributeError, mujoco.FatalError) as error:
         reason = " ".join(str(error).split())[:300]
-        raise ExportError(located(f"MuJoCo refuses the URDF: {reason}", path=path)) from error
+        raise ExportError(f"MuJoCo refuses the URDF: {reason}", path=path) from error
     model = ET.fromstring(text)
     world = model.find("worldbody")
     if world is not None:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from plantar.errors import ExportError, located
+from plantar.errors import ExportError
 from plantar.exporters.bush import FootBush
 from plantar.exporters.comment import head, plate_note, updated_note
 from plantar.exporters.mjcf.file import Compiled, relocate
@@ -74,9 +74,7 @@ def _insert(root: ET.Element, foot: FootBush, before: Compiled, notes: list[Note
         notes.append(updated_note(foot))
         return
     if before.has_body(foot.sole_link):
-        raise ExportError(
-            located(f"the model already has a body '{foot.sole_link}'", valid="a model without bushes")
-        )
+        raise ExportError(f"the model already has a body '{foot.sole_link}'", valid="a model without bushes")
     sole = ET.Element("body", name=foot.sole_link)
     for spring in foot.springs:
         _add_joint(sole, foot, spring, before)

@@ -7,7 +7,7 @@ from collections.abc import Collection
 from pathlib import Path
 
 from plantar.conventions import Array
-from plantar.errors import ExportError, located
+from plantar.errors import ExportError
 from plantar.exporters.sdf.tree import set_pose
 from plantar.exporters.urdf.tree import UrdfTree, origin_of
 from plantar.exporters.xml_file import numbers, vector
@@ -101,7 +101,7 @@ def _joint(model: ET.Element, name: str, joint: ET.Element, tree: UrdfTree) -> N
     kind = joint.get("type", "")
     if kind not in JOINT_TYPES:
         message = f"joint '{name}' is of a type that is not carried over"
-        raise ExportError(located(message, path=tree.path, value=kind, valid=", ".join(sorted(JOINT_TYPES))))
+        raise ExportError(message, path=tree.path, value=kind, valid=", ".join(sorted(JOINT_TYPES)))
     parent, child = tree.ends(joint)
     made = ET.SubElement(model, "joint", name=name, type="revolute" if kind == "continuous" else kind)
     set_pose(made, origin_of(joint), parent)

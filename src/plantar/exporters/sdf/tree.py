@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.errors import ExportError, located
+from plantar.errors import ExportError
 from plantar.exporters.poses import inverse, pose, rpy_of
 from plantar.exporters.urdf.geometry import box_corners, mesh_points
 from plantar.exporters.xml_file import load_xml, numbers, vector
@@ -34,8 +34,7 @@ class SdfTree:
             names = [link.get("name", "") for model in models for link in model.findall("link")]
             missing = next((ankle for ankle in ankles if ankle not in names), ankles[0])
             near = difflib.get_close_matches(missing, names, n=3) or names[:5]
-            message = f"has no model with the link '{missing}'"
-            raise ExportError(located(message, path=path, valid=", ".join(near)))
+            raise ExportError(f"has no model with the link '{missing}'", path=path, valid=", ".join(near))
         self.model = holding[0]
         self.links = {e.get("name", ""): e for e in self.model.findall("link")}
         self.joints = {e.get("name", ""): e for e in self.model.findall("joint")}
@@ -55,7 +54,7 @@ class SdfTree:
         if name in ("", "__model__"):
             return np.eye(4)
         if depth > FRAME_DEPTH:
-            raise ExportError(located(f"frame '{name}' refers to itself", path=self.path))
+            raise ExportError(f"frame '{name}' refers to itself", path=self.path)
         if name in self.links:
             element, default = self.links[name], ""
         elif name in self.joints:
@@ -65,7 +64,7 @@ class SdfTree:
             element = self._frames[name]
             default = element.get("attached_to", "")
         else:
-            raise ExportError(located(f"has no frame '{name}'", path=self.path))
+            raise ExportError(f"has no frame '{name}'", path=self.path)
         place = element.find("pose")
         base = default if place is None else place.get("relative_to", place.get("frame", "")) or default
         return self.in_model(base, depth + 1) @ pose_of(element)
@@ -76,7 +75,7 @@ class SdfTree:
         total = float(sum(vector(text, 1, "mass")[0] for text in texts))
         if total <= 0:
             raise ExportError(
-                located("the model's links weigh nothing", path=self.path, valid="<inertial> with <mass>")
+                "the model's links weigh nothing", path=self.path, valid="<inertial> with <mass>"
             )
         return total
 
@@ -154,10 +153,8 @@ def _version(text: str, path: Path) -> tuple[int, int]:
         major, minor = (int(part) for part in text.split(".")[:2])
     except ValueError:
         raise ExportError(
-            located("has no SDFormat version", path=path, value=text, valid='<sdf version="1.9">')
+            "has no SDFormat version", path=path, value=text, valid='<sdf version="1.9">'
         ) from None
     if (major, minor) < OLDEST:
-        raise ExportError(
-            located("is of an SDFormat version too old", path=path, value=text, valid="1.5 or later")
-        )
+        raise ExportError("is of an SDFormat version too old", path=path, value=text, valid="1.5 or later")
     return major, minor

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from plantar.conventions import INERTIAL_NAMES
-from plantar.errors import ExportError, PlantarError, located
+from plantar.errors import ExportError, PlantarError
 from plantar.exporters.xml_file import load_xml, to_text
 from plantar.notes import Note
 from plantar.robot.identified_urdf import write_inertias
@@ -26,15 +26,11 @@ def with_inertial_parameters(result: Mapping[str, Any], model: Path) -> tuple[st
     for row in result.get("inertial_parameters", ()):
         bodies.setdefault(str(row["link"]), {})[str(row["name"])] = float(row["value"])
     if not bodies:
-        raise ExportError(
-            located("the result holds no inertial_parameters", valid="a result of identify inertia")
-        )
+        raise ExportError("the result holds no inertial_parameters", valid="a result of identify inertia")
     for name, values in bodies.items():
         missing = [key for key in INERTIAL_NAMES if key not in values]
         if missing:
-            raise ExportError(
-                located(f"link '{name}' has no parameter {missing[0]}", valid=", ".join(INERTIAL_NAMES))
-            )
+            raise ExportError(f"link '{name}' has no parameter {missing[0]}", valid=", ".join(INERTIAL_NAMES))
     parameters = {name: np.array([values[key] for key in INERTIAL_NAMES]) for name, values in bodies.items()}
     root = load_xml(model, "robot")
     try:

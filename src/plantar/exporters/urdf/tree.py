@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.errors import ExportError, located
+from plantar.errors import ExportError
 from plantar.exporters.poses import inverse, pose, rpy_of
 from plantar.exporters.urdf.geometry import box_corners, mesh_points
 from plantar.exporters.xml_file import load_xml, numbers, vector
@@ -32,7 +32,7 @@ class UrdfTree:
     def link(self, name: str) -> ET.Element:
         if name not in self.links:
             near = difflib.get_close_matches(name, self.links, n=3) or list(self.links)[:5]
-            raise ExportError(located(f"has no link '{name}'", path=self.path, valid=", ".join(near)))
+            raise ExportError(f"has no link '{name}'", path=self.path, valid=", ".join(near))
         return self.links[name]
 
     def ends(self, joint: ET.Element) -> tuple[str, str]:
@@ -50,9 +50,7 @@ class UrdfTree:
         ]
         total = float(sum(vector(element.get("value"), 1, "mass")[0] for element in found))
         if total <= 0:
-            raise ExportError(
-                located("the links weigh nothing", path=self.path, valid="<inertial> with <mass>")
-            )
+            raise ExportError("the links weigh nothing", path=self.path, valid="<inertial> with <mass>")
         return total
 
     def fixed_children(self, link: str) -> list[tuple[ET.Element, str]]:
@@ -77,7 +75,7 @@ class UrdfTree:
                     queue.append(there)
         if goal not in found:
             message = f"link '{goal}' is not rigidly fixed to '{start}'"
-            raise ExportError(located(message, path=self.path, valid="a link without a joint in between"))
+            raise ExportError(message, path=self.path, valid="a link without a joint in between")
         return found[goal]
 
     def mesh_file(self, name: str) -> Path | None:

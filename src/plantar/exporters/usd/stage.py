@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from plantar.errors import ExportError, MissingExtra, located
+from plantar.errors import ExportError, MissingExtra
 from plantar.exporters.bush import FootBush
 from plantar.exporters.shapes import reaches_sole
 from plantar.exporters.urdf.geometry import box_corners
@@ -52,11 +52,11 @@ def opened(model: Path) -> Any:
     try:
         stage = Usd.Stage.Open(str(model))
     except Tf.ErrorException as error:
-        raise ExportError(located("USD cannot open the stage", path=model, valid="a USD stage")) from error
+        raise ExportError("USD cannot open the stage", path=model, valid="a USD stage") from error
     units = UsdGeom.GetStageMetersPerUnit(stage), UsdPhysics.GetStageKilogramsPerUnit(stage)
     if not np.allclose(units, 1.0):
         message = f"one unit of the stage is {units[0]:g} m and {units[1]:g} kg"
-        raise ExportError(located(message, path=model, valid="metersPerUnit = 1 and kilogramsPerUnit = 1"))
+        raise ExportError(message, path=model, valid="metersPerUnit = 1 and kilogramsPerUnit = 1")
     return stage
 
 
@@ -71,11 +71,11 @@ def ankle_of(stage: Any, foot: FootBush, model: Path) -> Any:
     if found:
         paths = ", ".join(str(prim.GetPath()) for prim in found)
         message = f"has several rigid bodies '{foot.ankle}': {paths}"
-        raise ExportError(located(message, path=model, valid="a stage with one robot"))
+        raise ExportError(message, path=model, valid="a stage with one robot")
     names = [prim.GetName() for prim in bodies]
     near = difflib.get_close_matches(identifier(foot.ankle), names, n=3) or names[:5]
     message = f"has no rigid body '{foot.ankle}' (the ankle link of the robot file)"
-    raise ExportError(located(message, path=model, valid=", ".join(near) or "a stage of the robot"))
+    raise ExportError(message, path=model, valid=", ".join(near) or "a stage of the robot")
 
 
 def standing_shapes(ankle: Any, foot: FootBush) -> list[Any]:

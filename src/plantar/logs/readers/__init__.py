@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from plantar.errors import LogError, located
+from plantar.errors import LogError
 from plantar.logs.readers.read_limit import ReadLimit
 from plantar.logs.readers.urdf_names import with_urdf_names
 
@@ -63,7 +63,7 @@ def open_log(
     """
     path = Path(path)
     if not path.exists():
-        raise LogError(located("does not exist", path=path))
+        raise LogError("does not exist", path=path)
     module = _module(path, robot)
     reader: Reader = import_module(f"plantar.logs.readers.{module}").read
     with np.errstate(over="ignore", invalid="ignore"):  # a damaged file may hold any number
@@ -101,7 +101,7 @@ def _module(path: Path, robot: RobotModel | None) -> str:
     )
     if named or is_port_file(path):
         return "hrpsys"
-    raise LogError(located("has an unknown ending", path=path, valid=", ".join(FORMATS)))
+    raise LogError("has an unknown ending", path=path, valid=", ".join(FORMATS))
 
 
 def motion_name(path: Path) -> str:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.errors import LogError, located
+from plantar.errors import LogError
 from plantar.files import sha256
 from plantar.logs.motion_log import COLUMN, MotionLog
 from plantar.logs.readers import motion_name
@@ -56,7 +56,7 @@ def read(path: Path, robot: RobotModel | None, limit: ReadLimit) -> MotionLog:
     time, mapped = _mapped(columns, robot, path)
     if not mapped:
         valid = "columns.<column of plantar>: <column of the file>, in the robot file"
-        raise LogError(located("has no column of a known name", path=path, valid=valid))
+        raise LogError("has no column of a known name", path=path, valid=valid)
     stream = increasing(Stream(path.name, time, mapped), path, notes)
     return MotionLog(motion_name(path), stream.time, stream.columns, path, sha256(path), tuple(notes))
 
@@ -68,7 +68,7 @@ def _mapped(
         return apply(columns, robot, path)
     if "time" not in columns:
         valid = "a column 'time', or columns.time in the robot file"
-        raise LogError(located("is missing", path=path, column="time", valid=valid))
+        raise LogError("is missing", path=path, column="time", valid=valid)
     return columns["time"], {name: values for name, values in columns.items() if COLUMN.fullmatch(name)}
 
 
@@ -95,12 +95,12 @@ def _read_npz(path: Path, limit: ReadLimit, notes: list[Note]) -> dict[str, Arra
                     )
     except BROKEN as error:
         reason = " ".join(str(error).split())[:120]
-        raise LogError(located(f"is not a readable NPZ file: {reason}", path=path)) from error
+        raise LogError(f"is not a readable NPZ file: {reason}", path=path) from error
     lengths = {values.size for values in arrays.values()}
     if len(lengths) > 1:
         odd = next(name for name, values in arrays.items() if values.size == min(lengths))
         message = f"arrays have different lengths, from {min(lengths)} to {max(lengths)}"
-        raise LogError(located(message, path=path, column=odd))
+        raise LogError(message, path=path, column=odd)
     return arrays
 
 

@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.errors import LogError, located
+from plantar.errors import LogError
 from plantar.logs.motion_log import COLUMN
 from plantar.logs.readers.force_cells import wrench_of_cells
 from plantar.logs.readers.roles import ORDERS, QUANTITIES, factor, nearest, quaternion_from_rpy
@@ -61,7 +61,7 @@ def joint_order(robot: RobotModel | None) -> tuple[str, ...] | None:
     if robot is None or names is None:
         return None
     if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
-        raise LogError(located("columns.joints is not a list of joint names", path=robot.path))
+        raise LogError("columns.joints is not a list of joint names", path=robot.path)
     return tuple(names)
 
 
@@ -71,7 +71,7 @@ def ports(robot: RobotModel | None) -> dict[str, tuple[Port, ...]]:
     if robot is None or entries is None:
         return {}
     if not isinstance(entries, Mapping):
-        raise LogError(located("columns.ports is not a mapping", path=robot.path, valid="port: role"))
+        raise LogError("columns.ports is not a mapping", path=robot.path, valid="port: role")
     return {
         str(name): tuple(
             _port(part, f"columns.ports.{name}", robot.path)
@@ -85,17 +85,17 @@ def _port(entry: object, where: str, path: Path) -> Port:
     made = {"role": entry} if isinstance(entry, str) else entry
     if not isinstance(made, Mapping) or not isinstance(made.get("role"), str) or set(made) - PORT_KEYS:
         raise LogError(
-            located(f"{where} is not a role", path=path, valid="a role, or {role, unit, sign, joints, take}")
+            f"{where} is not a role", path=path, valid="a role, or {role, unit, sign, joints, take}"
         )
     joints, take = made.get("joints"), made.get("take")
     if joints is not None and not (
         isinstance(joints, list) and all(isinstance(name, str) for name in joints)
     ):
-        raise LogError(located(f"{where}.joints is not a list of names", path=path))
+        raise LogError(f"{where}.joints is not a list of names", path=path)
     if take is not None and not (
         isinstance(take, list) and len(take) == 2 and all(isinstance(i, int) and i >= 0 for i in take)
     ):
-        raise LogError(located(f"{where}.take", path=path, value=str(take), valid="[first, after the last]"))
+        raise LogError(f"{where}.take", path=path, value=str(take), valid="[first, after the last]")
     sign = _sign(made.get("sign", 1), where, path)
     slot = None if take is None else (int(take[0]), int(take[1]))
     return Port(made["role"], made.get("unit"), sign, None if joints is None else tuple(joints), slot)
@@ -116,7 +116,7 @@ def apply(table: Mapping[str, Array], robot: RobotModel, path: Path) -> tuple[Ar
                 f"columns.{key} is no source",
                 "a column, a list of columns, or {from, unit, order, sign, at}",
             )
-            raise LogError(located(message, path=robot.path, value=str(entry)[:60], valid=valid))
+            raise LogError(message, path=robot.path, value=str(entry)[:60], valid=valid)
         sources = made["from"] if isinstance(made["from"], list) else [made["from"]]
         values = np.column_stack([_source(table, source, key, path) for source in sources])
         unit, sign = made.get("unit"), _sign(made.get("sign", 1), f"columns.{key}", robot.path)
@@ -129,12 +129,7 @@ def apply(table: Mapping[str, Array], robot: RobotModel, path: Path) -> tuple[Ar
             columns |= _mapped(key, values, unit, made.get("order"), sign, robot.path)
     if time is None:
         raise LogError(
-            located(
-                "is missing",
-                path=path,
-                column="time",
-                valid="a column 'time', or columns.time in the robot file",
-            )
+            "is missing", path=path, column="time", valid="a column 'time', or columns.time in the robot file"
         )
     return time, columns
 
@@ -150,15 +145,13 @@ def _for_each_joint(entries: Mapping[str, Any], names: Sequence[str], path: Path
         source = made.get("from")
         if not isinstance(source, str) or source.count(ANY_JOINT) != 1 or key.count(ANY_JOINT) != 1:
             valid = f"joint.{ANY_JOINT}.position: {{from: {ANY_JOINT}_angle, unit: deg}}"
-            raise LogError(
-                located(f"columns.{key} needs one {ANY_JOINT} here and there", path=path, valid=valid)
-            )
+            raise LogError(f"columns.{key} needs one {ANY_JOINT} here and there", path=path, valid=valid)
         before, after = source.split(ANY_JOINT)
         found = [re.fullmatch(f"{re.escape(before)}(.+){re.escape(after)}", name) for name in names]
         joints = [match[1] for match in found if match]
         if not joints:
             message = f"columns.{key}: no column is called like '{source}'"
-            raise LogError(located(message, path=path, valid=nearest(source, names)))
+            raise LogError(message, path=path, valid=nearest(source, names))
         spread |= {
             key.replace(ANY_JOINT, joint): {**made, "from": before + joint + after} for joint in joints
         }
@@ -174,16 +167,16 @@ def _mapped(
             values, order = quaternion_from_rpy(values * factor(unit, "position", key, path)), "wxyz"
         if values.shape[1] != 4 or (order or "wxyz") not in ORDERS:
             message = f"columns.{key} needs four sources and an order"
-            raise LogError(located(message, path=path, value=order, valid="wxyz, xyzw, or three and rpy"))
+            raise LogError(message, path=path, value=order, valid="wxyz, xyzw, or three and rpy")
         return {f"{key}.{axis}": values[:, i] for i, axis in enumerate(order or "wxyz")}
     if last in VECTORS and stem.startswith(("imu.", "wrench.")):
         if values.shape[1] != 3:
-            raise LogError(located(f"columns.{key} needs three sources", path=path, value=values.shape[1]))
+            raise LogError(f"columns.{key} needs three sources", path=path, value=values.shape[1])
         scale = sign * factor(unit, QUANTITIES[last], f"columns.{key}", path)
         return {f"{key}.{axis}": scale * values[:, i] for i, axis in enumerate("xyz")}
     if not COLUMN.fullmatch(key):
         valid = "time, joint.<joint>.position, imu.<name>.angular_velocity, wrench.<name>.force, ..."
-        raise LogError(located(f"columns.{key} is no column of plantar", path=path, valid=valid))
+        raise LogError(f"columns.{key} is no column of plantar", path=path, valid=valid)
     quantity = QUANTITIES[last] if last in QUANTITIES else QUANTITIES[stem.rpartition(".")[2]]
     scale = sign * factor(unit, quantity, f"columns.{key}", path)
     return {key: scale * _one(values, key, path)[:, 0]}
@@ -191,7 +184,7 @@ def _mapped(
 
 def _one(values: Array, key: str, path: Path) -> Array:
     if values.shape[1] != 1:
-        raise LogError(located(f"columns.{key} takes one source", path=path, value=values.shape[1]))
+        raise LogError(f"columns.{key} takes one source", path=path, value=values.shape[1])
     return values
 
 
@@ -199,23 +192,16 @@ def _source(table: Mapping[str, Array], source: Any, key: str, path: Path) -> Ar
     names: Sequence[str] = list(table)
     if isinstance(source, int) and not isinstance(source, bool):
         if not 0 <= source < len(names):
-            raise LogError(
-                located(f"columns.{key}: no column {source}", path=path, valid=f"0 to {len(names) - 1}")
-            )
+            raise LogError(f"columns.{key}: no column {source}", path=path, valid=f"0 to {len(names) - 1}")
         return table[names[source]]
     if not isinstance(source, str) or source not in table:
         raise LogError(
-            located(
-                f"is missing (columns.{key})",
-                path=path,
-                column=str(source),
-                valid=nearest(str(source), names),
-            )
+            f"is missing (columns.{key})", path=path, column=str(source), valid=nearest(str(source), names)
         )
     return table[source]
 
 
 def _sign(value: object, where: str, path: Path) -> float:
     if value not in (1, -1) or isinstance(value, bool):
-        raise LogError(located(f"{where}: sign", path=path, value=str(value), valid="1 or -1"))
+        raise LogError(f"{where}: sign", path=path, value=str(value), valid="1 or -1")
     return 1.0 if value == 1 else -1.0

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.errors import LogError, located
+from plantar.errors import LogError
 
 FEWEST = 3  # cells: two show the moment about one axis only
 FARTHEST = 1.0  # m from the frame: no sole is longer
@@ -36,17 +36,15 @@ def wrench_of_cells(sensor: str, values: Array, places: object, path: Path) -> d
     try:
         at = np.array(places, dtype=float).reshape(-1, 2)
     except (TypeError, ValueError):
-        raise LogError(located(f"{where} needs the cells' places", path=path, valid=valid)) from None
+        raise LogError(f"{where} needs the cells' places", path=path, valid=valid) from None
     if at.shape != (values.shape[1], 2) or not np.isfinite(at).all():
-        raise LogError(
-            located(f"{where} has {len(at)} places for {values.shape[1]} cells", path=path, valid=valid)
-        )
+        raise LogError(f"{where} has {len(at)} places for {values.shape[1]} cells", path=path, valid=valid)
     if np.abs(at).max() > FARTHEST:
         text = f"{where}: a cell lies {np.abs(at).max():.3g} m away; are these millimetres?"
-        raise LogError(located(text, path=path, valid=valid))
+        raise LogError(text, path=path, valid=valid)
     if len(at) < FEWEST or np.linalg.svd(at - at.mean(axis=0), compute_uv=False)[1] < LEAST_SPREAD:
         text = f"{where}: the cells stand in one line and show no moment about it"
-        raise LogError(located(text, path=path, valid=f"{FEWEST} or more cells that span an area"))
+        raise LogError(text, path=path, valid=f"{FEWEST} or more cells that span an area")
     none = np.zeros(len(values))
     force = np.column_stack([none, none, values.sum(axis=1)])
     torque = np.column_stack([values @ at[:, 1], -values @ at[:, 0], none])

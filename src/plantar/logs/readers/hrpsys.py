@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.errors import LogError, located
+from plantar.errors import LogError
 from plantar.files import sha256
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers.column_map import Port, ports
@@ -55,7 +55,7 @@ def read(path: Path, robot: RobotModel | None, limit: ReadLimit) -> MotionLog:
             continue
         values, _ = read_numbers(file, limit, notes)
         if values.shape[1] < 2:
-            raise LogError(located("holds no values beside the time", path=file))
+            raise LogError("holds no values beside the time", path=file)
         data[port] = (values[:, 0], values[:, 1:])
     if data:
         start = origin(min(float(np.nanmin(time)) for time, _ in data.values() if time.size))

@@ -17,7 +17,7 @@ from typing import IO, TYPE_CHECKING, Any
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.errors import LogError, MissingExtra, located
+from plantar.errors import LogError, MissingExtra
 from plantar.files import sha256
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import motion_name
@@ -58,13 +58,11 @@ def read(path: Path, robot: RobotModel | None, limit: ReadLimit) -> MotionLog:
         magic = handle.read(4)
         version = magic[3] - 0x45 if len(magic) == 4 and magic[:3] == MAGIC else -1
         if not 0 <= version <= NEWEST:
-            raise LogError(
-                located("is not an mc_rtc binary log", path=path, valid="a file that starts with ANNE")
-            )
+            raise LogError("is not an mc_rtc binary log", path=path, valid="a file that starts with ANNE")
         entries.read(handle, notes)
     values = entries.columns()
     if "t" not in values or not np.isfinite(values["t"]).any():
-        raise LogError(located("holds no time key 't'", path=path))
+        raise LogError("holds no time key 't'", path=path)
     time = values.pop("t")[:, 0]
     columns: dict[str, Array] = {}
     for key, role in entries.roles.items():
@@ -73,11 +71,7 @@ def read(path: Path, robot: RobotModel | None, limit: ReadLimit) -> MotionLog:
             columns |= port_columns(role, data, robot, path, notes)
     if not columns:
         raise LogError(
-            located(
-                "holds no joints, body sensors or force sensors",
-                path=path,
-                valid="qIn, rateIn, ...ForceSensor",
-            )
+            "holds no joints, body sensors or force sensors", path=path, valid="qIn, rateIn, ...ForceSensor"
         )
     time, columns = merge([Stream("t", time, columns)], limit, notes)
     return MotionLog(motion_name(path), time, columns, path, sha256(path), tuple(notes))
@@ -112,9 +106,7 @@ class _Entries:
                 )
                 break
             if size > ENTRY_LIMIT:
-                raise LogError(
-                    located(f"an entry of {size} bytes", path=self.path, valid=f"at most {ENTRY_LIMIT}")
-                )
+                raise LogError(f"an entry of {size} bytes", path=self.path, valid=f"at most {ENTRY_LIMIT}")
             left -= size
             self._pending_size += size
             try:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from plantar.conventions import Array
-from plantar.errors import LogError, located
+from plantar.errors import LogError
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers.column_map import Port, joint_order
 from plantar.logs.readers.read_limit import ReadLimit
@@ -29,7 +29,7 @@ def joints_for(count: int, robot: RobotModel | None, path: Path, notes: list[Not
         notes.append(Note("joint_order", "warning", f"{path.name}: {text}"))
         return robot.joint_names
     valid = "columns.joints in the robot file, in the log's order"
-    raise LogError(located(f"does not name its {count} joints", path=path, valid=valid))
+    raise LogError(f"does not name its {count} joints", path=path, valid=valid)
 
 
 def port_columns(
@@ -65,11 +65,7 @@ def log_of_ports(
     if not streams:
         found = ", ".join(list(data)[:8])
         raise LogError(
-            located(
-                f"no port has a known role (found: {found})",
-                path=path,
-                valid="columns.ports in the robot file",
-            )
+            f"no port has a known role (found: {found})", path=path, valid="columns.ports in the robot file"
         )
     time, merged = merge(streams, limit, notes)
     return MotionLog(name, time, merged, path, digest, tuple(notes))

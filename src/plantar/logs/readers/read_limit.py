@@ -11,7 +11,7 @@ import os
 from collections.abc import Iterable
 from pathlib import Path
 
-from plantar.errors import LogError, NoRoom, located
+from plantar.errors import LogError, NoRoom
 
 SHARE = 0.25  # of the machine's memory: what is done with a log needs several times its numbers
 SMALL = 2**28  # bytes that any file may unpack to: the numbers of ten minutes at 1 kHz in 55 columns
@@ -46,7 +46,7 @@ class ReadLimit:
     def columns(self, count: int) -> None:
         """LogError for more columns than any log has; `count` is how many were seen so far."""
         if count > COLUMNS:
-            raise LogError(located(f"has more than {COLUMNS} columns", path=self.path, valid="fewer columns"))
+            raise LogError(f"has more than {COLUMNS} columns", path=self.path, valid="fewer columns")
 
     def numbers(self, rows: int, columns: int) -> None:
         """LogError for a table that is too large to hold."""
@@ -73,14 +73,14 @@ class ReadLimit:
             f"at most {shown(self.unpacks_to)} from a file of {shown(self._file_size)}: "
             f"{shown(SMALL)} and {RATIO} times its size"
         )
-        return LogError(located(message, path=self.path, valid=valid))
+        return LogError(message, path=self.path, valid=valid)
 
     def _fits(self, size: int, message: str) -> None:
         if size > self.memory:
             valid = (
                 f"at most {shown(self.memory)}, or more with --memory (memory= in Python), or a shorter log"
             )
-            raise NoRoom(located(message, path=self.path, valid=valid))
+            raise NoRoom(message, path=self.path, valid=valid)
 
 
 def usual_memory() -> int:

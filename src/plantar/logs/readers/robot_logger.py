@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.errors import LogError, MissingExtra, located
+from plantar.errors import LogError, MissingExtra
 from plantar.files import sha256
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import motion_name
@@ -59,7 +59,7 @@ def read(path: Path, robot: RobotModel | None, limit: ReadLimit) -> MotionLog:
             data, roles = _signals(root, ports(robot), limit)
     except (OSError, KeyError, RuntimeError, ValueError, TypeError, AttributeError, MemoryError) as error:
         reason = " ".join(str(error).split())[:120]
-        raise LogError(located(f"is not a readable MATLAB 7.3 file: {reason}", path=path)) from error
+        raise LogError(f"is not a readable MATLAB 7.3 file: {reason}", path=path) from error
     if data:
         start = origin(min(float(np.nanmin(time)) for time, _ in data.values()))
         data = {port: (time - start, values) for port, (time, values) in data.items()}
@@ -97,7 +97,7 @@ def _signal(group: Any, name: str, limit: ReadLimit) -> tuple[Array, Array]:
     for key in ("timestamps", "data"):
         source = group[key]
         if source.dtype.kind not in "fiu":
-            raise LogError(located(f"{name}/{key} is no array of numbers", path=limit.path))
+            raise LogError(f"{name}/{key} is no array of numbers", path=limit.path)
         # HDF5 unpacks whole chunks, which may be larger than what is in use of them.
         limit.unpack(NUMBER * max(source.size, math.prod(source.chunks or ())))
         limit.hold(NUMBER * source.size)
@@ -111,9 +111,7 @@ def _signal(group: Any, name: str, limit: ReadLimit) -> tuple[Array, Array]:
     ):
         values = values.T
     if values.shape[0] != time.size:
-        raise LogError(
-            located(f"{name} has {values.shape[0]} samples and {time.size} stamps", path=limit.path)
-        )
+        raise LogError(f"{name} has {values.shape[0]} samples and {time.size} stamps", path=limit.path)
     return time, values
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from plantar.conventions import GRAVITY, Array
-from plantar.errors import LogError, located
+from plantar.errors import LogError
 
 DEGREE = np.pi / 180
 
@@ -44,12 +44,7 @@ def factor(unit: object, quantity: str, where: str, path: Path) -> float:
     if kind != quantity:
         fitting = [name for name, (of, _) in UNITS.items() if of == quantity]
         raise LogError(
-            located(
-                f"{where}: no such unit of {quantity}",
-                path=path,
-                value=str(unit)[:40],
-                valid=", ".join(fitting),
-            )
+            f"{where}: no such unit of {quantity}", path=path, value=str(unit)[:40], valid=", ".join(fitting)
         )
     return scale
 
@@ -92,16 +87,14 @@ def role_columns(
         columns = {f"{stem}.force.{axis}": sign * force[:, i] for i, axis in enumerate("xyz")}
         return columns | {f"{stem}.torque.{axis}": sign * torque[:, i] for i, axis in enumerate("xyz")}
     valid = "joints.position, imu.<name>.angular_velocity, imu.<name>.orientation.rpy, wrench.<name>, ..."
-    raise LogError(located("is not a role", path=path, value=role, valid=valid))
+    raise LogError("is not a role", path=path, value=role, valid=valid)
 
 
 def _length(values: Array, expected: int, role: str, path: Path) -> None:
     if values.ndim != 2 or values.shape[1] != expected:
         found = values.shape[1] if values.ndim == 2 else values.ndim
         hint = "columns.joints in the robot file, in the log's order" if role.startswith("joints") else None
-        raise LogError(
-            located(f"{role}: the log has {found} values a sample, not {expected}", path=path, valid=hint)
-        )
+        raise LogError(f"{role}: the log has {found} values a sample, not {expected}", path=path, valid=hint)
 
 
 def quaternion_from_rpy(rpy: Array) -> Array:

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from plantar.conventions import Array, Mask
-from plantar.errors import LogError, located
+from plantar.errors import LogError
 from plantar.logs.readers.read_limit import ReadLimit
 from plantar.notes import Note
 
@@ -50,7 +50,7 @@ def increasing(stream: Stream, path: Path, notes: list[Note]) -> Stream:
     at = float(stream.time[strays[0] - 1]) if strays[0] else None
     if strays.size > max(1, STRAY_STAMPS * keep.size):
         message = f"{stream.name}: time steps back in {strays.size} of {keep.size} samples, first here"
-        raise LogError(located(message, path=path, time=at, value=float(stream.time[strays[0]])))
+        raise LogError(message, path=path, time=at, value=float(stream.time[strays[0]]))
     text = f"{path.name}: {stream.name}: {strays.size} samples whose time steps back are left out"
     notes.append(Note("time_order", "warning", text))
     return stream.take(keep)
@@ -67,7 +67,7 @@ def merge(streams: Sequence[Stream], limit: ReadLimit, notes: list[Note]) -> tup
     kept = [increasing(stream, path, notes) for stream in streams]
     kept = [stream for stream in kept if stream.time.size >= 2]
     if not kept:
-        raise LogError(located("holds fewer than two samples of joints, IMU or force sensors", path=path))
+        raise LogError("holds fewer than two samples of joints, IMU or force sensors", path=path)
     base = _base(kept)
     time = base.time
     first, last = max(s.time[0] for s in kept), min(s.time[-1] for s in kept)
@@ -82,7 +82,7 @@ def merge(streams: Sequence[Stream], limit: ReadLimit, notes: list[Note]) -> tup
         text = "the streams hardly overlap in time; what a stream does not cover is missing"
         notes.append(Note("streams_apart", "warning", f"{path.name}: {text}"))
     if time.size < 2:
-        raise LogError(located("the streams have no two samples in common", path=path))
+        raise LogError("the streams have no two samples in common", path=path)
     count = sum(len(stream.columns) for stream in kept)
     limit.columns(count)
     limit.numbers(time.size, count)

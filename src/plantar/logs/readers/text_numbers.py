@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.errors import LogError, located
+from plantar.errors import LogError
 from plantar.logs.readers.read_limit import ReadLimit
 from plantar.notes import Note
 
@@ -33,7 +33,7 @@ def read_numbers(
             end = text.rfind(b"\n") + 1
             rest = text[end:]
             if len(rest) > BLOCK:
-                raise LogError(located("holds no lines", path=path, valid="one sample a line"))
+                raise LogError("holds no lines", path=path, valid="one sample a line")
             reader.add(text[:end].translate(spaces))
     if rest.strip():
         # No end of line: its last number may have lost digits.
@@ -97,7 +97,7 @@ class _Lines:
 
     def finish(self, notes: list[Note]) -> Array:
         if not self._blocks:
-            raise LogError(located("holds no numbers", path=self.path, valid="one sample a line"))
+            raise LogError("holds no numbers", path=self.path, valid="one sample a line")
         values = np.concatenate(self._blocks)
         if self._bad:
             where = (
@@ -106,8 +106,7 @@ class _Lines:
                 else f"line {self._first_bad}"
             )
             if self._bad > max(1, BAD_LINES * self._line):
-                message = f"{where} do not hold {self._width} numbers"
-                raise LogError(located(message, path=self.path))
+                raise LogError(f"{where} do not hold {self._width} numbers", path=self.path)
             notes.append(
                 Note(
                     "lines_broken",

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from plantar.errors import LogError, located
+from plantar.errors import LogError
 from plantar.robot.joint_names import JointNames
 
 if TYPE_CHECKING:
@@ -29,6 +29,6 @@ def with_urdf_names(log: MotionLog, names: JointNames, joints: Iterable[str]) ->
         renamed = f"joint.{to_urdf[joint]}.{quantity}" if known else column
         if known and renamed in log.columns and to_urdf[joint] not in to_urdf:
             message = f"is '{renamed}' by the robot file's joint_names, which the log also holds"
-            raise LogError(located(message, path=log.source, column=column, valid="one of the two"))
+            raise LogError(message, path=log.source, column=column, valid="one of the two")
         columns[renamed] = values
     return replace(log, columns=columns)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.errors import LogError, located
+from plantar.errors import LogError
 from plantar.files import sha256
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers.column_map import Port, ports
@@ -49,7 +49,7 @@ def read(path: Path, robot: RobotModel | None, limit: ReadLimit) -> MotionLog:
         values, _ = read_numbers(file, limit, notes, strip=b'()"[]')
         stamps = 2 if _both_stamps(file.parent / "info.log") else 1
         if values.shape[1] <= 1 + stamps:
-            raise LogError(located("holds no values beside packet number and stamp", path=file))
+            raise LogError("holds no values beside packet number and stamp", path=file)
         data[port] = (values[:, 1], values[:, 1 + stamps :])
     if data:
         start = origin(min(float(np.nanmin(time)) for time, _ in data.values() if time.size))
@@ -65,7 +65,7 @@ def dumps(root: Path) -> list[Path]:
         found += sorted(root.glob("*/" * depth + "data.log"))[:PORT_LIMIT]
     if not found:
         raise LogError(
-            located("is a directory without logs", path=root, valid="a ROS bag, or YARP dumps with data.log")
+            "is a directory without logs", path=root, valid="a ROS bag, or YARP dumps with data.log"
         )
     return found
 

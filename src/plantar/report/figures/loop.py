@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES
-from plantar.errors import DataError, MissingExtra, located
+from plantar.errors import DataError, MissingExtra
 from plantar.report.figures.plots import BLUE, LINE, RED
 from plantar.results.feet import FeetResult
 from plantar.results.feet_text import title_of_axis
@@ -68,7 +68,7 @@ def _chosen(result: FeetResult, foot: str, axis: str, motions: tuple[str, ...]) 
     """The tracks to draw; DataError that names what there is where one is asked for that is not there."""
     if result.residuals is None:
         valid = "a result of identify_feet, or FeetResult.load of a folder with residuals.parquet"
-        raise DataError(located("the result holds no residuals to draw", valid=valid))
+        raise DataError("the result holds no residuals to draw", valid=valid)
     tracks = tracks_of(result.residuals)
     for what, asked, known in (
         ("foot", (foot,), [track.foot for track in tracks]),
@@ -77,13 +77,11 @@ def _chosen(result: FeetResult, foot: str, axis: str, motions: tuple[str, ...]) 
     ):
         for name in asked:
             if name not in known:
-                raise DataError(
-                    located(f"no {what} has that name", value=name, valid=", ".join(dict.fromkeys(known)))
-                )
+                raise DataError(f"no {what} has that name", value=name, valid=", ".join(dict.fromkeys(known)))
     found = [track for track in tracks if track.foot == foot and (not motions or track.motion in motions)]
     drawn = [track for track in found if track.used.any()]
     if not drawn:
-        raise DataError(located(f"no sample of the {foot} foot was used", valid="other motions"))
+        raise DataError(f"no sample of the {foot} foot was used", valid="other motions")
     return drawn
 
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from plantar.errors import DataError, located
+from plantar.errors import DataError
 from plantar.report.content import Figure
 from plantar.report.figures import plots
 from plantar.results.residuals import Track, read_residuals, residuals_path
@@ -56,7 +56,7 @@ def write_figures(
     """
     source = residuals_path(directory)
     if source is None:
-        raise DataError(located("holds no residuals", path=directory, valid="the directory of a result.json"))
+        raise DataError("holds no residuals", path=directory, valid="the directory of a result.json")
     made = plates(read_residuals(source), only_paper)
     return [path for plate in made for path in plots.save(plate.drawing, out, plate.name, formats)]
 

@@ -6,7 +6,7 @@ import numpy as np
 import pinocchio as pin
 
 from plantar.conventions import Array
-from plantar.errors import RobotError, located
+from plantar.errors import RobotError
 from plantar.robot.model import RobotModel
 from plantar.twin.robots.description import Body, Description, Shape
 
@@ -59,7 +59,7 @@ def _axes(model: pin.Model, robot: RobotModel) -> dict[int, Array]:
     for joint in range(1, model.njoints):
         if model.joints[joint].nv != 1:
             message = f"joint '{model.names[joint]}' has {model.joints[joint].nv} degrees of freedom"
-            raise RobotError(located(message, path=robot.path, valid="joints of one degree of freedom"))
+            raise RobotError(message, path=robot.path, valid="joints of one degree of freedom")
         jacobian = pin.computeJointJacobian(model, data, neutral, joint)
         axes[joint] = np.array(jacobian[:, model.joints[joint].idx_v])
     return axes

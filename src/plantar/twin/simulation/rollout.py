@@ -10,7 +10,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from plantar.conventions import Array
-from plantar.errors import MotionError, located
+from plantar.errors import MotionError
 from plantar.motions.plan import RATE, Plan
 from plantar.robot.model import RobotModel
 from plantar.twin.robots.description import Description
@@ -174,4 +174,4 @@ def _check_upright(plan: Plan, sample: int, data: mujoco.MjData) -> None:
     if not lean < FALLEN:
         message = f"{plan.name}: the robot falls, it leans {np.degrees(lean):.0f}° away from its plan"
         fell = float(plan.time[sample])
-        raise MotionError(located(message, time=fell, valid="a smaller or slower motion"), fell)
+        raise MotionError(message, time=fell, valid="a smaller or slower motion", fell=fell)

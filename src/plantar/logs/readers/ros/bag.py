@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.errors import LogError, located
+from plantar.errors import LogError
 from plantar.files import sha256
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import motion_name
@@ -62,14 +62,14 @@ def bag_files(path: Path) -> list[Path]:
         return [path]
     parts = sorted(part for part in path.iterdir() if part.suffix.lower() in FILES)
     if not parts:
-        raise LogError(located("is a directory without bag files", path=path, valid=", ".join(FILES)))
+        raise LogError("is a directory without bag files", path=path, valid=", ".join(FILES))
     return sorted(parts, key=lambda part: (len(part.name), part.name))
 
 
 def _check(topics: dict[str, Topic], path: Path, notes: list[Note]) -> None:
     if not any(topic.series for topic in topics.values()):
         valid = "sensor_msgs/JointState, sensor_msgs/Imu, geometry_msgs/WrenchStamped"
-        raise LogError(located("holds no message that plantar reads", path=path, valid=valid))
+        raise LogError("holds no message that plantar reads", path=path, valid=valid)
     for topic in topics.values():
         if topic.broken:
             text = (

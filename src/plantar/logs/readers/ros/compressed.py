@@ -5,7 +5,7 @@ from __future__ import annotations
 import bz2
 import zlib
 
-from plantar.errors import LogError, MissingExtra, located
+from plantar.errors import LogError, MissingExtra
 from plantar.logs.readers.read_limit import ReadLimit, shown
 
 CHUNK_LIMIT = 2**27  # bytes that one compressed chunk of a bag may hold: recorders write a few million
@@ -36,7 +36,7 @@ def unpack_chunk(kind: str, data: bytes | memoryview, claimed: int, limit: ReadL
             raise limit.too_much(f"unpacks to more than {shown(limit.unpacks_to)}") from None
         valid = f"at most {shown(CHUNK_LIMIT)} a chunk"
         message = f"a chunk unpacks to more than {shown(CHUNK_LIMIT)}"
-        raise LogError(located(message, path=limit.path, valid=valid)) from None
+        raise LogError(message, path=limit.path, valid=valid) from None
     limit.unpack(len(content))
     return content
 

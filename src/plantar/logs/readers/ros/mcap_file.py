@@ -9,7 +9,7 @@ import struct
 import zlib
 from pathlib import Path
 
-from plantar.errors import LogError, located
+from plantar.errors import LogError
 from plantar.logs.readers.read_limit import ReadLimit
 from plantar.logs.readers.ros.compressed import BrokenChunk, unpack_chunk
 from plantar.logs.readers.ros.layouts import Encoding
@@ -31,9 +31,7 @@ def read_mcap(path: Path, topics: dict[str, Topic], limit: ReadLimit, notes: lis
     size = path.stat().st_size
     with open(path, "rb") as handle:
         if handle.read(len(MAGIC)) != MAGIC:
-            raise LogError(
-                located("is not an MCAP file", path=path, valid="a file that starts with the MCAP magic")
-            )
+            raise LogError("is not an MCAP file", path=path, valid="a file that starts with the MCAP magic")
         rest, done = b"", False
         while not done:
             block = handle.read(max(BLOCK, scan.needed - len(rest)))

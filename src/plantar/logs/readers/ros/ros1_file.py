@@ -8,7 +8,7 @@ from __future__ import annotations
 import struct
 from pathlib import Path
 
-from plantar.errors import LogError, located
+from plantar.errors import LogError
 from plantar.logs.readers.read_limit import ReadLimit
 from plantar.logs.readers.ros.compressed import BrokenChunk, unpack_chunk
 from plantar.logs.readers.ros.scan import BLOCK, MESSAGES, Found, Scan
@@ -27,7 +27,7 @@ def read_ros1(path: Path, topics: dict[str, Topic], limit: ReadLimit, notes: lis
     size = path.stat().st_size
     with open(path, "rb") as handle:
         if handle.read(len(MAGIC)) != MAGIC:
-            raise LogError(located("is not a ROS 1 bag of format 2.0", path=path))
+            raise LogError("is not a ROS 1 bag of format 2.0", path=path)
         rest = b""
         while True:
             block = handle.read(max(BLOCK, scan.needed - len(rest)))

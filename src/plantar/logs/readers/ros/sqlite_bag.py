@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from plantar.errors import LogError, located
+from plantar.errors import LogError
 from plantar.logs.readers.read_limit import ReadLimit
 from plantar.logs.readers.ros.scan import READ
 from plantar.logs.readers.ros.topics import Topic
@@ -23,7 +23,7 @@ def read_sqlite(path: Path, topics: dict[str, Topic], limit: ReadLimit, notes: l
     try:
         connection = sqlite3.connect(f"file:{_quoted(path)}?mode=ro&immutable=1", uri=True)
     except sqlite3.Error as error:
-        raise LogError(located(f"is not a readable sqlite3 bag: {error}", path=path)) from error
+        raise LogError(f"is not a readable sqlite3 bag: {error}", path=path) from error
     connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MESSAGE_LIMIT)
     try:
         _plain_tables(connection, path)
@@ -32,7 +32,7 @@ def read_sqlite(path: Path, topics: dict[str, Topic], limit: ReadLimit, notes: l
             _messages(connection, identity, topic, limit, path, notes)
     except (sqlite3.Error, OverflowError, ValueError, TypeError) as error:
         if not any(topic.series for topic in topics.values()):
-            raise LogError(located(f"is not a readable sqlite3 bag: {error}", path=path)) from error
+            raise LogError(f"is not a readable sqlite3 bag: {error}", path=path) from error
         notes.append(
             Note("file_cut", "warning", f"{path.name} is damaged ({error}); what could be read was read")
         )
@@ -48,7 +48,7 @@ def _plain_tables(connection: sqlite3.Connection, path: Path) -> None:
             "SELECT COUNT(*) FROM pragma_table_xinfo(?) WHERE hidden", (name,)
         ).fetchone()
         if kinds not in ([], [("table",)]) or hidden != (0,):
-            raise LogError(located(f"'{name}' is not a plain table", path=path, valid="a bag of rosbag2"))
+            raise LogError(f"'{name}' is not a plain table", path=path, valid="a bag of rosbag2")
 
 
 def _channels(connection: sqlite3.Connection, topics: dict[str, Topic]) -> dict[int, Topic]:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plantar.conventions import Array
-from plantar.errors import LogError, located
+from plantar.errors import LogError
 from plantar.logs.readers.ros.layouts import (
     IMU,
     JOINT_STATE,
@@ -143,11 +143,9 @@ def assign(
     for name in wanted.values():
         if name not in known:
             raise LogError(
-                located(
-                    f"has no topic '{name}' (topics in the robot file)",
-                    path=path,
-                    valid=", ".join(sorted(known)[:8]),
-                )
+                f"has no topic '{name}' (topics in the robot file)",
+                path=path,
+                valid=", ".join(sorted(known)[:8]),
             )
     joints = [t for t in known.values() if t.kind == JOINT_STATE]
     if "joints" in wanted:
@@ -166,7 +164,7 @@ def assign(
             if topic is None and free:
                 names = ", ".join(other.name for other in free[:6])
                 message = f"which topic is the {prefix} '{sensor}'?"
-                raise LogError(located(message, path=path, valid=f"topics in the robot file, one of {names}"))
+                raise LogError(message, path=path, valid=f"topics in the robot file, one of {names}")
             if topic is None:
                 continue
             if sensor not in wanted:

@@ -9,7 +9,7 @@ import pyarrow as pa
 import pyarrow.csv as pa_csv
 
 from plantar.conventions import Array
-from plantar.errors import LogError, located
+from plantar.errors import LogError
 
 # What pandas, R, databases, spreadsheets and the C libraries write where nothing was recorded.
 HOLES = [
@@ -53,7 +53,7 @@ class ArrowLines:
             table = self._parse_texts(piece)
         end = first + int(table.num_rows)
         if end > values.shape[1]:
-            raise LogError(located("changed while it was read", path=self.path))
+            raise LogError("changed while it was read", path=self.path)
         for name in sorted(self._place, key=lambda name: name != "time"):
             if name not in self.texts:
                 time = None if name == "time" else values[self._place.get("time", 0), first:end]
@@ -86,8 +86,8 @@ class ArrowLines:
                 reason = (
                     f"a row has {row.actual_columns} values where the header has {row.expected_columns}: "
                 )
-                raise LogError(located(reason + row.text[:40] + "...", path=self.path)) from error
-            raise LogError(located(f"is not a readable CSV: {reason}", path=self.path)) from error
+                raise LogError(reason + row.text[:40] + "...", path=self.path) from error
+            raise LogError(f"is not a readable CSV: {reason}", path=self.path) from error
 
     def _invalid(self, row: pa_csv.InvalidRow) -> str:
         """Only the last row of a file may be short: it was cut."""
@@ -116,6 +116,6 @@ class ArrowLines:
                 at = None if time is None else float(time[row])
                 valid = "a number, or an empty cell where nothing was recorded"
                 raise LogError(
-                    located("is not a number", path=self.path, column=name, time=at, value=text, valid=valid)
+                    "is not a number", path=self.path, column=name, time=at, value=text, valid=valid
                 ) from None
         return numbers

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from plantar.errors import LogError, located
+from plantar.errors import LogError
 from plantar.logs.readers.read_limit import COLUMNS, ReadLimit
 
 BLOCK = 2**20  # bytes of text at a time
@@ -51,7 +51,7 @@ def survey(path: Path, limit: ReadLimit) -> Survey:
                 whole = not check.getstate()[0]
         except UnicodeDecodeError as error:
             line = 1 + rows + (0 if names is None else 1) + block.count(b"\n", 0, error.start)
-            raise LogError(located(f"is not UTF-8 text at line {line}", path=path, valid="a CSV")) from error
+            raise LogError(f"is not UTF-8 text at line {line}", path=path, valid="a CSV") from error
         behind.append(block)
         held += len(block)
         while held - len(behind[0]) >= LINE_LIMIT:
@@ -70,8 +70,8 @@ def survey(path: Path, limit: ReadLimit) -> Survey:
             raise _long_line(path)
     if names is None:
         if not head.strip(MARK + b" \t\r\n"):
-            raise LogError(located("is empty", path=path, valid="a header and one row a sample"))
-        raise LogError(located("holds no samples", path=path, valid="a header and one row a sample"))
+            raise LogError("is empty", path=path, valid="a header and one row a sample")
+        raise LogError("holds no samples", path=path, valid="a header and one row a sample")
     cut_by = text.cut or (None if end == size else "ends in the middle of a line; that line is left out")
     tail = b"".join(behind)[-LINE_LIMIT:]
     last = tail[: len(tail) - (size - end)].rstrip().rsplit(b"\n", 1)[-1]
@@ -110,7 +110,7 @@ def _header(head: bytes, path: Path, limit: ReadLimit) -> tuple[list[str], int] 
     try:
         return next(csv.reader([line.decode()])), min(ends) + 1
     except csv.Error as error:
-        raise LogError(located(f"has no readable header: {error}", path=path)) from error
+        raise LogError(f"has no readable header: {error}", path=path) from error
 
 
 def _ends(text: bytes) -> int:
@@ -125,8 +125,7 @@ def _after_last(text: bytes) -> int:
 
 
 def _long_line(path: Path) -> LogError:
-    message = f"has a line of more than {LINE_LIMIT} bytes"
-    return LogError(located(message, path=path, valid="one sample a line"))
+    return LogError(f"has a line of more than {LINE_LIMIT} bytes", path=path, valid="one sample a line")
 
 
 class _Text:
@@ -142,9 +141,9 @@ class _Text:
                 packed = iter(lambda: handle.read(BLOCK), b"")
                 yield from self._inflated(packed) if self._path.name.lower().endswith(".gz") else packed
         except OSError as error:
-            raise LogError(located(f"cannot be read: {error.strerror}", path=self._path)) from error
+            raise LogError(f"cannot be read: {error.strerror}", path=self._path) from error
         except zlib.error as error:
-            raise LogError(located(f"is not a readable gzip file: {error}", path=self._path)) from error
+            raise LogError(f"is not a readable gzip file: {error}", path=self._path) from error
 
     def _inflated(self, packed: Iterator[bytes]) -> Iterator[bytes]:
         """One gzip stream after another; zeros between them are padding."""

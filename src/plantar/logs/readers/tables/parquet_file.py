@@ -10,7 +10,7 @@ import pyarrow as pa
 import pyarrow.parquet as pa_parquet
 
 from plantar.conventions import Array
-from plantar.errors import LogError, located
+from plantar.errors import LogError
 from plantar.logs.readers.read_limit import COLUMNS, ReadLimit
 from plantar.logs.readers.tables.csv_file import Choice
 from plantar.logs.readers.tables.parquet_pages import BrokenPage, check_pages
@@ -42,8 +42,8 @@ def read_parquet(path: Path, limit: ReadLimit, choose: Choice, *, strict: bool) 
         reason = str(error).splitlines()[0]
         if TOO_MANY in reason:
             message = f"claims more than {2 * COLUMNS} columns or groups of rows"
-            raise LogError(located(message, path=path, valid=f"at most {COLUMNS} columns")) from error
-        raise LogError(located(f"is not a readable Parquet file: {reason}", path=path)) from error
+            raise LogError(message, path=path, valid=f"at most {COLUMNS} columns") from error
+        raise LogError(f"is not a readable Parquet file: {reason}", path=path) from error
     finally:
         # Arrow keeps what it has freed: with many logs, a tenth of all memory.
         pa.default_memory_pool().release_unused()
@@ -57,12 +57,12 @@ def _holds_numbers(schema: pa.Schema, name: str, path: Path, strict: bool) -> bo
         for is_kind in (pa.types.is_floating, pa.types.is_integer, pa.types.is_decimal, pa.types.is_null)
     )
     if numeric and len(places) > 1:
-        raise LogError(located("stands twice in the header", path=path, column=name))
+        raise LogError("stands twice in the header", path=path, column=name)
     if numeric and any(other.startswith(f"{name}.") for other in schema.names):
         # Arrow would read what is called <name>.<more> with it, unchecked.
-        raise LogError(located("is also the beginning of another column's name", path=path, column=name))
+        raise LogError("is also the beginning of another column's name", path=path, column=name)
     if strict and not numeric:
-        raise LogError(located(f"holds {kind}", path=path, column=name, valid="numbers"))
+        raise LogError(f"holds {kind}", path=path, column=name, valid="numbers")
     return numeric
 
 
@@ -97,6 +97,5 @@ def _columns(source: pa_parquet.ParquetFile, names: list[str], path: Path) -> di
                 row[count:end] = batch.column(name).cast(pa.float64()).to_numpy(zero_copy_only=False)
             count = end
         if count != rows:
-            message = f"does not hold the {rows} rows that the file claims"
-            raise LogError(located(message, path=path, column=some[0]))
+            raise LogError(f"does not hold the {rows} rows that the file claims", path=path, column=some[0])
     return dict(zip(names, values, strict=True))

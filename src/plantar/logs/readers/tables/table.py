@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from plantar.conventions import Array, Mask
-from plantar.errors import LogError, located
+from plantar.errors import LogError
 from plantar.files import sha256
 from plantar.logs.motion_log import COLUMN, MotionLog
 from plantar.logs.readers import motion_name
@@ -37,7 +37,7 @@ def read(path: Path, robot: RobotModel | None, limit: ReadLimit) -> MotionLog:
     columns = _columns(path, limit, choose, notes, strict=True)
     time = columns.pop("time")
     if not time.size:
-        raise LogError(located("holds no samples", path=path, valid="a header and one row a sample"))
+        raise LogError("holds no samples", path=path, valid="a header and one row a sample")
     ignored = [name for name in header if name not in columns and name != "time"]
     if ignored:
         text = f"{path.name}: columns of no known name, not used: {listing(ignored, 6)}"
@@ -56,7 +56,7 @@ def read_raw(path: Path, limit: ReadLimit, notes: list[Note]) -> dict[str, Array
     columns = {name: values for name, values in columns.items() if not np.isnan(values).all()}
     twice = next((name for name in columns if name.endswith("\0")), None)
     if twice is not None:
-        raise LogError(located("stands twice in the header", path=path, column=twice.rstrip("\0")))
+        raise LogError("stands twice in the header", path=path, column=twice.rstrip("\0"))
     return columns
 
 
@@ -75,7 +75,7 @@ def _known(names: Sequence[str], path: Path) -> list[str]:
     seen: set[str] = set()
     for name in names:
         if name.endswith("\0") or name in seen:
-            raise LogError(located("stands twice in the header", path=path, column=name.rstrip("\0")))
+            raise LogError("stands twice in the header", path=path, column=name.rstrip("\0"))
         seen.add(name)
     if "time" not in seen:
         begin = names[0] if names else ""
@@ -87,7 +87,7 @@ def _known(names: Sequence[str], path: Path) -> list[str]:
                 "a first line of column names with commas between, the first one 'time' [s]; decimal points"
             )
         message = f"is missing: the header begins with '{begin[:40]}'"
-        raise LogError(located(message, path=path, column="time", valid=valid))
+        raise LogError(message, path=path, column="time", valid=valid)
     return [name for name in names if name == "time" or COLUMN.fullmatch(name)]
 
 
@@ -105,9 +105,7 @@ def _increasing(time: Array, path: Path, notes: list[Note]) -> Mask:
     if strays.size > max(1, STRAY_ROWS * time.size):
         message = f"does not increase in {strays.size} of {time.size} rows, first here"
         valid = "seconds that increase from row to row, in double precision"
-        raise LogError(
-            located(message, path=path, column="time", time=at, value=float(time[first]), valid=valid)
-        )
+        raise LogError(message, path=path, column="time", time=at, value=float(time[first]), valid=valid)
     text = (
         f"{path.name}: time does not increase in {strays.size} of {time.size} rows (first after t = {at} s); "
     )
