@@ -22,6 +22,16 @@ class Note:
         return asdict(self)
 
 
+class Notes(list[Note]):
+    """Notes as they come, while work goes on."""
+
+    def info(self, code: str, text: str) -> None:
+        self.append(Note(code, "info", text))
+
+    def warning(self, code: str, text: str) -> None:
+        self.append(Note(code, "warning", text))
+
+
 @dataclass(frozen=True)
 class Finding:
     """Something odd in a log; `fatal` where no fit could be trusted."""

@@ -17,7 +17,7 @@ from plantar.exporters import export
 from plantar.exporters.bush import FootBush, check_swing, raised
 from plantar.exporters.shapes import plate, reaches_sole
 from plantar.exporters.spring import Slip, Spring, spring_of
-from plantar.notes import Note
+from plantar.notes import Notes
 
 OUTLINE = np.array([[0.1, 0.05], [-0.1, 0.05], [-0.1, -0.05], [0.1, -0.05]])
 
@@ -42,7 +42,7 @@ def sprung(
     *rows: dict[str, Any], axis: Axis = "pitch", result: dict[str, Any] | None = None, **options: Any
 ) -> Any:
     """The spring and what was said of it."""
-    notes: list[Note] = []
+    notes = Notes()
     made = spring_of(
         result or {}, list(rows), "left", axis, options.pop("with_offset", False), notes, **options
     )

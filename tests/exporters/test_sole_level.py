@@ -11,6 +11,7 @@ from export_robots import write_mjcf
 from plantar.errors import ExportError
 from plantar.exporters import export
 from plantar.exporters.mjcf.file import INCLUDE_LIMIT
+from plantar.notes import Notes
 
 
 @pytest.mark.parametrize(
@@ -58,7 +59,7 @@ def test_includes_are_bounded(files: int, valid: bool, tmp_path: Path) -> None:
     includes = '<include file="one.xml"/>' * (100 + files)
     (tmp_path / "model.xml").write_text(f"<mujoco>{includes}<worldbody/></mujoco>")
     if valid:
-        load_mjcf(tmp_path / "model.xml", [])
+        load_mjcf(tmp_path / "model.xml", Notes())
     else:
         with pytest.raises(ExportError, match="includes more than 100 files"):
-            load_mjcf(tmp_path / "model.xml", [])
+            load_mjcf(tmp_path / "model.xml", Notes())

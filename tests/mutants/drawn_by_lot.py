@@ -234,10 +234,10 @@ DRAWN_BY_LOT = (
         '{number(row.interval95[0])} to {number(row.interval95[0])}", row.verdict',
     ),
     Mutant(
-        "exporters/contact/physx.py",
+        "exporters/job.py",
         "remarks are not written",
-        '"PhysX\' contact", (*job.remarks, *notes), with_offset',
-        '"PhysX\' contact", notes, with_offset',
+        "(*self.remarks, *notes)",
+        "notes",
     ),
     Mutant(
         "exporters/openhrp.py",

@@ -119,7 +119,7 @@ LITERAL_EDGES = (
     ),
     Mutant(
         "exporters/__init__.py", "joints named where there are none",
-        "(joints_note(feet),) if target in WITH_JOINTS else ()", "(joints_note(feet),)", ("exporters/test_edges.py",),
+        "[joints_note(feet)] if target in WITH_JOINTS else []", "[joints_note(feet)]", ("exporters/test_edges.py",),
     ),
     Mutant(
         "exporters/contact/bullet.py", "links below the ankle stand above it",

@@ -16,6 +16,7 @@ from plantar.exporters.job import USUAL, Job, Stance, asked
 from plantar.exporters.mjcf import target as joints
 from plantar.exporters.source import open_result
 from plantar.motions.plan import Plan
+from plantar.notes import Notes
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
 from plantar.twin.robots.foot import cut_feet
@@ -69,11 +70,11 @@ def scenes(
         lower = min(foot.sole_depth for foot in points.feet) if stance.pivot == "bush" else 0.0
         made = {
             AS_IT_WAS: Played(rigid),
-            JOINTS: Played(joints.write(job(joints, False, None, USUAL))[0]),
-            CONTACT: Played(contact.write(points)[0], lower),
+            JOINTS: Played(joints.write(job(joints, False, None, USUAL), Notes())),
+            CONTACT: Played(contact.write(points, Notes()), lower),
         }
         if any(spring.slip for foot in slipping.feet for spring in foot.springs):
-            made[WITH_SLIP] = Played(contact.write(slipping)[0], lower, FootHysteresis)
+            made[WITH_SLIP] = Played(contact.write(slipping, Notes()), lower, FootHysteresis)
         return made
 
 

@@ -17,7 +17,7 @@ from plantar.exporters.comment import joints_note
 from plantar.exporters.job import LEAST_LOAD, Job, Stance, asked
 from plantar.exporters.source import ResultInput, open_result, robot_urdf
 from plantar.files import write_text
-from plantar.notes import Note, unique
+from plantar.notes import Note, Notes, unique
 
 # Target -> (module of this package, what it writes).
 TARGETS: dict[str, tuple[str, str]] = {
@@ -119,8 +119,8 @@ def export(
         takes_model = getattr(module, "EXTENDS", False) or getattr(module, "OPTIONAL_MODEL", False)
         if given is not None and not takes_model:
             raise ExportError("this target takes no model", value=target, valid="no --model")
-        text, notes = module.write(Job(data, feet, given, path, with_offset, remarks, stance))
-        named = (joints_note(feet),) if target in WITH_JOINTS else ()
-        notes = (*remarks, *notes, *named)
+        said = Notes()
+        text = module.write(Job(data, feet, given, path, with_offset, remarks, stance), said)
+        notes = (*remarks, *said, *([joints_note(feet)] if target in WITH_JOINTS else []))
     write_text(path, text)
     return unique(notes)

@@ -24,7 +24,7 @@ from plantar.errors import ExportError
 from plantar.exporters.source import robot_model, robot_urdf
 from plantar.exporters.spring import Spring, spring_of
 from plantar.exporters.urdf.tree import UrdfTree
-from plantar.notes import Note
+from plantar.notes import Note, Notes
 
 SIDES = {"left": "LLEG", "right": "RLEG"}
 
@@ -108,11 +108,11 @@ def feet_of_result(
     if not names:
         raise ExportError("the result holds no parameters", valid="a result of identify feet")
     entries = robot_model(result).get("feet", {})
-    notes = [
+    notes = Notes(
         Note("export_guess", "warning", str(note.get("text")))
         for note in result.get("notes", ())
         if isinstance(note, Mapping) and note.get("code") == "guessed_geometry"
-    ]
+    )
     feet = []
     for name in names:
         springs = tuple(
@@ -131,9 +131,7 @@ def feet_of_result(
             )
         for axis in AXES:
             if axis not in {spring.axis for spring in springs}:
-                notes.append(
-                    Note("export_rigid", "info", f"{name} {axis}: not identified, so rigid in the export")
-                )
+                notes.info("export_rigid", f"{name} {axis}: not identified, so rigid in the export")
         if name not in entries:
             raise ExportError(f"the result's robot_model has no foot '{name}'", valid=", ".join(entries))
         centre, rotation, sole = _geometry(entries[name], result, base)

@@ -9,7 +9,8 @@ from typing import Any, Final
 
 from plantar.errors import ExportError
 from plantar.exporters.bush import FootBush
-from plantar.notes import Note
+from plantar.exporters.comment import head
+from plantar.notes import Note, Notes
 
 PIVOTS: Final = ("ground", "bush")
 LEAST_LOAD: Final = 0.42  # of the weight: a little below the half that a foot carries on two feet
@@ -40,6 +41,11 @@ class Job:
     with_offset: bool
     remarks: tuple[Note, ...]  # what holds for every target, for the comment at the file's head
     stance: Stance = USUAL
+
+    def head(self, target: str, notes: Notes, *, rests: bool = True) -> list[str]:
+        """`comment.head` of this export; not `rests`: of a target whose springs have no rest position."""
+        offset = self.with_offset and rests
+        return head(self.result, self.feet, target, (*self.remarks, *notes), with_offset=offset)
 
 
 def asked(module: object, target: str, hysteresis: bool, swing: float | None, stance: Stance) -> bool:

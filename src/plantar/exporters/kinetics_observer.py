@@ -19,9 +19,8 @@ import yaml
 
 from plantar.conventions import Axis
 from plantar.errors import ExportError
-from plantar.exporters.comment import head
 from plantar.files import read_bounded
-from plantar.notes import Note
+from plantar.notes import Notes
 
 if TYPE_CHECKING:
     from plantar.exporters.job import Job
@@ -69,21 +68,16 @@ def read_contacts(path: str | os.PathLike[str]) -> dict[Axis, tuple[float, float
     }
 
 
-def write(job: Job) -> tuple[str, tuple[Note, ...]]:
+def write(job: Job, notes: Notes) -> str:
     """The YAML's text."""
-    notes = [
-        Note(
-            "export_mean",
-            "warning",
-            "the observer takes one set for all contacts: means over the feet were written",
-        )
-    ]
+    text = "the observer takes one set for all contacts: means over the feet were written"
+    notes.warning("export_mean", text)
     text = "what was not identified (horizontal, yaw, z where missing) stands at the observer's defaults"
-    notes.append(Note("export_default", "warning", text))
+    notes.warning("export_default", text)
     text = "the observer's x and y are the world's: roll and pitch of a robot that faces the world's x"
-    notes.append(Note("export_world", "info", text))
+    notes.info("export_world", text)
     if job.with_offset:
-        notes.append(Note("export_offset", "warning", "the observer has no rest position: offsets left out"))
+        notes.warning("export_offset", "the observer has no rest position: offsets left out")
     body = ""
     for key, (attribute, axes, default) in ENTRIES.items():
         values = []
@@ -93,5 +87,4 @@ def write(job: Job) -> tuple[str, tuple[Note, ...]]:
                 float(np.mean([getattr(spring, attribute) for spring in found])) if found else default
             )
         body += f"{key}: [{', '.join(f'{value:.9g}' for value in values)}]\n"
-    lines = head(job.result, job.feet, "the Kinetics Observer", (*job.remarks, *notes), with_offset=False)
-    return "".join(f"# {line}\n" for line in lines) + body, tuple(notes)
+    return "".join(f"# {line}\n" for line in job.head("the Kinetics Observer", notes, rests=False)) + body

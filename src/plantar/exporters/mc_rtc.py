@@ -14,9 +14,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from plantar.errors import ExportError
-from plantar.exporters.comment import head
 from plantar.files import read_bounded
-from plantar.notes import Note
+from plantar.notes import Notes
 
 if TYPE_CHECKING:
     from plantar.exporters.job import Job
@@ -69,16 +68,13 @@ def read_flexibilities(path: str | os.PathLike[str]) -> dict[str, Flexibility]:
     return found
 
 
-def write(job: Job) -> tuple[str, tuple[Note, ...]]:
+def write(job: Job, notes: Notes) -> str:
     """The JSON to merge into a robot module; the key `plantar`, which no reader asks for, stands for comments."""
     flexibilities = [
         {"jointName": foot.joint(s.axis), "K": s.stiffness, "C": s.damping, "O": s.offset}
         for foot in job.feet
         for s in foot.springs
     ]
-    text = "the joints named must be in the module's URDF: export --to urdf writes them"
-    notes = (Note("export_mc_rtc", "info", text),)
-    lines = head(job.result, job.feet, "mc_rtc", (*job.remarks, *notes), with_offset=job.with_offset)
-    return json.dumps(
-        {"plantar": lines, "flexibilities": flexibilities}, indent=2, ensure_ascii=False
-    ) + "\n", notes
+    notes.info("export_mc_rtc", "the joints named must be in the module's URDF: export --to urdf writes them")
+    content = {"plantar": job.head("mc_rtc", notes), "flexibilities": flexibilities}
+    return json.dumps(content, indent=2, ensure_ascii=False) + "\n"

@@ -12,9 +12,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from plantar.errors import ExportError
-from plantar.exporters.comment import head
 from plantar.files import read_bounded
-from plantar.notes import Note
+from plantar.notes import Notes
 
 if TYPE_CHECKING:
     from plantar.exporters.job import Job
@@ -68,19 +67,17 @@ def read_customizer(path: str | os.PathLike[str]) -> Customizer:
     return Customizer(found.get("robot_model_name", (0, ""))[1], joints)
 
 
-def write(job: Job) -> tuple[str, tuple[Note, ...]]:
+def write(job: Job, notes: Notes) -> str:
     """The configuration's text."""
     entries = [
         f"{foot.joint(s.axis)},{s.stiffness:.9g},{s.damping:.9g}"
         for foot in job.feet
         for s in sorted(foot.springs, key=lambda s: ("z", "roll", "pitch").index(s.axis))
     ]
-    notes = [Note("export_openhrp", "info", "the joints named must be in the robot's VRML or body file")]
+    notes.info("export_openhrp", "the joints named must be in the robot's VRML or body file")
     if job.with_offset:
-        notes.append(
-            Note("export_offset", "warning", "the bush customizer has no rest position: offsets left out")
-        )
-    lines = head(job.result, job.feet, "the bush customizer", (*job.remarks, *notes), with_offset=False)
+        notes.warning("export_offset", "the bush customizer has no rest position: offsets left out")
+    lines = job.head("the bush customizer", notes, rests=False)
     name = str(job.result.get("robot", "robot"))
     comment = "".join(f"# {line}\n" for line in lines)
-    return f"{comment}robot_model_name: {name}\nbush_config: {' '.join(entries)}\n", tuple(notes)
+    return f"{comment}robot_model_name: {name}\nbush_config: {' '.join(entries)}\n"

@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 
 import yaml
 
-from plantar.exporters.comment import head
-from plantar.notes import Note
+from plantar.notes import Notes
 
 if TYPE_CHECKING:
     from plantar.exporters.job import Job
@@ -15,7 +14,7 @@ if TYPE_CHECKING:
 KEPT = ("value", "unit", "std", "interval95", "verdict")
 
 
-def write(job: Job) -> tuple[str, tuple[Note, ...]]:
+def write(job: Job, notes: Notes) -> str:
     """The feet as YAML: geometry in the ankle's frame, and per axis the identified numbers."""
     rows = [row for row in job.result["parameters"] if row.get("name") is not None]
     feet = {}
@@ -35,7 +34,7 @@ def write(job: Job) -> tuple[str, tuple[Note, ...]]:
             "bush_rotation": [[float(value) for value in row] for row in foot.rotation],
             "axes": axes,
         }
-    lines = head(job.result, job.feet, "any reader", job.remarks, with_offset=job.with_offset)
+    lines = job.head("any reader", notes)
     lines.append(
         "torque = stiffness x deflection + damping x rate + offset; R_ankle_sole = Ry(pitch) Rx(roll);"
     )
@@ -43,4 +42,4 @@ def write(job: Job) -> tuple[str, tuple[Note, ...]]:
         "force.z = stiffness x z + damping x rate, z positive when compressed. Lengths in m, ankle's frame."
     )
     document = {"robot": job.result.get("robot"), "plantar": job.result.get("plantar"), "feet": feet}
-    return "".join(f"# {line}\n" for line in lines) + yaml.safe_dump(document, sort_keys=False), ()
+    return "".join(f"# {line}\n" for line in lines) + yaml.safe_dump(document, sort_keys=False)

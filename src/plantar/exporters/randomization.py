@@ -16,9 +16,8 @@ import yaml
 
 from plantar.conventions import STIFFNESS_UNIT, Array
 from plantar.exporters.bush import FootBush
-from plantar.exporters.comment import head
 from plantar.exporters.source import robot_model
-from plantar.notes import Note
+from plantar.notes import Notes
 from plantar.robot.uncertainty import Uncertainty
 
 if TYPE_CHECKING:
@@ -49,9 +48,8 @@ class Number:
     shared: Mapping[str, float] = field(default_factory=dict)
 
 
-def write(job: Job) -> tuple[str, tuple[Note, ...]]:
+def write(job: Job, notes: Notes) -> str:
     """The YAML's text. What has no standard deviation stands with 0 and a note."""
-    notes: list[Note] = []
     numbers = [number for foot in job.feet for number in _of_foot(job.result, foot, notes)]
     numbers += [*_delay(job.result), *_zeros(job.result, job.feet)]
     rows = [
@@ -60,7 +58,7 @@ def write(job: Job) -> tuple[str, tuple[Note, ...]]:
         for one in numbers
     ]
     text = f"friction was not measured: {FRICTION[0]:g} to {FRICTION[1]:g} is what rubber has on floors"
-    notes.append(Note("export_friction", "warning", text))
+    notes.warning("export_friction", text)
     document = {
         "schema": SCHEMA,
         "robot": job.result.get("robot"),
@@ -72,10 +70,10 @@ def write(job: Job) -> tuple[str, tuple[Note, ...]]:
              "measured": False},
         ],
     }  # fmt: skip
-    lines = head(job.result, job.feet, "training", (*job.remarks, *notes), with_offset=job.with_offset)
+    lines = job.head("training", notes)
     lines.append("parameters are jointly normal: mean, std and, in their order, correlation.")
     body = yaml.safe_dump(document, sort_keys=False, default_flow_style=None, width=120)
-    return "".join(f"# {line}\n" for line in lines) + body, tuple(notes)
+    return "".join(f"# {line}\n" for line in lines) + body
 
 
 def correlation(numbers: Iterable[Number]) -> Array:
@@ -88,7 +86,7 @@ def correlation(numbers: Iterable[Number]) -> Array:
     return np.asarray(matrix)
 
 
-def _of_foot(result: Mapping[str, Any], foot: FootBush, notes: list[Note]) -> list[Number]:
+def _of_foot(result: Mapping[str, Any], foot: FootBush, notes: Notes) -> list[Number]:
     """Stiffness, damping and slip of each axis as `mjcf` writes them, with the identified relative deviation."""
     numbers = []
     for spring in foot.springs:
@@ -102,7 +100,7 @@ def _of_foot(result: Mapping[str, Any], foot: FootBush, notes: list[Note]) -> li
                 f"{foot.name}.{spring.axis}: K and C are those beside a slip, as in the model of --to mjcf; "
             )
             text += "a model without it wants the K and C that its own target writes"
-            notes.append(Note("export_slip", "info", text))
+            notes.info("export_slip", text)
         for name, mean, unit in values:
             key = {"foot": foot.name, "axis": spring.axis, "name": name}
             row = _row(result.get("parameters", ()), key)
@@ -112,10 +110,10 @@ def _of_foot(result: Mapping[str, Any], foot: FootBush, notes: list[Note]) -> li
                 # Unlike one number, a range holds what is not known: its width says so.
                 mean = float(row["value"])
                 text = f"{where}: unidentifiable; the range is as wide as the logs leave it, cut at 0"
-                notes.append(Note("export_wide", "warning", text))
+                notes.warning("export_wide", text)
             if relative is None:
                 text = f"{where}: no standard deviation is known, so it is written as 0"
-                notes.append(Note("export_spread", "warning", text))
+                notes.warning("export_spread", text)
             shared = _shared(_row(result.get("diagnosis", ()), key), foot.name, name)
             if spring.axis == "z" and name == "stiffness" and _z_is_one(result):
                 shared = {"vertical stiffness": 1.0}

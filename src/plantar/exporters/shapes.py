@@ -10,7 +10,7 @@ import numpy as np
 from plantar.conventions import Array
 from plantar.exporters.bush import FootBush
 from plantar.exporters.comment import mesh_note
-from plantar.notes import Note
+from plantar.notes import Notes
 
 SOLE_MASS = 0.05  # kg: light beside any foot, heavy enough for every engine
 SOLE_INERTIA = 1e-4  # kg·m² about each axis; shifts the decay rate of K = 500, C = 20 by 0.01 %
@@ -28,7 +28,7 @@ def reaches_sole(points: Array, foot: FootBush) -> bool:
 
 
 def taken_off(
-    ankle: ET.Element, points: Callable[[ET.Element], Array | None], foot: FootBush, notes: list[Note]
+    ankle: ET.Element, points: Callable[[ET.Element], Array | None], foot: FootBush, notes: Notes
 ) -> list[tuple[str, ET.Element]]:
     """The ankle's shapes that reach the sole, taken off it, each with what it is called.
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from plantar.conventions import DAMPING_UNIT, OFFSET_UNIT, STIFFNESS_UNIT, Axis
 from plantar.errors import ExportError
-from plantar.notes import Note
+from plantar.notes import Notes
 from plantar.results.numbers import unit
 
 DAMPING_TIME = 0.002  # s: C/K written where none was identified, that of published bush models (5e5, 1e3)
@@ -78,7 +78,7 @@ def spring_of(
     foot: str,
     axis: Axis,
     with_offset: bool,
-    notes: list[Note],
+    notes: Notes,
     *,
     hysteresis: bool = False,
     swing: float | None = None,
@@ -113,12 +113,12 @@ def spring_of(
     nearest = _linear_equivalent(result, foot, axis) if extra and swung is None else None
     if swung is not None:
         text = f"{where}: the slip is written as the spring and damper of swings of {swing:g} rad at {SWAY:g} rad/s"
-        notes.append(Note("export_swing", "warning", text))
+        notes.warning("export_swing", text)
     elif extra:
         text = f"{where}: the target holds a linear spring and damper; left out: {', '.join(extra)}"
         if nearest is not None:
             text += "; K and C are those of the spring and damper nearest to the identified motions"
-        notes.append(Note("export_terms", "warning", text))
+        notes.warning("export_terms", text)
     _doubt(mine["stiffness"], where, notes)
     if nearest is not None:
         stiffness, damping, assumed = *nearest, False
@@ -137,11 +137,11 @@ def spring_of(
     if with_offset and len(offsets) > 1:
         text = f"{where}: offset {offset:.4g}, the mean of {len(offsets)} motions"
         text += f" from {min(offsets):.4g} to {max(offsets):.4g}"
-        notes.append(Note("export_offset", "info", text))
+        notes.info("export_offset", text)
     return Spring(axis, stiffness, damping, offset if with_offset else 0.0, assumed, slip)
 
 
-def _damping(row: Mapping[str, Any], stiffness: float, where: str, notes: list[Note]) -> tuple[float, bool]:
+def _damping(row: Mapping[str, Any], stiffness: float, where: str, notes: Notes) -> tuple[float, bool]:
     """The damping to write, and whether it is assumed because the logs do not show it.
 
     Assumed is K·2 ms; where the interval lies above or below that, its nearer end, which the logs do not exclude.
@@ -150,7 +150,7 @@ def _damping(row: Mapping[str, Any], stiffness: float, where: str, notes: list[N
     value = row.get("value")
     if value is None:
         text = f"{where}: no damping identified; exported as {ASSUMED}, for stable simulators"
-        notes.append(Note("export_damping", "warning", text))
+        notes.warning("export_damping", text)
         return DAMPING_TIME * stiffness, True
     if verdict == "unidentifiable":
         damping, said = DAMPING_TIME * stiffness, ASSUMED
@@ -160,21 +160,20 @@ def _damping(row: Mapping[str, Any], stiffness: float, where: str, notes: list[N
         elif 0 < high < damping:
             damping, said = float(high), "the high end"
         text = f"{where}: the damping is unidentifiable{_known(row)}; exported as {said} = {damping:.4g}"
-        notes.append(Note("export_damping", "warning", text))
+        notes.warning("export_damping", text)
         return damping, True
     _doubt(row, where, notes)
     if value <= 0:
         text = f"{where}: the identified damping {value:.4g} is not positive, and a foot would never come to rest; "
-        notes.append(Note("export_damping", "warning", f"{text}exported as {ASSUMED}"))
+        notes.warning("export_damping", f"{text}exported as {ASSUMED}")
         return DAMPING_TIME * stiffness, True
     return float(value), False
 
 
-def _doubt(row: Mapping[str, Any], where: str, notes: list[Note]) -> None:
+def _doubt(row: Mapping[str, Any], where: str, notes: Notes) -> None:
     verdict = row.get("verdict", "usable")
     if verdict != "usable":
-        text = f"{where}: the {row['name']} is {verdict}{_known(row)}"
-        notes.append(Note("export_verdict", "warning", text))
+        notes.warning("export_verdict", f"{where}: the {row['name']} is {verdict}{_known(row)}")
 
 
 def _known(row: Mapping[str, Any]) -> str:

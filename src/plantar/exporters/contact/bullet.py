@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 
 from plantar.conventions import GRAVITY
 from plantar.exporters.bush import FootBush
-from plantar.exporters.comment import head, mesh_note
+from plantar.exporters.comment import mesh_note
 from plantar.exporters.contact.springs import (
     FRICTION,
     RADIUS,
@@ -27,7 +27,7 @@ from plantar.exporters.poses import pose
 from plantar.exporters.shapes import reaches_sole
 from plantar.exporters.urdf.tree import UrdfTree, origin_of, set_origin
 from plantar.exporters.xml_file import numbers, to_text, vector
-from plantar.notes import Note
+from plantar.notes import Notes
 
 if TYPE_CHECKING:
     from plantar.exporters.job import Job
@@ -36,14 +36,13 @@ EXTENDS = True
 LIGHT: Final = (1e-3, 1e-6)  # kg and kg·m² of a point's link: Bullet refuses to move one that weighs nothing
 
 
-def write(job: Job) -> tuple[str, tuple[Note, ...]]:
+def write(job: Job, notes: Notes) -> str:
     """The model with its feet on points, as URDF.
 
     Raises ExportError: no ankle, a model without mass, a bush that does not stand over its sole.
     """
     assert job.model is not None
     tree = UrdfTree.load(job.model)
-    notes: list[Note] = []
     for foot in job.feet:
         _taken_out(tree, foot)
     weight = tree.mass() * GRAVITY
@@ -57,11 +56,8 @@ def write(job: Job) -> tuple[str, tuple[Note, ...]]:
         notes += [*said(foot, made, weight), *sliding_note(foot, points)]
     text = "load it without URDF_MERGE_FIXED_LINKS; the ground keeps Bullet's own hard contact; steps of 0.5 to 4 ms "
     text += "hold K"
-    notes.append(Note("export_bullet", "info", text))
-    lines = head(
-        job.result, job.feet, "Bullet's contact", (*job.remarks, *notes), with_offset=job.with_offset
-    )
-    return to_text(tree.root, lines), tuple(notes)
+    notes.info("export_bullet", text)
+    return to_text(tree.root, job.head("Bullet's contact", notes))
 
 
 def _taken_out(tree: UrdfTree, foot: FootBush) -> None:
@@ -71,7 +67,7 @@ def _taken_out(tree: UrdfTree, foot: FootBush) -> None:
             tree.root.remove(parts.pop(name))
 
 
-def _silenced(tree: UrdfTree, foot: FootBush, notes: list[Note]) -> float:
+def _silenced(tree: UrdfTree, foot: FootBush, notes: Notes) -> float:
     """Take out the shapes that stand on the ground; the friction of the link that carried them."""
     quiet, friction = [], FRICTION
     tree.link(foot.ankle)
@@ -93,7 +89,7 @@ def _silenced(tree: UrdfTree, foot: FootBush, notes: list[Note]) -> float:
                 friction = float(vector(given.get("value"), 1, "lateral_friction")[0])
     if quiet:
         text = f"{foot.name}: these shapes are left out, the points touch instead: {', '.join(quiet)}"
-        notes.append(Note("export_silent", "info", text))
+        notes.info("export_silent", text)
     return friction
 
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 
 from plantar.conventions import GRAVITY
 from plantar.exporters.bush import FootBush
-from plantar.exporters.comment import head, mesh_note
+from plantar.exporters.comment import mesh_note
 from plantar.exporters.contact.springs import FRICTION, RADIUS, Placed, placed, said, spring_foot
 from plantar.exporters.poses import pose
 from plantar.exporters.sdf.drake import MESHES, URI, tag
@@ -21,7 +21,7 @@ from plantar.exporters.sdf.from_urdf import sdf_from_urdf
 from plantar.exporters.sdf.tree import SdfTree, relative, set_pose
 from plantar.exporters.shapes import reaches_sole
 from plantar.exporters.xml_file import numbers, to_text, vector
-from plantar.notes import Note
+from plantar.notes import Notes
 
 if TYPE_CHECKING:
     from plantar.exporters.job import Job
@@ -30,13 +30,12 @@ EXTENDS = True
 GROUND: Final = 1e9  # N/m: of a floor that is no second spring; Drake's own default is as soft as a foot
 
 
-def write(job: Job) -> tuple[str, tuple[Note, ...]]:
+def write(job: Job, notes: Notes) -> str:
     """The model with its feet on points, as SDFormat.
 
     Raises ExportError: no ankle, a model without mass, a bush that does not stand over its sole.
     """
     assert job.model is not None
-    notes: list[Note] = []
     ankles = tuple(foot.ankle for foot in job.feet)
     if job.model.suffix.lower() == ".urdf":
         tree = SdfTree(sdf_from_urdf(job.model, notes, MESHES), job.model, ankles)
@@ -52,12 +51,11 @@ def write(job: Job) -> tuple[str, tuple[Note, ...]]:
         notes += said(foot, made, weight)
     text = f"give the ground drake:point_contact_stiffness of {GROUND:g} N/m or more, and no dissipation: else it is a "
     text += "second spring; a discrete plant of 4 ms or less holds these feet"
-    notes.append(Note("export_ground", "info", text))
-    lines = head(job.result, job.feet, "Drake's contact", (*job.remarks, *notes), with_offset=job.with_offset)
-    return to_text(tree.root, lines), tuple(notes)
+    notes.info("export_ground", text)
+    return to_text(tree.root, job.head("Drake's contact", notes))
 
 
-def _silenced(tree: SdfTree, foot: FootBush, notes: list[Note]) -> float:
+def _silenced(tree: SdfTree, foot: FootBush, notes: Notes) -> float:
     """Take out the shapes that stand on the ground, points of an earlier export too; their friction."""
     quiet, friction = [], None
     queue = [foot.ankle]
@@ -78,7 +76,7 @@ def _silenced(tree: SdfTree, foot: FootBush, notes: list[Note]) -> float:
                 quiet.append(shape.get("name", ""))
     if quiet:
         text = f"{foot.name}: these shapes are left out, the points touch instead: {', '.join(quiet)}"
-        notes.append(Note("export_silent", "info", text))
+        notes.info("export_silent", text)
     return FRICTION if friction is None else friction
 
 

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 from plantar.conventions import GRAVITY
 from plantar.errors import ExportError
 from plantar.exporters.bush import FootBush
-from plantar.exporters.comment import head
 from plantar.exporters.contact.springs import (
     FRICTION,
     RADIUS,
@@ -26,7 +25,7 @@ from plantar.exporters.contact.springs import (
 )
 from plantar.exporters.usd.conventions import identifier
 from plantar.exporters.usd.stage import ankle_of, layer_above, quiet, standing_shapes, text_of, with_scene
-from plantar.notes import Note
+from plantar.notes import Notes
 
 if TYPE_CHECKING:
     from plantar.exporters.job import Job
@@ -34,7 +33,7 @@ if TYPE_CHECKING:
 OPTIONAL_MODEL = True
 
 
-def write(job: Job) -> tuple[str, tuple[Note, ...]]:
+def write(job: Job, notes: Notes) -> str:
     """The text (.usda) of the layer above the job's stage.
 
     Raises ExportError: no stage given, one that cannot be opened, has not the ankles, or whose bodies have no mass.
@@ -43,7 +42,6 @@ def write(job: Job) -> tuple[str, tuple[Note, ...]]:
     if job.model is None:
         raise ExportError("PhysX' contact goes onto a stage", valid="--model with the robot's USD stage")
     layer, stage = layer_above(job.model)
-    notes: list[Note] = []
     weight = _mass(stage, job.model) * GRAVITY
     for foot in job.feet:
         made = spring_foot(foot, weight)
@@ -53,9 +51,8 @@ def write(job: Job) -> tuple[str, tuple[Note, ...]]:
     with_scene(stage, notes)
     text = "the ground's own material stays rigid; PhysX' solver TGS takes 5 to 6 % off K, PGS at most 2 % "
     text += "(physxScene:solverType)"
-    notes.append(Note("export_physx", "info", text))
-    lines = head(job.result, job.feet, "PhysX' contact", (*job.remarks, *notes), with_offset=job.with_offset)
-    return text_of(layer, lines, job.model, job.out), tuple(notes)
+    notes.info("export_physx", text)
+    return text_of(layer, job.head("PhysX' contact", notes), job.model, job.out)
 
 
 def _mass(stage: Any, model: Path) -> float:
@@ -70,7 +67,7 @@ def _mass(stage: Any, model: Path) -> float:
     return float(sum(masses.values()))
 
 
-def _insert(stage: Any, foot: FootBush, points: list[Placed], model: Path, notes: list[Note]) -> None:
+def _insert(stage: Any, foot: FootBush, points: list[Placed], model: Path, notes: Notes) -> None:
     from pxr import UsdPhysics, UsdShade
 
     ankle = ankle_of(stage, foot, model)
@@ -87,8 +84,7 @@ def _insert(stage: Any, foot: FootBush, points: list[Placed], model: Path, notes
     quiet(stage, shapes)
     if shapes:
         named = ", ".join(str(shape.GetPath()) for shape in shapes)
-        text = f"{foot.name}: these touch nothing any more, the points do: {named}"
-        notes.append(Note("export_silent", "info", text))
+        notes.info("export_silent", f"{foot.name}: these touch nothing any more, the points do: {named}")
     outer = friction * share_of_friction(points)
     for point in points:
         _add(stage, ankle, point, 0.0 if point.middle else outer)

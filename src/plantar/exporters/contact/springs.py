@@ -21,7 +21,7 @@ from plantar.exporters.bush import FootBush
 from plantar.exporters.contact.fit import LOADS, NEAR
 from plantar.exporters.contact.points import Point, PointFoot, points_for, sides_of
 from plantar.exporters.job import LEAST_LOAD
-from plantar.notes import Note
+from plantar.notes import Note, Notes
 
 RADIUS: Final = 0.01  # m, of the sphere that is a point: more than any point sinks in
 ROUNDS: Final = 5  # each takes a tenth or less of the error over
@@ -97,7 +97,7 @@ def share_of_friction(points: Sequence[Placed]) -> float:
 
 def said(bush: FootBush, foot: PointFoot, weight: float) -> list[Note]:
     """How far K holds over loads and angles, and what comes along z."""
-    notes = []
+    notes = Notes()
     for axis in ("pitch", "roll"):
         spring = bush.spring(axis)
         if spring is None:
@@ -111,7 +111,7 @@ def said(bush: FootBush, foot: PointFoot, weight: float) -> list[Note]:
         notes.append(Note("export_contact", "info" if abs(worst) <= NEAR[0] else "warning", text))
     notes.append(vertical_note(bush, foot))
     text = "points hold no hysteresis, no hardening and do not pull; the nearest spring and damper is written"
-    notes.append(Note("export_points", "info", text))
+    notes.info("export_points", text)
     return notes
 
 

@@ -13,7 +13,6 @@ import numpy as np
 from plantar.conventions import GRAVITY, rotation_from_rpy
 from plantar.errors import ExportError
 from plantar.exporters.bush import FootBush, raised
-from plantar.exporters.comment import head
 from plantar.exporters.contact.alone import IMPRATIO, RADIUS, contact_attributes
 from plantar.exporters.contact.fit import LOADS, STEPS, Check, Fitted, fitted
 from plantar.exporters.contact.hysteresis import carry, take_out
@@ -22,7 +21,7 @@ from plantar.exporters.mjcf.file import Compiled, relocate
 from plantar.exporters.mjcf.from_urdf import opened
 from plantar.exporters.shapes import reaches_sole
 from plantar.exporters.xml_file import numbers, to_text
-from plantar.notes import Note
+from plantar.notes import Note, Notes
 
 if TYPE_CHECKING:
     from plantar.exporters.job import Job
@@ -34,13 +33,12 @@ TOUCH: Final = ("contype", "conaffinity", "priority", "friction")
 FRICTION: Final = (1.0, 0.005, 0.0001)  # MuJoCo's own, where the model has no shape to take it from
 
 
-def write(job: Job) -> tuple[str, tuple[Note, ...]]:
+def write(job: Job, notes: Notes) -> str:
     """The model with its feet on points, as text; compiled by MuJoCo before and after.
 
     Raises ExportError: MuJoCo refuses the model, an ankle body is not in it, or a foot cannot stand on points.
     MissingExtra: no mujoco.
     """
-    notes: list[Note] = []
     root = opened(job, "export to MuJoCo's contact", notes)
     assert job.model is not None
     earlier = {foot.name: _taken_out(root, foot) for foot in job.feet}
@@ -56,15 +54,13 @@ def write(job: Job) -> tuple[str, tuple[Note, ...]]:
             text += (
                 f"{1e3 * foot.sole_depth:.0f} mm lower, with its sole in the ground; start it that much lower"
             )
-            notes.append(Note("export_pivot", "info", text))
+            notes.info("export_pivot", text)
     _harden_friction(root, notes)
     Compiled(root, job.model)  # MuJoCo must take what is written
     relocate(root, job.out)
     text = "solref holds for this model's masses: after changing them, or the foot's body, export again"
-    notes.append(Note("export_masses", "info", text))
-    remarks = (*job.remarks, *notes)
-    lines = head(job.result, job.feet, "MuJoCo's contact", remarks, with_offset=job.with_offset)
-    return to_text(root, lines), tuple(notes)
+    notes.info("export_masses", text)
+    return to_text(root, job.head("MuJoCo's contact", notes))
 
 
 def _named(foot: FootBush) -> str:
@@ -89,7 +85,7 @@ def _insert(
     found: Fitted,
     model: Compiled,
     earlier: tuple[ET.Element, dict[str, str]] | None,
-    notes: list[Note],
+    notes: Notes,
 ) -> None:
     body = model.body_element(root, foot.ankle)
     quiet, touch, holder = _silence(root, body, foot, model)
@@ -97,7 +93,7 @@ def _insert(
         holder, touch = earlier
     if quiet:
         text = f"{foot.name}: touches nothing any more, the points do: {', '.join(quiet)}"
-        notes.append(Note("export_silent", "info", text))
+        notes.info("export_silent", text)
     rest = [spring.rest if spring else 0.0 for spring in (foot.spring("roll"), foot.spring("pitch"))]
     turn = rotation_from_rpy(np.array([rest[0], rest[1], 0.0]))  # R_ankle_sole = Ry(pitch) Rx(roll)
     name = str(holder.get("name"))
@@ -112,7 +108,7 @@ def _insert(
     if carry(root, holder, foot, model):
         text = f"{foot.name}: K and C are those of the rubber without its slip, which the contact cannot hold: call "
         text += "plantar.FootHysteresis between mj_step1 and mj_step2, else this foot is too soft"
-        notes.append(Note("export_hysteresis", "warning", text))
+        notes.warning("export_hysteresis", text)
 
 
 def _silence(
@@ -151,30 +147,30 @@ def _silence(
     return quiet, touch, holder
 
 
-def _harden_friction(root: ET.Element, notes: list[Note]) -> None:
+def _harden_friction(root: ET.Element, notes: Notes) -> None:
     """Elliptic cones, for which the formulas of the points hold, and friction harder than the soft normal."""
     option = root.find("option")
     option = ET.SubElement(root, "option") if option is None else option
     impratio = max(IMPRATIO, float(option.get("impratio", "1")))
     option.attrib |= {"cone": "elliptic", "impratio": numbers([impratio])}
     text = f"the model's cone is elliptic and its impratio {impratio:g} now: soft feet creep sideways without"
-    notes.append(Note("export_friction", "info", text))
+    notes.info("export_friction", text)
 
 
 def _said(foot: FootBush, found: Fitted, step: float) -> list[Note]:
     """What the foot alone showed, and what the points cannot be."""
-    notes = []
+    notes = Notes()
     for check in found.checks:
         said = f"{foot.name} {check.axis}: alone in MuJoCo at {LOADS[0]:g} to {LOADS[-1]:g} of the weight "
         said += f"K is right to {100 * check.stiffness_error:.2g} %, C to {100 * check.damping_error:.2g} %, "
         said += f"at steps of {_steps(check)}; at {LOADS[0]:g} of the weight up to {check.angle:.3f} rad "
         said += f"({check.torque:.0f} N·m), then points leave the ground and the foot is softer"
-        notes.append(Note("export_contact", "info", said))
+        notes.info("export_contact", said)
         fits = [one for one in check.steps if one >= step * (1 - 1e-9)]
         if not fits:
             text = f"{foot.name} {check.axis}: the model's step of {step:g} s was not seen to hold K and C; "
             text += f"steps that do: {_steps(check)}"
-            notes.append(Note("export_timestep", "warning", text))
+            notes.warning("export_timestep", text)
     notes.append(vertical_note(foot, found.foot))
     return notes
 

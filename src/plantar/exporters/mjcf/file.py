@@ -17,18 +17,18 @@ from plantar.exporters.bush import FootBush
 from plantar.exporters.shapes import reaches_sole
 from plantar.exporters.urdf.geometry import box_corners
 from plantar.exporters.xml_file import load_xml
-from plantar.notes import Note
+from plantar.notes import Notes
 
 INCLUDE_LIMIT = 100  # files pasted into one model
 
 
-def load_mjcf(path: Path, notes: list[Note]) -> ET.Element:
+def load_mjcf(path: Path, notes: Notes) -> ET.Element:
     """The model's XML with its includes pasted in and its asset directories made absolute."""
     root = load_xml(path, "mujoco")
     pasted: list[str] = []
     _paste(root, path.parent, pasted)
     if pasted:
-        notes.append(Note("export_includes", "info", f"included files were pasted in: {', '.join(pasted)}"))
+        notes.info("export_includes", f"included files were pasted in: {', '.join(pasted)}")
     compiler = root.find("compiler")
     if compiler is None:
         compiler = ET.Element("compiler")

@@ -10,7 +10,7 @@ from plantar.errors import ExportError, MissingExtra
 from plantar.exporters.bush import FootBush
 from plantar.exporters.mjcf.file import load_mjcf
 from plantar.exporters.urdf.tree import UrdfTree
-from plantar.notes import Note
+from plantar.notes import Notes
 
 if TYPE_CHECKING:
     from plantar.exporters.job import Job
@@ -19,7 +19,7 @@ MESHES = {".stl", ".obj"}  # what MuJoCo's importer reads
 STIFF = "0.004 1"  # solref of every shape: at MuJoCo's own 0.02 the contact is as soft as some bushes
 
 
-def opened(job: Job, purpose: str, notes: list[Note]) -> ET.Element:
+def opened(job: Job, purpose: str, notes: Notes) -> ET.Element:
     """The job's model as MJCF, whether it is that or a URDF.
 
     Raises ExportError when MuJoCo refuses it, MissingExtra, with the `purpose`, without mujoco.
@@ -34,7 +34,7 @@ def opened(job: Job, purpose: str, notes: list[Note]) -> ET.Element:
     return load_mjcf(job.model, notes)
 
 
-def mjcf_from_urdf(path: Path, feet: tuple[FootBush, ...], notes: list[Note]) -> ET.Element:
+def mjcf_from_urdf(path: Path, feet: tuple[FootBush, ...], notes: Notes) -> ET.Element:
     """The URDF's XML as MJCF: floating base, collision shapes only, a floor, and the base at standing height.
 
     Raises ExportError when MuJoCo refuses the URDF.
@@ -44,12 +44,9 @@ def mjcf_from_urdf(path: Path, feet: tuple[FootBush, ...], notes: list[Note]) ->
     tree = UrdfTree.load(path)
     lost = _collision_only(tree)
     if lost:
-        notes.append(
-            Note(
-                "export_mesh",
-                "warning",
-                f"meshes MuJoCo cannot read, left out, so those links touch nothing: {', '.join(lost[:4])}",
-            )
+        notes.warning(
+            "export_mesh",
+            f"meshes MuJoCo cannot read, left out, so those links touch nothing: {', '.join(lost[:4])}",
         )
     extension = tree.root.find("mujoco")
     extension = ET.SubElement(tree.root, "mujoco") if extension is None else extension
@@ -78,9 +75,7 @@ def mjcf_from_urdf(path: Path, feet: tuple[FootBush, ...], notes: list[Note]) ->
     option = model.find("option")
     option = ET.SubElement(model, "option") if option is None else option
     option.attrib |= {"timestep": "0.001", "integrator": "implicitfast"}
-    notes.append(
-        Note("export_urdf", "info", f"made from {path.name} with a floor, without actuators or visual shapes")
-    )
+    notes.info("export_urdf", f"made from {path.name} with a floor, without actuators or visual shapes")
     return model
 
 
@@ -104,7 +99,7 @@ def _collision_only(tree: UrdfTree) -> list[str]:
     return lost
 
 
-def _import(tree: UrdfTree, compiler: ET.Element, notes: list[Note]) -> Any:
+def _import(tree: UrdfTree, compiler: ET.Element, notes: Notes) -> Any:
     """MuJoCo's spec of the URDF; a second try mends inertias that no rigid body can have."""
     import mujoco
 
@@ -120,7 +115,7 @@ def _import(tree: UrdfTree, compiler: ET.Element, notes: list[Note]) -> Any:
         text += f"1e-7 kg·m² raised to that: MuJoCo says {' '.join(str(error).split())[:120]}"
         compiler.attrib |= {"balanceinertia": "true", "boundmass": "1e-4", "boundinertia": "1e-7"}
         made = spec()
-        notes.append(Note("export_inertia", "warning", text))
+        notes.warning("export_inertia", text)
         return made
 
 

@@ -15,14 +15,14 @@ import numpy as np
 
 from plantar.errors import ExportError
 from plantar.exporters.bush import FootBush
-from plantar.exporters.comment import head, plate_note, updated_note
+from plantar.exporters.comment import plate_note, updated_note
 from plantar.exporters.mjcf.file import Compiled, relocate
 from plantar.exporters.mjcf.from_urdf import STIFF, opened
 from plantar.exporters.mjcf.hysteresis import set_slip, slip_joint
 from plantar.exporters.shapes import SOLE_INERTIA, SOLE_MASS, plate, reaches_sole
 from plantar.exporters.spring import Spring
 from plantar.exporters.xml_file import numbers, to_text
-from plantar.notes import Note
+from plantar.notes import Note, Notes
 
 if TYPE_CHECKING:
     from plantar.exporters.job import Job
@@ -32,12 +32,11 @@ HYSTERESIS = True
 SENSORS_ABOVE = {"force", "torque", "accelerometer", "gyro", "velocimeter", "magnetometer"}
 
 
-def write(job: Job) -> tuple[str, tuple[Note, ...]]:
+def write(job: Job, notes: Notes) -> str:
     """The model with its feet on bushes, as text; compiled by MuJoCo before and after.
 
     Raises ExportError: MuJoCo refuses the model, or an ankle body is not in it. MissingExtra: no mujoco.
     """
-    notes: list[Note] = []
     root = opened(job, "export to MJCF", notes)
     assert job.model is not None
     before = Compiled(root, job.model)
@@ -51,8 +50,7 @@ def write(job: Job) -> tuple[str, tuple[Note, ...]]:
     _check_timestep(after, job, notes)
     relocate(root, job.out)
     notes.append(_floor_note(job.model.suffix.lower() == ".urdf"))
-    lines = head(job.result, job.feet, "MuJoCo", (*job.remarks, *notes), with_offset=job.with_offset)
-    return to_text(root, lines), tuple(notes)
+    return to_text(root, job.head("MuJoCo", notes))
 
 
 def _floor_note(ours: bool) -> Note:
@@ -64,7 +62,7 @@ def _floor_note(ours: bool) -> Note:
     return Note("export_floor", "info", f"{text}MuJoCo's default of 0.02 about ten")
 
 
-def _insert(root: ET.Element, foot: FootBush, before: Compiled, notes: list[Note]) -> None:
+def _insert(root: ET.Element, foot: FootBush, before: Compiled, notes: Notes) -> None:
     body = before.body_element(root, foot.ankle)
     joints = {joint.get("name"): joint for joint in root.iter("joint")}
     present = [spring for spring in foot.springs if foot.joint(spring.axis) in joints]
@@ -82,13 +80,7 @@ def _insert(root: ET.Element, foot: FootBush, before: Compiled, notes: list[Note
     bodies = _move_bodies(body, sole, foot, before)
     sites = _move_sites(root, body, sole, foot, before)
     if moved := shapes + bodies + sites:
-        notes.append(
-            Note(
-                "export_moved",
-                "info",
-                f"{foot.name}: moved from '{foot.ankle}' to the sole: {', '.join(moved)}",
-            )
-        )
+        notes.info("export_moved", f"{foot.name}: moved from '{foot.ankle}' to the sole: {', '.join(moved)}")
     _check_level(foot, before, notes)
     if not before.reaching(foot):
         size, centre = plate(foot)
@@ -167,12 +159,12 @@ def _move_sites(
     return moved
 
 
-def _check_level(foot: FootBush, before: Compiled, notes: list[Note]) -> None:
+def _check_level(foot: FootBush, before: Compiled, notes: Notes) -> None:
     depths = [max(foot.depth(point) for point in points) for points in before.reaching(foot)]
     if depths and abs(max(depths) - foot.sole_depth) > 0.02:
         text = f"{foot.name}: the model's lowest shape lies {max(depths):.3f} m below the bush, "
         text += f"the result's sole {foot.sole_depth:.3f} m: is '{foot.ankle}' the URDF's link?"
-        notes.append(Note("export_sole_level", "warning", text))
+        notes.warning("export_sole_level", text)
 
 
 def _share_mass(body: ET.Element, sole: ET.Element, foot: FootBush, before: Compiled) -> None:
@@ -206,7 +198,7 @@ def _exclude(root: ET.Element, foot: FootBush, before: Compiled) -> None:
         ET.SubElement(section, "exclude", body1=other, body2=foot.sole_link)
 
 
-def _check_timestep(after: Compiled, job: Job, notes: list[Note]) -> None:
+def _check_timestep(after: Compiled, job: Job, notes: Notes) -> None:
     """MuJoCo integrates springs explicitly: the step must be shorter than the bush's own time C/K."""
     step = float(after.model.opt.timestep)
     fast = [
@@ -214,7 +206,7 @@ def _check_timestep(after: Compiled, job: Job, notes: list[Note]) -> None:
     ]
     if fast:
         text = f"the time step of {step:g} s is long for {', '.join(fast)} (C/K is shorter): shorten it"
-        notes.append(Note("export_timestep", "warning", text))
+        notes.warning("export_timestep", text)
 
 
 def _widen_keyframes(root: ET.Element, before: Compiled, job: Job) -> None:

@@ -15,13 +15,12 @@ import numpy as np
 
 from plantar.conventions import rotation_from_rpy
 from plantar.exporters.bush import FootBush
-from plantar.exporters.comment import head
 from plantar.exporters.poses import pose
 from plantar.exporters.sdf.target import insert_bushes
 from plantar.exporters.sdf.tree import SdfTree, set_pose
 from plantar.exporters.spring import Spring
 from plantar.exporters.xml_file import numbers, to_text
-from plantar.notes import Note
+from plantar.notes import Notes
 
 if TYPE_CHECKING:
     from plantar.exporters.job import Job
@@ -31,9 +30,8 @@ MESHES = (".obj", ".vtk", ".gltf")  # what Drake makes collision shapes of
 URI = "http://drake.mit.edu"  # the name space of Drake's own tags
 
 
-def write(job: Job) -> tuple[str, tuple[Note, ...]]:
+def write(job: Job, notes: Notes) -> str:
     """The model with its feet on bushes, as text."""
-    notes: list[Note] = []
     tree = insert_bushes(job, notes, springs=False, meshes=MESHES)
     ET.register_namespace("drake", URI)
     for foot in job.feet:
@@ -41,9 +39,8 @@ def write(job: Job) -> tuple[str, tuple[Note, ...]]:
         _filter(tree, foot)
     if job.with_offset:
         text = "the bushing has no rest position: its frame on the ankle is tilted, exact for small angles"
-        notes.append(Note("export_offset", "info", text))
-    lines = head(job.result, job.feet, "Drake", (*job.remarks, *notes), with_offset=job.with_offset)
-    return to_text(tree.root, lines), tuple(notes)
+        notes.info("export_offset", text)
+    return to_text(tree.root, job.head("Drake", notes))
 
 
 def _bushing(tree: SdfTree, foot: FootBush) -> None:

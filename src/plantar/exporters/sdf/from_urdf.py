@@ -11,12 +11,12 @@ from plantar.errors import ExportError
 from plantar.exporters.sdf.tree import set_pose
 from plantar.exporters.urdf.tree import UrdfTree, origin_of
 from plantar.exporters.xml_file import numbers, vector
-from plantar.notes import Note
+from plantar.notes import Notes
 
 JOINT_TYPES = {"fixed", "revolute", "continuous", "prismatic"}
 
 
-def sdf_from_urdf(path: Path, notes: list[Note], meshes: Collection[str] | None = None) -> ET.Element:
+def sdf_from_urdf(path: Path, notes: Notes, meshes: Collection[str] | None = None) -> ET.Element:
     """The URDF's links, joints, inertias and shapes. ExportError: a joint of another type.
 
     `meshes`: endings of mesh files that the reader takes; shapes of others are left out with a note.
@@ -40,20 +40,12 @@ def sdf_from_urdf(path: Path, notes: list[Note], meshes: Collection[str] | None 
     for name, joint in tree.joints.items():
         _joint(model, name, joint, tree)
     if any(joint.find("mimic") is not None for joint in tree.joints.values()):
-        notes.append(
-            Note("export_mimic", "warning", "mimic joints became free joints: SDFormat words them by engine")
-        )
-    notes.append(
-        Note(
-            "export_urdf",
-            "info",
-            f"made from {path.name}; sensors, transmissions and plugins did not come along",
-        )
-    )
+        notes.warning("export_mimic", "mimic joints became free joints: SDFormat words them by engine")
+    notes.info("export_urdf", f"made from {path.name}; sensors, transmissions and plugins did not come along")
     return root
 
 
-def _drop_meshes(tree: UrdfTree, meshes: Collection[str], notes: list[Note]) -> None:
+def _drop_meshes(tree: UrdfTree, meshes: Collection[str], notes: Notes) -> None:
     lost = []
     for link in tree.links.values():
         for shape in (*link.findall("collision"), *link.findall("visual")):
@@ -63,7 +55,7 @@ def _drop_meshes(tree: UrdfTree, meshes: Collection[str], notes: list[Note]) -> 
                 lost.append(mesh.get("filename", "").rsplit("/", 1)[-1])
     if lost:
         text = f"{len(lost)} meshes that are not {', '.join(meshes)} left out: {', '.join(lost[:3])} ..."
-        notes.append(Note("export_mesh", "warning", text))
+        notes.warning("export_mesh", text)
 
 
 def _inertial(element: ET.Element, link: ET.Element) -> None:

@@ -14,14 +14,14 @@ import numpy as np
 
 from plantar.conventions import Array
 from plantar.exporters.bush import FootBush
-from plantar.exporters.comment import head, moved_note, plate_note, updated_note
+from plantar.exporters.comment import moved_note, plate_note, updated_note
 from plantar.exporters.poses import inverse, pose
 from plantar.exporters.sdf.from_urdf import sdf_from_urdf
 from plantar.exporters.sdf.tree import SdfTree, pose_of, relative, set_pose
 from plantar.exporters.shapes import SOLE_INERTIA, SOLE_MASS, plate, taken_off
 from plantar.exporters.spring import Spring
 from plantar.exporters.xml_file import numbers, to_text, vector
-from plantar.notes import Note
+from plantar.notes import Notes
 
 if TYPE_CHECKING:
     from plantar.exporters.job import Job
@@ -31,19 +31,15 @@ REACH = {"z": 0.05, "pitch": 0.6, "roll": 0.6}  # m, rad: limits far beyond any 
 AXIS = {"z": "0 0 1", "pitch": "0 1 0", "roll": "1 0 0"}
 
 
-def write(job: Job) -> tuple[str, tuple[Note, ...]]:
+def write(job: Job, notes: Notes) -> str:
     """The model with its feet on bushes, as text."""
-    notes: list[Note] = []
     tree = insert_bushes(job, notes, springs=True)
     text = "SDFormat cannot exclude one pair of links: leave self_collide off, or ankle and sole touch"
-    notes.append(Note("export_sdf_collision", "info", text))
-    lines = head(job.result, job.feet, "SDFormat", (*job.remarks, *notes), with_offset=job.with_offset)
-    return to_text(tree.root, lines), tuple(notes)
+    notes.info("export_sdf_collision", text)
+    return to_text(tree.root, job.head("SDFormat", notes))
 
 
-def insert_bushes(
-    job: Job, notes: list[Note], *, springs: bool, meshes: Collection[str] | None = None
-) -> SdfTree:
+def insert_bushes(job: Job, notes: Notes, *, springs: bool, meshes: Collection[str] | None = None) -> SdfTree:
     """The job's model with a chain of bush joints in each foot; without `springs` the joints move freely.
 
     `meshes`: the mesh endings that the target reads, for a model made from a URDF.
@@ -65,7 +61,7 @@ def insert_bushes(
     return tree
 
 
-def _insert(tree: SdfTree, foot: FootBush, notes: list[Note], springs: bool) -> None:
+def _insert(tree: SdfTree, foot: FootBush, notes: Notes, springs: bool) -> None:
     ankle, bush = tree.links[foot.ankle], pose(foot.centre, rotation=foot.rotation)
     low = [(joint, child) for joint, child in tree.fixed_children(foot.ankle)
            if foot.below(relative(tree, child, foot.ankle)[:3, 3])]  # fmt: skip

@@ -14,13 +14,13 @@ import numpy as np
 
 from plantar.conventions import Array
 from plantar.exporters.bush import FootBush
-from plantar.exporters.comment import head, moved_note, plate_note, updated_note
+from plantar.exporters.comment import moved_note, plate_note, updated_note
 from plantar.exporters.poses import inverse, pose
 from plantar.exporters.shapes import SOLE_INERTIA, SOLE_MASS, plate, taken_off
 from plantar.exporters.spring import Spring
 from plantar.exporters.urdf.tree import UrdfTree, origin_of, set_origin
 from plantar.exporters.xml_file import numbers, to_text, vector
-from plantar.notes import Note
+from plantar.notes import Notes
 
 if TYPE_CHECKING:
     from plantar.exporters.job import Job
@@ -29,31 +29,23 @@ EXTENDS = True
 REACH = {"z": 0.05, "pitch": 0.6, "roll": 0.6}  # limits far beyond any bush: a URDF must have some
 
 
-def write(job: Job) -> tuple[str, tuple[Note, ...]]:
+def write(job: Job, notes: Notes) -> str:
     """The model with its feet on bushes, as text."""
     assert job.model is not None
     tree = UrdfTree.load(job.model)
-    notes = insert_bushes(tree, job.feet)
+    insert_bushes(tree, job.feet, notes)
     for foot in job.feet:
         for spring in foot.springs:
             _gazebo_spring(tree.root, foot.joint(spring.axis), spring)
-    text = "URDF itself has no springs: only Gazebo and what reads its tags sees them"
-    notes.append(Note("export_urdf_springs", "info", text))
-    text = "URDF cannot exclude ankle-sole collisions: disable them in the SRDF"
-    notes.append(Note("export_urdf_collision", "info", text))
-    lines = head(
-        job.result,
-        job.feet,
-        "URDF with Gazebo spring tags",
-        (*job.remarks, *notes),
-        with_offset=job.with_offset,
+    notes.info(
+        "export_urdf_springs", "URDF itself has no springs: only Gazebo and what reads its tags sees them"
     )
-    return to_text(tree.root, lines), tuple(notes)
+    notes.info("export_urdf_collision", "URDF cannot exclude ankle-sole collisions: disable them in the SRDF")
+    return to_text(tree.root, job.head("URDF with Gazebo spring tags", notes))
 
 
-def insert_bushes(tree: UrdfTree, feet: tuple[FootBush, ...]) -> list[Note]:
+def insert_bushes(tree: UrdfTree, feet: tuple[FootBush, ...], notes: Notes) -> None:
     """Put each foot's chain of bush joints into the tree, or update the joints where they already stand."""
-    notes: list[Note] = []
     for foot in feet:
         ankle = tree.link(foot.ankle)
         present = [spring for spring in foot.springs if foot.joint(spring.axis) in tree.joints]
@@ -75,7 +67,6 @@ def insert_bushes(tree: UrdfTree, feet: tuple[FootBush, ...]) -> list[Note]:
             _add_plate(sole, foot)
             notes.append(plate_note(foot))
         _lighten(ankle, foot)
-    return notes
 
 
 def _add_chain(tree: UrdfTree, foot: FootBush, bush: Array) -> ET.Element:

@@ -14,33 +14,31 @@ import numpy as np
 
 from plantar.conventions import Array
 from plantar.exporters.bush import FootBush
-from plantar.exporters.comment import head, plate_note
+from plantar.exporters.comment import plate_note
 from plantar.exporters.shapes import SOLE_INERTIA, SOLE_MASS, plate
 from plantar.exporters.spring import Spring
 from plantar.exporters.usd.conventions import AXIS, drive, identifier, quaternion
 from plantar.exporters.usd.stage import ankle_of, layer_above, quiet, standing_shapes, text_of, with_scene
-from plantar.notes import Note
+from plantar.notes import Notes
 
 if TYPE_CHECKING:
     from plantar.exporters.job import Job
 
 
-def write(job: Job, model: Path) -> tuple[str, tuple[Note, ...]]:
+def write(job: Job, model: Path, notes: Notes) -> str:
     """The text (.usda) of the layer above the stage at `model`.
 
     Raises ExportError: no stage, other units than metre and kilogram, no rigid body of an ankle's name. MissingExtra:
     no usd-core.
     """
     layer, above = layer_above(model)
-    notes: list[Note] = []
     for foot in job.feet:
         _insert(above, foot, model, notes)
     with_scene(above, notes)
-    lines = head(job.result, job.feet, "USD", (*job.remarks, *notes), with_offset=job.with_offset)
-    return text_of(layer, lines, model, job.out), tuple(notes)
+    return text_of(layer, job.head("USD", notes), model, job.out)
 
 
-def _insert(stage: Any, foot: FootBush, model: Path, notes: list[Note]) -> None:
+def _insert(stage: Any, foot: FootBush, model: Path, notes: Notes) -> None:
     ankle = ankle_of(stage, foot, model)
     holder = _without_body(ankle)
     place = _relative(ankle, holder)
@@ -59,10 +57,11 @@ def _insert(stage: Any, foot: FootBush, model: Path, notes: list[Note]) -> None:
     if there:
         return
     _lighter(ankle, SOLE_MASS * len(foot.springs))
-    notes.append(plate_note(foot)) if not shapes else notes.append(
-        Note("export_plate", "info", f"{foot.name}: a plate touches the ground now, not "
-             + ", ".join(str(shape.GetPath()) for shape in shapes))
-    )  # fmt: skip
+    if shapes:
+        paths = ", ".join(str(shape.GetPath()) for shape in shapes)
+        notes.info("export_plate", f"{foot.name}: a plate touches the ground now, not {paths}")
+    else:
+        notes.append(plate_note(foot))
 
 
 def _without_body(ankle: Any) -> Any:

@@ -14,7 +14,7 @@ from plantar.exporters.bush import FootBush
 from plantar.exporters.shapes import reaches_sole
 from plantar.exporters.urdf.geometry import box_corners
 from plantar.exporters.usd.conventions import identifier
-from plantar.notes import Note
+from plantar.notes import Notes
 
 
 def layer_above(model: Path) -> tuple[Any, Any]:
@@ -109,10 +109,10 @@ def quiet(stage: Any, shapes: list[Any]) -> None:
         UsdPhysics.CollisionAPI(prim).CreateCollisionEnabledAttr(False)
 
 
-def with_scene(stage: Any, notes: list[Note]) -> None:
+def with_scene(stage: Any, notes: Notes) -> None:
     """Add a physics scene where there is none."""
     from pxr import UsdPhysics
 
     if not any(prim.IsA(UsdPhysics.Scene) for prim in stage.Traverse()):
         UsdPhysics.Scene.Define(stage, "/physicsScene")
-        notes.append(Note("export_scene", "info", "the stage had no PhysicsScene; one was added"))
+        notes.info("export_scene", "the stage had no PhysicsScene; one was added")

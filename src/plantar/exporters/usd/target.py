@@ -13,11 +13,10 @@ import numpy as np
 
 from plantar.conventions import Array
 from plantar.exporters.bush import FootBush
-from plantar.exporters.comment import head
 from plantar.exporters.shapes import SOLE_INERTIA, SOLE_MASS, plate
 from plantar.exporters.spring import Spring
 from plantar.exporters.usd.conventions import AXIS, drive, identifier, quaternion
-from plantar.notes import Note
+from plantar.notes import Notes
 
 if TYPE_CHECKING:
     from plantar.exporters.job import Job
@@ -25,7 +24,7 @@ if TYPE_CHECKING:
 OPTIONAL_MODEL = True
 
 
-def write(job: Job) -> tuple[str, tuple[Note, ...]]:
+def write(job: Job, notes: Notes) -> str:
     """The layer's text (.usda): the bushes alone, or overs on the job's stage.
 
     Raises ExportError: the stage cannot be opened or has not the ankles. MissingExtra: a stage, and no usd-core.
@@ -33,20 +32,18 @@ def write(job: Job) -> tuple[str, tuple[Note, ...]]:
     if job.model is not None:
         from plantar.exporters.usd.over import write as write_over
 
-        return write_over(job, job.model)
+        return write_over(job, job.model, notes)
     text = (
         "the layer holds the bushes alone: reference each foot at its ankle, point body0 of its first joint to the "
         "robot's ankle, and switch the ankle's own sole collision off; --model with your stage does that"
     )
-    notes = (Note("export_usd", "info", text),)
-    lines = head(
-        job.result, job.feet, "USD (angles per degree)", (*job.remarks, *notes), with_offset=job.with_offset
-    )
+    notes.info("export_usd", text)
+    lines = job.head("USD (angles per degree)", notes)
     body = "".join(_foot(foot) for foot in job.feet)
     header = ('#usda 1.0\n(\n    defaultPrim = "feet"\n    metersPerUnit = 1\n    kilogramsPerUnit = 1\n'
               '    upAxis = "Z"\n)\n')  # fmt: skip
     comment = "".join(f"# {line}\n" for line in lines)
-    return f'{header}{comment}\ndef Xform "feet"\n{{\n{_indent(body)}}}\n', notes
+    return f'{header}{comment}\ndef Xform "feet"\n{{\n{_indent(body)}}}\n'
 
 
 def _foot(foot: FootBush) -> str:
