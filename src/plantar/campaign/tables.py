@@ -48,7 +48,7 @@ def table_1(rows: Sequence[ParameterBeside]) -> Table:
                 percent(row.paper_way_relative_std_percent), published,
             )
         )  # fmt: skip
-    columns = [Column(name, numeric=False) for name in ("foot", "axis", "parameter")]
+    columns = Column.words("foot", "axis", "parameter")
     columns += [Column("identified"), Column("truth"), Column("error"), Column("inside", numeric=False)]
     columns += [Column(PAPER_WAY), Column("error"), Column("claimed std"), Column(PAPER)]
     remark = (
@@ -67,7 +67,7 @@ def table_2(rows: Sequence[DirectBeside]) -> Table:
          percent(row.paper_way_percent_of_max), number(row.published, 3), percent(row.published_percent_of_max))
         for row in sorted(rows, key=lambda row: row.axis)
     ]  # fmt: skip
-    columns = [Column(name, numeric=False) for name in ("axis", "foot")]
+    columns = Column.words("axis", "foot")
     columns += [Column("mean |error|", "N·m"), Column("largest |torque|", "N·m"), Column("of largest")]
     columns += [Column(PAPER_WAY, "N·m"), Column("of largest"), Column(PAPER, "N·m"), Column("of largest")]
     return Table.of("Table 2 beside the paper: direct validation of the composed motion", columns, lines)
@@ -85,7 +85,7 @@ def table_3(rows: Sequence[CrossBeside]) -> Table:
                 [_cell(row), number(row.paper_way, 3), number(row.published, 3)] if row else [MISSING] * 3
             )
         lines.append(cells)
-    columns = [Column(name, numeric=False) for name in ("motion", "foot")]
+    columns = Column.words("motion", "foot")
     for axis in ROTATIONAL_AXES:
         columns += [Column(axis, "N·m"), Column(PAPER_WAY, "N·m"), Column(PAPER, "N·m")]
     remark = (
@@ -111,7 +111,7 @@ def simulator_table(rows: Sequence[ReplayRow]) -> Table:
             whole = len(known) == len(mine)
             cells.append((number(float(np.mean(known)), 3) if whole else FALLS) if mine else MISSING)
         lines.append(cells)
-    columns = [Column("feet", numeric=False)]
+    columns = Column.words("feet")
     for what in ("chest pitch", "chest roll", "both"):
         columns += [Column(what, "mrad"), Column("of rigid")]
     columns += [Column(f"{axis} torque", "N·m") for axis in ROTATIONAL_AXES]
@@ -140,7 +140,7 @@ def replay_table(rows: Sequence[ReplayRow]) -> Table:
             cells.append(text if error is None else number((1e3 if name == "rad" else 1.0) * error, 3))
         lines.append(cells)
     lines.sort(key=lambda line: [row.motion for row in rows].index(line[0]))
-    columns = [Column(name, numeric=False) for name in ("motion", "feet")]
+    columns = Column.words("motion", "feet")
     columns += [Column(quantity, "mrad" if name == "rad" else "N·m") for quantity, name in quantities]
     return Table.of("In a simulator, motion by motion", columns, lines, folded=True)
 

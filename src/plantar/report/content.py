@@ -47,6 +47,11 @@ class Column:
     unit: str = ""
     numeric: bool = True
 
+    @classmethod
+    def words(cls, *headings: str) -> list[Column]:
+        """Columns of text."""
+        return [cls(heading, numeric=False) for heading in headings]
+
 
 @dataclass(frozen=True)
 class Table:

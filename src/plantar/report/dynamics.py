@@ -103,18 +103,14 @@ def _inertia(result: DynamicsResult) -> list[Table]:
          number(row.std, 2), percent(row.relative_std_percent))
         for row in result.base_parameters
     ]  # fmt: skip
-    base_columns = (
-        Column("expression", numeric=False),
-        Column("value ± half of its 95 % interval"),
-        Column("std"),
-        Column("relative std"),
-    )
+    base_columns = Column.words("expression")
+    base_columns += map(Column, ("value ± half of its 95 % interval", "std", "relative std"))
     inertial = [
         (row.link, row.name, unit(row.unit), number(row.value), number(row.cad),
          number(row.value - row.cad, 3))
         for row in result.inertial_parameters
     ]  # fmt: skip
-    columns = [Column(name, numeric=False) for name in ("link", "parameter", "unit")]
+    columns = Column.words("link", "parameter", "unit")
     columns += [Column(name) for name in ("identified", "CAD", "difference")]
     return [
         Table.of("Base parameters", base_columns, base, folded=len(base) > 40),
@@ -128,9 +124,9 @@ def _joints(result: DynamicsResult) -> Table:
          interval(row.interval95), verdict_cell(row), row.reason)
         for row in result.parameters
     ]  # fmt: skip
-    columns = [Column(name, numeric=False) for name in ("joint", "parameter", "unit")]
+    columns = Column.words("joint", "parameter", "unit")
     columns += [Column(name) for name in ("value", "std", "95 % interval")]
-    columns += [Column(name, numeric=False) for name in ("verdict", "why")]
+    columns += Column.words("verdict", "why")
     return Table.of("Joint parameters", columns, rows)
 
 

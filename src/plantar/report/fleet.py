@@ -102,7 +102,7 @@ def _effects(summary: FleetSummary) -> Table:
          *(_percent(share) for share in (row.recordings_percent, row.days_percent, row.units_percent)))
         for row in summary.effects
     ]  # fmt: skip
-    columns = [Column(name, numeric=False) for name in ("foot", "axis", "parameter", "unit")]
+    columns = Column.words("foot", "axis", "parameter", "unit")
     columns += [
         Column("mean"),
         Column("95 % interval", numeric=False),
@@ -123,7 +123,7 @@ def _trends(summary: FleetSummary) -> Table:
         for level in summary.levels
         if level.trend is not None
     ]  # fmt: skip
-    columns = [Column(name, numeric=False) for name in ("robot", "foot", "axis", "parameter", "since")]
+    columns = Column.words("robot", "foot", "axis", "parameter", "since")
     columns += [Column("trend", "% a month"), Column("95 % interval", numeric=False)]
     return Table.of("Trends since the last step", columns, rows, folded=True)
 

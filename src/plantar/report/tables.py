@@ -22,30 +22,13 @@ SETTING_UNITS = {"cutoff": "Hz", "edge_margin": "m", "window": "rad", "wrench_de
 def parameter_table(parameters: Sequence[Parameter]) -> Table:
     """Table 1: every parameter with its deviation, interval and verdict."""
     rows = [
-        (
-            row.foot,
-            row.axis,
-            Cell(symbol(row.name), hover=row.name),
-            unit(row.unit),
-            _value_cell(row),
-            number(row.std, 2),
-            interval(row.interval95),
-            percent(row.relative_std_percent),
-            verdict_cell(row),
-        )
+        (row.foot, row.axis, Cell(symbol(row.name), hover=row.name), unit(row.unit), _value_cell(row),
+         number(row.std, 2), interval(row.interval95), percent(row.relative_std_percent), verdict_cell(row))
         for row in parameters
-    ]
-    columns = (
-        Column("foot", numeric=False),
-        Column("axis", numeric=False),
-        Column("parameter", numeric=False),
-        Column("unit", numeric=False),
-        Column("value"),
-        Column("std"),
-        Column("95 % interval"),
-        Column("relative std, as in the paper"),
-        Column("verdict", numeric=False),
-    )
+    ]  # fmt: skip
+    columns = Column.words("foot", "axis", "parameter", "unit")
+    columns += map(Column, ("value", "std", "95 % interval", "relative std, as in the paper"))
+    columns += Column.words("verdict")
     remark = (
         "Trust std and the interval: they allow for autocorrelated residuals. The "
         "paper's relative deviation takes residuals for white noise and is far too small; here to compare. "
@@ -76,13 +59,8 @@ def neighbour_table(parameters: Sequence[Parameter]) -> Table:
         ]
         mark: Mark = "good" if line.own else ""
         rows.append([Cell(one.robot, mark), *given, one.origin, one.source])
-    columns = [
-        Column("robot", numeric=False),
-        Column("pitch", unit("N.m/rad")),
-        Column("roll", unit("N.m/rad")),
-    ]
-    columns += [Column("z", unit("N/m")), Column("C", unit("N.m.s/rad"))]
-    columns += [Column("", numeric=False), Column("source", numeric=False)]
+    columns = [*Column.words("robot"), Column("pitch", unit("N.m/rad")), Column("roll", unit("N.m/rad"))]
+    columns += [Column("z", unit("N/m")), Column("C", unit("N.m.s/rad")), *Column.words("", "source")]
     remark = (
         "Most were configured and never measured: they show a likely size, no more. 1e8 stands for rigid."
     )
@@ -101,7 +79,7 @@ def offset_table(offsets: Sequence[Offset]) -> Table:
             half = None if row is None or row.std is None else NORMAL95 * row.std
             line.append(MISSING if row is None else with_uncertainty(row.value, half))
         rows.append(line)
-    columns = [Column("motion", numeric=False)]
+    columns = Column.words("motion")
     columns += [Column(f"{foot} {axis}", unit(name)) for foot, axis, name in keys]
     remark = "Zeros of sensors in each recording, not a property of the foot; ± is half of the 95 % interval."
     return Table.of("Offsets of each motion", columns, rows, remark=remark)
@@ -110,31 +88,19 @@ def offset_table(offsets: Sequence[Offset]) -> Table:
 def validation_table(validation: Sequence[ValidationRow], kind: str) -> Table:
     """Table 2 (`direct`) or table 3 (`cross`), the trivial predictor beside the model."""
     rows = [
-        (
-            row.motion,
-            row.foot,
-            "z [N]" if row.axis == "z" else row.axis,
-            number(row.mean_abs_error, 3),
-            number(row.rms_error, 3),
-            number(row.max_abs, 3),
-            percent(row.percent_of_max),
-            number(row.zero_mean_abs, 3),
-            skill_cell(row),
-        )
+        (row.motion, row.foot, "z [N]" if row.axis == "z" else row.axis, number(row.mean_abs_error, 3),
+         number(row.rms_error, 3), number(row.max_abs, 3), percent(row.percent_of_max), number(row.zero_mean_abs, 3),
+         skill_cell(row))
         for row in validation
         if row.kind == kind
-    ]
-    columns = (
-        Column("motion", numeric=False),
-        Column("foot", numeric=False),
-        Column("axis", numeric=False),
+    ]  # fmt: skip
+    columns = [
+        *Column.words("motion", "foot", "axis"),
         Column("mean |error|", "N·m"),
         Column("rms error", "N·m"),
-        Column("largest |torque|", "N·m"),
-        Column("mean |error| of largest"),
-        Column("mean |error| of the offset alone", "N·m"),
-        Column("skill", numeric=False),
-    )
+    ]
+    columns += [Column("largest |torque|", "N·m"), Column("mean |error| of largest")]
+    columns += [Column("mean |error| of the offset alone", "N·m"), *Column.words("skill")]
     title = {
         "direct": "Table 2. Direct validation: the motions used for the fit",
         "cross": "Table 3. Cross-validation: motions that the fit has not seen",
@@ -177,8 +143,7 @@ def _comparison(result: FeetResult, other: Comparison) -> list[Table]:
         against = with_uncertainty(row.value, row.half_width)
         signed = MISSING if change is None else f"{change:+.1f} %".replace("-", "−")
         rows.append((ours.foot, ours.axis, symbol(ours.name), unit(ours.unit), text, against, signed))
-    names = ("foot", "axis", "parameter", "unit")
-    columns = [Column(name, numeric=False) for name in names]
+    columns = Column.words("foot", "axis", "parameter", "unit")
     columns += [Column("this result"), Column(other.name), Column("difference")]
     tables = [Table.of(f"Compared: {other.name}, parameters", columns, rows)] if rows else []
     scores = {(row.kind, row.motion, row.foot, row.axis): row for row in other.validation}
@@ -189,7 +154,7 @@ def _comparison(result: FeetResult, other: Comparison) -> list[Table]:
             ours_text, theirs_text = number(score.mean_abs_error, 3), number(match.mean_abs_error, 3)
             offset = number(score.zero_mean_abs, 3)
             lines.append((score.kind, score.motion, score.foot, score.axis, ours_text, theirs_text, offset))
-    heads = [Column(name, numeric=False) for name in ("kind", "motion", "foot", "axis")]
+    heads = Column.words("kind", "motion", "foot", "axis")
     heads += [Column(name, "N·m") for name in ("this result", other.name, "offset alone")]
     if lines:
         tables.append(Table.of(f"Compared: {other.name}, mean |error|", heads, lines, folded=len(lines) > 24))
@@ -211,19 +176,13 @@ def used_table(phases: Sequence[Phase]) -> Table:
         why_not = "; ".join(f"{why} ({number(seconds, 3)} s)" for why, seconds in reasons.items())
         share = percent(100 * used / whole) if whole > 0 else MISSING
         rows.append((motion, foot, number(whole, 3), number(used, 3), share, why_not or "nothing left out"))
-    columns = (
-        Column("motion", numeric=False),
-        Column("foot", numeric=False),
-        Column("length", "s"),
-        Column("used", "s"),
-        Column("share"),
-        Column("left out because", numeric=False),
-    )
+    columns = [*Column.words("motion", "foot"), Column("length", "s"), Column("used", "s"), Column("share")]
+    columns += Column.words("left out because")
     return Table.of("What is used of each log", columns, rows)
 
 
 def input_table(inputs: Sequence[Input]) -> Table:
-    columns = [Column(name, numeric=False) for name in ("file", "role", "SHA-256")]
+    columns = Column.words("file", "role", "SHA-256")
     rows = [
         (Cell(PurePath(row.path).name, hover=row.path), row.role, row.sha256 or MISSING) for row in inputs
     ]
@@ -233,7 +192,7 @@ def input_table(inputs: Sequence[Input]) -> Table:
 def settings_table(settings: Mapping[str, Any]) -> Table:
     """Settings with nested ones as `outer.inner`, and the units of those that have one."""
     rows = [(key, f"{text} {SETTING_UNITS.get(key, '')}".rstrip()) for key, text in _flat(settings, "")]
-    return Table.of("Settings", [Column("setting", numeric=False), Column("value", numeric=False)], rows)
+    return Table.of("Settings", Column.words("setting", "value"), rows)
 
 
 def _flat(settings: Mapping[str, Any], prefix: str, depth: int = 0) -> list[tuple[str, str]]:
