@@ -24,7 +24,7 @@ DATA_FAULTS = (
     ),
     Mutant(
         "feet/assess/late_recordings.py", "a memory is a late recording",
-        "_left(fit_blocks(tangent)) < _left(found)", "_left(fit_blocks(tangent)) < 0.0",
+        "fit_blocks(tangent).squares < found.squares", "fit_blocks(tangent).squares < 0.0",
         ("feet/assess/test_late_recordings.py",),
     ),
     Mutant(

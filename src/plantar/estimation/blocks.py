@@ -110,6 +110,11 @@ class LinearFit:
         """Standard deviations of `values` for white residuals, (k,)."""
         return np.asarray(np.sqrt(np.diag(self.white_covariance))[: len(self.values)])
 
+    @property
+    def squares(self) -> float:
+        """The sum of the residuals' squares."""
+        return sum(float(residual @ residual) for residual in self.residuals.values())
+
     def offset_std(self, label: str) -> float:
         """Standard deviation of a recording's offset."""
         place = 0 if self.shared_offset else list(self.offsets).index(label)

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from plantar.conventions import NORMAL95
-from plantar.estimation import Block, LinearFit, fit_blocks
+from plantar.estimation import Block, fit_blocks
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.regression_data import beside, blocks_of
@@ -42,7 +42,7 @@ def late_recordings(
     moved = abs(found.values[RATE] - together.values[RATE])
     if sureness[most] < SURE or moved < NORMAL95 * wide.std[RATE]:
         return []
-    if not isinstance(wide.model, KelvinVoigt) and _left(fit_blocks(tangent)) < _left(found):
+    if not isinstance(wide.model, KelvinVoigt) and fit_blocks(tangent).squares < found.squares:
         return []
     apart, late = found.values[-1], -1e3 * found.values[-1] / found.values[0]
     text = (
@@ -55,7 +55,3 @@ def late_recordings(
 
 def _with_own_damping(block: Block, own: bool) -> Block:
     return beside(block, block.regressor[:, RATE : RATE + 1] * float(own))
-
-
-def _left(fit: LinearFit) -> float:
-    return sum(float(residual @ residual) for residual in fit.residuals.values())

@@ -14,7 +14,7 @@ from plantar.conventions import ROTATIONAL_AXES, Array
 from plantar.estimation import Block, fit_blocks
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
-from plantar.feet.regression.regression_data import beside, blocks_of
+from plantar.feet.regression.regression_data import all_beside, blocks_of, recordings_of
 from plantar.notes import Note
 
 SOFT = 0.1  # of a recording's spread of torque, within which its sign changes: behind a filter it is no step
@@ -34,15 +34,12 @@ def play_notes(
         return []
     blocks = blocks_of(recordings, fit.foot, fit.axis, drift=not shared)
     column = ROTATIONAL_AXES.index(fit.axis)
-    by_name = {recording.name: recording for recording in recordings}
-    signs = [_sign(by_name[block.label], fit.foot, column) for block in blocks]
-    found = fit_blocks(
-        [beside(block, sign[:, None]) for block, sign in zip(blocks, signs, strict=True)],
-        shared_offset=shared,
-    )
+    signs = [_sign(one, fit.foot, column)[:, None] for one in recordings_of(blocks, recordings)]
+    found = fit_blocks(all_beside(blocks, signs), shared_offset=shared)
     stiffness, loss = float(found.values[0]), -float(found.values[2])
-    with_play = sum(float(residual @ residual) for residual in found.residuals.values())
-    if stiffness <= 0 or loss < SURE * float(found.std[2]) or _squares(tangents, shared) < BETTER * with_play:
+    if stiffness <= 0 or loss < SURE * float(found.std[2]):
+        return []
+    if fit_blocks(tangents, shared_offset=shared).squares < BETTER * found.squares:
         return []
     text = (
         f"{fit.foot} {fit.axis}: the angle jumps by {2e3 * loss / stiffness:.2g} mrad where the torque changes its "
@@ -56,8 +53,3 @@ def _sign(recording: Recording, foot: str, column: int) -> Array:
     """The sign of the torque at the rows of a fit, (n,), smooth about zero."""
     torque = recording.bushes[foot].torque[recording.rows(foot), column]
     return np.asarray(np.tanh(torque / max(SOFT * float(np.std(torque)), 1e-12)))
-
-
-def _squares(blocks: Sequence[Block], shared: bool) -> float:
-    left = fit_blocks(blocks, shared_offset=shared).residuals.values()
-    return sum(float(residual @ residual) for residual in left)

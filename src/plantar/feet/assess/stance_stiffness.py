@@ -13,7 +13,7 @@ from plantar.estimation import Block, fit_blocks, interval95
 from plantar.estimation.errors_in_variables import attenuation
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
-from plantar.feet.regression.regression_data import blocks_of
+from plantar.feet.regression.regression_data import blocks_of, recordings_of
 from plantar.results.walk_rows import StanceStiffness, WalkStiffness
 
 FEWEST_STANCES = 3  # of one recording: the scatter of two says next to nothing
@@ -66,8 +66,8 @@ def _walks(recordings: Sequence[Recording], fit: AxisFit) -> list[tuple[Recordin
     """The recordings in which the foot steps, with the rows of the fit's model; the unseen ones too."""
     walks = [recording for recording in recordings if recording.stances[fit.foot] is not None]
     known = replace(fit, offsets={recording.name: 0.0 for recording in walks})
-    by_name = {recording.name: recording for recording in walks}
-    return [(by_name[block.label], block) for block in blocks_of(walks, fit.foot, fit.axis, fit=known)]
+    blocks = blocks_of(walks, fit.foot, fit.axis, fit=known)
+    return list(zip(recordings_of(blocks, walks), blocks, strict=True))
 
 
 def _slope(block: Block, rows: NDArray[np.intp], fit: AxisFit) -> tuple[float, float]:

@@ -20,7 +20,7 @@ from plantar.feet.fit.hidden_memory import has_memory
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.model_columns import model_columns
-from plantar.feet.regression.regression_data import beside, blocks_of, tangent_blocks
+from plantar.feet.regression.regression_data import beside, blocks_of, recordings_of, tangent_blocks
 from plantar.models import KelvinVoigt
 from plantar.notes import Note
 from plantar.signals.segments import run_numbers
@@ -112,9 +112,8 @@ def _jumps(
 ) -> dict[str, _Jump]:
     """The jump in each recording that has one, in what the blocks' fit leaves."""
     found = {}
-    by_name = {recording.name: recording for recording in recordings}
-    for block in blocks:
-        recording, missed = by_name[block.label], whole.residuals[block.label]
+    for block, recording in zip(blocks, recordings_of(blocks, recordings), strict=True):
+        missed = whole.residuals[block.label]
         places = np.flatnonzero(recording.rows(foot))
         contact = recording.contacts[foot]
         # A jump may look like a slide, but not like a sole that tips, and then may come to lie otherwise.

@@ -20,7 +20,7 @@ from plantar.estimation.slow_drift import drift_beside
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AngleDrift, AxisFit
 from plantar.feet.regression.model_columns import model_columns
-from plantar.feet.regression.regression_data import blocks_of, tangent_blocks
+from plantar.feet.regression.regression_data import blocks_of, recordings_of, tangent_blocks
 
 ROUNDS = 6  # at most
 HALFWAY = 0.5  # from one round's drift to the next: fit and drift answer each other with the opposite, nearly as large
@@ -48,10 +48,8 @@ def _halfway(before: AngleDrift | None, now: AngleDrift) -> AngleDrift:
 
 def _drifts(fit: AxisFit, recordings: Sequence[Recording]) -> dict[str, AngleDrift]:
     """By recording, the drift of the angle that would add the slow torque which a fit leaves."""
-    by_name = {recording.name: recording for recording in recordings}
-    found = {}
-    for block in blocks_of(recordings, fit.foot, fit.axis, fit=fit):
-        recording = by_name[block.label]
+    found, blocks = {}, blocks_of(recordings, fit.foot, fit.axis, fit=fit)
+    for block, recording in zip(blocks, recordings_of(blocks, recordings), strict=True):
         missed = block.response - block.regressor @ fit.values
         rows = recording.rows(fit.foot)
         deflection = recording.bushes[fit.foot].deflection[rows, ROTATIONAL_AXES.index(fit.axis)]
@@ -62,7 +60,6 @@ def _drifts(fit: AxisFit, recordings: Sequence[Recording]) -> dict[str, AngleDri
 
 def _matters(fit: AxisFit, recordings: Sequence[Recording], drifts: Mapping[str, AngleDrift]) -> bool:
     """Whether a number of the fit would move by a share of its deviation with other drifts."""
-    by_name = {recording.name: recording for recording in recordings}
     other, blocks = replace(fit, drifts=drifts), tangent_blocks(recordings, fit)
 
     def torque(recording: Recording, one: AxisFit) -> Array:
@@ -70,7 +67,6 @@ def _matters(fit: AxisFit, recordings: Sequence[Recording], drifts: Mapping[str,
         return np.asarray((columns @ fit.values)[recording.rows(fit.foot)])
 
     changes = [
-        np.nan_to_num(torque(by_name[block.label], other) - torque(by_name[block.label], fit))
-        for block in blocks
+        np.nan_to_num(torque(one, other) - torque(one, fit)) for one in recordings_of(blocks, recordings)
     ]
     return bool((np.abs(effect_of(influences_of(blocks), changes)) > NEGLIGIBLE * fit.std).any())

@@ -123,17 +123,13 @@ def _where_a_spring_turns(
     rubber, a spring finds its place centimetres off.
     """
     moved = about_its_place(spring, recordings, place, shared)
-    missed = [
-        sum(
-            float(residual @ residual)
-            for residual in fit_blocks(blocks, shared_offset=shared).residuals.values()
-        )
-        for blocks in (
-            blocks_of(recordings, spring.foot, spring.axis, drift=not shared, fit=fit)
-            for fit in (spring, moved)
-        )
-    ]
-    return moved if missed[1] < PLACE_EXPLAINS * missed[0] else spring
+    before, behind = (
+        fit_blocks(
+            blocks_of(recordings, spring.foot, spring.axis, drift=not shared, fit=fit), shared_offset=shared
+        ).squares
+        for fit in (spring, moved)
+    )
+    return moved if behind < PLACE_EXPLAINS * before else spring
 
 
 def _explained(fit: LinearFit, blocks: Sequence[Block]) -> float:

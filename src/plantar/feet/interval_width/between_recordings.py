@@ -15,7 +15,7 @@ from plantar.estimation.stance_least_squares import FEWEST_RECORDINGS, jackknife
 from plantar.feet.interval_width.systematic import Cause
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
-from plantar.feet.regression.regression_data import beside, tangent_blocks
+from plantar.feet.regression.regression_data import all_beside, tangent_blocks
 from plantar.notes import Note
 
 NAME = "between recordings"
@@ -130,7 +130,7 @@ def differences_of(fit: AxisFit, blocks: Sequence[Block], effects: Array) -> Axi
         return None
     torques, others = _torques(fit, blocks), [place for place in range(len(blocks)) if place != tell[0]]
     columns = [np.column_stack(each) for each in zip(*(_alone(torques, own) for own in others), strict=True)]
-    found = fit_blocks([beside(block, own) for block, own in zip(blocks, columns, strict=True)])
+    found = fit_blocks(all_beside(blocks, columns))
     ends = blocks[0].regressor.shape[1] + np.array([others.index(place) for place in tell[1:]])
     differences = Differences(found.values[ends], found.covariance[np.ix_(ends, ends)])
     usual = float(fit_blocks(blocks).std[0]) / max(abs(float(fit.values[0])), 1e-300)

@@ -16,7 +16,7 @@ from plantar.feet.interval_width.systematic import SINGULAR, Cause
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.load_torque import ENCODERS_APART, late_encoder_torque
-from plantar.feet.regression.regression_data import beside
+from plantar.feet.regression.regression_data import all_beside, recordings_of
 
 NAME = "encoders' delay"
 SUSPECTED = 3.0  # deviations from none
@@ -30,15 +30,13 @@ def encoder_delay_causes(
 
     blocks: the recordings' `tangent_blocks`.
     """
-    by_name = {recording.name: recording for recording in recordings}
-    chosen = [by_name[block.label] for block in blocks]
+    chosen = recordings_of(blocks, recordings)
     columns = [late_encoder_torque(one, fit)[one.rows(fit.foot)] for one in chosen]
     if not any(column.any() for column in columns):
         return []
     if blocks[0].stances is not None:
         return [_cause(blocks, columns, unsure, shared)] if unsure else []
-    wider = [beside(block, column[:, None]) for block, column in zip(blocks, columns, strict=True)]
-    found = fit_blocks(wider, shared_offset=shared)
+    found = fit_blocks(all_beside(blocks, [own[:, None] for own in columns]), shared_offset=shared)
     late, std = float(found.values[-1]), float(found.std[-1])
     if found.condition_number > SINGULAR or abs(late) < SUSPECTED * std:
         return []

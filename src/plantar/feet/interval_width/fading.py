@@ -15,6 +15,7 @@ from plantar.estimation import Block, effect_of, influences_of
 from plantar.feet.interval_width.systematic import Cause
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
+from plantar.feet.regression.regression_data import recordings_of
 from plantar.sensors.bandwidth import Fading
 from plantar.signals.filters import differentiate
 
@@ -35,10 +36,8 @@ def fading_causes(
     if found is None:
         return []
     column = ROTATIONAL_AXES.index(fit.axis)
-    by_name = {recording.name: recording for recording in recordings}
     changes = []
-    for block in blocks:
-        one = by_name[block.label]
+    for one in recordings_of(blocks, recordings):
         bent = differentiate(differentiate(one.bushes[fit.foot].torque[:, column], one.period), one.period)
         changes.append(np.nan_to_num(bent[one.rows(fit.foot)]) / (2 * np.pi) ** 2)
     effect = effect_of(influences_of(blocks, shared_offset=shared), changes)

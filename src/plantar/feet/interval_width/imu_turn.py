@@ -21,6 +21,6 @@ def imu_turn_causes(fit: AxisFit, recordings: Sequence[Recording], turn: ImuTurn
     blocks = blocks_of(recordings, fit.foot, fit.axis, fit=fit)
     if blocks[0].stances is None or not turn.covariance.any():
         return []
-    columns = turn_columns(fit, recordings, [block.label for block in blocks])
+    columns = turn_columns(fit, recordings, blocks)
     effects = effect_of(influences_of(blocks), columns) @ np.linalg.cholesky(turn.covariance)
     return [Cause(NAME, np.sqrt(np.sum(effects**2, axis=1)), 1.0)]

@@ -16,7 +16,7 @@ from plantar.feet.fit.hidden_memory import element_slope, moved_by_memory
 from plantar.feet.fit.vertical_stiffness import VerticalStiffness
 from plantar.feet.recording import Recording, moment_arm_effect
 from plantar.feet.regression.axis import AxisFit
-from plantar.feet.regression.regression_data import beside
+from plantar.feet.regression.regression_data import beside, recordings_of
 from plantar.sensors.delays.sensor_delay import SensorDelay
 from plantar.signals.filters import differentiate
 from plantar.signals.resampling import shifted
@@ -62,8 +62,7 @@ def systematic_causes(
     memory may share with the spring; of others a hardening that the model leaves out, zeros that
     differ between stances, and for roll the zero of the yaw torque. `blocks`: the recordings' `tangent_blocks`."""
     foot, column = fit.foot, ROTATIONAL_AXES.index(fit.axis)
-    by_name = {recording.name: recording for recording in recordings}
-    parts = [(by_name[block.label], by_name[block.label].rows(foot)) for block in blocks]
+    parts = [(one, one.rows(foot)) for one in recordings_of(blocks, recordings)]
     influences = influences_of(blocks, shared_offset=shared)
     by_delay = _by_delay(
         [(one.bushes[foot].torque[:, column], one.period, used) for one, used in parts], sensor_delay

@@ -23,7 +23,7 @@ from plantar.feet.place.spread import PlaceSpread
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.load_torque import ENCODERS_APART, late_encoder_torque, place_columns
-from plantar.feet.regression.regression_data import beside, tangent_blocks
+from plantar.feet.regression.regression_data import all_beside, recordings_of, tangent_blocks
 
 ENCODERS_LATE = UNIFORM * ENCODERS_APART  # s
 SINGULAR = 1e6  # condition of the fit beyond which the motions do not show the place
@@ -41,13 +41,13 @@ def about_its_place(
     blocks = tangent_blocks(recordings, fit, drift=not shared)
     if blocks[0].stances is not None or not spread.deviations.any():
         return fit
-    chosen = [one for one in recordings if one.name in {block.label for block in blocks}]
+    chosen = recordings_of(blocks, recordings)
     columns = [_columns(one, fit)[one.rows(fit.foot)] for one in chosen]
     spreads = np.where(that_show(blocks, columns, spread.expected), spread.expected, 0.0)
     size, tried = blocks[0].regressor.shape[1], np.flatnonzero(spreads)
     before = np.array([*fit.moment_arms, fit.turned, *fit.imu_turned])
     late = [late_encoder_torque(one, fit)[one.rows(fit.foot), None] for one in chosen]
-    plain = [beside(block, own[:, tried]) for block, own in zip(blocks, columns, strict=True)]
+    plain = all_beside(blocks, [own[:, tried] for own in columns])
     found, noisy, apart = _with_late_encoders(plain, late, shared)
     place, unsure = np.zeros(len(spreads)), np.diag(spreads**2)
     place[1] = spread.height
@@ -92,7 +92,7 @@ def _with_late_encoders(
     Their torque goes with the joints' motion, as horizontal forces do. Where joints alone bend the bush it is damping:
     then it is left out.
     """
-    wider = [beside(block, own) for block, own in zip(blocks, late, strict=True)]
+    wider = all_beside(blocks, late)
     for tried, apart in ((wider, [ENCODERS_LATE]), (blocks, [])):
         found = fit_blocks(tried, shared_offset=shared)
         # A push bends the foot and turns about the place alike: what noise takes off the one, the other takes up.

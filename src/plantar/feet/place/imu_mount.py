@@ -13,7 +13,7 @@ from plantar.feet.place.imu_columns import imu_columns, that_show
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.load_torque import late_encoder_torque
-from plantar.feet.regression.regression_data import beside, blocks_of
+from plantar.feet.regression.regression_data import all_beside, blocks_of, recordings_of
 
 SINGULAR = 1e6  # condition of a fit beyond which its motions do not show the turn
 
@@ -47,14 +47,13 @@ def with_turns(fit: AxisFit, recordings: Sequence[Recording], mount: float) -> t
     passed for two degrees about the axis that the legs swing about.
     """
     blocks = blocks_of(recordings, fit.foot, fit.axis, fit=fit)
-    columns = turn_columns(fit, recordings, [block.label for block in blocks])
+    columns = turn_columns(fit, recordings, blocks)
     shown = that_show(blocks, columns, np.full(3, mount))
-    by_name = {recording.name: recording for recording in recordings}
-    chosen = [by_name[block.label] for block in blocks]
+    chosen = recordings_of(blocks, recordings)
     late = [late_encoder_torque(one, fit)[one.rows(fit.foot), None] for one in chosen]
     if any(column.any() for column in late):
-        blocks = [beside(block, column) for block, column in zip(blocks, late, strict=True)]
-    return [beside(block, own[:, shown]) for block, own in zip(blocks, columns, strict=True)], shown
+        blocks = all_beside(blocks, late)
+    return all_beside(blocks, [own[:, shown] for own in columns]), shown
 
 
 def turn_told(found: LinearFit, shown: Mask) -> list[Told]:
@@ -68,7 +67,6 @@ def turn_told(found: LinearFit, shown: Mask) -> list[Told]:
     return [Told(angles, information)]
 
 
-def turn_columns(fit: AxisFit, recordings: Sequence[Recording], labels: Sequence[str]) -> list[Array]:
-    """Torque of the used samples for each radian of a turn, (n, 3) of each recording that is named."""
-    by_name = {recording.name: recording for recording in recordings}
-    return [imu_columns(by_name[label], fit)[by_name[label].rows(fit.foot)] for label in labels]
+def turn_columns(fit: AxisFit, recordings: Sequence[Recording], blocks: Sequence[Block]) -> list[Array]:
+    """Torque for each radian of a turn at the rows of each block, (n, 3)."""
+    return [imu_columns(one, fit)[one.rows(fit.foot)] for one in recordings_of(blocks, recordings)]

@@ -13,7 +13,7 @@ from plantar.feet.place.place_notes import BUSH_WORTH_SAYING, STEPS_WORTH_SAYING
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.load_torque import others_torque
-from plantar.feet.regression.regression_data import beside, tangent_blocks
+from plantar.feet.regression.regression_data import all_beside, recordings_of, tangent_blocks
 from plantar.notes import Note
 
 SURE = 5.0  # deviations of the other axis' share, from which stances show it
@@ -46,17 +46,15 @@ def _others_torque(fit: AxisFit, recordings: Sequence[Recording], shared: bool) 
     if blocks[0].stances is None:
         return None
     blocks = [_without_the_other(block) for block in blocks]
-    by_name = {recording.name: recording for recording in recordings}
-    chosen = [by_name[block.label] for block in blocks]
+    chosen = recordings_of(blocks, recordings)
     other = [others_torque(one, fit.foot, fit.axis)[one.rows(fit.foot), None] for one in chosen]
-    wider = [beside(block, own) for block, own in zip(blocks, other, strict=True)]
-    fits = [fit_blocks(each, shared_offset=shared) for each in (blocks, wider)]
-    before, left = (
-        sum(float(residual @ residual) for residual in found.residuals.values()) for found in fits
-    )
-    size, found = blocks[0].regressor.shape[1], fits[1]
+    wider = all_beside(blocks, other)
+    alone, found = (fit_blocks(each, shared_offset=shared) for each in (blocks, wider))
+    size = blocks[0].regressor.shape[1]
     sure = found.condition_number <= SINGULAR and abs(found.values[size]) > SURE * found.std[size]
-    return (float(found.values[size]) if sure else 0.0), left / max(before, np.finfo(float).tiny)
+    return (float(found.values[size]) if sure else 0.0), found.squares / max(
+        alone.squares, np.finfo(float).tiny
+    )
 
 
 def _without_the_other(block: Block) -> Block:

@@ -87,8 +87,18 @@ def tangent_blocks(recordings: Sequence[Recording], fit: AxisFit, *, drift: bool
     blocks = blocks_of(recordings, fit.foot, fit.axis, drift=drift, fit=fit)
     if len(fit.shape) == 0 or blocks[0].stances is not None:
         return blocks
+    return all_beside(blocks, [_shape_slopes(one, fit) for one in recordings_of(blocks, recordings)])
+
+
+def recordings_of(blocks: Sequence[Block], recordings: Sequence[Recording]) -> list[Recording]:
+    """The recording that each block is of."""
     by_name = {recording.name: recording for recording in recordings}
-    return [beside(block, _shape_slopes(by_name[block.label], fit)) for block in blocks]
+    return [by_name[block.label] for block in blocks]
+
+
+def all_beside(blocks: Sequence[Block], columns: Sequence[Array]) -> list[Block]:
+    """The blocks, each `beside` columns of its own."""
+    return [beside(block, own) for block, own in zip(blocks, columns, strict=True)]
 
 
 def beside(block: Block, columns: Array) -> Block:
