@@ -99,7 +99,7 @@ OF_THEIR_KINDS = (
     Mutant(
         "feet/fit/corrections.py",
         "stances' own degrees of freedom where they do not widen",
-        "np.where(wider[:size] > 1, found.freedom[:size], freedom[:size])",
+        "np.where(found.std > fit.std[:size], found.freedom[:size], freedom[:size])",
         "found.freedom[:size]",
         ("feet/fit/test_corrections.py",),
     ),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from plantar.conventions import WRENCH_AXES
 from plantar.errors import RobotError
-from plantar.logs.inputs import LogInputs, RobotInput, logs_of, robot_of
+from plantar.logs.inputs import LogInputs, RobotInput, robot_of
 from plantar.results.dynamics import INERTIA_SCHEMA, DynamicsResult
 from plantar.whole_body.covariance import uncertainty
 from plantar.whole_body.equations import inertial_samples
@@ -54,9 +54,7 @@ def identify_inertia(
     if robot.base == "fixed":
         message = "a fixed base has no base rows to identify from"
         raise RobotError(message, path=robot.path, valid="plantar identify joints")
-    made = prepare_logs(
-        robot, tuple(logs_of(logs, robot)), tuple(logs_of(validate, robot)), settings, progress
-    )
+    made = prepare_logs(robot, logs, validate, settings, progress)
     body = made.body
     fitted, unseen = (
         [inertial_samples(body, whole, made.calibration) for whole in wholes]

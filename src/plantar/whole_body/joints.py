@@ -11,7 +11,7 @@ from plantar.choices import one_of
 from plantar.conventions import Array
 from plantar.errors import DataError, RobotError
 from plantar.estimation.residual_covariance import interval95
-from plantar.logs.inputs import LogInputs, RobotInput, logs_of, robot_of
+from plantar.logs.inputs import LogInputs, RobotInput, robot_of
 from plantar.notes import Note
 from plantar.results.dynamics import JOINTS_SCHEMA, DynamicsResult, JointParameter
 from plantar.results.feet import Verdict
@@ -80,9 +80,7 @@ def identify_joints(
     if inertia == "first" and robot.base == "fixed":
         message = "a fixed base has no base rows to identify inertias from first"
         raise RobotError(message, path=robot.path, valid="inertia: together, known")
-    made = prepare_logs(
-        robot, tuple(logs_of(logs, robot)), tuple(logs_of(validate, robot)), settings, progress
-    )
+    made = prepare_logs(robot, logs, validate, settings, progress)
     body = made.body
     given, said = _given(made, inertia, progress)
     terms, fit, choice = _chosen(made, given, progress)

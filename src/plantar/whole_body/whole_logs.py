@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from plantar.errors import DataError
-from plantar.logs.inputs import check_names
-from plantar.logs.motion_log import MotionLog
+from plantar.logs.inputs import LogInputs, check_names, logs_of
 from plantar.notes import Note
 from plantar.results.feet import Input
 from plantar.robot.guesses import guess_notes
@@ -36,8 +35,8 @@ class WholeLogs:
 
 def prepare_logs(
     robot: RobotModel,
-    logs: Sequence[MotionLog],
-    validate: Sequence[MotionLog],
+    fit: LogInputs,
+    score: LogInputs,
     settings: DynamicsSettings,
     progress: Progress,
 ) -> WholeLogs:
@@ -45,6 +44,7 @@ def prepare_logs(
 
     Raises RobotError, LogError or DataError where a log cannot be used, there is none to fit or two share a name.
     """
+    logs, validate = tuple(logs_of(fit, robot)), tuple(logs_of(score, robot))
     if not logs:
         raise DataError("no logs to fit (valid: at least one)")
     check_names((*logs, *validate))

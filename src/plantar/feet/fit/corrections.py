@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from plantar.estimation import fit_blocks
+from plantar.estimation import LinearFit, fit_blocks
 from plantar.estimation.errors_in_variables import attenuation, offsets_moved
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
@@ -25,19 +25,11 @@ def over_stances(fit: AxisFit, recordings: Sequence[Recording]) -> AxisFit:
     Shape and memory stay as they are. Deviations are the larger ones of both fits.
     """
     size = len(fit.values)
-    found = fit_blocks(blocks_of(recordings, fit.foot, fit.axis, fit=fit))
-    wider = np.ones(len(fit.covariance))
-    wider[:size] = np.maximum(1.0, found.std / fit.std[:size])
+    found, anew = _linear_anew(fit, recordings)
     freedom = fit.freedom.copy()
-    freedom[:size] = np.where(wider[:size] > 1, found.freedom[:size], freedom[:size])
-    return replace(
-        fit.at_place(found.common_nuisance),
-        values=found.values,
-        covariance=fit.covariance * np.outer(wider, wider),
-        freedom=freedom,
-        offsets=found.offsets,
-        offset_std={label: found.offset_std(label) for label in found.offsets},
-    )
+    freedom[:size] = np.where(found.std > fit.std[:size], found.freedom[:size], freedom[:size])
+    offset_std = {label: found.offset_std(label) for label in found.offsets}
+    return replace(anew.at_place(found.common_nuisance), freedom=freedom, offset_std=offset_std)
 
 
 def about_true_zero(fit: AxisFit, recordings: Sequence[Recording], shared: bool) -> AxisFit:
@@ -47,17 +39,19 @@ def about_true_zero(fit: AxisFit, recordings: Sequence[Recording], shared: bool)
     """
     if not fit.model.zero_matters or shared:
         return fit
+    found, anew = _linear_anew(fit, recordings)
+    offset_std = {label: max(std, found.offset_std(label)) for label, std in fit.offset_std.items()}
+    return replace(anew, offset_std=offset_std)
+
+
+def _linear_anew(fit: AxisFit, recordings: Sequence[Recording]) -> tuple[LinearFit, AxisFit]:
+    """Linear parameters and offsets found anew, and the fit with them: its deviations are the larger ones of both."""
     size = len(fit.values)
     found = fit_blocks(blocks_of(recordings, fit.foot, fit.axis, fit=fit))
     wider = np.ones(len(fit.covariance))
     wider[:size] = np.maximum(1.0, found.std / fit.std[:size])
-    return replace(
-        fit,
-        values=found.values,
-        covariance=fit.covariance * np.outer(wider, wider),
-        offsets=found.offsets,
-        offset_std={label: max(std, found.offset_std(label)) for label, std in fit.offset_std.items()},
-    )
+    covariance = fit.covariance * np.outer(wider, wider)
+    return found, replace(fit, values=found.values, covariance=covariance, offsets=found.offsets)
 
 
 def with_best_offsets(fit: AxisFit, recordings: Sequence[Recording], shared: bool) -> AxisFit:
