@@ -18,9 +18,8 @@ TRIES: Final = 25  # linear programs from each start at most
 TOLD: Final = 10  # linear programs between two words of progress
 SMALL: Final = 1e-3  # of a coefficient that is just allowed: what a slope is taken over
 BEGIN, SMALLEST, FARTHEST = 0.5, 0.01, 1.0  # how far a step goes, of coefficients that are just allowed
-AT_ONCE: Final = (
-    10  # motions beside one whose values are computed together: ten minutes of them fit into memory
-)
+# Motions beside one whose values are computed together: ten minutes of them fit into memory
+AT_ONCE: Final = 10
 CUTS: Final = 4  # programs of one step: each knows the limits that the one before passed
 SLIGHT: Final = 0.01  # over a limit: the motion is made smaller by as much
 GROW, SHRINK = 1.5, 0.4  # of that, after a step that helped and one that did not

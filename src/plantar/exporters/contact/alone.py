@@ -15,9 +15,8 @@ from plantar.exporters.contact.points import Point, PointFoot
 # The contact's own inertia, as a time: an inertia of C times this stands beside the damper. It is what lets a light
 # foot stand at steps of up to this length; the bush's C/K is ten times longer.
 INERTIA_TIME: Final = 0.004  # s
-SHORTEST: Final = (
-    0.008  # s: MuJoCo raises time constants to two steps, and the longest step of the fit is 4 ms
-)
+# s: MuJoCo raises time constants to two steps, and the longest step of the fit is 4 ms
+SHORTEST: Final = 0.008
 RADIUS: Final = 0.002  # m, of the sphere that is a point
 # Friction as much harder than the normal: else a soft sole creeps under a sideways force, and a foot seems softer.
 IMPRATIO: Final = 100.0

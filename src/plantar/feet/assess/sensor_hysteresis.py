@@ -15,12 +15,11 @@ from plantar.estimation import Block, fit_blocks
 from plantar.feet.fit.hidden_memory import has_memory
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
-from plantar.feet.regression.regression_data import beside
+from plantar.feet.regression.regression_data import all_beside, recordings_of
 from plantar.notes import Note
 
-SOFT = (
-    0.02  # of the fast rate (98th percentile), within which its sign changes: behind a filter it is no step
-)
+# Of the fast rate (98th percentile), within which its sign changes: behind a filter it is no step.
+SOFT = 0.02
 SURE = 4.0  # deviations of the hysteresis: of healthy feet it is below 3
 HYSTERESIS = "sensor_hysteresis"
 
@@ -34,16 +33,12 @@ def hysteresis_notes(
     """
     if tangents[0].stances is not None or has_memory(fit.model):
         return []
-    by_name = {recording.name: recording for recording in recordings}
-    rates = [_rate(by_name[block.label], fit) for block in tangents]
+    rates = [_rate(one, fit) for one in recordings_of(tangents, recordings)]
     fast = float(np.percentile(np.abs(np.concatenate(rates)), 98))
     if fast == 0:
         return []
-    blocks = [
-        beside(block, np.tanh(rate / (SOFT * fast))[:, None])
-        for block, rate in zip(tangents, rates, strict=True)
-    ]
-    found = fit_blocks(blocks, shared_offset=shared)
+    signs = [np.tanh(rate / (SOFT * fast))[:, None] for rate in rates]
+    found = fit_blocks(all_beside(tangents, signs), shared_offset=shared)
     behind = -float(found.values[-1])
     if behind < SURE * float(found.std[-1]):
         return []
