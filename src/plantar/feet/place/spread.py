@@ -37,7 +37,7 @@ class PlaceSpread:
     @property
     def measured(self) -> bool:
         """Whether the robot file knows the place better than FARTHEST is far: of a guess nothing is too far."""
-        return CLEAR * max(self.aside, self.above) < FARTHEST[0]
+        return bool(CLEAR * max(self.aside, self.above) < FARTHEST[0])
 
     @property
     def expected(self) -> Array:
