@@ -80,6 +80,25 @@ def test_what_sensors_show_beside_the_common_delay_is_drawn_to_none_by_a_millise
     assert unknown.encoders_unsure == pytest.approx(0.001)
 
 
+@pytest.mark.parametrize(("apart", "beside"), [(0.0052, 0.0012**2 - 0.0005**2 + 0.0001**2), (0.00448, 0.0)])
+def test_a_common_delay_is_anywhere_between_what_encoders_in_time_and_apart_make_of_it(
+    monkeypatch: pytest.MonkeyPatch, apart: float, beside: float
+) -> None:
+    """Known to 0.1 ms with encoders in time and to 0.5 ms with them apart, it moves by 0.49 ms by chance. What is
+    anywhere within one unit to either side has a variance of a third."""
+
+    def delays(_: object, held: np.ndarray | None = None) -> Delays:
+        known = {0: (0.0, 0.0005), 3: (0.004, 0.0001), 2: (apart, 0.0005)}
+        value, std = known[0 if held is None else len(held)]
+        return Delays(np.array([value, value, 0.0]), std**2 * np.eye(3), 60)
+
+    monkeypatch.setattr(refining, "estimate_delays", delays)
+    monkeypatch.setattr(refining, "estimate_delay", lambda _: Delay(0.004, 0.001, 30.0, 20))
+    found = refining._step([LOG], [[RESIDUAL]], np.zeros(3))
+    assert found is not None
+    assert found.std == pytest.approx(np.sqrt(0.001**2 + beside / 3))
+
+
 @pytest.mark.parametrize(("std", "suspect"), [(0.0029, False), (0.0031, True)])
 def test_what_is_known_to_three_milliseconds_is_ground_for_delays_of_their_own(
     monkeypatch: pytest.MonkeyPatch, std: float, suspect: bool
