@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -74,6 +75,31 @@ def test_the_walk_moves_the_bushes_by_their_law(axis: str, column: int) -> None:
     stiffness, damping, _ = np.linalg.lstsq(rows, bush_forces(rollout, "right")[:, column], rcond=None)[0]
     assert stiffness == pytest.approx(getattr(PAPER["right"], f"{axis}_stiffness"), rel=1e-3)
     assert damping == pytest.approx(getattr(PAPER["right"], f"{axis}_damping"), rel=1e-3)
+
+
+def test_targets_follow_corrections_without_a_corner() -> None:
+    """A cubic B-spline's bend is that of its control points at the corrections and straight between them; what a
+    corner does to a servo is read with every sample."""
+    random, steps = np.random.default_rng(4), 20
+    corrections = np.vstack([np.zeros((3, 2)), random.standard_normal((30, 2)), np.ones((6, 2))])
+    control = object.__new__(WalkingControl)
+    control.estimator = SimpleNamespace(read=lambda sample, data: None)
+    control.stabiliser = SimpleNamespace(ask=lambda sample, state: None)
+    control.feet = SimpleNamespace(correction=lambda sample, state, asked: corrections[3 + sample])
+    control._places, control._last = [0, 1], corrections[:3]
+    planned = random.standard_normal((len(corrections) - 3, steps, 2))
+    begins, pieces = [], []
+    for sample, rows in enumerate(planned):
+        begins.append(control.correction)
+        pieces.append(control.led(sample, None, rows) - rows)
+    assert [piece[0] for piece in pieces] == pytest.approx(np.array(begins), abs=1e-12)
+    bend = steps**2 * np.diff(np.concatenate(pieces), 2, axis=0)
+    at, between = np.diff(corrections, 2, axis=0), np.arange(len(bend) + 1) / steps
+    straight = [np.interp(between, np.arange(len(at)), column) for column in at.T]
+    assert bend == pytest.approx(np.transpose(straight)[1:], abs=0.2), (
+        "corners of straight lines bend by 20 times"
+    )
+    assert control.correction == pytest.approx(np.ones(2))
 
 
 def test_without_its_stabiliser_the_robot_falls(monkeypatch: pytest.MonkeyPatch) -> None:
