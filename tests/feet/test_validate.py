@@ -96,7 +96,7 @@ def test_where_the_result_has_found_the_bush_is_predicted_with(robot: RobotModel
 
     first = found.models[0]
     for place in (
-        {"moment_arms": (0.02, 0.0)}, {"moment_arms": (0.0, 0.1)}, {"turned": 0.2}, {"leans": 0.2},
+        {"moment_arms": (0.02, 0.0)}, {"moment_arms": (0.0, 0.1)}, {"turned": 0.2}, {"leans": 0.2}, {"crosstalk": 0.2},
         {"imu_turned": (0.1, 0.1, 0.1)},
     ):  # fmt: skip
         moved = replace(first, **place)

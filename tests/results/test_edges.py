@@ -182,6 +182,7 @@ def test_an_arm_a_turn_and_a_lean_stand_in_the_file_only_where_there_are_any() -
         "moment_arms": (0.0, 0.001),
         "turned": 0.01,
         "leans": 0.02,
+        "crosstalk": 0.003,
         "imu_turned": (0.0, 0.0, 0.03),
         "ranking": (),
     }

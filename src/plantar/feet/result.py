@@ -91,6 +91,7 @@ def _axis_model(fit: AxisFit, turn: ImuTurn) -> AxisModel:
         fit.moment_arms,
         turned=fit.turned,
         leans=fit.leans,
+        crosstalk=fit.crosstalk,
         imu_turned=(x, y, z),
     )
     if fit.choice is None:

@@ -137,5 +137,6 @@ def _stored_model(result: FeetResult, foot: str, axis: Axis) -> FittedModel | No
         moment_arms=(0.0, 0.0) if entry is None else entry.moment_arms,
         turned=0.0 if entry is None else entry.turned,
         leans=0.0 if entry is None else entry.leans,
+        crosstalk=0.0 if entry is None else entry.crosstalk,
         imu_turned=(0.0, 0.0, 0.0) if entry is None else entry.imu_turned,
     )

@@ -115,9 +115,10 @@ class AxisModel:
     """The bush model of one axis of one foot, and why it was chosen.
 
     `moment_arms` [m]: by how much the logs show the bush's centre aside and above its place; `turned` [rad]: by how
-    much the force sensor is turned about the vertical, `leans` about the other axis; `imu_turned` [rad]: by how much
-    the IMU is turned about each of its axes, as far as that shows. `held_out` says what was held out, `ranking` holds
-    every model tried; both are None where none was compared.
+    much the force sensor is turned about the vertical, `leans` about the other axis; `crosstalk` [N.m/N]: of the
+    horizontal force that turns the other axis; `imu_turned` [rad]: by how much the IMU is turned about each of its
+    axes, as far as that shows. `held_out` says what was held out, `ranking` holds every model tried; both are None
+    where none was compared.
     """
 
     foot: str
@@ -130,6 +131,7 @@ class AxisModel:
     ranking: tuple[Candidate, ...] | None = None
     turned: float = 0.0
     leans: float = 0.0
+    crosstalk: float = 0.0
     imu_turned: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     def to_dict(self) -> dict[str, Any]:
@@ -137,7 +139,7 @@ class AxisModel:
         content = {("law" if key == "model" else key): value for key, value in asdict(self).items()}
         if not any(self.moment_arms):
             del content["moment_arms"]
-        for name in ("turned", "leans"):
+        for name in ("turned", "leans", "crosstalk"):
             if not content[name]:
                 del content[name]
         if not any(self.imu_turned):

@@ -61,19 +61,21 @@ def test_rows_of_a_foot_that_steps_have_stances_weights_and_what_is_not_the_bush
     assert (len(block.response), block.thinned, block.nuisance) == (COUNT, 1, None)
     assert np.array_equal(block.stances.weight, WALK.weight)
     middle = block.common_nuisance[250]
-    assert middle == pytest.approx([LOAD, -30.0, TORQUE[250], 7.0], rel=1e-6)
-    assert list(block.common_spread) == [np.inf, 0.006, 0.02, 0.02]  # type: ignore[arg-type]
+    assert middle == pytest.approx([LOAD, -30.0, TORQUE[250], 7.0, 20.0], rel=1e-6)
+    assert list(block.common_spread) == [np.inf, 0.006, 0.02, 0.02, 0.004]  # type: ignore[arg-type]
     assert blocks_of([made_recording("sway", ANGLE, TORQUE)], FOOT, "roll")[0].common_spread is None
 
 
-@pytest.mark.parametrize(("axis", "across"), [("pitch", 20.0), ("roll", -30.0)])
-def test_a_load_s_torque_is_the_sum_of_its_parts(axis: str, across: float) -> None:
+@pytest.mark.parametrize(("axis", "across", "along"), [("pitch", 20.0, 30.0), ("roll", -30.0, 20.0)])
+def test_a_load_s_torque_is_the_sum_of_its_parts(axis: str, across: float, along: float) -> None:
     recording = loaded(made_recording("sway", ANGLE, TORQUE))
     fit = replace(FIT, axis=axis, moment_arms=(0.01, 0.002), turned=0.1)  # type: ignore[arg-type]
     expected = 0.01 * LOAD + 0.002 * across + 0.1 * TORQUE
     assert load_torque(recording, fit)[500:1500] == pytest.approx(expected[500:1500], abs=1e-6)
     leaning = load_torque(recording, replace(fit, leans=0.05))
     assert leaning[500:1500] == pytest.approx(expected[500:1500] + 0.05 * 7.0, abs=1e-6)
+    crossed = load_torque(recording, replace(fit, crosstalk=0.004))
+    assert crossed[500:1500] == pytest.approx(expected[500:1500] + 0.004 * along, abs=1e-6)
     (block,) = blocks_of([recording], FOOT, axis, fit=replace(fit, offsets={"sway": 0.0}))  # type: ignore[arg-type]
     assert block.response[250:750] == pytest.approx((TORQUE - expected)[500:1500:2], abs=1e-6)
 
@@ -117,9 +119,10 @@ def test_a_memory_s_path_is_quicker_in_stances_and_without_its_drift() -> None:
 
 def test_a_walk_s_data_set_is_without_what_is_not_the_bush_s() -> None:
     recording = loaded(made_recording("walk", ANGLE, TORQUE, stances=WALK))
-    for axis, across in (("pitch", 20.0), ("roll", -30.0)):
-        found = data_set_of(recording, FOOT, axis, 0.3, above=0.01, turned=0.2, leans=0.05)  # type: ignore[arg-type]
-        assert found.torque == pytest.approx(0.8 * TORQUE - 0.01 * across - 0.05 * 7.0)
+    place = {"above": 0.01, "turned": 0.2, "leans": 0.05, "crosstalk": 0.004}
+    for axis, across, along in (("pitch", 20.0, 30.0), ("roll", -30.0, 20.0)):
+        found = data_set_of(recording, FOOT, axis, 0.3, **place)  # type: ignore[arg-type]
+        assert found.torque == pytest.approx(0.8 * TORQUE - 0.01 * across - 0.05 * 7.0 - 0.004 * along)
         assert found.steps is not None
         assert found.steps.share == 0.3
 
@@ -147,7 +150,7 @@ def test_a_fit_s_numbers_by_name() -> None:
     assert slips.slip_angle == 0.02
     assert list(slips.numbers) == [400.0, 10.0, 3.0, 0.02]
     assert slips.names == ("stiffness", "damping", "slip_torque", "slip_angle")
-    assert list(slips.at_place(np.array([1.0, 2.0, 3.0, 4.0])).place) == [1.0, 2.0, 3.0, 4.0]
+    assert list(slips.at_place(np.arange(5.0)).place) == [0.0, 1.0, 2.0, 3.0, 4.0]
 
 
 def test_columns_of_a_memory_are_gaps_in_the_air() -> None:

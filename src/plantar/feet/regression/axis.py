@@ -31,8 +31,9 @@ class FittedModel:
 
     `moment_arms` [m]: by how much the bush's centre is aside and above its place; `turned` [rad]: by how much the
     force sensor is turned about the vertical, so that the other axis' torque shows in this one; `leans` [rad]: about
-    the other axis, so that the yaw torque does; `imu_turned` [rad]: by how much the IMU is turned about each of its
-    axes, as far as that shows while joints between it and the foot move.
+    the other axis, so that the yaw torque does; `crosstalk` [N.m/N]: of the horizontal force that turns the
+    other axis; `imu_turned` [rad]: by how much the IMU is turned about each of its axes, as far as that shows while
+    joints between it and the foot move.
     Of the recordings that were fitted: `offsets` [N.m], `initial_states` of the model's memory in each recording's
     runs, and the `drifts` that its path is without.
     """
@@ -45,6 +46,7 @@ class FittedModel:
     moment_arms: tuple[float, float] = (0.0, 0.0)
     turned: float = 0.0
     leans: float = 0.0
+    crosstalk: float = 0.0
     imu_turned: tuple[float, float, float] = (0.0, 0.0, 0.0)
     offsets: Mapping[str, float] = field(default_factory=dict)
     initial_states: Mapping[str, Array] = field(default_factory=dict)
@@ -56,8 +58,8 @@ class FittedModel:
 
     @property
     def place(self) -> Array:
-        """`moment_arms`, `turned` and `leans`, as the columns of steps take them, (4,)."""
-        return np.array([*self.moment_arms, self.turned, self.leans])
+        """`moment_arms`, `turned`, `leans` and `crosstalk`, as the columns of steps take them, (5,)."""
+        return np.array([*self.moment_arms, self.turned, self.leans, self.crosstalk])
 
     @property
     def slip_angle(self) -> float | None:
@@ -66,9 +68,9 @@ class FittedModel:
         return float(self.shape[terms.index("slip_angle")]) if "slip_angle" in terms else None
 
     def at_place(self, place: Array) -> Self:
-        """The same about another `place` (4,)."""
-        aside, above, turned, leans = place.tolist()
-        return replace(self, moment_arms=(aside, above), turned=turned, leans=leans)
+        """The same about another `place` (5,)."""
+        aside, above, turned, leans, crosstalk = place.tolist()
+        return replace(self, moment_arms=(aside, above), turned=turned, leans=leans, crosstalk=crosstalk)
 
     @property
     def numbers(self) -> Array:

@@ -36,12 +36,13 @@ def place_columns(recording: Recording, foot: str, axis: Axis) -> Array:
 
 
 def step_columns(recording: Recording, foot: str, axis: Axis) -> Array:
-    """`place_columns`, and the yaw torque, which shows where a sensor leans about the other axis, (N, 4).
+    """`place_columns`, the yaw torque, which shows where a sensor leans about the other axis, and the horizontal force
+    that turns the other axis, which shows by crosstalk alone, (N, 5).
 
-    A foot that steps turns the robot: its yaw torque is as large as the others.
+    A foot that steps turns the robot, and pushes it to all sides: these are as large as the others.
     """
-    moments, other = moment_columns(recording, foot, axis), others_torque(recording, foot, axis)
-    return np.column_stack([moments, other, recording.loads(foot)[:, 3]])
+    loads, along = recording.loads(foot), 1 - ROTATIONAL_AXES.index(axis)
+    return np.column_stack([place_columns(recording, foot, axis), loads[:, 3], loads[:, along]])
 
 
 def others_torque(recording: Recording, foot: str, axis: Axis) -> Array:
@@ -65,7 +66,7 @@ def load_torque(recording: Recording, fitted: FittedModel) -> Array:
     place = fitted.place
     if not place.any():
         return np.zeros(len(recording.time))
-    if not fitted.leans:  # as where a foot stands
+    if not place[3:].any():  # as where a foot stands
         return np.asarray(place_columns(recording, fitted.foot, fitted.axis) @ place[:3])
     return np.asarray(step_columns(recording, fitted.foot, fitted.axis) @ place)
 
@@ -78,3 +79,8 @@ def yaw_torque(recording: Recording, foot: str) -> Array:
 def across_force(recording: Recording, foot: str, column: int) -> Array:
     """The horizontal force that a higher centre turns into torque, (N,) [N], unfiltered."""
     return np.asarray(ACROSS[column] * recording.bushes[foot].wrench[:, column])
+
+
+def along_force(recording: Recording, foot: str, column: int) -> Array:
+    """The horizontal force that reaches a torque by crosstalk alone, (N,) [N], unfiltered."""
+    return np.asarray(recording.bushes[foot].wrench[:, 1 - column])

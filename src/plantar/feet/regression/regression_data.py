@@ -14,7 +14,14 @@ from plantar.estimation.orthonormal import orthonormal
 from plantar.estimation.slow_drift import drift_beside
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AngleDrift, AxisFit
-from plantar.feet.regression.load_torque import across_force, load_of, load_torque, step_columns, yaw_torque
+from plantar.feet.regression.load_torque import (
+    across_force,
+    along_force,
+    load_of,
+    load_torque,
+    step_columns,
+    yaw_torque,
+)
 from plantar.feet.regression.model_columns import (
     UNTURNED,
     Turn,
@@ -27,10 +34,11 @@ from plantar.feet.regression.model_columns import (
 from plantar.model_selection.data_sets import DataSet, StepColumns
 from plantar.model_selection.variable_projection import SHAPE_STEP
 
-# Before any data, of where steps find the centre [m] and how far the force sensor is turned about the vertical [rad]:
-# aside anything (the torque of the load is its own), in height some millimetres of the robot file's and of the slide
-# under load, turned or leaning by a degree, as a mount that nobody measured.
-PLACE_SPREAD = np.array([np.inf, 0.006, 0.02, 0.02])
+# Before any data, of where steps find the centre [m], how far the force sensor is turned about the vertical [rad], and
+# of its crosstalk [N.m/N]: aside anything (the torque of the load is its own), in height some millimetres of the robot
+# file's and of the slide under load, turned or leaning by a degree, as a mount that nobody measured, and crosstalk as
+# the robot file has it unless told.
+PLACE_SPREAD = np.array([np.inf, 0.006, 0.02, 0.02, 0.004])
 FEWEST_SAMPLES = 50  # of one recording, for it to take part in a fit
 
 
@@ -148,6 +156,7 @@ def data_set_of(
     above: float = 0.0,
     turned: float = 0.0,
     leans: float = 0.0,
+    crosstalk: float = 0.0,
     imu_turned: Turn = UNTURNED,
     drift: AngleDrift | None = None,
 ) -> DataSet:
@@ -155,7 +164,7 @@ def data_set_of(
 
     `imu_turned`: as in `motion_of`; of a foot that stands: the `drift` of its angle. Of a foot that steps: `own_share`
     of the offsets of stances is their own; the bush's centre is `above` its place in the robot file [m], the force
-    sensor `turned` about the vertical, and `leans` about the other axis [rad].
+    sensor `turned` about the vertical, and `leans` about the other axis [rad], with its `crosstalk` [N.m/N].
     """
     column, stances = ROTATIONAL_AXES.index(axis), recording.stances[foot]
     torque, used = recording.bushes[foot].torque[:, column], recording.used(foot)
@@ -166,5 +175,5 @@ def data_set_of(
     steps = StepColumns(stances.number, load_of(recording, foot)[:, None], own_share)
     raw = recording.raw[foot].torque
     measured = raw[:, column] - above * across_force(recording, foot, column) - turned * raw[:, 1 - column]
-    measured -= leans * yaw_torque(recording, foot)
+    measured -= leans * yaw_torque(recording, foot) + crosstalk * along_force(recording, foot, column)
     return DataSet(recording.name, path_of(recording, foot, axis), measured, used, steps)
