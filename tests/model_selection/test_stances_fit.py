@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from scipy.optimize import brentq
 
 from plantar.model_selection.data_sets import DataSet, StepColumns
@@ -73,3 +74,29 @@ def test_spring_and_element_are_told_apart_through_short_stances() -> None:
     )
     assert abs(fit.value("stiffness") / K - 1) < 0.005
     assert np.sqrt(np.mean(errors**2)) < 0.2
+
+
+def shaken(seed: int) -> DataSet:
+    """Stances of 0.7 s of a foot that steps and shakes, the element followed forty times as finely as it is sampled."""
+    random, fine = np.random.default_rng(seed), 40
+    time = PERIOD / fine * np.arange(24 * fine / PERIOD)
+    angle, rate = np.zeros((2, len(time)))
+    for frequency, size in ((1.0, 0.03), (2.0, 0.01), (4.3, 0.003), (9.0, 0.0015), (17.0, 0.0004)):
+        pace = 2 * np.pi * frequency * random.normal(1.0, 0.02)
+        phase = pace * time + random.uniform(0.0, 2 * np.pi)
+        angle, rate = angle + size * np.sin(phase), rate + size * pace * np.cos(phase)
+    element, state = np.empty(len(time)), 0.0
+    for place, step in enumerate(np.diff(angle, prepend=angle[0]).tolist()):
+        state = element[place] = min(max(state + step, -SLIP_ANGLE), SLIP_ANGLE)
+    torque = K * angle + C * rate + SLIP_TORQUE / SLIP_ANGLE * element
+    time, angle, rate, torque = (column[::fine] for column in (time, angle, rate, torque))
+    away = np.where(time % 0.8 > 0.7, np.nan, 0.0)
+    steps = StepColumns((time // 0.8).astype(np.intp), np.zeros((len(time), 1)), 1.0)
+    motion = BushMotion(angle + away, rate + away, PERIOD)
+    return DataSet(str(seed), motion, torque + away, away == 0, steps)
+
+
+def test_a_turn_between_two_samples_takes_nothing_off_the_slip_angle() -> None:
+    fit = fit_model(MODELS["elastoplastic"], [shaken(seed) for seed in (1, 2)])
+    assert fit.value("slip_angle") == pytest.approx(SLIP_ANGLE, rel=0.002)
+    assert fit.value("slip_torque") == pytest.approx(SLIP_TORQUE, rel=0.002)

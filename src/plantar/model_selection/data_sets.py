@@ -17,7 +17,10 @@ from plantar.signals.filters import SHORTEST_RUN, SHORTEST_STANCE_RUN, low_pass
 
 SAMPLES_PER_CYCLE = 7  # of the filter's cutoff, that thinning keeps
 THIN_BAND = 4.0  # cutoffs, that survive thinning
-SAMPLES_PER_CYCLE_IN_STANCES = 16  # so that the path keeps the band that survives thinning
+# Likewise, of the path that a memory follows through short stances: of four, slip angles lack half a per cent.
+PATH_BAND = 6.0
+# So that a turn between two samples is seen: half as many take another half a per cent off slip angles.
+SAMPLES_PER_CYCLE_IN_STANCES = 32
 
 
 @dataclass(frozen=True)
@@ -69,11 +72,13 @@ class DataSet:
     def thinned(self, cutoff: float) -> DataSet:
         """Every nth sample, after a filter well above `cutoff` [Hz]; itself where it is slow already."""
         period = self.motion.period
-        samples = SAMPLES_PER_CYCLE if self.steps is None else SAMPLES_PER_CYCLE_IN_STANCES
+        samples, cutoffs = SAMPLES_PER_CYCLE, THIN_BAND
+        if self.steps is not None:
+            samples, cutoffs = SAMPLES_PER_CYCLE_IN_STANCES, PATH_BAND
         stride = int(1 / (period * samples * cutoff) + 1e-6)
         if stride < 2:
             return self
-        band = THIN_BAND * cutoff
+        band = cutoffs * cutoff
         motion = self.motion
         pairs = np.column_stack([motion.deflection, motion.rate])
         path = low_pass(pairs, period, band, self.shortest_run)

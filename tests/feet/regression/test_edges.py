@@ -102,8 +102,8 @@ def test_an_imu_s_turn_moves_the_angle_and_its_rate() -> None:
 
 
 def test_a_memory_s_path_is_quicker_in_stances_and_without_its_drift() -> None:
-    """Four times the fit's cutoff: a tone of 20 Hz is halved; a foot that stands follows what the fit sees."""
-    quick = np.sin(2 * np.pi * 20.0 * TIME)
+    """Six times the fit's cutoff: a tone of 30 Hz is halved; a foot that stands follows what the fit sees."""
+    quick = np.sin(2 * np.pi * 30.0 * TIME)
     walk = replace(
         made_recording("walk", quick, TORQUE, rate=quick, stances=replace(WALK, number=np.zeros(COUNT, int)))
     )

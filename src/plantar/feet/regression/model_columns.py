@@ -11,10 +11,10 @@ import numpy as np
 from plantar.conventions import ROTATIONAL_AXES, Array, Axis, Mask
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import FittedModel
+from plantar.model_selection.data_sets import PATH_BAND
 from plantar.models import BESIDE, BushMotion, KelvinVoigt
 from plantar.signals.filters import SHORTEST_RUN, SHORTEST_STANCE_RUN, differentiate, low_pass
 
-PATH_BAND = 4.0  # times the fit's cutoff, of the path that a memory follows through short stances
 Turn = tuple[float, float, float]
 UNTURNED: Turn = (0.0, 0.0, 0.0)
 
