@@ -179,7 +179,7 @@ def test_what_spring_and_element_take_from_each_other() -> None:
         linear, model=MODELS["elastoplastic"], values=np.array([400.0, 20.0, 3.0]), shape=np.array([0.01])
     )
     (cause,) = _shared_slope(fit, [recording])
-    assert cause.share == pytest.approx([0.005 * 300.0, 0.012 * 20.0, 0.012 * 3.0, 0.012 * 0.01])
+    assert cause.share == pytest.approx([0.003 * 300.0, 0.012 * 20.0, 0.012 * 3.0, 0.006 * 0.01])
 
 
 def test_what_an_element_that_never_turns_takes_from_the_spring_leaves_their_sum() -> None:

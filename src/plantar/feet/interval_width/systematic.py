@@ -25,10 +25,11 @@ from plantar.signals.segments import run_numbers
 SUSPECTED = 2.0  # deviations of a term that the model leaves out
 STANCE_END = 0.1  # of a stance at either end, without which a fit over stances is made again
 # Of the slope of an element found in short stances, what its share of the spring is unsure by; of its slip torque and
-# slip angle, and of the damping beside it, what these are: by errors on walks of two simulated robots, less what other
-# causes make of them.
-SLOPE_UNSURE = 0.005
+# of the damping beside it, what these are, and of its slip angle: by errors on walks of two simulated robots, less what
+# other causes make of them.
+SLOPE_UNSURE = 0.003
 ELEMENT_UNSURE = 0.012
+ANGLE_UNSURE = 0.006
 FEWEST_STANDS = 2  # stances of a foot in one recording, for their zeros to differ
 SINGULAR = 1e6  # condition of the fit beyond which nothing moves enough to tell
 KNOWN = 0.2  # of the stiffness: less sure beside such a term, the motions cannot tell one from the other
@@ -152,7 +153,7 @@ def _shared_slope(fit: AxisFit, recordings: Sequence[Recording]) -> list[Cause]:
     effect[[0, place]] = spring * element_slope(fit), -torque * fit.values[place]
     effect[1] = ELEMENT_UNSURE * fit.values[1]  # both make loops
     if fit.slip_angle is not None:
-        effect[len(fit.values) + fit.model.shape_terms.index("slip_angle")] = ELEMENT_UNSURE * fit.slip_angle
+        effect[len(fit.values) + fit.model.shape_terms.index("slip_angle")] = ANGLE_UNSURE * fit.slip_angle
     return [Cause("memory in stances", effect, 1.0)]
 
 
