@@ -79,6 +79,20 @@ LITERAL_EDGES = (
         ("sensors/delays/test_edges.py",),
     ),
     Mutant(
+        "sensors/delays/refined_delays.py", "half of what encoders leave in doubt of a delay",
+        "return UNIFORM * float(np.sqrt(max(moved**2", "return 0.5 * UNIFORM * float(np.sqrt(max(moved**2",
+        ("sensors/delays/test_edges.py",),
+    ),
+    Mutant(
+        "model_selection/data_sets.py", "turns between two samples are lost", "SAMPLES_PER_CYCLE_IN_STANCES = 32",
+        "SAMPLES_PER_CYCLE_IN_STANCES = 16", ("model_selection/test_stances_fit.py",),
+    ),
+    Mutant(
+        "feet/regression/regression_data.py", "crosstalk stays in what a memory is fitted to",
+        "yaw_torque(recording, foot) + crosstalk * along_force(recording, foot, column)", "yaw_torque(recording, foot)",
+        ("feet/regression/test_edges.py",),
+    ),
+    Mutant(
         "feet/assess/verdicts.py", "a share for per cent", "loses {100 * self.softened:.0f} %",
         "loses {self.softened:.0f} %", ("feet/assess/test_texts.py",),
     ),
