@@ -128,7 +128,7 @@ def test_a_mount_explains_nothing_while_no_joint_turns_it() -> None:
 
 
 def test_what_is_missed_is_counted_about_its_mean() -> None:
-    """Pushes for a quarter of the time: 2·¼·¾ of their height about their mean, however far from it most samples are."""
+    """Pushes for a quarter of the time: 2·¼·¾ of their height about their mean, far as most samples are from it."""
     height, lively = 8.0, swayed(COUNT)
     pushes = height * (np.sin(2 * np.pi * 0.7 * TIME) > np.cos(np.pi / 4))
     seen = made_recording("sway", lively, STIFFNESS * lively)
@@ -144,8 +144,8 @@ def test_what_is_missed_is_counted_about_its_mean() -> None:
 
 @pytest.mark.parametrize("seconds", [2.0, 8.0])
 def test_a_mount_is_drawn_to_none_by_its_deviation(seconds: float) -> None:
-    """Blows for a tenth of the time, as a turn of two deviations about y would make them: after one step 1 - 1 / (1 + A)
-    of it is taken, A = seconds · (1 / 2)²; what is left is smaller, and a second step takes as much more of it."""
+    """Blows for a tenth of the time, as a turn by two deviations makes them: one step takes A / (1 + A) of it,
+    A = seconds · (1 / 2)²; what is left is smaller, so that a second step takes more."""
     blows = (np.arange(1000) % 10 == 0).astype(float)
     wanted = 2 * MOUNT
     found = _mount_that_fits(lambda turned: 300.0 * (wanted - turned[1]) * blows, np.zeros(3), MOUNT, seconds)

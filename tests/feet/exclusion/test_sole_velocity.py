@@ -64,7 +64,7 @@ def test_noise_and_drift_add_as_squares() -> None:
 
 def test_strain_widens_where_the_velocity_is_off_under_it() -> None:
     """A tenth of the samples is strained at 4 m²/s⁴ and off by more: noise's square and a share of 4 add up to it."""
-    strained = TIME > 0.9 * TIME[-1]
+    strained = np.arange(TIME.size) > 0.9 * TIME.size
     speed, least = 0.02, 0.003
     velocity = np.where(strained, speed, 0.0)[:, None] * [0.6, -0.8]
     found = sole_velocity._deviation(velocity, least, STILL[:, 0], np.where(strained, 4.0, 0.0))
