@@ -59,7 +59,9 @@ def test_yaml_keeps_every_number(feet: dict[str, Any], tmp_path: Path) -> None:
     export(feet, "yaml", tmp_path / "f.yaml")
     data = yaml.safe_load((tmp_path / "f.yaml").read_text())
     left = data["feet"]["left"]
-    assert left["axes"]["pitch"]["stiffness"]["value"] == 480
+    assert left["axes"]["pitch"]["stiffness"] == {
+        "value": 480.0, "unit": "N.m/rad", "std": 4.8, "interval95": [470.4, 489.6], "verdict": "usable"
+    }  # fmt: skip
     assert left["axes"]["roll"]["offset_by_motion"]["sway"]["value"] == pytest.approx(-4.62)
     assert left["bush_centre"] == CENTRE.tolist()
     np.testing.assert_allclose(left["bush_rotation"], bush_rotation("left"), atol=1e-12)
