@@ -1,0 +1,141 @@
+"""Careless changes of two blind draws, lines by lot over all rooms, that no test noticed then: each with its test."""
+
+from __future__ import annotations
+
+from mutant import Mutant
+
+DRAWN_BLIND = (
+    Mutant(
+        "exporters/plain.py",
+        "a number's deviation stays behind",
+        'KEPT = ("value", "unit", "std", "interval95", "verdict")',
+        'KEPT = ("value", "unit", "interval95", "verdict")',
+        ("exporters/test_export.py",),
+    ),
+    Mutant(
+        "checks/gyroscope.py",
+        "an inverted quaternion is offered where it is none",
+        'turns.apart["inverted"] < RIGHT_TURN\n            text',
+        'turns.apart["inverted"] > RIGHT_TURN\n            text',
+        ("checks/test_gyroscope.py",),
+    ),
+    Mutant(
+        "motions/feasible.py",
+        "torques with the legs of the plan's beginning",
+        "pin.computeJointJacobians(model, data, q[row])",
+        "pin.computeJointJacobians(model, data, q[0])",
+        ("motions/test_feasible.py",),
+    ),
+    Mutant(
+        "fleet/summary.py",
+        "failures as they come, not by their number",
+        "in counts.most_common())",
+        "in counts.items())",
+        ("fleet/test_summary.py",),
+    ),
+    Mutant(
+        "checks/bush_axes.py",
+        "a bush's place is not turned with its ankle",
+        "places[carrier, 0] + turn @ placement.translation",
+        "places[carrier, 0] + placement.translation",
+        ("checks/test_bush_axes.py",),
+    ),
+    Mutant(
+        "report/verdict.py",
+        "remedies only where a number may be used",
+        "if found is None or advice != found.advice",
+        "if found is not None and advice != found.advice",
+        ("report/test_verdict.py",),
+    ),
+    Mutant(
+        "robot_guess/bush.py",
+        "pieces too short for a fit alone are left out",
+        "if len(table):\n",
+        "if len(table) > FEWEST_SAMPLES:\n",
+        ("robot_guess/test_bush.py",),
+    ),
+    Mutant(
+        "robot_guess/evidence.py",
+        "only what leaves an outline on both axes",
+        "beyond = np.maximum(\n",
+        "beyond = np.minimum(\n",
+        ("robot_guess/test_evidence.py",),
+    ),
+    Mutant(
+        "cli/fleet/run.py",
+        "a model's name is not looked at",
+        "if model not in MODEL_CHOICES:",
+        "if not model:",
+        ("cli/test_refusals.py",),
+    ),
+    Mutant(
+        "robot_guess/__init__.py",
+        "joints' names of the first log alone",
+        "set().union(*(recorded_joints(log) for log in logs)) if",
+        "set(recorded_joints(logs[0])) if",
+        ("robot_guess/test_names_of_logs.py",),
+    ),
+    Mutant(
+        "exporters/usd/stage.py",
+        "a stage's unit of mass is not looked at",
+        "if not np.allclose(units, 1.0):",
+        "if not np.allclose(units[0], 1.0):",
+        ("exporters/test_usd.py",),
+    ),
+    Mutant(
+        "feet/exclusion/sole_velocity.py",
+        "noise and drift differ, not add",
+        "least = np.hypot(max(",
+        "least = np.subtract(max(",
+        ("feet/exclusion/test_sole_velocity.py",),
+    ),
+    Mutant(
+        "feet/exclusion/sole_velocity.py",
+        "noise added to the slope's bend",
+        "bent -= 6 * noise**2",
+        "bent += 6 * noise**2",
+        ("feet/exclusion/test_sole_velocity.py",),
+    ),
+    Mutant(
+        "feet/exclusion/sole_velocity.py",
+        "steps taken off the slope's bend as they are added",
+        "noise**2 + 2 * far *",
+        "noise**2 - 2 * far *",
+        ("feet/exclusion/test_sole_velocity.py",),
+    ),
+    Mutant(
+        "feet/exclusion/sole_velocity.py",
+        "a speed of x less y",
+        "speed = np.hypot(*velocity.T)",
+        "speed = np.subtract(*velocity.T)",
+        ("feet/exclusion/test_sole_velocity.py",),
+    ),
+    Mutant(
+        "feet/assess/contradiction.py",
+        "errors about their median",
+        "values - np.mean(values)",
+        "values - np.median(values)",
+        ("feet/assess/test_contradiction.py",),
+    ),
+    Mutant(
+        "feet/assess/contradiction.py",
+        "a mount's rows by the usual error",
+        "np.mean(now**2)",
+        "np.median(now**2)",
+        ("feet/assess/test_contradiction.py",),
+    ),
+    Mutant(
+        "twin/robots/from_robot.py",
+        "limits of joints without end",
+        "(-np.inf, np.inf) if circular else _limits(model, model.joints[joint].idx_q)",
+        "_limits(model, model.joints[joint].idx_q) if circular else (-np.inf, np.inf)",
+        ("twin/robots/test_from_robot.py",),
+    ),
+    Mutant(
+        "exporters/xml_file.py",
+        "a word that is a number of its own",
+        "values = np.empty(0)",
+        "values = np.empty(1)",
+        ("exporters/test_edges.py",),
+    ),
+)
