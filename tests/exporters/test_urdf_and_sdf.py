@@ -144,7 +144,8 @@ def test_meshes_that_mujoco_reads_stay_in_its_model(feet: dict[str, Any], urdf: 
     obj = [f"v {x} {y} {z}" for x, y, z in corners] + [f"f {a} {b} {c}" for a, b, c in faces]
     (tmp_path / "a.obj").write_text("\n".join(obj) + "\n")
     (tmp_path / "c.dae").write_text("<COLLADA/>")
-    shapes = "".join(
+    shapes = '<collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision>'
+    shapes += "".join(
         f'<collision><geometry><mesh filename="{name}"/></geometry></collision>'
         for name in ("a.obj", "c.dae")
     )
@@ -154,4 +155,4 @@ def test_meshes_that_mujoco_reads_stay_in_its_model(feet: dict[str, Any], urdf: 
     (lost,) = [note.text for note in notes if note.code == "export_mesh"]
     assert lost.endswith(": c.dae")
     pelvis = ET.parse(tmp_path / "out.xml").getroot().find(".//body[@name='pelvis']")
-    assert [geom.get("mesh") for geom in pelvis.findall("geom")] == ["a"]  # type: ignore[union-attr]
+    assert [geom.get("mesh") for geom in pelvis.findall("geom")] == [None, "a"]  # type: ignore[union-attr]

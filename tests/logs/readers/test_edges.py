@@ -10,11 +10,10 @@ import pytest
 
 from plantar.errors import LogError
 from plantar.logs.motion_log import MotionLog
-from plantar.logs.readers import open_log
+from plantar.logs.readers import open_log, text_numbers
 from plantar.logs.readers.force_cells import wrench_of_cells
 from plantar.logs.readers.read_limit import ReadLimit
 from plantar.logs.readers.streams import Stream, increasing, merge, origin, resample
-from plantar.logs.readers import text_numbers
 from plantar.logs.readers.text_numbers import read_numbers
 from plantar.notes import Note
 
