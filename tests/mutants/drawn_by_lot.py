@@ -63,8 +63,8 @@ DRAWN_BY_LOT = (
     Mutant(
         "feet/foot_assessment.py",
         "an edge is nothing to mend first",
-        "first = [*(note for note in found.notes if note.code == ON_AN_EDGE), *faults]",
-        "first = faults",
+        "first = [*(note for note in found.notes if note.code == ON_AN_EDGE), *(faults or far)]",
+        "first = faults or far",
         ("feet/test_foot_fit.py",),
     ),
     Mutant(
