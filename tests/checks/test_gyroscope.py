@@ -177,3 +177,15 @@ def test_few_digits_of_the_orientation_are_no_gain_of_the_gyroscope(log: MotionL
     assert slope < 0.7
     assert codes(few) == []
     assert codes(changed(few, 2.5 * few.stack(GYROSCOPE))) != []
+
+
+def test_a_reversed_axis_names_what_else_would_read_alike(log: MotionLog) -> None:
+    """A chest that only yaws reads with an inverted quaternion as with a reversed z; one that leans does not."""
+    (finding,) = findings(changed(log, log.stack(GYROSCOPE) * [1, -1, 1]))
+    assert "angular_velocity.y'" in finding.text
+    assert "inverted" not in finding.text
+    still = sines((0.0, 0.4, 0.0))
+    yawing = record(sway(duration=40.0, torso=(still, still, sines((0.2, 0.5, 1.0)))))
+    (finding,) = findings(changed(yawing, yawing.stack(GYROSCOPE) * [1, 1, -1]))
+    assert "angular_velocity.z'" in finding.text
+    assert "or the orientation's quaternion is inverted" in finding.text

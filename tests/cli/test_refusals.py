@@ -107,6 +107,8 @@ def write_json(folder: Path, content: object) -> Path:
         ["identify", "feet", "robot.yaml", "log.csv", "--out", "x", "--model", "x"],
         ["identify", "feet", "robot.yaml", "log.csv", "--out", "x", "--cutoff", "fast"],
         ["identify", "feet", "robot.yaml", "log.csv", "--out", "x", "--cutof", "5"],
+        ["fleet", "run", "m.csv", "--out", "x", "--model", "x"],
+        ["fleet", "run", "m.csv", "--out", "x", "--workers", "2", "--scheduler", "tcp://here:1"],
         ["inspect"],
         ["--unknown"],
     ],

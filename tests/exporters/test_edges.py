@@ -17,6 +17,7 @@ from plantar.exporters import export
 from plantar.exporters.bush import FootBush, check_swing, raised
 from plantar.exporters.shapes import plate, reaches_sole
 from plantar.exporters.spring import Slip, Spring, spring_of
+from plantar.exporters.xml_file import vector
 from plantar.notes import Notes
 
 OUTLINE = np.array([[0.1, 0.05], [-0.1, 0.05], [-0.1, -0.05], [0.1, -0.05]])
@@ -249,3 +250,13 @@ def test_ranges_to_train_with(feet: dict[str, Any], tmp_path: Path) -> None:
     between = matrix[places["left.pitch.offset"], places["right.pitch.offset"]]
     assert between == pytest.approx(own[0] * own[1], abs=6e-5), "to four digits"
     assert between == round(between, 4)
+
+
+@pytest.mark.parametrize("text", ["a", "1 2", "nan", "1,2", "1 b"])
+def test_an_attribute_that_is_not_so_many_numbers_is_refused(text: str) -> None:
+    """Of any count, one as well."""
+    for size in (1, 3):
+        with pytest.raises(ExportError, match=f"mass is not {size} numbers"):
+            vector(text, size, "mass")
+    assert vector(" 3 ", 1, "mass") == [3.0]
+    assert vector(None, 3, "axis", 1.0).tolist() == [1.0, 1.0, 1.0]

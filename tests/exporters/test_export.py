@@ -55,11 +55,36 @@ def test_what_was_guessed_goes_along(target: str, feet: dict[str, Any], tmp_path
     assert "marked GUESS" in (tmp_path / "a").read_text()
 
 
+# Of MuJoCo's contact each foot is tried anew, in seconds: what it says of offsets is the other contacts' code.
+@pytest.mark.parametrize("target", [target for target in TARGETS if target != "mujoco-contact"])
+def test_an_offset_that_is_asked_for_is_written_or_said_to_be_left_out(
+    target: str, feet: dict[str, Any], tmp_path: Path
+) -> None:
+    """And where none is asked for, nothing is said of it."""
+    if target == "mjcf":
+        pytest.importorskip("mujoco")
+    model = stage_for(target, tmp_path)
+    said = {
+        asked: [
+            note.code
+            for note in export(feet, target, tmp_path / str(asked), model=model, with_offset=asked)
+            if note.code == "export_offset"
+        ]
+        for asked in (False, True)
+    }
+    assert said[False] == []
+    other = [line for line in (tmp_path / "True").read_text().splitlines() if not line.startswith("#")]
+    same = [line for line in (tmp_path / "False").read_text().splitlines() if not line.startswith("#")]
+    assert said[True] or other != same
+
+
 def test_yaml_keeps_every_number(feet: dict[str, Any], tmp_path: Path) -> None:
     export(feet, "yaml", tmp_path / "f.yaml")
     data = yaml.safe_load((tmp_path / "f.yaml").read_text())
     left = data["feet"]["left"]
-    assert left["axes"]["pitch"]["stiffness"]["value"] == 480
+    assert left["axes"]["pitch"]["stiffness"] == {
+        "value": 480.0, "unit": "N.m/rad", "std": 4.8, "interval95": [470.4, 489.6], "verdict": "usable"
+    }  # fmt: skip
     assert left["axes"]["roll"]["offset_by_motion"]["sway"]["value"] == pytest.approx(-4.62)
     assert left["bush_centre"] == CENTRE.tolist()
     np.testing.assert_allclose(left["bush_rotation"], bush_rotation("left"), atol=1e-12)

@@ -141,3 +141,16 @@ def test_what_a_foot_alone_shows_is_checked_over_loads_steps_and_angles(
     assert found.steps == (0.0005, 0.001)
     assert found.angle == pytest.approx(0.5 * foot.touching_angle("pitch", 0.5 * WEIGHT))
     assert found.torque == pytest.approx(STIFFNESS["pitch"] * found.angle)
+
+
+@pytest.mark.parametrize(("stiffness", "severity"), [(434.0, "warning"), (700.0, "info"), (1200.0, "info")])
+def test_what_the_grounds_push_takes_off_k_is_a_warning_beyond_a_twentieth(
+    stiffness: float, severity: str
+) -> None:
+    """From half of the weight, where K is right, to 1.1 of it: 0.6 of 600 N, 90 mm below the bush, over K."""
+    springs = (SPRINGS[0], replace(SPRINGS[1], stiffness=stiffness), replace(SPRINGS[2], stiffness=9000.0))
+    bush = replace(FOOT, springs=springs)
+    note = next(note for note in said(bush, spring_foot(bush, WEIGHT), WEIGHT) if "pitch: K" in note.text)
+    off = float(re.search(r"off by ([-+][\d.]+) %", note.text)[1])  # type: ignore[index]
+    assert off == pytest.approx(-100 * 0.6 * 600 * 0.09 / stiffness, abs=0.15)
+    assert note.severity == severity

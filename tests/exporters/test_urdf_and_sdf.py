@@ -134,3 +134,25 @@ def test_the_urdf_is_found_from_the_folder_in_which_identify_ran(
     monkeypatch.chdir(folder)
     export("result.json", "urdf", "robot.urdf")
     assert "LLEG_BUSH_PITCH" in Path("robot.urdf").read_text()
+
+
+def test_meshes_that_mujoco_reads_stay_in_its_model(feet: dict[str, Any], urdf: Path, tmp_path: Path) -> None:
+    """Another format is left out, and named."""
+    pytest.importorskip("mujoco")
+    corners = [(0, 0, 0), (0.1, 0, 0), (0, 0.1, 0), (0, 0, 0.1)]
+    faces = [(1, 3, 2), (1, 2, 4), (2, 3, 4), (3, 1, 4)]
+    obj = [f"v {x} {y} {z}" for x, y, z in corners] + [f"f {a} {b} {c}" for a, b, c in faces]
+    (tmp_path / "a.obj").write_text("\n".join(obj) + "\n")
+    (tmp_path / "c.dae").write_text("<COLLADA/>")
+    shapes = '<collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision>'
+    shapes += "".join(
+        f'<collision><geometry><mesh filename="{name}"/></geometry></collision>'
+        for name in ("a.obj", "c.dae")
+    )
+    text = urdf.read_text().replace('<link name="pelvis">', f'<link name="pelvis">{shapes}', 1)
+    urdf.write_text(text)
+    notes = export(feet, "mjcf", tmp_path / "out.xml", model=urdf)
+    (lost,) = [note.text for note in notes if note.code == "export_mesh"]
+    assert lost.endswith(": c.dae")
+    pelvis = ET.parse(tmp_path / "out.xml").getroot().find(".//body[@name='pelvis']")
+    assert [geom.get("mesh") for geom in pelvis.findall("geom")] == [None, "a"]  # type: ignore[union-attr]

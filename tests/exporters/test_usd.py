@@ -114,6 +114,7 @@ def test_what_is_wrong_with_a_stage_is_said(tmp_path: Path, capsys: pytest.Captu
     cases = {
         "not.usda": ("nonsense", "USD cannot open"),
         "centimetres.usda": (good.replace("metersPerUnit = 1", "metersPerUnit = 0.01"), "0.01 m"),
+        "grams.usda": (good.replace("kilogramsPerUnit = 1", "kilogramsPerUnit = 0.001"), "0.001 kg"),
         "renamed.usda": (good.replace("left_ankle", "left_ancle"), "valid: left_ancle"),
     }
     for name, (text, words) in cases.items():

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -70,3 +72,17 @@ def test_a_fit_reads_the_same_rows_of_a_decimated_recording(robot: RobotModel) -
 
 def test_a_foot_that_steps_is_not_decimated(walk: Recording) -> None:
     assert walk.decimated("left") is walk
+
+
+def test_what_joints_and_imu_do_passes_the_bushes_filter(robot: RobotModel) -> None:
+    """Slow motion stays, shaking goes: effects that stand beside a filtered torque are as it is."""
+    raw = prepare(robot, checked(robot, record(sway(duration=20.0))), "fit")
+    slow, quick = (np.sin(2 * np.pi * hertz * raw.time) for hertz in (0.3, 25.0))
+
+    def both(shape: tuple[int, ...], share: float) -> np.ndarray:
+        return np.multiply.outer(slow + share * quick, 1.0 + np.arange(np.prod(shape)).reshape(shape))
+
+    given = replace(raw, encoder_rates={"left": both((2,), 1.0)}, imu_turns={"left": both((2, 3), 1.0)})
+    found, inside = filtered_recording(given, CUTOFF), slice(200, -200)
+    np.testing.assert_allclose(found.encoder_rates["left"][inside], both((2,), 0.0)[inside], atol=0.02)
+    np.testing.assert_allclose(found.imu_turns["left"][inside], both((2, 3), 0.0)[inside], atol=0.06)

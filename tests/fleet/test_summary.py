@@ -118,7 +118,7 @@ def test_failures_are_counted_by_what_they_say() -> None:
     alike = [
         (name, f"/{name}.csv", f"/{name}.csv: t = {time} s: bad") for name, time in (("a", 3.5), ("b", 9))
     ]
-    found = reasons_of(failures(*alike, ("c", "", "no memory")))
+    found = reasons_of(failures(("c", "", "no memory"), *alike))
     assert [(one.reason, one.count) for one in found] == [("t = # s: bad", 2), ("no memory", 1)]
     assert found[0].example == "/a.csv: t = 3.5 s: bad"
 

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import FrozenInstanceError
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from biped import record, sway
+from example_robots import talos_file
 from plantar.errors import LogError
 from plantar.logs.motion_log import COLUMN, MotionLog, imu_columns
 from plantar.notes import Note
-from plantar.robot.model import RobotModel
+from plantar.robot.model import RobotModel, load_robot
 
 
 def make(**columns: list[float]) -> MotionLog:
@@ -143,6 +145,22 @@ def test_positions_follow_the_robot_and_missing_joints_stand_at_zero(robot: Robo
     assert "right_ankle_roll" in notes["joint_missing"]
     assert "tail" in notes["joint_unknown"]
     assert "neck" not in notes["joint_unknown"]
+
+
+def test_only_joints_that_no_foot_needs_are_cut_short(tmp_path: Path) -> None:
+    """Of the robot's twenty or more arm and waist joints three are named; of the legs' six all."""
+    robot, bare = load_robot(talos_file(tmp_path)), np.arange(3.0)
+    every = {f"joint.{name}.position": bare for name in robot.joint_names}
+    on_path = [name for name in robot.joint_names if name in robot.path_joints]
+    others = [name for name in robot.joint_names if name not in robot.path_joints]
+    without = [f"joint.{name}.position" for name in others]
+    (note,) = MotionLog("a", bare, {k: v for k, v in every.items() if k not in without}).joint_notes(robot)
+    assert note.text.endswith(
+        f"{', '.join(others[:3])} and {len(others) - 3} more; none lies between IMU and feet"
+    )
+    needed = [f"joint.{name}.position" for name in on_path[:6]]
+    (note,) = MotionLog("a", bare, {k: v for k, v in every.items() if k not in needed}).joint_notes(robot)
+    assert note.text.endswith(", ".join(on_path[:6]))
 
 
 def test_selecting_and_adding_leave_the_original_alone() -> None:

@@ -8,6 +8,7 @@ from designed_motions import DESIGNED_MOTIONS
 from drawn import DRAWN
 from drawn_again import DRAWN_AGAIN
 from drawn_anew import DRAWN_ANEW
+from drawn_blind import DRAWN_BLIND
 from drawn_by_lot import DRAWN_BY_LOT
 from drawn_everywhere import DRAWN_EVERYWHERE
 from drawn_last import DRAWN_LAST
@@ -41,5 +42,6 @@ LISTS = {
     "drawn_last": DRAWN_LAST,
     "drawn_once_more": DRAWN_ONCE_MORE,
     "drawn_by_lot": DRAWN_BY_LOT,
+    "drawn_blind": DRAWN_BLIND,
     "literal_edges": LITERAL_EDGES,
 }

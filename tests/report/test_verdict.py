@@ -52,6 +52,10 @@ def test_what_limits_a_number_does_not_say_again_what_its_verdict_says() -> None
     assert said.remedies == ("Against noise: record for longer.",)
     other = limits(replace(standing_result(), parameters=ROWS, diagnosis=(fresh,)))
     assert other.widest == fresh.text
+    assert other.remedies == ()
+    lost = [replace(row, verdict="unidentifiable") for row in ROWS]
+    none = limits(replace(standing_result(), parameters=lost, diagnosis=(known, fresh)))
+    assert (none.widest, none.remedies) == ("", said.remedies)
     assert (other.each, other.remedies) == ((), ())
 
 

@@ -37,6 +37,22 @@ def test_the_horizontal_force_shows_the_height(height: float, axis: int) -> None
     assert _height([about(height)], FOOT, axis) == pytest.approx(height, abs=1e-3)
 
 
+def test_a_recording_in_pieces_shows_the_same_height_with_an_offset_of_its_own_in_each() -> None:
+    """Each too short for a fit by itself."""
+    whole = about(0.03)
+    pieces = []
+    for number, start in enumerate(range(0, COUNT, 150)):
+        rows = slice(start, start + 150)
+        piece = made_recording("piece", whole.bushes[FOOT].deflection[rows, 0], np.zeros(150))
+        state = whole.bushes[FOOT]
+        cut = {key: getattr(state, key)[rows] for key in ("deflection", "rate", "wrench", "torque")}
+        cut["torque"] = cut["torque"] + 3.0 * number
+        moved = replace(piece.bushes[FOOT], **cut)
+        pieces.append(replace(piece, bushes={FOOT: moved}, raw={FOOT: moved}))
+    assert _height(pieces, FOOT, 0) == pytest.approx(0.03, abs=3e-3)
+    assert _height(pieces[:1], FOOT, 0) is None
+
+
 def test_a_torque_that_no_bush_explains_shows_none() -> None:
     assert _height([about(0.03, noise=8.0)], FOOT, 0) is None
     assert _height([], FOOT, 0) is None

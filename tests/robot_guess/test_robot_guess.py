@@ -213,6 +213,22 @@ def test_a_log_that_contradicts_the_urdf_is_doubted(tmp_path: Path) -> None:
     assert "# Seen: the feet carry 60" in text
 
 
+def test_what_a_log_lacks_or_holds_twice_is_said(tmp_path: Path) -> None:
+    """A robot that hangs, and a second IMU, which is not taken for the first."""
+    log = record(LARGE)
+    hung = {
+        name: 0.05 * values if name.startswith("wrench.") else values for name, values in log.columns.items()
+    }
+    _, text = guessed(tmp_path / "hung", MotionLog("hung", log.time, hung))
+    assert "# DOUBT: the feet never carry the robot's weight: nothing could be checked" in text
+    twice = {name.replace("imu.chest", "imu.head"): values for name, values in log.columns.items()}
+    robot, text = guessed(tmp_path / "twice", MotionLog("twice", log.time, {**log.columns, **twice}))
+    assert robot.imu is not None
+    assert robot.imu.name == "chest"
+    assert "; the logs also hold head" in text
+    assert "also hold" not in guessed(tmp_path / "once", log)[1]
+
+
 def test_a_log_of_another_robot_is_an_error(tmp_path: Path) -> None:
     log = record(LARGE)
     columns = {

@@ -64,8 +64,10 @@ def _save_mcap(log: MotionLog, path: Path, frames: Mapping[str, str]) -> tuple[N
     except ImportError as error:
         raise MissingExtra("rosbags", "logs", "writing MCAP") from error
     stamps = np.rint(log.time * 1e9).astype(np.int64)
-    if stamps[0] < 0 or stamps[-1] >= 2**31 * 10**9:
-        raise LogError("lies outside what a ROS stamp can hold", path=log.source, time=float(log.time[0]))
+    outside = (stamps < 0) | (stamps >= 2**31 * 10**9)
+    if outside.any():
+        first = float(log.time[outside][0])
+        raise LogError("lies outside what a ROS stamp can hold", path=log.source, time=first)
     store = get_typestore(Stores.ROS2_HUMBLE)
     with tempfile.TemporaryDirectory() as folder:
         bag = Path(folder) / "bag"

@@ -10,7 +10,12 @@ import pytest
 from feet_trials import LINEAR
 from made_recording import FOOT, PERIOD, made_recording, swayed
 from plantar.conventions import Array
-from plantar.feet.assess.contradiction import contradiction, missed_motions
+from plantar.feet.assess.contradiction import (
+    _mount_that_fits,
+    beside_drift,
+    contradiction,
+    missed_motions,
+)
 from plantar.feet.assess.scores import score_axis
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.results.feet import ValidationRow
@@ -35,6 +40,21 @@ def test_motions_that_are_missed_although_the_liveliest_is_not() -> None:
         missed_motions([scored("sway", 9.0, 17.0), worst]) == []
     )  # where nothing holds, nothing contradicts
     assert missed_motions([]) == []
+
+
+@pytest.mark.parametrize(
+    ("liveliest", "share", "load", "missed"),
+    [
+        (0.29, 0.51, 0.11, True),
+        (0.31, 0.51, 0.11, False),
+        (0.29, 0.49, 0.11, False),
+        (0.29, 0.51, 0.09, False),
+    ],
+)
+def test_the_edges_of_a_missed_motion(liveliest: float, share: float, load: float, missed: bool) -> None:
+    """Shares of a constant's error; the load of the liveliest motion's."""
+    rows = [scored("sway", 20.0 * liveliest, 20.0), scored("lean", share * load * 20.0, load * 20.0)]
+    assert missed_motions(rows) == rows[1:] * missed
 
 
 def found(error: Array, waist: Array | None = None, turned: float = 0.0) -> ValidationRow | None:
@@ -105,3 +125,30 @@ def test_a_mount_that_the_robot_file_allows_is_no_contradiction() -> None:
 def test_a_mount_explains_nothing_while_no_joint_turns_it() -> None:
     swing = 5.0 * np.sin(2 * np.pi * 0.2 * TIME)
     assert found(swing, 0.5 * np.sin(2 * np.pi * 0.5 * TIME)) is not None
+
+
+def test_what_is_missed_is_counted_about_its_mean() -> None:
+    """Pushes for a quarter of the time: 2·¼·¾ of their height about their mean, far as most samples are from it."""
+    height, lively = 8.0, swayed(COUNT)
+    pushes = height * (np.sin(2 * np.pi * 0.7 * TIME) > np.cos(np.pi / 4))
+    seen = made_recording("sway", lively, STIFFNESS * lively)
+    unseen = made_recording("push", swayed(COUNT, 0.006, seed=1), pushes, role="validate")
+    turns = {FOOT: np.zeros((COUNT, 2, 3))}
+    seen, unseen = replace(seen, imu_turns=turns), replace(unseen, imu_turns=turns)
+    fit = fit_axis([seen], FOOT, "pitch", LINEAR)
+    assert fit is not None
+    scores, predictions = score_axis([seen, unseen], fit)
+    row = beside_drift(scores[1], fit, unseen, predictions, 0.0)
+    assert row.zero_mean_abs == pytest.approx(0.375 * height, rel=0.03)
+
+
+@pytest.mark.parametrize("seconds", [2.0, 8.0])
+def test_a_mount_is_drawn_to_none_by_its_deviation(seconds: float) -> None:
+    """Blows for a tenth of the time, as a turn by two deviations makes them: one step takes A / (1 + A) of it,
+    A = seconds · (1 / 2)²; what is left is smaller, so that a second step takes more."""
+    blows = (np.arange(1000) % 10 == 0).astype(float)
+    wanted = 2 * MOUNT
+    found = _mount_that_fits(lambda turned: 300.0 * (wanted - turned[1]) * blows, np.zeros(3), MOUNT, seconds)
+    first = seconds / 4
+    second = first / (1 / (1 + first)) ** 2
+    assert found == pytest.approx([0.0, wanted * second / (1 + second), 0.0], abs=1e-9)

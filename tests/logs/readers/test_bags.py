@@ -216,3 +216,14 @@ def test_a_bag_of_many_bombs_is_stopped_by_its_own_size(
     monkeypatch.setattr(read_limit, "RATIO", 0)
     with pytest.raises(LogError, match="unpacks to more than 1 kB"):
         open_log(path)
+
+
+@pytest.mark.parametrize(
+    ("time", "outside"), [([-0.5, 0.0, 0.5], -0.5), ([2.0**31 - 1, 2.0**31, 2.0**31 + 1], 2.0**31)]
+)
+def test_a_time_that_no_stamp_holds_is_named(time: list[float], outside: float, tmp_path: Path) -> None:
+    """Seconds of a stamp are counted from 0 to 2^31, and what is written is whole or not there."""
+    with pytest.raises(LogError, match="ROS stamp") as refused:
+        save_log(MotionLog("log", np.array(time), {}), tmp_path / "log.mcap")
+    assert f"{outside:g}" in str(refused.value) or str(outside) in str(refused.value)
+    assert not any(tmp_path.iterdir())

@@ -10,7 +10,7 @@ import pytest
 
 from plantar.errors import LogError
 from plantar.logs.motion_log import MotionLog
-from plantar.logs.readers import open_log
+from plantar.logs.readers import open_log, text_numbers
 from plantar.logs.readers.force_cells import wrench_of_cells
 from plantar.logs.readers.read_limit import ReadLimit
 from plantar.logs.readers.streams import Stream, increasing, merge, origin, resample
@@ -141,6 +141,23 @@ def test_names_count_where_there_are_as_many_as_columns(tmp_path: Path) -> None:
     path.write_text("# nothing\n\n")
     with pytest.raises(LogError, match="holds no numbers"):
         read_numbers(path, ReadLimit(path), notes)
+
+
+@pytest.mark.parametrize("size", [16, 100, 4096])
+def test_a_file_in_blocks_reads_as_it_does_whole(
+    size: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whatever the block's length cuts: a number, a line, the names above them, the count of lines."""
+    path, rows = tmp_path / "log.txt", [f"{row} {row / 7:.6f}" for row in range(300)]
+    rows[200] += " 3"
+    path.write_text("\n".join(["# a b", *rows, ""]))
+    monkeypatch.setattr(text_numbers, "BLOCK", size)
+    notes: list[Note] = []
+    values, names = read_numbers(path, ReadLimit(path), notes)
+    assert names == ["a", "b"]
+    assert values[:, 0].tolist() == [row for row in range(300) if row != 200]
+    assert values[-1, 1] == pytest.approx(299 / 7, abs=1e-6)
+    assert [note.text for note in notes] == ["log.txt: line 202 left out: not 2 numbers"]
 
 
 CELLS = [[0.1, 0.05], [0.1, -0.05], [-0.1, 0.0]]

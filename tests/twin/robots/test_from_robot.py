@@ -6,8 +6,10 @@ from pathlib import Path
 
 import mujoco
 import numpy as np
+import pinocchio as pin
 import pytest
 
+from biped_robot import URDF
 from example_robots import G1, ICUB, ROMEO
 from plantar.robot.model import load_robot
 from plantar.robot_guess import guess_robot_file
@@ -25,3 +27,41 @@ def test_published_urdfs_stand_in_mujoco_with_their_weight(tmp_path: Path, urdf:
     robot = load_robot(file)
     model = mujoco.MjModel.from_xml_string(mjcf_text(robot, {"left": BUSH, "right": BUSH}, Scene()))
     assert float(np.sum(model.body_mass)) == pytest.approx(robot.mass, rel=2e-3)
+
+
+@pytest.mark.parametrize("urdf", [G1, None], ids=["g1", "a neck that turns without end"])
+def test_the_twin_of_a_urdf_has_its_limits_and_its_mass_matrix(tmp_path: Path, urdf: Path | None) -> None:
+    """MuJoCo's, of the joints among each other, beside Pinocchio's, in a posture that turns every joint."""
+    if urdf is None:
+        urdf = tmp_path / "biped.urdf"
+        urdf.write_text(URDF.replace('"neck" type="revolute"', '"neck" type="continuous"'))
+    file = tmp_path / "robot.yaml"
+    file.write_text(guess_robot_file(urdf, [], file))
+    robot = load_robot(file)
+    model = mujoco.MjModel.from_xml_string(mjcf_text(robot, {"left": BUSH, "right": BUSH}, Scene()))
+    data = mujoco.MjData(model)
+    q, asked = pin.neutral(robot.model), np.random.default_rng(0).uniform(-0.4, 0.4, robot.model.nv)
+    q = pin.integrate(robot.model, q, asked)
+    rows = []
+    for name, angle in zip(list(robot.model.names)[1:], asked, strict=True):
+        joint, own = model.joint(name), robot.model.joints[robot.model.getJointId(name)]
+        data.qpos[joint.qposadr] = angle
+        rows.append(int(joint.dofadr[0]))
+        endless = own.nq == 2
+        assert bool(joint.limited[0]) != endless
+        if not endless:
+            low, high = robot.model.lowerPositionLimit[own.idx_q], robot.model.upperPositionLimit[own.idx_q]
+            assert joint.range == pytest.approx([low, high])
+    assert any(joint.nq == 2 for joint in robot.model.joints) == (urdf != G1)
+    mujoco.mj_forward(model, data)
+    found, column = np.empty((len(rows), len(rows))), np.empty(model.nv)
+    for place, row in enumerate(rows):
+        mujoco.mj_mulM(model, data, column, np.eye(model.nv)[row])
+        found[:, place] = column[rows]
+    found -= np.diag(model.dof_armature[rows])
+    wanted = np.array(pin.crba(robot.model, robot.model.createData(), q))
+    wanted = np.triu(wanted) + np.triu(wanted, 1).T
+    # The bushes' plates are the twin's own; no joint but those between IMU and feet moves them.
+    assert np.abs(found - wanted).max() < 0.02 * wanted.max()
+    free = [place for place, name in enumerate(robot.joint_names) if name not in robot.path_joints]
+    assert found[np.ix_(free, free)] == pytest.approx(wanted[np.ix_(free, free)], abs=1e-9)

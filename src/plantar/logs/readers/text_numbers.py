@@ -74,7 +74,7 @@ class _Lines:
                 self.names = [word.decode("utf-8", "replace") for word in words]
                 continue
             self.limit.columns(len(words))
-            self._width, self._line = len(words), index
+            self._width, self._line = len(words), self._line + index
             if len(self.names) != self._width:
                 self.names = []
             return lines[index:]

@@ -1,0 +1,66 @@
+// When a foot counts as standing, by its vertical force: shares of the weight, and times.
+#include "online/contact_gate.hpp"
+
+#include "check.hpp"
+
+using namespace plantar;
+
+namespace {
+
+constexpr double WEIGHT = 500.0, PERIOD = 0.001;  // N, s
+
+// The state after `seconds` of one load [N].
+ContactState after(ContactGate& gate, double load, double seconds) {
+  for (int tick = 0; tick < static_cast<int>(seconds / PERIOD + 0.5); ++tick) gate.step(load, 0.0, true, true, PERIOD);
+  return gate.contact();
+}
+
+void a_foot_that_stands_from_the_first_reading_lands_with_it() {
+  ContactGate gate(WEIGHT, false);
+  check::that(gate.step(150.0, 0.0, true, true, PERIOD) == ContactState::landing, "landed with the first reading");
+  check::that(after(gate, 150.0, 0.24) == ContactState::landing, "not settled yet");
+  check::that(after(gate, 150.0, 0.02) == ContactState::stance, "settled after a quarter of a second");
+}
+
+void between_both_shares_it_stays_what_it_was() {
+  ContactGate gate(WEIGHT, false);
+  check::that(after(gate, 0.09 * WEIGHT, 1.0) == ContactState::air, "less than a tenth of the weight");
+  check::that(after(gate, 0.11 * WEIGHT, 1.0) == ContactState::stance, "more than a tenth");
+  check::that(after(gate, 0.06 * WEIGHT, 1.0) == ContactState::stance, "more than a twentieth");
+  check::that(after(gate, 0.04 * WEIGHT, 1.0) == ContactState::air, "less than a twentieth");
+  check::that(gate.stances() == 1, "one stance so far");
+}
+
+void a_blow_of_a_tick_is_no_landing() {
+  ContactGate gate(WEIGHT, false);
+  after(gate, 0.0, 0.1);
+  check::that(after(gate, 0.4 * WEIGHT, PERIOD) == ContactState::air, "40 Hz pass a quarter of it");
+  check::that(after(gate, 0.0, 0.1) == ContactState::air, "gone again");
+}
+
+void missing_readings_are_forgotten_with_what_was_before_them() {
+  ContactGate gate(WEIGHT, false);
+  after(gate, 300.0, 1.0);
+  gate.restart();
+  check::that(gate.contact() == ContactState::landing, "old: it has to settle anew");
+  check::that(gate.step(0.0, 0.0, true, true, PERIOD) == ContactState::air, "the next reading alone tells");
+}
+
+void short_stances_settle_sooner() {
+  ContactGate gate(WEIGHT, false);
+  for (int step = 0; step < 40; ++step) after(gate, 300.0, 0.6), after(gate, 0.0, 0.4);
+  check::near(gate.settling(), 0.06, 0.002, "a tenth of a usual stance");
+  for (int step = 0; step < 40; ++step) after(gate, 300.0, 5.0), after(gate, 0.0, 0.4);
+  check::near(gate.settling(), 0.25, 1e-9, "a quarter of a second at most");
+}
+
+}  // namespace
+
+int main() {
+  a_foot_that_stands_from_the_first_reading_lands_with_it();
+  between_both_shares_it_stays_what_it_was();
+  a_blow_of_a_tick_is_no_landing();
+  missing_readings_are_forgotten_with_what_was_before_them();
+  short_stances_settle_sooner();
+  return check::result();
+}

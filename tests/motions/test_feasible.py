@@ -1,0 +1,60 @@
+"""What a plan asks of the joints, beside the statics of the bodies that they hold up."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+from plantar.errors import MotionError
+from plantar.motions.body import Body
+from plantar.motions.feasible import check
+from plantar.twin.robots import hrp2
+from twin_samples import plan
+
+GRAVITY = 9.81
+KNEES = ("RLEG_JOINT3", "LLEG_JOINT3")
+
+
+def held_up(row: int) -> float:
+    """A knee's torque [N·m] in a squat on two feet: half the moment about the knees of all that is above."""
+    squat, model = plan("Squat"), hrp2.robot().model
+    data, q = model.createData(), pin.neutral(model)
+    for name, value in zip(squat.joints, squat.positions[row], strict=True):
+        q[model.joints[model.getJointId(name)].idx_q] = value
+    pin.forwardKinematics(model, data, q)
+    places = [data.oMi[joint].act(model.inertias[joint].lever) for joint in range(model.njoints)]
+    below = {joint for name in KNEES for joint in model.subtrees[model.getJointId(name)]}
+    knee = data.oMi[model.getJointId(KNEES[0])].translation
+    turn = squat.base[row][:3, :3]
+    return (
+        0.5
+        * GRAVITY
+        * sum(
+            model.inertias[joint].mass * float((turn @ (place - knee))[0])
+            for joint, place in enumerate(places)
+            if joint not in below
+        )
+    )
+
+
+def test_a_knee_that_cannot_hold_the_squat_is_named_with_its_torque() -> None:
+    squat, body = plan("Squat"), Body(hrp2.robot())
+    moments = np.abs([held_up(row) for row in range(0, len(squat.time), 20)])
+    assert moments.max() > 1.5 * moments[0]
+    limits = np.zeros(body.model.nv)  # 0: no limit
+    knees = [body.model.joints[body.model.getJointId(name)].idx_v for name in KNEES]
+    limits[knees] = 1.1 * moments.max()
+    body.model.upperEffortLimit = limits
+    check(body, squat)
+    limits[knees] = 0.9 * moments.max()
+    body.model.upperEffortLimit = limits
+    with pytest.raises(MotionError, match="JOINT3' needs") as refused:
+        check(body, squat)
+    time, needs = (
+        float(re.search(pattern, str(refused.value))[1])  # type: ignore[index]
+        for pattern in (r"t = ([\d.]+) s", r"needs ([\d.]+)")
+    )
+    assert needs == pytest.approx(abs(held_up(int(np.searchsorted(squat.time, time - 1e-6)))), rel=0.03)
