@@ -12,13 +12,14 @@ import example_robots
 from biped import SLIPPING, TRUTH, record, sway, times
 from biped_robot import write_robot
 from plantar.contact.deflection import bush_states
+from plantar.conventions import ROTATIONAL_AXES
 from plantar.errors import DataError, LogError, RobotError, SettingsError
 from plantar.logs.motion_log import MotionLog
 from plantar.online.estimates import Contact, Flag
 from plantar.online.estimator import FootEstimator
 from plantar.online.replay import Replay
 from plantar.results.feet import FeetResult
-from plantar.results.feet_rows import DelayEstimate, Parameter
+from plantar.results.feet_rows import AxisModel, DelayEstimate, LinearEquivalent, Parameter
 from plantar.robot.model import RobotModel, load_robot
 
 
@@ -93,6 +94,34 @@ def test_a_known_compliance_moves_the_torques_to_the_loaded_centre(robot: RobotM
             found = moved.column(foot, name) - plain.column(foot, name)
             np.testing.assert_allclose(found, change, atol=1e-9)
             assert np.abs(change).max() > 0.01
+
+
+def test_what_a_batch_fit_has_found_misplaced_is_put_right(robot: RobotModel) -> None:
+    """Torque of the load, of the horizontal force, of the other axis and of yaw, as the fit had it beside the bush's."""
+    log, aside, above, turned, leans = record(sway(duration=60.0)), 0.01, 0.03, 0.1, -0.05
+    plain = FootEstimator(robot, wrench_delay=0.0).replay(log)
+    alone = LinearEquivalent(400.0, 20.0)
+    found = tuple(
+        AxisModel(foot, axis, "kelvin_voigt", "", alone, (aside, above), turned=turned, leans=leans)
+        for foot in robot.feet
+        for axis in ROTATIONAL_AXES
+    )
+    result = FeetResult("biped", (), {}, "kelvin_voigt", (), (), (), (), (), models=found)
+    told = FootEstimator(robot, result, wrench_delay=0.0).replay(log)
+    for foot in robot.feet:
+        x, y, z = log.wrench(robot.feet[foot].wrench.name)[:, :3].T  # in the bush's axes
+        sensor = (
+            robot.frame(robot.feet[foot].bush)[1].inverse()
+            * robot.frame(robot.feet[foot].wrench.placement)[1]
+        )
+        yaw = (
+            log.wrench(robot.feet[foot].wrench.name)[:, 3:]
+            + np.cross(sensor.translation, np.array([x, y, z]).T)
+        )[:, 2]
+        for axis, other, across in (("pitch", "roll", x), ("roll", "pitch", -y)):
+            torque, others = (plain.column(foot, f"{one}.torque") for one in (axis, other))
+            wanted = torque - (aside * z + above * across + turned * others + leans * yaw)
+            np.testing.assert_allclose(told.column(foot, f"{axis}.torque"), wanted, atol=1e-9)
 
 
 def test_known_feet_are_found(robot: RobotModel) -> None:

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "online/air_zero.hpp"
 #include "online/axis_regression.hpp"
@@ -128,6 +129,8 @@ class FootTracker {
   bool flat_ = false;                     // the centre of pressure is inside the sole
   bool stood_ = false;                    // it stood at the last tick
   bool lifted_ = false;                   // its elements are followed from its last stance, through the air
+  bool tips_ = false;                     // on its edge, of a foot that does not step
+  double inside_until_ = std::numeric_limits<double>::lowest();            // the last time at which it was not on its edge
   bool rolled_ = false;                   // the sole was rolling over its edge at the last tick
   double angles_before_[2] = {}, rates_before_[2] = {};  // of the last tick that the elements have followed
   bool begun_elements_ = false;                          // their bounds are those of a bush somewhere on its way

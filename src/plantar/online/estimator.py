@@ -35,9 +35,9 @@ class FootEstimator:
 
     Args:
         robot: the robot file, or what `load_robot` made of it.
-        result: of `identify_feet`, for elements that slip in bushes with hysteresis, the slides' compliance, the
-            sensors' delay and the filter's cutoff; without one bushes are springs with dampers, and `identified` only
-            where motions were large enough to show a hysteresis.
+        result: of `identify_feet`, for elements that slip in bushes with hysteresis, the slides' compliance, where bush
+            and force sensor sit, the sensors' delay and the filter's cutoff; without one bushes are springs with
+            dampers, and `identified` only where motions were large enough to show a hysteresis.
         wrench_delay: how late the force sensors are against the IMU [s], > 0: late. None takes the result's; without a
             result none, and widens the damping's deviation by what the robot file's `uncertainty` allows.
         cutoff: of the filter that deflection, rate and torque pass before they are compared [Hz]; None takes the
@@ -74,6 +74,7 @@ class FootEstimator:
             elements=_elements(result),
             compliance={} if result is None else result.compliance,
             linear=_linear(result),
+            misplaced=_misplaced(result),
         )
         self._core = _core.FootEstimator(self._model)
         self._rows = np.empty((len(self.robot.feet), len(FIELDS)))
@@ -206,6 +207,12 @@ def _linear(result: FeetResult | None) -> list[tuple[str, Axis]]:
         for axis in ROTATIONAL_AXES
         if row.axis == axis and row.name == "stiffness" and row.verdict == "usable"
     ]
+
+
+def _misplaced(result: FeetResult | None) -> dict[tuple[str, Axis], tuple[float, float, float, float]]:
+    """Where a batch fit has found bush and force sensor: aside, above [m], turned, leaning [rad]."""
+    models = () if result is None else result.models
+    return {(one.foot, one.axis): (*one.moment_arms, one.turned, one.leans) for one in models}
 
 
 def _row(what: str, values: ArrayLike | None, size: int) -> Array | None:
