@@ -1,4 +1,4 @@
-"""An encoder that stands still for seconds while the robot moves, and encoders that repeat themselves in good health."""
+"""An encoder that stands still for seconds while the robot moves, and good encoders that repeat themselves."""
 
 from __future__ import annotations
 

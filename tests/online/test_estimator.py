@@ -97,7 +97,7 @@ def test_a_known_compliance_moves_the_torques_to_the_loaded_centre(robot: RobotM
 
 
 def test_what_a_batch_fit_has_found_misplaced_is_put_right(robot: RobotModel) -> None:
-    """Torque of the load, of the horizontal force, of the other axis and of yaw, as the fit had it beside the bush's."""
+    """Torque of the load, of the horizontal force, of the other axis and of yaw, as the fit had it beside."""
     log, aside, above, turned, leans = record(sway(duration=60.0)), 0.01, 0.03, 0.1, -0.05
     plain = FootEstimator(robot, wrench_delay=0.0).replay(log)
     alone = LinearEquivalent(400.0, 20.0)
