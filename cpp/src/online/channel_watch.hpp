@@ -14,11 +14,12 @@ constexpr int FROZEN_SAMPLES = 8;                      // and so many samples: a
 constexpr double NOISY_TIME = 10.0;                    // s, in which a noisy channel repeats itself
 constexpr double NOISY_REPEATS = 0.01;                 // so rarely
 constexpr double WHOLE_TURN = 2.0 * std::numbers::pi;  // rad: no joint of a leg turns further: those are degrees
-constexpr double FROZEN_WAY = 0.01;   // rad or m that a joint's velocity says it moved while its position stood
-constexpr double TWIN_MOVED = 0.02;   // rad or m that the other leg's joint has moved, while this one never did by a bit
-constexpr double STEP_OF_WAY = 0.005;  // rad or m: what is less on a way is an encoder's noise or step (1.5 mrad)
-constexpr double LEGS_MOVED = 0.1;     // rad or m: nine joints of iCub have stood for 0.1 s while others went 0.06
-constexpr double BEYOND_USUAL = 2.0;   // times the longest way during which it has stood and moved again
+constexpr double FROZEN_WAY = 0.01;  // rad or m that a joint has moved, as its velocity or others say, while it stood
+constexpr double FROZEN_STEPS = 100.0;  // of its encoder's, by others: good ones that turned round have stood for 40
+constexpr double BEYOND_USUAL = 2.0;    // times the longest way of others during which it has stood, and moved again
+constexpr double TWIN_MOVED = 0.02;  // rad or m that the other leg's joint has moved, while this one never did by a bit
+constexpr double LEAST_WAY = 0.002;  // rad or m: less is noise of an encoder, and so are
+constexpr double FLICKER = 3.0;      // steps of it
 
 inline bool all_finite(std::span<const double> values) noexcept {
   for (const double value : values)
@@ -84,12 +85,13 @@ class JointWatch {
 
   bool frozen(double position, double velocity, double dt) noexcept {
     repeats_.see(position, dt);
+    if (begun_ && position != last_) step_ = std::min(step_, std::abs(position - last_));
     way_ = begun_ && position == last_ ? way_ + std::abs(velocity) * dt : 0.0;
     if (begun_ && position != last_) dead_ = false;
     last_ = position;
     low_ = begun_ ? std::min(low_, position) : position, high_ = begun_ ? std::max(high_, position) : position;
-    const double step = begun_ ? std::abs(position - corner_) : STEP_OF_WAY;
-    if (step >= STEP_OF_WAY) corner_ = position, moved_ += begun_ ? step : 0.0;
+    const double gone = begun_ ? std::abs(position - corner_) : 0.0;
+    if (!begun_ || gone > std::max(LEAST_WAY, FLICKER * step_)) corner_ = position, moved_ += gone;
     begun_ = true;
     return way_ > FROZEN_WAY;
   }
@@ -100,24 +102,27 @@ class JointWatch {
   }
   // Whether it stands where it should not. leg: the way of the joints of its leg [rad or m].
   bool stuck(const JointWatch& twin, double leg) noexcept {
-    const double limit = std::max(LEGS_MOVED, BEYOND_USUAL * usual_);
+    const double limit = std::max({FROZEN_WAY, FROZEN_STEPS * step_, BEYOND_USUAL * usual_});
     if (repeats_.changed()) {
       if (passed_ <= limit) usual_ = std::max(usual_, passed_);
       twin_then_ = twin.moved_, leg_then_ = leg, passed_ = 0.0;
     }
     if (!repeats_.stuck()) return false;
+    silent_ = silent_ || twin.repeats_.stuck();
     passed_ = std::min(twin.moved_ - twin_then_, leg - leg_then_);
-    return passed_ > limit || (repeats_.noisy() && twin.repeats_.noisy() && !twin.repeats_.stuck());
+    return passed_ > limit || (!silent_ && repeats_.noisy() && twin.repeats_.noisy());
   }
-  // Its way since the first tick, in steps that no noise makes [rad or m].
+  // Its way since the first tick, without its noise [rad or m].
   double moved() const noexcept { return moved_; }
 
  private:
   RepeatWatch repeats_;
   double last_ = 0.0, way_ = 0.0, low_ = 0.0, high_ = 0.0, corner_ = 0.0, moved_ = 0.0;
+  double step_ = LARGEST;                    // the smallest change: an encoder's step, or noise
   double twin_then_ = 0.0, leg_then_ = 0.0;  // their ways when this one stood still first
   double passed_ = 0.0, usual_ = 0.0;        // by how much they have moved since; at most, where it moved again
   bool begun_ = false, dead_ = false;
+  bool silent_ = false;  // it has stood beside its twin without any noise
 };
 
 }  // namespace plantar
