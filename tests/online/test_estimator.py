@@ -141,6 +141,16 @@ def test_it_goes_on_from_what_it_has_learnt(robot: RobotModel) -> None:
     assert short.estimate("left", 0).flags & Flag.TIME_FAULT
 
 
+def test_a_log_in_pieces_is_the_same_log(robot: RobotModel) -> None:
+    log = without(record(sway(duration=20.0)), "orientation")  # the accelerometer in its place
+    whole = FootEstimator(robot, wrench_delay=0.0).replay(log)
+    pieces = list(FootEstimator(robot, wrench_delay=0.0).replay_in_pieces(log, 3.0))
+    assert [len(piece.time) for piece in pieces] == [300, 600, 900, 1200, 1500, 1800, 2001]
+    for piece in pieces:
+        np.testing.assert_array_equal(piece.rows, whole.rows[: len(piece.time)])
+        assert (piece.latency > 0).all()
+
+
 def test_rates_come_from_the_attitude_where_no_gyroscope_is(robot: RobotModel) -> None:
     log = without(record(sway(duration=60.0)), "angular_velocity")
     expect_truth(FootEstimator(robot, wrench_delay=0.0).replay(log), 2e-3, 1e-2)

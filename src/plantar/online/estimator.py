@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import numpy as np
@@ -136,24 +136,47 @@ class FootEstimator:
         Raises:
             LogError: a column is missing.
         """
+        *_, whole = self.replay_in_pieces(log, math.inf)
+        return whole
+
+    def replay_in_pieces(self, log: MotionLog, seconds: float) -> Iterator[Replay]:
+        """The same, and what the log says until then after each piece of it.
+
+        Args:
+            log: as for `replay`. seconds: how long a piece is [s].
+
+        Yields:
+            The log so far; the last one is all of it.
+
+        Raises:
+            LogError: a column is missing.
+        """
         robot, imu = self.robot, self.robot.imu
         assert imu is not None, "checked where the model was made"
         attitude = log.orientation(imu.name)
         gyroscope = attitude is None or log.has_imu(imu.name, "angular_velocity")
+        turning = log.angular_velocity(imu.name) if gyroscope else None
+        acceleration = log.linear_acceleration(imu.name) if attitude is None else None
+        position = np.ascontiguousarray(log.positions(robot))
         wrench = np.stack([log.wrench(foot.wrench.name) for foot in robot.feet.values()], axis=1)
+        time, wrench = np.ascontiguousarray(log.time), np.ascontiguousarray(wrench)
         rows, latency = np.empty((len(log), len(robot.feet), len(FIELDS))), np.empty(len(log))
-        self._core.replay(
-            np.ascontiguousarray(log.time),
-            np.ascontiguousarray(log.positions(robot)),
-            None,  # a controller's own filter makes recorded velocities late
-            attitude,
-            log.angular_velocity(imu.name) if gyroscope else None,
-            log.linear_acceleration(imu.name) if attitude is None else None,
-            np.ascontiguousarray(wrench),
-            rows,
-            latency,
-        )
-        return Replay(log.time, tuple(robot.feet), rows, latency)
+        size = int(min(max(seconds / log.period, 1.0), len(log)))
+        for begin in range(0, len(log), size):
+            piece = slice(begin, min(begin + size, len(log)))
+            self._core.replay(
+                time[piece],
+                position[piece],
+                None,  # a controller's own filter makes recorded velocities late
+                None if attitude is None else attitude[piece],
+                None if turning is None else turning[piece],
+                None if acceleration is None else acceleration[piece],
+                wrench[piece],
+                rows[piece],
+                latency[piece],
+            )
+            until = slice(piece.stop)
+            yield Replay(log.time[until], tuple(robot.feet), rows[until], latency[until])
 
     def write_model(self, path: str | os.PathLike[str]) -> Path:
         """Write the file that `plantar::load_model` reads in C++.
