@@ -11,6 +11,7 @@ namespace {
 constexpr double LEAST_LOAD = 0.02;     // of the weight: a foot that carries less has no centre of pressure
 constexpr double ROLLING_SHARE = 0.1;   // of the sole's half width: a sole that lands may roll so near its outline
 constexpr double LONGEST_STANCE = 5.0;  // s: a foot that stands longer does not step now
+constexpr double LONGEST_SHOCK = 0.04;  // s, in all, as in `identify feet`
 constexpr int STEPS = 3;                // stances, from which a foot counts as one that steps
 constexpr double USUAL_ANGLE = 0.01;    // rad, rad/s: what columns are scaled by
 constexpr double USUAL_RATE = 0.1;
@@ -144,12 +145,14 @@ void FootTracker::learn(const FootKinematics& motion, double others, Doubt doubt
   }
   std::uint32_t flags = estimate_.flags & OF_LEARNING;
   const bool rests = contact == ContactState::stance && !foot_->always;
-  // A foot that steps rolls while it lands and lifts: that is left out anyway. In between it stands flat, and where its
-  // centre of pressure reads beside the outline, the sensor is not where it was told to be, or turned.
+  // A foot that steps rolls while it lands and lifts: that is left out anyway.
   const bool steps = gate_.stances() >= STEPS && gate_.standing_for() < LONGEST_STANCE;
   if (!rests || steps) edge_.restart();
   const bool edge = rests && (inside < EDGE_MARGIN || (!steps && leans(motion, inside, dt)));
-  tips_ = edge && !steps;
+  // No ground presses beside the sole: where the centre of pressure reads there for longer than a shock lasts, the sensor
+  // is not where it was told to be, or turned, and does not show the edge. Between landing and lift the foot stands flat.
+  if (rests && inside < -EDGE_MARGIN && estimate_.load > LIGHT * weight_) beside_time_ += dt;
+  tips_ = edge && !(steps && beside_time_ > LONGEST_SHOCK);
   if (!edge) inside_until_ = time;
   if (contact != ContactState::stance)
     flags |= NOT_STANDING;

@@ -129,7 +129,8 @@ class FootTracker {
   bool flat_ = false;                     // the centre of pressure is inside the sole
   bool stood_ = false;                    // it stood at the last tick
   bool lifted_ = false;                   // its elements are followed from its last stance, through the air
-  bool tips_ = false;                     // on its edge, of a foot that does not step
+  bool tips_ = false;                     // on its edge, as far as its sensor can tell
+  double beside_time_ = 0.0;              // s for which the centre of pressure has read beside the sole
   double inside_until_ = std::numeric_limits<double>::lowest();            // the last time at which it was not on its edge
   bool rolled_ = false;                   // the sole was rolling over its edge at the last tick
   double angles_before_[2] = {}, rates_before_[2] = {};  // of the last tick that the elements have followed
