@@ -14,7 +14,8 @@ constexpr int FROZEN_SAMPLES = 8;                      // and so many samples: a
 constexpr double NOISY_TIME = 10.0;                    // s, in which a noisy channel repeats itself
 constexpr double NOISY_REPEATS = 0.01;                 // so rarely
 constexpr double WHOLE_TURN = 2.0 * std::numbers::pi;  // rad: no joint of a leg turns further: those are degrees
-constexpr double FROZEN_WAY = 0.01;  // rad or m that a joint has moved, as its velocity or others say, while it stood
+constexpr double FROZEN_WAY = 0.01;  // rad or m that a joint's velocity says it moved while its position stood
+constexpr double LEFT_BEHIND = 0.04;  // rad or m that others have moved meanwhile: beside REEM-C's good ones up to 0.02
 constexpr double FROZEN_STEPS = 100.0;  // of its encoder's, by others: good ones that turned round have stood for 40
 constexpr double BEYOND_USUAL = 2.0;    // times the longest way of others during which it has stood, and moved again
 constexpr double TWIN_MOVED = 0.02;  // rad or m that the other leg's joint has moved, while this one never did by a bit
@@ -102,16 +103,19 @@ class JointWatch {
   }
   // Whether it stands where it should not. leg: the way of the joints of its leg [rad or m].
   bool stuck(const JointWatch& twin, double leg) noexcept {
-    const double limit = std::max({FROZEN_WAY, FROZEN_STEPS * step_, BEYOND_USUAL * usual_});
+    const double limit = std::max({LEFT_BEHIND, FROZEN_STEPS * step_, BEYOND_USUAL * usual_});
     if (repeats_.changed()) {
       if (passed_ <= limit) usual_ = std::max(usual_, passed_);
       twin_then_ = twin.moved_, leg_then_ = leg, passed_ = 0.0;
     }
+    doubtful_ = repeats_.stuck() && twin.moved_ - twin_then_ > std::max(LEAST_WAY, FROZEN_STEPS * step_);
     if (!repeats_.stuck()) return false;
     silent_ = silent_ || twin.repeats_.stuck();
     passed_ = std::min(twin.moved_ - twin_then_, leg - leg_then_);
     return passed_ > limit || (!silent_ && repeats_.noisy() && twin.repeats_.noisy());
   }
+  // Whether it stands while its twin moves: nothing may be wrong, but nothing is learnt from it.
+  bool doubtful() const noexcept { return doubtful_; }
   // Its way since the first tick, without its noise [rad or m].
   double moved() const noexcept { return moved_; }
 
@@ -121,7 +125,7 @@ class JointWatch {
   double step_ = LARGEST;                    // the smallest change: an encoder's step, or noise
   double twin_then_ = 0.0, leg_then_ = 0.0;  // their ways when this one stood still first
   double passed_ = 0.0, usual_ = 0.0;        // by how much they have moved since; at most, where it moved again
-  bool begun_ = false, dead_ = false;
+  bool begun_ = false, dead_ = false, doubtful_ = false;
   bool silent_ = false;  // it has stood beside its twin without any noise
 };
 

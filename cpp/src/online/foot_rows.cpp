@@ -37,7 +37,7 @@ void FootTracker::filter(const FootKinematics& motion, double time, double dt, d
   const bool paused = pause_ > 0.0;
   pause_ -= std::min(pause_, dt);
   if (estimate_.contact != ContactState::stance) return;
-  if (tips_ || (estimate_.flags & (SLIP | IMPACT | CONTRADICTION))) {
+  if (left_out_ || (estimate_.flags & (SLIP | IMPACT | CONTRADICTION))) {
     pause_ = std::abs(delay_) + 0.5 * dt;  // one tick, and the delay
     return;
   }

@@ -152,7 +152,7 @@ void FootTracker::learn(const FootKinematics& motion, double others, Doubt doubt
   // No ground presses beside the sole: where the centre of pressure reads there for longer than a shock lasts, the sensor
   // is not where it was told to be, or turned, and does not show the edge. Between landing and lift the foot stands flat.
   if (rests && inside < -EDGE_MARGIN && estimate_.load > LIGHT * weight_) beside_time_ += dt;
-  tips_ = edge && !(steps && beside_time_ > LONGEST_SHOCK);
+  left_out_ = doubt.still || (edge && !(steps && beside_time_ > LONGEST_SHOCK));
   if (!edge) inside_until_ = time;
   if (contact != ContactState::stance)
     flags |= NOT_STANDING;
@@ -172,14 +172,14 @@ void FootTracker::learn(const FootKinematics& motion, double others, Doubt doubt
     for (SmoothAngle& angle : smooth_) angle.restart();
     restart_filter();
   }
-  if (contact != ContactState::stance || tips_ || struck || slides || doubt.contradiction) {
+  if (contact != ContactState::stance || left_out_ || struck || slides || doubt.contradiction) {
     if (running_) held_count_ = 0;
     restart_filter();
   }
   filter(motion, time, dt, fresh ? period : 0.0);
   if (axes_[0].doubted() || axes_[1].doubted()) estimate_.flags |= CONTRADICTION;
   // What sensors that contradict each other have said of the ground until that showed is not believed.
-  if (doubt.contradiction)
+  if (doubt.contradiction || doubt.still)
     for (AxisRegression& axis : axes_) axis.forget_suspicion();
   if (contact == ContactState::stance)
     commit(std::min(time - (foot_->always ? 0.0 : gate_.settling()), inside_until_));
