@@ -86,6 +86,24 @@ def test_an_encoder_that_stands_while_the_robot_moves_is_frozen(
     assert found == pytest.approx(truth, rel=0.02)
 
 
+def test_an_encoder_that_stands_in_a_slow_motion_makes_no_other_ground(robot: RobotModel) -> None:
+    """Too slow to tell it from a leg that stands while the other moves."""
+    whole = sway(duration=80.0)
+
+    def slowed(angle):  # type: ignore[no-untyped-def]
+        return lambda t: angle(np.where(t < 50.0, t, 50.0 + 0.1 * (t - 50.0)))
+
+    ankles = {foot: tuple(slowed(one) for one in both) for foot, both in whole.ankles.items()}
+    slow = replace(whole, torso=tuple(slowed(one) for one in whole.torso), ankles=ankles)
+    log = read(record(slow, at=times(slow, 200.0)), FINE)
+    for begin in (52.0, 58.0, 64.0, 70.0):
+        log = stuck(log, ("left_ankle_pitch",), begin, begin + 4.0)
+    replay = replayed(robot, log)
+    assert not (replay.column("left", "flags").astype(int) & Flag.GROUND_CHANGED).any()
+    found = replay.estimate("left").pitch.stiffness
+    assert found.value == pytest.approx(TRUTH["left", "pitch"].stiffness, rel=0.01)
+
+
 def test_a_whole_leg_of_noisy_encoders_that_stands_is_frozen(robot: RobotModel) -> None:
     log = read(record(sway(duration=60.0)))
     leg = tuple(f"left_{name}" for name in ("ankle_pitch", "ankle_roll", "leg_x", "leg_y", "leg_z"))
