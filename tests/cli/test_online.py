@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from command_line import refused, run
+from plantar.cli.online import _plain
 from plantar.report import live
 
 
@@ -34,6 +35,34 @@ def test_a_log_is_replayed_and_told_as_tables(
     assert "At the end of the log" in out
     assert "a step: median" in out
     assert model.read_text().startswith("plantar.foot_estimator/1")
+
+
+def test_on_a_terminal_a_table_is_refreshed_and_goes(
+    campaign: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("sys.stdout.isatty", lambda: True)
+    monkeypatch.setattr("plantar.cli.online.REFRESH", 0.0)
+    monkeypatch.setenv("TTY_COMPATIBLE", "1")
+    assert run("online", campaign / "robot.yaml", campaign / "first.csv", "--wrench-delay", 0) == 0
+    before, _, after = capsys.readouterr().out.partition("At the end of the log")
+    assert [f"At {seconds:.1f} s" in before for seconds in (1.0, 6.0, 12.0)] == [True] * 3
+    assert "flags now" in before
+    assert "flags now" not in after
+
+
+def test_a_log_is_drawn(campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = ("online", campaign / "robot.yaml", campaign / "first.csv", "--wrench-delay", 0, "-q", "--plot")
+    for kind, begin in (("png", b"\x89PNG"), ("svg", b"<?xml"), ("pdf", b"%PDF")):
+        assert run(*words, tmp_path / f"log.{kind}") == 0
+        assert (tmp_path / f"log.{kind}").read_bytes().startswith(begin)
+    assert "valid: .png, .svg, .pdf" in refused(capsys, *words, tmp_path / "log.jpg")
+
+
+@pytest.mark.parametrize(
+    ("half", "text"), [(226.0, "230"), (3.46, "3.5"), (0.0123, "0.012"), (23.4e6, "23000000"), (None, "–")]
+)
+def test_a_half_width_has_two_digits_and_no_power_of_ten(half: float | None, text: str) -> None:
+    assert _plain(half) == text
 
 
 def test_the_delay_is_told_in_ms_and_written_in_s(campaign: Path, tmp_path: Path) -> None:

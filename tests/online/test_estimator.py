@@ -12,13 +12,14 @@ import example_robots
 from biped import SLIPPING, TRUTH, record, sway, times
 from biped_robot import write_robot
 from plantar.contact.deflection import bush_states
+from plantar.conventions import ROTATIONAL_AXES
 from plantar.errors import DataError, LogError, RobotError, SettingsError
 from plantar.logs.motion_log import MotionLog
 from plantar.online.estimates import Contact, Flag
 from plantar.online.estimator import FootEstimator
 from plantar.online.replay import Replay
 from plantar.results.feet import FeetResult
-from plantar.results.feet_rows import DelayEstimate, Parameter
+from plantar.results.feet_rows import AxisModel, DelayEstimate, LinearEquivalent, Parameter
 from plantar.robot.model import RobotModel, load_robot
 
 
@@ -95,6 +96,34 @@ def test_a_known_compliance_moves_the_torques_to_the_loaded_centre(robot: RobotM
             assert np.abs(change).max() > 0.01
 
 
+def test_what_a_batch_fit_has_found_misplaced_is_put_right(robot: RobotModel) -> None:
+    """Torque of the load, of the horizontal force, of the other axis and of yaw, as the fit had it beside."""
+    log, aside, above, turned, leans = record(sway(duration=60.0)), 0.01, 0.03, 0.1, -0.05
+    plain = FootEstimator(robot, wrench_delay=0.0).replay(log)
+    alone = LinearEquivalent(400.0, 20.0)
+    found = tuple(
+        AxisModel(foot, axis, "kelvin_voigt", "", alone, (aside, above), turned=turned, leans=leans)
+        for foot in robot.feet
+        for axis in ROTATIONAL_AXES
+    )
+    result = FeetResult("biped", (), {}, "kelvin_voigt", (), (), (), (), (), models=found)
+    told = FootEstimator(robot, result, wrench_delay=0.0).replay(log)
+    for foot in robot.feet:
+        x, y, z = log.wrench(robot.feet[foot].wrench.name)[:, :3].T  # in the bush's axes
+        sensor = (
+            robot.frame(robot.feet[foot].bush)[1].inverse()
+            * robot.frame(robot.feet[foot].wrench.placement)[1]
+        )
+        yaw = (
+            log.wrench(robot.feet[foot].wrench.name)[:, 3:]
+            + np.cross(sensor.translation, np.array([x, y, z]).T)
+        )[:, 2]
+        for axis, other, across in (("pitch", "roll", x), ("roll", "pitch", -y)):
+            torque, others = (plain.column(foot, f"{one}.torque") for one in (axis, other))
+            wanted = torque - (aside * z + above * across + turned * others + leans * yaw)
+            np.testing.assert_allclose(told.column(foot, f"{axis}.torque"), wanted, atol=1e-9)
+
+
 def test_known_feet_are_found(robot: RobotModel) -> None:
     replay = FootEstimator(robot, wrench_delay=0.0).replay(record(sway(duration=60.0)))
     expect_truth(replay, 1e-3, 2e-3)
@@ -110,6 +139,16 @@ def test_it_goes_on_from_what_it_has_learnt(robot: RobotModel) -> None:
     short = estimator.replay(record(sway(seed=2, duration=5.0)))
     expect_truth(short, 2e-3, 5e-3)
     assert short.estimate("left", 0).flags & Flag.TIME_FAULT
+
+
+def test_a_log_in_pieces_is_the_same_log(robot: RobotModel) -> None:
+    log = without(record(sway(duration=20.0)), "orientation")  # the accelerometer in its place
+    whole = FootEstimator(robot, wrench_delay=0.0).replay(log)
+    pieces = list(FootEstimator(robot, wrench_delay=0.0).replay_in_pieces(log, 3.0))
+    assert [len(piece.time) for piece in pieces] == [300, 600, 900, 1200, 1500, 1800, 2001]
+    for piece in pieces:
+        np.testing.assert_array_equal(piece.rows, whole.rows[: len(piece.time)])
+        assert (piece.latency > 0).all()
 
 
 def test_rates_come_from_the_attitude_where_no_gyroscope_is(robot: RobotModel) -> None:

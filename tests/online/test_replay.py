@@ -111,3 +111,15 @@ def test_a_stiffness_that_rests_on_what_was_told_is_weak_and_its_damping_is_not(
     assert rows["stiffness"].verdict == "weak"
     assert "slip torque that was told" in rows["stiffness"].reason
     assert rows["damping"].verdict == "usable"
+
+
+def test_a_damping_below_zero_is_none() -> None:
+    def judged(half: float) -> Parameter:
+        replay = ended(pitch_damping=-20.0, pitch_damping_half_width=half)
+        return next(row for row in replay.parameters if (row.axis, row.name) == ("pitch", "damping"))
+
+    for half in (0.5, 10.0, 19.9):
+        assert judged(half).verdict == "unidentifiable"
+        assert "below zero" in judged(half).reason
+        assert "--wrench-delay" in judged(half).advice
+    assert "below zero" not in judged(20.1).reason, "it may be above"

@@ -20,6 +20,12 @@ struct PathJoint {
   Frame frame;  // before it moves, in the frame behind the joint before
 };
 
+// Torque about one axis of a bush that is not the bush's: of a centre or a sensor that is not where it was told to be.
+struct Misplaced {
+  double aside = 0.0, above = 0.0;   // of the bush's centre [m]: grows with the load, with the horizontal force
+  double turned = 0.0, leans = 0.0;  // of the sensor [rad]: shares of the other axis' torque and of the yaw torque
+};
+
 // One foot: the way to it, its bush, its sole and its force sensor.
 struct FootModel {
   std::string name;                                    // as in the robot file
@@ -31,6 +37,7 @@ struct FootModel {
   double sign = 1.0;                                   // -1 where it reads the robot's action on the ground
   std::vector<std::array<double, 2>> polygon;          // the sole's corners in its plane, counter-clockwise [m]
   std::array<double, 2> place_std = {0.0, 0.0};        // of the bush's centre, aside and above [m]
+  std::array<Misplaced, 2> misplaced = {};             // of pitch and roll, as a batch fit has found it
   double compliance = 0.0;                             // of the slide along the ankle's z [m/N]
   double compliance_std = 0.0;                         // deviation of `compliance` [m/N]
   std::array<double, 2> slip_angle = {0.0, 0.0};       // of a Jenkins element beside pitch and roll [rad]; 0: none

@@ -92,7 +92,11 @@ void read_foot_line(FootModel& foot, Line& line) {
     foot.polygon.push_back({x, y});
   } else if (line.kind() == "place_std")
     foot.place_std[0] = line.next<double>(), foot.place_std[1] = line.next<double>();
-  else if (line.kind() == "compliance")
+  else if (line.kind() == "misplaced") {
+    Misplaced& to = foot.misplaced[line.axis()];
+    to.aside = line.next<double>(), to.above = line.next<double>();
+    to.turned = line.next<double>(), to.leans = line.next<double>();
+  } else if (line.kind() == "compliance")
     foot.compliance = line.next<double>(), foot.compliance_std = line.next<double>();
   else if (line.kind() == "linear") {
     foot.linear[line.axis()] = true;

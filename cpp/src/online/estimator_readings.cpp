@@ -95,9 +95,16 @@ void FootEstimator::State::joints(const Reading& reading) noexcept {
     velocity[TICKS * j] = given ? v : difference, velocity[TICKS * j + 1] = difference;
     last_position[j] = q;
   }
-  for (std::size_t j = 0; j < n; ++j) {
-    joint_dead[j] = twin[j] >= 0 && joint_watch[j].dead(joint_watch[twin[j]]);
-    if (joint_dead[j]) joint_bad[j] |= FROZEN;
+  for (const FootModel& foot : model.feet) {
+    double leg = 0.0;
+    for (const PathJoint& joint : foot.path)
+      if (twin[joint.joint] >= 0) leg += joint_watch[joint.joint].moved();
+    for (const PathJoint& joint : foot.path) {
+      const int j = joint.joint;
+      if (twin[j] < 0) continue;
+      joint_dead[j] = joint_watch[j].dead(joint_watch[twin[j]]);
+      if (joint_watch[j].stuck(joint_watch[twin[j]], leg) || joint_dead[j]) joint_bad[j] |= FROZEN;
+    }
   }
 }
 

@@ -27,6 +27,7 @@ struct FootEstimator::State {
   void miss_all(std::uint32_t reason) noexcept;
   void watch_ground() noexcept;
   bool weight_differs(double total) noexcept;
+  bool encoder_doubtful(std::size_t foot) const noexcept;
 
   const EstimatorModel model;
   const double weight;

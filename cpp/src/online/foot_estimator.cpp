@@ -106,6 +106,11 @@ bool FootEstimator::State::weight_differs(double total) noexcept {
   return false;
 }
 
+bool FootEstimator::State::encoder_doubtful(std::size_t foot) const noexcept {
+  return std::ranges::any_of(model.feet[foot].path,
+                             [this](const PathJoint& joint) { return joint_watch[joint.joint].doubtful(); });
+}
+
 void FootEstimator::State::step(const Reading& reading) noexcept {
   const Time went = keep_time(reading.time);
   if (went == Time::jumped) return miss_all(TIME_FAULT);
@@ -156,7 +161,7 @@ void FootEstimator::State::step(const Reading& reading) noexcept {
       feet[f].miss(bad[f]);
     } else {
       const bool begun = known && !was_bad[f] && ticks > FIRST_TICKS;
-      feet[f].learn(motion[f], total - feet[f].load(), {slips, contradiction, late}, begun, time, dt, period);
+      feet[f].learn(motion[f], total - feet[f].load(), {slips, contradiction, late, encoder_doubtful(f)}, begun, time, dt, period);
     }
     was_bad[f] = bad[f] != 0;
   }

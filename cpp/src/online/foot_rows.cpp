@@ -37,7 +37,7 @@ void FootTracker::filter(const FootKinematics& motion, double time, double dt, d
   const bool paused = pause_ > 0.0;
   pause_ -= std::min(pause_, dt);
   if (estimate_.contact != ContactState::stance) return;
-  if (estimate_.flags & (EDGE | SLIP | IMPACT | CONTRADICTION)) {
+  if (left_out_ || (estimate_.flags & (SLIP | IMPACT | CONTRADICTION))) {
     pause_ = std::abs(delay_) + 0.5 * dt;  // one tick, and the delay
     return;
   }
@@ -79,7 +79,7 @@ void FootTracker::filter(const FootKinematics& motion, double time, double dt, d
 
 void FootTracker::hold(double time, double dt, const double* channels) noexcept {
   if (held_count_ == HELD) {
-    give(held_[first_held_]);
+    if (held_[first_held_].time <= inside_until_) give(held_[first_held_]);
     first_held_ = (first_held_ + 1) % HELD, --held_count_;
   }
   HeldRow& row = held_[(first_held_ + held_count_++) % HELD];

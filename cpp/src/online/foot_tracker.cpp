@@ -11,6 +11,7 @@ namespace {
 constexpr double LEAST_LOAD = 0.02;     // of the weight: a foot that carries less has no centre of pressure
 constexpr double ROLLING_SHARE = 0.1;   // of the sole's half width: a sole that lands may roll so near its outline
 constexpr double LONGEST_STANCE = 5.0;  // s: a foot that stands longer does not step now
+constexpr double LONGEST_SHOCK = 0.04;  // s, in all, as in `identify feet`
 constexpr int STEPS = 3;                // stances, from which a foot counts as one that steps
 constexpr double USUAL_ANGLE = 0.01;    // rad, rad/s: what columns are scaled by
 constexpr double USUAL_RATE = 0.1;
@@ -49,8 +50,8 @@ RegressionPrior prior_of(const EstimatorModel& model, const FootModel& foot, int
   prior.twist = axis == 1 ? TWIST_ZERO * w : 0.0;
   prior.element_slope = slip > 0.0 ? 1.0 / slip : 0.0;
   prior.element_share = smooth_share(model.cutoff), prior.element_lag = smooth_lag(model.cutoff);
-  prior.load_arm = axis == 0 ? -foot.sensor.origin[0] : foot.sensor.origin[1];
-  prior.horizontal_arm = foot.sensor.origin[2];
+  prior.load_arm = (axis == 0 ? -foot.sensor.origin[0] : foot.sensor.origin[1]) - foot.misplaced[axis].aside;
+  prior.horizontal_arm = foot.sensor.origin[2] - foot.misplaced[axis].above;
   prior.noise_time = 0.5 / model.cutoff;
   return prior;
 }
@@ -93,8 +94,14 @@ void FootTracker::read(const FootKinematics& motion, const std::array<double, 6>
   // The loaded slide carries the bush's centre up by z. The roll axis turns with the pitch: Ry(pitch) e_x.
   const double z = foot_->compliance * wrench_[2];
   estimate_.compression = estimate_.compliance.value * wrench_[2];
-  estimate_.pitch.torque = wrench_[4] - z * wrench_[0];
-  estimate_.roll.torque = std::cos(pitch) * (wrench_[3] + z * wrench_[1]) - std::sin(pitch) * wrench_[5];
+  const double about_pitch = wrench_[4] - z * wrench_[0];
+  const double about_roll = std::cos(pitch) * (wrench_[3] + z * wrench_[1]) - std::sin(pitch) * wrench_[5];
+  const auto& [of_pitch, of_roll] = foot_->misplaced;
+  const auto told = [&](const Misplaced& is, double across, double other) {
+    return is.aside * wrench_[2] + is.above * across + is.turned * other + is.leans * wrench_[5];
+  };
+  estimate_.pitch.torque = about_pitch - told(of_pitch, wrench_[0], about_roll);
+  estimate_.roll.torque = about_roll - told(of_roll, -wrench_[1], about_pitch);
   Point centre;
   if (centre_of_pressure(wrench_, pitch, roll, foot_->sole, least_load_, centre)) estimate_.centre_of_pressure = centre;
 }
@@ -132,7 +139,7 @@ void FootTracker::learn(const FootKinematics& motion, double others, Doubt doubt
   if (contact == ContactState::air) zero_.swing(raw_, estimate_.load, weight_, dt);
   if (before == ContactState::air && contact != ContactState::air) zero_.landed();
   if (before == ContactState::stance && contact != ContactState::stance) {
-    commit(time - gate_.settling());
+    commit(std::min(time - gate_.settling(), inside_until_));
     end_stance();
     restart_filter();
   }
@@ -142,6 +149,11 @@ void FootTracker::learn(const FootKinematics& motion, double others, Doubt doubt
   const bool steps = gate_.stances() >= STEPS && gate_.standing_for() < LONGEST_STANCE;
   if (!rests || steps) edge_.restart();
   const bool edge = rests && (inside < EDGE_MARGIN || (!steps && leans(motion, inside, dt)));
+  // No ground presses beside the sole: where the centre of pressure reads there for longer than a shock lasts, the sensor
+  // is not where it was told to be, or turned, and does not show the edge. Between landing and lift the foot stands flat.
+  if (rests && inside < -EDGE_MARGIN && estimate_.load > LIGHT * weight_) beside_time_ += dt;
+  left_out_ = doubt.still || (edge && !(steps && beside_time_ > LONGEST_SHOCK));
+  if (!edge) inside_until_ = time;
   if (contact != ContactState::stance)
     flags |= NOT_STANDING;
   else
@@ -160,16 +172,17 @@ void FootTracker::learn(const FootKinematics& motion, double others, Doubt doubt
     for (SmoothAngle& angle : smooth_) angle.restart();
     restart_filter();
   }
-  if (contact != ContactState::stance || edge || struck || slides || doubt.contradiction) {
+  if (contact != ContactState::stance || left_out_ || struck || slides || doubt.contradiction) {
     if (running_) held_count_ = 0;
     restart_filter();
   }
   filter(motion, time, dt, fresh ? period : 0.0);
   if (axes_[0].doubted() || axes_[1].doubted()) estimate_.flags |= CONTRADICTION;
   // What sensors that contradict each other have said of the ground until that showed is not believed.
-  if (doubt.contradiction)
+  if (doubt.contradiction || doubt.still)
     for (AxisRegression& axis : axes_) axis.forget_suspicion();
-  if (contact == ContactState::stance) commit(time - (foot_->always ? 0.0 : gate_.settling()));
+  if (contact == ContactState::stance)
+    commit(std::min(time - (foot_->always ? 0.0 : gate_.settling()), inside_until_));
 }
 
 // Whether the sole tips, as far as the bush is known.
@@ -226,7 +239,7 @@ void FootTracker::miss(std::uint32_t reason) noexcept {
   held_count_ = 0;
   if (reason & TIME_FAULT)  // who knows what has passed: zeros and offsets may be others
     close_blocks();
-  if (reason & TIME_FAULT) stood_ = lifted_ = false;
+  if (reason & TIME_FAULT) stood_ = lifted_ = false, inside_until_ = std::numeric_limits<double>::lowest();
   begun_elements_ = lifted_;
   gate_.restart();  // what is told of the contact stays, until readings say otherwise
   shaking_.restart(), edge_.restart();

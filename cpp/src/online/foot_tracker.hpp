@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "online/air_zero.hpp"
 #include "online/axis_regression.hpp"
@@ -49,6 +50,7 @@ class FootTracker {
     SlipGate::Verdict slips;
     bool contradiction;
     bool late;
+    bool still;  // an encoder that may be frozen
   };
   // Contact, and what this tick teaches. others: load of the other feet; fresh: the tick before was read as well, `dt`
   // earlier.
@@ -128,6 +130,9 @@ class FootTracker {
   bool flat_ = false;                     // the centre of pressure is inside the sole
   bool stood_ = false;                    // it stood at the last tick
   bool lifted_ = false;                   // its elements are followed from its last stance, through the air
+  bool left_out_ = false;                 // on its edge, as far as its sensor can tell, or an encoder is in doubt
+  double beside_time_ = 0.0;              // s for which the centre of pressure has read beside the sole
+  double inside_until_ = std::numeric_limits<double>::lowest();            // the last time at which it was not on its edge
   bool rolled_ = false;                   // the sole was rolling over its edge at the last tick
   double angles_before_[2] = {}, rates_before_[2] = {};  // of the last tick that the elements have followed
   bool begun_elements_ = false;                          // their bounds are those of a bush somewhere on its way

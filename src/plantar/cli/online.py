@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import sys
+import time
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -21,17 +22,28 @@ from plantar.cli.console.terminal import (
     progress,
     table,
 )
+from plantar.conventions import ROTATIONAL_AXES
+from plantar.errors import SettingsError
+from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import open_log
 from plantar.online.estimates import Contact, Flag
 from plantar.online.estimator import FootEstimator
-from plantar.online.replay import Replay
+from plantar.online.replay import UNKNOWN, Replay
 from plantar.online.verdicts import judged, log_notes
 from plantar.results.feet import FeetResult, Parameter
 from plantar.results.io import dump_json
 from plantar.robot.model import RobotModel, load_robot
 
+if TYPE_CHECKING:  # what prints nothing does not import it
+    from rich.table import Table
+
+    from plantar.report.figures.plots import Format
+
+PIECE = 1.0  # s of the log, behind which the table may be refreshed
+REFRESH = 0.1  # s between two tables
+KINDS: Sequence[Format] = ("png", "svg", "pdf")
 LONGEST_WAIT = 120.0  # s for a browser to open the page
-RESULT_HELP = "A result of `identify feet`: its hysteresis, compliance, delay and cutoff are used."
+RESULT_HELP = "A result of `identify feet`: its hysteresis, compliance, places, delay and cutoff are used."
 
 
 def run(
@@ -49,6 +61,13 @@ def run(
     live: Annotated[
         bool, typer.Option("--live", help="Also show it in a browser, at the pace at which it was recorded.")
     ] = False,
+    plot: Annotated[
+        Path | None,
+        typer.Option(
+            help="Also draw deflections, stiffness and damping over time: FILE.png, .svg or .pdf.",
+            metavar="FILE",
+        ),
+    ] = None,
     port: Annotated[int, typer.Option(min=0, max=65535, help="Of the page, on this machine alone.")] = 8080,
     memory: Memory = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")] = False,
@@ -58,6 +77,7 @@ def run(
 
     Example: plantar online robot.yaml walk.csv --wrench-delay 4
     """
+    kind = None if plot is None else _kind(plot)
     step = progress(quiet)
     batch = None if result is None else FeetResult.load(result, residuals=False)
     known = load_robot(robot)
@@ -68,11 +88,14 @@ def run(
     motion = open_log(log, known, memory=memory)
     notes = [*log_notes(known, motion), *motion.notes, *motion.joint_notes(known)]
     step(f"replay {log.name}")
-    replay = estimator.replay(motion)
-    rows = judged(replay.parameters, notes, identified=batch is not None)
     end_progress(quiet)
+    shown = sys.stdout.isatty() and not json and not quiet
+    replay = _refreshed(estimator, motion) if shown else estimator.replay(motion)
+    rows = judged(replay.parameters, notes, identified=batch is not None)
     if live:
         _show(known, replay, port)
+    if plot is not None and kind is not None:
+        _draw(replay, plot, kind)
     if json:
         content = {
             "parameters": [asdict(row) for row in rows],
@@ -83,6 +106,52 @@ def run(
     elif not quiet:
         print_notes(console(), notes)
         _print(replay, rows)
+
+
+def _refreshed(estimator: FootEstimator, log: MotionLog) -> Replay:
+    """The log replayed under a table that shows what is known so far."""
+    from rich.live import Live
+
+    shown = 0.0
+    with Live(console=console(), auto_refresh=False, transient=True) as screen:
+        for replay in estimator.replay_in_pieces(log, PIECE):
+            if time.monotonic() - shown > REFRESH:
+                screen.update(_so_far(replay), refresh=True)
+                shown = time.monotonic()
+    return replay
+
+
+def _so_far(replay: Replay) -> Table:
+    """Small enough to stand still on a screen."""
+    heads = ("foot", "axis", "mrad", "K [N.m/rad]", "95 %", "C [N.m.s/rad]", "95 %", "flags now")
+    rows = []
+    for foot in replay.feet:
+        now = replay.estimate(foot)
+        said = ", ".join(flag.name for flag in Flag if flag in now.flags and flag.name)
+        for axis, one in zip(ROTATIONAL_AXES, (now.pitch, now.roll), strict=True):
+            numbers = [f"{1e3 * one.deflection:.2f}"]
+            for found in (one.stiffness, one.damping):
+                known = found.half_width < UNKNOWN * abs(found.value)
+                value, half = (found.value, found.half_width) if known else (None, None)
+                numbers += [number(value), f"± {_plain(half)}"]
+            rows.append((foot, axis, *numbers, said if axis == "pitch" else ""))
+    return table(f"At {replay.time[-1]:.1f} s", heads, rows)
+
+
+def _kind(plot: Path) -> Format:
+    for kind in KINDS:
+        if plot.suffix == f".{kind}":
+            return kind
+    raise SettingsError(
+        f"plot '{plot}': no picture of this kind (valid: {', '.join(f'.{kind}' for kind in KINDS)})"
+    )
+
+
+def _draw(replay: Replay, plot: Path, kind: Format) -> None:
+    from plantar.report.figures.plots import save
+    from plantar.report.figures.replay import replay_picture
+
+    save(replay_picture(replay), plot.parent, plot.stem, (kind,))
 
 
 def _show(robot: RobotModel, replay: Replay, port: int) -> None:
@@ -98,15 +167,24 @@ def _show(robot: RobotModel, replay: Replay, port: int) -> None:
             print(f"nobody has opened the page in {LONGEST_WAIT:.0f} s", file=sys.stderr, flush=True)
 
 
-def _print(replay: Replay, rows: Sequence[Parameter]) -> None:
-    out = console()
+def _known(rows: Sequence[Parameter], title: str) -> Table:
     heads = ("foot", "axis", "parameter", "value", "95 %", "unit", "verdict", "reason")
     cells = [
-        (row.foot, row.axis, row.name, number(row.value), f"± {number(row.half_width, 2)}", row.unit, row.verdict,
+        (row.foot, row.axis, row.name, number(row.value), f"± {_plain(row.half_width)}", row.unit, row.verdict,
          row.reason)
         for row in rows
     ]  # fmt: skip
-    out.print(table("At the end of the log", heads, cells, [VERDICT_STYLE[row.verdict] for row in rows]))
+    return table(title, heads, cells, [VERDICT_STYLE[row.verdict] for row in rows])
+
+
+def _plain(half: float | None) -> str:
+    """A half width to two digits, without a power of ten: it stands beside its value."""
+    return "–" if half is None else f"{float(f'{half:.2g}'):.15g}"
+
+
+def _print(replay: Replay, rows: Sequence[Parameter]) -> None:
+    out = console()
+    out.print(_known(rows, "At the end of the log"))
     through = (
         "foot",
         "stands %",
@@ -114,9 +192,9 @@ def _print(replay: Replay, rows: Sequence[Parameter]) -> None:
         "flags, % of the samples",
     )
     out.print(table("Through the log", through, [_foot_row(replay, foot) for foot in replay.feet]))
-    time = replay.latency_us
+    took = replay.latency_us
     out.print(
-        f"a step: median {time['median']:.1f} µs, 99.9 % {time['p999']:.1f} µs, longest {time['max']:.1f} µs"
+        f"a step: median {took['median']:.1f} µs, 99.9 % {took['p999']:.1f} µs, longest {took['max']:.1f} µs"
     )
 
 

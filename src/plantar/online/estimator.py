@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import numpy as np
@@ -35,9 +35,9 @@ class FootEstimator:
 
     Args:
         robot: the robot file, or what `load_robot` made of it.
-        result: of `identify_feet`, for elements that slip in bushes with hysteresis, the slides' compliance, the
-            sensors' delay and the filter's cutoff; without one bushes are springs with dampers, and `identified` only
-            where motions were large enough to show a hysteresis.
+        result: of `identify_feet`, for elements that slip in bushes with hysteresis, the slides' compliance, where bush
+            and force sensor sit, the sensors' delay and the filter's cutoff; without one bushes are springs with
+            dampers, and `identified` only where motions were large enough to show a hysteresis.
         wrench_delay: how late the force sensors are against the IMU [s], > 0: late. None takes the result's; without a
             result none, and widens the damping's deviation by what the robot file's `uncertainty` allows.
         cutoff: of the filter that deflection, rate and torque pass before they are compared [Hz]; None takes the
@@ -74,6 +74,7 @@ class FootEstimator:
             elements=_elements(result),
             compliance={} if result is None else result.compliance,
             linear=_linear(result),
+            misplaced=_misplaced(result),
         )
         self._core = _core.FootEstimator(self._model)
         self._rows = np.empty((len(self.robot.feet), len(FIELDS)))
@@ -135,24 +136,47 @@ class FootEstimator:
         Raises:
             LogError: a column is missing.
         """
+        *_, whole = self.replay_in_pieces(log, math.inf)
+        return whole
+
+    def replay_in_pieces(self, log: MotionLog, seconds: float) -> Iterator[Replay]:
+        """The same, and what the log says until then after each piece of it.
+
+        Args:
+            log: as for `replay`. seconds: how long a piece is [s].
+
+        Yields:
+            The log so far; the last one is all of it.
+
+        Raises:
+            LogError: a column is missing.
+        """
         robot, imu = self.robot, self.robot.imu
         assert imu is not None, "checked where the model was made"
         attitude = log.orientation(imu.name)
         gyroscope = attitude is None or log.has_imu(imu.name, "angular_velocity")
+        turning = log.angular_velocity(imu.name) if gyroscope else None
+        acceleration = log.linear_acceleration(imu.name) if attitude is None else None
+        position = np.ascontiguousarray(log.positions(robot))
         wrench = np.stack([log.wrench(foot.wrench.name) for foot in robot.feet.values()], axis=1)
+        time, wrench = np.ascontiguousarray(log.time), np.ascontiguousarray(wrench)
         rows, latency = np.empty((len(log), len(robot.feet), len(FIELDS))), np.empty(len(log))
-        self._core.replay(
-            np.ascontiguousarray(log.time),
-            np.ascontiguousarray(log.positions(robot)),
-            None,  # a controller's own filter makes recorded velocities late
-            attitude,
-            log.angular_velocity(imu.name) if gyroscope else None,
-            log.linear_acceleration(imu.name) if attitude is None else None,
-            np.ascontiguousarray(wrench),
-            rows,
-            latency,
-        )
-        return Replay(log.time, tuple(robot.feet), rows, latency)
+        size = int(min(max(seconds / log.period, 1.0), len(log)))
+        for begin in range(0, len(log), size):
+            piece = slice(begin, min(begin + size, len(log)))
+            self._core.replay(
+                time[piece],
+                position[piece],
+                None,  # a controller's own filter makes recorded velocities late
+                None if attitude is None else attitude[piece],
+                None if turning is None else turning[piece],
+                None if acceleration is None else acceleration[piece],
+                wrench[piece],
+                rows[piece],
+                latency[piece],
+            )
+            until = slice(piece.stop)
+            yield Replay(log.time[until], tuple(robot.feet), rows[until], latency[until])
 
     def write_model(self, path: str | os.PathLike[str]) -> Path:
         """Write the file that `plantar::load_model` reads in C++.
@@ -206,6 +230,12 @@ def _linear(result: FeetResult | None) -> list[tuple[str, Axis]]:
         for axis in ROTATIONAL_AXES
         if row.axis == axis and row.name == "stiffness" and row.verdict == "usable"
     ]
+
+
+def _misplaced(result: FeetResult | None) -> dict[tuple[str, Axis], tuple[float, float, float, float]]:
+    """Where a batch fit has found bush and force sensor: aside, above [m], turned, leaning [rad]."""
+    models = () if result is None else result.models
+    return {(one.foot, one.axis): (*one.moment_arms, one.turned, one.leans) for one in models}
 
 
 def _row(what: str, values: ArrayLike | None, size: int) -> Array | None:

@@ -5,8 +5,9 @@ One fact a line, a word and its values; frames are nine numbers of rotation, row
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 
@@ -37,12 +38,15 @@ def estimator_model(
     elements: Mapping[tuple[str, Axis], Element],
     compliance: Mapping[str, float],
     linear: Collection[tuple[str, Axis]] = (),
+    misplaced: Mapping[tuple[str, Axis], Sequence[float]] = MappingProxyType({}),
 ) -> str:
     """The text of the model file.
 
     cutoff: of the filters before the regressions [Hz]; wrench_delay: of the force sensors behind the IMU, and
     its deviation [s]; elements: Jenkins elements by foot and axis;
-    compliance: of the slides by foot [m/N]; linear: feet and axes in which a batch fit has found no memory.
+    compliance: of the slides by foot [m/N]; linear: feet and axes in which a batch fit has found no memory;
+    misplaced: by foot and axis, how far a batch fit has found the bush's centre aside and above [m], the sensor turned
+    and leaning [rad].
 
     Raises RobotError where the robot file names no IMU or no feet.
     """
@@ -68,6 +72,8 @@ def estimator_model(
                 )
             elif (name, axis) in linear:
                 lines.append(f"linear {place}")
+            if any(placed := misplaced.get((name, axis), ())):
+                lines.append(f"misplaced {place} " + _numbers(placed))
         lines += _place_lines(robot, name, compliance.get(name, 0.0))
     return "\n".join(lines) + "\n"
 

@@ -25,6 +25,8 @@ SMALL = "too small motions to show whether the rubber has a memory: larger ones 
 REST = "too small motions to test the slip torque that was told, on which this stiffness rests"
 FARTHER = "bend the foot beyond its slip angle to either side, as walking does"
 LATE = "torques follow deflections as if the force sensors' delay were not the one that was told"
+BELOW = "below zero, which no bush is: force sensors that are late look like this"
+TELL_DELAY = "tell how late they are (--wrench-delay), or let identify feet find it and give its result"
 IDENTIFY = "run identify feet on logs of this robot, and give its result"
 
 
@@ -107,7 +109,7 @@ def _too_wide(name: str, share: float) -> str:
     """Why a number whose interval is `share` of it to either side may not be used; empty where it may."""
     if share <= USABLE[name]:
         return ""
-    return f"± {100 * share:.0f} % so far; known from ± {100 * USABLE[name]:.0f} % on"
+    return f"± {100 * share:.3g} % so far; known from ± {100 * USABLE[name]:.0f} % on"
 
 
 def _weakened(row: Parameter, reason: str, advice: str) -> Parameter:
@@ -120,6 +122,11 @@ def _parameter(foot: str, axis: Axis, name: str, unit: str, found: Estimated) ->
     if half >= UNKNOWN * abs(value):
         reason = "nothing has excited it yet"
         return Parameter(foot, axis, name, unit, None, None, None, None, "unidentifiable", reason)
+    if value + half < 0.0:
+        return Parameter(
+            foot, axis, name, unit, value, found.std, (value - half, value + half), None, "unidentifiable", BELOW,
+            TELL_DELAY,
+        )  # fmt: skip
     reason = _too_wide(name, half / abs(value))
     verdict: Verdict = "unidentifiable" if half >= abs(value) else "weak" if reason else "usable"
     return Parameter(
