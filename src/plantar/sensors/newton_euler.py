@@ -127,7 +127,7 @@ def _along(
 
     def missing_late(by: float) -> Array:
         predicted, transfers = sides_of(inertial_motion(robot, equation, signals, kept, encoders_late=by))
-        return predicted - np.sum(carried(transfers, loads.readings), axis=0)
+        return np.asarray(predicted - np.sum(carried(transfers, loads.readings), axis=0))
 
     by_encoders = (missing_late(log.period) - missing_late(-log.period)) / (2 * log.period)
     predicted, transfers = sides_of(motion)
