@@ -12,10 +12,10 @@ import pytest
 from made_recording import FOOT, PERIOD, made_recording, swayed
 from plantar.contact.stances import Stances
 from plantar.conventions import Array
-from plantar.feet.encoders_of_fits import Late, encoders_shown, newton_told, read_at, tried_first
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.foot_fit import FittedFoot
 from plantar.feet.prepare import PreparedLogs
+from plantar.feet.put_right.encoders_of_fits import Late, encoders_shown, newton_told, read_at, tried_first
 from plantar.feet.recording import Recording
 from plantar.feet.settings import FeetSettings
 from plantar.models import MODELS
