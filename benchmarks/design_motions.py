@@ -23,7 +23,7 @@ from __future__ import annotations
 import argparse
 import io
 import json
-import time
+import os
 from collections import Counter, defaultdict
 from collections.abc import Iterator
 from contextlib import redirect_stderr, redirect_stdout
@@ -66,15 +66,16 @@ def robot_file(name: str, folder: Path) -> RobotModel:
 
 
 def plantar(*arguments: object) -> float:
-    """Run a command, in this process; the seconds of CPU it took. Raises RuntimeError with its last line where not."""
-    begin, said = time.process_time(), io.StringIO()
+    """Run a command, in this process; the seconds of CPU that it and its copies took. Raises RuntimeError with its last
+    line where not."""
+    begin, said = sum(os.times()[:4]), io.StringIO()
     try:
         with redirect_stdout(io.StringIO()), redirect_stderr(said):
             command_line([*map(str, arguments), "-q"])
     except SystemExit as done:
         if done.code:
             raise RuntimeError(said.getvalue().strip().splitlines()[-1]) from None
-    return time.process_time() - begin
+    return sum(os.times()[:4]) - begin
 
 
 def told_of(robot: RobotModel) -> float:

@@ -104,6 +104,16 @@ def test_always_means_always() -> None:
     assert not contacts["right"].used.any()
 
 
+@pytest.mark.parametrize(("first", "stands"), [(WEIGHT, True), (0.0, False)])
+def test_a_log_that_begins_unread_begins_as_its_first_value_has_it(first: float, stands: bool) -> None:
+    """As one does whose sensors were read too early, and are put right."""
+    load = np.full(1000, first)
+    load[:3] = np.nan
+    contact = detect_contact({"left": load}, {"left": False}, WEIGHT, PERIOD)["left"]
+    assert contact.loaded.all() == stands
+    assert list(contact.used) == [False] * 3 + [stands] * 997
+
+
 def test_a_force_that_is_not_recorded_is_no_lifted_foot() -> None:
     load = np.full(1000, 300.0)
     load[400:600] = np.nan

@@ -130,25 +130,35 @@ DATA_FAULTS = (
         "choice.reach >= 0.0", ("feet/fit/test_hidden_memory.py",),
     ),
     Mutant(
-        "feet/imu_of_steps.py", "the IMU's turn has no prior", "np.eye(3) / mount**2", "np.eye(3) * mount**2",
-        ("feet/test_imu_of_steps.py",),
+        "feet/put_right/encoders_of_fits.py", "encoders are read later by all that they are late",
+        "late.value - ready.sensor_delay.encoders", "late.value", ("feet/put_right/test_encoders_of_fits.py",),
     ),
     Mutant(
-        "feet/imu_of_steps.py", "the IMU's turn is put right twice", "np.array(shown.angles) - ready.imu_turn.angles",
-        "np.array(shown.angles)", ("feet/test_imu_of_steps.py",),
+        "sensors/newton_euler.py", "late encoders leave the feet's readings where they are",
+        "return np.asarray(predicted - np.sum(carried(transfers, loads.readings), axis=0))", "return predicted",
+        ("sensors/test_newton_euler.py",),
     ),
     Mutant(
-        "feet/imu_of_steps.py", "no turn is worth it", "(apart > SURE *", "(apart > 1e9 * SURE *",
-        ("feet/test_imu_of_steps.py",),
+        "feet/put_right/imu_of_steps.py", "the IMU's turn has no prior", "np.eye(3) / mount**2", "np.eye(3) * mount**2",
+        ("feet/put_right/test_imu_of_steps.py",),
+    ),
+    Mutant(
+        "feet/put_right/imu_of_steps.py", "the IMU's turn is put right twice",
+        "np.array(shown.angles) - ready.imu_turn.angles",
+        "np.array(shown.angles)", ("feet/put_right/test_imu_of_steps.py",),
+    ),
+    Mutant(
+        "feet/put_right/imu_of_steps.py", "no turn is worth it", "(apart > SURE *", "(apart > 1e9 * SURE *",
+        ("feet/put_right/test_imu_of_steps.py",),
     ),
     Mutant(
         "feet/recording.py", "rates stay where angles are put right", "rate=state.rate + rates", "rate=state.rate",
-        ("feet/test_imu_of_steps.py",),
+        ("feet/put_right/test_imu_of_steps.py",),
     ),
     Mutant(
         "feet/interval_width/imu_turn.py", "an unknown mount widens nothing", "np.sum(effects**2, axis=1)",
         "0 * np.sum(effects**2, axis=1)",
-        ("feet/test_imu_of_steps.py",),
+        ("feet/put_right/test_imu_of_steps.py",),
     ),
     Mutant(
         "feet/regression/regression_data.py", "a sensor that steps is not turned", "np.inf, 0.006, 0.02",

@@ -139,11 +139,11 @@ OF_THEIR_KINDS = (
         ("checks/test_air_readings.py",),
     ),
     Mutant(
-        "feet/imu_of_steps.py",
+        "feet/put_right/imu_of_steps.py",
         "a turn worth a look from one deviation on",
         "> FAR * mount",
         "> mount",
-        ("feet/test_imu_of_steps.py",),
+        ("feet/put_right/test_imu_of_steps.py",),
     ),
     Mutant(
         "logs/readers/column_map.py",

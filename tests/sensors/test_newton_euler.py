@@ -16,6 +16,7 @@ from plantar.estimation.delays.delay import Pair
 from plantar.feet.prepare_log import checked
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel
+from plantar.sensors.delays.refined_delays import read_in_time
 from plantar.sensors.delays.sensor_delay import estimate_wrench_delay
 from plantar.sensors.newton_euler import NewtonEulerResidual, newton_euler_residuals, with_gyroscope
 from plantar.signals.filters import differentiate, low_pass
@@ -77,6 +78,19 @@ def test_a_log_with_gaps_shows_its_delay_in_every_run() -> None:
     assert abs(found.encoders) < 2 * found.encoders_std
     assert found.delay == pytest.approx(0.006, abs=0.001)
     assert found.std < 0.001
+
+
+def test_encoders_that_are_read_late_move_what_the_feet_read_too() -> None:
+    """Joints say where a foot pushes: where legs move, that is more than what their inertia makes of a delay."""
+    twin, late = hrp2.robot(), 0.002
+    squat = checked(twin, play_all(["Squat"], twin, PAPER, "ideal", [0])[0][0].log)
+    (before,) = newton_euler_residuals(twin, squat)
+    (after,) = newton_euler_residuals(twin, read_in_time(twin, squat, np.array([0.0, 0.0, late])))
+    count = min(len(before.by_encoders), len(after.by_encoders))
+    missing = [(one.pair.predicted - one.measured.sum(axis=0))[:count] for one in (before, after)]
+    slopes, moved = before.by_encoders[:count], missing[1] - missing[0]
+    for row in (0, 2, 4):  # of a squat: what moves in the sagittal plane
+        assert slopes[:, row] @ moved[:, row] == pytest.approx(late * np.sum(slopes[:, row] ** 2), rel=0.05)
 
 
 def test_newtons_law_takes_its_turns_from_the_orientation_where_there_is_no_gyroscope(

@@ -9,6 +9,7 @@ from unittest.mock import patch
 
 import numpy as np
 
+from plantar import cores
 from plantar.design import search, story
 from plantar.design.family import Lines
 from plantar.design.legs import Legs
@@ -75,15 +76,17 @@ class RehearsedOnce:
         return [replace(self.one, factor=factor) for factor in factors]
 
 
-def identified_once(found: dict[int, FeetResult | None]) -> Callable[[Rehearsal, RobotModel], Rehearsal]:
+def identified_once(
+    found: dict[int, FeetResult | None],
+) -> Callable[[Rehearsal, RobotModel], FeetResult | None]:
     """Rehearsals with one recording have one result: what is in their log is identified once, and kept in `found`."""
-    identified = Rehearsal.identified
+    feet_found = Rehearsal.feet_found
 
-    def identify(own: Rehearsal, robot: RobotModel) -> Rehearsal:
+    def identify(own: Rehearsal, robot: RobotModel) -> FeetResult | None:
         key = id(own.log)
         if key not in found:
-            found[key] = identified(own, robot).result
-        return replace(own, result=found[key])
+            found[key] = feet_found(own, robot)
+        return found[key]
 
     return identify
 
@@ -94,7 +97,8 @@ def designed() -> Design:
     with (
         patch.object(story, "best_motion", gentle_motion),
         patch.object(story, "rehearse", RehearsedOnce()),
-        patch.object(Rehearsal, "identified", identified_once({})),
+        patch.object(Rehearsal, "feet_found", identified_once({})),
+        patch.object(cores, "usable_cores", lambda: 1),  # copies would identify it again
     ):
         return design_motion(hrp2.robot(), DesignSettings(STIFFNESS, duration=20.0, seed=1))
 
@@ -104,6 +108,7 @@ def designed_again() -> Design:
     with (
         patch.object(story, "best_motion", gentle_motion),
         patch.object(story, "rehearse", lambda *_: list(designed().rehearsals)),
-        patch.object(Rehearsal, "identified", lambda own, _: own),
+        patch.object(Rehearsal, "feet_found", lambda own, _: own.result),
+        patch.object(cores, "usable_cores", lambda: 1),
     ):
         return design_motion(hrp2.robot(), DesignSettings(STIFFNESS, duration=20.0, seed=1))

@@ -169,11 +169,13 @@ def carried_weight(force: Mapping[str, Array]) -> float:
 
 
 def _standing(force: Array, weight: float, period: float) -> Mask:
-    """Hysteresis on the vertical force, through which NaN keeps the state; contacts shorter than a stance are air."""
+    """Hysteresis on the vertical force, through which NaN keeps the state, and before the first value has that one's;
+    contacts shorter than a stance are air."""
     loaded, lifted = force > LANDING_SHARE * weight, force <= LIFTING_SHARE * weight
     decided = loaded | lifted
     last = np.maximum.accumulate(np.where(decided, np.arange(len(force)), -1))
-    standing = np.where(last >= 0, loaded[np.maximum(last, 0)], False)
+    begun = np.isnan(force) & loaded[np.argmax(decided)]
+    standing = np.where(last >= 0, loaded[np.maximum(last, 0)], begun)
     for run in runs(standing):
         if (run.stop - run.start) * period < SHORTEST_STANCE:
             standing[run] = False

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
@@ -51,14 +51,14 @@ class Rehearsal:
     log: MotionLog | None = field(default=None, repr=False)
     result: FeetResult | None = field(default=None, repr=False)
 
-    def identified(self, robot: RobotModel) -> Rehearsal:
-        """The same with the feet identified from its recording, as far as they can be."""
+    def feet_found(self, robot: RobotModel) -> FeetResult | None:
+        """What `identify feet` finds in its recording; None where it finds nothing."""
         if self.log is None:
-            return self
+            return None
         try:
-            return replace(self, result=identify_feet(robot, [self.log]))
+            return identify_feet(robot, [self.log])
         except PlantarError:
-            return self
+            return None
 
     def percent(self, foot: str, axis: str, name: str) -> float | None:
         """95 % half width of a parameter [% of its value]; None where it is not identified."""

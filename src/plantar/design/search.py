@@ -9,13 +9,13 @@ import numpy as np
 from scipy.optimize import linprog
 
 from plantar.conventions import Array
+from plantar.cores import over_cores
 from plantar.design.family import CHANNELS, SHAPES
 from plantar.design.information import Criterion, badness
 from plantar.design.reach import Reach
 
 STARTS: Final = 3  # of which the best end counts: limits have corners in which a way ends
 TRIES: Final = 25  # linear programs from each start at most
-TOLD: Final = 10  # linear programs between two words of progress
 SMALL: Final = 1e-3  # of a coefficient that is just allowed: what a slope is taken over
 BEGIN, SMALLEST, FARTHEST = 0.5, 0.01, 1.0  # how far a step goes, of coefficients that are just allowed
 # Motions beside one whose values are computed together: ten minutes of them fit into memory
@@ -43,16 +43,17 @@ def best_motion(
     limits and a box around the motion allow, which is a linear program.
     """
     units = np.array([1.0 / reach.used(row) for row in np.eye(reach.lines.size)])
-    ends = []
-    for number in range(STARTS):
-        climb = _Climb(reach, criterion, known, units, _start(random) * units)
-        for count in range(TRIES):
-            if count % TOLD == 0:
-                progress(f"search: {100 * (number * TRIES + count) // (STARTS * TRIES)} %")
+    starts = [_start(random) * units for _ in range(STARTS)]
+
+    def end(start: Array) -> tuple[float, Array]:
+        climb = _Climb(reach, criterion, known, units, start)
+        for _ in range(TRIES):
             if not climb.step():
                 break
-        ends.append(climb)
-    return min(ends, key=lambda end: end.least).best
+        return climb.least, climb.best
+
+    progress(f"search from {STARTS} beginnings")
+    return min(over_cores(end, starts), key=lambda found: found[0])[1]
 
 
 def _start(random: np.random.Generator) -> Array:

@@ -10,6 +10,7 @@ import numpy as np
 
 from plantar.choices import number_in, one_of
 from plantar.conventions import Array
+from plantar.cores import blas_on_one_core, over_cores
 from plantar.design.collision import free_swing, self_collision
 from plantar.design.family import Lines
 from plantar.design.information import CRITERIA, Criterion
@@ -99,6 +100,7 @@ class Design:
         return next(one for one in self.rehearsals if one.factor == 1.0)
 
 
+@blas_on_one_core()
 def design_motion(
     robot: RobotModel,
     settings: DesignSettings,
@@ -176,10 +178,12 @@ def _rehearsed(
     """
     reason, tight, larger = "", [factors[0], factors[-1]], True
     before: Array | None = None  # it was made larger
+    ends = dict[float, Rehearsal]()  # rehearsals before that
+    known = dict[float, Rehearsal]()  # those of the motion that comes next
 
     def smaller(motion: Array) -> Array:
-        nonlocal before, larger
-        motion = motion if before is None else before
+        nonlocal before, larger, known
+        motion, known = (motion, {}) if before is None else (before, ends)
         before, larger = None, False
         return motion
 
@@ -200,7 +204,7 @@ def _rehearsed(
             progress(f"{'without arms' if quiet else 'smaller'}: {reason}")
             coefficients = still if quiet else smaller(SMALLER * coefficients)
             continue
-        plan, held, used = trajectory.plan(), dict[float, Rehearsal](), 0.0
+        plan, held, used = trajectory.plan(), {**known}, 0.0
         while used <= 1.0 and len(held) < len(factors) and not (held and larger):
             asked = [each for each in tight if each not in held] or [
                 each for each in factors if each not in held
@@ -209,19 +213,25 @@ def _rehearsed(
             used, reason = max((_used(one) for one in found.values()), key=lambda each: each[0])
             held |= found
         if larger and used <= 1.0:
-            before, larger = coefficients, False
+            before, ends, known, larger = coefficients, held, {}, False
             grown = min((1 - SPARE) / np.sqrt(used), LARGER)
             progress(f"larger by {100 * (grown - 1):.0f} %: both ends of the range leave room")
             coefficients = max(grown, 1.0) * coefficients
             continue
         if used <= 1.0:
             progress("identify the feet from the rehearsals")
-            return coefficients, [held[factor].identified(robot) for factor in factors], watched.pairs
+            return coefficients, _with_results(robot, [held[factor] for factor in factors]), watched.pairs
         progress(f"smaller: {reason}")
         if before is None:
             tight = [factor for factor, one in held.items() if _used(one)[0] > 1.0]
         coefficients = smaller(max((1 - SPARE) / np.sqrt(used), SMALLER) * coefficients)
     raise MotionError(f"no motion holds over the range of stiffness: {reason}", path=robot.name)
+
+
+def _with_results(robot: RobotModel, rehearsals: list[Rehearsal]) -> list[Rehearsal]:
+    """The rehearsals with the feet identified from their recordings, as far as they can be."""
+    results = over_cores(lambda one: one.feet_found(robot), rehearsals)
+    return [replace(one, result=result) for one, result in zip(rehearsals, results, strict=True)]
 
 
 def _rehearsed_at(low: float, high: float) -> tuple[float, ...]:

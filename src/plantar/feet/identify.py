@@ -9,10 +9,11 @@ from plantar.cores import blas_on_one_core, over_cores
 from plantar.errors import DataError
 from plantar.feet.foot_assessment import assess_foot
 from plantar.feet.foot_fit import FittedFoot, between_all, fit_foot, without_needless
-from plantar.feet.imu_of_steps import is_worth, put_right, turn_shown
 from plantar.feet.memory_of_others import with_memory_of_others
 from plantar.feet.place.spread import PlaceSpread
 from plantar.feet.prepare import PreparedLogs, prepare_all
+from plantar.feet.put_right.encoders_of_fits import Late, encoders_shown, newton_told, read_at, tried_first
+from plantar.feet.put_right.imu_of_steps import is_worth, put_right, turn_shown
 from plantar.feet.result import feet_result
 from plantar.feet.settings import FeetSettings
 from plantar.logs.freed_memory import return_freed
@@ -77,13 +78,31 @@ def fit_prepared(
         valid = "a standing robot; were the sensors zeroed under load, 'contact: always' for these feet"
         raise DataError(f"{names}: no foot carries load in any log (valid: {valid})")
     return_freed()  # what preparation took, copies of the process would keep
-    ready, feet = _with_imu_right(ready, progress)
+    told = newton_told(ready)
+    ready, feet = (
+        _with_imu_right(ready, progress) if told is None else _with_encoders_right(ready, told, progress)
+    )
     fitted = with_memory_of_others(feet)
     between = between_all(list(fitted.values()))
     fitted = {foot: without_needless(one, between) for foot, one in fitted.items()}
     found = over_cores(assess_foot, fitted.values(), [between] * len(fitted))
     ready = _merged(ready, {foot: one.ready for foot, one in fitted.items()})
     return feet_result(robot, ready, found, between)
+
+
+def _with_encoders_right(
+    ready: PreparedLogs, told: Late, progress: Callable[[str], None]
+) -> tuple[PreparedLogs, dict[str, FittedFoot]]:
+    """The logs and every foot fitted to them; again with encoders as late as fits of standing feet show them beside
+    what Newton's law has `told`."""
+    ready = read_at(ready, Late(tried_first(told), told.std))
+    feet, taken = _fitted_feet(ready, progress), ready.sensor_delay.encoders
+    shown = encoders_shown(feet, told, taken)
+    if shown is None or not shown.is_worth(taken):
+        return ready, feet
+    progress("fit again with encoders read in time")
+    ready = read_at(ready, shown)
+    return ready, _fitted_feet(ready, progress)
 
 
 def _with_imu_right(

@@ -149,6 +149,22 @@ class Recording:
         change = {foot: effects @ np.array(turn) for foot, effects in self.imu_turns.items()}
         return replace(self, raw=right(self.raw), bushes=right(self.bushes)) if any(turn) else self
 
+    def with_encoders_later(self, by: float) -> Recording:
+        """The recording with bush angles and rates as encoders show them that are read `by` later [s], to first order
+        (`encoder_rates`)."""
+
+        def right(states: Mapping[str, BushState]) -> dict[str, BushState]:
+            return {
+                foot: _plus(state, by * self.encoder_rates[foot], self.period)
+                for foot, state in states.items()
+            }
+
+        return (
+            replace(self, raw=right(self.raw), bushes=right(self.bushes))
+            if by and self.encoder_rates
+            else self
+        )
+
     def without(self, foot: str, samples: Mask, reason: Reason, detail: str = "") -> Recording:
         """The same recording with these samples of one foot left out."""
         contact = self.contacts[foot].without(samples, reason, detail)

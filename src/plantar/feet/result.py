@@ -15,10 +15,10 @@ from plantar.feet.assess.feasible_advice import hardly_standing, remedies, with_
 from plantar.feet.assess.left_out import unused_logs
 from plantar.feet.assess.residual_table import residual_table
 from plantar.feet.foot_assessment import FootFit
-from plantar.feet.imu_of_steps import imu_turn_notes
 from plantar.feet.interval_width.between_recordings import Apart, apart_notes
 from plantar.feet.place.imu_mount import ImuTurn
 from plantar.feet.prepare import PreparedLogs
+from plantar.feet.put_right.imu_of_steps import imu_turn_notes
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.models import KelvinVoigt

@@ -19,7 +19,7 @@ from plantar.robot.model import RobotModel
 from plantar.sensors.below_sensor import below_sensors
 from plantar.sensors.load_errors import FootLoads
 from plantar.sensors.model_errors import drawn_parameter_errors
-from plantar.sensors.newton_sides import NewtonSides, moving
+from plantar.sensors.newton_sides import NewtonSides, carried, moving
 from plantar.signals.filters import differentiate, low_pass
 from plantar.signals.orientation import attitude
 from plantar.signals.segments import longest_run, runs
@@ -36,8 +36,9 @@ class NewtonEulerResidual:
     """Both sides of Newton's law in the root link's frame over the longest calm segment of a run of a log.
 
     `pair`: all feet together; `measured` and `rates` (feet, n, 6): each foot's wrench, and how it changes with the
-    moment at which its sensor is read, both without what `load_errors` took off; `by_encoders` (n, 6): how the
-    prediction changes with the moment at which the encoders are. `readings` (n, 6 feet), the sensors' own without the
+    moment at which its sensor is read, both without what `load_errors` took off; `by_encoders` (n, 6): how what
+    is predicted beyond the measured changes with the moment at which the encoders are: joints also say where the feet
+    push. `readings` (n, 6 feet), the sensors' own without the
     zeros that swings show, and the samples `kept` of `signals` are what both sides come from; `parameters`
     (10 n_links,): of what moves above the force sensors.
     """
@@ -118,20 +119,21 @@ def _along(
     parameters, readings = model_parameters(robot.floating_model) - below.parameters, readings - below.zeros
     loads = FootLoads.of(readings[inner], differentiate(readings, log.period)[inner])
 
-    def predicted_by(motion: Motion) -> Array:
-        return np.asarray(equation.base_wrenches(motion, parameters[None])[0])
+    contacts = [Contact(*robot.frame(foot.wrench.placement)) for foot in robot.feet.values()]
 
-    step = log.period
-    ends = [
-        predicted_by(inertial_motion(robot, equation, signals, kept, encoders_late=by))
-        for by in (step, -step)
-    ]
-    by_encoders = (ends[0] - ends[1]) / (2 * step)
+    def sides_of(motion: Motion) -> tuple[Array, list[Array]]:
+        predicted = np.asarray(equation.base_wrenches(motion, parameters[None])[0])
+        return predicted, [equation.base_transfer(motion.positions, contact) for contact in contacts]
+
+    def missing_late(by: float) -> Array:
+        predicted, transfers = sides_of(inertial_motion(robot, equation, signals, kept, encoders_late=by))
+        return np.asarray(predicted - np.sum(carried(transfers, loads.readings), axis=0))
+
+    by_encoders = (missing_late(log.period) - missing_late(-log.period)) / (2 * log.period)
+    predicted, transfers = sides_of(motion)
     # A copy holds no differences yet: of long logs, and of all together, these are large.
     signals = replace(signals)
-    contacts = [Contact(*robot.frame(foot.wrench.placement)) for foot in robot.feet.values()]
-    transfers = [equation.base_transfer(motion.positions, contact) for contact in contacts]
-    predicted, by_encoders = moving([predicted_by(motion), by_encoders], period)
+    predicted, by_encoders = moving([predicted, by_encoders], period)
     sides = NewtonSides(loads, transfers, predicted, by_encoders, period)
     found = sides.closed(robot.uncertainty, log.name, round(SHORTEST / period))
     if found is None or not closes(found.pair):

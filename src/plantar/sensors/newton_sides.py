@@ -38,7 +38,8 @@ class Closed(NamedTuple):
 @dataclass(frozen=True)
 class NewtonSides:
     """What feet read, `loads`, with the `transfers` (n, 6, 6) that carry each foot's readings to the law's rows, what
-    is `predicted` (n, 6) there, and how that changes with the moment at which encoders are read, `by_encoders` (n, 6).
+    is `predicted` (n, 6) there, and how that less what feet read changes with the moment at which encoders are read,
+    `by_encoders` (n, 6).
     """
 
     loads: FootLoads

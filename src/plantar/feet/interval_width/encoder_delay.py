@@ -30,17 +30,29 @@ def encoder_delay_causes(
 
     blocks: the recordings' `tangent_blocks`.
     """
-    chosen = recordings_of(blocks, recordings)
-    columns = [late_encoder_torque(one, fit)[one.rows(fit.foot)] for one in chosen]
-    if not any(column.any() for column in columns):
+    wider = with_late_encoders(fit, blocks, recordings)
+    if wider is None:
         return []
+    columns = [block.regressor[:, -1] for block in wider]
     if blocks[0].stances is not None:
         return [_cause(blocks, columns, unsure, shared)] if unsure else []
-    found = fit_blocks(all_beside(blocks, [own[:, None] for own in columns]), shared_offset=shared)
+    found = fit_blocks(wider, shared_offset=shared)
     late, std = float(found.values[-1]), float(found.std[-1])
     if found.condition_number > SINGULAR or abs(late) < SUSPECTED * std:
         return []
     return [_cause(blocks, columns, min(abs(late), ENCODERS_APART), shared)]
+
+
+def with_late_encoders(
+    fit: AxisFit, blocks: Sequence[Block], recordings: Sequence[Recording]
+) -> list[Block] | None:
+    """The recordings' `tangent_blocks` with one more column at the end, the torque for each second by which encoders
+    are read later than the IMU; None where that is not known."""
+    chosen = recordings_of(blocks, recordings)
+    columns = [late_encoder_torque(one, fit)[one.rows(fit.foot)] for one in chosen]
+    if not any(column.any() for column in columns):
+        return None
+    return all_beside(blocks, [column[:, None] for column in columns])
 
 
 def _cause(blocks: Sequence[Block], columns: Sequence[Array], std: float, shared: bool) -> Cause:

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES, Array, Axis
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit, FittedModel
+from plantar.feet.regression.model_columns import memory_path, own_torque
 from plantar.signals.filters import differentiate
 
 # By which a centre that is higher turns a horizontal force into torque, of pitch and roll.
 ACROSS = (1.0, -1.0)
 # s: a device's own filter delays an IMU by as much at most, and encoders not at all; what looks later is another fault.
 ENCODERS_APART = 0.005
+LATER = 2e-4  # s, over which a memory's slope is taken: a small part of what makes it slip
 
 
 def load_of(recording: Recording, foot: str) -> Array:
@@ -51,14 +55,21 @@ def others_torque(recording: Recording, foot: str, axis: Axis) -> Array:
 
 
 def late_encoder_torque(recording: Recording, fit: AxisFit) -> Array:
-    """Torque (N,) for each second by which encoders are read later than the IMU, 0 where that is not known."""
+    """Torque (N,) for each second by which encoders are read later than the IMU, 0 where that is not known.
+
+    Beside spring and damper a memory follows the angle, too: until it slips it is a spring. Of a foot that steps it is
+    left out, as are its states (`tangent_blocks`).
+    """
     rates = recording.encoder_rates.get(fit.foot)
     if rates is None:
         return np.zeros(len(recording.time))
     own = rates[:, ROTATIONAL_AXES.index(fit.axis)]
-    return np.asarray(
-        np.nan_to_num(fit.values[0] * own + fit.values[1] * differentiate(own, recording.period))
-    )
+    torque = fit.values[0] * own + fit.values[1] * differentiate(own, recording.period)
+    if len(fit.shape) and recording.stances[fit.foot] is None:
+        path = memory_path(recording, fit)
+        moved = [replace(path, deflection=path.deflection + by * own) for by in (-LATER, LATER)]
+        torque += own_torque(recording, fit, moved, fit.shape[None]) @ [-0.5, 0.5] / LATER
+    return np.asarray(np.nan_to_num(torque))
 
 
 def load_torque(recording: Recording, fitted: FittedModel) -> Array:

@@ -1,0 +1,93 @@
+"""By how much encoders are read later than the IMU: fits of feet that stand show it, more sharply than Newton's law.
+
+Hips and a waist may turn several times as fast as the bush: half a millisecond of their encoders is then a tenth of the
+damping. Newton's law tells that of one log to within a third of a millisecond at best; what the joints' rates add to
+the bush's torque, beside spring and damper, tells it to some hundredths.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from plantar.estimation import fit_blocks
+from plantar.feet.foot_fit import FittedFoot
+from plantar.feet.internal_error import gives_up
+from plantar.feet.interval_width.encoder_delay import with_late_encoders
+from plantar.feet.interval_width.systematic import SINGULAR
+from plantar.feet.prepare import PreparedLogs
+from plantar.feet.recording import Recording, has_steps
+from plantar.feet.regression.load_torque import ENCODERS_APART
+from plantar.feet.regression.regression_data import tangent_blocks
+from plantar.sensors.delays.refined_delays import APART, LEAST_DISTINCT
+
+SURE = 3.0  # deviations from how they are read, beyond which encoders are read anew
+# s: of K/C = 25 1/s it is a thousandth of the damping, and where joints turn ten times as fast as the bush a hundredth.
+NEGLIGIBLE = 5e-5
+
+
+class Late(NamedTuple):
+    """How late encoders are against the IMU [s], > 0: late, and the deviation `std` [s]."""
+
+    value: float
+    std: float
+
+    def is_worth(self, taken: float) -> bool:
+        """Whether that is clearly another delay than the one `taken` [s]."""
+        return abs(self.value - taken) > max(SURE * self.std, NEGLIGIBLE)
+
+
+def newton_told(ready: PreparedLogs) -> Late | None:
+    """What Newton's law says of the encoders of feet that stand; None where it says nothing of them, or a foot steps:
+    there joints alone bend the bush, and late encoders are as good as damping."""
+    delay = ready.sensor_delay
+    told = delay.measured and not delay.doubtful and 0.0 < delay.encoders_std < APART
+    if not told or any(map(has_steps, ready.recordings)):
+        return None
+    return Late(delay.encoders, delay.encoders_std)
+
+
+def tried_first(told: Late) -> float:
+    """The delay [s] at which fits are made: none, unless encoders clearly have one. Most robots read all at once."""
+    return told.value if abs(told.value) >= LEAST_DISTINCT else 0.0
+
+
+def read_at(ready: PreparedLogs, late: Late) -> PreparedLogs:
+    """The logs with all angles as encoders show them that are `late`."""
+    more = late.value - ready.sensor_delay.encoders
+
+    def read(recordings: Sequence[Recording]) -> tuple[Recording, ...]:
+        return tuple(recording.with_encoders_later(more) for recording in recordings)
+
+    delay = replace(ready.sensor_delay, encoders=late.value, encoders_std=late.std)
+    return replace(ready, fitted=read(ready.fitted), unseen=read(ready.unseen), sensor_delay=delay)
+
+
+def encoders_shown(feet: Mapping[str, FittedFoot], told: Late, taken: float) -> Late | None:
+    """What Newton's law `told` and all axes of all feet, fitted with encoders `taken` as so late [s], say together.
+
+    None where no axis shows it, or something else than a delay makes such torques.
+    """
+    values, variances = list[float](), list[float]()
+    for one in feet.values():
+        shared = one.ready.settings.offset == "shared"
+        for axis, fit in one.fits.items():
+            with gives_up(axis, one.given_up):
+                blocks = tangent_blocks(one.thin.fitted, fit, drift=not shared)
+                wider = with_late_encoders(fit, blocks, one.thin.fitted)
+                found = None if wider is None else fit_blocks(wider, shared_offset=shared)
+                if found is not None and found.condition_number <= SINGULAR:
+                    values.append(taken + float(found.values[-1]))
+                    variances.append(float(found.std[-1]) ** 2)
+    if not values:
+        return None
+    late, known = np.array(values), 1.0 / np.array(variances)
+    mean = float(known @ late / known.sum())
+    # Axes disagree by more than their noise: each bush has errors of its own.
+    known /= max(1.0, float(known @ (late - mean) ** 2) / max(len(late) - 1, 1))
+    known, late = np.append(known, told.std**-2.0), np.append(late, told.value)
+    found_late = Late(float(known @ late / known.sum()), float(known.sum() ** -0.5))
+    return found_late if abs(found_late.value) < ENCODERS_APART else None
