@@ -10,7 +10,7 @@ import numpy as np
 import pinocchio as pin
 
 from plantar.conventions import GRAVITY, Array
-from plantar.dynamics import Contact, Equation
+from plantar.dynamics import Contact, Equation, equation_of
 from plantar.dynamics.inertial_motion import inertial_motion, turned_motions
 from plantar.dynamics.motion import Motion
 from plantar.robot.model import Foot, RobotModel
@@ -67,7 +67,7 @@ def moment_errors(robot: RobotModel, residual: NewtonEulerResidual, steps: bool)
     so strongly that noise is small beside it.
     """
     residual = residual.thinned(max(1, round(1 / (RATE * residual.pair.period))))
-    equation = Equation(robot.floating_model)
+    equation = equation_of(robot.floating_model)
     motion = inertial_motion(
         robot, equation, residual.signals, residual.kept, encoders_late=residual.encoders_late
     )

@@ -9,7 +9,7 @@ import numpy as np
 
 from plantar.contact.phases import shaken
 from plantar.conventions import GRAVITY, Array, Mask
-from plantar.dynamics import Contact, Equation, model_parameters
+from plantar.dynamics import Contact, equation_of, model_parameters
 from plantar.dynamics.inertial_motion import InertialSignals, inertial_motion, inertial_signals
 from plantar.dynamics.motion import Motion
 from plantar.estimation.delays.delay import Pair, closes
@@ -137,7 +137,7 @@ def _along(
     edge = round(EDGE / log.period)
     if run.stop - run.start < 4 * edge + 400:
         return None
-    equation = Equation(robot.floating_model)
+    equation = equation_of(robot.floating_model)
     stride = max(1, round(1 / (KEPT_RATE * log.period)))
     period, inner = stride * log.period, slice(edge, run.stop - run.start - edge, stride)
     kept = slice(run.start + edge, run.stop - edge, stride)
