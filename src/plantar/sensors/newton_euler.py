@@ -145,7 +145,8 @@ def _along(
     readings = low_pass(wrenches[run], log.period, CUTOFF)
     below = below_sensors(robot, equation, motion, readings[inner], period)
     parameters, readings = model_parameters(robot.floating_model) - below.parameters, readings - below.zeros
-    loads = FootLoads.of(readings[inner], differentiate(readings, log.period)[inner])
+    # Copies: views of a long log's samples would keep all of them.
+    loads = FootLoads.of(readings[inner].copy(), differentiate(readings, log.period)[inner].copy())
 
     def predicted_by(motion: Motion) -> Array:
         return np.asarray(equation.base_wrenches(motion, parameters[None])[0])
