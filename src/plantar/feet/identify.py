@@ -76,7 +76,7 @@ def fit_prepared(
         names = ", ".join(log.name for log in logs)
         valid = "a standing robot; were the sensors zeroed under load, 'contact: always' for these feet"
         raise DataError(f"{names}: no foot carries load in any log (valid: {valid})")
-    return_freed(sum(log.size for log in logs))  # what preparation took, copies of the process would keep
+    return_freed(max(log.size for log in logs))  # what preparation took, copies of the process would keep
     ready, feet = _with_imu_right(ready, progress)
     fitted = with_memory_of_others(feet)
     between = between_all(list(fitted.values()))

@@ -113,7 +113,7 @@ def prepare_checked(
         delay = known_delay(settings.wrench_delay)
     for look in (*logs, *validate, *looks):
         look.forget_residuals()
-    size = sum(look.log.size for look in looks)
+    size = max(look.log.size for look in looks)
     return_freed(size)
     found = _recordings(robot, looks, len(logs), settings, delay, progress)
     recordings, settings = found.recordings, found.settings
@@ -249,7 +249,7 @@ def _recordings(
         # What a log's moments tell takes as long as all else that is left of it: cores share it, also of a single log.
         balances = [(recordings[place], one) for place, own in enumerate(residuals) for one in own]
         works = [*balances, *((recording, None) for recording in recordings)]
-        return_freed(sum(look.log.size for look in looks))
+        return_freed(max(look.log.size for look in looks))
         found = list(each(told, *zip(*works, strict=True)))
     moments = [one for one in found if isinstance(one, MomentErrors)]
     stood = [one for one in found if not isinstance(one, MomentErrors)]

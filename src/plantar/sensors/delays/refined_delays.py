@@ -87,7 +87,7 @@ def refined_delays(
     at = start
     for _ in range(ROUNDS):
         tried = tried or list(each(partial(residuals_at, robot, at), logs))
-        return_freed(sum(log.size for log in logs))
+        return_freed(max((log.size for log in logs), default=0))
         step = _step(logs, tried, at)
         if step is None:
             return None
