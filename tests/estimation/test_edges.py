@@ -11,7 +11,8 @@ from scipy.stats import t as student
 
 from plantar.conventions import Array
 from plantar.estimation.blocks import Block, StanceRows
-from plantar.estimation.delays.delay import Delay, Pair, banded, closes, estimate_delay, unexplained
+from plantar.estimation.delays.bands import banded
+from plantar.estimation.delays.delay import Delay, Pair, closes, estimate_delay, unexplained
 from plantar.estimation.delays.sensor_delays import Balance, estimate_delays
 from plantar.estimation.errors_in_variables import attenuation, noise_after_filter, offsets_moved
 from plantar.estimation.random_effects import Differences, share_between

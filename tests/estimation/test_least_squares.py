@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from plantar.estimation.least_squares import Block, fit_linear, values_without_each
+from plantar.conventions import Array
+from plantar.estimation.least_squares import Block, fit_linear, sureness_of_own, values_without_each
+
+
+def beside(one: Block, column: Array) -> Block:
+    return replace(one, regressor=np.hstack([one.regressor, column]))
 
 
 def block(label: str, seed: int, offset: float = 0.0, rows: int = 300, noise: float = 0.5) -> Block:
@@ -45,6 +51,26 @@ def test_one_recording_is_ordinary_least_squares() -> None:
     np.testing.assert_allclose(fit.white_std, np.sqrt(np.diag(covariance))[:2], rtol=1e-8)
     np.testing.assert_allclose(fit.residuals["a"], one.response - design @ expected, atol=1e-9)
     np.testing.assert_allclose(fit.predict(one.regressor, fit.offsets["a"]), design @ expected, rtol=1e-9)
+
+
+@pytest.mark.parametrize("column", [0, 1])
+def test_a_coefficient_of_its_own_is_as_sure_as_in_a_fit_with_one(column: int) -> None:
+    """Of recordings of unlike lengths, one with a drift beside it, one without any motion in the other column."""
+    blocks = [block("a", 1, offset=5.0), block("b", 2, rows=500, noise=2.0), block("c", 3, offset=-4.0)]
+    blocks[1] = blocks[1].with_nuisance(np.linspace(-1, 1, 500)[:, None])
+    blocks[2].regressor[:, 1 - column] = 0.0
+    blocks[0].response[:] += 3.0 * blocks[0].regressor[:, column]
+    expected = []
+    for own in blocks:
+        fit = fit_linear([beside(each, each.regressor[:, [column]] * (each is own)) for each in blocks])
+        expected.append(abs(fit.values[-1]) / fit.std[-1])
+    np.testing.assert_allclose(sureness_of_own(blocks, column), expected, rtol=1e-6)
+
+
+def test_a_recording_without_motion_tells_no_coefficient_of_its_own() -> None:
+    blocks = [block("a", 1), block("b", 2), block("c", 3)]
+    blocks[1].regressor[:, 1] = 0.0
+    assert sureness_of_own(blocks, 1)[1] == 0.0
 
 
 def test_an_offset_for_each_recording_or_one_for_all() -> None:

@@ -51,7 +51,8 @@ def closed(pair: Pair) -> NewtonEulerResidual:
     flat = 0 * pair.predicted
     still = InertialSignals(flat[:, :0], flat[:, :3], flat[:, :3], PERIOD)
     measured, rate = pair.measured[None], pair.rate[None]
-    return NewtonEulerResidual(pair, measured, rate, flat, flat, still, slice(len(flat)), np.zeros(0))
+    rows = slice(len(flat))
+    return NewtonEulerResidual(pair, measured, rate, flat, flat, still, rows, np.zeros(0), flat, True)
 
 
 @pytest.mark.parametrize("slow_first", [True, False])

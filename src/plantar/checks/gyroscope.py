@@ -13,6 +13,7 @@ from plantar.conventions import GRAVITY, Array, Mask, rotation_from_quaternion
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding
 from plantar.signals.gyroscope_delay import USUAL, gyroscope_delay
+from plantar.signals.medians import median
 from plantar.signals.orientation import rates_from
 from plantar.signals.segments import complete
 
@@ -122,8 +123,10 @@ def _centred(turns: Array) -> Array:
 
 def _white(signals: Array) -> float:
     """Deviation of the white noise of `signals` (n, k), of all columns together, from their second differences."""
-    usual = np.nanmedian(np.abs(np.diff(signals, 2, axis=0)), axis=0) / MEDIAN / np.sqrt(6)
-    return float(np.linalg.norm(np.nan_to_num(usual)))
+    changes = np.abs(np.diff(signals, 2, axis=0)).T
+    known = [change if np.isfinite(change.sum()) else change[~np.isnan(change)] for change in changes]
+    usual = np.array([median(change) for change in known if change.size])
+    return float(np.linalg.norm(usual) / MEDIAN / np.sqrt(6))
 
 
 def check_gyroscope(name: str, log: MotionLog, orientation: Array, turns: Turns) -> Iterator[Finding]:

@@ -7,7 +7,7 @@ import pinocchio as pin
 
 from plantar.conventions import Array
 from plantar.dynamics.base_parameters import BaseParameters, base_parameters, parameter_name
-from plantar.dynamics.equation import Contact, Equation, model_parameters
+from plantar.dynamics.equation import Contact, Equation, equation_of, model_parameters
 from plantar.dynamics.fit import (
     BaseParameterFit,
     fit_base_parameters,
@@ -26,6 +26,7 @@ __all__ = [
     "Motion",
     "RowFactor",
     "base_parameters",
+    "equation_of",
     "fit_base_parameters",
     "fit_base_parameters_chunked",
     "model_parameters",

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Final
 
 import numpy as np
@@ -137,6 +138,12 @@ class Equation:
         """K_B of one contact of a floating base alone, (N, 6, 6): the first rows of `contact_transfer`."""
         frame = packed_frame(contact.placement)
         return _core.base_transfer(self.core, contact.link, frame, positions)
+
+
+@lru_cache(maxsize=1)  # every log asks for that of the one robot
+def equation_of(model: pin.Model) -> Equation:
+    """The `Equation` of a model that nobody changes."""
+    return Equation(model)
 
 
 def link_names(model: pin.Model) -> tuple[str, ...]:

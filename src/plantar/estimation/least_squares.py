@@ -9,7 +9,7 @@ import numpy as np
 from plantar.conventions import Array
 from plantar.estimation.blocks import Block, LinearFit
 from plantar.estimation.orthonormal import without
-from plantar.estimation.residual_covariance import pooled_freedom, score_cosines
+from plantar.estimation.residual_covariance import cosine_count, pooled_freedom, score_cosines
 from plantar.estimation.triangular import TriangularFactor
 
 
@@ -66,6 +66,44 @@ def values_without_each(blocks: Sequence[Block]) -> Array:
     none = TriangularFactor(np.zeros((size + 1, size + 1)), 0)
     rests = [sum((*parts[:place], *parts[place + 1 :]), none) for place in range(len(parts))]
     return np.array([rest.solve()[:columns] for rest in rests])
+
+
+def sureness_of_own(blocks: Sequence[Block], column: int) -> Array:
+    """By how many deviations the coefficient of one of the regressor's columns is another in each recording than in all
+    others, (blocks,): of fits with one more column each, which is that one in one recording.
+
+    All these fits follow from products of the rows, and their scores, which are products of two rows' columns, from
+    the cosines of such products.
+    """
+    size = blocks[0].regressor.shape[1] + 1  # the response is the last
+    own, cosines = list[Array](), list[Array]()
+    first, second = np.triu_indices(size)
+    for block in blocks:
+        rows = _rows(block)
+        offset, others = rows[:, size - 1], np.delete(rows, size - 1, axis=1)
+        others = others - np.outer(offset, offset @ others / (offset @ offset))
+        own.append(others.T @ others)
+        coloured = np.zeros((size, size, max(cosine_count(block.duration), 1)))
+        told = score_cosines(others[:, first] * others[:, second], block.duration).T
+        coloured[first, second, : told.shape[1]] = coloured[second, first, : told.shape[1]] = told
+        cosines.append(coloured)
+    together = np.sum(own, axis=0)
+    sureness = np.zeros(len(blocks))
+    for place, apart in enumerate(own):
+        products = np.block([[together, apart[:, column, None]], [apart[column], apart[column, column]]])
+        products = np.roll(products, 1, axis=(0, 1))  # its own column first, the response last
+        scale = np.sqrt(np.maximum(np.diag(products)[:-1], np.finfo(float).tiny))
+        inverse = np.linalg.pinv(products[:-1, :-1] / np.outer(scale, scale), hermitian=True)
+        inverse /= np.outer(scale, scale)
+        values, along = inverse @ products[:-1, -1], np.append(inverse[0, 1:], 0.0)
+        left, variance = np.append(-values[1:], 1.0), 0.0
+        for at, coloured in enumerate(cosines):
+            moved, missed = along.copy(), left.copy()
+            moved[column] += (at == place) * inverse[0, 0]
+            missed[column] -= (at == place) * values[0]
+            variance += float(np.sum(np.einsum("a,abc,b->c", moved, coloured, missed) ** 2))
+        sureness[place] = abs(values[0]) / np.sqrt(variance) if variance > 0 else 0.0
+    return sureness
 
 
 def _places(blocks: Sequence[Block], shared_offset: bool) -> tuple[list[Array], int]:

@@ -77,7 +77,7 @@ def fit_prepared(
         names = ", ".join(log.name for log in logs)
         valid = "a standing robot; were the sensors zeroed under load, 'contact: always' for these feet"
         raise DataError(f"{names}: no foot carries load in any log (valid: {valid})")
-    return_freed()  # what preparation took, copies of the process would keep
+    return_freed(max(log.size for log in logs))  # what preparation took, copies of the process would keep
     told = newton_told(ready)
     ready, feet = (
         _with_imu_right(ready, progress) if told is None else _with_encoders_right(ready, told, progress)

@@ -113,19 +113,20 @@ def prepare_checked(
         delay = known_delay(settings.wrench_delay)
     for look in (*logs, *validate, *looks):
         look.forget_residuals()
-    return_freed()
+    size = max(look.log.size for look in looks)
+    return_freed(size)
     found = _recordings(robot, looks, len(logs), settings, delay, progress)
     recordings, settings = found.recordings, found.settings
-    return_freed()
+    return_freed(size)
     progress("fit z")
     vertical = fit_vertical_stiffness(found.heights, robot)
     moved = [moved_centre(recording, vertical.compliance) for recording in recordings]
     forces = force_gain_errors(robot, recordings)
-    return_freed()
+    return_freed(size)
     moments = moments_of(robot, found.moments, any(map(has_steps, recordings)))
     filtered = slow_filter(fading(delay.residuals))
     delay = replace(delay, residuals=())  # both sides of Newton's law in every log: no fit reads them
-    return_freed()
+    return_freed(size)
     torques, turned = torque_gains(robot, moments), sensor_turn_notes(robot, moments)
     file = robot.path.name
     odd = [
@@ -232,7 +233,7 @@ def _recordings(
         if residual is not None:
             return moment_errors(robot, residual, has_steps(recording))
         flat = without_slip(robot, recording)
-        return_freed()  # of a long log, whose moments still take more
+        return_freed(recording.log.size)  # its moments still take more
         return flat, heights_of(robot, flat) if recording.role == "fit" else None
 
     with over_logs([look.log for look in looks]) as each:
@@ -248,7 +249,7 @@ def _recordings(
         # What a log's moments tell takes as long as all else that is left of it: cores share it, also of a single log.
         balances = [(recordings[place], one) for place, own in enumerate(residuals) for one in own]
         works = [*balances, *((recording, None) for recording in recordings)]
-        return_freed()
+        return_freed(max(look.log.size for look in looks))
         found = list(each(told, *zip(*works, strict=True)))
     moments = [one for one in found if isinstance(one, MomentErrors)]
     stood = [one for one in found if not isinstance(one, MomentErrors)]

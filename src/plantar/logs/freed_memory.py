@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable
 from functools import cache
 
-LARGE = 2**26  # bytes of a log's numbers
+LARGE = 2**24  # bytes of a log's numbers: work on it takes some ten times that
 KEPT = 2**30  # bytes that may lie free before they are handed back
 LARGEST_OF_HEAP = 2**25  # bytes of a block that may come of those: the most that glibc takes
 
@@ -27,7 +27,7 @@ def return_freed(size: int = LARGE) -> None:
     """Hand memory that is free back to the system, where the C library is one that can be asked to (glibc).
 
     Worth a call where a stage that took much has ended: it costs a millisecond, and what the next stage touches again.
-    size: of what was worked on [bytes]; below LARGE nothing is done.
+    size: of the largest log that was worked on [bytes]; below LARGE nothing is done.
     """
     if size >= LARGE:
         _own("malloc_trim")(0)

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from plantar.conventions import Array
 from plantar.results.residuals import Track
+from plantar.signals.medians import median
 
 SIZE_LIMIT: Final = 4_000_000
 """What all motions together may take in the page [characters]; a longer campaign is thinned and says so."""
@@ -86,7 +87,7 @@ def quantise(values: Array) -> tuple[NDArray[np.uint16], float, float]:
         return np.zeros(values.shape, dtype=np.uint16), 0.0, 0.0
     known = values[finite]
     zero, span = float(known.min()), float(np.ptp(known))
-    change = float(np.median(np.abs(np.diff(known)))) if known.size > 1 else 0.0
+    change = float(median(np.abs(np.diff(known)))) if known.size > 1 else 0.0
     step = min(max(change / 16, span / CODES), span / COARSEST)
     codes = np.zeros(values.shape, dtype=np.uint16)
     if step > 0 and np.isfinite(step):

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
+import pinocchio as pin
 
 from plantar.conventions import Array
 from plantar.robot.model import RobotModel
@@ -17,10 +20,14 @@ def drawn_parameter_errors(robot: RobotModel) -> Array:
     Each link's mass is off by a share `uncertainty.link_mass`, its rotational inertia about the centre of mass with
     it, and its centre of mass by `uncertainty.link_com` [m] along each axis. No draws where both are zero.
     """
-    mass, centre = robot.uncertainty.link_mass, robot.uncertainty.link_com
+    return _drawn(robot.floating_model, robot.uncertainty.link_mass, robot.uncertainty.link_com)
+
+
+@lru_cache(maxsize=1)  # every log asks for those of the one robot
+def _drawn(model: pin.Model, mass: float, centre: float) -> Array:
     if mass == 0 and centre == 0:
-        return np.zeros((0, 10 * (robot.floating_model.njoints - 1)))
-    bodies = list(robot.floating_model.inertias)[1:]
+        return np.zeros((0, 10 * (model.njoints - 1)))
+    bodies = list(model.inertias)[1:]
     masses = np.array([body.mass for body in bodies])
     centres, inertias = np.array([body.lever for body in bodies]), np.array([body.inertia for body in bodies])
     random = np.random.default_rng(SEED).standard_normal((DRAWS, len(bodies), 4))

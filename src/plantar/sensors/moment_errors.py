@@ -10,7 +10,7 @@ import numpy as np
 import pinocchio as pin
 
 from plantar.conventions import GRAVITY, Array
-from plantar.dynamics import Contact, Equation
+from plantar.dynamics import Contact, Equation, equation_of
 from plantar.dynamics.inertial_motion import inertial_motion, turned_motions
 from plantar.dynamics.motion import Motion
 from plantar.robot.model import Foot, RobotModel
@@ -66,12 +66,12 @@ def moment_errors(robot: RobotModel, residual: NewtonEulerResidual, steps: bool)
     Of a standing robot what is slower than BAND, without what the sensors' noise does to it. A walk moves faster, and
     so strongly that noise is small beside it.
     """
-    stride = max(1, round(1 / (RATE * residual.pair.period)))
-    rates = np.gradient(residual.readings, residual.pair.period, axis=0)[::stride]
-    residual = residual.thinned(stride)
-    equation = Equation(robot.floating_model)
-    motion = inertial_motion(robot, equation, residual.signals, residual.kept)
-    readings, zeros, measured, by_torques = _reading_columns(robot, equation, residual, rates)
+    residual = residual.thinned(max(1, round(1 / (RATE * residual.pair.period))))
+    equation = equation_of(robot.floating_model)
+    motion = inertial_motion(
+        robot, equation, residual.signals, residual.kept, encoders_late=residual.encoders_late
+    )
+    readings, zeros, measured, by_torques = _reading_columns(robot, equation, residual, motion.positions)
     by_gyroscope, by_mount = _imu_slopes(robot, equation, residual)
     slopes = [*-by_mount, *residual.rates, residual.by_encoders, -by_gyroscope, by_torques, *zeros]
     period, count, drawn = residual.pair.period, len(readings) + len(slopes), drawn_parameter_errors(robot)
@@ -166,13 +166,13 @@ def turn_columns(robot: RobotModel) -> dict[str, slice]:
 
 
 def _reading_columns(
-    robot: RobotModel, equation: Equation, residual: NewtonEulerResidual, rates: Array
+    robot: RobotModel, equation: Equation, residual: NewtonEulerResidual, positions: Array
 ) -> tuple[list[Array], list[Array], Array, Array]:
     """What gains of torques and other errors of the feet's sensors add to the measured side; what one newton or
     newton-metre that each channel of each foot reads without any load adds to the prediction; (n, 6) each; the
-    measured side, and how it changes with the moment at which all torques are read. rates: of the readings (n, 6 feet).
+    measured side, and how it changes with the moment at which all torques are read. positions: of the joints
+    (n, joints).
     """
-    positions = residual.signals.positions[residual.kept]
     matrices = _sensor_errors(robot)[0]
     gains: list[list[Array]] = [[], []]
     others, zeros, measured, by_torques = list[Array](), list[Array](), np.zeros(()), np.zeros(())
@@ -189,7 +189,7 @@ def _reading_columns(
         others += [*carried[2:]]
         zeros += [*-transfer.transpose(2, 0, 1)]
         measured = measured + carried[2]  # the gain of all channels
-        own_rates = rates[:, 6 * place + 3 : 6 * place + 6]
+        own_rates = residual.changes[:, 6 * place + 3 : 6 * place + 6]
         by_torques = by_torques + np.einsum("nij,nj->ni", transfer[:, :, 3:], own_rates)
     return [*gains[0], *gains[1], *others], zeros, measured, by_torques
 

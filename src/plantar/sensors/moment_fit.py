@@ -7,6 +7,7 @@ robot file says. Its covariance holds coloured noise and a wrong URDF.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from typing import NamedTuple
 
 import numpy as np
@@ -83,6 +84,9 @@ def is_wrong(values: Array, parts: Sequence[Part], some: list[int]) -> bool:
 
 def _positive(products: Array) -> Array:
     """The nearest products (k, k) that real columns can have: noise taken off may leave less than nothing."""
+    with suppress(np.linalg.LinAlgError):  # raised where it does
+        np.linalg.cholesky(products)
+        return products
     sizes, vectors = np.linalg.eigh(products)
     return np.asarray((vectors * np.maximum(sizes, 0.0)) @ vectors.T)
 

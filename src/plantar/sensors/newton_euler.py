@@ -9,7 +9,7 @@ import numpy as np
 
 from plantar.contact.phases import shaken
 from plantar.conventions import GRAVITY, Array, Mask
-from plantar.dynamics import Contact, Equation, model_parameters
+from plantar.dynamics import Contact, equation_of, model_parameters
 from plantar.dynamics.inertial_motion import InertialSignals, inertial_motion, inertial_signals
 from plantar.dynamics.motion import Motion
 from plantar.estimation.delays.delay import Pair, closes
@@ -40,7 +40,9 @@ class NewtonEulerResidual:
     is predicted beyond the measured changes with the moment at which the encoders are: joints also say where the feet
     push. `readings` (n, 6 feet), the sensors' own without the
     zeros that swings show, and the samples `kept` of `signals` are what both sides come from; `parameters`
-    (10 n_links,): of what moves above the force sensors.
+    (10 n_links,): of what moves above the force sensors. `changes` (n, 6 feet) [1/s]: of the readings; `stands`:
+    nothing was taken off for what swings show; `encoders_late` [s]: by which the encoders are read later than the
+    `signals` have them.
     """
 
     pair: Pair
@@ -51,6 +53,9 @@ class NewtonEulerResidual:
     signals: InertialSignals
     kept: slice
     parameters: Array
+    changes: Array
+    stands: bool
+    encoders_late: float = 0.0
 
     def thinned(self, stride: int) -> NewtonEulerResidual:
         """Every nth sample; `pair` without its draws of wrong models."""
@@ -66,6 +71,30 @@ class NewtonEulerResidual:
             replace(self.signals),
             kept,
             self.parameters,
+            self.changes[rows],
+            self.stands,
+            self.encoders_late,
+        )
+
+    def with_bands(self) -> NewtonEulerResidual:
+        """The same with all bands filtered, and without the draws of wrong models, which stand in these."""
+        return replace(self, pair=replace(self.pair.slim, known=self.balance.bands))
+
+    def read_later(self, by: Array) -> NewtonEulerResidual:
+        """Each foot's sensor and the encoders read `by` (feet + 1,) [s] later, with its bands: by their rates, which do
+        for a millisecond where the robot `stands`. What swings show is another thing then."""
+        pair, own = self.pair, by[:-1, None, None] * self.rates
+        return replace(
+            self,
+            pair=replace(
+                pair,
+                measured=pair.measured + own.sum(axis=0),
+                predicted=pair.predicted + by[-1] * self.by_encoders,
+                known=[band.read_later(by) for band in pair.bands],
+            ),
+            measured=self.measured + own,
+            readings=self.readings + np.repeat(by[:-1], 6) * self.changes,
+            encoders_late=self.encoders_late + float(by[-1]),
         )
 
     @cached_property
@@ -73,7 +102,7 @@ class NewtonEulerResidual:
         """Feet and encoders apart: delays of each foot, then of the encoders, all against the IMU."""
         by_delay = np.concatenate([self.rates, -self.by_encoders[None]])
         pair = self.pair
-        return Balance(pair.predicted, self.measured, by_delay, pair.period, pair.model_errors)
+        return Balance(pair.predicted, self.measured, by_delay, pair.period, pair.model_errors, pair.known)
 
 
 def with_gyroscope(robot: RobotModel, log: MotionLog) -> MotionLog | None:
@@ -109,7 +138,7 @@ def _along(
     edge = round(EDGE / log.period)
     if run.stop - run.start < 4 * edge + 400:
         return None
-    equation = Equation(robot.floating_model)
+    equation = equation_of(robot.floating_model)
     stride = max(1, round(1 / (KEPT_RATE * log.period)))
     period, inner = stride * log.period, slice(edge, run.stop - run.start - edge, stride)
     kept = slice(run.start + edge, run.stop - edge, stride)
@@ -117,7 +146,8 @@ def _along(
     readings = low_pass(wrenches[run], log.period, CUTOFF)
     below = below_sensors(robot, equation, motion, readings[inner], period)
     parameters, readings = model_parameters(robot.floating_model) - below.parameters, readings - below.zeros
-    loads = FootLoads.of(readings[inner], differentiate(readings, log.period)[inner])
+    # Copies: views of a long log's samples would keep all of them.
+    loads = FootLoads.of(readings[inner].copy(), differentiate(readings, log.period)[inner].copy())
 
     contacts = [Contact(*robot.frame(foot.wrench.placement)) for foot in robot.feet.values()]
 
@@ -153,6 +183,8 @@ def _along(
         signals,
         slice(kept.start + start * stride, kept.start + stop * stride, stride),
         parameters,
+        loads.changes[calm],
+        not below.parameters.any() and not below.zeros.any(),
     )
 
 

@@ -57,7 +57,7 @@ def residual(delays: Sequence[float], seed: int) -> NewtonEulerResidual:
     pair = Pair("sweep", measured.sum(axis=0), rates.sum(axis=0), predicted(0.0)[INNER], PERIOD)
     signals, none = InertialSignals(*np.zeros((3, 0, 3)), PERIOD), np.zeros(0)
     return NewtonEulerResidual(
-        pair, measured, rates, by_encoders[INNER], measured[0], signals, slice(0), none
+        pair, measured, rates, by_encoders[INNER], measured[0], signals, slice(0), none, measured[0], True
     )
 
 

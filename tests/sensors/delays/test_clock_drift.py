@@ -85,5 +85,5 @@ def test_halves_of_few_values_differ_by_chance(
 ) -> None:
     """Two halves, each known to 5 ms: their difference to √2 times that."""
     halves = iter([Delay(0.0, 0.005, freedom, 3), Delay(np.sqrt(2) * 0.005 * times, 0.005, freedom, 3)])
-    monkeypatch.setattr("plantar.sensors.delays.clock_drift.estimate_delay", lambda _: next(halves))
+    monkeypatch.setattr("plantar.sensors.delays.clock_drift.delay_in", lambda _: next(halves))
     assert (clock_drift([pair(0.0, 1)]) is not None) == told

@@ -6,31 +6,24 @@ disagree, and their disagreement goes into the deviation: a fit over everything 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
 from plantar.conventions import FORCE, NORMAL95, Array
+from plantar.estimation.delays.bands import Band, bands_of
 from plantar.estimation.quantiles import student_quantile
 from plantar.estimation.residual_covariance import score_cosines
-from plantar.signals.filters import differentiate, low_pass
 
 ROUNDS = 4  # the moment equation is linear near its solution: each round shifts and solves again
 SETTLED = 0.01  # of the deviation: after a smaller step the next one would be a hundredth of it or less
 LONGEST = 0.05  # s: later signals than this have another fault than a delay
-BAND_EDGES = (0.15, 0.4, 0.8, 1.6, 3.2, 6.4)  # Hz
 LEAST_EXPLAINED = 0.8  # share of an axis' variance in a band that the prediction must explain to take part
 # Share of the forces' variance that the prediction explains as it is: less, and somebody pushes.
 LEAST_CLOSED = 0.93
 GAIN_BAND = (0.8, 1.25)  # measured over predicted, of an axis that takes part
-SAMPLES_PER_CYCLE = 8  # of a band's upper edge, that thinning keeps
-# Of a band's lower edge, at both ends: a filter there sees the end itself, which no delay moves.
-END_CYCLES = 2.0
-MOST_ENDS = 0.5  # of a recording that ends may take
-# Of an axis' variance that a band must hold: less is what filters leak, an amplitude of 1 %.
-LEAST_SHARE = 1e-4
 # Of the amplitude, in quadrature: what any URDF and any filter get wrong; a delay of this over ω.
 MODEL_ERROR = 0.003
 
@@ -42,7 +35,7 @@ class Pair:
     `rate` (n, 6) is how `measured` changes with the moment at which the sensors are read. It is not its derivative in
     time where sensors turn: what is late is their reading, not the frame that it is expressed in. `model_errors`
     (draws, n, 6): how `predicted` would change were the robot's model wrong by as much as it may be, at random; the
-    same draws in every recording.
+    same draws in every recording. `known`: its bands, where what it is part of has them already.
     """
 
     label: str
@@ -51,16 +44,20 @@ class Pair:
     predicted: Array
     period: float
     model_errors: Array = field(default_factory=lambda: np.zeros((0, 0, 6)))
+    known: Sequence[Band] | None = None
 
     @cached_property
-    def bands(self) -> list[_Band]:
+    def bands(self) -> Sequence[Band]:
         """The pair in each band of frequencies, once it was asked for."""
-        return _bands(self)
+        if self.known is not None:
+            return self.known
+        errors = self.model_errors if len(self.model_errors) else np.zeros((0, *self.predicted.shape))
+        return bands_of(self.predicted, self.measured[None], self.rate[None], self.period, errors)
 
     @property
     def slim(self) -> Pair:
         """A copy without bands and draws of wrong models, which together are far larger than the rest."""
-        return replace(self, model_errors=np.zeros((0, 0, 6)))
+        return replace(self, model_errors=np.zeros((0, 0, 6)), known=None)
 
 
 @dataclass(frozen=True)
@@ -80,10 +77,15 @@ class Delay:
 
 def estimate_delay(pairs: Sequence[Pair]) -> Delay | None:
     """Delay common to all pairs, or None where in none the prediction closes, or what it says is no delay."""
+    return delay_in([band for pair in pairs if closes(pair) for band in pair.bands])
+
+
+def delay_in(bands: Sequence[Band]) -> Delay | None:
+    """Delay common to bands of pairs that close; None where no axis explains any, or what they say is no delay."""
     value, found = 0.0, None
-    bands = [pair.bands for pair in pairs if closes(pair)]
+    sides = [_Sides.of(band) for band in bands]
     for _ in range(ROUNDS):
-        cells = [cell for own in bands for band in own for cell in _cells(band, value)]
+        cells = [cell for one in sides for cell in _cells(one, value)]
         if not cells:
             return None
         found = _pooled(cells)
@@ -96,11 +98,10 @@ def estimate_delay(pairs: Sequence[Pair]) -> Delay | None:
 
 
 @dataclass(frozen=True)
-class _Band:
-    """A pair in one band of frequencies of `width` [Hz], thinned, with rates; `bend` is the second one of measured.
+class _Sides:
+    """Both sides of a balance in one band (6, m), with rates; `bend` is the second one of measured.
 
     `errors_along`, `errors_by_rate` (draws, 6): products of drawn wrong models with the predicted signal and its rate.
-    `enough` (6,): the squares below which an axis holds nothing in this band.
     """
 
     measured: Array
@@ -110,50 +111,22 @@ class _Band:
     predicted_rate: Array
     errors_along: Array
     errors_by_rate: Array
-    enough: Array
-    width: float
-    duration: float
+    band: Band
+
+    @classmethod
+    def of(cls, band: Band) -> _Sides:
+        predicted, missing = band.signals[:, 0], band.signals[:, -1]
+        rate = band.signals[:, band.late][:, : band.sensors].sum(axis=1)
+        bend = band.rates[:, 1 : 1 + band.sensors].sum(axis=1)
+        drawn = slice(band.signals.shape[1], None)
+        along, by_rate = (
+            some.sum(axis=0).T for some in (band.products[..., 0, drawn], band.by_rate[..., 0, :])
+        )
+        return cls(predicted - missing, rate, bend, predicted, band.rates[:, 0], along, by_rate, band)
 
     def at(self, delay: float) -> tuple[Array, Array]:
         """Measured signal and its rate as if read `delay` later: by their own rates, smooth as a band is."""
         return self.measured + delay * self.rate + 0.5 * delay**2 * self.bend, self.rate + delay * self.bend
-
-
-def banded(
-    signals: Array, period: float, rated: slice = slice(0)
-) -> Iterator[tuple[float, Array, Array, int]]:
-    """Signals (n, k) in each band: its width [Hz], the filtered signals (m, k) at every nth sample, the rates of those
-    columns that are `rated`, and n.
-
-    The ends are left out: a filter answers to the end of a recording, and that is never late. Of slow signals the fast
-    bands hold nothing else.
-    """
-    edges = [edge for edge in BAND_EDGES if edge < 0.4 / period]
-    above = low_pass(signals, period, edges[0]) if edges else signals
-    for place, edge in enumerate(edges[1:]):
-        below, above = above, low_pass(signals, period, edge)
-        end = round(min(END_CYCLES / edges[place] / period, MOST_ENDS / 2 * len(signals)))
-        stride = max(1, int(1 / (SAMPLES_PER_CYCLE * edge * period)))
-        kept = slice(end, len(signals) - end, stride)
-        rates = differentiate(above[:, rated] - below[:, rated], period)[kept]
-        yield edge - edges[place], above[kept] - below[kept], rates, stride
-
-
-def _bands(pair: Pair) -> list[_Band]:
-    """The pair in each band of frequencies."""
-    draws, period = len(pair.model_errors), pair.period
-    together = np.hstack([pair.measured, pair.rate, pair.predicted, *pair.model_errors])
-    whole = np.var(pair.measured, axis=0)
-    found = []
-    # Rates: of the measured rate, and of the predicted signal.
-    for width, thin, rates, stride in banded(together, period, slice(6, 18)):
-        measured, rate, predicted = thin[:, :6], thin[:, 6:12], thin[:, 12:18]
-        drawn = thin[:, 18:].reshape(len(thin), draws, 6)
-        along, by_rate = (np.einsum("nda,na->da", drawn, one) for one in (predicted, rates[:, 6:]))
-        enough = LEAST_SHARE * whole * len(thin)
-        parts = (measured, rate, rates[:, :6], predicted, rates[:, 6:], along, by_rate, enough)
-        found.append(_Band(*parts, width, len(thin) * stride * period))
-    return found
 
 
 @dataclass(frozen=True)
@@ -206,38 +179,38 @@ def unexplained(measured: Array, rate: Array, predicted: Array) -> Array:
     return np.asarray(np.sum((missing + delay * rate) ** 2, axis=(-2, -1)))
 
 
-def _cells(band: _Band, delay: float) -> list[_Cell]:
+def _cells(sides: _Sides, delay: float) -> list[_Cell]:
     """What is left of the delay, by axis: Σ (m - g·p) ṗ = -δ Σ ṁ ṗ for m(t) = g·p(t - δ) + noise.
 
     Noise is nowhere multiplied with itself, only with its own rate, so that it does not bias δ.
     """
-    m, rate_m = band.at(delay)
-    p, rate_p = band.predicted, band.predicted_rate
+    m, rate_m = sides.at(delay)
+    p, rate_p, band = sides.predicted, sides.predicted_rate, sides.band
     power, slope, squares = _dots(p, p), _dots(rate_m, rate_p), _dots(m, m)
     gain = _dots(m, p) / np.where(power > 0, power, np.inf)
-    rest = m - gain * p
+    rest = m - gain[:, None] * p
     explains = _dots(rest, rest) < (1 - LEAST_EXPLAINED) * squares
-    usable = (gain > GAIN_BAND[0]) & (gain < GAIN_BAND[1]) & (slope > 0) & (squares > band.enough)
+    usable = (gain > GAIN_BAND[0]) & (gain < GAIN_BAND[1]) & (slope > 0) & (squares > band.least * band.size)
     axes = np.flatnonzero(explains & usable)
     if not axes.size:
         return []
-    p, rate_p, rate_m, rest = p[:, axes], rate_p[:, axes], rate_m[:, axes], rest[:, axes]
+    p, rate_p, rate_m, rest = p[axes], rate_p[axes], rate_m[axes], rest[axes]
     power, slope, gain = power[axes], slope[axes], gain[axes]
     steps = -_dots(rest, rate_p) / slope
-    scores = (rest + steps * rate_m) * rate_p
-    cosines = score_cosines(scores, band.duration)
+    scores = (rest + steps[:, None] * rate_m) * rate_p
+    cosines = score_cosines(scores.T, band.duration)
     # Few cosines are small by chance now and then, and such a cell would outweigh all others: two independent
     # signals of this band's width have scores with at least so much variance.
-    usual = len(scores) * _dots(scores, scores) / (2 * band.width * band.duration)
-    noise = np.sqrt(np.maximum(_dots(cosines, cosines), usual)) / slope
+    usual = band.size * _dots(scores, scores) / (2 * band.width * band.duration)
+    noise = np.sqrt(np.maximum(_dots(cosines.T, cosines.T), usual)) / slope
     floor = MODEL_ERROR * np.sqrt(power / _dots(rate_p, rate_p))
     # The gain takes what is along the prediction.
-    across = band.errors_by_rate[:, axes] - band.errors_along[:, axes] * _dots(p, rate_p) / power
+    across = sides.errors_by_rate[:, axes] - sides.errors_along[:, axes] * _dots(p, rate_p) / power
     moved = gain * across / slope
     each = zip(steps, np.hypot(noise, floor), moved.T, strict=True)
     return [_Cell(float(step), float(std), len(cosines), own) for step, std, own in each]
 
 
 def _dots(one: Array, other: Array) -> Array:
-    """Products of columns (n, k) with those of the other, (k,)."""
-    return np.asarray(np.einsum("nk,nk->k", one, other))
+    """Products of rows (k, n) with those of the other, (k,)."""
+    return np.asarray(np.einsum("kn,kn->k", one, other))

@@ -14,7 +14,8 @@ from functools import cached_property
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.estimation.delays.delay import GAIN_BAND, LEAST_EXPLAINED, LEAST_SHARE, MODEL_ERROR, banded
+from plantar.estimation.delays.bands import Band, bands_of
+from plantar.estimation.delays.delay import GAIN_BAND, LEAST_EXPLAINED, MODEL_ERROR
 
 ROUNDS = 3  # of weighing cells by what the solution leaves of them
 FEWEST_CELLS = 6  # axes in bands that must close
@@ -26,7 +27,7 @@ class Balance:
     """Newton's law of one recording over six axes: `predicted` (n, 6) less the sum of `measured` (sensors, n, 6).
 
     `by_delay` (delays, n, 6) is how that difference grows with each sensor's delay [per s]. Evenly sampled, without
-    NaN, equally filtered. `model_errors` (draws, n, 6): as in `Pair`.
+    NaN, equally filtered. `model_errors` (draws, n, 6), `known`: as in `Pair`.
     """
 
     predicted: Array
@@ -34,11 +35,20 @@ class Balance:
     by_delay: Array
     period: float
     model_errors: Array = field(default_factory=lambda: np.zeros((0, 0, 6)))
+    known: Sequence[Band] | None = None
+
+    @cached_property
+    def bands(self) -> Sequence[Band]:
+        """The balance in each band of frequencies, once it was asked for."""
+        if self.known is not None:
+            return self.known
+        errors = self.model_errors if len(self.model_errors) else np.zeros((0, *self.predicted.shape))
+        return bands_of(self.predicted, self.measured, self.by_delay, self.period, errors)
 
     @cached_property
     def cells(self) -> list[_Cell]:
         """Every axis in every band that closes, once they were asked for."""
-        return _cells(self)
+        return [cell for band in self.bands for cell in _cells(band)]
 
 
 @dataclass(frozen=True)
@@ -103,35 +113,25 @@ def _null_space(held: Array) -> Array:
     return np.asarray(rows[int((sizes > 1e-9).sum()) :].T)
 
 
-def _cells(balance: Balance) -> list[_Cell]:
-    """Every axis in every band that closes."""
-    predicted, measured = balance.predicted[None], balance.measured
-    sensors, delays, found = len(measured), len(balance.by_delay), []
-    missing = predicted - measured.sum(axis=0)
-    errors = balance.model_errors if len(balance.model_errors) else np.zeros((0, *balance.predicted.shape))
-    # Gains come first: of the prediction, and of what sensors read unlike each other.
-    columns = [predicted, measured[1:] - measured[:1], balance.by_delay, missing, errors]
-    flat = np.concatenate(columns).transpose(1, 2, 0)
-    enough = LEAST_SHARE * np.var(predicted - missing, axis=1)[0]
-    for width, filtered, _, stride in banded(flat.reshape(len(flat), -1), balance.period):
-        # Of a few seconds, a slow band holds fewer independent values than there are gains and delays: these explain
-        # all of it, whatever they are.
-        freedom = 2 * width * stride * balance.period * len(filtered) - sensors
-        if freedom <= delays:
-            continue
-        band = filtered.reshape(-1, *flat.shape[1:]).transpose(1, 2, 0)
-        products = band @ band.transpose(0, 2, 1)
-        clear = _beside(products, sensors)
-        rest = _beside(clear, delays)[:, 0, 0]
-        at = sensors + delays  # the place of what is missing
-        power, apart = products[:, 0, 0], products[:, 0, at]
-        total, gain = power - 2 * apart + products[:, at, at], 1 - apart / np.maximum(power, 1e-300)
-        explains = (rest < (1 - LEAST_EXPLAINED) * total) & (total > enough * len(filtered))
-        usable = (gain > GAIN_BAND[0]) & (gain < GAIN_BAND[1])
-        wrong = np.trace(clear[:, delays + 1 :, delays + 1 :], axis1=1, axis2=2) / max(len(errors), 1)
-        floor = MODEL_ERROR**2 * power + wrong
-        found += [_Cell(clear[axis], floor[axis], freedom) for axis in np.flatnonzero(explains & usable)]
-    return found
+def _cells(band: Band) -> list[_Cell]:
+    """Every axis of a band that closes. Gains come first: of the prediction, and of what sensors read unlike each
+    other."""
+    sensors, delays, products = band.sensors, len(band.rates[0]) - 1, band.products.sum(axis=0)
+    # Of a few seconds, a slow band holds fewer independent values than there are gains and delays: these explain all
+    # of it, whatever they are.
+    freedom = 2 * band.width * band.duration - sensors
+    if freedom <= delays:
+        return []
+    clear = _beside(products, sensors)
+    rest = _beside(clear, delays)[:, 0, 0]
+    at = sensors + delays  # the place of what is missing
+    power, apart = products[:, 0, 0], products[:, 0, at]
+    total, gain = power - 2 * apart + products[:, at, at], 1 - apart / np.maximum(power, 1e-300)
+    explains = (rest < (1 - LEAST_EXPLAINED) * total) & (total > band.least * band.size)
+    usable = (gain > GAIN_BAND[0]) & (gain < GAIN_BAND[1])
+    wrong = clear[:, delays + 1 :, delays + 1 :]
+    floor = MODEL_ERROR**2 * power + np.trace(wrong, axis1=1, axis2=2) / max(wrong.shape[-1], 1)
+    return [_Cell(clear[axis], floor[axis], freedom) for axis in np.flatnonzero(explains & usable)]
 
 
 def _beside(products: Array, count: int) -> Array:

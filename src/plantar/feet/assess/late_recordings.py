@@ -13,6 +13,7 @@ import numpy as np
 
 from plantar.conventions import NORMAL95
 from plantar.estimation import Block, fit_blocks
+from plantar.estimation.least_squares import sureness_of_own
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.regression_data import beside, blocks_of
@@ -35,12 +36,12 @@ def late_recordings(
     blocks = blocks_of(recordings, wide.foot, wide.axis)
     if blocks[0].stances is not None or shared or len(blocks) < 2:
         return []
-    fits = [fit_blocks([_with_own_damping(each, each is block) for each in blocks]) for block in blocks]
-    sureness = [abs(own.values[-1]) / own.std[-1] for own in fits]
+    sureness = sureness_of_own(blocks, RATE)
     most = int(np.argmax(sureness))
-    found, together = fits[most], fit_blocks(blocks)
-    moved = abs(found.values[RATE] - together.values[RATE])
-    if sureness[most] < SURE or moved < NORMAL95 * wide.std[RATE]:
+    if sureness[most] < SURE:
+        return []
+    found = fit_blocks([_with_own_damping(each, each is blocks[most]) for each in blocks])
+    if abs(found.values[RATE] - fit_blocks(blocks).values[RATE]) < NORMAL95 * wide.std[RATE]:
         return []
     if not isinstance(wide.model, KelvinVoigt) and fit_blocks(tangent).squares < found.squares:
         return []

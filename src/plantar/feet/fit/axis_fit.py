@@ -8,6 +8,7 @@ import numpy as np
 
 from plantar.conventions import Axis
 from plantar.estimation import Block, LinearFit, fit_blocks
+from plantar.estimation.least_squares import factor_of
 from plantar.estimation.stance_problem import StanceProblem
 from plantar.feet.fit.corrections import about_true_zero, unattenuated, with_best_offsets
 from plantar.feet.fit.hidden_memory import cautioned, may_hide_a_memory
@@ -123,13 +124,13 @@ def _where_a_spring_turns(
     rubber, a spring finds its place centimetres off.
     """
     moved = about_its_place(spring, recordings, place, shared)
-    before, behind = (
-        fit_blocks(
-            blocks_of(recordings, spring.foot, spring.axis, drift=not shared, fit=fit), shared_offset=shared
-        ).squares
+    missed = [
+        factor_of(
+            blocks_of(recordings, spring.foot, spring.axis, drift=not shared, fit=fit), shared
+        ).residual_norm
         for fit in (spring, moved)
-    )
-    return moved if behind < PLACE_EXPLAINS * before else spring
+    ]
+    return moved if missed[1] ** 2 < PLACE_EXPLAINS * missed[0] ** 2 else spring
 
 
 def _explained(fit: LinearFit, blocks: Sequence[Block]) -> float:

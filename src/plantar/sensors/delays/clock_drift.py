@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
-from plantar.cores import Each
-from plantar.estimation.delays.delay import Delay, Pair, estimate_delay
+from plantar.estimation.delays.bands import HALVES
+from plantar.estimation.delays.delay import Delay, Pair, closes, delay_in
 from plantar.notes import Note
 
-HALVES = (0, 1)
 SURE = 4.0  # deviations by which two halves must differ
 LEAST = 0.002  # s, and by so much: less is within what any search leaves
 
@@ -38,11 +36,9 @@ class ClockDrift(NamedTuple):
         return Note("clock_drift", "warning", text)
 
 
-def clock_drift(pairs: Sequence[Pair], each: Each = map) -> ClockDrift | None:
-    """What the delays of each log's halves say; None where they do not clearly differ. `each` maps a function over the
-    halves, as in `estimate_wrench_delay`."""
-    delays = iter(each(_delay_of, [pair for pair in pairs for _ in HALVES], [*HALVES] * len(pairs)))
-    told = zip(pairs, map(_apart, delays, delays), strict=True)
+def clock_drift(pairs: Sequence[Pair]) -> ClockDrift | None:
+    """What the delays of each log's halves say; None where they do not clearly differ."""
+    told = [(pair, _apart(*(_delay_of(pair, half) for half in HALVES))) for pair in pairs]
     found = [(pair, halves) for pair, halves in told if halves is not None]
     if not found:
         return None
@@ -59,7 +55,10 @@ def clock_drift(pairs: Sequence[Pair], each: Each = map) -> ClockDrift | None:
 def _delay_of(pair: Pair, half: int) -> Delay | None:
     """What one half of a log says of the sensors' delay."""
     middle = len(pair.predicted) // 2
-    return estimate_delay([_part(pair, slice(middle, None) if half else slice(0, middle))])
+    rows = slice(middle, None) if half == HALVES[1] else slice(0, middle)
+    own = Pair(pair.label, pair.measured[rows], pair.rate[rows], pair.predicted[rows], pair.period)
+    bands = [band.half(half) for band in pair.bands]
+    return delay_in([band for band in bands if band is not None]) if closes(own) else None
 
 
 def _apart(first: Delay | None, second: Delay | None) -> tuple[float, float] | None:
@@ -67,13 +66,3 @@ def _apart(first: Delay | None, second: Delay | None) -> tuple[float, float] | N
     if first is None or second is None:
         return None
     return second.value - first.value, first.wide_std**2 + second.wide_std**2
-
-
-def _part(pair: Pair, rows: slice) -> Pair:
-    return replace(
-        pair,
-        measured=pair.measured[rows],
-        rate=pair.rate[rows],
-        predicted=pair.predicted[rows],
-        model_errors=pair.model_errors[:, rows],
-    )

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from plantar.conventions import FORCE, GRAVITY, Array
-from plantar.dynamics import Contact, Equation, model_parameters
+from plantar.dynamics import Contact, equation_of, model_parameters
 from plantar.dynamics.inertial_motion import inertial_motion, inertial_signals
 from plantar.estimation.delays.lag_search import WINDOW, LagGrid
 from plantar.logs.motion_log import MotionLog
@@ -43,7 +43,7 @@ def lagged_log(robot: RobotModel, log: MotionLog) -> LagGrid | None:
     if (inner.stop - inner.start) * thin.period < 2 * WINDOW:
         return None
     inner = _liveliest(readings[..., FORCE].sum(axis=0), inner, round(LONGEST / thin.period))
-    equation, parameters = Equation(robot.floating_model), model_parameters(robot.floating_model)
+    equation, parameters = equation_of(robot.floating_model), model_parameters(robot.floating_model)
     contacts = [Contact(*robot.frame(foot.wrench.placement)) for foot in robot.feet.values()]
     late = np.stack([readings[:, inner.start + step : inner.stop + step] for step in steps], axis=1)
     predicted, measured = [], []

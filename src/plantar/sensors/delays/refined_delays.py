@@ -87,7 +87,7 @@ def refined_delays(
     at = start
     for _ in range(ROUNDS):
         tried = tried or list(each(partial(residuals_at, robot, at), logs))
-        return_freed()
+        return_freed(max((log.size for log in logs), default=0))
         step = _step(logs, tried, at)
         if step is None:
             return None
@@ -95,19 +95,20 @@ def refined_delays(
         if moved < SETTLED and step.std < np.inf:
             residuals = tuple(residual for own in tried for residual in own)
             pairs, common = [one.pair for one in residuals], float(np.mean(read_at[:-1]))
-            unsteady = clock_drift(pairs, each) or delays_by_log(pairs, common)
+            unsteady = clock_drift(pairs) or delays_by_log(pairs, common)
             residuals = tuple(replace(one, pair=one.pair.slim) for one in residuals)
             return replace(step, unsteady=unsteady, residuals=residuals)
-        tried = None
+        near = moved < SETTLED and all(one.stands for own in tried for one in own)
+        tried = [[one.read_later(at - read_at) for one in own] for own in tried] if near else None
     return None
 
 
 def residuals_at(robot: RobotModel, delays: Array, log: MotionLog) -> list[NewtonEulerResidual]:
     """Both sides of Newton's law along a log read at `delays`, filtered in all bands: here, one log apart from others,
     and not when delays are asked of all."""
-    found = newton_euler_residuals(robot, read_in_time(robot, log, delays))
+    found = [one.with_bands() for one in newton_euler_residuals(robot, read_in_time(robot, log, delays))]
     for one in found:
-        _ = one.pair.bands, one.balance.cells
+        _ = one.balance.cells
     return found
 
 

@@ -1,0 +1,139 @@
+"""A balance of signals in bands of frequencies, filtered once for all that asks for delays in them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from plantar.conventions import Array
+from plantar.signals.filters import differentiate, low_pass
+
+BAND_EDGES = (0.15, 0.4, 0.8, 1.6, 3.2, 6.4)  # Hz
+SAMPLES_PER_CYCLE = 8  # of a band's upper edge, that thinning keeps
+# Of a band's lower edge, at both ends: a filter there sees the end itself, which no delay moves.
+END_CYCLES = 2.0
+MOST_ENDS = 0.5  # of a recording that ends may take
+# Of an axis' variance that a band must hold: less is what filters leak, an amplitude of 1 %.
+LEAST_SHARE = 1e-4
+HALVES = (0, 2)  # the places of the parts that are halves
+
+
+@dataclass(frozen=True)
+class Band:
+    """A balance over six axes in one band of `width` [Hz], its samples `step` [s] apart.
+
+    `signals` (6, k, m): the prediction, what each of the `sensors` behind the first reads more than that one, how what
+    is missing grows with each delay [per s], and what is missing; `rates` (6, 1 + delays, m) of the prediction and of
+    what grows with each delay. `products` (parts, 6, k + draws, k + draws) of signals and drawn wrong models with each
+    other, `by_rate` (parts, 6, 1 + delays, draws) of rates and wrong models, in each of the `parts`: the first half of
+    the recording, what is near its middle, and the second half. `least` (6,): the square for each sample below which an
+    axis holds nothing in this band.
+    """
+
+    sensors: int
+    signals: Array
+    rates: Array
+    products: Array
+    by_rate: Array
+    parts: Sequence[slice]
+    least: Array
+    width: float
+    step: float
+
+    @property
+    def size(self) -> int:
+        return int(self.signals.shape[-1])
+
+    @property
+    def duration(self) -> float:
+        return self.size * self.step
+
+    @property
+    def late(self) -> slice:
+        """The places of what grows with each delay."""
+        return slice(self.sensors, self.signals.shape[1] - 1)
+
+    def half(self, half: int) -> Band | None:
+        """One of HALVES alone, as far from the recording's middle as from its end; None of a band of which ends would
+        take too much."""
+        rows, own = self.parts[half], slice(half, half + 1)
+        signals, rates = self.signals[..., rows], self.rates[..., rows]
+        left = signals.shape[-1]
+        if left < (1 - MOST_ENDS) * (
+            self.size - left
+        ):  # of the half with its ends, which is as long as all others
+            return None
+        return replace(
+            self, signals=signals, rates=rates, products=self.products[own], by_rate=self.by_rate[own]
+        )
+
+    def read_later(self, by: Array) -> Band:
+        """The band with each sensor read `by` (delays,) [s] later, to first order: of a millisecond at 6 Hz the next
+        order is a thousandth of a signal. Delays behind those of the sensors are those of what is predicted."""
+        count, late = self.signals.shape[1], np.arange(*self.late.indices(self.signals.shape[1]))
+        turn, of_rates = np.eye(self.products.shape[-1]), np.eye(len(late) + 1)
+        own = late[: self.sensors]
+        turn[0, late[self.sensors :]] = of_rates[0, 1 + self.sensors :] = -by[self.sensors :]
+        turn[range(1, self.sensors), own[1:]] = by[1 : self.sensors]
+        turn[1 : self.sensors, own[0]] = -by[0]
+        turn[count - 1, late] = -by
+        return replace(
+            self,
+            signals=turn[:count, :count] @ self.signals,
+            rates=of_rates @ self.rates,
+            products=turn @ self.products @ turn.T,
+            by_rate=of_rates @ self.by_rate,
+        )
+
+
+def bands_of(predicted: Array, measured: Array, by_delay: Array, period: float, errors: Array) -> list[Band]:
+    """A balance in each band: `predicted` (n, 6) less the sum of `measured` (sensors, n, 6), which grows `by_delay`
+    (delays, n, 6) with each delay [per s]; `errors` (draws, n, 6): what wrong models add to the prediction."""
+    sensors, delays = len(measured), len(by_delay)
+    whole = measured.sum(axis=0)
+    missing = predicted - whole
+    parts = [predicted[None], by_delay, measured[1:] - measured[:1], missing[None], errors]
+    # Those with rates stand together first.
+    order = [0, *range(delays + 1, delays + sensors), *range(1, delays + 1)]
+    order += range(delays + sensors, delays + sensors + 1 + len(errors))
+    flat = np.hstack([column for part in parts for column in part])
+    least, found = LEAST_SHARE * np.var(whole, axis=0), list[Band]()
+    for width, thin, rated, stride in banded(flat, period, slice(0, 6 * (1 + delays))):
+        signals, rates = (
+            np.ascontiguousarray(some.reshape(len(some), -1, 6).transpose(2, 1, 0)) for some in (thin, rated)
+        )
+        signals, own = signals[:, order], sensors + delays + 1
+        halves = _parts(len(thin), len(flat) / stride)
+        split = [(signals[..., rows], rates[..., rows]) for rows in halves]
+        products = np.array([one @ one.transpose(0, 2, 1) for one, _ in split])
+        by_rate = np.array([rate @ one[:, own:].transpose(0, 2, 1) for one, rate in split])
+        kept = signals[:, :own].copy()
+        found.append(Band(sensors, kept, rates, products, by_rate, halves, least, width, stride * period))
+    return found
+
+
+def banded(signals: Array, period: float, rated: slice) -> Iterator[tuple[float, Array, Array, int]]:
+    """Signals (n, k) in each band: its width [Hz], the filtered signals (m, k) at every nth sample, the rates of those
+    columns that are `rated`, and n.
+
+    The ends are left out: a filter answers to the end of a recording, and that is never late. Of slow signals the fast
+    bands hold nothing else.
+    """
+    edges = [edge for edge in BAND_EDGES if edge < 0.4 / period]
+    above = low_pass(signals, period, edges[0]) if edges else signals
+    for place, edge in enumerate(edges[1:]):
+        below, above = above, low_pass(signals, period, edge)
+        end = round(min(END_CYCLES / edges[place] / period, MOST_ENDS / 2 * len(signals)))
+        stride = max(1, int(1 / (SAMPLES_PER_CYCLE * edge * period)))
+        kept = slice(end, len(signals) - end, stride)
+        rates = differentiate(above[:, rated] - below[:, rated], period)[kept]
+        yield edge - edges[place], above[kept] - below[kept], rates, stride
+
+
+def _parts(size: int, whole: float) -> tuple[slice, slice, slice]:
+    """Of `size` samples without a recording's ends, of `whole` with them: those of either half without its own ends,
+    around what is near the middle."""
+    half = max(size // 2 - round((whole - size) / 2), 0)
+    return slice(0, half), slice(half, size - half), slice(size - half, size)
