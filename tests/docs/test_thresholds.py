@@ -71,7 +71,11 @@ def page(name: str) -> str:
             f"{stances.LONGEST_STANCE:g} s",
         ),
         ("walking.md", f"{100 * systematic.SLOPE_UNSURE:g} % of the element's slope"),
-        ("walking.md", f"{100 * systematic.ELEMENT_UNSURE:g} % of its slip torque and slip angle"),
+        (
+            "walking.md",
+            f"{100 * systematic.ELEMENT_UNSURE:g} % of its slip torque and of the damping beside it, and "
+            f"{100 * systematic.ANGLE_UNSURE:g} % of its slip angle",
+        ),
         ("walks.md", f"`--period` ({gait.SHORTEST:g} to {gait.LONGEST:g} s)"),
         ("walks.md", f"about {gait.WALKING:g} s of steps"),
         ("walks.md", f"`WalkTurn` | {gait.TURN_STEP:g} m, {np.degrees(gait.TURN):.0f}° to the left"),

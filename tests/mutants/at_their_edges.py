@@ -23,8 +23,8 @@ AT_THEIR_EDGES = (
     Mutant(
         "cli/online.py",
         "the longest step for the 99.9 % quantile",
-        "99.9 % {time['p999']:.1f}",
-        "99.9 % {time['max']:.1f}",
+        "99.9 % {took['p999']:.1f}",
+        "99.9 % {took['max']:.1f}",
         ("cli/test_tables_on_the_terminal.py",),
     ),
     Mutant(
@@ -58,8 +58,8 @@ AT_THEIR_EDGES = (
     Mutant(
         "estimation/delays/delay.py",
         "no least variance of few independent values",
-        "np.sqrt(np.maximum(_dots(cosines, cosines), usual)) / slope",
-        "np.sqrt(_dots(cosines, cosines)) / slope",
+        "np.sqrt(np.maximum(_dots(cosines.T, cosines.T), usual)) / slope",
+        "np.sqrt(_dots(cosines.T, cosines.T)) / slope",
         ("estimation/delays/test_deviations.py",),
     ),
     Mutant(

@@ -58,7 +58,7 @@ DRAWN_ANEW = (
         "dynamics/fit.py", "equations of one row", "equations = samples * len(rows)", "equations = samples"
     ),
     Mutant(
-        "estimation/delays/delay.py",
+        "estimation/delays/bands.py",
         "ends of a quarter of a recording",
         "MOST_ENDS = 0.5",
         "MOST_ENDS = 0.25",

@@ -22,8 +22,10 @@ struct PathJoint {
 
 // Torque about one axis of a bush that is not the bush's: of a centre or a sensor that is not where it was told to be.
 struct Misplaced {
-  double aside = 0.0, above = 0.0;   // of the bush's centre [m]: grows with the load, with the horizontal force
-  double turned = 0.0, leans = 0.0;  // of the sensor [rad]: shares of the other axis' torque and of the yaw torque
+  double aside = 0.0;   // of the bush's centre [m]: grows with the load
+  double above = 0.0;   // of the bush's centre [m]: grows with the horizontal force
+  double turned = 0.0;  // of the sensor [rad]: a share of the other axis' torque
+  double leans = 0.0;   // of the sensor [rad]: a share of the yaw torque
 };
 
 // One foot: the way to it, its bush, its sole and its force sensor.
