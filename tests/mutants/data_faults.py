@@ -20,7 +20,8 @@ DATA_FAULTS = (
     ),
     Mutant(
         "feet/assess/late_recordings.py", "any delay within the interval is a fault",
-        "fit_blocks(blocks).values[RATE]) < NORMAL95 * wide.std[RATE]", "fit_blocks(blocks).values[RATE]) < 0.0", ("feet/assess/test_late_recordings.py",),
+        "fit_blocks(blocks).values[RATE]) < NORMAL95 * wide.std[RATE]",
+        "fit_blocks(blocks).values[RATE]) < 0.0", ("feet/assess/test_late_recordings.py",),
     ),
     Mutant(
         "feet/assess/late_recordings.py", "a memory is a late recording",

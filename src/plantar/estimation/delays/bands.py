@@ -55,16 +55,10 @@ class Band:
         """The places of what grows with each delay."""
         return slice(self.sensors, self.signals.shape[1] - 1)
 
-    def half(self, half: int) -> Band | None:
-        """One of HALVES alone, as far from the recording's middle as from its end; None of a band of which ends would
-        take too much."""
+    def half(self, half: int) -> Band:
+        """One of HALVES alone, as far from the recording's middle as from its end, where ends leave enough of it."""
         rows, own = self.parts[half], slice(half, half + 1)
         signals, rates = self.signals[..., rows], self.rates[..., rows]
-        left = signals.shape[-1]
-        if left < (1 - MOST_ENDS) * (
-            self.size - left
-        ):  # of the half with its ends, which is as long as all others
-            return None
         return replace(
             self, signals=signals, rates=rates, products=self.products[own], by_rate=self.by_rate[own]
         )
@@ -133,7 +127,7 @@ def banded(signals: Array, period: float, rated: slice) -> Iterator[tuple[float,
 
 
 def _parts(size: int, whole: float) -> tuple[slice, slice, slice]:
-    """Of `size` samples without a recording's ends, of `whole` with them: those of either half without its own ends,
-    around what is near the middle."""
-    half = max(size // 2 - round((whole - size) / 2), 0)
+    """Of `size` samples without a recording's ends, of `whole` with them: those of either half, around what is near
+    the middle. There the filter saw no end: of slow bands, whose ends are long, less is left out."""
+    half = size // 2 - round(min((whole - size) / 2, MOST_ENDS / 2 * whole / 2))
     return slice(0, half), slice(half, size - half), slice(size - half, size)
