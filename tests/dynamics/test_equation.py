@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+
 import numpy as np
 import pinocchio as pin
 import pytest
@@ -180,3 +183,14 @@ def test_a_motion_knows_its_finite_samples() -> None:
     motion.velocities[1, 0] = np.inf
     assert motion.finite.tolist() == [True, False, True]
     assert len(motion.select(motion.finite)) == 2
+
+
+def test_the_kept_equation_is_given_back_when_python_ends() -> None:
+    """Else the last lines of a command are nanobind's list of leaks."""
+    program = (
+        "from plantar.dynamics import equation_of\n"
+        "from plantar.twin.robots import hrp2\n"
+        "equation_of(hrp2.robot().floating_model)"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stderr == ""

@@ -9,6 +9,7 @@ then torque about its origin, in its axes), then the joints in the model's order
 
 from __future__ import annotations
 
+import atexit
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -144,6 +145,10 @@ class Equation:
 def equation_of(model: pin.Model) -> Equation:
     """The `Equation` of a model that nobody changes."""
     return Equation(model)
+
+
+# A native object that outlives the interpreter is printed as a leak.
+atexit.register(equation_of.cache_clear)
 
 
 def link_names(model: pin.Model) -> tuple[str, ...]:
