@@ -106,6 +106,17 @@ def test_of_a_foot_that_steps_a_memory_is_taken_as_soon_as_it_predicts_better(
     assert of(better, spring, recordings, steps=True) is better
 
 
+@pytest.mark.parametrize(("share", "taken"), [(0.2, True), (0.3, False)])
+def test_a_memory_beside_a_spring_that_is_not_known_is_not_taken(
+    recordings: list[Recording], clear: AxisFit, spring: AxisFit, share: float, taken: bool
+) -> None:
+    """One in which a spring is known to half of it at best: 1.96 deviations of 0.26."""
+    covariance = clear.covariance.copy()
+    covariance[0, 0] = (share * clear.values[0]) ** 2
+    found = of(spring, replace(clear, covariance=covariance), recordings)
+    assert (found.model.name == "elastoplastic") is taken
+
+
 @pytest.mark.parametrize(
     ("scores", "steps"),
     [

@@ -12,7 +12,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from plantar.conventions import ROTATIONAL_AXES
+from plantar.conventions import NORMAL95, ROTATIONAL_AXES
+from plantar.feet.assess.verdicts import WEAK_WIDTH
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.fit.half_turns import cautioned_if_hardly_turned
 from plantar.feet.fit.hidden_memory import SMALL, has_memory, only_too_small, slope_share
@@ -35,7 +36,7 @@ def with_memory_of_others(feet: Mapping[str, FittedFoot]) -> dict[str, FittedFoo
     An axis that neither shows nor excludes it keeps what it has, with a caution, and so does one whose steps are too
     small for its memory.
     """
-    every = [fit for one in feet.values() for fit in one.fits.values()]
+    every = [fit for one in feet.values() for fit in one.fits.values() if _known(fit)]
     shown = {fit.model.name for fit in every if has_memory(fit.model)}
     share = max((slope_share(fit) for fit in every), default=0.0)
     slips = min((_slip_angle(fit) for fit in every), default=np.inf)
@@ -83,6 +84,12 @@ def _without_needless_caution(fit: AxisFit, choice: ModelChoice, foot: FittedFoo
         if axis != fit.axis and axis not in foot.given_up
     )
     return replace(fit, choice=replace(choice, caution=None)) if shows_none else fit
+
+
+def _known(fit: AxisFit) -> bool:
+    """Whether the spring beside a memory is known at all: else that axis tells neither from the other, and nothing to
+    others."""
+    return not has_memory(fit.model) or NORMAL95 * float(fit.std[0]) < WEAK_WIDTH * abs(float(fit.values[0]))
 
 
 def _steps(foot: FittedFoot) -> bool:
