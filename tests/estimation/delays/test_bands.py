@@ -68,10 +68,19 @@ def test_halves_are_as_far_from_the_middle_as_from_their_ends_where_these_leave_
     ):
         halves = [whole.half(place) for place in HALVES]
         for half in halves:
+            assert half is not None
             assert half.duration == pytest.approx(30 - end - near, abs=3 * half.step)
             own = half.signals @ half.signals.transpose(0, 2, 1)
             count = own.shape[-1]
             np.testing.assert_allclose(half.products[0, :, :count, :count], own, rtol=1e-12, atol=1e-9)
         first, second = halves
+        assert first is not None
+        assert second is not None
         np.testing.assert_array_equal(whole.signals[..., : first.size], first.signals)
         np.testing.assert_array_equal(whole.signals[..., -second.size :], second.signals)
+
+
+def test_of_a_short_recording_only_quick_bands_have_halves() -> None:
+    """Of 8 s a half keeps 1 s of the three slow bands, a quarter to four fifths of an independent pair of values."""
+    kept = [band.half(HALVES[0]) is not None for band in bands(np.zeros(3), round(8 / PERIOD))]
+    assert kept == [False, False, False, True, True]

@@ -55,10 +55,13 @@ class Band:
         """The places of what grows with each delay."""
         return slice(self.sensors, self.signals.shape[1] - 1)
 
-    def half(self, half: int) -> Band:
-        """One of HALVES alone, as far from the recording's middle as from its end, where ends leave enough of it."""
+    def half(self, half: int) -> Band | None:
+        """One of HALVES alone, as far from the recording's middle as from its end, where ends leave enough of it; None
+        where that holds fewer than two independent values, which a signal of some width has in a second over it."""
         rows, own = self.parts[half], slice(half, half + 1)
         signals, rates = self.signals[..., rows], self.rates[..., rows]
+        if signals.shape[-1] * self.step * self.width < 1:
+            return None
         return replace(
             self, signals=signals, rates=rates, products=self.products[own], by_rate=self.by_rate[own]
         )

@@ -57,7 +57,8 @@ def _delay_of(pair: Pair, half: int) -> Delay | None:
     middle = len(pair.predicted) // 2
     rows = slice(middle, None) if half == HALVES[1] else slice(0, middle)
     own = Pair(pair.label, pair.measured[rows], pair.rate[rows], pair.predicted[rows], pair.period)
-    return delay_in([band.half(half) for band in pair.bands]) if closes(own) else None
+    bands = [band.half(half) for band in pair.bands]
+    return delay_in([band for band in bands if band is not None]) if closes(own) else None
 
 
 def _apart(first: Delay | None, second: Delay | None) -> tuple[float, float] | None:
