@@ -57,7 +57,7 @@ class Band:
 
     def half(self, half: int) -> Band | None:
         """One of HALVES alone, as far from the recording's middle as from its end, where ends leave enough of it; None
-        where that holds fewer than two independent values, which a signal of some width has in a second over it."""
+        where that holds fewer than two independent values, twice its width times its duration."""
         rows, own = self.parts[half], slice(half, half + 1)
         signals, rates = self.signals[..., rows], self.rates[..., rows]
         if signals.shape[-1] * self.step * self.width < 1:
@@ -89,6 +89,7 @@ def bands_of(predicted: Array, measured: Array, by_delay: Array, period: float, 
     """A balance in each band: `predicted` (n, 6) less the sum of `measured` (sensors, n, 6), which grows `by_delay`
     (delays, n, 6) with each delay [per s]; `errors` (draws, n, 6): what wrong models add to the prediction."""
     sensors, delays = len(measured), len(by_delay)
+    errors = errors if len(errors) else np.zeros((0, *predicted.shape))
     whole = measured.sum(axis=0)
     missing = predicted - whole
     parts = [predicted[None], by_delay, measured[1:] - measured[:1], missing[None], errors]

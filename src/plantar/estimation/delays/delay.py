@@ -51,8 +51,7 @@ class Pair:
         """The pair in each band of frequencies, once it was asked for."""
         if self.known is not None:
             return self.known
-        errors = self.model_errors if len(self.model_errors) else np.zeros((0, *self.predicted.shape))
-        return bands_of(self.predicted, self.measured[None], self.rate[None], self.period, errors)
+        return bands_of(self.predicted, self.measured[None], self.rate[None], self.period, self.model_errors)
 
     @property
     def slim(self) -> Pair:

@@ -42,8 +42,7 @@ class Balance:
         """The balance in each band of frequencies, once it was asked for."""
         if self.known is not None:
             return self.known
-        errors = self.model_errors if len(self.model_errors) else np.zeros((0, *self.predicted.shape))
-        return bands_of(self.predicted, self.measured, self.by_delay, self.period, errors)
+        return bands_of(self.predicted, self.measured, self.by_delay, self.period, self.model_errors)
 
     @cached_property
     def cells(self) -> list[_Cell]:
