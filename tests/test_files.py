@@ -12,7 +12,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from plantar.conventions import rotation_from_quaternion, rotation_from_rpy, skew
-from plantar.errors import MissingExtra, PlantarError, RobotError, located
+from plantar.errors import MissingExtra, PlantarError, RobotError
 from plantar.files import atomic_write, read_bounded, sha256, write_text
 from plantar.notes import Note, unique
 
@@ -68,10 +68,10 @@ def test_hash_and_bounds(tmp_path: Path) -> None:
 
 
 def test_messages_have_a_fixed_order_and_one_line() -> None:
-    message = located("is\nwrong", path="a.csv", column="time", time=1.25, value="x", valid="seconds")
-    assert message == "a.csv, column 'time', t = 1.25 s, value 'x': is wrong (valid: seconds)"
-    assert located("is wrong") == "is wrong"
-    assert located("is wrong", value=3.5) == "value 3.5: is wrong"
+    error = PlantarError("is\nwrong", path="a.csv", column="time", time=1.25, value="x", valid="seconds")
+    assert str(error) == "a.csv, column 'time', t = 1.25 s, value 'x': is wrong (valid: seconds)"
+    assert str(PlantarError("is wrong")) == "is wrong"
+    assert str(PlantarError("is wrong", value=3.5)) == "value 3.5: is wrong"
 
 
 def test_a_missing_extra_says_how_to_get_it() -> None:
