@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
 
 from plantar.files import write_text
 from plantar.notes import kinds
 from plantar.pages import on_joints
-from plantar.report.content import Cell, Column, Figure, Section, Table
+from plantar.report.content import Cell, Column, Table
 from plantar.report.page import render
 from plantar.report.tables import input_table, settings_table, skill_cell, verdict_cell
 from plantar.report.verdict import listed
@@ -33,13 +32,7 @@ _HEADINGS: Final = {
 }
 
 
-def write_dynamics_report(
-    result: str | os.PathLike[str],
-    out: str | os.PathLike[str] | None = None,
-    *,
-    figures: Sequence[Figure] = (),
-    sections: Sequence[Section] = (),
-) -> Path:
+def write_dynamics_report(result: str | os.PathLike[str], out: str | os.PathLike[str] | None = None) -> Path:
     """Write `report.html` for a `plantar.inertia/1` or `plantar.joints/1` result and return its path.
 
     `result` is `result.json` or its directory; the page is one file that needs no network. Raises
@@ -61,8 +54,6 @@ def write_dynamics_report(
         notes=kinds(read.notes, "info"),
         verdict=verdict,
         tables=made,
-        sections=sections,
-        figures=figures,
         appendix=[input_table(read.inputs), settings_table(read.settings)],
     )
     target = Path(out) if out is not None else path.parent / "report.html"
