@@ -20,7 +20,10 @@ SMALL: Final = 1e-3  # of a coefficient that is just allowed: what a slope is ta
 BEGIN, SMALLEST, FARTHEST = 0.5, 0.01, 1.0  # how far a step goes, of coefficients that are just allowed
 # Motions beside one whose values are computed together: ten minutes of them fit into memory
 AT_ONCE: Final = 10
-CUTS: Final = 4  # programs of one step: each knows the limits that the one before passed
+# Programs of one step at most: each knows, beside what the motion comes near, the limits that the one before passed.
+# So few of thousands make a program quick.
+CUTS: Final = 10
+PASSED: Final = 1.0  # of a limit
 SLIGHT: Final = 0.01  # over a limit: the motion is made smaller by as much
 GROW, SHRINK = 1.5, 0.4  # of that, after a step that helped and one that did not
 # Where the search begins: over the left foot, whose ankle moves more than the other and than the body.
@@ -85,7 +88,7 @@ class _Climb:
         parts = np.split(beside, range(AT_ONCE, len(beside), AT_ONCE))
         slope = np.concatenate([self._value(part) for part in parts]) - self.least
         rows, left = self._reach.near(self.best)
-        tried = self.best
+        tried, used = self.best, 1.0
         for _ in range(CUTS):
             found = linprog(
                 slope / SMALL,
@@ -96,11 +99,12 @@ class _Climb:
             if not found.success:
                 break
             tried = self.best + self._units * found.x
-            if self._reach.used(tried) < 1.0 + SLIGHT:
+            more, room = self._reach.near(tried, PASSED)
+            used = 1.0 - room.min(initial=0.0)
+            if used < 1.0 + SLIGHT:
                 break
-            more, room = self._reach.near(tried)  # limits that were far away, or reached at other times
             rows, left = np.vstack([rows, more]), np.append(left, room + more @ (tried - self.best))
-        tried = tried / max(self._reach.used(tried), 1.0)
+        tried = tried / used
         value = float(self._value(tried))
         if value < self.least:
             self.best, self.least, self._far = tried, value, min(GROW * self._far, FARTHEST)
