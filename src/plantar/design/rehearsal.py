@@ -24,7 +24,7 @@ from plantar.twin.recording import TwinRecording, record
 from plantar.twin.robots.from_robot import describe
 from plantar.twin.simulation.rollout import Rollout
 
-SEED: Final = 0  # of the sensors' noise
+DRAWS: Final = 1000  # of the sensors in a unit of the stiffness' factor: each rehearsal has its own
 # s: a rehearsal steps twice as far as the twin, in half the time.
 TIMESTEP: Final = 0.0005
 # Such steps need a softer floor, as contacts last longer than one step.
@@ -129,7 +129,7 @@ def rehearse(
         if isinstance(rollout, MotionError):
             found.append(Rehearsal(factor, fell=str(rollout)))
             continue
-        recording = record(rollout, robot, world, preset, SEED)
+        recording = record(rollout, robot, world, preset, round(DRAWS * factor))
         found.append(_measured(factor, robot, rollout, recording))
     return found
 
