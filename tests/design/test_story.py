@@ -186,7 +186,7 @@ def test_a_motion_that_is_too_large_is_made_smaller_by_as_much() -> None:
         first = not played or moved is played[0][1] or np.array_equal(moved, played[0][1])
         played.append((list(factors), moved))
         return [
-            Rehearsal(factor, sole_margin=0.002 if first and factor > 1.9 else 0.02, standing_margin=0.05)
+            Rehearsal(factor, sole_margin=0.002 if first and factor > 1.9 else 0.006, standing_margin=0.05)
             for factor in factors
         ]
 
@@ -245,6 +245,28 @@ def test_a_motion_that_leaves_room_is_made_larger_once_and_not_if_that_does_not_
     ]
     assert sizes == pytest.approx([1.0, 1.2, 1.2 if holds else 1.0], abs=0.01)
     assert found.coefficients == pytest.approx(0.87 * sizes[-1] * best[0], rel=0.01)
+
+
+def test_a_motion_made_smaller_by_too_much_is_made_larger_by_half_of_that() -> None:
+    sizes: list[float] = []
+
+    def rehearse(
+        _: object, plan: Plan, told: object, factors: Sequence[float], *__: object
+    ) -> list[Rehearsal]:
+        sizes.append(float(np.abs(plan.positions - plan.positions[0]).max()))
+        used = 1.6 if len(sizes) == 1 else 0.7 if len(sizes) == 2 else 0.99
+        return [
+            Rehearsal(each, sole_margin=0.04, standing_margin=0.05, friction=used * FRICTION)
+            for each in factors
+        ]
+
+    with (
+        patch.object(story, "best_motion", design_samples.gentle_motion),
+        patch.object(story, "rehearse", rehearse),
+    ):
+        design_motion(hrp2.robot(), DesignSettings(500.0, duration=20.0, seed=1))
+    larger = 0.85**0.5
+    assert np.array(sizes) / sizes[0] == pytest.approx([1.0, 0.85, larger, larger], abs=0.01)
 
 
 def test_a_motion_that_leaves_hardly_any_room_is_rehearsed_between_the_ends_as_it_is() -> None:

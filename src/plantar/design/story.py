@@ -37,7 +37,7 @@ SMALLER: Final = 0.85
 # much too large a motion is: it is made as much smaller as it may.
 TIPS: Final = 0.0005
 SPARE: Final = 0.005  # smaller than what is just allowed
-# One that leaves room at both ends of the range is made larger once, at most so much: small soles need all of it.
+# One that leaves room where it was tightest is made larger once, at most so much: small soles need all of it.
 LARGER: Final = 1.2
 WORTH: Final = 1.02  # and at least so much: less is not worth two rehearsals
 BESIDE: Final = 2  # rehearsals at once at least: on two cores they take as long as one
@@ -191,14 +191,15 @@ def _rehearsed(
     near the least stiffness all grows steeply.
     """
     reason, tight, larger = "", [factors[0], factors[-1]], True
+    shrunk = 1.0  # the last share by which it was made smaller
     before: Array | None = None  # it was made larger
     ends = dict[float, Rehearsal]()  # rehearsals before that
     known = dict[float, Rehearsal]()  # those of the motion that comes next
 
-    def smaller(motion: Array) -> Array:
-        nonlocal before, larger, known
-        motion, known = (motion, {}) if before is None else (before, ends)
-        before, larger = None, False
+    def smaller(share: float) -> Array:
+        nonlocal before, known, shrunk
+        motion, known = (share * coefficients, {}) if before is None else (before, ends)
+        before, shrunk = None, share
         return motion
 
     for _ in range(ROUNDS):
@@ -207,7 +208,7 @@ def _rehearsed(
         except MotionError as error:
             reason = str(error)
             progress(f"smaller: {reason}")
-            coefficients = smaller(SMALLER * coefficients)
+            coefficients = smaller(SMALLER)
             continue
         watched = self_collision(robot, trajectory.configurations)
         if watched.touching is not None:
@@ -216,7 +217,7 @@ def _rehearsed(
             still = lines.without(coefficients, "arms")
             quiet = before is None and not np.array_equal(still, coefficients)
             progress(f"{'without arms' if quiet else 'smaller'}: {reason}")
-            coefficients = still if quiet else smaller(SMALLER * coefficients)
+            coefficients = still if quiet else smaller(SMALLER)
             continue
         plan, held, used = trajectory.plan(), {**known}, 0.0
         while used <= 1.0 and len(held) < len(factors) and not (held and larger):
@@ -228,9 +229,10 @@ def _rehearsed(
             held |= found
         if larger and used <= 1.0:
             known, larger = held, False
-            grown = min((1 - SPARE) / np.sqrt(used), LARGER)
+            # Not back to what did not hold: half of the way.
+            grown = min((1 - SPARE) / np.sqrt(used), LARGER if shrunk == 1.0 else shrunk**-0.5)
             if grown > WORTH:
-                progress(f"larger by {100 * (grown - 1):.0f} %: both ends of the range leave room")
+                progress(f"larger by {100 * (grown - 1):.0f} %: there is room")
                 before, ends, known = coefficients, held, {}
                 coefficients = grown * coefficients
             continue
@@ -240,7 +242,7 @@ def _rehearsed(
         progress(f"smaller: {reason}")
         if before is None:
             tight = [factor for factor, one in held.items() if _used(one)[0] > 1.0]
-        coefficients = smaller(max((1 - SPARE) / np.sqrt(used), SMALLER) * coefficients)
+        coefficients = smaller(max((1 - SPARE) / np.sqrt(used), SMALLER))
     raise MotionError(f"no motion holds over the range of stiffness: {reason}", path=robot.name)
 
 
