@@ -289,7 +289,10 @@ def test_near_its_limits_a_motion_has_room_as_told() -> None:
     reach.element = 0 * reach.element
     rows, left = reach.near(shape)
     assert left.min() == pytest.approx(1 - reach.used(shape))
-    assert left.max() < 0.7, "only what is near"
+    assert left.max() < 0.2, "only what is near"
+    passed, over = reach.near(1.5 * shape, 1.0)
+    assert len(passed) > 0
+    assert over.max() < 0.0, "only what is passed"
     assert rows @ shape == pytest.approx(1 - left)
 
 
