@@ -198,7 +198,9 @@ def test_what_an_element_that_never_turns_takes_from_the_spring_leaves_their_sum
 
 
 @pytest.mark.parametrize(("seed", "zeros"), [(0, 3.5355), (5, 0.4), (5, 20.0)])
-def test_the_yaw_torques_zero_is_as_large_as_the_others_or_as_motions_show_it(seed: int, zeros: float) -> None:
+def test_the_yaw_torques_zero_is_as_large_as_the_others_or_as_motions_show_it(
+    seed: int, zeros: float
+) -> None:
     """The others' root mean square, whatever their signs, at most; where pitch is roll, no motion shows it smaller.
     Each recording has its own, and moves roll by the sine of its own pitch."""
     roll, pitch = ([swayed(2000, seed=first + k) for k in (0, 1)] for first in (0, seed))
