@@ -41,7 +41,8 @@ DATA_FAULTS = (
         ("feet/assess/test_play.py",),
     ),
     Mutant(
-        "feet/assess/play.py", "encoders that are late have play", "if late.squares < play.squares:", "if late.squares < 0.0:",
+        "feet/assess/play.py", "encoders that are late have play",
+        "if late.squares < play.squares:", "if late.squares < 0.0:",
         ("feet/assess/test_play.py",),
     ),
     Mutant(
