@@ -96,6 +96,36 @@ def test_feet_are_told_with_interval_deviation_and_scores() -> None:
     assert last == len(lines) - 1
 
 
+def test_feet_of_many_logs_fit_a_screen() -> None:
+    """Eleven walks: 44 rows of errors are four, over all samples; notes that are no warnings take four lines."""
+    walks = [f"walk_{place}" for place in range(11)]
+    rows = [
+        ValidationRow("direct", walk, foot, axis, 1.0 + place, 2.0, 10.0 + place, 9.0, 20.0 - 18 * (place == 10), 100)
+        for foot in ("left", "right")
+        for axis in ("pitch", "roll")
+        for place, walk in enumerate(walks)
+    ]  # fmt: skip
+    notes = [
+        Note("weight", "warning", "the feet carry too much"),
+        *(Note(f"n{i}", "info", "so it is") for i in range(9)),
+    ]
+    result = FeetResult(
+        "b", (), {"offset": "per-motion"}, "kelvin_voigt", (K, C, Z), (), (), tuple(rows), tuple(notes)
+    )
+    lines = shown(print_feet, result)
+    assert len(lines) <= 25
+    heads, cells = under(lines, "Table 2. Direct validation [N·m]")
+    assert heads[0] == "motions"
+    said = "no better than the offset alone: walk_10"
+    assert cells[:4] == [
+        ["11", foot, axis, "6", "2", "20", "30", "18.4", said]
+        for foot in ("left", "right")
+        for axis in ("pitch", "roll")
+    ]
+    assert "over all motions; each of them stands in report.html" in lines
+    assert lines[-1] == "and 5 more notes, in the result's notes"
+
+
 def test_inertias_are_told_beside_the_urdfs() -> None:
     names = ("m", "mx", "my", "mz")
     found = [
@@ -176,12 +206,12 @@ def test_replays_of_a_simulator_are_told_in_milliradians() -> None:
 
 
 def test_alarms_fill_a_screen_and_the_rest_is_counted(capsys: pytest.CaptureFixture[str]) -> None:
-    alarms = [SimpleNamespace(kind="step", text=f"alarm {place}") for place in range(15)]
+    alarms = [SimpleNamespace(kind="step", text=f"alarm {place}") for place in range(19)]
     print_alarms(SimpleNamespace(alarms=alarms))  # type: ignore[arg-type]
     lines = capsys.readouterr().out.splitlines()
     assert lines[:2] == ["step: alarm 0", "step: alarm 1"]
     assert lines[-1] == "and 3 more alarms: see fleet.html"
-    assert len(lines) == 13
+    assert len(lines) == 17
 
 
 def test_progress_counts_what_is_done_and_what_was_there() -> None:
