@@ -46,9 +46,13 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
 
 
 def refuse_file(folder: Path) -> None:
-    """PlantarError where a file stands in the place of a folder for results: said before the work, not after it."""
-    if folder.exists() and not folder.is_dir():
-        raise PlantarError("is a file", path=folder, valid="a folder for the results")
+    """PlantarError where a file stands in the place of a folder for results or above it, or where nothing may be
+    written: said before the work, not after it."""
+    there = next(part for part in (folder, *folder.absolute().parents) if os.path.lexists(part))
+    if not there.is_dir():
+        raise PlantarError("is a file", path=there, valid="a folder for the results")
+    if not os.access(there, os.W_OK):
+        raise PlantarError("may not be written to", path=there, valid="a folder of your own")
 
 
 def sha256(path: str | os.PathLike[str]) -> str:

@@ -69,6 +69,8 @@ def main(arguments: list[str] | None = None) -> None:
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(1)
+    except OSError as error:  # a disk that is full, a folder that is not ours, a name that is too long
+        _fail(f"plantar: {error.filename or 'the system says'}: {error.strerror or error}")
     except KeyboardInterrupt:
         _fail("plantar: interrupted", 130)
     except MemoryError:

@@ -62,8 +62,10 @@ def open_log(
         ('sway_1', 1201, 100)
     """
     path = Path(path)
-    if not path.exists():
+    if not os.path.exists(path):
         raise LogError("does not exist", path=path)
+    if path.is_file() and path.stat().st_size == 0:
+        raise LogError("is empty", path=path, valid="a recording; was it copied to its end?")
     module = _module(path, robot)
     reader: Reader = import_module(f"plantar.logs.readers.{module}").read
     with np.errstate(over="ignore", invalid="ignore"):  # a damaged file may hold any number
