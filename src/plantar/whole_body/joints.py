@@ -209,8 +209,10 @@ def _judge(
             "unidentifiable",
             "negative, which is impossible" if impossible else "zero lies in the interval",
         )
-    if half <= USABLE_SHARE * abs(value) or (term == "offset" and half <= OFFSET_SHARE * torque):
+    if half <= USABLE_SHARE * abs(value):
         return "usable", "the interval is narrow"
+    if term == "offset" and half <= OFFSET_SHARE * torque:
+        return "usable", "the interval is narrow beside the joint's torque"
     if interval[0] <= 0 <= interval[1]:
         return "unidentifiable", "zero lies in the interval"
     return "weak", f"the interval is {100 * half / abs(value):.0f} % of the value to each side"
