@@ -19,6 +19,8 @@ READ_BLOCK = 2**24  # bytes
 def atomic_write(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
     """A binary handle whose content appears under `path` only when the block ends without an error."""
     target = Path(path)
+    if target.is_dir():
+        raise PlantarError("cannot be written: it is a folder", path=target, valid="the name of a file")
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
         descriptor, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.", suffix=".part")

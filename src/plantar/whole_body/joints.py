@@ -7,7 +7,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from plantar.choices import one_of
+from plantar.choices import one_of, settings_of
 from plantar.conventions import Array
 from plantar.errors import DataError, RobotError
 from plantar.estimation.residual_covariance import interval95
@@ -76,7 +76,7 @@ def identify_joints(
     """
     one_of("inertia", inertia, get_args(Inertia))
     robot = robot_of(robot)
-    settings = settings or DynamicsSettings()
+    settings = settings_of(settings, DynamicsSettings)
     if inertia == "first" and robot.base == "fixed":
         message = "a fixed base has no base rows to identify inertias from first"
         raise RobotError(message, path=robot.path, valid="inertia: together, known")
