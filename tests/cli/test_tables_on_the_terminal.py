@@ -126,6 +126,44 @@ def test_feet_of_many_logs_fit_a_screen() -> None:
     assert lines[-1] == "and 5 more notes, in the result's notes"
 
 
+def test_no_word_is_cut_on_a_terminal_of_eighty_columns() -> None:
+    """Long numbers, long words: the widest columns wrap, table 1 leaves out its deviations."""
+    wide = Parameter(
+        "right",
+        "pitch",
+        "slip_torque",
+        "N.m.s/rad",
+        -0.00123456,
+        1e-5,
+        (-0.00234567, -0.00123456),
+        0.012,
+        "usable",
+        "x",
+    )
+    high = Parameter(
+        "right", "z", "stiffness", "N/m", 239131.0, 4e4, (176843.0, 369182.0), 0.025, "unidentifiable", "x"
+    )
+    row = ValidationRow(
+        "direct", "step_12_no_fall_1", "right", "pitch", 0.0125, 0.0125, 62.62, 0.0125, 11.25, 100
+    )
+    result = FeetResult("b", (), {"offset": "per-motion"}, "kelvin_voigt", (wide, high), (), (), (row,), ())
+    out = io.StringIO()
+    print_feet(Console(file=out, width=80, highlight=False), result)
+    text = out.getvalue()
+    assert "…" not in text, "a long name of a log goes on in the next line"
+    assert max(map(len, text.splitlines())) <= 80
+    for word in (
+        "slip_torque",
+        "N.m.s/rad",
+        "unidentifiable",
+        "2.3913e+05",
+        "0.0125",
+        "pitch",
+    ):
+        assert word in text
+    assert "white" not in text
+
+
 def test_inertias_are_told_beside_the_urdfs() -> None:
     names = ("m", "mx", "my", "mz")
     found = [

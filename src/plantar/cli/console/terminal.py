@@ -53,7 +53,7 @@ def table(
     cells = [[escape(str(cell)) for cell in row] for row in rows]
     for place, name in enumerate(columns):
         numeric = bool(cells) and all(_numeric(row[place]) for row in cells)
-        drawn.add_column(escape(name), justify="right" if numeric else "left", no_wrap=numeric)
+        drawn.add_column(escape(name), justify="right" if numeric else "left", overflow="fold")  # never cut
     for place, row in enumerate(cells):
         drawn.add_row(*row, style=styles[place] if place < len(styles) else None)
     return drawn

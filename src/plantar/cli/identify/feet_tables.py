@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 
 LOST = "no better than the offset alone"
+NARROW = 112  # columns that table 1 takes in full
 MOST_ROWS = 12  # of a table of errors: three motions of two feet; of more, the mean over the motions
 REMARK_LINES = 4  # of notes that are no warnings; the result has all
 
@@ -29,7 +30,7 @@ def print_feet(out: Console, result: FeetResult) -> None:
     if warnings:
         print_notes(out, warnings)
         out.print()
-    out.print(parameter_table(result))
+    out.print(parameter_table(result, narrow=out.width < NARROW))
     for verdict, names, rest in advised(result.parameters):
         out.print(f"[{VERDICT_STYLE[verdict]}]{names}: {verdict}[/]: {escape(rest)}")
     if further := on_feet(row.verdict for row in result.parameters):
@@ -46,12 +47,15 @@ def print_feet(out: Console, result: FeetResult) -> None:
     print_notes(out, [note for note in result.notes if note.severity != "warning"], REMARK_LINES)
 
 
-def parameter_table(result: FeetResult) -> object:
-    """Table 1 with intervals and verdicts."""
+def parameter_table(result: FeetResult, *, narrow: bool) -> object:
+    """Table 1 with intervals and verdicts; a narrow one without the two deviations, so that no word is cut."""
+    heads = ("foot", "axis", "parameter", "value", "unit", "95 % interval", "std", "white std %", "verdict")
+    kept = [place for place, head in enumerate(heads) if not (narrow and head in ("std", "white std %"))]
+    rows = [_parameter_cells(row) for row in result.parameters]
     return table(
         f"Table 1. Feet of {result.robot} ({result.model}, offset {result.settings.get('offset', '')})",
-        ("foot", "axis", "parameter", "value", "unit", "95 % interval", "std", "white std %", "verdict"),
-        [_parameter_cells(row) for row in result.parameters],
+        [heads[place] for place in kept],
+        [[row[place] for place in kept] for row in rows],
         [VERDICT_STYLE[row.verdict] for row in result.parameters],
     )
 
