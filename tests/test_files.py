@@ -6,6 +6,7 @@ import hashlib
 import os
 import stat
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from scipy.spatial.transform import Rotation
 
 from plantar.conventions import rotation_from_quaternion, rotation_from_rpy, skew
 from plantar.errors import MissingExtra, PlantarError, RobotError
-from plantar.files import atomic_write, read_bounded, sha256, write_text
+from plantar.files import atomic_write, read_bounded, refuse_file, sha256, write_text
 from plantar.notes import Note, unique
 
 
@@ -54,6 +55,21 @@ def test_what_cannot_be_written_is_one_line(tmp_path: Path) -> None:
     with pytest.raises(PlantarError, match="cannot be written") as caught:
         write_text(tmp_path / "file" / "result.json", "x")
     assert "\n" not in str(caught.value)
+
+
+def test_a_place_where_no_folder_can_be_is_refused_before_the_work(tmp_path: Path) -> None:
+    """A file in its place or above it, and a folder of somebody else; nothing is made on the way."""
+    (tmp_path / "file").write_text("x")
+    for place in ("file", "file/out", "file/deep/out"):
+        with pytest.raises(PlantarError, match=r"file: is a file \(valid: a folder for the results\)"):
+            refuse_file(tmp_path / place)
+    refuse_file(tmp_path / "new" / "out")
+    assert not (tmp_path / "new").exists()
+    with (
+        mock.patch("os.access", return_value=False),
+        pytest.raises(PlantarError, match="may not be written to"),
+    ):
+        refuse_file(tmp_path / "new" / "out")
 
 
 def test_hash_and_bounds(tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ from math import comb
 
 import numpy as np
 
+from plantar.choices import settings_of
 from plantar.conventions import NORMAL95, ROTATIONAL_AXES, Array
 from plantar.cores import blas_on_one_core
 from plantar.errors import DataError
@@ -100,7 +101,7 @@ def select_motions(
     """
     robot = robot_of(robot)
     logs = tuple(logs_of(logs, robot))
-    settings = settings or FeetSettings()
+    settings = settings_of(settings, FeetSettings)
     check_names(logs)
     names = [log.name for log in logs]
     unknown = [name for name in compare if name not in names]
