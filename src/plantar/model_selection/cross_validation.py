@@ -72,9 +72,10 @@ class Candidate:
 def cross_validate(pieces: Pieces, *, whole: bool, shared_offset: bool) -> Array:
     """A model's squared error on each piece (pieces,) from fits that have not seen it."""
     squares = np.zeros(len(pieces.grams))
+    begin = fit_pieces(pieces, np.ones(len(squares), dtype=bool), shared_offset=shared_offset).initial_states
     for fold in np.unique(pieces.fold):
         held = pieces.fold == fold
-        rest = fit_pieces(pieces, ~held, shared_offset=shared_offset)
+        rest = fit_pieces(pieces, ~held, shared_offset=shared_offset, begin=begin)
         best = int(np.argmin(rest.squares))
         squares[held] = held_out_squares(pieces, rest, held, best, whole=whole)
     return np.maximum(squares, 0.0)
