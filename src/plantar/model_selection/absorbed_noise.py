@@ -81,4 +81,6 @@ class _Stretches:
         """Those of the recording's cosines, `most` of them, that are tried, weighted as all are."""
         tried = np.unique(np.linspace(1, most, min(most, MOST_TRIED)).round())
         middle = (self._first + np.minimum(self._first + self._length, self._rows)) / 2
-        return np.asarray(np.sqrt(2 / len(tried)) * np.cos(np.pi * middle[:, None] * tried / max(self._rows, 1)))
+        return np.asarray(
+            np.sqrt(2 / len(tried)) * np.cos(np.pi * middle[:, None] * tried / max(self._rows, 1))
+        )

@@ -152,6 +152,11 @@ def fit_pieces(
     return Fits(values, offsets, initial_states, squares)
 
 
+def fit_all(pieces: Pieces, shared_offset: bool) -> Fits:
+    """Least squares for every candidate over all pieces."""
+    return fit_pieces(pieces, np.ones(len(pieces.grams), dtype=bool), shared_offset=shared_offset)
+
+
 def held_out_squares(pieces: Pieces, fits: Fits, held: Mask, shape: int, *, whole: bool) -> Array:
     """Squared error (held pieces,) of one candidate's fit on pieces that it has not seen.
 

@@ -16,7 +16,7 @@ from plantar.errors import DataError
 from plantar.estimation.residual_covariance import interval95
 from plantar.model_selection.absorbed_noise import lacking
 from plantar.model_selection.data_sets import DataSet, prepare_data_sets
-from plantar.model_selection.grid import Pieces
+from plantar.model_selection.grid import Pieces, fit_all
 from plantar.model_selection.partialled_out import robust_covariance
 from plantar.model_selection.variable_projection import (
     ITERATIONS,
@@ -123,8 +123,8 @@ def fit_model(
     folds = [np.zeros(int(each.used.sum()), dtype=np.intp) for each in prepared]
     shapes = model.candidates([each.motion for each in prepared])
     limits = np.array([shapes.min(axis=0), shapes.max(axis=0)])
-    problem = Problem(model, prepared, shared_offset)
-    return refine(problem, best_candidate(problem, Pieces.of(model, prepared, folds, shapes)), limits)
+    problem, pieces = Problem(model, prepared, shared_offset), Pieces.of(model, prepared, folds, shapes)
+    return refine(problem, best_candidate(problem, pieces, fit_all(pieces, shared_offset)), limits)
 
 
 def fit_again(before: ModelFit, data_sets: Sequence[DataSet]) -> ModelFit:
