@@ -70,6 +70,18 @@ def test_it_is_the_dense_solution(prior: float) -> None:
     assert solution.own[:, -1] == pytest.approx(expected[3:6], rel=1e-6)
 
 
+@pytest.mark.parametrize("apart", [0.0, 1e-7])
+def test_columns_that_are_alike_share_what_they_explain(apart: float) -> None:
+    """To rounding, too: their products are then regular by name only."""
+    block = walk(0)
+    single = StanceProblem.of([block], 4.0).solve().values
+    angle = block.regressor[:, 0]
+    other = angle * (1 + apart * np.cos(np.arange(len(angle))))
+    twice = replace(block, regressor=np.column_stack([block.regressor, other]))
+    found = StanceProblem.of([twice], 4.0).solve().values
+    assert found[[0, 2]] == pytest.approx(np.full(2, single[0] / 2), rel=1e-3)
+
+
 def test_leaving_a_stance_or_a_recording_out_is_fitting_the_rest() -> None:
     blocks = [walk(seed) for seed in range(3)]
     problem = StanceProblem.of(blocks, 4.0)

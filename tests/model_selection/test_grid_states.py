@@ -26,10 +26,10 @@ def problem(better: np.ndarray, shift: float) -> np.ndarray:
     return rows
 
 
-def fitted(rows: np.ndarray, data_set: np.ndarray) -> Fits:
+def fitted(rows: np.ndarray, data_set: np.ndarray, begin: np.ndarray | None = None) -> Fits:
     grams = np.einsum("rgcni,rgcnj->rgcij", rows, rows)
-    pieces: Any = SimpleNamespace(grams=grams, data_set=data_set, run=np.arange(RUNS))
-    return fit_pieces(pieces, np.ones(RUNS, dtype=bool))
+    pieces: Any = SimpleNamespace(grams=grams, data_set=data_set, run=np.arange(RUNS), size=len(VALUES))
+    return fit_pieces(pieces, np.ones(RUNS, dtype=bool), begin=begin)
 
 
 @pytest.mark.parametrize("better", [[0, 2, 1, 0], [2, 2, 2, 2]])
@@ -40,6 +40,29 @@ def test_a_run_alone_takes_the_state_that_fits_whatever_its_constant_is(better: 
     assert found.offsets == pytest.approx(
         np.tile(5.0 + 3.0 * (np.array(better) - 1), (CANDIDATES, 1)), abs=0.05
     )
+
+
+def test_each_candidate_is_fitted_as_if_it_were_alone() -> None:
+    """Whether others come to rest before it, or after."""
+    better, data_set = np.array([0, 2, 1, 0]), np.array([0, 0, 1, 1])
+    rows, begin = problem(better, 0.0), np.repeat(better[:, None], CANDIDATES, axis=1)
+    begin[:, 1::2] = 1  # half of them begin where they end, the others have to move
+    found = fitted(rows, data_set, begin)
+    for place in range(CANDIDATES):
+        alone = fitted(rows[:, [place]], data_set, begin[:, [place]])
+        assert np.array_equal(found.initial_states[:, place], alone.initial_states[:, 0])
+        assert found.values[place] == pytest.approx(alone.values[0], rel=1e-12)
+        assert found.squares[place] == pytest.approx(alone.squares[0], rel=1e-9)
+    assert np.any(found.initial_states != begin, axis=0).tolist() == [False, True] * (CANDIDATES // 2)
+
+
+def test_the_search_begins_where_it_is_told() -> None:
+    """From the best states of all nothing is left to move: one candidate's begins are its ends."""
+    rows, data_set = problem(np.array([2, 2, 0, 0]), 0.0), np.array([0, 0, 1, 1])
+    ends = fitted(rows, data_set)
+    again = fitted(rows, data_set, ends.initial_states)
+    assert np.array_equal(again.initial_states, ends.initial_states)
+    np.testing.assert_allclose(again.squares, ends.squares, rtol=1e-12)
 
 
 def test_runs_of_one_recording_share_its_offset() -> None:

@@ -20,7 +20,7 @@ from bush_data_sets import (
 )
 from plantar.errors import DataError
 from plantar.model_selection.data_sets import DataSet, prepare_data_sets
-from plantar.model_selection.grid import Pieces
+from plantar.model_selection.grid import Pieces, fit_all
 from plantar.model_selection.model_fit import fit_model, refine
 from plantar.model_selection.partialled_out import Linearised, Memory
 from plantar.model_selection.selection import choose_model
@@ -240,7 +240,11 @@ def test_wrong_starts_do_not_trap_the_refinement() -> None:
     folds = [np.zeros(int(each.used.sum()), dtype=np.intp) for each in prepared]
     pieces = Pieces.of(model, prepared, folds, np.array([[0.009], [0.0125]]), [np.ones(1)] * 4)
     problem = Problem(model, prepared, False)
-    fit = refine(problem, best_candidate(problem, pieces), np.array([[0.002], [0.05]]))
+    fit = refine(
+        problem,
+        best_candidate(problem, pieces, fit_all(pieces, shared_offset=False)),
+        np.array([[0.002], [0.05]]),
+    )
     assert fit.rms < 0.02
     np.testing.assert_allclose(fit.values, [434.0, 15.89, 5.0], rtol=0.01)
 

@@ -223,8 +223,8 @@ DRAWN_BY_LOT = (
     Mutant(
         "model_selection/grid.py",
         "a run beside itself",
-        "_best_states(grams, totals[data_set] - current, values)",
-        "_best_states(grams, totals[data_set], values)",
+        "_best_states(own, totals[data_set] - current, values[moving])",
+        "_best_states(own, totals[data_set], values[moving])",
         ("model_selection/test_grid_states.py",),
     ),
     Mutant(

@@ -38,7 +38,7 @@ class SlowSpan:
     """
 
     def __init__(self, basis: Array, time: Array, shortest: float) -> None:
-        self._basis = basis
+        self.basis = basis
         self._parts: tuple[NDArray[np.intp], Array, Array] | None = None
         if basis.shape[1] >= WORTH * TERMS:
             self._parts = _in_stretches(basis, time, STRETCH * shortest)
@@ -46,12 +46,12 @@ class SlowSpan:
     @property
     def rows(self) -> int:
         """How many rows the columns are multiplied with."""
-        return len(self._basis) if self._parts is None else len(self._parts[2])
+        return len(self.basis) if self._parts is None else len(self._parts[2])
 
     def off(self, rows: Array) -> Array:
         """Rows (n, k) without what the columns explain of them."""
         if self._parts is None:
-            return without(self._basis, rows)
+            return without(self.basis, rows)
         place, terms, columns = self._parts
         count, length, size = terms.shape
         stood = np.zeros((count * length, rows.shape[1]))

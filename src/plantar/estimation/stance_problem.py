@@ -9,6 +9,7 @@ of one recording's stances scatter about O_r: d_s has a prior of mean zero (rand
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -20,6 +21,7 @@ from plantar.estimation.blocks import Block
 
 NEVER_FREE = 1e-9  # of a stance's weight, the least prior of its offset: keeps the recording's offset defined
 RANK_TOLERANCE = 1e-12  # of the largest eigenvalue: what nothing excites stays zero
+REGULAR = 1e-2 / RANK_TOLERANCE  # condition up to which an inverse needs no eigenvalues
 LEAST_SHARE = 1e-3  # of the offsets' scatter that counts as the stances' own: keeps the prior finite
 SHORTEST_HALF = 2  # rows of a stance's half, for its mean to be worth comparing
 
@@ -172,7 +174,13 @@ def _scaled_inverse(square: Array) -> Array:
     scale = np.sqrt(np.maximum(np.diagonal(square, axis1=-2, axis2=-1), 0.0))
     scale = np.where(scale > 0, scale, 1.0)
     outer = scale[..., :, None] * scale[..., None, :]
-    return np.asarray(np.linalg.pinv(square / outer, rcond=RANK_TOLERANCE, hermitian=True) / outer)
+    scaled = square / outer
+    with suppress(np.linalg.LinAlgError):  # where one is singular
+        inverse = np.linalg.inv(scaled)
+        condition = np.linalg.norm(scaled, axis=(-2, -1)) * np.linalg.norm(inverse, axis=(-2, -1))
+        if (condition < REGULAR).all():
+            return np.asarray(inverse / outer)
+    return np.asarray(np.linalg.pinv(scaled, rcond=RANK_TOLERANCE, hermitian=True) / outer)
 
 
 def _offset_prior(blocks: Sequence[Block], free: Solution) -> float:

@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from plantar.conventions import Array
 from plantar.estimation.residual_covariance import cosine_count
@@ -19,6 +20,8 @@ from plantar.model_selection.data_sets import FilteredDataSet
 from plantar.model_selection.partialled_out import Linearised
 
 MOST_TRIED = 16  # cosines of one recording: of long ones, whose many are alike, the sum is known from as many
+# Stretches in half a period of the quickest cosine: within one it is a constant, and a sum of noise's steps a sample.
+STRETCHES = 32
 
 
 def lacking(linear: Linearised, prepared: Sequence[FilteredDataSet], durations: Sequence[float]) -> Array:
@@ -31,37 +34,53 @@ def lacking(linear: Linearised, prepared: Sequence[FilteredDataSet], durations: 
     count = linear.size
     if any(each.steps is not None for each in prepared):
         return np.ones(count)
-    influences = [own[:, :count] for own in linear.influences()]
-    solved, cosines = linear.inverse(), [cosine_count(span) for span in durations]
-
-    def walked(columns: Array) -> list[Array]:
-        """What the steps of each recording's walk, without its slow part, add to products with columns (n, m)."""
-        return [
-            np.cumsum(each.without_nuisance(own)[::-1], axis=0)
-            for each, own in zip(prepared, linear.by_recording(columns), strict=True)
-        ]
-
-    real = sum(np.sum(own**2, axis=0) for own in walked(np.concatenate(influences)))
-    columns = walked(linear.columns)
-    together = sum(own.T @ own for own in columns)
-    shown = np.zeros(count)
-    for place in range(MOST_TRIED):
-        scores = [_score(own, place, most) for own, most in zip(influences, cosines, strict=True)]
-        weighted = np.concatenate(scores)
-        left = walked(linear.without_nuisances(weighted))
-        for own, score, column, fitted in zip(
-            left, scores, columns, linear.by_recording(linear.columns), strict=True
-        ):
-            taken = solved @ (fitted.T @ score)
-            shown += np.sum(own**2, axis=0) - 2 * np.sum((column.T @ own) * taken, axis=0)
-            shown += np.sum(taken * (together @ taken), axis=0)
+    parts = [
+        _Stretches(max(1, len(each.response) // (STRETCHES * cosine_count(span))), len(each.response))
+        for each, span in zip(prepared, durations, strict=True)
+    ]
+    columns = linear.by_recording(linear.columns)
+    slow = [part.walked(own) for part, own in zip(parts, columns, strict=True)]
+    solved, together = linear.inverse(), sum(own.T @ own for own in slow)
+    real, shown = np.zeros(count), np.zeros(count)
+    influences, nuisances = linear.influences(), linear.nuisances()
+    for place, (each, part) in enumerate(zip(prepared, parts, strict=True)):
+        influence = influences[place][:, :count]
+        cosines = part.cosines(cosine_count(durations[place]))
+        forgotten, drift = nuisances[place], each.drift
+        walked = part.walked(np.column_stack([forgotten - drift @ (drift.T @ forgotten), drift]))
+        beside = np.column_stack([columns[place], forgotten, drift])
+        real += np.sum(part.walked(influence) ** 2, axis=0)
+        for number, own in enumerate(influence.T):
+            taken, told = np.split(part.sums(beside * own[:, None]).T @ cosines, [len(solved)])
+            left = part.walk(part.sums(own)[:, None] * cosines) - walked @ told
+            taken = solved @ taken
+            shown[number] += np.sum(left**2) + np.sum(taken * (together @ taken - 2 * (slow[place].T @ left)))
     return np.asarray(np.sqrt(np.maximum(real / np.maximum(shown, np.finfo(float).tiny), 1.0)))
 
 
-def _score(influence: Array, place: int, most: int) -> Array:
-    """Influences (n, p) times the cosine number `place` of those of `most` that are tried, weighted as all are."""
-    tried = np.unique(np.linspace(1, most, min(most, MOST_TRIED)).round())
-    if place >= len(tried) or not len(influence):
-        return np.zeros_like(influence)
-    phase = np.pi * tried[place] * (np.arange(len(influence)) + 0.5) / len(influence)
-    return np.asarray(np.sqrt(2 / len(tried)) * np.cos(phase)[:, None] * influence)
+class _Stretches:
+    """The `rows` of a recording in stretches of a few, `length`, and what the steps of a random walk over them add."""
+
+    def __init__(self, length: int, rows: int) -> None:
+        self._length, self._rows = length, rows
+        self._first: NDArray[np.intp] = np.arange(0, rows, length)
+
+    def sums(self, columns: Array) -> Array:
+        """Sums of columns (rows, ...) over each stretch."""
+        return np.asarray(np.add.reduceat(columns, self._first)) if self._rows else columns
+
+    def walk(self, sums: Array) -> Array:
+        """What each step of the walk, one at the start of every stretch, adds to the products with such sums."""
+        return np.asarray(np.sqrt(self._length) * np.cumsum(sums[::-1], axis=0))
+
+    def walked(self, columns: Array) -> Array:
+        """What each step of the walk adds to the products with columns (rows, m)."""
+        return self.walk(self.sums(columns))
+
+    def cosines(self, most: int) -> Array:
+        """Those of the recording's cosines, `most` of them, that are tried, weighted as all are."""
+        tried = np.unique(np.linspace(1, most, min(most, MOST_TRIED)).round())
+        middle = (self._first + np.minimum(self._first + self._length, self._rows)) / 2
+        return np.asarray(
+            np.sqrt(2 / len(tried)) * np.cos(np.pi * middle[:, None] * tried / max(self._rows, 1))
+        )

@@ -9,7 +9,7 @@ import numpy as np
 
 from plantar.conventions import Array
 from plantar.model_selection.data_sets import FilteredDataSet
-from plantar.model_selection.grid import Numbers, Pieces, fit_pieces, held_out_squares
+from plantar.model_selection.grid import Fits, Numbers, Pieces, fit_all, fit_pieces, held_out_squares
 from plantar.model_selection.model_fit import ModelFit
 from plantar.models import BushModel
 
@@ -31,12 +31,17 @@ def folds_of(prepared: Sequence[FilteredDataSet]) -> tuple[list[Numbers], bool]:
 
 @dataclass(frozen=True)
 class Candidate:
-    """A model, its candidate nonlinear parameters, their limits (2, s), and the squares that the best one leaves."""
+    """A model, its candidate nonlinear parameters, their limits (2, s), and the fits of all of them."""
 
     model: BushModel
     pieces: Pieces
     limits: Array
-    squares: float
+    fits: Fits
+
+    @property
+    def squares(self) -> float:
+        """What the best candidate leaves."""
+        return float(self.fits.squares.min())
 
     @classmethod
     def of(
@@ -56,9 +61,7 @@ class Candidate:
             shapes = shapes[ratio <= max(np.log(SEED_REACH), ratio.min())]
             initial_states = list(seed.initial_states.values())
         pieces = Pieces.of(model, prepared, folds, shapes, initial_states)
-        everything = np.ones(len(pieces.grams), dtype=bool)
-        squares = fit_pieces(pieces, everything, shared_offset=shared_offset).squares
-        return cls(model, pieces, limits, float(squares.min()))
+        return cls(model, pieces, limits, fit_all(pieces, shared_offset))
 
     def pieces_about(
         self, fit: ModelFit, prepared: Sequence[FilteredDataSet], folds: Sequence[Numbers]
@@ -72,9 +75,10 @@ class Candidate:
 def cross_validate(pieces: Pieces, *, whole: bool, shared_offset: bool) -> Array:
     """A model's squared error on each piece (pieces,) from fits that have not seen it."""
     squares = np.zeros(len(pieces.grams))
+    begin = fit_all(pieces, shared_offset).initial_states
     for fold in np.unique(pieces.fold):
         held = pieces.fold == fold
-        rest = fit_pieces(pieces, ~held, shared_offset=shared_offset)
+        rest = fit_pieces(pieces, ~held, shared_offset=shared_offset, begin=begin)
         best = int(np.argmin(rest.squares))
         squares[held] = held_out_squares(pieces, rest, held, best, whole=whole)
     return np.maximum(squares, 0.0)

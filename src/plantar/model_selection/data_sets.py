@@ -156,6 +156,11 @@ class FilteredDataSet:
         return flat.reshape(rows.shape)
 
     @property
+    def drift(self) -> Array:
+        """Orthonormal columns (n, m) of what drifts slowly; none where the foot steps or nothing is taken to drift."""
+        return np.zeros((len(self.response), 0)) if self.slow is None else self.slow.basis
+
+    @property
     def shortest_run(self) -> int:
         """Samples that a run must exceed to be filtered."""
         return SHORTEST_RUN if self.steps is None else SHORTEST_STANCE_RUN

@@ -114,27 +114,47 @@ class Fits:
     squares: Array
 
 
-def fit_pieces(pieces: Pieces, chosen: Mask, *, shared_offset: bool = False) -> Fits:
-    """Least squares for every candidate over the `chosen` pieces (pieces,), with the best initial state of each run."""
+def fit_pieces(
+    pieces: Pieces, chosen: Mask, *, shared_offset: bool = False, begin: Numbers | None = None
+) -> Fits:
+    """Least squares for every candidate over the `chosen` pieces (pieces,), with the best initial state of each run.
+
+    begin: the states (pieces, g) that the search begins from; those in the middle if left out.
+    """
     shapes, count = pieces.grams.shape[1:3]
+    if begin is None:
+        begin = np.full((len(pieces.grams), shapes), count // 2, dtype=np.intp)
     runs, first = np.unique(pieces.run[chosen], return_index=True)
-    grams, data_set = np.add.reduceat(pieces.grams[chosen], first), pieces.data_set[chosen][first]
+    grams, data_set = pieces.grams[chosen], pieces.data_set[chosen][first]
+    if len(first) < len(grams):
+        grams = np.add.reduceat(grams, first)
     begins = np.flatnonzero(np.diff(data_set, prepend=-1))
-    states = np.full((len(runs), shapes), count // 2, dtype=np.intp)
+    states, sets = begin[chosen][first], int(pieces.data_set.max()) + 1
+    values, offsets, squares = np.empty((shapes, pieces.size)), np.empty((shapes, sets)), np.empty(shapes)
+    moving = np.arange(shapes)  # candidates whose states have not come to rest
     for _ in range(ROUNDS if count > 1 else 1):
-        current = grams[np.arange(len(runs))[:, None], np.arange(shapes), states]
-        totals = np.zeros((int(pieces.data_set.max()) + 1, *current.shape[1:]))
+        own = grams if len(moving) == shapes else grams[:, moving]
+        current = own[np.arange(len(runs))[:, None], np.arange(len(moving)), states[:, moving]]
+        totals = np.zeros((sets, *current.shape[1:]))
         totals[data_set[begins]] = np.add.reduceat(current, begins)
-        values, offsets, squares = solve(totals, shared_offset)
+        values[moving], offsets[moving], squares[moving] = solve(totals, shared_offset)
         if count == 1:
             break
-        before, states = states, _best_states(grams, totals[data_set] - current, values)
-        if np.array_equal(before, states):
+        better = _best_states(own, totals[data_set] - current, values[moving])
+        changed = np.any(better != states[:, moving], axis=0)
+        states[:, moving] = better
+        moving = moving[changed]
+        if not len(moving):
             break
     initial_states = np.full((len(pieces.grams), shapes), count // 2, dtype=np.intp)
     known = np.isin(pieces.run, runs)
     initial_states[known] = states[np.searchsorted(runs, pieces.run[known])]
     return Fits(values, offsets, initial_states, squares)
+
+
+def fit_all(pieces: Pieces, shared_offset: bool) -> Fits:
+    """Least squares for every candidate over all pieces."""
+    return fit_pieces(pieces, np.ones(len(pieces.grams), dtype=bool), shared_offset=shared_offset)
 
 
 def held_out_squares(pieces: Pieces, fits: Fits, held: Mask, shape: int, *, whole: bool) -> Array:

@@ -16,7 +16,7 @@ from plantar.errors import DataError
 from plantar.estimation.residual_covariance import interval95
 from plantar.model_selection.absorbed_noise import lacking
 from plantar.model_selection.data_sets import DataSet, prepare_data_sets
-from plantar.model_selection.grid import Pieces
+from plantar.model_selection.grid import Pieces, fit_all
 from plantar.model_selection.partialled_out import robust_covariance
 from plantar.model_selection.variable_projection import (
     ITERATIONS,
@@ -123,8 +123,8 @@ def fit_model(
     folds = [np.zeros(int(each.used.sum()), dtype=np.intp) for each in prepared]
     shapes = model.candidates([each.motion for each in prepared])
     limits = np.array([shapes.min(axis=0), shapes.max(axis=0)])
-    problem = Problem(model, prepared, shared_offset)
-    return refine(problem, best_candidate(problem, Pieces.of(model, prepared, folds, shapes)), limits)
+    problem, pieces = Problem(model, prepared, shared_offset), Pieces.of(model, prepared, folds, shapes)
+    return refine(problem, best_candidate(problem, pieces, fit_all(pieces, shared_offset)), limits)
 
 
 def fit_again(before: ModelFit, data_sets: Sequence[DataSet]) -> ModelFit:
@@ -132,22 +132,23 @@ def fit_again(before: ModelFit, data_sets: Sequence[DataSet]) -> ModelFit:
     prepared = prepare_data_sets(data_sets, before.cutoff, drift=not before.shared_offset)
     problem = Problem(before.model, prepared, before.shared_offset)
     states = np.concatenate([before.initial_states[each.label] for each in prepared])
-    return refine(problem, problem.at(before.shape, states), before.limits, landings=0)
+    return refine(problem, problem.at(before.shape, states), before.limits, rested=True)
 
 
 def refine(
-    problem: Problem, start: Point, limits: Array, *, refined: bool = True, landings: int = LANDINGS
+    problem: Problem, start: Point, limits: Array, *, refined: bool = True, rested: bool = False
 ) -> ModelFit:
     """The fit where steps and scans from `start` come to rest, nonlinear parameters within `limits` (2, s).
 
-    Where the foot steps, a search begins again from the states that the air leaves for each landing, up to `landings`
-    times and as long as that helps. Not `refined`, it stays at the start: enough to see that a model is wrong.
+    Where the foot steps, a search begins again from the states that the air leaves for each landing, up to LANDINGS
+    times and as long as that helps. One that had come to rest (`rested`) with other torques looks about it for corners
+    only nearby. Not `refined`, it stays at the start: enough to see that a model is wrong.
     """
     remembers = problem.model.remembers
     iterations = ITERATIONS if refined and (len(start.shape) or remembers) else 0
     best, point = start, start
-    for search in range(1 + landings):
-        width = WIDEST_SCAN
+    for search in range(1 if rested else 1 + LANDINGS):
+        width = WIDEST_SCAN * (NARROWING if rested else 1.0)
         for _ in range(iterations):
             moved = step(problem, point, limits)
             if moved is None or moved.squares > (1 - SETTLED) * point.squares:

@@ -7,6 +7,7 @@ of runs cost nothing. What is left are the columns of the model's own parameters
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -72,11 +73,18 @@ class Linearised:
         """Share of columns (n, m) that each run's initial state explains, (runs, m); zero where no sample is used."""
         assert self._memory is not None, "asked only where there is a memory"
         effect, run, counts = self._memory
-        square = np.bincount(run, effect * effect, sum(counts))
         products = np.column_stack([np.bincount(run, effect * column, sum(counts)) for column in columns.T])
+        return np.asarray(products / self._effects[:, None])
+
+    @cached_property
+    def _effects(self) -> Array:
+        """Square of each run's effect, (runs,); infinite where nothing is left of it."""
+        assert self._memory is not None, "asked only where there is a memory"
+        effect, run, counts = self._memory
+        square = np.bincount(run, effect * effect, sum(counts))
         largest = np.maximum.reduceat(square, np.cumsum([0, *counts[:-1]]))
         known = square > NEGLIGIBLE * np.repeat(np.maximum(largest, 1e-300), counts)
-        return np.asarray(np.where(known[:, None], products / np.where(known, square, 1.0)[:, None], 0.0))
+        return np.where(known, square, np.inf)
 
     def _reduced(self, columns: Array) -> Array:
         columns = self._project(columns)
@@ -120,9 +128,20 @@ class Linearised:
         """Columns (n, m), those of each recording."""
         return [columns[own] for own in self._own]
 
-    def without_nuisances(self, columns: Array) -> Array:
-        """Columns (n, m) without what offsets of recordings and initial states of runs explain."""
-        return self._reduced(columns)
+    def nuisances(self) -> list[Array]:
+        """Orthonormal columns (n, m) of what each recording's offset and its runs' initial states explain."""
+        found = []
+        for place, own in enumerate(self._own):
+            columns = np.zeros((self._rows[place], 0))
+            if not self.shared_offset:
+                columns = self._ones[own, None] / np.sqrt(self._square[place])
+            if self._memory is not None:
+                effect, run, counts = self._memory
+                runs = np.arange(counts[place]) + sum(counts[:place])
+                states = np.where(run[own, None] == runs, effect[own, None], 0.0)
+                columns = np.column_stack([columns, states / np.sqrt(self._effects[runs])])
+            found.append(columns)
+        return found
 
     def inverse(self) -> Array:
         """The inverse information of `columns`."""

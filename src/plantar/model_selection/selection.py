@@ -118,7 +118,7 @@ def choose_model(
         least = min((score.fit.rms for score in scores), default=np.inf) ** 2 * rows
         refined = not candidate.squares > HOPELESS * least
         problem = Problem(candidate.pieces.model, prepared, shared_offset)
-        start = best_candidate(problem, candidate.pieces)
+        start = best_candidate(problem, candidate.pieces, candidate.fits)
         fit = refine(problem, start, candidate.limits, refined=refined)
         if simpler is not None and not _adds(fit, simpler):
             untried.append(fit.model.name)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from plantar.conventions import Array
 from plantar.model_selection.data_sets import FilteredDataSet, filtered_columns
-from plantar.model_selection.grid import Pieces, fit_pieces, grams_of, solve
+from plantar.model_selection.grid import Fits, Pieces, grams_of, solve
 from plantar.model_selection.landing import STATE, Hysteresis, landing_states
 from plantar.model_selection.partialled_out import Linearised, Memory
 from plantar.models import BushModel
@@ -131,9 +131,8 @@ class Problem:
         return Linearised(design, point.residuals, self.rows, self.shared_offset, memory)
 
 
-def best_candidate(problem: Problem, pieces: Pieces) -> Point:
-    """The best candidate of `pieces`: nonlinear parameters and initial states."""
-    rough = fit_pieces(pieces, np.ones(len(pieces.grams), dtype=bool), shared_offset=problem.shared_offset)
+def best_candidate(problem: Problem, pieces: Pieces, rough: Fits) -> Point:
+    """The best candidate of `pieces` by their fits: nonlinear parameters and initial states."""
     best = int(np.argmin(rough.squares))
     begin = np.zeros(sum(problem.counts))
     if problem.model.remembers:

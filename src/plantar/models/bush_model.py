@@ -43,6 +43,12 @@ class BushMotion:
         """Segments without a gap: the model's memory lasts over each of them and starts anew in the next."""
         return tuple(runs(np.isfinite(self.deflection) & np.isfinite(self.rate)))
 
+    @cached_property
+    def swing(self) -> float:
+        """Half of the widest swing of a run [rad], 1 % cut off."""
+        ends = [np.percentile(self.deflection[run], [0.5, 99.5]) for run in self.runs]
+        return max((0.5 * float(high - low) for low, high in ends), default=0.0)
+
     def __len__(self) -> int:
         return len(self.deflection)
 
@@ -135,10 +141,5 @@ class BushModel(ABC):
 
 
 def reach(motions: Sequence[BushMotion]) -> float:
-    """Largest deflection from the middle, over the motions' runs: half of the widest swing [rad], 1 % cut off."""
-    widest = 0.0
-    for motion in motions:
-        for run in motion.runs:
-            low, high = np.percentile(motion.deflection[run], [0.5, 99.5])
-            widest = max(widest, 0.5 * float(high - low))
-    return widest
+    """Largest deflection from the middle, over the motions' runs [rad]."""
+    return max((motion.swing for motion in motions), default=0.0)
