@@ -31,10 +31,11 @@ void FootTracker::publish(int axis) noexcept {
     return Parameter{found.value[unknown], std::hypot(found.std[unknown], beside),
                      std::hypot(rows, NORMAL * found.told[unknown], NORMAL * beside)};
   };
-  // A wrench that is late by more than it was told to be takes K·delay off the damping and adds C·ω²·delay to K.
+  // A wrench that is late by more than it was told to be takes K·delay off the damping and adds C·ω²·delay to K; where
+  // an element does not slip, it is as stiff as K and more.
   const double late = std::hypot(delay_std_, SKEW * period_);
-  out.stiffness = parameter(STIFFNESS, std::hypot(gain_std_ * k, late * c * found.pace));
-  out.damping = parameter(DAMPING, std::hypot(gain_std_ * c, late * k));
+  out.stiffness = parameter(STIFFNESS, std::hypot(gain_std_ * k, late * found.by_late[STIFFNESS]));
+  out.damping = parameter(DAMPING, std::hypot(gain_std_ * c, late * found.by_late[DAMPING]));
   out.slip_torque =
       has_element(*foot_, axis) ? parameter(SLIP_TORQUE, gain_std_ * found.value[SLIP_TORQUE]) : Parameter{};
   out.offset = found.offset;
