@@ -33,7 +33,10 @@ void FootTracker::publish(int axis) noexcept {
   };
   // A wrench that is late by more than it was told to be takes K·delay off the damping and adds C·ω²·delay to K; where
   // an element does not slip, it is as stiff as K and more.
-  const double late = std::hypot(delay_std_, SKEW * period_);
+  // Which of a spring's torques and those of an element that hardly slips is late, rows do not say.
+  const double late_half = std::max(quantile * found.late_grouped, NORMAL * found.late_white);
+  const double surely = has_element(*foot_, axis) ? 0.0 : std::max(std::abs(found.late) - late_half, 0.0);
+  const double late = std::hypot(delay_std_, SKEW * period_, surely);
   out.stiffness = parameter(STIFFNESS, std::hypot(gain_std_ * k, late * found.by_late[STIFFNESS]));
   out.damping = parameter(DAMPING, std::hypot(gain_std_ * c, late * found.by_late[DAMPING]));
   out.slip_torque =
@@ -49,7 +52,6 @@ void FootTracker::publish(int axis) noexcept {
                                                 : foot_->linear[axis] || memories_[axis].excluded();
   // A memory that is not modelled delays torques, too.
   const bool modelled = has_element(*foot_, axis) || foot_->linear[axis] || memories_[axis].excluded();
-  const double late_half = std::max(quantile * found.late_grouped, NORMAL * found.late_white);
   late_[axis] = {};
   if (modelled && !memories_[axis].seen() && found.groups >= FEWEST_GROUPS && late_half > 0.0)
     late_[axis] = {found.late / (late_half * late_half), 1.0 / (late_half * late_half)};
