@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "check.hpp"
+#include "online/channel_watch.hpp"
 
 using namespace plantar;
 
@@ -44,9 +45,23 @@ void a_fault_is_told_and_soon_over() {
   }
 }
 
+// A joint that has stood while its twin moved, and moved again, may stand as long again.
+void what_has_stood_and_moved_again_is_not_doubted() {
+  JointWatch one, twin;
+  bool first = false, again = false, longer = false;
+  for (int i = 0; i < 2400; ++i) {
+    const double t = i / 200.0, stands = i == 0 ? 0.9e-4 : 1e-4 * std::floor(1.0 + std::min(t + 0.5, 8.0)), moves = 0.02 * t;
+    one.frozen(stands, 0.0, 0.005), twin.frozen(moves, 0.02, 0.005);
+    one.stuck(twin, twin.moved());
+    first |= t < 1.0 && one.doubtful(), again |= t > 2.0 && t < 8.0 && one.doubtful(), longer |= t > 9.5 && one.doubtful();
+  }
+  check::that(first && !again && longer, "doubted at first and where it stands three times as long");
+}
+
 }  // namespace
 
 int main() {
+  what_has_stood_and_moved_again_is_not_doubted();
   a_fault_is_told_and_soon_over();
   return check::result();
 }

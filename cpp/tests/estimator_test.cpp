@@ -116,6 +116,25 @@ void a_delay_that_was_told_wrongly_is_seen(double delay) {
   check::that(believed != wrong, "and its numbers are not believed");
 }
 
+// One foot's force sensor alone may be late: the other foot's numbers stay believed. By less than is told, the damping's
+// interval knows of it.
+void one_foot_alone_may_be_late(double delay, bool seen) {
+  FootEstimator estimator(two_feet());
+  FootEstimate late, other;
+  for (int i = 0; i < 12000; ++i) {
+    const double t = i / 200.0;
+    Sensors now(t);
+    now.wrench[0] = Sensors(t, delay).wrench[0];
+    const auto feet = estimator.step(now.reading(t));
+    late = feet[0], other = feet[1];
+  }
+  check::that(((late.flags & LATE_WRENCH) != 0) == seen, "the foot that is late");
+  check::that(!(other.flags & LATE_WRENCH) && other.pitch.identified, "not the other one");
+  const auto off = [](const FootEstimate& foot) { return std::abs(foot.pitch.damping.value - DAMPING[0]); };
+  check::that(off(late) > 0.5 * STIFFNESS[0] * delay && off(late) < late.pitch.damping.half_width, "its interval holds");
+  check::that(other.pitch.damping.half_width < 0.5 * STIFFNESS[0] * delay, "the other one's is no wider for it");
+}
+
 // A fault from 20 s to 21 s: outputs stay finite, a flag says so, and all is well a second later.
 template <class Fault>
 void survives(Fault fault, std::uint32_t flag, const char* what) {
@@ -281,6 +300,7 @@ void what_a_value_has_moved_is_in_its_deviation() {
 int main() {
   what_a_value_has_moved_is_in_its_deviation();
   for (const double delay : {0.01, 0.03, -0.01}) a_delay_that_was_told_wrongly_is_seen(delay);
+  one_foot_alone_may_be_late(0.015, true), one_foot_alone_may_be_late(0.003, false);
   learns(1000.0, 0.0);
   learns(1000.0, 0.0075);
   learns(1000.0, -0.004);

@@ -56,6 +56,8 @@ def test_each_ankle_stands_above_its_sole_where_the_bush_is(robot: RobotModel, r
     with live.LiveView(robot, port=8491) as view:
         for foot, side in (("left", -0.15), ("right", 0.15)):
             assert view._feet[foot]._ankle.position == pytest.approx((0.0, side, 0.03))
+            assert view._feet[foot]._name.text == foot
+            assert view._feet[foot]._name.position[1] == pytest.approx(side)
         estimate = replay.estimate("left", len(replay.time) - 1)
         view.show(0.0, {"left": estimate})
         ankle = view._feet["left"]._ankle

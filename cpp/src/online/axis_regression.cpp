@@ -239,17 +239,20 @@ AxisRegression::Line AxisRegression::direction(int source, const Part& data) con
 void AxisRegression::solve() noexcept {
   Part data = total_;
   if (open_rows_ >= FEWEST_ROWS) data.add(open_part());
-  const double angle = data.triangle.r[0][0] * prior_.scale[STIFFNESS];
-  const double rate = std::hypot(data.triangle.r[0][1], data.triangle.r[1][1]) * prior_.scale[DAMPING];
-  values_.pace = angle > 0.0 ? rate * rate / (angle * angle) : 0.0;
   const double left = data.triangle.r[UNKNOWNS][UNKNOWNS];
   if (data.rows > 2 * UNKNOWNS) noise_ = std::max(left * std::sqrt(COLOUR / (data.rows - UNKNOWNS)), 1e-12);
   double x[UNKNOWNS];
-  completed(data).solve(x);
+  Shared whole = completed(data);
+  whole.solve(x);
   for (int i = 0; i < UNKNOWNS; ++i)
     if (!std::isfinite(x[i])) return;
   for (int i = 0; i < UNKNOWNS; ++i) values_.value[i] = x[i] / prior_.scale[i];
   find_moved();
+  // A delay that nobody told is taken for what the others can make of its column.
+  double y[UNKNOWNS];
+  for (int i = 0; i < UNKNOWNS; ++i) whole.r[i][UNKNOWNS] = i < LATE ? whole.r[i][LATE] : 0.0;
+  whole.solve(y);
+  for (int i = 0; i < UNKNOWNS; ++i) values_.by_late[i] = y[i] / prior_.scale[i] * prior_.scale[LATE];
   if (open_rows_ >= FEWEST_ROWS && open_.r[0][0] > 0.0) {
     const auto block = pinned();
     double own[OWN];

@@ -82,7 +82,7 @@ struct AxisValues {
   double offset = 0.0;
   double late = 0.0, late_grouped = 0.0,
          late_white = 0.0;  // than was told, as groups tell it, each beside values of its own [s]
-  double pace = 0.0;        // squares of the rate over those of the deflection [1/s²]
+  std::array<double, UNKNOWNS> by_late = {};  // what a torque that is later by a second adds to each value
   int groups = 0;
 
   // Whether the stiffness is one of a bush: where nothing moves, what is left beside the noise can be anything.

@@ -108,13 +108,15 @@ class JointWatch {
       if (passed_ <= limit) usual_ = std::max(usual_, passed_);
       twin_then_ = twin.moved_, leg_then_ = leg, passed_ = 0.0;
     }
-    doubtful_ = repeats_.stuck() && twin.moved_ - twin_then_ > std::max(LEAST_WAY, FROZEN_STEPS * step_);
+    doubtful_ =
+        repeats_.stuck() && twin.moved_ - twin_then_ > std::max({LEAST_WAY, FROZEN_STEPS * step_, BEYOND_USUAL * usual_});
     if (!repeats_.stuck()) return false;
     silent_ = silent_ || twin.repeats_.stuck();
     passed_ = std::min(twin.moved_ - twin_then_, leg - leg_then_);
     return passed_ > limit || (!silent_ && repeats_.noisy() && twin.repeats_.noisy());
   }
-  // Whether it stands while its twin moves: nothing may be wrong, but nothing is learnt from it.
+  // Whether it stands while its twin moves twice as far as it ever did before this one moved again: nothing may be
+  // wrong, but nothing is learnt from it.
   bool doubtful() const noexcept { return doubtful_; }
   // Its way since the first tick, without its noise [rad or m].
   double moved() const noexcept { return moved_; }

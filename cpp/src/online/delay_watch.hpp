@@ -23,12 +23,12 @@ struct Lateness {
 
 class DelayWatch {
  public:
-  // all: of all feet, for which one delay was told, known within `told_std` [s]. A doubt stands until readings exclude
+  // seen: of one foot or of several, whose delay was told within `told_std` [s]. A doubt stands until readings exclude
   // it.
-  bool late(const Lateness& all, double told_std, double period) noexcept {
-    if (!(all.weight > 0.0)) return late_;
-    const double half = std::hypot(1.0 / std::sqrt(all.weight), NORMAL_HALF * told_std);
-    const double found = std::abs(all.sum / all.weight), least = std::max(LATENESS, period);
+  bool late(const Lateness& seen, double told_std, double period) noexcept {
+    if (!(seen.weight > 0.0)) return late_;
+    const double half = std::hypot(1.0 / std::sqrt(seen.weight), NORMAL_HALF * told_std);
+    const double found = std::abs(seen.sum / seen.weight), least = std::max(LATENESS, period);
     return late_ = late_ ? found + half > least : found > std::max(least, SURE_OF_LATE * half);
   }
 

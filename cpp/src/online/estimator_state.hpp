@@ -35,7 +35,8 @@ struct FootEstimator::State {
   WeightWatch weight_watch;
   TurnWatch turn_watch;
   bool turns_differ = false;
-  DelayWatch delay_watch;
+  DelayWatch delay_watch;                    // of all feet together, for which one delay was told
+  std::vector<DelayWatch> foot_delay_watch;  // of each alone
   std::vector<std::vector<ChainStep>> steps;
   std::vector<FootTracker> feet;
   std::vector<double> position, velocity, last_position;

@@ -44,6 +44,7 @@ FootEstimator::State::State(const EstimatorModel& given)
       weight(checked_weight(given)),
       kernels(**runnable_kernels()),
       weight_watch(weight),
+      foot_delay_watch(given.feet.size()),
       position(TICKS * given.joints.size()),
       velocity(TICKS * given.joints.size()),
       last_position(given.joints.size()),
@@ -155,12 +156,13 @@ void FootEstimator::State::step(const Reading& reading) noexcept {
   const bool contradiction = weight_differs(total) || turns_differ;
   Lateness all;
   for (const FootTracker& foot : feet) all += foot.lateness();
-  const bool late = delay_watch.late(all, model.wrench_delay_std, period);
+  const bool all_late = delay_watch.late(all, model.wrench_delay_std, period);
   for (std::size_t f = 0; f < feet.size(); ++f) {
     if (bad[f]) {
       feet[f].miss(bad[f]);
     } else {
       const bool begun = known && !was_bad[f] && ticks > FIRST_TICKS;
+      const bool late = foot_delay_watch[f].late(feet[f].lateness(), model.wrench_delay_std, period) || all_late;
       feet[f].learn(motion[f], total - feet[f].load(), {slips, contradiction, late, encoder_doubtful(f)}, begun, time, dt, period);
     }
     was_bad[f] = bad[f] != 0;

@@ -31,10 +31,14 @@ void FootTracker::publish(int axis) noexcept {
     return Parameter{found.value[unknown], std::hypot(found.std[unknown], beside),
                      std::hypot(rows, NORMAL * found.told[unknown], NORMAL * beside)};
   };
-  // A wrench that is late by more than it was told to be takes K·delay off the damping and adds C·ω²·delay to K.
-  const double late = std::hypot(delay_std_, SKEW * period_);
-  out.stiffness = parameter(STIFFNESS, std::hypot(gain_std_ * k, late * c * found.pace));
-  out.damping = parameter(DAMPING, std::hypot(gain_std_ * c, late * k));
+  // A wrench that is late by more than it was told to be takes K·delay off the damping and adds C·ω²·delay to K; where
+  // an element does not slip, it is as stiff as K and more.
+  // Which of a spring's torques and those of an element that hardly slips is late, rows do not say.
+  const double late_half = std::max(quantile * found.late_grouped, NORMAL * found.late_white);
+  const double surely = has_element(*foot_, axis) ? 0.0 : std::max(std::abs(found.late) - late_half, 0.0);
+  const double late = std::hypot(delay_std_, SKEW * period_, surely);
+  out.stiffness = parameter(STIFFNESS, std::hypot(gain_std_ * k, late * found.by_late[STIFFNESS]));
+  out.damping = parameter(DAMPING, std::hypot(gain_std_ * c, late * found.by_late[DAMPING]));
   out.slip_torque =
       has_element(*foot_, axis) ? parameter(SLIP_TORQUE, gain_std_ * found.value[SLIP_TORQUE]) : Parameter{};
   out.offset = found.offset;
@@ -48,7 +52,6 @@ void FootTracker::publish(int axis) noexcept {
                                                 : foot_->linear[axis] || memories_[axis].excluded();
   // A memory that is not modelled delays torques, too.
   const bool modelled = has_element(*foot_, axis) || foot_->linear[axis] || memories_[axis].excluded();
-  const double late_half = std::max(quantile * found.late_grouped, NORMAL * found.late_white);
   late_[axis] = {};
   if (modelled && !memories_[axis].seen() && found.groups >= FEWEST_GROUPS && late_half > 0.0)
     late_[axis] = {found.late / (late_half * late_half), 1.0 / (late_half * late_half)};

@@ -126,7 +126,7 @@ class FootTracker {
   ElementState element_[2], hanging_[2];  // now, and in the air
   double opened_[2] = {};                 // the elements' gaps when the offset of the rows began
   Lateness late_[2];                      // as its own axes show it
-  bool told_late_ = false;                // as all feet's do: one delay was told for them
+  bool told_late_ = false;                // as both of them do together, or all feet's
   bool flat_ = false;                     // the centre of pressure is inside the sole
   bool stood_ = false;                    // it stood at the last tick
   bool lifted_ = false;                   // its elements are followed from its last stance, through the air

@@ -111,6 +111,8 @@ class _FootView:
         )
         self._pressure = scene.add_icosphere(f"{name}/pressure", radius=0.008, color=(200, 50, 50))
         self._aside = aside
+        ahead = (outline[:, 0].max(), aside[1], 0.0)
+        self._name = scene.add_label(f"{name}/name", name, position=ahead)
         with server.gui.add_folder(name):
             self._text = server.gui.add_markdown("")
             self._plots = [_AxisPlots(server, axis) for axis in ROTATIONAL_AXES]
@@ -166,6 +168,7 @@ class _Plot:
             series=(uplot.Series(label="s"), value, *edges)[: 1 + lines],
             bands=(uplot.Band(series=(3, 2), fill=BAND),) if lines == 3 else None,
             scales=_scales((0.0, 1.0), (0.0, 1.0)),
+            axes=(uplot.Axis(), uplot.Axis(space=20)),  # pixels: the usual 30 leave one number
             title=title,
             aspect=2.0,
         )
