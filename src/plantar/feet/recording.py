@@ -165,6 +165,17 @@ class Recording:
             else self
         )
 
+    def with_wrenches_later(self, by: float) -> Recording:
+        """The recording with torques of force sensors that are read `by` later [s], to first order."""
+
+        def right(states: Mapping[str, BushState]) -> dict[str, BushState]:
+            slopes = {
+                foot: np.nan_to_num(differentiate(one.torque, self.period)) for foot, one in states.items()
+            }
+            return {foot: replace(one, torque=one.torque + by * slopes[foot]) for foot, one in states.items()}
+
+        return replace(self, raw=right(self.raw), bushes=right(self.bushes)) if by else self
+
     def without(self, foot: str, samples: Mask, reason: Reason, detail: str = "") -> Recording:
         """The same recording with these samples of one foot left out."""
         contact = self.contacts[foot].without(samples, reason, detail)
