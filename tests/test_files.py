@@ -6,14 +6,15 @@ import hashlib
 import os
 import stat
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
 from plantar.conventions import rotation_from_quaternion, rotation_from_rpy, skew
-from plantar.errors import MissingExtra, PlantarError, RobotError, located
-from plantar.files import atomic_write, read_bounded, sha256, write_text
+from plantar.errors import MissingExtra, PlantarError, RobotError
+from plantar.files import atomic_write, read_bounded, refuse_file, sha256, write_text
 from plantar.notes import Note, unique
 
 
@@ -56,6 +57,21 @@ def test_what_cannot_be_written_is_one_line(tmp_path: Path) -> None:
     assert "\n" not in str(caught.value)
 
 
+def test_a_place_where_no_folder_can_be_is_refused_before_the_work(tmp_path: Path) -> None:
+    """A file in its place or above it, and a folder of somebody else; nothing is made on the way."""
+    (tmp_path / "file").write_text("x")
+    for place in ("file", "file/out", "file/deep/out"):
+        with pytest.raises(PlantarError, match=r"file: is a file \(valid: a folder for the results\)"):
+            refuse_file(tmp_path / place)
+    refuse_file(tmp_path / "new" / "out")
+    assert not (tmp_path / "new").exists()
+    with (
+        mock.patch("os.access", return_value=False),
+        pytest.raises(PlantarError, match="may not be written to"),
+    ):
+        refuse_file(tmp_path / "new" / "out")
+
+
 def test_hash_and_bounds(tmp_path: Path) -> None:
     path = tmp_path / "a"
     path.write_bytes(b"x" * 100)
@@ -68,10 +84,10 @@ def test_hash_and_bounds(tmp_path: Path) -> None:
 
 
 def test_messages_have_a_fixed_order_and_one_line() -> None:
-    message = located("is\nwrong", path="a.csv", column="time", time=1.25, value="x", valid="seconds")
-    assert message == "a.csv, column 'time', t = 1.25 s, value 'x': is wrong (valid: seconds)"
-    assert located("is wrong") == "is wrong"
-    assert located("is wrong", value=3.5) == "value 3.5: is wrong"
+    error = PlantarError("is\nwrong", path="a.csv", column="time", time=1.25, value="x", valid="seconds")
+    assert str(error) == "a.csv, column 'time', t = 1.25 s, value 'x': is wrong (valid: seconds)"
+    assert str(PlantarError("is wrong")) == "is wrong"
+    assert str(PlantarError("is wrong", value=3.5)) == "value 3.5: is wrong"
 
 
 def test_a_missing_extra_says_how_to_get_it() -> None:

@@ -45,6 +45,19 @@ def test_the_terminal_shows_a_screenful_warnings_first() -> None:
     assert "4 more notes" in lines[-1]
 
 
+def test_a_screenful_is_lines_and_long_warnings_take_several() -> None:
+    """Each warning takes two lines of 100 columns: eight fill the screen, and none is cut in the middle."""
+    notes = [Note("far", "warning", f"{place}: {'a long way ' * 10}") for place in range(10)]
+    out = io.StringIO()
+    print_notes(Console(file=out, width=100), notes)
+    lines = out.getvalue().splitlines()
+    assert len(lines) == SCREENFUL + 1 == 17
+    assert lines[-1] == "and 2 more notes, in the result's notes"
+    one = io.StringIO()
+    print_notes(Console(file=one, width=100), notes, room=1)
+    assert one.getvalue().splitlines() == [*lines[:2], "and 9 more notes, in the result's notes"]
+
+
 def test_the_terminal_says_once_what_many_logs_say_alike() -> None:
     notes = [Note("air_zero", "info", f"{log}: reads 3 N in the air") for log in LOGS]
     notes += [

@@ -258,9 +258,28 @@ void broken_models_are_refused() {
   check::that(refused, "a robot without weight");
 }
 
+// Deviations are found anew where some seconds of rows end; until then they grow by what the values have moved.
+void what_a_value_has_moved_is_in_its_deviation() {
+  constexpr double BEGINS = 40.0, CREEPS = 0.5;  // s; N·m/rad a second, in pitch
+  FootEstimator estimator(two_feet());
+  FootEstimate last;
+  for (int i = 0; i < 9120; ++i) {
+    const double t = i / 200.0;
+    Sensors sensors(t);
+    for (auto& w : sensors.wrench) w[4] += CREEPS * std::max(t - BEGINS, 0.0) * angle(0, t);
+    last = estimator.step(sensors.reading(t))[0];
+  }
+  const double moved = last.pitch.stiffness.value - STIFFNESS[0];
+  check::that(moved > 0.1, "stiffness follows the ground");
+  check::near(last.pitch.stiffness.std, moved, 0.05 * moved, "a deviation that knows of it");
+  check::that(last.pitch.stiffness.half_width > 1.96 * moved, "and a half width");
+  check::near(last.pitch.damping.std, 0.03 / 200 * STIFFNESS[0], 1e-3, "readings of one tick apart by a share of it");
+}
+
 }  // namespace
 
 int main() {
+  what_a_value_has_moved_is_in_its_deviation();
   for (const double delay : {0.01, 0.03, -0.01}) a_delay_that_was_told_wrongly_is_seen(delay);
   learns(1000.0, 0.0);
   learns(1000.0, 0.0075);

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from typing import TypeVar
 
 from plantar.errors import SettingsError
+
+Settings = TypeVar("Settings")
 
 
 def one_of(name: str, value: object, choices: Iterable[str]) -> None:
@@ -13,6 +16,16 @@ def one_of(name: str, value: object, choices: Iterable[str]) -> None:
     known = tuple(choices)
     if not isinstance(value, str) or value not in known:
         raise SettingsError(f"{name} is not a choice", value=value, valid=", ".join(known))
+
+
+def settings_of(given: Settings | None, kind: type[Settings]) -> Settings:
+    """The settings given, or the defaults of that kind. SettingsError where something else is given, such as a dict."""
+    if given is None:
+        return kind()
+    if not isinstance(given, kind):
+        valid = f"plantar.{kind.__name__}(...)"
+        raise SettingsError("settings are not settings", value=type(given).__name__, valid=valid)
+    return given
 
 
 def number_in(

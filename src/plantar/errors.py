@@ -10,33 +10,11 @@ import os
 from typing import Any
 
 
-def located(
-    message: str,
-    *,
-    path: str | os.PathLike[str] | None = None,
-    column: str | None = None,
-    time: float | None = None,
-    value: object | None = None,
-    valid: str | None = None,
-) -> str:
-    """One line in a fixed order: file, column, time, value, message, what would be valid."""
-    where = [str(path)] if path is not None else []
-    if column is not None:
-        where.append(f"column '{column}'")
-    if time is not None:
-        where.append(f"t = {time:.6g} s")
-    if value is not None:
-        where.append(f"value {value!r}" if isinstance(value, str) else f"value {value}")
-    line = ": ".join([", ".join(where), message] if where else [message])
-    if valid is not None:
-        line += f" (valid: {valid})"
-    return " ".join(line.split())
-
-
 class PlantarError(Exception):
     """A problem with the input that the user can mend; the message is one line. The kinds below are all of this.
 
-    Args: those of `located`, which makes the line.
+    Args: what is wrong; the line has it in a fixed order: `path`, `column`, `time` [s], `value`, message, what would be
+        `valid`.
 
     Example:
         >>> import plantar
@@ -57,7 +35,17 @@ class PlantarError(Exception):
         value: object | None = None,
         valid: str | None = None,
     ) -> None:
-        super().__init__(located(message, path=path, column=column, time=time, value=value, valid=valid))
+        where = [str(path)] if path is not None else []
+        if column is not None:
+            where.append(f"column '{column}'")
+        if time is not None:
+            where.append(f"t = {time:.6g} s")
+        if value is not None:
+            where.append(f"value {value!r}" if isinstance(value, str) else f"value {value}")
+        line = ": ".join([", ".join(where), message] if where else [message])
+        if valid is not None:
+            line += f" (valid: {valid})"
+        super().__init__(" ".join(line.split()))
 
 
 class RobotError(PlantarError):

@@ -19,6 +19,8 @@ READ_BLOCK = 2**24  # bytes
 def atomic_write(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
     """A binary handle whose content appears under `path` only when the block ends without an error."""
     target = Path(path)
+    if target.is_dir():
+        raise PlantarError("cannot be written: it is a folder", path=target, valid="the name of a file")
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
         descriptor, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.", suffix=".part")
@@ -46,9 +48,13 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
 
 
 def refuse_file(folder: Path) -> None:
-    """PlantarError where a file stands in the place of a folder for results: said before the work, not after it."""
-    if folder.exists() and not folder.is_dir():
-        raise PlantarError("is a file", path=folder, valid="a folder for the results")
+    """PlantarError where a file stands in the place of a folder for results or above it, or where nothing may be
+    written: said before the work, not after it."""
+    there = next(part for part in (folder, *folder.absolute().parents) if os.path.lexists(part))
+    if not there.is_dir():
+        raise PlantarError("is a file", path=there, valid="a folder for the results")
+    if not os.access(there, os.W_OK):
+        raise PlantarError("may not be written to", path=there, valid="a folder of your own")
 
 
 def sha256(path: str | os.PathLike[str]) -> str:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import errno
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
+from unittest import mock
 
 import pytest
 
@@ -137,6 +140,25 @@ def test_a_delay_in_seconds_is_not_taken_for_milliseconds(
     assert run(*given) == 2
     said = " ".join(capsys.readouterr().err.replace("│", " ").split())
     assert "the unit is ms (valid: 7.5 for 0.0075 s" in said
+
+
+@pytest.mark.parametrize(
+    "word", ["inspect {robot} {long}.csv", "inspect {long}.yaml {log}", "init {long}.urdf"]
+)
+def test_a_name_that_is_too_long_for_the_system_is_one_line(
+    campaign: Path, capsys: pytest.CaptureFixture[str], word: str
+) -> None:
+    places = {"robot": campaign / "robot.yaml", "log": campaign / "first.csv", "long": "x" * 300}
+    assert "x" * 300 in refused(capsys, *word.format(**places).split())
+
+
+def test_what_the_system_refuses_is_one_line(
+    campaign: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    full = OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "/tmp/kept")
+    monkeypatch.setattr("plantar.cli.inspect.load_robot", mock.Mock(side_effect=full))
+    line = refused(capsys, "inspect", campaign / "robot.yaml", campaign / "first.csv")
+    assert line == "plantar: /tmp/kept: No space left on device"
 
 
 def test_no_traceback_in_a_real_process(tmp_path: Path) -> None:

@@ -12,14 +12,19 @@ import command_line
 from plantar.fleet.manifest import read_manifest
 from plantar.logs.readers import open_log
 from plantar.robot.model import load_robot
+from plantar.twin import fleet
 from plantar.twin.robots.hrp2 import write
+from twin_samples import plan, short
 
 
 def run(*arguments: str) -> int:
     return command_line.run("simulate", *arguments)
 
 
-def test_a_fleet_has_a_manifest(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_fleet_has_a_manifest(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(fleet, "planned", lambda motion, _: short(plan(motion), 2.0, 6.0))
     assert run("fleet", "--robots", "2", "--days", "1", "--out", str(tmp_path), "--quiet") == 0
     assert [group.unit for group in read_manifest(tmp_path / "fleet.csv")] == ["robot_01", "robot_02"]
     assert "2 logs of 2 robots on 1 days" in capsys.readouterr().out

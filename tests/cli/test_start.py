@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from importlib import import_module
@@ -101,6 +102,22 @@ print("HEAVY:", [name for name in {HEAVY!r} if name in sys.modules])
     for verb in COMMANDS:
         assert verb.split()[0] in out
     assert "HEAVY: []" in out
+
+
+@pytest.mark.parametrize("group", sorted({verb.split()[0] for verb in COMMANDS if " " in verb}))
+def test_a_group_gives_an_example_of_its_own(group: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(group, "--help") == 0
+    assert f"Example: plantar {group} " in " ".join(capsys.readouterr().out.split())
+
+
+@pytest.mark.parametrize("verb", COMMANDS)
+def test_what_an_option_takes_is_named_as_users_call_it(
+    verb: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A folder is DIR, a file FILE: not Python's `<path>` or `<list[Path]>`."""
+    assert run(*verb.split(), "--help") == 0
+    options = capsys.readouterr().out.partition("Options:")[2]
+    assert not re.findall(r"<(?:path|list|str)\b\S*", options)
 
 
 def test_importing_plantar_imports_nothing_heavy() -> None:

@@ -96,6 +96,74 @@ def test_feet_are_told_with_interval_deviation_and_scores() -> None:
     assert last == len(lines) - 1
 
 
+def test_feet_of_many_logs_fit_a_screen() -> None:
+    """Eleven walks: 44 rows of errors are four, over all samples; notes that are no warnings take four lines."""
+    walks = [f"walk_{place}" for place in range(11)]
+    rows = [
+        ValidationRow("direct", walk, foot, axis, 1.0 + place, 2.0, 10.0 + place, 9.0, 20.0 - 18 * (place == 10), 100)
+        for foot in ("left", "right")
+        for axis in ("pitch", "roll")
+        for place, walk in enumerate(walks)
+    ]  # fmt: skip
+    notes = [
+        Note("weight", "warning", "the feet carry too much"),
+        *(Note(f"n{i}", "info", "so it is") for i in range(9)),
+    ]
+    result = FeetResult(
+        "b", (), {"offset": "per-motion"}, "kelvin_voigt", (K, C, Z), (), (), tuple(rows), tuple(notes)
+    )
+    lines = shown(print_feet, result)
+    assert len(lines) <= 25
+    heads, cells = under(lines, "Table 2. Direct validation [N·m]")
+    assert heads[0] == "motions"
+    said = "no better than the offset alone: walk_10"
+    assert cells[:4] == [
+        ["11", foot, axis, "6", "2", "20", "30", "18.4", said]
+        for foot in ("left", "right")
+        for axis in ("pitch", "roll")
+    ]
+    assert "over all motions; each of them stands in report.html" in lines
+    assert lines[-1] == "and 5 more notes, in the result's notes"
+
+
+def test_no_word_is_cut_on_a_terminal_of_eighty_columns() -> None:
+    """Long numbers, long words: the widest columns wrap, table 1 leaves out its deviations."""
+    wide = Parameter(
+        "right",
+        "pitch",
+        "slip_torque",
+        "N.m.s/rad",
+        -0.00123456,
+        1e-5,
+        (-0.00234567, -0.00123456),
+        0.012,
+        "usable",
+        "x",
+    )
+    high = Parameter(
+        "right", "z", "stiffness", "N/m", 239131.0, 4e4, (176843.0, 369182.0), 0.025, "unidentifiable", "x"
+    )
+    row = ValidationRow(
+        "direct", "step_12_no_fall_1", "right", "pitch", 0.0125, 0.0125, 62.62, 0.0125, 11.25, 100
+    )
+    result = FeetResult("b", (), {"offset": "per-motion"}, "kelvin_voigt", (wide, high), (), (), (row,), ())
+    out = io.StringIO()
+    print_feet(Console(file=out, width=80, highlight=False), result)
+    text = out.getvalue()
+    assert "…" not in text, "a long name of a log goes on in the next line"
+    assert max(map(len, text.splitlines())) <= 80
+    for word in (
+        "slip_torque",
+        "N.m.s/rad",
+        "unidentifiable",
+        "2.3913e+05",
+        "0.0125",
+        "pitch",
+    ):
+        assert word in text
+    assert "white" not in text
+
+
 def test_inertias_are_told_beside_the_urdfs() -> None:
     names = ("m", "mx", "my", "mz")
     found = [
@@ -176,12 +244,12 @@ def test_replays_of_a_simulator_are_told_in_milliradians() -> None:
 
 
 def test_alarms_fill_a_screen_and_the_rest_is_counted(capsys: pytest.CaptureFixture[str]) -> None:
-    alarms = [SimpleNamespace(kind="step", text=f"alarm {place}") for place in range(15)]
+    alarms = [SimpleNamespace(kind="step", text=f"alarm {place}") for place in range(19)]
     print_alarms(SimpleNamespace(alarms=alarms))  # type: ignore[arg-type]
     lines = capsys.readouterr().out.splitlines()
     assert lines[:2] == ["step: alarm 0", "step: alarm 1"]
     assert lines[-1] == "and 3 more alarms: see fleet.html"
-    assert len(lines) == 13
+    assert len(lines) == 17
 
 
 def test_progress_counts_what_is_done_and_what_was_there() -> None:

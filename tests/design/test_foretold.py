@@ -9,7 +9,15 @@ import numpy as np
 
 import design_samples
 from plantar.design.rehearsal import Rehearsal
+from plantar.design.story import Design, DesignSettings
 from plantar.design.writing.foretold import foretold
+from plantar.twin.robots import hrp2
+
+# Of a motion, all that is looked at: what it was made for. Nothing was searched or played.
+UNPLAYED = Design(
+    settings=DesignSettings(design_samples.STIFFNESS), robot=hrp2.robot(), told=design_samples.told(),
+    factors=(0.5, 2.0), least_stiffness=240.0, legs=None, lines=None, coefficients=np.zeros(0), rehearsals=(), pairs=0,
+)  # fmt: skip
 
 
 def rows(width: float, error: float, usable: bool) -> list[dict[str, Any]]:
@@ -20,10 +28,10 @@ def rows(width: float, error: float, usable: bool) -> list[dict[str, Any]]:
 
 
 def bent(roll: float) -> Any:
-    """The sample with rehearsals at 0.5 and 2 that bend the left foot by so much to either side [rad]."""
+    """A motion with rehearsals at 0.5 and 2 that bend the left foot by so much to either side [rad]."""
     sway = np.column_stack([0.03 * np.ones(2), [-roll, roll]])
     rehearsals = (Rehearsal(0.5, bushes={"left": sway}), Rehearsal(2.0, bushes={"left": sway}))
-    return replace(design_samples.designed(), rehearsals=rehearsals)
+    return replace(UNPLAYED, rehearsals=rehearsals)
 
 
 def test_an_axis_that_is_bent_too_little_is_said_with_what_it_would_need() -> None:
@@ -50,9 +58,8 @@ def test_a_wrong_number_that_is_called_usable_is_said() -> None:
 
 
 def test_a_foot_that_is_not_identified_is_weak() -> None:
-    found = replace(design_samples.designed(), rehearsals=())
     one = {"factor": 1.0, "half_width_percent": None, "error_percent": None, "usable": False}
     row = {"foot": "left", "axis": "pitch", "name": "damping", "at": [one]}
-    assert foretold(found, [row]) == [
+    assert foretold(UNPLAYED, [row]) == [
         "left pitch will be weak at 1 times the stiffness told: damping not identified"
     ]

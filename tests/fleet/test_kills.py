@@ -16,7 +16,7 @@ import pytest
 from command_line import run
 from fleet_samples import small_fleet
 
-GROUPS = 12
+GROUPS = 8
 OPTIONS = ("--workers", "1", "--model", "kelvin_voigt", "--quiet")
 PATIENCE = 60.0  # s
 

@@ -41,6 +41,20 @@ DATA_FAULTS = (
         ("feet/assess/test_play.py",),
     ),
     Mutant(
+        "feet/assess/play.py", "encoders that are late have play",
+        "if late.squares < play.squares:", "if late.squares < 0.0:",
+        ("feet/assess/test_play.py",),
+    ),
+    Mutant(
+        "feet/prepare_log.py", "an attitude is put right once", "TILT_ROUNDS = 3", "TILT_ROUNDS = 1",
+        ("sensors/test_tilt_error.py",),
+    ),
+    Mutant(
+        "feet/interval_width/systematic.py", "a yaw torque's zero that motions show is not believed",
+        "if usual and found.condition_number <= SINGULAR:", "if False and found.condition_number <= SINGULAR:",
+        ("feet/interval_width/test_systematic.py",),
+    ),
+    Mutant(
         "feet/assess/data_faults.py", "feet that carry another weight are believed", '"weight", ', "",
         ("feet/test_identify_faults.py",),
     ),

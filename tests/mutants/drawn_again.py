@@ -140,8 +140,8 @@ SCORES = (
     ),
     Mutant(
         "results/feet_text.py", "motions count alike, however short",
-        "return sum(value * count for value, count in zip(values, samples, strict=True)) / max(sum(samples), 1)",
-        "return sum(values) / len(samples)",
+        "sum(value * count for value, count in zip(values, samples, strict=True)) / max(sum(samples), 1)",
+        "sum(values) / len(samples)",
     ),
 )  # fmt: skip
 

@@ -75,9 +75,9 @@ def test_inertia_says_rank_condition_and_cad(tmp_path: Path) -> None:
     assert "12.34 ± 0.04" in text
     assert "m(torso) + 0.3·mx(head)" in text
     assert text.count(">link_") == 50
-    assert "CAD rms error" in text
+    assert "rms error by the URDF" in text
     assert "20.5" in text
-    assert "beats the trivial predictor in 1 of 2 rows" in text
+    assert "better than the mean alone in 1 of 2 rows" in text
     assert text.count(">none<") == 1
 
 

@@ -133,17 +133,18 @@ def test_a_dynamics_page_has_every_number_under_its_head() -> None:
     result = dynamics()
     assert _inertia_verdict(result) == [
         "The logs determine 12 base parameters, with a condition number of 345.",
-        "The model beats the trivial predictor in 1 of 2 rows of the validation.",
+        "The model predicts better than the mean alone in 1 of 2 rows of the validation, "
+        "better than the URDF alone in 2.",
     ]
     base, inertial = _inertia(result)
     assert heads(base) == ["expression", "value ± half of its 95 % interval", "std", "relative std"]
-    assert heads(inertial) == ["link", "parameter", "unit", "identified", "CAD", "difference"]
+    assert heads(inertial) == ["link", "parameter", "unit", "identified", "URDF", "difference"]
     table = _validation(result)
     first = dict(zip(heads(table), texts(table)[0], strict=True))
     assert first == {
         "kind": "cross", "motion": "squat", "axis": "force.x", "unit": "N", "mean |error|": "0.250",
         "rms error": "0.375", "largest |value|": "9.00", "mean |error| of largest [%]": "2.50",
-        "mean |error|, trivial predictor": "1.00", "relative error [%]": "7.50", "CAD rms error": "3.00",
+        "mean |error| of the mean alone": "1.00", "relative error [%]": "7.50", "rms error by the URDF": "3.00",
         "samples": "12.0", "skill": "75 % better",
     }  # fmt: skip
     assert [row[-1].text for row in table.rows] == ["75 % better", "none"]

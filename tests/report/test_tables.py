@@ -65,17 +65,23 @@ def test_inertias_beside_the_cads() -> None:
     )
     base, inertial = _inertia(result)  # type: ignore[arg-type]
     assert texts(base) == [["m1 + m2", "−4.0 ± 1.0", "0.50", "12 %"]]
-    assert texts(inertial) == [["leg", "m", "kg", "3.500", "3.000", "0.500"]], "the identified less the CAD's"
+    assert texts(inertial) == [["leg", "m", "kg", "3.500", "3.000", "0.500"]], (
+        "the identified less the URDF's"
+    )
 
 
 def test_terms_of_joints() -> None:
     row = JointParameter("knee", "viscous", "N.m.s/rad", 3.0, 0.1, (2.8, 3.2), "usable", "narrow")
-    scores = tuple(SimpleNamespace(has_skill=skill) for skill in (True, False, True))
+    scores = tuple(
+        SimpleNamespace(has_skill=skill, rms_error=1.0, cad_rms_error=by_urdf)
+        for skill, by_urdf in ((True, 2.0), (False, 1.0), (True, 0.5))
+    )
     result = SimpleNamespace(parameters=(row,), validation=scores)
     expected = ["knee", "viscous", "N·m·s/rad", "3.000", "0.10", "2.80 to 3.20", "usable", "narrow"]
     assert texts(_joints(result)) == [expected]  # type: ignore[arg-type]
     assert _prediction(result) == [  # type: ignore[arg-type]
-        "The model beats the trivial predictor in 2 of 3 rows of the validation."
+        "The model predicts better than the mean alone in 2 of 3 rows of the validation, "
+        "better than the URDF alone in 1."
     ]
 
 

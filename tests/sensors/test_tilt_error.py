@@ -158,6 +158,21 @@ def test_what_the_soles_have_put_right_is_no_fault_of_the_log(tmp_path: Path) ->
     assert any(note.code == "imu_late" for note in alone.notes)
 
 
+def test_soles_put_an_attitude_right_however_far_it_was_pulled(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Soles are flat below the bushes that a wrong attitude bends: one round leaves 3 % of what it was off by."""
+    monkeypatch.setattr(attitude_filter, "CORRECTION_RATE", 2.0)
+    robot, log = make_robot(tmp_path), record(sway("sway", seed=1, duration=30.0))
+    pulled, shown = filtered(log), TiltError(1.0, 1.0, 1.0, 30.0)
+    found, known, wrong = (
+        prepare(robot, one, "fit", *own).raw["left"].deflection[300:-300]
+        for one, own in ((pulled, [shown]), (log, [shown]), (pulled, []))
+    )
+    assert (np.std(wrong - known, axis=0) > 5e-4).all()
+    assert (np.std(found - known, axis=0) < 0.005 * np.std(wrong - known, axis=0)).all()
+
+
 @pytest.mark.parametrize("scale", [1.0, 0.85])
 def test_a_gyroscope_s_scale_is_judged_beside_the_attitude_that_the_soles_have_put_right(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, scale: float

@@ -97,8 +97,8 @@ def other_names(folder: Path) -> None:
             renamed[f"{sensor[0]}f_{'f' if rest[0] == 'force' else 'm'}{rest[1]}"] = values
         elif rest[0] == "orientation":
             renamed[f"q{rest[1]}"] = values
-        elif rest[0] == "angular_velocity":
-            renamed[f"g{rest[1]}"] = values
+        elif rest[0] in ("angular_velocity", "linear_acceleration"):
+            renamed[f"{'g' if rest[0] == 'angular_velocity' else 'a'}{rest[1]}"] = values
         elif rest[0] == "position":
             renamed[f"q_{sensor}"] = np.degrees(values)
     header = ",".join(["stamp", *list(renamed)[1:]])

@@ -40,16 +40,19 @@ COMMANDS = {
     "show reference": ("show", "Foot stiffness that others published or configured, and yours among it."),
     "bug-report": ("bug_report", "What to send with a question: versions, settings, what inspect says."),
 }
+EXAMPLE = "plantar identify feet robot.yaml sway_*.csv --validate squat.csv --out out/feet"
 SEVERAL = "--validate"  # takes one log or more
-GROUPS = {
-    "identify": "Identify feet, inertial parameters or joints from logs.",
-    "show": "Published values to compare with.",
-    "fleet": "Many logs of many robots: plan, run, report.",
+GROUPS = {  # what stands first in their help, and last
+    "identify": ("Identify feet, inertial parameters or joints from logs.", EXAMPLE),
+    "show": ("Published values to compare with.", "plantar show reference out/feet/result.json"),
+    "fleet": (
+        "Many logs of many robots: plan, run, report.",
+        "plantar fleet plan 'logs/*.mcap' --robot robot.yaml --out fleet.csv, then "
+        "plantar fleet run fleet.csv --out out/fleet",
+    ),
 }
 
 GARBAGE = 200_000  # new objects after which the collector walks over all: twice what modules and a result are
-
-EPILOG = "Example: plantar identify feet robot.yaml sway_*.csv --validate squat.csv --out out/feet"
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -69,6 +72,8 @@ def main(arguments: list[str] | None = None) -> None:
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(1)
+    except OSError as error:  # a disk that is full, a folder that is not ours, a name that is too long
+        _fail(f"plantar: {error.filename or 'the system says'}: {error.strerror or error}")
     except KeyboardInterrupt:
         _fail("plantar: interrupted", 130)
     except MemoryError:
@@ -78,10 +83,10 @@ def main(arguments: list[str] | None = None) -> None:
 def _application(arguments: list[str]) -> typer.Typer:
     """The tree of commands, with only the one that is called imported."""
     application = _group(
-        "What does your legged robot stand on? Foot stiffness, damping and offset from its own logs."
+        "What does your legged robot stand on? Foot stiffness, damping and offset from its own logs.", EXAMPLE
     )
     application.callback()(_root)
-    groups = {name: _group(text) for name, text in GROUPS.items()}
+    groups = {name: _group(*texts) for name, texts in GROUPS.items()}
     called = _called(arguments)
     for verb, (module, text) in COMMANDS.items():
         *group, name = verb.split()
@@ -121,11 +126,11 @@ class _Listed(TyperGroup):
         return list(dict.fromkeys(verb.split()[0] for verb in COMMANDS))
 
 
-def _group(text: str) -> typer.Typer:
+def _group(text: str, example: str) -> typer.Typer:
     return typer.Typer(
         cls=_Listed,
         help=text,
-        epilog=EPILOG,
+        epilog=f"Example: {example}",
         no_args_is_help=True,
         add_completion=False,
         rich_markup_mode=None,  # boxes around the help take a quarter of a second

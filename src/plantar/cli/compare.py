@@ -30,9 +30,12 @@ def run(
     logs: Annotated[
         list[Path], typer.Argument(help="Logs with joints, attitude and wrenches.", metavar="LOG...")
     ],
-    simulator: Annotated[str, typer.Option("--simulator", help="Only mujoco so far.")] = "mujoco",
+    simulator: Annotated[
+        str, typer.Option("--simulator", metavar="NAME", help="Only mujoco so far.")
+    ] = "mujoco",
     out: Annotated[
-        Path | None, typer.Option("--out", help="Folder for comparison.svg and comparison.json.")
+        Path | None,
+        typer.Option("--out", metavar="DIR", help="Folder for comparison.svg and comparison.json."),
     ] = None,
     swing: Annotated[
         float | None, typer.Option("--swing", help="As of `export`, for the contact; in rad.", metavar="RAD")

@@ -22,7 +22,12 @@ ROBOT_HELP = "Robot file, for its topics and column map, and for the frames of a
 def run(
     logs: Annotated[list[Path], typer.Argument(help=LOGS_HELP, metavar="LOG...")],
     out: Annotated[Path, typer.Option("--out", help=OUT_HELP, metavar="FILE")],
-    to: Annotated[str, typer.Option("--to", help="Format of the files in a directory.")] = "parquet",
+    to: Annotated[
+        str,
+        typer.Option(
+            "--to", metavar="FORMAT", help="Format of the files in a directory: csv, parquet or mcap."
+        ),
+    ] = "parquet",
     robot: Annotated[Path | None, typer.Option("--robot", help=ROBOT_HELP, metavar="ROBOT.yaml")] = None,
     memory: Memory = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Do not print what was assumed.")] = False,

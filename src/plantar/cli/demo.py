@@ -19,11 +19,17 @@ if TYPE_CHECKING:
     from plantar.report import Table
 
 MARKS = {"good": "green", "weak": "yellow", "bad": "red"}
+PRESET_HELP = (
+    "Imperfections: ideal; sensors: noise, biases, zeros, drift; realistic: also hysteresis and late force sensors; "
+    "or harsh."
+)
 
 
 def run(
-    out: Annotated[Path, typer.Option("--out", help="Folder for logs, result, figures and report.")] = Path("out/demo"),
-    preset: Annotated[str, typer.Option(help="Imperfections: ideal, sensors, realistic or harsh.")] = "realistic",
+    out: Annotated[
+        Path, typer.Option("--out", metavar="DIR", help="Folder for logs, result, figures and report.")
+    ] = Path("out/demo"),
+    preset: Annotated[str, typer.Option(metavar="PRESET", help=PRESET_HELP)] = "realistic",
     seed: Annotated[int, typer.Option(help="Of noise, biases and zeros.", min=0)] = 0,
     quick: Annotated[bool, typer.Option("--quick", help="Two motions only: to see it run.")] = False,
     json: Annotated[bool, typer.Option("--json", help="Print result.json instead of tables.")] = False,

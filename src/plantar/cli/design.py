@@ -28,11 +28,16 @@ def run(
     out: Annotated[
         Path,
         typer.Option(
-            help="CSV of the motion; a JSON with what it promises, a page and a preview go beside it."
+            metavar="MOTION.csv",
+            help="CSV of the motion; a JSON with what it promises, a page and a preview go beside it.",
         ),
     ],
     stiffness: Annotated[
-        float | None, typer.Option(help="Of each foot in pitch and roll, as far as you know it, in N·m/rad.")
+        float | None,
+        typer.Option(
+            metavar="K",
+            help="Of each foot in pitch and roll, as far as you know it, in N·m/rad. It or --after is needed.",
+        ),
     ] = None,
     after: Annotated[
         Path | None,
@@ -40,22 +45,27 @@ def run(
     ] = None,
     damping: Annotated[
         float | None,
-        typer.Option(help="In N·m·s/rad, for the prediction; 0.04 s times the stiffness if left out."),
+        typer.Option(
+            metavar="C", help="In N·m·s/rad, for the prediction; 0.04 s times the stiffness if left out."
+        ),
     ] = None,
-    duration: Annotated[float, typer.Option(help="Of the motion, in s.")] = 60.0,
-    rate: Annotated[float, typer.Option(help="Rows a second, in Hz.")] = 200.0,
+    duration: Annotated[float, typer.Option(metavar="S", help="Of the motion, in s.")] = 60.0,
+    rate: Annotated[float, typer.Option(metavar="HZ", help="Rows a second, in Hz.")] = 200.0,
     criterion: Annotated[
         str,
         typer.Option(
-            help="What the search makes small: the 'widest' relative interval, or criterion D or A of all parameters."
+            metavar="CRITERION",
+            help="What the search makes small: 'widest', the widest relative interval; or, of all parameters "
+            "together, D (their volume) or A (their mean square).",
         ),
     ] = "widest",
     seed: Annotated[int, typer.Option(help="Draws frequencies and the search.", min=0)] = 0,
     to: Annotated[
         list[str] | None,
         typer.Option(
+            metavar="FORMAT",
             help="Also for a controller: ros (JointTrajectory as YAML), mcap (in a bag), openhrp (.pos), "
-            "mc_rtc (.bin, for its Replay plugin)."
+            "mc_rtc (.bin, for its Replay plugin).",
         ),
     ] = None,
     approach: Annotated[
@@ -63,7 +73,10 @@ def run(
         typer.Option("--approach", help="Also versions with 25 and 50 % of the amplitude, to play first."),
     ] = False,
     like: Annotated[
-        str | None, typer.Option(help="'campaign': for comparison, the best of the paper's fourteen motions.")
+        str | None,
+        typer.Option(
+            metavar="MOTIONS", help="'campaign': for comparison, the best of the paper's fourteen motions."
+        ),
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")] = False,

@@ -52,11 +52,14 @@ def run(
     result: Annotated[Path | None, typer.Option(help=RESULT_HELP, metavar="RESULT.json")] = None,
     wrench_delay: WrenchDelay = None,
     cutoff: Annotated[
-        float | None, typer.Option(help="Of the filters before the regressions, in Hz; the result's, or 5.")
+        float | None,
+        typer.Option(metavar="HZ", help="Of the filters before the regressions, in Hz; the result's, or 5."),
     ] = None,
     write_model: Annotated[
         Path | None,
-        typer.Option(help="Also write the file that a controller in C++ constructs its estimator from."),
+        typer.Option(
+            metavar="FILE", help="Also write the file that a controller in C++ constructs its estimator from."
+        ),
     ] = None,
     live: Annotated[
         bool, typer.Option("--live", help="Also show it in a browser, at the pace at which it was recorded.")

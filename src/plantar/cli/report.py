@@ -17,7 +17,10 @@ def run(
         Path, typer.Argument(help="A result.json with its residuals beside it.", metavar="RESULT.json")
     ],
     out: Annotated[
-        Path | None, typer.Option("--out", help="Where to write; beside the result if left out.")
+        Path | None,
+        typer.Option(
+            "--out", metavar="FILE", help="The page to write; report.html beside the result if left out."
+        ),
     ] = None,
 ) -> None:
     """Write the result's report.html again, from its result.json and residuals.

@@ -21,7 +21,8 @@ def run(
     robot: Annotated[Path, typer.Argument(help="Robot file (YAML).", metavar="ROBOT.yaml")],
     logs: Annotated[list[Path], typer.Argument(help="Logs to choose from.", metavar="LOG...")],
     compare: Annotated[
-        str, typer.Option(help="Motions to compare with the best set, separated by commas.")
+        str,
+        typer.Option(metavar="MOTION,...", help="Motions to compare with the best set, separated by commas."),
     ] = "",
     largest: Annotated[int, typer.Option(help="Most logs in a set.", min=1, max=20)] = 6,
     memory: Memory = None,

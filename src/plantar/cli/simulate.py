@@ -33,33 +33,47 @@ def run(
         str,
         typer.Argument(
             help="A motion's name, or a table of joint positions of your own (CSV, Parquet); several separated by "
-            "commas; 'demo', 'campaign' or 'fleet'."
+            "commas; 'campaign', the paper's fourteen; 'demo', those of `plantar demo`; or 'fleet'.",
+            metavar="MOTION",
         ),
     ],
-    out: Annotated[Path, typer.Option(help="Folder for the robot file, the logs and the truth beside them.")],
-    preset: Annotated[str | None, typer.Option(help=PRESET_HELP)] = None,
+    out: Annotated[
+        Path,
+        typer.Option(metavar="DIR", help="Folder for the robot file, the logs and the truth beside them."),
+    ],
+    preset: Annotated[str | None, typer.Option(metavar="PRESET", help=PRESET_HELP)] = None,
     seed: Annotated[int, typer.Option(help="Draws the sensors' noise, biases and zeros.", min=0)] = 0,
     robot: Annotated[
-        Path | None, typer.Option(help="Robot file of a biped; the HRP-2-like one if left out.")
+        Path | None,
+        typer.Option(metavar="ROBOT.yaml", help="Robot file of a biped; the HRP-2-like one if left out."),
     ] = None,
-    bush: Annotated[str | None, typer.Option(help=BUSH_HELP)] = None,
+    bush: Annotated[str | None, typer.Option(metavar="K,C,...", help=BUSH_HELP)] = None,
     sway: Annotated[
         float | None,
         typer.Option(
-            help="How far tilts move the chest and the operator leads it, in m; as in the paper if left out."
+            help="How far tilts move the chest and the operator leads it, in m; as in the paper if left out.",
+            metavar="M",
         ),
     ] = None,
     vertical: Annotated[
-        float | None, typer.Option(help="How far the chest goes down in Tilt4 to Tilt6 and Squat, in m.")
+        float | None,
+        typer.Option(
+            metavar="M",
+            help="How far the chest goes down in Tilt4 to Tilt6 and Squat, in m; as in the paper if left out.",
+        ),
     ] = None,
     apart: Annotated[
-        float | None, typer.Option(help="Between the soles, in m; as the robot's posture has it if left out.")
+        float | None,
+        typer.Option(metavar="M", help="Between the soles, in m; as the robot's posture has it if left out."),
     ] = None,
     period: Annotated[
-        float | None, typer.Option(help="Of one step of a walk, 0.6 to 6 s; as its name says if left out.")
+        float | None,
+        typer.Option(metavar="S", help="Of one step of a walk, 0.6 to 6 s; as its name says if left out."),
     ] = None,
-    robots: Annotated[int, typer.Option(help="Of 'fleet'.", min=1)] = 20,
-    days: Annotated[int, typer.Option(help="Of 'fleet': a log a robot and day.", min=1)] = 60,
+    robots: Annotated[int, typer.Option(metavar="N", help="How many robots 'fleet' has.", min=1)] = 20,
+    days: Annotated[
+        int, typer.Option(metavar="N", help="How many days 'fleet' has: a log a robot and day.", min=1)
+    ] = 60,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")] = False,
 ) -> None:
     """Play motions on the twin, a robot in MuJoCo whose feet are known, and write what it records.

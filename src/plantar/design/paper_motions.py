@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES
-from plantar.design.rehearsal import SEED, bush_of
+from plantar.design.rehearsal import bush_of
 from plantar.design.soft_feet import Softness
 from plantar.errors import MotionError
 from plantar.feet.select_motions import Selection, select_motions
@@ -20,6 +21,8 @@ from plantar.robot.model import RobotModel
 from plantar.twin.play import planned, roll_each
 from plantar.twin.presets import DEFAULT, preset_named
 from plantar.twin.recording import record
+
+SEED: Final = 0  # of the sensors' noise
 
 
 @dataclass(frozen=True)

@@ -30,7 +30,7 @@ LARGEST: Final = {
     "left.roll": 0.1, "left.pitch": 0.1, "right.roll": 0.1, "right.pitch": 0.1,
 }  # fmt: skip
 _SIDES: Final = np.column_stack([trig(2 * np.pi * np.arange(SIDES) / SIDES) for trig in (np.cos, np.sin)])
-NEAR: Final = 0.3  # of a limit: what is less does not reach it in one step of the search
+NEAR: Final = 0.8  # of a limit: what a step of the search watches from the start
 ROOM: Final = 0.8  # of the way to a joint's limit, and of its speed
 
 
@@ -166,17 +166,16 @@ class Reach:
         """How much of the tightest limit a motion takes up: it may be larger by the inverse of this."""
         return float(max(side.max() for side in self._shares(coefficients)))
 
-    def near(self, coefficients: Array) -> tuple[Array, Array]:
-        """Where a motion comes near a limit: how the share of it goes with the coefficients, (m, size), and what is
-        left of it, (m,)."""
+    def near(self, coefficients: Array, above: float = NEAR) -> tuple[Array, Array]:
+        """Where a motion takes up more than a share of a limit, for every series its worst time: how that share goes
+        with the coefficients, (m, size), and what is left of it, (m,)."""
         rows, left = [], []
         for share, limit in zip(self._shares(coefficients), (-self._low, self._high), strict=True):
-            peak = share > NEAR
-            peak[:, 1:] &= share[:, 1:] >= share[:, :-1]
-            peak[:, :-1] &= share[:, :-1] >= share[:, 1:]
-            series, sample = np.nonzero(peak)
-            rows.append((self._watched[:, series, sample] / limit[series]).T)
-            left.append(1.0 - share[series, sample])
+            worst = share.argmax(axis=1)
+            largest = share[np.arange(len(share)), worst]
+            series = np.flatnonzero(largest > above)
+            rows.append((self._watched[:, series, worst[series]] / limit[series]).T)
+            left.append(1.0 - largest[series])
         return np.vstack(rows), np.concatenate(left)
 
     def _shares(self, coefficients: Array) -> tuple[Array, Array]:

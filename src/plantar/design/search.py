@@ -14,13 +14,17 @@ from plantar.design.family import CHANNELS, SHAPES
 from plantar.design.information import Criterion, badness
 from plantar.design.reach import Reach
 
-STARTS: Final = 3  # of which the best end counts: limits have corners in which a way ends
+# Of which the best end counts: limits have corners in which a way ends. Two cores take as long for three.
+STARTS: Final = 4
 TRIES: Final = 25  # linear programs from each start at most
 SMALL: Final = 1e-3  # of a coefficient that is just allowed: what a slope is taken over
 BEGIN, SMALLEST, FARTHEST = 0.5, 0.01, 1.0  # how far a step goes, of coefficients that are just allowed
 # Motions beside one whose values are computed together: ten minutes of them fit into memory
 AT_ONCE: Final = 10
-CUTS: Final = 4  # programs of one step: each knows the limits that the one before passed
+# Programs of one step at most: each knows, beside what the motion comes near, the limits that the one before passed.
+# So few of thousands make a program quick.
+CUTS: Final = 10
+PASSED: Final = 1.0  # of a limit
 SLIGHT: Final = 0.01  # over a limit: the motion is made smaller by as much
 GROW, SHRINK = 1.5, 0.4  # of that, after a step that helped and one that did not
 # Where the search begins: over the left foot, whose ankle moves more than the other and than the body.
@@ -73,6 +77,7 @@ class _Climb:
     ) -> None:
         self._reach, self._units, self._far = reach, units, BEGIN
         self._criterion, self._known = criterion, known
+        self._slope: Array | None = None  # at the best motion, once known
         self.best = start / reach.used(start)
         self.least = float(self._value(self.best))
 
@@ -81,14 +86,15 @@ class _Climb:
 
     def step(self) -> bool:
         """To a better motion, or none: then the next step is smaller. Whether another may help."""
-        beside = self.best + np.diag(SMALL * self._units)
-        parts = np.split(beside, range(AT_ONCE, len(beside), AT_ONCE))
-        slope = np.concatenate([self._value(part) for part in parts]) - self.least
+        if self._slope is None:
+            beside = self.best + np.diag(SMALL * self._units)
+            parts = np.split(beside, range(AT_ONCE, len(beside), AT_ONCE))
+            self._slope = np.concatenate([self._value(part) for part in parts]) - self.least
         rows, left = self._reach.near(self.best)
-        tried = self.best
+        tried, used = self.best, 1.0
         for _ in range(CUTS):
             found = linprog(
-                slope / SMALL,
+                self._slope / SMALL,
                 A_ub=rows * self._units,
                 b_ub=np.maximum(left, 0.0),
                 bounds=(-self._far, self._far),
@@ -96,14 +102,16 @@ class _Climb:
             if not found.success:
                 break
             tried = self.best + self._units * found.x
-            if self._reach.used(tried) < 1.0 + SLIGHT:
+            more, room = self._reach.near(tried, PASSED)
+            used = 1.0 - room.min(initial=0.0)
+            if used < 1.0 + SLIGHT:
                 break
-            more, room = self._reach.near(tried)  # limits that were far away, or reached at other times
             rows, left = np.vstack([rows, more]), np.append(left, room + more @ (tried - self.best))
-        tried = tried / max(self._reach.used(tried), 1.0)
+        tried = tried / used
         value = float(self._value(tried))
         if value < self.least:
-            self.best, self.least, self._far = tried, value, min(GROW * self._far, FARTHEST)
+            self.best, self.least, self._slope = tried, value, None
+            self._far = min(GROW * self._far, FARTHEST)
         else:
             self._far *= SHRINK
         return self._far > SMALLEST

@@ -13,7 +13,7 @@ from plantar.conventions import Array
 from plantar.cores import blas_on_one_core, over_cores
 from plantar.design.collision import free_swing, self_collision
 from plantar.design.family import Lines
-from plantar.design.information import CRITERIA, Criterion
+from plantar.design.information import CRITERIA, LEFT, Criterion
 from plantar.design.known import Known
 from plantar.design.legs import Legs
 from plantar.design.linear import LinearRobot
@@ -37,8 +37,10 @@ SMALLER: Final = 0.85
 # much too large a motion is: it is made as much smaller as it may.
 TIPS: Final = 0.0005
 SPARE: Final = 0.005  # smaller than what is just allowed
-# One that leaves room at both ends of the range is made larger once, at most so much: small soles need all of it.
-LARGER: Final = 1.1
+# One that leaves room where it was tightest is made larger once, at most so much: small soles need all of it.
+LARGER: Final = 1.2
+WORTH: Final = 1.02  # and at least so much: less is not worth two rehearsals
+BESIDE: Final = 2  # rehearsals at once at least: on two cores they take as long as one
 ROUNDS: Final = 8
 EFFORT: Final = 0.9  # of a joint's torque limit
 SHORTEST, LONGEST = 20.0, 600.0  # s
@@ -94,6 +96,17 @@ class Design:
         """The motion with a share of its amplitude."""
         return Trajectory.of("design", self.legs, self.lines, share * self.coefficients)
 
+    def half_widths(self, foot: str, axis: str, name: str) -> dict[float, float | None]:
+        """By factor, the 95 % half width of a parameter that is promised [% of its value]; None where it is not
+        identified: the widest of a rehearsal's own and its neighbours', whose sensors have other zeros and noise, as
+        the robot's will have."""
+        found = [one.percent(foot, axis, name) for one in self.rehearsals]
+        near = [found[max(place - 1, 0) : place + 2] for place in range(len(found))]
+        return {
+            one.factor: own and max(each for each in beside if each is not None)
+            for one, own, beside in zip(self.rehearsals, found, near, strict=True)
+        }
+
     @property
     def nominal(self) -> Rehearsal:
         """The rehearsal at the stiffness that was told."""
@@ -145,7 +158,8 @@ def design_motion(
     bushes = [told.times(factor) for factor in _rehearsed_at(*factors)]
     reach = Reach(legs, linear, lines, told, bushes)
     before = 0.0 if known is None else known.precision(reach.feet)
-    coefficients = best_motion(reach, settings.criterion, random, before, progress)
+    # What rehearsals would leave of it comes first: most motions were made smaller by as much.
+    coefficients = LEFT * best_motion(reach, settings.criterion, random, before, progress)
     coefficients, rehearsals, pairs = _rehearsed(
         robot, legs, lines, coefficients, told, _rehearsed_at(*factors), progress
     )
@@ -177,14 +191,15 @@ def _rehearsed(
     near the least stiffness all grows steeply.
     """
     reason, tight, larger = "", [factors[0], factors[-1]], True
+    shrunk = 1.0  # the last share by which it was made smaller
     before: Array | None = None  # it was made larger
     ends = dict[float, Rehearsal]()  # rehearsals before that
     known = dict[float, Rehearsal]()  # those of the motion that comes next
 
-    def smaller(motion: Array) -> Array:
-        nonlocal before, larger, known
-        motion, known = (motion, {}) if before is None else (before, ends)
-        before, larger = None, False
+    def smaller(share: float) -> Array:
+        nonlocal before, known, shrunk
+        motion, known = (share * coefficients, {}) if before is None else (before, ends)
+        before, shrunk = None, share
         return motion
 
     for _ in range(ROUNDS):
@@ -193,7 +208,7 @@ def _rehearsed(
         except MotionError as error:
             reason = str(error)
             progress(f"smaller: {reason}")
-            coefficients = smaller(SMALLER * coefficients)
+            coefficients = smaller(SMALLER)
             continue
         watched = self_collision(robot, trajectory.configurations)
         if watched.touching is not None:
@@ -202,21 +217,24 @@ def _rehearsed(
             still = lines.without(coefficients, "arms")
             quiet = before is None and not np.array_equal(still, coefficients)
             progress(f"{'without arms' if quiet else 'smaller'}: {reason}")
-            coefficients = still if quiet else smaller(SMALLER * coefficients)
+            coefficients = still if quiet else smaller(SMALLER)
             continue
         plan, held, used = trajectory.plan(), {**known}, 0.0
         while used <= 1.0 and len(held) < len(factors) and not (held and larger):
-            asked = [each for each in tight if each not in held] or [
-                each for each in factors if each not in held
-            ]
+            left = sorted((each for each in factors if each not in held), key=lambda each: each not in tight)
+            urgent = sum(each in tight for each in left)
+            asked = left[: max(urgent, BESIDE)] if urgent else left
             found = {one.factor: one for one in rehearse(robot, plan, told, asked, progress)}
             used, reason = max((_used(one) for one in found.values()), key=lambda each: each[0])
             held |= found
         if larger and used <= 1.0:
-            before, ends, known, larger = coefficients, held, {}, False
-            grown = min((1 - SPARE) / np.sqrt(used), LARGER)
-            progress(f"larger by {100 * (grown - 1):.0f} %: both ends of the range leave room")
-            coefficients = max(grown, 1.0) * coefficients
+            known, larger = held, False
+            # Not back to what did not hold: half of the way.
+            grown = min((1 - SPARE) / np.sqrt(used), LARGER if shrunk == 1.0 else shrunk**-0.5)
+            if grown > WORTH:
+                progress(f"larger by {100 * (grown - 1):.0f} %: there is room")
+                before, ends, known = coefficients, held, {}
+                coefficients = grown * coefficients
             continue
         if used <= 1.0:
             progress("identify the feet from the rehearsals")
@@ -224,7 +242,7 @@ def _rehearsed(
         progress(f"smaller: {reason}")
         if before is None:
             tight = [factor for factor, one in held.items() if _used(one)[0] > 1.0]
-        coefficients = smaller(max((1 - SPARE) / np.sqrt(used), SMALLER) * coefficients)
+        coefficients = smaller(max((1 - SPARE) / np.sqrt(used), SMALLER))
     raise MotionError(f"no motion holds over the range of stiffness: {reason}", path=robot.name)
 
 

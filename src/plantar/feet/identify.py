@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
+from plantar.choices import settings_of
 from plantar.cores import blas_on_one_core, over_cores
 from plantar.errors import DataError
 from plantar.feet.foot_assessment import assess_foot
@@ -63,7 +64,7 @@ def identify_feet(
     """
     robot = robot_of(robot)
     ready = prepare_all(
-        robot, logs_of(logs, robot), logs_of(validate, robot), settings or FeetSettings(), progress
+        robot, logs_of(logs, robot), logs_of(validate, robot), settings_of(settings, FeetSettings), progress
     )
     return fit_prepared(robot, ready, progress)
 

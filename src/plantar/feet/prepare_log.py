@@ -40,6 +40,9 @@ CONTACT_BAND = 2.0  # times the fit's cutoff, up to which a force tells landing 
 FEWEST_READINGS = 10  # of a force sensor in a stance: fewer miss how its torque changes
 LIFTED = 0.05  # of a sole's length: a bush that is let go rises by less, and steps rise higher
 CARRIES = 0.5  # of the weight, by the other foot
+# Of putting a tilted attitude right: a sole is flat below its bush however wrong it is, and crouching changes the IMU's
+# height, so that one round leaves some percent of the tilt.
+TILT_ROUNDS = 3
 WEIGHT_MISMATCH = 0.15  # share by which the feet may carry more or less than the model weighs
 
 
@@ -101,14 +104,18 @@ def prepare(
         ]
     contacts, stances = _contacts(robot, log, raw, CONTACT_BAND * highest_cutoff, notes)
     places = {name: state.sole_position[:, :2] for name, state in raw.items()}
-    if (right := right_attitude(log, imu, orientation, (own_tilt, tilt_error), raw, contacts)) is not None:
+    for _ in range(TILT_ROUNDS):
+        right = right_attitude(log, imu, orientation, (own_tilt, tilt_error), raw, contacts)
+        if right is None:
+            break
         orientation = right[0]
         motions = foot_motions(robot, positions, velocities, orientation, rates)
         raw = loaded(robot, motions, wrenches)
-        notes.append(right[1])
-        scale = AttitudeScale()
-    else:
+    scale = AttitudeScale()
+    if right is None:
         scale = log_attitude_scale(log, imu, orientation, raw, contacts)
+    else:
+        notes.append(right[1])
     if noted := BY_LEANS & {note.code for note in notes}:
         # What was said of the sensors as recorded is said of them as they are used.
         left = [one for one in beside_leans(imu.name, log, orientation) if one.code in noted]

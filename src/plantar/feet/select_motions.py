@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import combinations
+from math import comb
 
 import numpy as np
 
+from plantar.choices import settings_of
 from plantar.conventions import NORMAL95, ROTATIONAL_AXES, Array
 from plantar.cores import blas_on_one_core
 from plantar.errors import DataError
@@ -99,7 +101,7 @@ def select_motions(
     """
     robot = robot_of(robot)
     logs = tuple(logs_of(logs, robot))
-    settings = settings or FeetSettings()
+    settings = settings_of(settings, FeetSettings)
     check_names(logs)
     names = [log.name for log in logs]
     unknown = [name for name in compare if name not in names]
@@ -168,12 +170,8 @@ def _best_sets(
     """The best set of each size: all sets where they are few, else the previous best and one more."""
     best: list[Choice] = []
     for size in range(1, min(largest, len(names)) + 1):
-        sets = list(combinations(names, size)) if _count(len(names), size) <= SEVERAL else [
+        sets = list(combinations(names, size)) if comb(len(names), size) <= SEVERAL else [
             (*best[-1].motions, name) for name in names if name not in best[-1].motions
         ]  # fmt: skip
         best.append(min((promise(motions) for motions in sets), key=lambda choice: choice.usual))
     return best
-
-
-def _count(total: int, size: int) -> int:
-    return int(np.prod([(total - i) / (i + 1) for i in range(size)]) + 0.5)

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
 
 from plantar.files import write_text
 from plantar.notes import kinds
 from plantar.pages import on_joints
-from plantar.report.content import Cell, Column, Figure, Section, Table
+from plantar.report.content import Cell, Column, Table
 from plantar.report.page import render
 from plantar.report.tables import input_table, settings_table, skill_cell, verdict_cell
 from plantar.report.verdict import listed
@@ -28,18 +27,13 @@ _HEADINGS: Final = {
     "rms_error": "rms error",
     "max_abs": "largest |value|",
     "percent_of_max": "mean |error| of largest [%]",
-    "zero_mean_abs": "mean |error|, trivial predictor",
+    "zero_mean_abs": "mean |error| of the mean alone",
+    "cad_rms_error": "rms error by the URDF",
     "relative_error_percent": "relative error [%]",
 }
 
 
-def write_dynamics_report(
-    result: str | os.PathLike[str],
-    out: str | os.PathLike[str] | None = None,
-    *,
-    figures: Sequence[Figure] = (),
-    sections: Sequence[Section] = (),
-) -> Path:
+def write_dynamics_report(result: str | os.PathLike[str], out: str | os.PathLike[str] | None = None) -> Path:
     """Write `report.html` for a `plantar.inertia/1` or `plantar.joints/1` result and return its path.
 
     `result` is `result.json` or its directory; the page is one file that needs no network. Raises
@@ -61,8 +55,6 @@ def write_dynamics_report(
         notes=kinds(read.notes, "info"),
         verdict=verdict,
         tables=made,
-        sections=sections,
-        figures=figures,
         appendix=[input_table(read.inputs), settings_table(read.settings)],
     )
     target = Path(out) if out is not None else path.parent / "report.html"
@@ -94,7 +86,11 @@ def _prediction(result: DynamicsResult) -> list[str]:
     if not count:
         return []
     better = sum(row.has_skill for row in result.validation)
-    return [f"The model beats the trivial predictor in {better} of {count} rows of the validation."]
+    closer = sum(row.rms_error < row.cad_rms_error for row in result.validation)
+    return [
+        f"The model predicts better than the mean alone in {better} of {count} rows of the validation, "
+        f"better than the URDF alone in {closer}."
+    ]
 
 
 def _inertia(result: DynamicsResult) -> list[Table]:
@@ -111,7 +107,7 @@ def _inertia(result: DynamicsResult) -> list[Table]:
         for row in result.inertial_parameters
     ]  # fmt: skip
     columns = Column.words("link", "parameter", "unit")
-    columns += [Column(name) for name in ("identified", "CAD", "difference")]
+    columns += [Column(name) for name in ("identified", "URDF", "difference")]
     return [
         Table.of("Base parameters", base_columns, base, folded=len(base) > 40),
         Table.of("Inertial parameters of each link", columns, inertial, folded=len(inertial) > 40),
@@ -131,7 +127,7 @@ def _joints(result: DynamicsResult) -> Table:
 
 
 def _validation(result: DynamicsResult) -> Table:
-    """Every number that the rows bring, the known ones first: CAD's errors stand beside the model's."""
+    """Every number that the rows bring, the known ones first: the URDF's errors stand beside the model's."""
     contents = [_content(row) for row in result.validation]
     present = dict.fromkeys(key for content in contents for key in content)
     keys = [key for key in _HEADINGS if key in present] + [key for key in present if key not in _HEADINGS]
@@ -140,15 +136,13 @@ def _validation(result: DynamicsResult) -> Table:
     for row, content in zip(result.validation, contents, strict=True):
         cells = [Cell(_text(content.get(key))) for key in keys]
         rows.append([*cells, skill_cell(row)])
-    columns = [
-        Column(_HEADINGS.get(key, key.replace("_", " ").replace("cad", "CAD")), numeric=key in numeric)
-        for key in keys
-    ]
+    columns = [Column(_HEADINGS.get(key, key.replace("_", " ")), numeric=key in numeric) for key in keys]
     return Table.of("Validation", [*columns, Column("skill", numeric=False)], rows)
 
 
 def _content(row: DynamicsScore) -> dict[str, Any]:
-    return {key: float(value) if isinstance(value, int) else value for key, value in row.to_dict().items()}
+    content = {key: float(value) if isinstance(value, int) else value for key, value in row.to_dict().items()}
+    return content | {"unit": unit(row.unit)}
 
 
 def _text(value: object) -> str:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 import plantar
 from plantar.contact.phases import Phase
 from plantar.files import write_text
-from plantar.notes import Note
+from plantar.notes import Note, listing
 from plantar.results import feet_text, text
 from plantar.results.feet_rows import (
     AxisModel,
@@ -137,7 +137,8 @@ class FeetResult:
         for row in self.parameters:
             if (row.foot, row.axis, row.name) == (foot, axis, name):
                 return row
-        raise KeyError((foot, axis, name))
+        known = listing([f"{row.foot} {row.axis} {row.name}" for row in self.parameters], 18)
+        raise KeyError(f"no parameter {foot} {axis} {name} (valid: {known})")
 
     @property
     def soles(self) -> dict[str, tuple[tuple[float, float], ...]]:

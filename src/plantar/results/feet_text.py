@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from plantar.conventions import NORMAL95
 from plantar.results.feet_rows import DelayEstimate, Parameter, ValidationRow
@@ -72,21 +73,44 @@ def title_of_axis(rows: Sequence[Parameter], foot: str, axis: str) -> str:
 
 def prediction_cells(rows: Sequence[ValidationRow]) -> list[tuple[str, ...]]:
     """Tables 2 and 3 in short: the mean error of each foot and axis over all samples, beside the offset alone's."""
+    return [
+        (
+            f"{count} {KINDS[row.kind]}",
+            row.foot,
+            row.axis,
+            number(row.mean_abs_error, 3),
+            number(row.zero_mean_abs, 3),
+            f"no better than the offset alone: {', '.join(lost)}" if lost else "",
+        )
+        for row, count, lost in over_all_motions(rows)
+    ]
+
+
+def over_all_motions(rows: Sequence[ValidationRow]) -> list[tuple[ValidationRow, int, list[str]]]:
+    """One row for each kind, foot and axis, over all samples; of how many motions; those that the offset alone predicts
+    as well."""
     groups: dict[tuple[str, str, str], list[ValidationRow]] = {}
     for row in rows:
         groups.setdefault((row.kind, row.foot, row.axis), []).append(row)
-    return [
-        (
-            f"{len(group)} {KINDS[kind]}",
-            foot,
-            axis,
-            number(_mean([row.mean_abs_error for row in group], group), 3),
-            number(_mean([row.zero_mean_abs for row in group], group), 3),
-            f"no better than the offset alone: {', '.join(lost)}" if lost else "",
+    merged = []
+    for group in groups.values():
+        samples = [row.samples for row in group]
+        mean, square, alone = (
+            sum(value * count for value, count in zip(values, samples, strict=True)) / max(sum(samples), 1)
+            for values in (
+                [row.mean_abs_error for row in group],
+                [row.rms_error**2 for row in group],
+                [row.zero_mean_abs for row in group],
+            )
         )
-        for (kind, foot, axis), group in groups.items()
-        for lost in [[row.motion for row in group if not row.has_skill]]
-    ]
+        largest = max(row.max_abs for row in group)
+        share = 100 * mean / largest if largest > 0 else None
+        row = replace(
+            group[0], motion="all", mean_abs_error=mean, rms_error=square**0.5, max_abs=largest,
+            percent_of_max=share, zero_mean_abs=alone, samples=sum(samples),
+        )  # fmt: skip
+        merged.append((row, len(group), [row.motion for row in group if not row.has_skill]))
+    return merged
 
 
 def delay_line(delay: DelayEstimate | None) -> list[str]:
@@ -96,8 +120,3 @@ def delay_line(delay: DelayEstimate | None) -> list[str]:
     late = with_uncertainty(1e3 * delay.wrench_delay, 1e3 * NORMAL95 * delay.std if delay.std > 0 else None)
     known = "measured" if delay.measured else "as given" if delay.std == 0 else "not measured from these logs"
     return [f"Force sensors {late} ms late, {known}"]
-
-
-def _mean(values: Sequence[float], group: Sequence[ValidationRow]) -> float:
-    samples = [row.samples for row in group]
-    return sum(value * count for value, count in zip(values, samples, strict=True)) / max(sum(samples), 1)

@@ -162,7 +162,7 @@ class RobotModel:
         """
         model = self.model
         if not model.existFrame(placement.link):
-            raise RobotError(unknown_link(placement.link, model, self.path))
+            raise unknown_link(placement.link, model, self.path)
         frame = model.frames[model.getFrameId(placement.link)]
         return int(frame.parentJoint), frame.placement * pin.SE3(placement.rotation, placement.xyz)
 

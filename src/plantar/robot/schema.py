@@ -14,7 +14,7 @@ from typing import Any
 import yaml
 from pydantic_core import CoreSchema, SchemaValidator, ValidationError, core_schema
 
-from plantar.errors import RobotError, located
+from plantar.errors import RobotError
 from plantar.files import read_bounded
 from plantar.robot.guesses import Guess, read_guesses
 from plantar.robot.uncertainty import Uncertainty
@@ -161,7 +161,7 @@ def read_robot_file(path: Path) -> tuple[Entry, tuple[Guess, ...]]:
     try:
         entry: Entry = WHOLE_FILE.validate_python(data)
     except ValidationError as error:
-        raise RobotError(_explain(error, path)) from error
+        raise _explain(error, path) from error
     return entry, read_guesses(content)
 
 
@@ -213,7 +213,7 @@ def _refuse_twice(node: yaml.Node, path: Path) -> None:
             _refuse_twice(value, path)
 
 
-def _explain(error: ValidationError, path: Path) -> str:
+def _explain(error: ValidationError, path: Path) -> RobotError:
     """The first problem as one line, an unknown key with the nearest known one."""
     problems = error.errors()
     first = next((p for p in problems if p["type"] == "extra_forbidden"), problems[0])
@@ -221,17 +221,17 @@ def _explain(error: ValidationError, path: Path) -> str:
     if first["type"] == "extra_forbidden":
         known = _known_keys(first["loc"])
         near = difflib.get_close_matches(str(first["loc"][-1]), known, n=1) or known
-        return located(f"unknown key '{key}'", path=path, valid=", ".join(near))
+        return RobotError(f"unknown key '{key}'", path=path, valid=", ".join(near))
     too_few = first["type"] == "missing" and isinstance(first["loc"][-1], int)
     if too_few or first["type"] in ("tuple_type", "too_long"):
         key = key.rpartition(".")[0] if too_few else key
         valid = "numbers in brackets: [x, y, z], or [x, y] for a corner of a polygon"
-        return located(f"{key}: not the right number of numbers", path=path, valid=valid)
+        return RobotError(f"{key}: not the right number of numbers", path=path, valid=valid)
     if first["type"] == "missing":
-        return located(f"key '{key}' is missing", path=path)
+        return RobotError(f"key '{key}' is missing", path=path)
     message = first["msg"].removeprefix("Value error, ")
     value = first["input"] if isinstance(first["input"], str | int | float) else None
-    return located(f"{key or 'the file'}: {message}", path=path, value=value)
+    return RobotError(f"{key or 'the file'}: {message}", path=path, value=value)
 
 
 def _known_keys(location: tuple[int | str, ...]) -> list[str]:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pinocchio as pin
 
-from plantar.errors import RobotError, located
+from plantar.errors import RobotError
 from plantar.files import read_bounded
 
 LIMIT = 64 * 2**20  # bytes
@@ -46,12 +46,12 @@ def parse_urdf(urdf: str, path: Path, *, floating: bool) -> pin.Model:
         raise RobotError(f"is not a readable URDF: {reason}", path=path) from error
 
 
-def unknown_link(link: str, model: pin.Model, path: Path) -> str:
+def unknown_link(link: str, model: pin.Model, path: Path) -> RobotError:
     """One line that names an unknown link and what may have been meant."""
     names = [frame.name for frame in model.frames]
     near = difflib.get_close_matches(link, names, n=3)
     valid = "one of " + ", ".join(near) if near else f"a frame of the URDF, such as {', '.join(names[1:4])}"
-    return located(f"link '{link}' is not in the URDF", path=path, valid=valid)
+    return RobotError(f"link '{link}' is not in the URDF", path=path, valid=valid)
 
 
 def _from_trunk(urdf: str) -> str:

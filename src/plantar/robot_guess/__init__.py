@@ -14,14 +14,16 @@ from pathlib import Path
 import numpy as np
 import pinocchio as pin
 
-from plantar.checks.joints.names import recorded_joints
+from plantar.checks.channels import named
+from plantar.checks.joints.names import check_joint_names, recorded_joints
 from plantar.checks.log_checks import check_log
 from plantar.conventions import GRAVITY, Array
 from plantar.errors import LogError
 from plantar.exporters.urdf.tree import UrdfTree
 from plantar.files import write_text
-from plantar.logs.motion_log import MotionLog
+from plantar.logs.motion_log import MotionLog, wrench_columns
 from plantar.logs.readers.urdf_names import with_urdf_names
+from plantar.notes import Finding
 from plantar.robot.joint_names import JointNames, propose_names, propose_order
 from plantar.robot.model import RobotModel, load_robot
 from plantar.robot.urdf import parse_urdf, read_urdf
@@ -62,8 +64,10 @@ def guess_robot_file(urdf: Path, logs: Sequence[Path], out: Path, columns: Path 
     draft, recordings = _with_names(draft, tuple(model.names)[1:], sensors.logs)
     if recordings:
         _refuse_other_robot(draft, urdf, recordings)
-        draft = _seen_standing(draft, tree, model, recordings)
-        draft = _with_bush_by_log(draft, urdf, recordings)
+        whole = [log for log in recordings if not _missing(draft, log)]
+        if whole:
+            draft = _seen_standing(draft, tree, model, whole)
+            draft = _with_bush_by_log(draft, urdf, whole)
         draft = replace(draft, remarks=[*draft.remarks, *_findings(draft, urdf, recordings)])
     return draft.text(_relative(urdf, out)) + mapped
 
@@ -117,15 +121,13 @@ def _with_names(
 def _refuse_other_robot(draft: Draft, urdf: Path, logs: Sequence[MotionLog]) -> None:
     robot = _loaded(draft, urdf)
     for log in logs:
-        problem = next((one for one in check_log(robot, log) if one.code == "joint_names"), None)
+        problem = next((one for one in _checked(draft, robot, log) if one.code == "joint_names"), None)
         if problem is not None:
             raise LogError(problem.text, path=log.source)
 
 
 def _seen_standing(draft: Draft, tree: UrdfTree, model: pin.Model, logs: Sequence[MotionLog]) -> Draft:
-    """The draft after a look at gravity, balance, weight and centre of pressure, where both feet have a sensor."""
-    if len(draft.sensors) < len(draft.soles):
-        return draft
+    """The draft after a look at gravity, balance, weight and centre of pressure."""
     name, mount = draft.imu or (None, None)
     links = [mount.link, *mount.others] if mount is not None else []
     weight = GRAVITY * float(sum(inertia.mass for inertia in model.inertias))
@@ -161,7 +163,7 @@ def _with_bush_by_log(draft: Draft, urdf: Path, logs: Sequence[MotionLog]) -> Dr
     What shows is the height over the sensor: a sensor at the ankle's origin by a guess goes to the sole where only then
     the bush lies between both.
     """
-    if draft.imu is None or len(draft.sensors) < len(draft.soles):
+    if draft.imu is None:
         return draft
     shift = bush_shift(_loaded(draft, urdf), logs)
     seats, bushes = dict(draft.seats), dict(draft.bushes)
@@ -199,9 +201,30 @@ def _findings(draft: Draft, urdf: Path, logs: Sequence[MotionLog]) -> list[Remar
     return [
         Remark(f"{log.name}: {finding.text}", True)
         for log in logs
-        for finding in check_log(robot, log)
+        for finding in _checked(draft, robot, log)
         if finding.severity == "warning"
     ]
+
+
+def _checked(draft: Draft, robot: RobotModel, log: MotionLog) -> list[Finding]:
+    """What is odd about a log; without every reading of the feet only its joints' names can be, and what it lacks."""
+    missing = _missing(draft, log)
+    if not missing:
+        return check_log(robot, log)
+    valid = "valid: force and torque of both feet; what the log calls them goes to `wrench` or `columns`"
+    text = f"{' and '.join(missing)} missing: nothing of the feet could be checked ({valid})"
+    return [*check_joint_names(robot, log), Finding("missing_columns", text)]
+
+
+def _missing(draft: Draft, log: MotionLog) -> list[str]:
+    """The columns of the feet's force sensors that a log lacks."""
+    missing = list[str]()
+    for sole in draft.soles:
+        name = draft.sensor(sole)
+        needed = wrench_columns(name)
+        lacking = [column for column in needed if not log.has(column)]
+        missing += [named(lacking, f"wrench.{name}.", len(needed))] if lacking else []
+    return missing
 
 
 def _loaded(draft: Draft, urdf: Path, mapped: str = "") -> RobotModel:

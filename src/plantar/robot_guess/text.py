@@ -42,6 +42,10 @@ class Draft:
     remarks: Sequence[Remark] = ()
     numbered: bool = False
 
+    def sensor(self, sole: Sole) -> str:
+        """What a foot's force sensor is called: as its side where the logs do not tell."""
+        return self.sensors.get(sole.limb.side, sole.limb.side)
+
     def text(self, urdf: str) -> str:
         """The file, with `urdf` as its path."""
         lines = [
@@ -101,7 +105,7 @@ class Draft:
             f"  {side}:",
             f"    ankle: {scalar(sole.limb.link)}",
             f"    bush: {{{sole.place(round(bush.height, 4))}}}  # GUESS{_spread(bush.spread)}: {bush.reason}",
-            f"    wrench: {{name: {scalar(self.sensors.get(side, side))}{link}{pose}{sign}}}  # {evidence}",
+            f"    wrench: {{name: {scalar(self.sensor(sole))}{link}{pose}{sign}}}  # {evidence}",
             f"    # GUESS {within}: {sole.reason}",
             f"    sole: {{{depth}, polygon: [{corners}]}}",
         ]

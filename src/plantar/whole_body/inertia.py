@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from plantar.choices import settings_of
 from plantar.conventions import WRENCH_AXES
 from plantar.errors import RobotError
 from plantar.logs.inputs import LogInputs, RobotInput, robot_of
@@ -50,7 +51,7 @@ def identify_inertia(
         True
     """
     robot = robot_of(robot)
-    settings = settings or DynamicsSettings()
+    settings = settings_of(settings, DynamicsSettings)
     if robot.base == "fixed":
         message = "a fixed base has no base rows to identify from"
         raise RobotError(message, path=robot.path, valid="plantar identify joints")

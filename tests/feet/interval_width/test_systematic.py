@@ -14,6 +14,7 @@ from feet_trials import AXES, LINEAR, noisy
 from made_recording import FOOT, made_recording, swayed
 from plantar.contact.stances import Stances
 from plantar.conventions import NORMAL95
+from plantar.estimation import influences_of
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.fit.vertical_stiffness import VerticalStiffness
 from plantar.feet.identify import identify_feet
@@ -196,20 +197,31 @@ def test_what_an_element_that_never_turns_takes_from_the_spring_leaves_their_sum
     assert cause.effect[0] + cause.effect[2] / 0.01 == pytest.approx(0.0)
 
 
-def test_the_yaw_torques_zero_is_as_large_as_the_others() -> None:
-    """Their root mean square, whatever their signs; each recording has its own, and moves roll by its own sine."""
-    angle = [swayed(2000, seed=seed) for seed in (0, 1)]
-    recordings = [made_recording(f"sway_{k}", own, 400.0 * own) for k, own in enumerate(angle)]
+@pytest.mark.parametrize(("seed", "zeros"), [(0, 3.5355), (5, 0.4), (5, 20.0)])
+def test_the_yaw_torques_zero_is_as_large_as_the_others_or_as_motions_show_it(
+    seed: int, zeros: float
+) -> None:
+    """The others' root mean square, whatever their signs, at most; where pitch is roll, no motion shows it smaller.
+    Each recording has its own, and moves roll by the sine of its own pitch."""
+    roll, pitch = ([swayed(2000, seed=first + k) for k in (0, 1)] for first in (0, seed))
+    recordings, random = [], np.random.default_rng(7)
+    for k, (own, other) in enumerate(zip(roll, pitch, strict=True)):
+        torque = 400.0 * own - zeros * (seed > 0) * np.sin(other)
+        one = made_recording(f"sway_{k}", own, torque + random.normal(0, 0.002, 2000))
+        state = replace(one.bushes[FOOT], deflection=np.column_stack([other, own]))
+        recordings.append(replace(one, raw={FOOT: state}, bushes={FOOT: state}))
     fit = fit_axis(recordings, FOOT, "roll", LINEAR)
     assert fit is not None
     fit = replace(fit, offsets={"sway_0": 3.0, "sway_1": -4.0})
     exact = SensorDelay(0.0, 0.0, np.inf, False, Note("delay", "info", ""))
     flat = VerticalStiffness((), (), {FOOT: 0.0}, {FOOT: 0.0}, np.inf)
-    causes = causes_of(fit, recordings, exact, flat)
-    yaw = causes["yaw torque zero"]
-    assert yaw.std == pytest.approx(np.sqrt((3.0**2 + 4.0**2) / 2))
-    # A torque zero of 1 N·m in one of two alike recordings adds half of the pitch angle's sine to K·roll.
-    assert yaw.effect[0] == pytest.approx(np.hypot(0.5, 0.5), rel=0.05)
+    yaw = causes_of(fit, recordings, exact, flat)["yaw torque zero"]
+    influences = influences_of(tangent_blocks(recordings, fit))
+    sines = [np.sin(other)[one.rows(FOOT)] for other, one in zip(pitch, recordings, strict=True)]
+    moved = [(own @ sine)[0] for own, sine in zip(influences, sines, strict=True)]
+    assert yaw.share[0] == pytest.approx(min(zeros, np.sqrt(12.5)) * np.hypot(*moved), rel=0.01)
+    if seed == 0:  # of two alike recordings one adds half of the pitch angle's sine to K·roll
+        assert np.hypot(*moved) == pytest.approx(np.hypot(0.5, 0.5), rel=0.05)
     assert "yaw torque zero" not in causes_of(replace(fit, axis="pitch"), recordings, exact, flat)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,7 @@ from plantar.errors import LogError
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import open_log, read_limit
 from plantar.logs.save import save_log
+from plantar.robot.model import RobotModel
 
 
 @pytest.fixture(scope="module")
@@ -118,6 +120,91 @@ def test_a_command_does_not_fill_in_for_a_measurement(original: MotionLog, tmp_p
     assert not [name for name in log.columns if name.endswith(".velocity")]
     np.testing.assert_array_equal(log.column("joint.neck.position"), original.column("joint.neck.position"))
     assert "joint_topics" in {note.code for note in log.notes}
+
+
+def reshaped(original: MotionLog, folder: Path, names: list[list[str]], topic: str = "") -> Path:
+    """A ROS 2 bag whose message i names `names[i % n]` of the joints; `topic`: another, with positions 0.1 off."""
+    from rosbags.rosbag2 import StoragePlugin, Writer
+    from rosbags.typesys import Stores, get_typestore
+
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    kind = "sensor_msgs/msg/JointState"
+    state, header, clock = (
+        store.types[name] for name in (kind, "std_msgs/msg/Header", "builtin_interfaces/msg/Time")
+    )
+    empty = np.zeros(0)
+    with Writer(folder / "bag", version=9, storage_plugin=StoragePlugin.MCAP) as writer:
+        for name, off in (("/joint_states", 0.0), *([(topic, 0.1)] if topic else [])):
+            connection = writer.add_connection(name, kind, typestore=store)
+            for row, stamp in enumerate(np.rint(original.time * 1e9).astype(int).tolist()):
+                held = names[row % len(names)]
+                at = np.array([original.column(f"joint.{joint}.position")[row] + off for joint in held])
+                top = header(stamp=clock(sec=stamp // 10**9, nanosec=stamp % 10**9), frame_id="")
+                message = state(header=top, name=held, position=at, velocity=empty, effort=empty)
+                writer.write(connection, stamp, store.serialize_cdr(message, kind))
+    return folder / "bag"
+
+
+def test_a_joint_is_read_from_every_message_that_names_it(original: MotionLog, tmp_path: Path) -> None:
+    """The order of names changes from message to message, and one joint stands in every second message only."""
+    joints = list(dict.fromkeys(name.split(".")[1] for name in original.columns if name.startswith("joint.")))
+    log = open_log(reshaped(original, tmp_path, [joints[1:], joints[::-1]]))
+    assert len(log) == len(original) - 2  # cut to what the rare joint covers
+    for joint in joints[1:]:
+        column = f"joint.{joint}.position"
+        np.testing.assert_array_equal(log.column(column), original.column(column)[1:-1], err_msg=joint)
+    column = f"joint.{joints[0]}.position"
+    np.testing.assert_array_equal(log.column(column)[::2], original.column(column)[1:-1:2])
+
+
+@pytest.mark.parametrize(
+    ("topic", "severity"),
+    [("/arm/desired_joint_states", "info"), ("/a/joint_command", "info"), ("/a/joints", "warning")],
+)
+def test_of_two_topics_the_measured_one_is_read(
+    original: MotionLog, tmp_path: Path, topic: str, severity: str
+) -> None:
+    log = open_log(reshaped(original, tmp_path, [["neck"]], topic))
+    np.testing.assert_array_equal(log.column("joint.neck.position"), original.column("joint.neck.position"))
+    (note,) = (note for note in log.notes if note.code == "joint_topics")
+    assert note.severity == severity
+    assert f"{topic} names joints that /joint_states holds; they are taken from /joint_states" in note.text
+
+
+@pytest.mark.parametrize(
+    ("frame", "height", "said"),
+    [
+        ("left_sole", -0.09, None),
+        ("left_sole", -0.06, "frame left_sole, which is 30 mm and 0 deg away"),
+        ("torso", -0.09, "frame torso, which is on another link"),
+    ],
+)
+def test_messages_in_a_frame_that_is_elsewhere_are_told(
+    original: MotionLog, tmp_path: Path, frame: str, height: float, said: str | None
+) -> None:
+    """The sole is 90 mm below the foot's origin."""
+    robot = make_robot(tmp_path / "robot")
+
+    def with_left(link: str, z: float) -> RobotModel:
+        foot = robot.feet["left"]
+        place = replace(foot.wrench.placement, link=link, xyz=np.array([0.0, 0.0, z]), rpy=np.zeros(3))
+        moved = replace(foot, wrench=replace(foot.wrench, placement=place))
+        return replace(robot, feet={**robot.feet, "left": moved})
+
+    save_log(original, tmp_path / "log.mcap", with_left(frame, 0.0))
+    log = open_log(tmp_path / "log.mcap", with_left("left_foot", height))
+    told = [note for note in log.notes if note.code == "sensor_frame"]
+    assert [note.severity for note in told] == ["warning"] * (said is not None)
+    assert said is None or said in told[0].text
+
+
+def test_a_topic_of_another_kind_is_refused(original: MotionLog, tmp_path: Path) -> None:
+    save_log(original, tmp_path / "log.mcap")
+    robot = make_robot(tmp_path / "robot", topics={"left": "/imu/chest"})
+    with pytest.raises(
+        LogError, match=r"topic '/imu/chest' .* is no .*WrenchStamped, but .*Imu.*/wrench/left"
+    ):
+        open_log(tmp_path / "log.mcap", robot)
 
 
 def test_a_ros1_bag_that_was_never_closed(original: MotionLog, tmp_path: Path) -> None:

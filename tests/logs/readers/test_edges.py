@@ -39,14 +39,17 @@ def test_one_stamp_of_a_hundred_may_step_back(strays: int, total: int, kept: int
     notes: list[Note] = []
     if kept is None:
         with pytest.raises(
-            LogError, match=rf"value -0\.9: j: time steps back in {strays} of {total} samples, first here"
+            LogError,
+            match=rf"value -0\.9: j: time does not increase in {strays} of {total} samples, first here",
         ):
             increasing(joints(back(strays, total)), LOG, notes)
         return
     found = increasing(joints(back(strays, total)), LOG, notes)
     assert found.time.size == kept
     assert found.columns["joint.a.position"][10] == 11.0
-    assert [note.text for note in notes] == [f"x: j: {strays} samples whose time steps back are left out"]
+    assert [note.text for note in notes] == [
+        f"x: j: {strays} samples whose time does not increase are left out"
+    ]
 
 
 @pytest.mark.parametrize(("strays", "fine"), [(10, True), (11, False)])

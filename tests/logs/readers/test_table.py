@@ -171,6 +171,22 @@ def test_a_stray_time_is_left_out_with_a_note(tmp_path: Path) -> None:
     assert 100 not in log.column("joint.a.position")
 
 
+@pytest.mark.parametrize(
+    "name", ["a.mcap", "a.db3", "a.bag", "a.bin", "a.mat", "a.npz", "a.parquet", "data.log", "a.q"]
+)
+def test_a_file_of_no_bytes_is_empty_in_every_format(tmp_path: Path, name: str) -> None:
+    (tmp_path / name).touch()
+    with pytest.raises(LogError, match=f"{name}: is empty"):
+        open_log(tmp_path / name)
+
+
+def test_a_column_without_a_name_is_told_so(tmp_path: Path) -> None:
+    """A comma at the end of every line, as some loggers write."""
+    (tmp_path / "log.csv").write_text("time,joint.a.position,\n0,1,\n0.1,2,\n0.2,3,\n")
+    (note,) = open_log(tmp_path / "log.csv").notes
+    assert note.text == "log.csv: columns of no known name, not used: one without a name"
+
+
 def test_empty_files(tmp_path: Path) -> None:
     assert "is empty" in refusal(tmp_path, "")
     assert "is empty" in refusal(tmp_path, " \n\n")
@@ -178,7 +194,7 @@ def test_empty_files(tmp_path: Path) -> None:
     assert "fewer than two samples" in refusal(tmp_path, HEADER + "\n0,1,2\n")
     assert "is empty" in refusal(tmp_path, gzip.compress(b""), "log.csv.gz")
     refusal(tmp_path, b"", "log.csv.gz")
-    assert "Parquet" in refusal(tmp_path, b"", "log.parquet")
+    assert "Parquet" in refusal(tmp_path, b"P", "log.parquet")
 
 
 def test_a_file_cut_in_the_middle_of_a_row(tmp_path: Path) -> None:

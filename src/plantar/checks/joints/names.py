@@ -42,7 +42,7 @@ def check_joint_names(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     else:
         if not recorded:
             text = f"columns 'joint.*.position': the log holds no joint positions, such as of {_listing(missing)}"
-        valid = "valid: a position of every joint that moves"
+        valid = "valid: columns joint.<joint>.position; for other names a map, `columns` in the robot file"
     yield Finding("joint_names", f"{text} ({valid})", True)
 
 

@@ -8,8 +8,8 @@ import typer
 
 LEAST = 0.1  # ms: less cannot be told from none, and is what seconds look like
 HELP = (
-    "How late the force sensors are against the IMU, in milliseconds (5, not 0.005). If left out: estimated from the "
-    "logs; `online` takes that of the result."
+    "How late the force sensors are against the IMU, in milliseconds (5, not 0.005). If left out: that of the "
+    "result given with --result, where a command takes one, else estimated from the logs."
 )
 
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:  # what prints nothing does not import it
 
 VERDICT_STYLE = {"usable": "green", "weak": "yellow", "unidentifiable": "red"}
 SEVERITY_STYLE = {"info": "dim", "warning": "yellow"}
-SCREENFUL = 12  # notes
+SCREENFUL = 16  # lines of notes
 PIPE_WIDTH = 150  # columns where stdout is not a terminal
 WORD = re.compile(r"[^\W\d_]{3}")
 
@@ -53,25 +53,27 @@ def table(
     cells = [[escape(str(cell)) for cell in row] for row in rows]
     for place, name in enumerate(columns):
         numeric = bool(cells) and all(_numeric(row[place]) for row in cells)
-        drawn.add_column(escape(name), justify="right" if numeric else "left", no_wrap=numeric)
+        drawn.add_column(escape(name), justify="right" if numeric else "left", overflow="fold")  # never cut
     for place, row in enumerate(cells):
         drawn.add_row(*row, style=styles[place] if place < len(styles) else None)
     return drawn
 
 
-def print_notes(out: Console, notes: Sequence[Note]) -> None:
-    """Notes by their kinds, each warning in full and before the others, of other kinds the first; at most SCREENFUL
-    lines, the rest counted."""
-    from rich.markup import escape
+def print_notes(out: Console, notes: Sequence[Note], room: int = SCREENFUL) -> None:
+    """Notes by their kinds, each warning in full and before the others, of other kinds the first; those that `room`
+    lines hold, the first in any case, the rest counted."""
+    from rich.text import Text
 
     warnings = [note for note in notes if note.severity == "warning"]
-    remarks = [_remark(kind) for kind in kinds(notes, "info")]
-    lines = [f"[{SEVERITY_STYLE['warning']}]note (warning): {escape(note.text)}[/]" for note in warnings]
-    lines += [f"[{SEVERITY_STYLE['info']}]note (info): {escape(text)}[/]" for text in remarks]
-    for line in lines[:SCREENFUL]:
+    lines = [Text(f"note (warning): {note.text}", SEVERITY_STYLE["warning"]) for note in warnings]
+    remarks = kinds(notes, "info")
+    lines += [Text(f"note (info): {_remark(kind)}", SEVERITY_STYLE["info"]) for kind in remarks]
+    for place, line in enumerate(lines):
+        room -= len(line.wrap(out, out.width))
+        if room < 0 and place:
+            out.print(f"[dim]and {len(lines) - place} more notes, in the result's notes[/]")
+            break
         out.print(line)
-    if len(lines) > SCREENFUL:
-        out.print(f"[dim]and {len(lines) - SCREENFUL} more notes, in the result's notes[/]")
 
 
 def _remark(kind: NoteKind) -> str:

@@ -26,10 +26,13 @@ def run(
     logs: Annotated[
         list[str], typer.Argument(help="Logs: paths, patterns in quotes, or URLs.", metavar="GLOB...")
     ],
-    robot: Annotated[Path, typer.Option("--robot", help="Robot file of all these logs.")],
-    unit: Annotated[str | None, typer.Option(help=UNIT_HELP)] = None,
+    robot: Annotated[
+        Path, typer.Option("--robot", metavar="ROBOT.yaml", help="Robot file of all these logs.")
+    ],
+    unit: Annotated[str | None, typer.Option(metavar="NAME", help=UNIT_HELP)] = None,
     out: Annotated[
-        Path | None, typer.Option("--out", help="The manifest; it is printed if left out.")
+        Path | None,
+        typer.Option("--out", metavar="MANIFEST.csv", help="The manifest; it is printed if left out."),
     ] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")] = False,
 ) -> None:

@@ -27,7 +27,7 @@ from plantar.results.io import dump_json
 OUT_HELP = "Folder, or fsspec URL such as s3://bucket/fleet, for what is finished, the tables and fleet.html."
 MEMORY_HELP = "Memory of each worker of our own, such as 2GB; a worker that takes more is started again."
 Workers = Annotated[
-    int | None, typer.Option(help="Processes on this machine; one a core if left out.", min=1)
+    int | None, typer.Option(metavar="N", help="Processes on this machine; one a core if left out.", min=1)
 ]
 Scheduler = Annotated[str | None, typer.Option(help="Address of a running Dask cluster.", metavar="ADDRESS")]
 WorkerMemory = Annotated[
@@ -40,7 +40,7 @@ def run(
     manifest: Annotated[
         Path, typer.Argument(help="CSV file: group, robot, log[, role, time, unit].", metavar="MANIFEST.csv")
     ],
-    out: Annotated[str, typer.Option("--out", help=OUT_HELP)],
+    out: Annotated[str, typer.Option("--out", metavar="DIR", help=OUT_HELP)],
     workers: Workers = None,
     scheduler: Scheduler = None,
     memory: WorkerMemory = None,

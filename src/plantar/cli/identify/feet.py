@@ -25,7 +25,7 @@ MODEL_HELP = (
 )
 OFFSET_HELP = "One offset per motion, or shared by all as in the paper."
 CUTOFF_HELP = (
-    f"Cut-off of the zero-phase low-pass filter on angles and torques [Hz]. If left out: {DEFAULT_CUTOFF:g}, or less "
+    f"Cut-off of the zero-phase low-pass filter on angles and torques, in Hz. If left out: {DEFAULT_CUTOFF:g}, or less "
     "where angle and torque of a walk are not coherent up to there."
 )
 WINDOW_HELP = "Use only deflections up to this many degrees from the resting pose."
@@ -39,8 +39,8 @@ def run(
     offset: Annotated[OffsetRule, typer.Option(help=OFFSET_HELP)] = "per-motion",
     model: Annotated[str, typer.Option(help=MODEL_HELP, metavar="MODEL")] = AUTOMATIC,
     wrench_delay: WrenchDelay = None,
-    cutoff: Annotated[float | None, typer.Option(help=CUTOFF_HELP, min=0.1)] = None,
-    window: Annotated[float | None, typer.Option(help=WINDOW_HELP, min=0.01)] = None,
+    cutoff: Annotated[float | None, typer.Option(help=CUTOFF_HELP, metavar="HZ", min=0.1)] = None,
+    window: Annotated[float | None, typer.Option(help=WINDOW_HELP, metavar="DEG", min=0.01)] = None,
     memory: Memory = None,
     json: identification.Json = False,
     quiet: identification.Quiet = False,

@@ -6,22 +6,31 @@ from typing import TYPE_CHECKING
 
 from plantar.cli.console.advice import advised
 from plantar.cli.console.terminal import VERDICT_STYLE, number, print_notes, table
+from plantar.notes import listing
 from plantar.pages import on_feet
 from plantar.results.feet import FeetResult, Parameter, ValidationRow
+from plantar.results.feet_text import over_all_motions
 
 if TYPE_CHECKING:
     from rich.console import Console
 
 
+LOST = "no better than the offset alone"
+NARROW = 112  # columns that table 1 takes in full
+MOST_ROWS = 12  # of a table of errors: three motions of two feet; of more, the mean over the motions
+REMARK_LINES = 4  # of notes that are no warnings; the result has all
+
+
 def print_feet(out: Console, result: FeetResult) -> None:
-    """Warnings about the logs, parameters, reasons where one is not usable, validation, other notes."""
+    """Warnings about the logs, parameters, reasons where one is not usable, validation, other notes: some fifty lines
+    however many logs there are; report.html has the rest."""
     from rich.markup import escape  # what prints nothing does not import it
 
     warnings = [note for note in result.notes if note.severity == "warning"]
     if warnings:
         print_notes(out, warnings)
         out.print()
-    out.print(parameter_table(result))
+    out.print(parameter_table(result, narrow=out.width < NARROW))
     for verdict, names, rest in advised(result.parameters):
         out.print(f"[{VERDICT_STYLE[verdict]}]{names}: {verdict}[/]: {escape(rest)}")
     if further := on_feet(row.verdict for row in result.parameters):
@@ -30,16 +39,23 @@ def print_feet(out: Console, result: FeetResult) -> None:
         rows = [row for row in result.validation if row.kind == kind]
         if rows:
             out.print()
-            out.print(validation_table(title, rows))
-    print_notes(out, [note for note in result.notes if note.severity != "warning"])
+            if len(rows) <= MOST_ROWS:
+                out.print(validation_table(title, rows))
+            else:
+                out.print(_summary_table(title, rows))
+                out.print("[dim]over all motions; each of them stands in report.html[/]")
+    print_notes(out, [note for note in result.notes if note.severity != "warning"], REMARK_LINES)
 
 
-def parameter_table(result: FeetResult) -> object:
-    """Table 1 with intervals and verdicts."""
+def parameter_table(result: FeetResult, *, narrow: bool) -> object:
+    """Table 1 with intervals and verdicts; a narrow one without the two deviations, so that no word is cut."""
+    heads = ("foot", "axis", "parameter", "value", "unit", "95 % interval", "std", "white std %", "verdict")
+    kept = [place for place, head in enumerate(heads) if not (narrow and head in ("std", "white std %"))]
+    rows = [_parameter_cells(row) for row in result.parameters]
     return table(
         f"Table 1. Feet of {result.robot} ({result.model}, offset {result.settings.get('offset', '')})",
-        ("foot", "axis", "parameter", "value", "unit", "95 % interval", "std", "white std %", "verdict"),
-        [_parameter_cells(row) for row in result.parameters],
+        [heads[place] for place in kept],
+        [[row[place] for place in kept] for row in rows],
         [VERDICT_STYLE[row.verdict] for row in result.parameters],
     )
 
@@ -52,21 +68,21 @@ def _parameter_cells(row: Parameter) -> tuple[str, ...]:
 
 def validation_table(title: str, rows: list[ValidationRow]) -> object:
     """Mean errors beside the trivial predictor's; a row that does not beat it is marked."""
-    lost = [row.mean_abs_error >= row.zero_mean_abs for row in rows]
+    return _error_table(title, "motion", [(row.motion, row, "" if row.has_skill else LOST) for row in rows])
+
+
+def _summary_table(title: str, rows: list[ValidationRow]) -> object:
+    """The same of each foot and axis over all motions, those named that the offset alone predicts as well."""
+    merged = over_all_motions(rows)
+    lines = [(str(count), row, f"{LOST}: {listing(lost, 3)}" if lost else "") for row, count, lost in merged]
+    return _error_table(title, "motions", lines)
+
+
+def _error_table(title: str, what: str, rows: list[tuple[str, ValidationRow, str]]) -> object:
     cells = [
-        (row.motion, row.foot, row.axis, number(row.mean_abs_error, 3), number(row.rms_error, 3), number(row.max_abs),
-         number(row.percent_of_max, 3), number(row.zero_mean_abs, 3), "no better than the offset alone" if bad else "")
-        for row, bad in zip(rows, lost, strict=True)
+        (name, row.foot, row.axis, number(row.mean_abs_error, 3), number(row.rms_error, 3), number(row.max_abs),
+         number(row.percent_of_max, 3), number(row.zero_mean_abs, 3), lost)
+        for name, row, lost in rows
     ]  # fmt: skip
-    columns = (
-        "motion",
-        "foot",
-        "axis",
-        "mean |error|",
-        "rms",
-        "max |torque|",
-        "% of max",
-        "offset alone",
-        "",
-    )
-    return table(f"{title} [N·m]", columns, cells, ["yellow" if bad else "" for bad in lost])
+    columns = (what, "foot", "axis", "mean |error|", "rms", "max |torque|", "% of max", "offset alone", "")
+    return table(f"{title} [N·m]", columns, cells, ["yellow" if lost else "" for *_, lost in rows])

@@ -22,13 +22,22 @@ if TYPE_CHECKING:
 
 Robot = Annotated[Path, typer.Argument(help="Robot file (YAML).", metavar="ROBOT.yaml")]
 Logs = Annotated[list[Path], typer.Argument(help="Logs to fit.", metavar="LOG...")]
-Out = Annotated[Path, typer.Option("--out", help="Folder for result.json, the residuals and the report.")]
+Out = Annotated[
+    Path, typer.Option("--out", metavar="DIR", help="Folder for result.json, the residuals and the report.")
+]
 Validate = Annotated[
     list[Path] | None,
-    typer.Option("--validate", help="Logs that are not fitted: predicted and scored only (table 3)."),
+    typer.Option(
+        "--validate",
+        metavar="LOG...",
+        help="One log or more that are not fitted: predicted and scored only (table 3).",
+    ),
 ]
 Cutoff = Annotated[
-    float, typer.Option(help="Cut-off of the zero-phase low-pass filter on motion and forces [Hz].", min=0.1)
+    float,
+    typer.Option(
+        metavar="HZ", help="Cut-off of the zero-phase low-pass filter on motion and forces, in Hz.", min=0.1
+    ),
 ]
 AsRecorded = Annotated[
     bool,

@@ -65,9 +65,9 @@ def content_of(found: Design, path: Path, rate: float) -> dict[str, Any]:
     parameters = [
         {
             "foot": foot, "axis": axis, "name": name, "unit": model.unit(name, axis), "value": values[name],
-            "half_width_percent": found.nominal.percent(foot, axis, name),
+            "half_width_percent": widths[found.nominal.factor],
             "at": [
-                {"factor": one.factor, "half_width_percent": one.percent(foot, axis, name),
+                {"factor": one.factor, "half_width_percent": widths[one.factor],
                  "error_percent": one.error(foot, axis, name, values[name]),
                  "usable": one.usable(foot, axis, name)}
                 for one in found.rehearsals
@@ -76,6 +76,7 @@ def content_of(found: Design, path: Path, rate: float) -> dict[str, Any]:
         for foot in found.robot.feet
         for axis in ROTATIONAL_AXES
         for name in model.terms
+        for widths in [found.half_widths(foot, axis, name)]
     ]  # fmt: skip
     way, speed = found.trajectory().limits_used()
     return {

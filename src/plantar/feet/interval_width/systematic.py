@@ -16,7 +16,7 @@ from plantar.feet.fit.hidden_memory import element_slope, moved_by_memory
 from plantar.feet.fit.vertical_stiffness import VerticalStiffness
 from plantar.feet.recording import Recording, moment_arm_effect
 from plantar.feet.regression.axis import AxisFit
-from plantar.feet.regression.regression_data import beside, recordings_of
+from plantar.feet.regression.regression_data import all_beside, beside, recordings_of
 from plantar.sensors.delays.sensor_delay import SensorDelay
 from plantar.signals.filters import differentiate
 from plantar.signals.resampling import shifted
@@ -93,13 +93,31 @@ def systematic_causes(
         blocks, [run_numbers(one.contacts[foot].loaded)[used] for one, used in parts], shared
     )
     if fit.axis == "roll":
-        # Roll's torque is cos(pitch)·τ_x - sin(pitch)·τ_z: the zero of τ_z, as large as the others', does not stay a
-        # constant. Each recording has its own.
-        usual = float(np.sqrt(np.mean(np.square(list(fit.offsets.values())))))
         sines = [np.sin(one.bushes[foot].deflection[used, 0]) for one, used in parts]
-        effects = np.array([own @ sine for own, sine in zip(influences, sines, strict=True)])
-        causes.append(Cause("yaw torque zero", np.sqrt(np.sum(effects**2, axis=0)), usual))
+        causes.append(_yaw_torque_zero(fit, blocks, influences, sines, shared))
     return causes
+
+
+def _yaw_torque_zero(
+    fit: AxisFit,
+    blocks: Sequence[Block],
+    influences: Sequence[Array],
+    sines: Sequence[Array],
+    shared: bool,
+) -> Cause:
+    """What the zero of τ_z may do: roll's torque is cos(pitch)·τ_x - sin(pitch)·τ_z, where it does not stay a constant.
+
+    Each recording has its own, usually as large as the others' zeros, which offsets are; motions that show it smaller
+    are believed. `sines`: of pitch, in the samples of each block.
+    """
+    usual = float(np.sqrt(np.mean(np.square(list(fit.offsets.values())))))
+    columns = [np.outer(sine, own) for sine, own in zip(sines, np.eye(len(blocks)), strict=True)]
+    found, size = fit_blocks(all_beside(blocks, columns), shared_offset=shared), np.full(len(blocks), usual)
+    if usual and found.condition_number <= SINGULAR:
+        zeros, unsure = found.values[-len(blocks) :], found.std[-len(blocks) :]
+        keeps = usual**2 / (usual**2 + unsure**2)
+        size = np.minimum(np.hypot(keeps * zeros, np.sqrt(keeps) * unsure), usual)
+    return Cause("yaw torque zero", np.linalg.norm(effect_of(influences, columns) * size, axis=1), 1.0)
 
 
 def _by_delay(torques: Sequence[tuple[Array, float, Mask]], sensor_delay: SensorDelay) -> list[list[Array]]:

@@ -39,14 +39,18 @@ FORMATS: dict[str, str] = {
 
 
 def open_log(
-    path: str | os.PathLike[str], robot: RobotModel | None = None, *, memory: int | None = None
+    path: str | os.PathLike[str],
+    robot: RobotModel | str | os.PathLike[str] | None = None,
+    *,
+    memory: int | None = None,
 ) -> MotionLog:
     """Read one recording, whatever its format.
 
     Args:
         path: a table (.csv, .csv.gz, .parquet), a bag or its folder (.mcap, .db3, .bag), or a log of mc_rtc, hrpsys,
             YARP and others.
-        robot: gives topics or column names where a format needs them, and what the log calls the joints.
+        robot: a robot or the path of its file: topics or column names where a format needs them, and what the log
+            calls the joints.
         memory: most bytes that the log's numbers may take; a quarter of the machine's memory if left out.
 
     Returns:
@@ -62,8 +66,14 @@ def open_log(
         ('sway_1', 1201, 100)
     """
     path = Path(path)
-    if not path.exists():
+    if isinstance(robot, str | os.PathLike):
+        from plantar.robot.model import load_robot
+
+        robot = load_robot(robot)
+    if not os.path.exists(path):
         raise LogError("does not exist", path=path)
+    if path.is_file() and path.stat().st_size == 0:
+        raise LogError("is empty", path=path, valid="a recording; was it copied to its end?")
     module = _module(path, robot)
     reader: Reader = import_module(f"plantar.logs.readers.{module}").read
     with np.errstate(over="ignore", invalid="ignore"):  # a damaged file may hold any number

@@ -10,8 +10,6 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from plantar.conventions import Array
 from plantar.errors import LogError
 from plantar.files import sha256
@@ -19,7 +17,6 @@ from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers.column_map import Port, ports
 from plantar.logs.readers.ports import log_of_ports
 from plantar.logs.readers.read_limit import ReadLimit
-from plantar.logs.readers.streams import origin
 from plantar.logs.readers.text_numbers import read_numbers
 from plantar.notes import Note
 
@@ -57,9 +54,6 @@ def read(path: Path, robot: RobotModel | None, limit: ReadLimit) -> MotionLog:
         if values.shape[1] < 2:
             raise LogError("holds no values beside the time", path=file)
         data[port] = (values[:, 0], values[:, 1:])
-    if data:
-        start = origin(min(float(np.nanmin(time)) for time, _ in data.values() if time.size))
-        data = {port: (time - start, values) for port, (time, values) in data.items()}
     digest = sha256(next(iter(files.values())))
     return log_of_ports(base, limit, digest, data, roles, robot, notes)
 

@@ -6,13 +6,15 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from plantar.conventions import Array
 from plantar.errors import LogError
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers.column_map import Port, joint_order
 from plantar.logs.readers.read_limit import ReadLimit
 from plantar.logs.readers.roles import role_columns
-from plantar.logs.readers.streams import Stream, merge
+from plantar.logs.readers.streams import Stream, merge, origin
 from plantar.notes import Note
 
 if TYPE_CHECKING:
@@ -53,15 +55,19 @@ def log_of_ports(
     robot: RobotModel | None,
     notes: list[Note],
 ) -> MotionLog:
-    """A log from ports (time, values (n, k)) and their roles. LogError when no port has a role."""
+    """A log from ports (time, values (n, k)) and their roles, stamps of an epoch less whole seconds.
+
+    LogError when no port has a role.
+    """
     path = limit.path
+    start = origin(min((float(np.nanmin(time)) for time, _ in data.values() if time.size), default=0.0))
     streams = []
     for port, (time, values) in data.items():
         columns: dict[str, Array] = {}
         for part in roles.get(port, ()):
             columns |= port_columns(part, values, robot, path, notes)
         if columns:
-            streams.append(Stream(port, time, columns))
+            streams.append(Stream(port, time - start, columns))
     if not streams:
         found = ", ".join(list(data)[:8])
         raise LogError(

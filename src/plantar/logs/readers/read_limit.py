@@ -28,8 +28,11 @@ class ReadLimit:
         self.path = path
         self.memory = usual_memory() if memory is None else memory
         if files is None:
-            files = [path] if path.is_file() else (part for part in path.rglob("*") if part.is_file())
-        self._file_size = sum(file.stat().st_size for file in files)
+            files = [path] if path.is_file() else path.rglob("*")
+        try:
+            self._file_size = sum(file.stat().st_size for file in files if file.is_file())
+        except OSError as error:
+            raise LogError(f"cannot be read: {error.strerror}", path=error.filename or path) from error
         self._unpacked = 0
         self._held = 0
 

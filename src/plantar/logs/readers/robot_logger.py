@@ -23,7 +23,6 @@ from plantar.logs.readers import motion_name
 from plantar.logs.readers.column_map import Port, ports
 from plantar.logs.readers.ports import log_of_ports
 from plantar.logs.readers.read_limit import NUMBER, ReadLimit
-from plantar.logs.readers.streams import origin
 from plantar.notes import Note
 
 if TYPE_CHECKING:
@@ -60,9 +59,6 @@ def read(path: Path, robot: RobotModel | None, limit: ReadLimit) -> MotionLog:
     except (OSError, KeyError, RuntimeError, ValueError, TypeError, AttributeError, MemoryError) as error:
         reason = " ".join(str(error).split())[:120]
         raise LogError(f"is not a readable MATLAB 7.3 file: {reason}", path=path) from error
-    if data:
-        start = origin(min(float(np.nanmin(time)) for time, _ in data.values()))
-        data = {port: (time - start, values) for port, (time, values) in data.items()}
     return log_of_ports(motion_name(path), limit, sha256(path), data, roles, robot, notes)
 
 

@@ -39,7 +39,7 @@ class Stream:
 
 
 def increasing(stream: Stream, path: Path, notes: list[Note]) -> Stream:
-    """The stream without samples whose stamp is NaN or steps back. LogError: more than a few do."""
+    """The stream without samples whose stamp is NaN, repeats or steps back. LogError: more than a few do."""
     finite = np.isfinite(stream.time)
     latest = np.maximum.accumulate(np.where(finite, stream.time, -np.inf))
     keep = finite.copy()
@@ -49,9 +49,10 @@ def increasing(stream: Stream, path: Path, notes: list[Note]) -> Stream:
         return stream
     at = float(stream.time[strays[0] - 1]) if strays[0] else None
     if strays.size > max(1, STRAY_STAMPS * keep.size):
-        message = f"{stream.name}: time steps back in {strays.size} of {keep.size} samples, first here"
-        raise LogError(message, path=path, time=at, value=float(stream.time[strays[0]]))
-    text = f"{path.name}: {stream.name}: {strays.size} samples whose time steps back are left out"
+        message = f"{stream.name}: time does not increase in {strays.size} of {keep.size} samples, first here"
+        valid = f"stamps that increase, but for {STRAY_STAMPS:.0%} of them"
+        raise LogError(message, path=path, time=at, value=float(stream.time[strays[0]]), valid=valid)
+    text = f"{path.name}: {stream.name}: {strays.size} samples whose time does not increase are left out"
     notes.append(Note("time_order", "warning", text))
     return stream.take(keep)
 

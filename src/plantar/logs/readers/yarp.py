@@ -19,7 +19,6 @@ from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers.column_map import Port, ports
 from plantar.logs.readers.ports import log_of_ports
 from plantar.logs.readers.read_limit import ReadLimit
-from plantar.logs.readers.streams import origin
 from plantar.logs.readers.text_numbers import read_numbers
 from plantar.notes import Note
 
@@ -45,17 +44,14 @@ def read(path: Path, robot: RobotModel | None, limit: ReadLimit) -> MotionLog:
         roles[port] = given.get(port) or given.get(file.parent.name, ())
         if not roles[port]:
             notes.append(Note("port_ignored", "info", f"{port}: no role in columns.ports, not used"))
+            data[port] = (np.empty(0), np.empty((0, 0)))
             continue
         values, _ = read_numbers(file, limit, notes, strip=b'()"[]')
         stamps = 2 if _both_stamps(file.parent / "info.log") else 1
         if values.shape[1] <= 1 + stamps:
             raise LogError("holds no values beside packet number and stamp", path=file)
         data[port] = (values[:, 1], values[:, 1 + stamps :])
-    if data:
-        start = origin(min(float(np.nanmin(time)) for time, _ in data.values() if time.size))
-        data = {port: (time - start, values) for port, (time, values) in data.items()}
-    found = {port: data.get(port, (np.empty(0), np.empty((0, 0)))) for port in roles}
-    return log_of_ports(root.name, limit, sha256(files[0]), found, roles, robot, notes)
+    return log_of_ports(root.name, limit, sha256(files[0]), data, roles, robot, notes)
 
 
 def dumps(root: Path) -> list[Path]:

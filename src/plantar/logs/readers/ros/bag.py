@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,11 +14,13 @@ from plantar.files import sha256
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import motion_name
 from plantar.logs.readers.read_limit import ReadLimit
+from plantar.logs.readers.ros.joint_topics import Messages, joint_columns
 from plantar.logs.readers.ros.layouts import JOINT_STATE
 from plantar.logs.readers.ros.mcap_file import read_mcap
 from plantar.logs.readers.ros.ros1_file import read_ros1
+from plantar.logs.readers.ros.sensor_topics import assign
 from plantar.logs.readers.ros.sqlite_bag import read_sqlite
-from plantar.logs.readers.ros.topics import Series, Topic, assign
+from plantar.logs.readers.ros.topics import Series, Topic
 from plantar.logs.readers.streams import Stream, merge
 from plantar.notes import Note
 
@@ -81,19 +84,15 @@ def _check(topics: dict[str, Topic], path: Path, notes: list[Note]) -> None:
 def _streams(chosen: dict[str, list[Topic]], path: Path, notes: list[Note]) -> list[Stream]:
     """Every sensor's columns on its own clock, the clocks on one origin."""
     sources = [
-        (key, topic, series)
-        for key, topics in chosen.items()
-        for topic in topics
-        for series in topic.series.values()
+        (topic, series) for topics in chosen.values() for topic in topics for series in topic.series.values()
     ]
-    headers = [np.concatenate(series.header) for _, _, series in sources]
-    clocks = headers
-    if (reason := _unusable(headers, [topic.name for _, topic, _ in sources])) is not None:
-        clocks = [np.concatenate(series.received) for _, _, series in sources]
+    headers = [series.clock(received=False) for _, series in sources]
+    reason = _unusable(headers, [topic.name for topic, _ in sources])
+    if received := reason is not None:
         notes.append(
             Note("receive_time", "warning", f"{path.name}: {reason}; times of receipt are used instead")
         )
-    first = min(int(clock.min()) for clock in clocks)
+    first = min(int(series.clock(received).min()) for _, series in sources)
     zero = first // 1_000_000_000 * 1_000_000_000 if first > 10**15 else 0
     if zero:
         notes.append(
@@ -106,17 +105,16 @@ def _streams(chosen: dict[str, list[Topic]], path: Path, notes: list[Note]) -> l
     streams = []
     seen: set[str] = set()
     owners: dict[str, str] = {}
-    for (key, topic, series), clock in zip(sources, clocks, strict=True):
-        columns = (
-            _joints(series, owners, topic, notes, path)
-            if topic.kind == JOINT_STATE
-            else _sensor(key, series, seen)
-        )
-        series.values.clear()
-        seen |= set(columns)
-        if columns:
-            time = (clock - zero).astype(np.float64) * 1e-9
-            streams.append(Stream(topic.name, time, columns))
+    for key, topics in chosen.items():
+        for topic in topics:
+            for messages, columns in (
+                joint_columns(topic, owners, notes, path)
+                if topic.kind == JOINT_STATE
+                else _sensor(key, topic, seen)
+            ):
+                time = (messages.clock(received) - zero).astype(np.float64) * 1e-9
+                streams.append(Stream(topic.name, time, columns))
+            topic.series.clear()
     return streams
 
 
@@ -132,39 +130,20 @@ def _unusable(headers: list[np.ndarray[tuple[int], np.dtype[np.int64]]], names: 
     return None
 
 
-def _joints(
-    series: Series, owners: dict[str, str], topic: Topic, notes: list[Note], path: Path
-) -> dict[str, Array]:
-    """A joint belongs to the best topic that names it: a command must not fill in for a measurement."""
-    twice = next((name for name in series.names if series.names.count(name) > 1), None)
-    if twice is not None:
-        text = f"{topic.name} names '{twice}' twice; the first is used"
-        notes.append(Note("joint_twice", "warning", f"{path.name}: {text}"))
-    places = {joint: series.names.index(joint) for joint in series.names if joint not in owners}
-    if len(places) < len(set(series.names)):
-        other = owners[next(joint for joint in series.names if joint in owners)]
-        if other != topic.name:
-            text = f"{topic.name} names joints that {other} holds; they are taken from the latter"
-            notes.append(Note("joint_topics", "info", f"{path.name}: {text}"))
-    owners |= dict.fromkeys(places, topic.name)
-    return {
-        f"joint.{joint}.{quantity}": series.column(quantity, index)
-        for quantity in ("position", "velocity", "effort")
-        if quantity in series.values
-        for joint, index in places.items()
-    }
-
-
-def _sensor(key: str, series: Series, seen: set[str]) -> dict[str, Array]:
-    columns = {}
-    for name, axes in (("orientation", "xyzw"), ("angular_velocity", "xyz"), ("linear_acceleration", "xyz"),
-                       ("force", "xyz"), ("torque", "xyz")):  # fmt: skip
-        if name not in series.values or (name == "orientation" and _without_orientation(series)):
-            continue
-        for index, axis in enumerate(axes):
-            if (column := f"{key}.{name}.{axis}") not in seen:
-                columns[column] = series.column(name, index)
-    return columns
+def _sensor(key: str, topic: Topic, seen: set[str]) -> Iterator[tuple[Messages, dict[str, Array]]]:
+    """A sensor's columns; what an earlier topic gave is not taken again."""
+    for series in topic.series.values():
+        columns = {}
+        for name, axes in (("orientation", "xyzw"), ("angular_velocity", "xyz"), ("linear_acceleration", "xyz"),
+                           ("force", "xyz"), ("torque", "xyz")):  # fmt: skip
+            if name not in series.values or (name == "orientation" and _without_orientation(series)):
+                continue
+            for index, axis in enumerate(axes):
+                if (column := f"{key}.{name}.{axis}") not in seen:
+                    columns[column] = series.column(name, index)
+        seen |= set(columns)
+        if columns:
+            yield Messages((series,)), columns
 
 
 def _without_orientation(series: Series) -> bool:

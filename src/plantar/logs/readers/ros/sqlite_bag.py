@@ -32,7 +32,8 @@ def read_sqlite(path: Path, topics: dict[str, Topic], limit: ReadLimit, notes: l
             _messages(connection, identity, topic, limit, path, notes)
     except (sqlite3.Error, OverflowError, ValueError, TypeError) as error:
         if not any(topic.series for topic in topics.values()):
-            raise LogError(f"is not a readable sqlite3 bag: {error}", path=path) from error
+            valid = "a whole file; `sqlite3 FILE .recover | sqlite3 NEW` saves what a cut one holds"
+            raise LogError(f"is not a readable sqlite3 bag: {error}", path=path, valid=valid) from error
         notes.append(
             Note("file_cut", "warning", f"{path.name} is damaged ({error}); what could be read was read")
         )

@@ -51,7 +51,8 @@ def survey(path: Path, limit: ReadLimit) -> Survey:
                 whole = not check.getstate()[0]
         except UnicodeDecodeError as error:
             line = 1 + rows + (0 if names is None else 1) + block.count(b"\n", 0, error.start)
-            raise LogError(f"is not UTF-8 text at line {line}", path=path, valid="a CSV") from error
+            valid = "a CSV saved as UTF-8, which spreadsheets offer; one packed by gzip ends in .csv.gz"
+            raise LogError(f"is not UTF-8 text at line {line}", path=path, valid=valid) from error
         behind.append(block)
         held += len(block)
         while held - len(behind[0]) >= LINE_LIMIT:

@@ -40,7 +40,8 @@ def read(path: Path, robot: RobotModel | None, limit: ReadLimit) -> MotionLog:
         raise LogError("holds no samples", path=path, valid="a header and one row a sample")
     ignored = [name for name in header if name not in columns and name != "time"]
     if ignored:
-        text = f"{path.name}: columns of no known name, not used: {listing(ignored, 6)}"
+        names = listing([name or "one without a name" for name in ignored], 6)
+        text = f"{path.name}: columns of no known name, not used: {names}"
         notes.append(Note("columns_ignored", "info", text))
     keep = _increasing(time, path, notes)
     if not keep.all():
