@@ -70,6 +70,21 @@ def test_a_fit_reads_the_same_rows_of_a_decimated_recording(robot: RobotModel) -
         assert np.abs(of_few - of_whole).max() < 0.01 * np.ptp(of_whole)
 
 
+def test_between_gaps_the_moment_arms_torque_of_a_decimated_recording_is_known_too(robot: RobotModel) -> None:
+    """Runs of 1.3 s are 20 of its samples, fewer than a raw log's runs must have to be filtered."""
+    log = record(sway(duration=20.0))
+    silent = np.mod(log.time, 1.5) < 0.2
+    torn = {
+        name: np.where(silent, np.nan, values) for name, values in log.columns.items() if "wrench" in name
+    }
+    standing = filtered_recording(
+        prepare(robot, checked(robot, log.with_columns(torn)), "fit"), CUTOFF
+    ).decimated("left")
+    rows = standing.rows("left")
+    assert rows.sum() > 50
+    assert np.isfinite(moved_centre(standing, {"left": 1e-5, "right": 0.0}).bushes["left"].torque[rows]).all()
+
+
 def test_a_foot_that_steps_is_not_decimated(walk: Recording) -> None:
     assert walk.decimated("left") is walk
 

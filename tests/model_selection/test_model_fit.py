@@ -269,6 +269,7 @@ def test_many_short_runs_each_have_their_own_start() -> None:
             DataSet(data_set.label, replace(data_set.motion, deflection=deflection), data_set.torque, used)
         )
     fit = fit_model(Elastoplastic(), data_sets)
-    assert all(len(initial_states) == 26 for initial_states in fit.initial_states.values())
+    # The last run, of a third of a second, is filtered like any other.
+    assert all(len(initial_states) == 27 for initial_states in fit.initial_states.values())
     assert error_percent(fit, JENKINS)[0] < 1
     assert error_percent(fit, JENKINS)[1] < 3

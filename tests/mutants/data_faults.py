@@ -146,7 +146,11 @@ DATA_FAULTS = (
     ),
     Mutant(
         "feet/put_right/encoders_of_fits.py", "encoders are read later by all that they are late",
-        "late.value - ready.sensor_delay.encoders", "late.value", ("feet/put_right/test_encoders_of_fits.py",),
+        "late.value - was.encoders", "late.value", ("feet/put_right/test_encoders_of_fits.py",),
+    ),
+    Mutant(
+        "feet/put_right/encoders_of_fits.py", "force sensors stay as late as they were beside other encoders",
+        "also = was.follows * more", "also = 0.0", ("feet/put_right/test_encoders_of_fits.py",),
     ),
     Mutant(
         "sensors/newton_euler.py", "late encoders leave the feet's readings where they are",

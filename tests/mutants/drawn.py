@@ -141,7 +141,7 @@ FIT = (
     ),
     Mutant(
         "feet/regression/model_columns.py", "columns of a model with memory unfiltered",
-        "low_pass(columns, recording.period, recording.cutoff, _shortest_run(recording, fit.foot))", "columns",
+        "low_pass(columns, recording.period, recording.cutoff, SHORTEST_FITTED_RUN)", "columns",
     ),
 )  # fmt: skip
 

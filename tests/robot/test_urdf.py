@@ -9,7 +9,7 @@ import pytest
 from biped_robot import write_robot
 from plantar.errors import RobotError
 from plantar.robot.model import load_robot
-from plantar.robot.urdf import parse_urdf
+from plantar.robot.urdf import parse_urdf, read_urdf
 
 PLAIN = """<robot name="r">
   <link name="trunk"><inertial><origin xyz="0 0 .1"/><mass value="1e1"/>
@@ -52,6 +52,37 @@ def test_a_plain_one_is_read() -> None:
 )  # fmt: skip
 def test_what_would_be_left_out_is_named(old: str, new: str, told: str) -> None:
     assert told in refusal(old, new)
+
+
+WORLD = """<link name="world"/>
+  <joint name="free" type="floating"><parent link="world"/><child link="trunk"/></joint>
+</robot>"""
+ODOMETRY = """<link name="map"/>
+  <joint name="odometry" type="fixed"><parent link="map"/><child link="world"/></joint>
+</robot>"""
+
+
+def as_read(urdf: str, folder: Path) -> str:
+    file = folder / "robot.urdf"
+    file.write_text(urdf)
+    return read_urdf(file)
+
+
+def test_a_world_over_which_the_trunk_floats_is_left_out(tmp_path: Path) -> None:
+    found = parse_urdf(as_read(PLAIN.replace("</robot>", WORLD), tmp_path), FILE, floating=True)
+    assert found == parse_urdf(PLAIN, FILE, floating=True)
+
+
+@pytest.mark.parametrize(
+    "world",
+    [
+        WORLD.replace('"world"/>', '"world"><inertial><mass value="1"/></inertial></link>', 1),
+        WORLD.replace("</robot>", ODOMETRY),
+    ],
+)
+def test_a_floating_joint_on_something_else_stays(world: str, tmp_path: Path) -> None:
+    urdf = PLAIN.replace("</robot>", world)
+    assert as_read(urdf, tmp_path) == urdf
 
 
 def test_a_robot_without_weight_is_refused(tmp_path: Path) -> None:

@@ -20,7 +20,7 @@ from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.results.walk_rows import SwingZero
 from plantar.sensors.attitude_scale import AttitudeScale
-from plantar.signals.filters import SHORTEST_STANCE_RUN, differentiate, low_pass
+from plantar.signals.filters import SHORTEST_FITTED_RUN, differentiate, low_pass
 from plantar.signals.segments import complete, run_ends
 
 FILTER_EDGE = 1.0  # of the filter's period, left out where a run of samples begins or ends
@@ -165,6 +165,17 @@ class Recording:
             else self
         )
 
+    def with_wrenches_later(self, by: float) -> Recording:
+        """The recording with torques of force sensors that are read `by` later [s], to first order."""
+
+        def right(states: Mapping[str, BushState]) -> dict[str, BushState]:
+            slopes = {
+                foot: np.nan_to_num(differentiate(one.torque, self.period)) for foot, one in states.items()
+            }
+            return {foot: replace(one, torque=one.torque + by * slopes[foot]) for foot, one in states.items()}
+
+        return replace(self, raw=right(self.raw), bushes=right(self.bushes)) if by else self
+
     def without(self, foot: str, samples: Mask, reason: Reason, detail: str = "") -> Recording:
         """The same recording with these samples of one foot left out."""
         contact = self.contacts[foot].without(samples, reason, detail)
@@ -222,10 +233,9 @@ def _with_signals(state: BushState, signals: Array) -> BushState:
 def within_stances(values: Array, period: float, cutoff: float, stances: Stances | None) -> Array:
     """The filter of what eq. 6 ties together, of (N, k). Of a foot that steps, each stance passes by itself and the air
     is NaN: the filter must not carry what the foot does in the air into a stance."""
-    if stances is None:
-        return low_pass(values, period, cutoff)
-    standing = np.where((stances.number < 0)[:, None], np.nan, values)
-    return low_pass(standing, period, cutoff, SHORTEST_STANCE_RUN)
+    if stances is not None:
+        values = np.where((stances.number < 0)[:, None], np.nan, values)
+    return low_pass(values, period, cutoff, SHORTEST_FITTED_RUN)
 
 
 def moved_centre(recording: Recording, compliance: Mapping[str, float]) -> Recording:

@@ -13,7 +13,7 @@ from plantar.conventions import Array, Mask
 from plantar.estimation.orthonormal import SlowSpan, orthonormal, without
 from plantar.estimation.slow_drift import DRIFT_PERIOD, drift_basis, drift_beside
 from plantar.models import BushModel, BushMotion
-from plantar.signals.filters import SHORTEST_RUN, SHORTEST_STANCE_RUN, low_pass
+from plantar.signals.filters import SHORTEST_FITTED_RUN, low_pass
 
 SAMPLES_PER_CYCLE = 7  # of the filter's cutoff, that thinning keeps
 THIN_BAND = 4.0  # cutoffs, that survive thinning
@@ -64,11 +64,6 @@ class DataSet:
     steps: StepColumns | None = None
     drift: Array | None = None
 
-    @property
-    def shortest_run(self) -> int:
-        """Samples that a run must exceed to be filtered."""
-        return SHORTEST_RUN if self.steps is None else SHORTEST_STANCE_RUN
-
     def thinned(self, cutoff: float) -> DataSet:
         """Every nth sample, after a filter well above `cutoff` [Hz]; itself where it is slow already."""
         period = self.motion.period
@@ -81,14 +76,14 @@ class DataSet:
         band = cutoffs * cutoff
         motion = self.motion
         pairs = np.column_stack([motion.deflection, motion.rate])
-        path = low_pass(pairs, period, band, self.shortest_run)
+        path = low_pass(pairs, period, band, SHORTEST_FITTED_RUN)
         across = None if motion.across is None else low_pass(motion.across, period, band, every=stride)
         across_rate = (
             None if motion.across_rate is None else low_pass(motion.across_rate, period, band, every=stride)
         )
         torque = np.where(np.isfinite(path[:, 0]), self.torque, np.nan)
         thin = BushMotion(path[::stride, 0], path[::stride, 1], period * stride, across, across_rate)
-        smooth = low_pass(torque, period, band, self.shortest_run, stride)
+        smooth = low_pass(torque, period, band, SHORTEST_FITTED_RUN, stride)
         steps = None if self.steps is None else self.steps.thinned(stride)
         drift = None if self.drift is None else self.drift[::stride]
         return DataSet(self.label, thin, smooth, self.used[::stride], steps, drift)
@@ -124,7 +119,7 @@ class FilteredDataSet:
         whole = np.isfinite(motion.deflection) & np.isfinite(motion.rate) & np.isfinite(data_set.torque)
         values = np.column_stack([motion.deflection, motion.rate, data_set.torque])
         values[~whole] = np.nan
-        smooth = low_pass(values, motion.period, cutoff, data_set.shortest_run)
+        smooth = low_pass(values, motion.period, cutoff, SHORTEST_FITTED_RUN)
         across = None if motion.across is None else low_pass(motion.across, motion.period, cutoff)
         across_rate = (
             None if motion.across_rate is None else low_pass(motion.across_rate, motion.period, cutoff)
@@ -159,11 +154,6 @@ class FilteredDataSet:
     def drift(self) -> Array:
         """Orthonormal columns (n, m) of what drifts slowly; none where the foot steps or nothing is taken to drift."""
         return np.zeros((len(self.response), 0)) if self.slow is None else self.slow.basis
-
-    @property
-    def shortest_run(self) -> int:
-        """Samples that a run must exceed to be filtered."""
-        return SHORTEST_RUN if self.steps is None else SHORTEST_STANCE_RUN
 
     @cached_property
     def _nuisance(self) -> Array:
@@ -210,7 +200,7 @@ def filtered_columns(
     for each, extra in zip(prepared, extras, strict=True):
         last = first + len(each.response)
         if extra.shape[1]:
-            smooth = low_pass(extra, each.motion.period, each.cutoff, each.shortest_run)
+            smooth = low_pass(extra, each.motion.period, each.cutoff, SHORTEST_FITTED_RUN)
             found[first:last] = each.without_nuisance(smooth[each.used])
         first = last
     return found

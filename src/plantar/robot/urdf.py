@@ -16,13 +16,14 @@ from plantar.errors import RobotError
 from plantar.files import read_bounded
 
 LIMIT = 64 * 2**20  # bytes
+_DECLARES = re.compile(r"<!(DOCTYPE|ENTITY)", re.IGNORECASE)
 INERTIA = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
 
 def read_urdf(path: Path) -> str:
-    """The text of a URDF. Raises RobotError where it cannot be read or is no text."""
+    """The text of a URDF, from its trunk on. Raises RobotError where it cannot be read or is no text."""
     try:
-        return read_bounded(path, LIMIT, RobotError).decode()
+        return _from_trunk(read_bounded(path, LIMIT, RobotError).decode())
     except UnicodeDecodeError as error:
         raise RobotError("is not UTF-8 text", path=path, valid="a URDF") from error
 
@@ -33,7 +34,7 @@ def parse_urdf(urdf: str, path: Path, *, floating: bool) -> pin.Model:
     Raises RobotError, with `path` for the file, where it declares an entity, is no URDF, holds a text where a number
     must stand, or Pinocchio cannot read it.
     """
-    if re.search(r"<!(DOCTYPE|ENTITY)", urdf, re.IGNORECASE):
+    if _DECLARES.search(urdf):
         raise RobotError("declares a DOCTYPE or an entity", path=path, valid="plain URDF")
     with suppress(ET.ParseError):  # Pinocchio reads more than Python does, and says what it cannot read
         _check(ET.fromstring(urdf), path)
@@ -51,6 +52,26 @@ def unknown_link(link: str, model: pin.Model, path: Path) -> RobotError:
     near = difflib.get_close_matches(link, names, n=3)
     valid = "one of " + ", ".join(near) if near else f"a frame of the URDF, such as {', '.join(names[1:4])}"
     return RobotError(f"link '{link}' is not in the URDF", path=path, valid=valid)
+
+
+def _from_trunk(urdf: str) -> str:
+    """Without a bare link for the world and the floating joint on it: every robot floats unless its file says other."""
+    if "floating" not in urdf or _DECLARES.search(urdf):
+        return urdf
+    try:
+        root = ET.fromstring(urdf)
+    except ET.ParseError:
+        return urdf
+    ends = [end.get("link") for end in root.iterfind("joint/*[@link]")]
+    for joint in root.findall("joint[@type='floating']"):
+        worlds = [parent.get("link") for parent in joint.iterfind("parent")]
+        for link in root.findall("link"):
+            name = link.get("name")
+            if name in worlds and ends.count(name) == 1 and link.find("inertial") is None:
+                root.remove(link)
+                root.remove(joint)
+                return ET.tostring(root, encoding="unicode")
+    return urdf
 
 
 def _check(root: ET.Element, path: Path) -> None:

@@ -9,7 +9,7 @@ from plantar.conventions import Array
 
 FILTER_ORDER = 4  # Butterworth, run forth and back
 SHORTEST_RUN = 27  # samples
-SHORTEST_STANCE_RUN = 8  # samples of a stance, for it to be filtered by itself
+SHORTEST_FITTED_RUN = 8  # samples of a stance, or between gaps of a thinned log: one cycle of the cutoff
 PADDED = 3.0  # of the cutoff's period, by which a run is continued: its filter has settled by then
 MOST_PADDED = 10_000  # samples
 

@@ -70,6 +70,23 @@ def test_what_the_model_misses_and_what_is_left_out_count() -> None:
     assert "only 2.0 s of samples" in rows_of(less, fit_of())[0].reason
 
 
+def test_a_drift_that_the_fit_leaves_free_is_nothing_missed() -> None:
+    one = recording()
+    slow = 10 * np.ptp(one.bushes[FOOT].torque[:, 0]) * np.linspace(-1, 1, 3000)
+    predicted = {(one.name, FOOT, "pitch"): predicted_torque(one.bushes[FOOT].torque[:, 0] + slow)}
+    assert axis_rows(fit_of(), [one], predicted, None)[0].verdict == "usable"
+
+
+def test_a_motion_as_slow_as_drift_is_judged_by_all_it_shows() -> None:
+    """A lean in half a minute that is missed is no drift: beside it, what is left would be explained."""
+    time = PERIOD * np.arange(3000)
+    angle = 0.02 * np.cos(2 * np.pi * time / time[-1]) + swayed(3000) / 100
+    one = made_recording("lean", angle, 400.0 * angle)
+    missed = 400.0 * 0.02 * np.cos(2 * np.pi * time / time[-1])
+    predicted = {(one.name, FOOT, "pitch"): predicted_torque(one.bushes[FOOT].torque[:, 0] - missed)}
+    assert axis_rows(fit_of(), [one], predicted, None)[0].verdict == "unidentifiable"
+
+
 def test_a_motion_that_contradicts_the_others_is_named() -> None:
     bad = ValidationRow("direct", "squat", FOOT, "pitch", 3.5, 3.5, 9.0, 1.0, 4.0, 100)
     assert "misses squat" in rows_of(recording(), fit_of(), contradicted=bad)[0].reason

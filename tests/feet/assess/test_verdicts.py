@@ -41,6 +41,7 @@ GOOD = Evidence(seconds=60.0, excitation=0.02, explained=0.98)
         (400.0, (390.0, 410.0), Evidence(60.0, 0.02, 0.1), "unidentifiable", "10 %"),
         (400.0, (390.0, 410.0), Evidence(60.0, 0.02, 0.6), "weak", "60 %"),
         (0.0, (-1.0, 1.0), GOOD, "unidentifiable", "reaches zero"),
+        (400.0, (np.nan, np.nan), GOOD, "unidentifiable", "could not be worked out"),
         (400.0, (390.0, 410.0), replace(GOOD, excitation=1e-16), "unidentifiable", "nothing moves"),
         (
             400.0,

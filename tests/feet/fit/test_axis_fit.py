@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -9,7 +11,7 @@ from bush_data_sets import Rubber
 from made_recording import FOOT, PERIOD, made_recording, swayed
 from plantar.contact.reasons import Reason
 from plantar.feet.fit.axis_fit import fit_axis
-from plantar.feet.fit.hidden_memory import UNBELIEVED, UNTIMED, has_memory, moved_by_memory
+from plantar.feet.fit.hidden_memory import TORN, UNBELIEVED, UNTIMED, has_memory, moved_by_memory
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.settings import FeetSettings
@@ -94,6 +96,25 @@ def test_where_timing_is_in_doubt_no_memory_is_believed_but_widens_the_spring() 
     assert believed.model.name == "elastoplastic"
     moved = moved_by_memory(fit, steps=False)
     assert moved[0] >= 0.99 * abs(fit.values[0] - believed.values[0]) > 0.1 * believed.values[0]
+
+
+def test_where_gaps_leave_short_runs_no_memory_is_tried_and_none_excluded() -> None:
+    """Each run begins with a state that nobody knows: the element's slope is taken for the spring's."""
+    silent = np.mod(PERIOD * np.arange(6000), 2.0) < 0.1
+    edges = np.convolve(silent, np.ones(61), mode="same") > 0.5
+    torn = []
+    for one in recordings(SLIPPING):
+        bush = one.bushes[FOOT]
+        signals = {name: getattr(bush, name).copy() for name in ("deflection", "rate", "torque")}
+        for values in signals.values():
+            values[silent] = np.nan
+        bushes = {FOOT: replace(bush, **signals)}
+        torn.append(replace(one, raw=bushes, bushes=bushes).without(FOOT, edges, Reason.IMPACT))
+    fit = fitted(torn)
+    assert not fit.model.remembers
+    assert fit.values[0] > 430.0
+    assert fit.choice is not None
+    assert fit.choice.caution == TORN
 
 
 def test_without_noise_nothing_richer_is_tried_and_under_a_strange_torque_neither() -> None:

@@ -81,6 +81,21 @@ def test_late_encoders_are_found_and_what_they_took_for_damping_is_gone(
     assert not again.is_worth(shown.value)
 
 
+def test_force_sensors_are_read_with_the_encoders_as_newton_ties_them() -> None:
+    """Newton's law had both 0.0015 s early, as where it knows only how far they are apart: damping is off by K times
+    as much until the fits show the encoders."""
+    late = 0.0015
+    logs = ready(recorded(0.0), Late(0.0, NEWTON.std))
+    logs = replace(logs, fitted=(logs.fitted[0].with_wrenches_later(-late),))
+    logs = replace(logs, sensor_delay=replace(logs.sensor_delay, follows=1.25, feet={FOOT: 0.004}))
+    right = read_at(logs, Late(late / 1.25, 1e-4))
+    assert right.sensor_delay.delay == pytest.approx(0.005 + late)
+    assert right.sensor_delay.feet == pytest.approx({FOOT: 0.004 + late})
+    torques = [one.fitted[0].bushes[FOOT].torque[50:-50, 0] for one in (logs, right, ready(recorded(0.0)))]
+    before, after = (float(np.std(torque - torques[2])) for torque in torques[:2])
+    assert after < 0.15 * before
+
+
 def test_where_no_joint_turns_newton_is_believed() -> None:
     still = replace(recorded(0.0), encoder_rates={FOOT: np.zeros((COUNT, 2))})
     assert encoders_shown(fitted(ready(still)), NEWTON, 0.0) is None

@@ -8,8 +8,10 @@ from dataclasses import replace
 import numpy as np
 
 from plantar.contact.reasons import TIPPING
-from plantar.conventions import ROTATIONAL_AXES, Array, Axis
+from plantar.conventions import ROTATIONAL_AXES, Array, Axis, Mask
 from plantar.estimation import interval95, relative_std_percent
+from plantar.estimation.orthonormal import without
+from plantar.estimation.slow_drift import drift_basis, drift_beside
 from plantar.feet.assess.left_out import why_unseen
 from plantar.feet.assess.residual_table import Predictions
 from plantar.feet.assess.verdicts import SWAY, Evidence, judge, judge_term
@@ -17,6 +19,7 @@ from plantar.feet.fit.half_turns import slid_back
 from plantar.feet.fit.hidden_memory import has_memory
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
+from plantar.feet.regression.prediction import Prediction
 from plantar.models import KelvinVoigt
 from plantar.results.feet import Parameter, ValidationRow, Verdict
 
@@ -89,7 +92,8 @@ def missing_rows(foot: str, axis: Axis, reason: str, advice: str = "") -> list[P
 
 def _evidence(fit: AxisFit, recordings: Sequence[Recording], predictions: Predictions) -> Evidence:
     column = ROTATIONAL_AXES.index(fit.axis)
-    seconds = moved = varied = missed = leans = loaded = softened = 0.0
+    seconds = moved = missed = leans = loaded = softened = 0.0
+    varied = left = 0.0
     samples = 0
     for recording in recordings:
         predicted = predictions.get((recording.name, fit.foot, fit.axis))
@@ -104,8 +108,9 @@ def _evidence(fit: AxisFit, recordings: Sequence[Recording], predictions: Predic
         leans += float((contact.loaded & contact.left_out_for(TIPPING)).sum()) * recording.period
         seconds += len(angle) * recording.period
         moved += float(np.sum((angle - angle.mean()) ** 2))
-        varied += float(np.sum((torque - torque.mean()) ** 2))
         missed += float(np.sum((torque - predicted.torque[used]) ** 2))
+        quick = _beside_drift(fit, recording, predicted, used & recording.rows(fit.foot))
+        varied, left = varied + quick[0], left + quick[1]
     noise = 0.0
     if fit.slip_angle is not None and all(each.stances[fit.foot] is None for each in recordings):
         noise = float(np.sqrt(missed / max(samples, 1))) / abs(float(fit.values[0])) / fit.slip_angle
@@ -113,12 +118,27 @@ def _evidence(fit: AxisFit, recordings: Sequence[Recording], predictions: Predic
     return Evidence(
         seconds,
         float(np.sqrt(moved / max(samples, 1))),
-        1 - missed / varied if varied else 0.0,
+        1 - left / varied if varied else 0.0,
         damping < 0,
         leaning=leans / loaded if has_memory(fit.model) and loaded else 0.0,
         noise=noise,
         softened=softened,
     )
+
+
+def _beside_drift(
+    fit: AxisFit, recording: Recording, predicted: Prediction, rows: Mask
+) -> tuple[float, float]:
+    """Squares of a torque, and of what a model misses of it, beside the drift that its fit leaves free: an attitude
+    made of a gyroscope alone drifts by more than a foot bends."""
+    column = ROTATIONAL_AXES.index(fit.axis)
+    bush = recording.bushes[fit.foot]
+    torque, angle = bush.torque[rows, column], bush.deflection[rows, column]
+    varied, missed = torque - torque.mean(), torque - predicted.torque[rows]
+    if recording.stances[fit.foot] is None:
+        slow = drift_beside(angle, drift_basis(recording.time[rows]))
+        varied, missed = without(slow, varied), without(slow, missed)
+    return float(varied @ varied), float(missed @ missed)
 
 
 def _softened(fit: AxisFit, angle: Array) -> float:

@@ -79,6 +79,8 @@ def judge(
             f"{term} is negative: something other than the bush produces this torque",
             SIGNS,
         )
+    if not np.isfinite(half):
+        return "unidentifiable", "its 95 % interval could not be worked out", advice
     if interval[0] <= 0:
         return "unidentifiable", f"the 95 % interval reaches zero; the motion gave {motion}", advice
     if evidence.explained < LEAST_EXPLAINED:

@@ -109,7 +109,7 @@ def _fitted(
     models = [MODELS[name] for name in names if memory or not MODELS[name].remembers]
     gain = LEAST_GAIN_IN_STANCES if steps else LEAST_GAIN
     choice = choose_model(data_sets, models, cutoff, shared_offset=shared, least_gain=gain)
-    choice = cautioned(choice, timed=timed, steps=steps)
+    choice = cautioned(choice, timed=timed, steps=steps, torn=not (steps or memory))
     if choice.fit.model.name == KelvinVoigt.name:
         return _of_linear(foot, axis, linear, choice, choice.reason)
     return found(choice.fit, choice, choice.reason)
@@ -154,7 +154,7 @@ def _untried(explained: float) -> str:
 
 
 def _remembers(data_sets: Sequence[DataSet]) -> bool:
-    """Whether stances last long enough for a model with memory: each begins with an unknown state."""
+    """Whether runs without a gap last long enough for a model with memory: each begins with an unknown state."""
     stances = [run for data_set in data_sets for run in data_set.motion.runs]
     seconds = sum(
         (run.stop - run.start) * data_set.motion.period

@@ -26,6 +26,10 @@ UNTIMED = (
     "sensors may be late by any time, which looks like a memory of the rubber: none is believed, and with one "
     "stiffness is smaller"
 )
+TORN = (
+    "gaps in the logs leave a memory of the rubber no time to show, and it counts as stiffness; with one, stiffness is "
+    "smaller (record logs without gaps)"
+)
 UNBELIEVED = "sensors may be late by any time, which looks like it"
 
 
@@ -84,10 +88,11 @@ def may_hide_a_memory(motions: Sequence[BushMotion]) -> bool:
     return reach(motions) < ALL_SHOWN
 
 
-def cautioned(choice: ModelChoice, *, timed: bool, steps: bool) -> ModelChoice:
+def cautioned(choice: ModelChoice, *, timed: bool, steps: bool, torn: bool = False) -> ModelChoice:
     """The choice with a caution where a memory cannot be believed, or could not show.
 
-    timed: whether it is known when the sensors read; steps: whether the foot steps, of which `half_turns` tells.
+    timed: whether it is known when the sensors read; steps: whether the foot steps, of which `half_turns` tells; torn:
+    whether another foot's samples lie in runs so short that no memory was tried.
     """
     if not timed:
         choice = _unbelieved(choice)
@@ -95,6 +100,8 @@ def cautioned(choice: ModelChoice, *, timed: bool, steps: bool) -> ModelChoice:
         return choice
     if not timed:
         return replace(choice, caution=UNTIMED)
+    if torn:
+        return replace(choice, caution=TORN)
     if isinstance(choice.fit.model, Hysteretic) or steps or choice.reach >= SMALL:
         return choice
     return replace(choice, caution=TOO_SMALL.format(choice.reach))

@@ -56,13 +56,17 @@ def tried_first(told: Late) -> float:
 
 
 def read_at(ready: PreparedLogs, late: Late) -> PreparedLogs:
-    """The logs with all angles as encoders show them that are `late`."""
-    more = late.value - ready.sensor_delay.encoders
+    """The logs with all angles as encoders show them that are `late`, and torques as late as Newton's law has them
+    beside such encoders: in most motions it tells better how far both are apart than how far either is from the IMU."""
+    was = ready.sensor_delay
+    more = late.value - was.encoders
+    also = was.follows * more
 
     def read(recordings: Sequence[Recording]) -> tuple[Recording, ...]:
-        return tuple(recording.with_encoders_later(more) for recording in recordings)
+        return tuple(one.with_encoders_later(more).with_wrenches_later(also) for one in recordings)
 
-    delay = replace(ready.sensor_delay, encoders=late.value, encoders_std=late.std)
+    feet = {foot: value + also for foot, value in was.feet.items()}
+    delay = replace(was, delay=was.delay + also, feet=feet, encoders=late.value, encoders_std=late.std)
     return replace(ready, fitted=read(ready.fitted), unseen=read(ready.unseen), sensor_delay=delay)
 
 

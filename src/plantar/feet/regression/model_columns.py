@@ -13,7 +13,7 @@ from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import FittedModel
 from plantar.model_selection.data_sets import PATH_BAND
 from plantar.models import BESIDE, BushMotion, KelvinVoigt
-from plantar.signals.filters import SHORTEST_RUN, SHORTEST_STANCE_RUN, differentiate, low_pass
+from plantar.signals.filters import SHORTEST_FITTED_RUN, differentiate, low_pass
 
 Turn = tuple[float, float, float]
 UNTURNED: Turn = (0.0, 0.0, 0.0)
@@ -56,7 +56,7 @@ def _own_columns(
     ]
     columns = np.concatenate(fit.model.basis_columns(paths, shapes, starts), axis=2)
     columns[~np.isfinite(paths[0].deflection + paths[0].rate)] = np.nan
-    return low_pass(columns, recording.period, recording.cutoff, _shortest_run(recording, fit.foot))
+    return low_pass(columns, recording.period, recording.cutoff, SHORTEST_FITTED_RUN)
 
 
 def memory_path(recording: Recording, fit: FittedModel) -> BushMotion:
@@ -65,11 +65,6 @@ def memory_path(recording: Recording, fit: FittedModel) -> BushMotion:
     if (drift := fit.drifts.get(recording.name)) is None:
         return path
     return replace(path, deflection=path.deflection - drift.at(recording.time))
-
-
-def _shortest_run(recording: Recording, foot: str) -> int:
-    """Samples that the fit's filter needs in one run."""
-    return SHORTEST_RUN if recording.stances[foot] is None else SHORTEST_STANCE_RUN
 
 
 def motion_of(recording: Recording, foot: str, axis: Axis, imu_turned: Turn = UNTURNED) -> BushMotion:
@@ -108,7 +103,7 @@ def path_of(recording: Recording, foot: str, axis: Axis, imu_turned: Turn = UNTU
         column, raw = ROTATIONAL_AXES.index(axis), recording.raw[foot]
         both = np.column_stack([raw.deflection[:, column], raw.rate[:, column]])
         both[stances.number < 0] = np.nan
-        quick = low_pass(both, recording.period, PATH_BAND * recording.cutoff, SHORTEST_STANCE_RUN)
+        quick = low_pass(both, recording.period, PATH_BAND * recording.cutoff, SHORTEST_FITTED_RUN)
         away = ~np.isfinite(slow.deflection)
         recording.kept[key] = _turned(recording, foot, axis, imu_turned, quick, away)
     return cast(BushMotion, recording.kept[key])

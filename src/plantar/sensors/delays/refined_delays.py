@@ -43,6 +43,7 @@ class RefinedDelays:
     `closed` (logs,): in which logs Newton's law closes; `slowest`: the longest period among these [s].
     `suspect`: they seem to, and how much is not known well: steps from elsewhere may end elsewhere.
     `feet_unsure`, `encoders_unsure` [s]: deviations of what is known of each foot beside all, and of the encoders.
+    `follows`: by how much the feet's common delay moves with the encoders', where these are found to be others.
     `unsteady`: that they are not the same throughout, where these logs show it.
     `residuals`: of these logs, read at these delays.
     """
@@ -57,6 +58,7 @@ class RefinedDelays:
     suspect: bool = False
     feet_unsure: float = 0.0
     encoders_unsure: float = 0.0
+    follows: float = 0.0
     unsteady: ClockDrift | DelaysByLog | None = None
     residuals: tuple[NewtonEulerResidual, ...] = ()
 
@@ -156,7 +158,8 @@ def _step(
         std = float(np.hypot(std, _by_encoders(balances, contrasts)))
     unsure = np.where(differ, [*np.zeros(len(at) - 1), std], unsure)
     beside = float(unsure[:-1].max()), float(unsure[-1])
-    return RefinedDelays(nearest + by, std, freedom, *flags, closed, slowest, suspect, *beside)
+    follows = 0.0 if free is None else float(np.mean(free.covariance[:-1, -1]) / free.covariance[-1, -1])
+    return RefinedDelays(nearest + by, std, freedom, *flags, closed, slowest, suspect, *beside, follows)
 
 
 def _left(

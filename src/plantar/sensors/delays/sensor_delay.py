@@ -46,8 +46,9 @@ class SensorDelay:
     """Delay of the wrenches against the IMU [s], > 0: late; `std` [s]; `measured` whether any log showed it.
 
     `feet` has each foot's own delay where they differ, `encoders` that of the joints' positions, `encoders_std` how
-    unsure that is [s]. `doubtful`: a search over SEARCHED found no delays at which Newton's law closes where it should,
-    so that the sensors may be late by anything that `std` says. `residuals`: of the logs in which it does close.
+    unsure that is [s], `follows` by how much the wrenches' delay moves with it. `doubtful`: a search over SEARCHED
+    found no delays at which Newton's law closes where it should, so that the sensors may be late by anything that `std`
+    says. `residuals`: of the logs in which it does close.
     """
 
     delay: float
@@ -58,6 +59,7 @@ class SensorDelay:
     feet: Mapping[str, float] = field(default_factory=dict)
     encoders: float = 0.0
     encoders_std: float = 0.0
+    follows: float = 0.0
     doubtful: bool = False
     residuals: tuple[NewtonEulerResidual, ...] = ()
 
@@ -197,7 +199,7 @@ def _told(robot: RobotModel, found: RefinedDelays) -> SensorDelay:
     if common > KNOWN_STD:
         note = Note("delay_poorly_known", "warning", f"{told}: corrected; {advice}")
     each = _each_foot(robot.feet, feet - value + delay)
-    return SensorDelay(delay, std, found.freedom, True, note, each, encoders, beside)
+    return SensorDelay(delay, std, found.freedom, True, note, each, encoders, beside, found.follows)
 
 
 def _each_foot(names: Iterable[str], delays: Array) -> dict[str, float]:
@@ -215,4 +217,5 @@ def _apart(names: Sequence[str], found: RefinedDelays) -> SensorDelay:
         f"(± {1e3 * NORMAL95 * found.std:.1f} ms, 95 %): corrected"
     )
     note = Note("delays_apart", "warning", text)
-    return SensorDelay(mean, std, found.freedom, True, note, delays, encoders, found.encoders_unsure)
+    beside = found.encoders_unsure, found.follows
+    return SensorDelay(mean, std, found.freedom, True, note, delays, encoders, *beside)
