@@ -309,38 +309,11 @@ void what_no_ground_does_is_thrown_away() {
   check::near(found.value[STIFFNESS], 800.0, 0.5, "stiffness behind it");
 }
 
-// What a later torque does to each value is told before anybody knows that it is late. Beside an element that hardly
-// slips the damping loses more than K times the delay, which is what it loses without one.
-void what_a_delay_does_is_known_beforehand() {
-  constexpr double LATER = 1e-3, SLIP = 0.02, ELEMENT = 6.0;  // s, rad, N·m
-  AxisValues found[2];
-  for (const double late : {0.0, LATER}) {
-    AxisRegression axis(prior());
-    Source source(8);
-    for (int i = 0; i < 2400; ++i) {
-      const double t = ROW * i, a = 0.01 * std::sin(2.0 * t), b = 0.005 * std::sin(5.0 * t);
-      const double rate = 0.02 * std::cos(2.0 * t) + 0.025 * std::cos(5.0 * t), state = std::sin((a + b) / SLIP);
-      const double torque_rate = 800.0 * rate - DAMPING_TRUTH * (4.0 * a + 25.0 * b) +
-                                 ELEMENT * std::cos((a + b) / SLIP) * rate / SLIP;
-      const double torque = 800.0 * (a + b) + DAMPING_TRUTH * rate + ELEMENT * state + 0.02 * source.normal(source.random);
-      axis.add({{1.0, t}, {a + b, rate, state, 0.0, 0.0, 0.0, -torque_rate}, torque - late * torque_rate, {}}, ROW);
-      axis.work();
-    }
-    for (int i = 0; i < 4; ++i) axis.work();
-    found[late > 0.0] = axis.values();
-  }
-  for (const Unknown one : {STIFFNESS, DAMPING})
-    check::near((found[1].value[one] - found[0].value[one]) / LATER, found[0].by_late[one],
-                0.01 * std::abs(found[0].by_late[one]), "what a millisecond does");
-  check::that(-found[0].by_late[DAMPING] > 800.0 + 0.8 * ELEMENT / SLIP, "the element's stiffness takes its part");
-}
-
 }  // namespace
 
 int main() {
   a_motion_that_begins_is_no_other_ground();
   what_no_ground_does_is_thrown_away();
-  what_a_delay_does_is_known_beforehand();
   slow_motions_tell_the_stiffness();
   a_block_that_moves_the_value_widens_it();
   what_differs_between_blocks_moves_nothing();

@@ -1,0 +1,46 @@
+// What a torque that is later than was told does to stiffness and damping.
+#include <cmath>
+#include <random>
+
+#include "check.hpp"
+#include "online/axis_regression.hpp"
+
+using namespace plantar;
+
+namespace {
+
+constexpr double ROW = 0.025, DAMPING_TRUTH = 20.0;  // s, N·m·s/rad
+
+// What a later torque does is told before: beside an element that hardly slips C loses more than K times the delay.
+void what_a_delay_does_is_known_beforehand() {
+  constexpr double LATER = 1e-3, SLIP = 0.02, ELEMENT = 6.0;  // s, rad, N·m
+  const RegressionPrior prior = {{0.01, 0.1, 1.0, 600.0, 60.0, 4e4, 60.0},
+                                 {}, {6e4, 6e4, 600.0, 1e-9, 1e-9, 1e-12, 1e-9}, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, ROW};
+  AxisRegression on_time(prior), late(prior);
+  std::mt19937 random(8);
+  std::normal_distribution<double> noise(0.0, 0.02);
+  for (int i = 0; i < 2400; ++i) {
+    const double t = ROW * i, a = 0.01 * std::sin(2.0 * t), b = 0.005 * std::sin(5.0 * t);
+    const double state = std::sin((a + b) / SLIP);
+    const double rate = 0.02 * std::cos(2.0 * t) + 0.025 * std::cos(5.0 * t);
+    const double stiff = 800.0 + ELEMENT / SLIP * std::cos((a + b) / SLIP);
+    const double changes = stiff * rate - DAMPING_TRUTH * (4.0 * a + 25.0 * b);
+    RegressionRow row = {{1.0, t}, {a + b, rate, state, 0.0, 0.0, 0.0, -changes}, 0.0, {}};
+    row.torque = 800.0 * (a + b) + DAMPING_TRUTH * rate + ELEMENT * state + noise(random);
+    on_time.add(row, ROW), on_time.work();
+    row.torque -= LATER * changes;
+    late.add(row, ROW), late.work();
+  }
+  for (int i = 0; i < 4; ++i) on_time.work(), late.work();
+  const auto &then = late.values(), &now = on_time.values();
+  for (const Unknown one : {STIFFNESS, DAMPING})
+    check::near(then.value[one] - now.value[one], LATER * now.by_late[one], 1e-5 * std::abs(now.by_late[one]), "a delay");
+  check::that(-now.by_late[DAMPING] > 800.0 + 0.8 * ELEMENT / SLIP, "the element's stiffness takes its part");
+}
+
+}  // namespace
+
+int main() {
+  what_a_delay_does_is_known_beforehand();
+  return check::result();
+}
