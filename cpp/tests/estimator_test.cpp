@@ -7,66 +7,13 @@
 #include <stdexcept>
 
 #include "check.hpp"
-#include "plantar/foot_estimator.hpp"
+#include "two_feet.hpp"
 
 using namespace plantar;
 
 namespace {
 
 constexpr double NAN_ = std::numeric_limits<double>::quiet_NaN();
-constexpr double STIFFNESS[2] = {900.0, 700.0}, DAMPING[2] = {20.0, 30.0}, OFFSET[2] = {1.5, -0.7};
-constexpr Frame HERE = {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
-
-// The IMU sits on the ankle of both feet: the attitude is the deflection, turned round.
-EstimatorModel two_feet(double delay = 0.0) {
-  EstimatorModel model;
-  model.weight = 600.0, model.wrench_delay = delay;
-  model.joints = {"free"};
-  for (const char* name : {"left", "right"}) {
-    FootModel foot;
-    foot.name = name;
-    foot.bush = foot.sole = foot.sensor = HERE;
-    foot.polygon = {{0.1, 0.06}, {-0.1, 0.06}, {-0.1, -0.06}, {0.1, -0.06}};
-    foot.place_std = {0.003, 0.003};
-    model.feet.push_back(foot);
-  }
-  return model;
-}
-
-double swing = 1.0;  // of both angles; 1: as far as shows a memory
-double push = 0.0;   // rad of pitch, once for two seconds
-constexpr double PUSHED[2] = {30.0, 32.0};
-
-double angle(int axis, double t) {
-  const bool pushed = axis == 0 && t > PUSHED[0] && t < PUSHED[1];
-  const double more =
-      pushed ? push * std::pow(std::sin(std::numbers::pi * (t - PUSHED[0]) / (PUSHED[1] - PUSHED[0])), 2) : 0.0;
-  return more +
-         swing * (axis == 0 ? 0.02 * std::sin(1.9 * t) + 0.01 * std::sin(5.1 * t) : 0.018 * std::sin(2.3 * t + 1.0));
-}
-double rate(int axis, double t) { return (angle(axis, t + 1e-6) - angle(axis, t - 1e-6)) / 2e-6; }
-
-struct Sensors {
-  double position = 0.0, attitude[4], gyroscope[3];
-  std::array<double, 6> wrench[2];
-
-  // Ry(pitch) Rx(roll) is the sole in the ankle, and the sole stands flat: its inverse is the ankle in the world.
-  explicit Sensors(double t, double delay = 0.0, double load = 300.0) {
-    const double p = angle(0, t) / 2, r = angle(1, t) / 2, noise = 1e-9 * std::sin(1e5 * t);
-    attitude[0] = std::cos(p) * std::cos(r), attitude[1] = -std::sin(r) * std::cos(p) + noise;
-    attitude[2] = -std::cos(r) * std::sin(p), attitude[3] = std::sin(r) * std::sin(p);
-    const double dp = rate(0, t), dr = rate(1, t);
-    // The ankle turns in the world as the sole turns in the ankle, the other way: -(dp e_y + dr Ry(pitch) e_x).
-    gyroscope[0] = -dr * std::cos(2 * p) + noise, gyroscope[1] = -dp, gyroscope[2] = dr * std::sin(2 * p);
-    double torque[2];
-    for (int a = 0; a < 2; ++a)
-      torque[a] = STIFFNESS[a] * angle(a, t - delay) + DAMPING[a] * rate(a, t - delay) + OFFSET[a];
-    const double pitch = angle(0, t - delay);
-    for (auto& w : wrench) w = {0.0, 0.0, load + 1e-6 * std::sin(1e5 * t), torque[1] / std::cos(pitch), torque[0], 0.0};
-  }
-
-  Reading reading(double t) const { return {t, {&position, 1}, {}, attitude, gyroscope, {}, wrench}; }
-};
 
 bool finite(const FootEstimate& foot) {
   for (const AxisEstimate* a : {&foot.pitch, &foot.roll})
@@ -97,42 +44,6 @@ void learns(double rate_hz, double delay) {
   check::near(last.pitch.offset, OFFSET[0], 0.02, "offset in pitch");
   check::that(last.pitch.identified && last.roll.identified, "identified");
   check::that(last.contact == ContactState::stance && last.flags == 0, "stands, nothing to object");
-}
-
-// Wrenches that are later than was told from the first tick on, or earlier, follow the deflection otherwise at each
-// frequency.
-void a_delay_that_was_told_wrongly_is_seen(double delay) {
-  constexpr double TOLD = 0.01;
-  FootEstimator estimator(two_feet(TOLD));
-  FootEstimate last;
-  bool believed = false;
-  for (int i = 0; i < 12000; ++i) {
-    const double t = i / 200.0;
-    last = estimator.step(Sensors(t, delay).reading(t))[0];
-    believed = believed || last.pitch.identified;
-  }
-  const bool wrong = delay != TOLD;
-  check::that(((last.flags & LATE_WRENCH) != 0) == wrong, "a delay that is not the one that was told");
-  check::that(believed != wrong, "and its numbers are not believed");
-}
-
-// One foot's force sensor alone may be late: the other foot's numbers stay believed. By less than is told, the damping's
-// interval knows of it.
-void one_foot_alone_may_be_late(double delay, bool seen) {
-  FootEstimator estimator(two_feet());
-  FootEstimate late, other;
-  for (int i = 0; i < 12000; ++i) {
-    const double t = i / 200.0;
-    Sensors now(t);
-    now.wrench[0] = Sensors(t, delay).wrench[0];
-    const auto feet = estimator.step(now.reading(t));
-    late = feet[0], other = feet[1];
-  }
-  check::that(((late.flags & LATE_WRENCH) != 0) == seen, "the foot that is late");
-  check::that(!(other.flags & LATE_WRENCH) && other.pitch.identified, "not the other one");
-  const auto off = [](const FootEstimate& foot) { return std::abs(foot.pitch.damping.value - DAMPING[0]); };
-  check::that(off(late) > 0.5 * STIFFNESS[0] * delay && off(late) < late.pitch.damping.half_width, "its interval holds");
-  check::that(other.pitch.damping.half_width < 0.5 * STIFFNESS[0] * delay, "the other one's is no wider for it");
 }
 
 // A fault from 20 s to 21 s: outputs stay finite, a flag says so, and all is well a second later.
@@ -277,30 +188,9 @@ void broken_models_are_refused() {
   check::that(refused, "a robot without weight");
 }
 
-// Deviations are found anew where some seconds of rows end; until then they grow by what the values have moved.
-void what_a_value_has_moved_is_in_its_deviation() {
-  constexpr double BEGINS = 40.0, CREEPS = 0.5;  // s; N·m/rad a second, in pitch
-  FootEstimator estimator(two_feet());
-  FootEstimate last;
-  for (int i = 0; i < 9120; ++i) {
-    const double t = i / 200.0;
-    Sensors sensors(t);
-    for (auto& w : sensors.wrench) w[4] += CREEPS * std::max(t - BEGINS, 0.0) * angle(0, t);
-    last = estimator.step(sensors.reading(t))[0];
-  }
-  const double moved = last.pitch.stiffness.value - STIFFNESS[0];
-  check::that(moved > 0.1, "stiffness follows the ground");
-  check::near(last.pitch.stiffness.std, moved, 0.05 * moved, "a deviation that knows of it");
-  check::that(last.pitch.stiffness.half_width > 1.96 * moved, "and a half width");
-  check::near(last.pitch.damping.std, 0.03 / 200 * STIFFNESS[0], 1e-3, "readings of one tick apart by a share of it");
-}
-
 }  // namespace
 
 int main() {
-  what_a_value_has_moved_is_in_its_deviation();
-  for (const double delay : {0.01, 0.03, -0.01}) a_delay_that_was_told_wrongly_is_seen(delay);
-  one_foot_alone_may_be_late(0.015, true), one_foot_alone_may_be_late(0.003, false);
   learns(1000.0, 0.0);
   learns(1000.0, 0.0075);
   learns(1000.0, -0.004);

@@ -100,8 +100,9 @@ def test_an_encoder_that_stands_in_a_slow_motion_makes_no_other_ground(robot: Ro
         log = stuck(log, ("left_ankle_pitch",), begin, begin + 4.0)
     replay = replayed(robot, log)
     assert not (replay.column("left", "flags").astype(int) & Flag.GROUND_CHANGED).any()
-    found = replay.estimate("left").pitch.stiffness
-    assert found.value == pytest.approx(TRUTH["left", "pitch"].stiffness, rel=0.01)
+    found = replay.estimate("left").pitch
+    assert not found.identified
+    assert abs(found.stiffness.value - TRUTH["left", "pitch"].stiffness) < found.stiffness.half_width
 
 
 def test_a_whole_leg_of_noisy_encoders_that_stands_is_frozen(robot: RobotModel) -> None:

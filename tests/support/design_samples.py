@@ -27,7 +27,7 @@ from plantar.robot.model import RobotModel
 from plantar.twin.robots import hrp2
 
 STIFFNESS = 500.0
-TRIES = 2
+TRIES = 5
 
 
 @cache

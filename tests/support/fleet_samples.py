@@ -74,7 +74,7 @@ def broken_logs(folder: Path) -> dict[str, str]:
     deaf = [name for name in table.column_names if not name.startswith("wrench.")]
     pa_parquet.write_table(table.select(deaf), folder / "deaf.parquet")
     return {
-        "empty.parquet": "Parquet", "cut.parquet": "Parquet", "noise.parquet": "Parquet", "text.csv": "",
+        "empty.parquet": "empty", "cut.parquet": "Parquet", "noise.parquet": "Parquet", "text.csv": "",
         "notes.docx": "ending", "timeless.parquet": "time", "back.parquet": "increase", "short.parquet": "lasts",
         "deaf.parquet": "wrench",
         "gone.parquet": "does not exist",

@@ -94,7 +94,7 @@ def _joint(name: str, spring: Spring, body0: str, body1: str, place: Array, turn
         f'uniform token drive:{unit}:physics:type = "force"',
         f"float drive:{unit}:physics:stiffness = {stiffness:.9g}",
         f"float drive:{unit}:physics:damping = {damping:.9g}",
-        f"float drive:{unit}:physics:targetPosition = {target:.9g}",
+        f"float drive:{unit}:physics:targetPosition = {target + 0.0:.9g}",
     ]
     body = "".join(f"{line}\n" for line in lines)
     schemas = f'prepend apiSchemas = ["PhysicsDriveAPI:{unit}"]'
