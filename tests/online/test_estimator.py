@@ -197,7 +197,8 @@ def test_a_batch_results_hysteresis_and_delay_are_used(robot: RobotModel) -> Non
     assert plain.estimate("left").flags & Flag.PITCH_MEMORY, "and what is not told is seen"
     assert not plain.estimate("left").pitch.identified
     said = [row for row in plain.parameters if (row.foot, row.axis) == ("left", "pitch")]
-    assert said and all(row.verdict != "usable" for row in said)
+    assert said
+    assert all(row.verdict != "usable" for row in said)
     assert all("memory" in row.reason for row in said)
     assert not replay.estimate("left").flags & Flag.PITCH_MEMORY
 
