@@ -175,7 +175,7 @@ def _finished(problem: Problem, point: Point, limits: Array) -> ModelFit:
     linear = problem.linearised(point)
     scale = np.concatenate([np.ones(len(point.values)), point.shape])
     residuals = np.split(point.residuals, np.cumsum(problem.rows[:-1]))
-    durations = [len(r) * e.motion.period for e, r in zip(problem.prepared, residuals, strict=True)]
+    durations = [each.duration for each in problem.prepared]
     covariance, freedom = robust_covariance(linear, residuals, durations)
     lacks = lacking(linear, problem.prepared, durations)
     wide = np.concatenate([lacks * scale, np.ones(len(covariance) - len(scale))])
