@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from plantar.model_selection.data_sets import DataSet, StepColumns
+from plantar.model_selection.data_sets import DataSet, StepColumns, prepare_data_sets
 from plantar.model_selection.model_fit import fit_model
 from plantar.models import MODELS, BushMotion
 
@@ -100,3 +100,12 @@ def test_a_turn_between_two_samples_takes_nothing_off_the_slip_angle() -> None:
     fit = fit_model(MODELS["elastoplastic"], [shaken(seed) for seed in (1, 2)])
     assert fit.value("slip_angle") == pytest.approx(SLIP_ANGLE, rel=0.002)
     assert fit.value("slip_torque") == pytest.approx(SLIP_TORQUE, rel=0.002)
+
+
+def test_stances_take_the_rate_that_the_filter_leaves_and_states_that_of_the_path() -> None:
+    data = shaken(1)
+    (filtered,) = prepare_data_sets([data], cutoff=5.0)
+    assert filtered.every == 1 / (7 * 5.0 * PERIOD) // 1 > 1
+    assert len(filtered.path) == len(filtered.motion) == len(data.motion)
+    assert len(filtered.used) == len(filtered.motion.deflection[:: filtered.every])
+    assert filtered.duration == pytest.approx(PERIOD * data.used.sum(), rel=0.05)
