@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.optimize import brentq
 
 from plantar.model_selection.data_sets import DataSet, StepColumns, prepare_data_sets
 from plantar.model_selection.model_fit import fit_model
+from plantar.model_selection.selection import choose_model
 from plantar.models import MODELS, BushMotion
 
 PERIOD = 0.005
@@ -109,3 +112,18 @@ def test_stances_take_the_rate_that_the_filter_leaves_and_states_that_of_the_pat
     assert len(filtered.path) == len(filtered.motion) == len(data.motion)
     assert len(filtered.used) == len(filtered.motion.deflection[:: filtered.every])
     assert filtered.duration == pytest.approx(PERIOD * data.used.sum(), rel=0.05)
+
+
+@pytest.mark.parametrize(("least_gain", "searched"), [(0.5, False), (0.1, True)])
+def test_a_memory_that_could_not_help_enough_is_not_searched_for(least_gain: float, searched: bool) -> None:
+    sets = []
+    for seed in (1, 2, 3):
+        data, _ = walk(f"walk_{seed}", seed)
+        noise = np.random.default_rng(seed).normal(0, 0.05, len(data.torque))
+        sets.append(replace(data, torque=K * data.motion.deflection + C * data.motion.rate + noise))
+    models = [MODELS["kelvin_voigt"], MODELS["elastoplastic"]]
+    choice = choose_model(sets, models, least_gain=least_gain)
+    (memory,) = (score.fit for score in choice.ranking if score.model is models[1])
+    tried = models[1].candidates([each.motion for each in prepare_data_sets(sets, 5.0)])
+    assert choice.fit.model.name == "kelvin_voigt"
+    assert bool(np.isclose(tried, memory.shape, rtol=1e-12).any()) is not searched
