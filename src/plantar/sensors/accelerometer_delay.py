@@ -26,19 +26,19 @@ from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.notes import Note
 from plantar.robot.model import RobotModel
 from plantar.sensors.imu_filter import ImuFilter
-from plantar.sensors.tilt_error import CORRECTED, DERIVED, enough_of, lean_of, stance_leans, unit_quaternions
+from plantar.sensors.tilt_error import DERIVED, TOLD, enough_of, lean_of, stance_leans, unit_quaternions
 from plantar.signals.filters import differentiate, low_pass
+from plantar.signals.gyroscope_delay import LARGEST
 from plantar.signals.resampling import shifted, with_continuous_quaternions
 from plantar.signals.segments import runs
 
 SLOW = 0.15  # Hz: below it an attitude's wander leans more than any delay
 EDGE = 1.0  # s at both ends of a stance: the filters'
-RATE = CORRECTED  # 1/s and axis, of values that tell something new: half of what the band holds, since wander is red
+RATE = TOLD  # 1/s and axis, of values that tell something new: half of what the band holds: wander is red
 SURE = 3.0  # deviations
 ALIKE = 0.001  # s: standard deviation by which the filters of a device's two sensors differ
 EARLY_ENCODERS = 0.0025  # s: as late an orientation seems beside encoders that are read 5 ms early
 STRAY = 0.0005  # s: what encoders that are a millisecond off, or legs that are, make of it
-LARGEST = 0.01  # s: a device's own filter; later is a fault, and `sensor_delay` searches for it
 COLUMNS = 11  # the lean, and what goes with it
 ACCELEROMETER, ORIENTATION = 1, 2  # columns: what a late one of them makes of the lean
 # Of the columns' products, scaled to 1: one pace of sway does not tell scale and height apart.
@@ -202,7 +202,7 @@ def _leans(
     for run, lean, height in stance_leans(orientation, acceleration, feet, contacts, period, every):
         place = np.mean([foot.sole_position[run, :2] for foot in feet.values()], axis=0)
         none = np.zeros_like(place)
-        tilted, behind = (low_pass(each[run], period, CORRECTED, every=every) for each in (tilt, before))
+        tilted, behind = (low_pass(each[run], period, TOLD, every=every) for each in (tilt, before))
         turning = np.column_stack([-place[:, 1], place[:, 0]])
         # An IMU that leans in its mount takes a part of what rises for what goes to the side.
         aside = [np.outer(rising[run], side) for side in np.eye(2)]

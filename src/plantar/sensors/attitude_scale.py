@@ -21,7 +21,7 @@ from plantar.estimation.slow_drift import drift_basis
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Note
 from plantar.robot.model import Imu
-from plantar.sensors.tilt_error import CORRECTED, enough_of, lean_of, stance_leans, unit_quaternions
+from plantar.sensors.tilt_error import TOLD, enough_of, lean_of, stance_leans, unit_quaternions
 from plantar.signals.filters import low_pass
 
 ATTITUDE_SCALE = "attitude_scale"
@@ -33,8 +33,8 @@ EDGE = 1.0  # s, of each stance: the filter's
 WITHOUT_LEAN = np.array([[1.0, 0.0, 0.0], [-1.0, 1.0, 0.0], [0.0, 0.0, 1.0]])  # the tilt as the soles have it
 # Of the share, beside the tilt as the soles have it: less, and most of it is the attitude's wander.
 STAYS = 0.5
-KEPT = 8.0  # samples for each period of CORRECTED: all of it, and few enough for minutes at a kilohertz
-RATE = 1.0  # 1/s, of samples of the lean that tell something new: it is slower than CORRECTED
+KEPT = 8.0  # samples for each period of TOLD: all of it, and few enough for minutes at a kilohertz
+RATE = 1.0  # 1/s, of samples of the lean that tell something new: it is slower than TOLD
 
 
 @dataclass(frozen=True)
@@ -93,12 +93,12 @@ def log_attitude_scale(
         return AttitudeScale()
     unit, acceleration, period = unit_quaternions(orientation), log.linear_acceleration(imu.name), log.period
     found, every = AttitudeScale(), enough_of(period)
-    edge, thinned = round(EDGE / (every * period)), max(1, int(1 / (KEPT * CORRECTED * every * period)))
+    edge, thinned = round(EDGE / (every * period)), max(1, int(1 / (KEPT * TOLD * every * period)))
     step = thinned * every * period
     horizontal = rotation_from_quaternion(unit)[:, :2, 2]
     for run, lean, height in stance_leans(unit, acceleration, bushes, contacts, period, every):
         believed = horizontal[run]
-        tilt = low_pass(believed, period, CORRECTED, every=every)
+        tilt = low_pass(believed, period, TOLD, every=every)
         higher = lean_of(np.zeros_like(believed), believed, height, period, every)
         signals = np.stack([lean, tilt, higher], axis=2)[edge:-edge:thinned]  # (n, 2, 3)
         # What an attitude drifts by over seconds is no share of any tilt, but goes with slow ones for a while.

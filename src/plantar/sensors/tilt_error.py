@@ -34,8 +34,9 @@ EXPLAINED = 0.3  # share of the disagreement of attitude and gyroscope that show
 SURE = 6.0
 AXES = 2  # of the horizontal plane, in which the vertical leans
 CORRECTED = 3.0  # Hz, up to which the attitude is put right: as far as robots sway
+TOLD = 1.5  # Hz, up to which leans tell of sensors that are late or turned
 DERIVED = 5.0  # Hz: filter of what is differentiated twice
-# Samples of DERIVED's period: differences of such leave the band below CORRECTED as it is.
+# Samples of DERIVED's period: differences of such leave the band below TOLD as it is.
 KEPT_PER_PERIOD = 8.0
 SHORTEST_STANCE = 5.0  # s on the same feet
 PADDING = 2.0  # s
@@ -168,7 +169,7 @@ def put_right(
     from scipy.spatial.transform import Rotation  # costs start-up
 
     lean = np.full((len(orientation), 2), np.nan)
-    for run, found, _ in stance_leans(orientation, acceleration, bushes, contacts, period):
+    for run, found, _ in stance_leans(orientation, acceleration, bushes, contacts, period, band=CORRECTED):
         lean[run] = found
     finite = np.isfinite(orientation).all(axis=1)
     known = np.isfinite(lean).all(axis=1)
@@ -196,9 +197,10 @@ def stance_leans(
     contacts: Mapping[str, FootContact],
     period: float,
     every: int = 1,
+    band: float = TOLD,
 ) -> Iterator[tuple[slice, Array, float]]:
     """Long stances on the same feet, how far the believed vertical leans along the world's x and y, (n, 2) [rad], at
-    `every` nth sample, and the IMU's height [m].
+    `every` nth sample, and the IMU's height [m]; up to a `band` [Hz].
 
     Others as of `put_right`. Each stance has a zero of its own: the accelerometer's, the attitude's, the sole's.
     """
@@ -218,11 +220,14 @@ def stance_leans(
             if (run.stop - run.start) * period >= SHORTEST_STANCE:
                 place = np.mean([bush.sole_position[run] for bush in feet], axis=0)
                 height = -float(np.median(place[:, 2]))
-                yield run, lean_of(push[run], place[:, :2], height, period, every), height
+                yield run, lean_of(push[run], place[:, :2], height, period, every, band), height
 
 
-def lean_of(push: Array, place: Array, height: float, period: float, every: int = 1) -> Array:
-    """How far the believed vertical leans along x and y, (n, 2) [rad], over one stance, at `every` nth sample.
+def lean_of(
+    push: Array, place: Array, height: float, period: float, every: int = 1, band: float = TOLD
+) -> Array:
+    """How far the believed vertical leans along x and y, (n, 2) [rad], over one stance, at `every` nth sample, up to a
+    `band` [Hz].
 
     push: horizontal acceleration of the IMU in the believed world; place: of the sole from the IMU, both (n, 2), or
     several such beside each other; height: of the IMU [m].
@@ -233,6 +238,6 @@ def lean_of(push: Array, place: Array, height: float, period: float, every: int 
     padding = min(round(PADDING / period), len(left) - 1)
     mirrored = np.vstack([left[padding:0:-1], left, left[-2 : -padding - 2 : -1]])
     frequency = np.fft.rfftfreq(len(mirrored), period)
-    gain = 1 / (GRAVITY + height * (2 * np.pi * frequency) ** 2) / (1 + (frequency / CORRECTED) ** 8)
+    gain = 1 / (GRAVITY + height * (2 * np.pi * frequency) ** 2) / (1 + (frequency / band) ** 8)
     lean = np.fft.irfft(np.fft.rfft(mirrored, axis=0) * gain[:, None], len(mirrored), axis=0)
     return np.asarray(lean[padding : padding + len(left)])

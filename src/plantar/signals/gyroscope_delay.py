@@ -15,6 +15,7 @@ from plantar.signals.segments import complete, longest_run
 BAND = 8.0  # Hz, in which rates are compared
 EDGE, LEAST_EDGES = 0.5, 10  # s that a filter's ends take; how many of them a run must hold
 USUAL = 0.005  # s: an orientation's own filter; a later one is a fault, or follows the accelerometer
+LARGEST = 0.01  # s: the filter of a gyroscope, or an accelerometer, of its own; later is a fault
 LEAST = 0.0005  # s: less moves damping by less than its interval ever shows
 SURE = 3.0  # deviations
 
@@ -34,7 +35,7 @@ class GyroscopeDelay(NamedTuple):
 
 def of_a_filter(late: float, std: float) -> bool:
     """Whether a delay [s] is told from none, and a filter's: what follows the accelerometer makes a gyroscope early."""
-    return abs(late) > max(SURE * std, LEAST) and late > -USUAL
+    return abs(late) > max(SURE * std, LEAST) and -USUAL < late < LARGEST
 
 
 def log_gyroscope_delay(log: MotionLog, imu: str) -> GyroscopeDelay | None:
