@@ -111,6 +111,13 @@ def test_a_gyroscope_tells_of_its_accelerometer_where_they_agree(gyroscope: floa
     assert (found, std) == pytest.approx(expected)
 
 
+def test_an_accelerometer_goes_with_its_gyroscope_across_the_largest_delay() -> None:
+    """One millisecond each: 9.9 and 10.5 ms are 10.2 together, and one alone that late is a fault."""
+    told = (0.0105, 0.0005 * np.sqrt(3))
+    assert filter_delay(told, ImuFilter(0.0099, 0.0, True))[0] == pytest.approx(0.0102)
+    assert filter_delay(told, ImuFilter(0.0, 0.0, True))[0] == 0.0
+
+
 def test_an_accelerometer_read_earlier_is_told_with_its_interval(robot: RobotModel) -> None:
     """A lean of 4 ms times the tilt's rate, and as much again that is nobody's: one and a half new values a second."""
     products = np.zeros((11, 11))

@@ -103,7 +103,7 @@ def filter_delay(
     unless the two contradict each other. One whose logs disagree shows an orientation that follows the accelerometer.
     So does an accelerometer that is early, unless the gyroscope keeps to the orientation.
     """
-    late, std = told[0], float(np.hypot(told[1], STRAY))
+    late, std, largest = told[0], float(np.hypot(told[1], STRAY)), LARGEST
     if gyroscope is not None and not gyroscope.steady:
         return 0.0, std
     if gyroscope is not None and gyroscope.shown and std < np.inf:
@@ -111,7 +111,8 @@ def filter_delay(
         if abs(late - gyroscope.late) < SURE * float(np.hypot(std, usual)):
             share = usual**2 / (usual**2 + std**2)
             late, std = share * late + (1 - share) * gyroscope.late, std * float(np.sqrt(share))
-    if SURE * std < late < LARGEST:
+            largest = np.inf  # beside a gyroscope that is read on time it must not stay behind
+    if SURE * std < late < largest:
         return late, std
     early, unsure = behind[0], float(np.hypot(behind[1], STRAY))
     kept = gyroscope is not None and abs(gyroscope.late) + SURE * gyroscope.std < early / 2
