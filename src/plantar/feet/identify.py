@@ -92,8 +92,7 @@ def fit_prepared(
     )
     fitted = with_memory_of_others(feet)
     between = between_all(list(fitted.values()))
-    fitted = {foot: without_needless(one, between) for foot, one in fitted.items()}
-    found = over_cores(assess_foot, fitted.values(), [between] * len(fitted))
+    found = over_cores(lambda one: assess_foot(without_needless(one, between), between), fitted.values())
     ready = _merged(ready, {foot: one.ready for foot, one in fitted.items()})
     return feet_result(robot, ready, found, between)
 
