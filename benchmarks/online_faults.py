@@ -35,6 +35,7 @@ BEGIN, LAST = 12.0, 4.0  # s of the log
 SAID = (
     Flag.INPUT_MISSING | Flag.FROZEN | Flag.TIME_FAULT | Flag.NOT_STANDING | Flag.EDGE | Flag.SLIP | Flag.IMPACT
     | Flag.NEVER_LOADED | Flag.GROUND_CHANGED | Flag.CONTRADICTION | Flag.LATE_WRENCH
+    | Flag.LATE_IMU
 )  # fmt: skip
 AWAY = 1e-3  # rad: a deflection further from the faultless one is not yet itself again
 BLINK = 0.05  # s: a landing that counts a little later is no fault
@@ -120,6 +121,12 @@ def late(readings: Readings, ticks: slice) -> None:
     readings.wrench[ticks] = readings.wrench[ticks.start - 6 : ticks.stop - 6] if ticks.start >= 6 else 0.0
 
 
+def late_imu(readings: Readings, ticks: slice) -> None:
+    """Attitude and gyroscope that come 15 ms too late."""
+    for values in (readings.attitude, readings.rate):
+        values[ticks] = values[ticks.start - 3 : ticks.stop - 3] if ticks.start >= 3 else 0.0
+
+
 def dead(readings: Readings, ticks: slice) -> None:
     """A gyroscope that reads its noise alone."""
     size = readings.rate[ticks].shape
@@ -150,6 +157,7 @@ FAULTS: dict[str, Fault] = {
     "one wrench half": times("wrench", 0.5, (0,)),
     "spikes in one wrench": spiked,
     "wrenches 30 ms late": late,
+    "IMU 15 ms late": late_imu,
     "ankle roll encoder frozen": frozen("position", (-1,)),
     "ankle pitch encoder frozen": frozen("position", (-2,)),
     "knee encoder frozen": frozen("position", (-3,)),
@@ -230,7 +238,7 @@ def _whole(twin: Twin, preset: Preset, seed: int, logs: list[MotionLog], fault: 
     after, worst = 0.0, (True, 0.0, 0.0)
     for log in logs:
         readings = Readings.of(log, twin, after)
-        fault(readings, slice(0 if fault is not late else 6, len(log)))
+        fault(readings, slice(6 if fault in (late, late_imu) else 0, len(log)))
         worst = _merged(worst, _believed(twin, preset, readings.through(estimator)))
         after = readings.time[-1] + 1.0
     return worst

@@ -14,9 +14,9 @@ constexpr double ROW = 0.025;  // s
 constexpr double DAMPING_TRUTH = 20.0;
 
 RegressionPrior prior() {
-  return {{0.01, 0.1, 1.0, 600.0, 60.0, 4e4, 60.0},
+  return {{0.01, 0.1, 1.0, 600.0, 60.0, 4e4, 60.0, 0.1},
           {},
-          {6e4, 6e4, 600.0, 1e-9, 1e-9, 1e-12, 1e-9},
+          {6e4, 6e4, 600.0, 1e-9, 1e-9, 1e-12, 1e-9, 1e-9},
           0.0,
           1.0,
           0.0,

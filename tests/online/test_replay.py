@@ -91,7 +91,12 @@ def test_how_long_a_step_takes_is_told_in_microseconds() -> None:
 
 @pytest.mark.parametrize(
     ("flag", "word"),
-    [(Flag.PITCH_UNTESTED, "too small"), (Flag.PITCH_MEMORY, "memory"), (Flag.LATE_WRENCH, "delay")],
+    [
+        (Flag.PITCH_UNTESTED, "too small"),
+        (Flag.PITCH_MEMORY, "memory"),
+        (Flag.LATE_WRENCH, "delay"),
+        (Flag.LATE_IMU, "IMU"),
+    ],
 )
 def test_numbers_that_other_motions_change_are_weak(flag: Flag, word: str) -> None:
     replay = ended(flags=float(flag), pitch_stiffness=400.0, pitch_stiffness_half_width=1.0)

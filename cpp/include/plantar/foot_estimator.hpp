@@ -54,7 +54,8 @@ enum Flag : std::uint32_t {
   // Gyroscope and attitude turn differently, the feet do not carry the weight, or a torque follows no bush's
   // deflection.
   CONTRADICTION = 1 << 15,
-  LATE_WRENCH = 1 << 16  // torques follow deflections as if the force sensors' delay were not the one that was told
+  LATE_WRENCH = 1 << 16,  // torques follow deflections as if the force sensors' delay were not the one that was told
+  LATE_IMU = 1 << 17      // or as if the IMU were behind the encoders, or before them
 };
 
 // A parameter with its standard deviation and half of its 95 % interval (wider than 1.96 deviations while data are

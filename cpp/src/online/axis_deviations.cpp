@@ -1,7 +1,8 @@
-// How far an axis' values may be off, and by how much its torques are late: from groups that are left out, from the
-// rows' scatter, and from what the prior may be off by.
+// How far an axis' values may be off, and by how much its torques or its IMU are late: from groups that are left out,
+// from the rows' scatter, and from what the prior may be off by.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "online/axis_regression.hpp"
 
@@ -10,6 +11,10 @@ namespace plantar {
 namespace {
 
 constexpr double LEAST_LEFT = 1e-3;  // share of what is known that must stay when one group is left out
+// What the body's turning has beside the other columns, as squares: else it would look like a delay.
+constexpr double OVER_GYROSCOPE = 20.0;  // times the noise that the gyroscope brings to both
+constexpr double OVER_ANGLES = 8.0;      // times what the noise of angles would be as a rate's
+constexpr double OVER_ROUNDING = 1e-4;   // times the whole column: less where the joints stand
 
 void squares_of(const RootTriangle<UNKNOWNS>& root, double (&a)[UNKNOWNS][UNKNOWNS]) noexcept {
   for (int i = 0; i < UNKNOWNS; ++i)
@@ -95,22 +100,36 @@ void AxisRegression::find_deviations() noexcept {
 }
 
 // Weighted by how much each group has to say.
-void AxisRegression::find_lateness() noexcept {
+Untold AxisRegression::untold(Unknown column) const noexcept {
   double weights = 0.0, sum = 0.0, squares = 0.0;
   for (int g = 0; g < used_; ++g) {
     const auto& r = groups_[g].triangle.r;
-    weights += r[LATE][LATE] * r[LATE][LATE], sum += r[LATE][LATE] * r[LATE][UNKNOWNS];
+    weights += r[column][column] * r[column][column], sum += r[column][column] * r[column][UNKNOWNS];
   }
-  if (!(weights > 0.0)) return;
+  if (!(weights > 0.0)) return {};
   const double mean = sum / weights;
   for (int g = 0; g < used_; ++g) {
     const auto& r = groups_[g].triangle.r;
-    const double away = r[LATE][LATE] * (r[LATE][UNKNOWNS] - mean * r[LATE][LATE]);
+    const double away = r[column][column] * (r[column][UNKNOWNS] - mean * r[column][column]);
     squares += away * away;
   }
-  values_.late = mean / prior_.scale[LATE];
-  values_.late_grouped = std::sqrt(squares * used_ / (used_ - 1.0)) / weights / prior_.scale[LATE];
-  values_.late_white = noise_ * std::sqrt(together_ / COLOUR / weights) / prior_.scale[LATE];
+  const double scale = prior_.scale[column];
+  return {mean / scale, std::sqrt(squares * used_ / (used_ - 1.0)) / weights / scale,
+          noise_ * std::sqrt(together_ / COLOUR / weights) / scale};
+}
+
+// Whether the body turns otherwise than the feet bend, by more than noise.
+bool AxisRegression::turns() const noexcept {
+  double beside = 0.0, whole = 0.0;
+  for (int g = 0; g < used_; ++g) {
+    const auto& r = groups_[g].triangle.r;
+    for (int i = 0; i <= TURNED; ++i) whole += r[i][TURNED] * r[i][TURNED];
+    beside += r[TURNED][TURNED] * r[TURNED][TURNED];
+  }
+  const double *noise = total_.noise, scale = prior_.scale[TURNED], edge = std::numbers::pi / prior_.noise_time / scale;
+  const double gyroscope = (noise[OF_RATE] + noise[OF_RATE_AND_ELEMENT]) / (scale * scale);
+  const double angles = (noise[OF_ANGLE] + noise[OF_ANGLE_AND_ELEMENT]) * edge * edge / 3.0;
+  return beside > std::max({OVER_GYROSCOPE * gyroscope, OVER_ANGLES * angles, OVER_ROUNDING * whole});
 }
 
 }  // namespace plantar

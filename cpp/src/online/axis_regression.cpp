@@ -7,7 +7,6 @@ namespace plantar {
 
 namespace {
 
-constexpr double MOST_NOISE = 0.9;  // of a square: beyond, nothing of it is known
 constexpr int GROUPS_TO_WATCH = 6;
 constexpr double SETTLED = 0.1;   // deviation over stiffness, from which jumps are looked for
 constexpr double DRIFT = 3e-5;    // rad/s, of the attitude: a tenth of a degree in a minute
@@ -223,7 +222,7 @@ AxisRegression::Line AxisRegression::direction(int source, const Part& data) con
       along[SLIP_TORQUE] = prior_.element_slope * data.over(RATE_BY_ELEMENT, OF_RATE_AND_ELEMENT);
       [[fallthrough]];
     case OF_RATE:
-      along[DAMPING] = 1.0;
+      along[DAMPING] = along[TURNED] = 1.0;  // of the gyroscope
       break;
     case OF_LOAD:
       along[ASIDE] = 1.0, along[UNKNOWNS] = prior_.load_arm;
@@ -272,7 +271,7 @@ void AxisRegression::work() noexcept {
     changed_ = false, unsure_ = true;
   } else if (unsure_) {
     find_deviations();
-    if (used_ >= FEWEST_GROUPS) find_lateness();
+    if (used_ >= FEWEST_GROUPS) values_.late = untold(LATE), values_.turned = turns() ? untold(TURNED) : Untold{};
     unsure_ = false;
   } else if (fresh_) {
     solve();

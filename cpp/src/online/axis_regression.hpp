@@ -20,9 +20,10 @@ namespace plantar {
 
 // Columns of a row beside the offset's: what each unknown multiplies. The bush's centre is ASIDE of and ABOVE its
 // place, and higher the more it is loaded (COMPLIANCE). A torque that is later than was told lacks what it changes by
-// in that time (LATE): the values do not follow that, each group tells it beside values of its own.
-enum Unknown : int { STIFFNESS, DAMPING, SLIP_TORQUE, ASIDE, ABOVE, COMPLIANCE, LATE };
-constexpr int UNKNOWNS = 7;
+// in that time (LATE), a deflection what an IMU behind the encoders has yet to say of the body's turning (TURNED): the
+// values do not follow these, each group tells them beside values of its own.
+enum Unknown : int { STIFFNESS, DAMPING, SLIP_TORQUE, ASIDE, ABOVE, COMPLIANCE, LATE, TURNED };
+constexpr int UNKNOWNS = 8;
 // What each block has of its own: an offset, its drift, the zero of the yaw torque, which pitch turns into roll, and
 // where between its bounds the element was when the block began.
 enum Own : int { OFFSET, SLOPE, TWIST, BEGINNING };
@@ -48,6 +49,7 @@ constexpr double MEMORY = 2.0;          // fillings of each group that are remem
 constexpr double FIRST_BLOCK = 2.5;     // s with one offset, of a foot that stands, until groups say how they differ
 constexpr double BLOCK = 5.0;           // groups, from then on: in a short block the offset takes most of a slow motion
 constexpr double LONGEST_BLOCK = 10.0;  // s
+constexpr double MOST_NOISE = 0.9;      // of a square: beyond, nothing of it is known
 constexpr int FEWEST_ROWS = 8;          // of a block: with fewer its offset takes most of it
 
 struct RegressionRow {
@@ -70,6 +72,11 @@ struct RegressionPrior {
   double noise_time;  // rows' noise hangs together for so long [s]
 };
 
+// A column that the values do not follow: what it multiplies, as groups differ in it, and as the rows' noise has it.
+struct Untold {
+  double value = 0.0, grouped = 0.0, white = 0.0;
+};
+
 struct AxisValues {
   std::array<double, UNKNOWNS> value = {};
   // Deviations: by how much groups differ; what errors leave that hang together no longer than noise does, of which few
@@ -80,8 +87,7 @@ struct AxisValues {
   std::array<double, UNKNOWNS> moved = {};  // by the block that is open, of which no group has told yet how it differs
   double by_element = 0.0;                  // of the stiffness, by what was told of the element's torque
   double offset = 0.0;
-  double late = 0.0, late_grouped = 0.0,
-         late_white = 0.0;  // than was told, as groups tell it, each beside values of its own [s]
+  Untold late, turned;                      // than was told [s]; of the turning's rate, the IMU's delay times K [N·m·s/rad]
   std::array<double, UNKNOWNS> by_late = {};  // what a torque that is later by a second adds to each value
   int groups = 0;
 
@@ -146,7 +152,8 @@ class AxisRegression {
   void solve() noexcept;
   void find_moved() noexcept;
   void find_deviations() noexcept;
-  void find_lateness() noexcept;
+  bool turns() const noexcept;
+  Untold untold(Unknown column) const noexcept;
   void watch(const RegressionRow& row, double dt) noexcept;
   void end_probe() noexcept;
 

@@ -1,5 +1,5 @@
 // Whether the force sensors are late by the time that was told: else torques follow deflections otherwise at each
-// frequency. Slow motions do not show it.
+// frequency. Slow motions do not show it. Of the IMU the same, where the body turns otherwise than the feet bend.
 #pragma once
 
 #include <algorithm>
@@ -11,9 +11,13 @@ constexpr double LATENESS = 0.005;    // s that spoil a damping by tenths; or a 
 constexpr double SURE_OF_LATE = 2.0;  // half widths
 constexpr double NORMAL_HALF = 1.96;  // deviations
 
-// By how much torques are later than was told, weighted, and the weight: one over its half width's square.
+// By how much readings are later than was told, weighted, and the weight: one over its half width's square.
 struct Lateness {
   double sum = 0.0, weight = 0.0;  // [1/s], [1/s²]
+
+  static Lateness of(double value, double half) noexcept {
+    return half > 0.0 ? Lateness{value / (half * half), 1.0 / (half * half)} : Lateness{};
+  }
 
   Lateness& operator+=(const Lateness& other) noexcept {
     sum += other.sum, weight += other.weight;

@@ -36,6 +36,7 @@ struct FootEstimator::State {
   TurnWatch turn_watch;
   bool turns_differ = false;
   DelayWatch delay_watch;                    // of all feet together, for which one delay was told
+  DelayWatch imu_watch;                      // of the one IMU
   std::vector<DelayWatch> foot_delay_watch;  // of each alone
   std::vector<std::vector<ChainStep>> steps;
   std::vector<FootTracker> feet;

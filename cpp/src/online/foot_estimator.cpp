@@ -154,16 +154,18 @@ void FootEstimator::State::step(const Reading& reading) noexcept {
   else
     slip.restart();
   const bool contradiction = weight_differs(total) || turns_differ;
-  Lateness all;
-  for (const FootTracker& foot : feet) all += foot.lateness();
+  Lateness all, imu;
+  for (const FootTracker& foot : feet) all += foot.lateness(), imu += foot.imu_lateness();
   const bool all_late = delay_watch.late(all, model.wrench_delay_std, period);
+  const bool late_imu = imu_watch.late(imu, 0.0, period);
   for (std::size_t f = 0; f < feet.size(); ++f) {
     if (bad[f]) {
       feet[f].miss(bad[f]);
     } else {
       const bool begun = known && !was_bad[f] && ticks > FIRST_TICKS;
       const bool late = foot_delay_watch[f].late(feet[f].lateness(), model.wrench_delay_std, period) || all_late;
-      feet[f].learn(motion[f], total - feet[f].load(), {slips, contradiction, late, encoder_doubtful(f)}, begun, time, dt, period);
+      feet[f].learn(motion[f], total - feet[f].load(), {slips, contradiction, late, late_imu, encoder_doubtful(f)},
+                    begun, time, dt, period);
     }
     was_bad[f] = bad[f] != 0;
   }

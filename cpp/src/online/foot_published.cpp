@@ -34,8 +34,9 @@ void FootTracker::publish(int axis) noexcept {
   // A wrench that is late by more than it was told to be takes K·delay off the damping and adds C·ω²·delay to K; where
   // an element does not slip, it is as stiff as K and more.
   // Which of a spring's torques and those of an element that hardly slips is late, rows do not say.
-  const double late_half = std::max(quantile * found.late_grouped, NORMAL * found.late_white);
-  const double surely = has_element(*foot_, axis) ? 0.0 : std::max(std::abs(found.late) - late_half, 0.0);
+  const auto half_of = [&](const Untold& one) { return std::max(quantile * one.grouped, NORMAL * one.white); };
+  const double late_half = half_of(found.late), turned_half = half_of(found.turned);
+  const double surely = has_element(*foot_, axis) ? 0.0 : std::max(std::abs(found.late.value) - late_half, 0.0);
   const double late = std::hypot(delay_std_, SKEW * period_, surely);
   out.stiffness = parameter(STIFFNESS, std::hypot(gain_std_ * k, late * found.by_late[STIFFNESS]));
   out.damping = parameter(DAMPING, std::hypot(gain_std_ * c, late * found.by_late[DAMPING]));
@@ -52,9 +53,11 @@ void FootTracker::publish(int axis) noexcept {
                                                 : foot_->linear[axis] || memories_[axis].excluded();
   // A memory that is not modelled delays torques, too.
   const bool modelled = has_element(*foot_, axis) || foot_->linear[axis] || memories_[axis].excluded();
-  late_[axis] = {};
-  if (modelled && !memories_[axis].seen() && found.groups >= FEWEST_GROUPS && late_half > 0.0)
-    late_[axis] = {found.late / (late_half * late_half), 1.0 / (late_half * late_half)};
+  const bool shows = modelled && !memories_[axis].seen() && found.groups >= FEWEST_GROUPS;
+  late_[axis] = shows ? Lateness::of(found.late.value, late_half) : Lateness{};
+  // Where an element does not slip, more torque hangs on the angle: there the IMU is later than by this at least.
+  const double stiffest = k + (has_element(*foot_, axis) ? found.value[SLIP_TORQUE] / slip_angle_[axis] : 0.0);
+  late_imu_[axis] = shows && sure ? Lateness::of(found.turned.value / stiffest, turned_half / stiffest) : Lateness{};
   out.identified = sure && tested && !memories_[axis].seen() && !told_late_;
   const auto tell = [this](std::uint32_t flag, bool holds) {
     estimate_.flags = holds ? estimate_.flags | flag : estimate_.flags & ~flag;

@@ -27,10 +27,18 @@ void FootTracker::filter(const FootKinematics& motion, double time, double dt, d
   for (int i = 0; i < 5; ++i) mean[i] = 0.5 * (now[i] + before_[i]);
   for (int a = 0; a < 2; ++a) mean[5 + a] = dt > 0.0 ? (now[3 + a] - before_[3 + a]) / dt : 0.0;
   before_ = now;
+  double turning[2];
+  for (int a = 0; a < 2; ++a) {
+    turning[a] = 0.5 * (motion.turning[a] + turning_before_[a]);
+    turning_before_[a] = motion.turning[a];
+  }
   if (period <= 0.0) return;
   const double *angle = motion.mean_angle, *rate = motion.mean_rate;
-  std::array<double, 6> angles = {angle[0], angle[1], rate[0], rate[1], 0.0, 0.0};
-  for (int a = 0; a < 2; ++a) angles[4 + a] = smooth_[a].pass(angle[a], rate[a], dt);
+  std::array<double, 8> angles = {angle[0], angle[1], rate[0], rate[1]};
+  for (int a = 0; a < 2; ++a) {
+    angles[4 + a] = smooth_[a].pass(angle[a], rate[a], dt);
+    angles[6 + a] = turning[a];
+  }
   const bool reaches = angles_.pass(time, angles, delay_, angles) && forces_.pass(time, mean, -delay_, forces);
   if (!reaches) return;
   follow_elements(angles.data() + 4, angles.data() + 2, time, dt);
@@ -59,12 +67,14 @@ void FootTracker::filter(const FootKinematics& motion, double time, double dt, d
                                -std::sin(angles[0]),
                                angles[0],
                                angles[2],
+                               angles[6],
                                element_[0].state(),
                                element_[0].gap(),
                                forces[3],
                                forces[5],
                                angles[1],
                                angles[3],
+                               angles[7],
                                element_[1].state(),
                                element_[1].gap(),
                                forces[4],
@@ -103,7 +113,8 @@ void FootTracker::give(const HeldRow& row) noexcept {
     const double across = a == 0 ? c[FORCE_X] : -c[FORCE_Y], loaded = a == 0 ? c[LOAD_X] : -c[LOAD_Y];
     const bool known = has_element(*foot_, a), sticks = std::abs(own[ELEMENT]) < HARDLY_SLIPS * c[ONE];
     RegressionRow line = {{c[ONE], c[TIME], a == 1 ? c[TURN] : 0.0, own[GAP]},
-                          {own[ANGLE], own[ANGLE_RATE], own[ELEMENT], c[LOAD], across, loaded, -own[TORQUE_RATE]},
+                          {own[ANGLE], own[ANGLE_RATE], own[ELEMENT], c[LOAD], across, loaded, -own[TORQUE_RATE],
+                           own[TURNING]},
                           own[TORQUE],
                           {0.0, 0.0, 0.0, 0.0, noise_.of_force[0], noise_.of_force[1 + a]}};
     line.noise[sticks ? OF_ANGLE_AND_ELEMENT : OF_ANGLE] = noise_.of_angle[a];

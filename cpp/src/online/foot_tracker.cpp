@@ -18,7 +18,7 @@ constexpr double USUAL_RATE = 0.1;
 constexpr double USUAL_SLOPE = 0.1;  // horizontal force over weight
 constexpr double SLOWEST = 1.0;      // s: damping over stiffness before any data
 constexpr double TWIST_ZERO = 2e-3;  // m, times the weight: zero of a yaw torque
-constexpr double NEVER = 1e-9;       // s: the values follow the delay that was told
+constexpr double NEVER = 1e-9;       // s: the values follow the delays that were told
 constexpr double STEEPEST = 0.35;    // rad: no sole lies so on a ground that a robot stands on
 constexpr double FASTEST = 20.0;     // rad/s: no bush is bent so fast
 constexpr double CHANGE_TOLD = 5.0;  // s for which the flag of a change stands
@@ -37,7 +37,8 @@ RegressionPrior prior_of(const EstimatorModel& model, const FootModel& foot, int
   const bool known = has_element(foot, axis);
   const double torque_std = known && foot.slip_torque_std[axis] > 0.0 ? foot.slip_torque_std[axis] : w;
   RegressionPrior prior;
-  prior.scale = {USUAL_ANGLE, USUAL_RATE, 1.0, w, USUAL_SLOPE * w, USUAL_SLOPE * w * w, USUAL_SLOPE * w};
+  prior.scale = {USUAL_ANGLE,     USUAL_RATE, 1.0, w, USUAL_SLOPE * w, USUAL_SLOPE * w * w,
+                 USUAL_SLOPE * w, USUAL_RATE};
   prior.mean = {};
   if (known) prior.mean[SLIP_TORQUE] = foot.slip_torque[axis];
   prior.spread = {STIFFEST * w,
@@ -46,7 +47,8 @@ RegressionPrior prior_of(const EstimatorModel& model, const FootModel& foot, int
                   std::max(foot.place_std[0], 1e-9),
                   std::max(foot.place_std[1], 1e-9),
                   std::max(foot.compliance_std, 1e-9 / w),
-                  NEVER};
+                  NEVER,
+                  NEVER * w};
   prior.twist = axis == 1 ? TWIST_ZERO * w : 0.0;
   prior.element_slope = slip > 0.0 ? 1.0 / slip : 0.0;
   prior.element_share = smooth_share(model.cutoff), prior.element_lag = smooth_lag(model.cutoff);
@@ -163,7 +165,9 @@ void FootTracker::learn(const FootKinematics& motion, double others, Doubt doubt
   if (slides) flags |= SLIP;
   if (struck) flags |= IMPACT;
   if (doubt.contradiction) flags |= CONTRADICTION;
-  if ((told_late_ = doubt.late)) flags |= LATE_WRENCH;
+  told_late_ = doubt.late || doubt.late_imu;
+  if (doubt.late) flags |= LATE_WRENCH;
+  if (doubt.late_imu) flags |= LATE_IMU;
   if (told_change_ > 0.0) flags |= GROUND_CHANGED, told_change_ -= dt;
   estimate_.flags = flags, estimate_.contact = contact;
   if (!fresh) {

@@ -49,7 +49,7 @@ class FootTracker {
   struct Doubt {
     SlipGate::Verdict slips;
     bool contradiction;
-    bool late;
+    bool late, late_imu;
     bool still;  // an encoder that may be frozen
   };
   // Contact, and what this tick teaches. others: load of the other feet; fresh: the tick before was read as well, `dt`
@@ -70,22 +70,20 @@ class FootTracker {
 
   double load() const noexcept { return estimate_.load; }
   ContactState contact() const noexcept { return gate_.contact(); }
-  // Of both axes' torques behind their deflections.
-  Lateness lateness() const noexcept {
-    Lateness both = late_[0];
-    return both += late_[1];
-  }
+  // Of both axes' torques behind their deflections, and of the IMU behind the encoders.
+  Lateness lateness() const noexcept { return Lateness(late_[0]) += late_[1]; }
+  Lateness imu_lateness() const noexcept { return Lateness(late_imu_[0]) += late_imu_[1]; }
   // Whether a swing has shown the force sensor's zero.
   bool zero_known() const noexcept { return zero_.known(); }
   const FootEstimate& estimate() const noexcept { return estimate_; }
 
  private:
-  static constexpr int CHANNELS = 20;
+  static constexpr int CHANNELS = 22;
   static constexpr int HELD = 32;  // rows that wait until the foot has not lifted behind them
   // What the filter passes: constant, time, load, horizontal forces, the load times each, what turns with the pitch;
   // then of each axis.
   enum Channel : int { ONE, TIME, LOAD, FORCE_X, FORCE_Y, LOAD_X, LOAD_Y, TURN, FIRST_AXIS };
-  enum AxisChannel : int { ANGLE, ANGLE_RATE, ELEMENT, GAP, TORQUE, TORQUE_RATE, AXIS_CHANNELS };
+  enum AxisChannel : int { ANGLE, ANGLE_RATE, TURNING, ELEMENT, GAP, TORQUE, TORQUE_RATE, AXIS_CHANNELS };
   struct HeldRow {
     double time, dt;
     double channels[CHANNELS];
@@ -114,7 +112,7 @@ class FootTracker {
   Shaking shaking_;
   EdgeWatch edge_;
   CausalFilter<CHANNELS> filter_;
-  DelayLine<6> angles_;  // of both axes: angles, rates, angles without noise
+  DelayLine<8> angles_;  // of both axes: angles, rates, angles without noise, the gyroscope's part of the rates
   std::array<SmoothAngle, 2> smooth_;
   DelayLine<7> forces_;  // load, horizontal forces, both torques, their rates
   std::array<AxisRegression, 2> axes_;
@@ -123,9 +121,10 @@ class FootTracker {
   double slip_angle_[2];                 // of the model's element, or of the one that a memory is looked for with
   std::array<double, 6> raw_ = {}, wrench_ = {};
   std::array<double, 5> before_ = {};     // load, force x, y, both torques, of the last tick
+  double turning_before_[2] = {};
   ElementState element_[2], hanging_[2];  // now, and in the air
   double opened_[2] = {};                 // the elements' gaps when the offset of the rows began
-  Lateness late_[2];                      // as its own axes show it
+  Lateness late_[2], late_imu_[2];        // as its own axes show it
   bool told_late_ = false;                // as both of them do together, or all feet's
   bool flat_ = false;                     // the centre of pressure is inside the sole
   bool stood_ = false;                    // it stood at the last tick

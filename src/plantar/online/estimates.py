@@ -37,6 +37,7 @@ class Flag(IntFlag):
     ROLL_UNTESTED = 16384
     CONTRADICTION = 32768
     LATE_WRENCH = 65536
+    LATE_IMU = 131072
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,10 @@ UNTESTED = (Flag.PITCH_UNTESTED, Flag.ROLL_UNTESTED)
 SMALL = "too small motions to show whether the rubber has a memory: larger ones may have less stiffness"
 REST = "too small motions to test the slip torque that was told, on which this stiffness rests"
 FARTHER = "bend the foot beyond its slip angle to either side, as walking does"
-LATE = "torques follow deflections as if the force sensors' delay were not the one that was told"
+LATE = {
+    Flag.LATE_WRENCH: "torques follow deflections as if the force sensors' delay were not the one that was told",
+    Flag.LATE_IMU: "torques follow deflections as if the IMU were behind the encoders, or before them",
+}
 BELOW = "below zero, which no bush is: force sensors that are late look like this"
 TELL_DELAY = "tell how late they are (--wrench-delay), or let identify feet find it and give its result"
 IDENTIFY = "run identify feet on logs of this robot, and give its result"
@@ -73,8 +76,9 @@ class Replay:
                 stiffness = _parameter(foot, axis, "stiffness", STIFFNESS_UNIT[axis], found.stiffness)
                 damping = _parameter(foot, axis, "damping", DAMPING_UNIT[axis], found.damping)
                 modelled, small = bool(found.slip_torque.std), bool(last.flags & untested)
-                if last.flags & Flag.LATE_WRENCH:
-                    stiffness, damping = (_weakened(row, LATE, IDENTIFY) for row in (stiffness, damping))
+                late = [reason for flag, reason in LATE.items() if last.flags & flag]
+                if late:
+                    stiffness, damping = (_weakened(row, late[0], IDENTIFY) for row in (stiffness, damping))
                 elif small and modelled:
                     stiffness = _weakened(stiffness, REST, FARTHER)
                 elif small or last.flags & memory:
