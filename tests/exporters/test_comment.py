@@ -39,6 +39,9 @@ def test_every_spring_is_told_with_its_units() -> None:
     without = head(RESULT, [FOOT], "MuJoCo", (), with_offset=False)
     assert not any("offset =" in line for line in without)
     assert without[-1].startswith("Each spring rests at 0:")
+    jointless = head(RESULT, [FOOT], "Drake's contact", (), with_offset=False, joints=False)
+    assert jointless[3].startswith("left foot, pitch about y, toes down > 0: K = 434 N.m/rad")
+    assert not any("BUSH" in line for line in jointless)
 
 
 @pytest.mark.parametrize(("axis", "rest"), [("z", -3.0 / 2.5e5), ("pitch", -0.02), ("roll", 0.02)])

@@ -90,6 +90,21 @@ def test_yaml_keeps_every_number(feet: dict[str, Any], tmp_path: Path) -> None:
     np.testing.assert_allclose(left["bush_rotation"], bush_rotation("left"), atol=1e-12)
 
 
+def test_yaml_says_how_its_terms_add_up(feet: dict[str, Any], tmp_path: Path) -> None:
+    export(feet, "yaml", tmp_path / "plain.yaml")
+    assert (
+        "# torque = stiffness x deflection + damping x rate + offset;"
+        in (tmp_path / "plain.yaml").read_text()
+    )
+    for name, value in (("slip_torque", 5.0), ("slip_angle", 0.01)):
+        row = {"foot": "left", "axis": "pitch", "name": name, "value": value, "std": 0.01, "unit": ""}
+        feet["parameters"].append(row | {"interval95": None, "verdict": "usable"})
+    export(feet, "yaml", tmp_path / "slips.yaml")
+    text = (tmp_path / "slips.yaml").read_text()
+    assert "+ what the bush model makes of slip_angle, slip_torque + offset;" in text
+    assert "slip_torque x e / slip_angle, where e follows the deflection" in text
+
+
 def test_usd_counts_angles_in_degrees(feet: dict[str, Any], tmp_path: Path) -> None:
     export(feet, "usd", tmp_path / "f.usda", with_offset=True)
     text = (tmp_path / "f.usda").read_text()

@@ -30,4 +30,4 @@ def write(job: Job, notes: Notes) -> str:
             body += f"  damping{letter}: {np.mean([s.damping for s in springs]):.9g}\n"
         else:
             notes.info("export_rigid", "z is not identified: springT and dampingT are left to the customizer")
-    return "".join(f"# {line}\n" for line in job.head("Choreonoid", notes, rests=False)) + body
+    return "".join(f"# {line}\n" for line in job.head("Choreonoid", notes, rests=False, joints=False)) + body

@@ -24,8 +24,9 @@ def head(
     notes: Iterable[Note],
     *,
     with_offset: bool,
+    joints: bool = True,
 ) -> list[str]:
-    """Lines of plain text, without comment marks."""
+    """Lines of plain text, without comment marks; `joints`: the target has a joint for each axis, which is named."""
     lines = [
         f"Feet of '{result.get('robot', 'robot')}', identified by plantar {result.get('plantar', '')},",
         f"for {target}.",
@@ -33,7 +34,8 @@ def head(
     for foot in feet:
         for spring in foot.springs:
             k, c, o = spring.units
-            line = f"{foot.joint(spring.axis)} ({foot.name} foot, {MOTION[spring.axis]}): "
+            axis = f"{foot.name} foot, {MOTION[spring.axis]}"
+            line = f"{foot.joint(spring.axis)} ({axis}): " if joints else f"{axis}: "
             line += f"K = {spring.stiffness:.6g} {k}, C = {spring.damping:.6g} {c}"
             if spring.slip is not None:
                 line += f", slips at {spring.slip.torque:.4g} {o} after {spring.slip.angle:.4g} rad"

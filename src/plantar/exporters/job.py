@@ -42,10 +42,10 @@ class Job:
     remarks: tuple[Note, ...]  # what holds for every target, for the comment at the file's head
     stance: Stance = USUAL
 
-    def head(self, target: str, notes: Notes, *, rests: bool = True) -> list[str]:
+    def head(self, target: str, notes: Notes, *, rests: bool = True, joints: bool = True) -> list[str]:
         """`comment.head` of this export; not `rests`: of a target whose springs have no rest position."""
-        offset = self.with_offset and rests
-        return head(self.result, self.feet, target, (*self.remarks, *notes), with_offset=offset)
+        offset, said = self.with_offset and rests, (*self.remarks, *notes)
+        return head(self.result, self.feet, target, said, with_offset=offset, joints=joints)
 
 
 def asked(module: object, target: str, hysteresis: bool, swing: float | None, stance: Stance) -> bool:

@@ -87,4 +87,7 @@ def write(job: Job, notes: Notes) -> str:
                 float(np.mean([getattr(spring, attribute) for spring in found])) if found else default
             )
         body += f"{key}: [{', '.join(f'{value:.9g}' for value in values)}]\n"
-    return "".join(f"# {line}\n" for line in job.head("the Kinetics Observer", notes, rests=False)) + body
+    return (
+        "".join(f"# {line}\n" for line in job.head("the Kinetics Observer", notes, rests=False, joints=False))
+        + body
+    )

@@ -12,6 +12,8 @@ if TYPE_CHECKING:
     from plantar.exporters.job import Job
 
 KEPT = ("value", "unit", "std", "interval95", "verdict")
+# The model of all with a slip that other targets hold; iwan and bouc_wen bend into the same two numbers.
+ELASTOPLASTIC = "an elastoplastic slip is slip_torque x e / slip_angle, where e follows the deflection within +-slip_angle;"
 
 
 def write(job: Job, notes: Notes) -> str:
@@ -34,10 +36,13 @@ def write(job: Job, notes: Notes) -> str:
             "bush_rotation": [[float(value) for value in row] for row in foot.rotation],
             "axes": axes,
         }
-    lines = job.head("any reader", notes)
-    lines.append(
-        "torque = stiffness x deflection + damping x rate + offset; R_ankle_sole = Ry(pitch) Rx(roll);"
-    )
+    lines = job.head("any reader", notes, joints=False)
+    own = sorted({str(row["name"]) for row in rows} - {"stiffness", "damping"})
+    beside = f" + what the bush model makes of {', '.join(own)}" if own else ""
+    lines.append(f"torque = stiffness x deflection + damping x rate{beside} + offset;")
+    if "slip_torque" in own:
+        lines.append(ELASTOPLASTIC)
+    lines.append("R_ankle_sole = Ry(pitch) Rx(roll);")
     lines.append(
         "force.z = stiffness x z + damping x rate, z positive when compressed. Lengths in m, ankle's frame."
     )

@@ -70,7 +70,7 @@ def write(job: Job, notes: Notes) -> str:
              "measured": False},
         ],
     }  # fmt: skip
-    lines = job.head("training", notes)
+    lines = job.head("training", notes, joints=False)
     lines.append("parameters are jointly normal: mean, std and, in their order, correlation.")
     body = yaml.safe_dump(document, sort_keys=False, default_flow_style=None, width=120)
     return "".join(f"# {line}\n" for line in lines) + body

@@ -57,7 +57,7 @@ def write(job: Job, notes: Notes) -> str:
     text = "load it without URDF_MERGE_FIXED_LINKS; the ground keeps Bullet's own hard contact; steps of 0.5 to 4 ms "
     text += "hold K"
     notes.info("export_bullet", text)
-    return to_text(tree.root, job.head("Bullet's contact", notes))
+    return to_text(tree.root, job.head("Bullet's contact", notes, joints=False))
 
 
 def _taken_out(tree: UrdfTree, foot: FootBush) -> None:

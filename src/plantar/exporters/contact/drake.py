@@ -52,7 +52,7 @@ def write(job: Job, notes: Notes) -> str:
     text = f"give the ground drake:point_contact_stiffness of {GROUND:g} N/m or more, and no dissipation: else it is a "
     text += "second spring; a discrete plant of 4 ms or less holds these feet"
     notes.info("export_ground", text)
-    return to_text(tree.root, job.head("Drake's contact", notes))
+    return to_text(tree.root, job.head("Drake's contact", notes, joints=False))
 
 
 def _silenced(tree: SdfTree, foot: FootBush, notes: Notes) -> float:

@@ -52,7 +52,7 @@ def write(job: Job, notes: Notes) -> str:
     text = "the ground's own material stays rigid; PhysX' solver TGS takes 5 to 6 % off K, PGS at most 2 % "
     text += "(physxScene:solverType)"
     notes.info("export_physx", text)
-    return text_of(layer, job.head("PhysX' contact", notes), job.model, job.out)
+    return text_of(layer, job.head("PhysX' contact", notes, joints=False), job.model, job.out)
 
 
 def _mass(stage: Any, model: Path) -> float:

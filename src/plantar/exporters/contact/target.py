@@ -60,7 +60,7 @@ def write(job: Job, notes: Notes) -> str:
     relocate(root, job.out)
     text = "solref holds for this model's masses: after changing them, or the foot's body, export again"
     notes.info("export_masses", text)
-    return to_text(root, job.head("MuJoCo's contact", notes))
+    return to_text(root, job.head("MuJoCo's contact", notes, joints=False))
 
 
 def _named(foot: FootBush) -> str:
