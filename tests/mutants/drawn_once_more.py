@@ -137,8 +137,8 @@ DRAWN_ONCE_MORE = (
     Mutant(
         "model_selection/data_sets.py",
         "samples for seconds",
-        "self.every * self.motion.period",
-        "self.every * 1.0",
+        "return len(self.response) * self.every * self.motion.period",
+        "return len(self.response) * self.every * 1.0",
     ),
     Mutant(
         "sensors/accelerometer_delay.py",
