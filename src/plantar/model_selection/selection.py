@@ -27,7 +27,7 @@ LEAST_GAIN = 0.10  # of the held-out rms error
 TELLING_GAIN = 0.3
 TOLD = 4.0  # standard deviations from zero, of a term that a model adds to a simpler one
 # Times the best model's squares, at its best candidate: such a model is not refined. Nor is one, where only a large
-# gain is clear, whose best candidate gains less than is even mentioned: candidates lack little of what it shows.
+# gain is clear, whose best candidate gains less than is mentioned: candidates lack little of what such elements show.
 HOPELESS = 6.0
 
 
