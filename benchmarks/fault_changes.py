@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from fault_case import Case, Change, Columns, Table, chosen
-from plantar.conventions import Array, rotation_from_quaternion
+from plantar.conventions import Array
 
 
 def altered(columns: Columns, values: Callable[[Array], Array]) -> Change:
@@ -165,15 +165,16 @@ def every_nth_held(columns: Columns, stride: int) -> Change:
 
 def low_passed(columns: Columns, cutoff: float, rate: float = 200.0) -> Change:
     """A sensor's own filter of first order [Hz], which makes it late."""
+    return altered(columns, lambda values: first_order(values, 2 * np.pi * cutoff / rate))
 
-    def smooth(values: Array) -> Array:
-        gain, state, found = 1 - np.exp(-2 * np.pi * cutoff / rate), values[0], np.empty_like(values)
-        for place, value in enumerate(values):
-            state += gain * (value - state)
-            found[place] = state
-        return found
 
-    return altered(columns, smooth)
+def first_order(values: Array, step: float) -> Array:
+    """Values (N, ...) behind a filter of first order, with this many of its time constants in a sample."""
+    gain, state, found = 1 - np.exp(-step), values[0], np.empty_like(values)
+    for place, value in enumerate(values):
+        state = state + gain * (value - state)
+        found[place] = state
+    return found
 
 
 def dead_below(columns: Columns, share: float) -> Change:
@@ -185,15 +186,36 @@ def dead_below(columns: Columns, share: float) -> Change:
 
 def with_hysteresis(columns: Columns, share: float) -> Change:
     """A sensor that follows only when it is off by a share of its largest reading."""
+    return altered(columns, lambda values: _behind(values, share * float(np.abs(values).max())))
 
-    def behind(values: Array) -> Array:
-        width, state, found = share * float(np.abs(values).max()), values[0], np.empty_like(values)
-        for place, value in enumerate(values):
-            state = min(max(state, value - width), value + width)
-            found[place] = state
-        return found
 
-    return altered(columns, behind)
+def _behind(values: Array, width: float) -> Array:
+    """What follows values (N,) only when it is off by a width."""
+    state, found = values[0], np.empty_like(values)
+    for place, value in enumerate(values):
+        state = min(max(state, value - width), value + width)
+        found[place] = state
+    return found
+
+
+def with_play(positions: Columns, play: float) -> Change:
+    """Encoders [rad] in a drive that has play; their velocities are those of what is read."""
+
+    def change(case: Case) -> Case:
+        names = chosen(case, positions)
+
+        def each(table: Table) -> Table:
+            table = dict(table)
+            for name in names:
+                table[name] = _behind(table[name], play / 2)
+                stands = np.diff(table[name], prepend=np.nan) == 0
+                velocity = name.replace(".position", ".velocity")
+                table[velocity] = np.where(stands, 0.0, table[velocity])
+            return table
+
+        return case.with_tables(each)
+
+    return change
 
 
 def timed(new: Callable[[Array], Array]) -> Change:
@@ -215,33 +237,6 @@ def drifting_clock(columns: Columns, rate: float) -> Change:
         return case.with_tables(each)
 
     return change
-
-
-def reoriented(new: Callable[[Array], Array]) -> Change:
-    """Other quaternions w x y z (N, 4)."""
-
-    def change(case: Case) -> Case:
-        names = [f"imu.{case.robot['imu']['name']}.orientation.{axis}" for axis in "wxyz"]
-        return case.with_tables(
-            lambda table: {**table, **dict(zip(names, new(np.column_stack([table[n] for n in names])).T, strict=True))}
-        )  # fmt: skip
-
-    return change
-
-
-def gyroscope_in_world(case: Case) -> Case:
-    """Angular velocity in the world's axes instead of the IMU's."""
-    begin = f"imu.{case.robot['imu']['name']}"
-    names = [f"{begin}.angular_velocity.{axis}" for axis in "xyz"]
-
-    def each(table: Table) -> Table:
-        turns = rotation_from_quaternion(
-            np.column_stack([table[f"{begin}.orientation.{axis}"] for axis in "wxyz"])
-        )
-        rates = np.einsum("nij,nj->ni", turns, np.column_stack([table[n] for n in names]))
-        return {**table, **dict(zip(names, rates.T, strict=True))}
-
-    return case.with_tables(each)
 
 
 def shuffled(columns: Columns) -> Change:

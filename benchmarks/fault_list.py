@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from fault_case import Case, Change, Fault, encoders
-from fault_changes import one_after_another, removed, reoriented, rows, thinned, timed
+from fault_attitudes import reoriented, turned_heading
+from fault_case import Case, Fault, encoders
+from fault_changes import one_after_another, removed, rows, thinned, timed
 from fault_logs import OF_LOGS
 from fault_robots import OF_ROBOTS
 
@@ -45,17 +46,6 @@ def with_strangers(case: Case) -> Case:
         return {**table, "joint.finger.position": np.sin(time), "imu.head.angular_velocity.x": np.cos(time)}
 
     return case.with_tables(each)
-
-
-def turned_heading(degrees: float) -> Change:
-    """Another heading of the world: every quaternion turned about its vertical."""
-    w, z = np.cos(np.radians(degrees) / 2), np.sin(np.radians(degrees) / 2)
-
-    def turned(q: np.ndarray) -> np.ndarray:
-        a, b, c, d = q.T
-        return np.column_stack([w * a - z * d, w * b - z * c, w * c + z * b, w * d + z * a])
-
-    return reoriented(turned)
 
 
 HEALTHY = (

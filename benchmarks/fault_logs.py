@@ -6,6 +6,7 @@ from itertools import product
 
 import numpy as np
 
+from fault_attitudes import gyroscope_in_world, pulled_to_accelerometer, reoriented
 from fault_case import Columns, Fault, encoder, encoders, imu, wrench
 from fault_changes import (
     clipped,
@@ -14,7 +15,6 @@ from fault_changes import (
     dropouts,
     every_nth_held,
     exchanged,
-    gyroscope_in_world,
     in_one_log,
     late,
     low_passed,
@@ -22,7 +22,6 @@ from fault_changes import (
     overwritten,
     removed,
     renamed,
-    reoriented,
     rows,
     scaled,
     shifted,
@@ -32,6 +31,7 @@ from fault_changes import (
     thinned,
     timed,
     with_hysteresis,
+    with_play,
 )
 from plantar.conventions import GRAVITY
 
@@ -97,6 +97,8 @@ FRAMES = (
     Fault("attitude in NED", "frames", reoriented(lambda q: np.column_stack([-q[:, 1], q[:, 0], -q[:, 3], q[:, 2]])),
           QUATERNION),
     Fault("gyroscope in the world", "frames", gyroscope_in_world, ("gyroscope", "frame")),
+    Fault("attitude pulled to the accelerometer by 2/s", "frames", pulled_to_accelerometer(2.0),
+          ("accelerometer", "orientation", "attitude")),
     Fault("wrench axes x and y exchanged", "frames",
           exchanged(wrench(quantity=r"(force|torque)\.x"), wrench(quantity=r"(force|torque)\.y")),
           ("sign", "balance", "wrench", "leans", "turned")),
@@ -176,6 +178,9 @@ SATURATION = (
     Fault("gyroscope clipped at 30 %", "saturation", clipped(GYROSCOPE, 0.3), STUCK),
     Fault("torques dead below 3 %", "saturation", dead_below(TORQUES, 0.03), (*STUCK, "dead band")),
     Fault("torques with 1 % hysteresis", "saturation", with_hysteresis(TORQUES, 0.01), ("hysteresis", *DELAY)),
+    Fault("play of 0.1 deg in the left ankle's encoders", "saturation",
+          one_after_another(*(with_play(encoder("left", place=place, quantity="position"), 0.1 / DEGREES)
+                              for place in (ANKLE_PITCH, ANKLE_ROLL))), ("play",)),
 )  # fmt: skip
 
 

@@ -21,7 +21,6 @@ from plantar.motions import gait
 from plantar.robot.uncertainty import Uncertainty
 from plantar.sensors import attitude_scale, moment_errors, moment_fit
 from plantar.sensors.delays import lagged_log
-from plantar.signals.gyroscope_delay import USUAL
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 WORDS = {3: "three", 5: "five"}
@@ -105,7 +104,7 @@ def test_a_page_tells_the_limits_of_the_code(name: str, said: str) -> None:
 
 
 def test_what_pages_say_in_words() -> None:
-    """A twentieth of the load, a tenth of a stance, six deviations, a filter of some milliseconds."""
+    """A twentieth of the load, a tenth of a stance, six deviations."""
     assert "friction above a twentieth of the load" in page("intervals.md")
     assert slip_indicator.SMOOTH == 1 / 20
     assert "A tenth of a stance at landing and at lifting is left out" in page("walking.md")
@@ -114,4 +113,3 @@ def test_what_pages_say_in_words() -> None:
     assert (cross_validation.DOMINANT, cross_validation.FOLDS) == (1 / 2, 5)
     assert "at most four fifths of their way and of their speed" in page("how_to/design.md")
     assert reach.ROOM == 4 / 5
-    assert USUAL == 0.005

@@ -191,6 +191,20 @@ def test_white_deviations_are_the_scatter_under_white_noise() -> None:
     assert np.mean([fit.white_std for fit in found], axis=0)[:2] == pytest.approx(scatter, rel=0.25)
 
 
+def test_white_deviations_of_every_second_row_are_those_of_all() -> None:
+    plain = walk(0)
+    assert plain.stances is not None
+    twice = replace(
+        plain,
+        regressor=np.repeat(plain.regressor, 2, axis=0),
+        response=np.repeat(plain.response, 2),
+        stances=StanceRows(np.repeat(plain.stances.number, 2), np.repeat(plain.stances.weight, 2)),
+        common_nuisance=np.repeat(plain.common_nuisance, 2, axis=0),  # type: ignore[arg-type]
+    )
+    found = fit_stances([replace(plain, thinned=2)])
+    assert found.white_std == pytest.approx(fit_stances([twice]).white_std, rel=0.02)
+
+
 def test_one_lone_stance_promises_nothing() -> None:
     fit = fit_stances([walk(0, stances=1)])
     low, high = interval95(float(fit.values[0]), float(fit.std[0]), float(fit.freedom[0]))

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from plantar.model_selection.data_sets import DataSet, StepColumns
+from plantar.model_selection.data_sets import DataSet, StepColumns, prepare_data_sets
 from plantar.model_selection.model_fit import fit_model
+from plantar.model_selection.selection import choose_model
 from plantar.models import MODELS, BushMotion
 
 PERIOD = 0.005
@@ -100,3 +103,27 @@ def test_a_turn_between_two_samples_takes_nothing_off_the_slip_angle() -> None:
     fit = fit_model(MODELS["elastoplastic"], [shaken(seed) for seed in (1, 2)])
     assert fit.value("slip_angle") == pytest.approx(SLIP_ANGLE, rel=0.002)
     assert fit.value("slip_torque") == pytest.approx(SLIP_TORQUE, rel=0.002)
+
+
+def test_stances_take_the_rate_that_the_filter_leaves_and_states_that_of_the_path() -> None:
+    data = shaken(1)
+    (filtered,) = prepare_data_sets([data], cutoff=5.0)
+    assert filtered.every == 1 / (7 * 5.0 * PERIOD) // 1 > 1
+    assert len(filtered.path) == len(filtered.motion) == len(data.motion)
+    assert len(filtered.used) == len(filtered.motion.deflection[:: filtered.every])
+    assert filtered.duration == pytest.approx(PERIOD * data.used.sum(), rel=0.05)
+
+
+@pytest.mark.parametrize(("least_gain", "searched"), [(0.5, False), (0.1, True)])
+def test_a_memory_that_could_not_help_enough_is_not_searched_for(least_gain: float, searched: bool) -> None:
+    sets = []
+    for seed in (1, 2, 3):
+        data, _ = walk(f"walk_{seed}", seed)
+        noise = np.random.default_rng(seed).normal(0, 0.05, len(data.torque))
+        sets.append(replace(data, torque=K * data.motion.deflection + C * data.motion.rate + noise))
+    models = [MODELS["kelvin_voigt"], MODELS["elastoplastic"]]
+    choice = choose_model(sets, models, least_gain=least_gain)
+    (memory,) = (score.fit for score in choice.ranking if score.model is models[1])
+    tried = models[1].candidates([each.motion for each in prepare_data_sets(sets, 5.0)])
+    assert choice.fit.model.name == "kelvin_voigt"
+    assert bool(np.isclose(tried, memory.shape, rtol=1e-12).any()) is not searched

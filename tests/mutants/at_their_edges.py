@@ -134,9 +134,9 @@ AT_THEIR_EDGES = (
     ),
     Mutant(
         "sensors/tilt_error.py",
-        "attitude put right up to 3 Hz",
-        "CORRECTED = 1.5",
+        "attitude put right up to 1.5 Hz",
         "CORRECTED = 3.0",
+        "CORRECTED = 1.5",
         ("sensors/test_tilt_error.py",),
     ),
     Mutant(

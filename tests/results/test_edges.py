@@ -63,7 +63,17 @@ def test_numbers(said: str, expected: str) -> None:
 
 @pytest.mark.parametrize(
     ("uncertainty", "decimals"),
-    [(0.0294, 3), (0.0296, 2), (0.01, 3), (0.0999, 2), (2.9, 1), (3.0, 0), (40.0, 0), (1e-13, 12)],
+    [
+        (0.0294, 3),
+        (0.0296, 2),
+        (0.01, 3),
+        (0.0999, 2),
+        (2.9, 1),
+        (3.0, 0),
+        (40.0, 0),
+        (400.0, -1),
+        (1e-13, 12),
+    ],
 )
 def test_decimals_leave_two_digits_up_to_three_and_then_one(uncertainty: float, decimals: int) -> None:
     assert decimals_for(uncertainty) == decimals

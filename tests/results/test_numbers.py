@@ -13,6 +13,8 @@ from plantar.results.numbers import interval, number, unit, with_uncertainty
         (480.04, 1.12, "480.0 ± 1.1"),
         (24.27, 0.39, "24.3 ± 0.4"),
         (949.2, 35.0, "949 ± 35"),
+        (239136.0, 96170.0, "239000 ± 96000"),
+        (951.2, 312.0, "950 ± 310"),
         (-0.051, 0.004, "−0.051 ± 0.004"),
         (5.0, None, "5.000"),
         (None, 1.0, "–"),
@@ -29,6 +31,7 @@ def test_values_are_rounded_to_their_uncertainty(value: float | None, half: floa
 
 def test_intervals_and_numbers_read_well() -> None:
     assert interval((947.02, 951.37)) == "947.0 to 951.4"
+    assert interval((12345.6, 23456.7)) == "12300 to 23500"
     assert interval((3857549.0, 2.701e8)) == "0.04e8 to 2.70e8"
     assert interval((-1.0, 2.5e7)) == "−0.00e7 to 2.50e7"
     assert interval(None) == "–"

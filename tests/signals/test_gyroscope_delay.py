@@ -35,8 +35,9 @@ def test_a_log_without_orientation_or_gyroscope_tells_nothing() -> None:
 
 @pytest.mark.parametrize(("late", "std", "told"), [
     (0.004, 0.0013, True), (0.004, 0.0014, False), (-0.004, 0.0001, True),
-    (0.00049, 0.0001, False), (0.00051, 0.0001, True), (0.0049, 0.0001, True), (0.0051, 0.0001, False),
+    (0.00049, 0.0001, False), (0.00051, 0.0001, True), (0.0049, 0.0001, True), (0.02, 0.0001, True),
+    (-0.0049, 0.0001, True), (-0.0051, 0.0001, False),
 ])  # fmt: skip
-def test_a_delay_is_a_filter_s_where_it_is_sure_and_small(late: float, std: float, told: bool) -> None:
+def test_a_delay_is_a_filter_s_where_it_is_sure_and_not_early(late: float, std: float, told: bool) -> None:
     assert of_a_filter(late, std) is told
     assert GyroscopeDelay(late, std, 1.0).shown is told

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,7 +57,7 @@ class FootContact:
     code: NDArray[np.int8]
     reasons: tuple[LeftOut, ...] = ()
 
-    @property
+    @cached_property
     def used(self) -> Mask:
         return np.asarray(self.code == 0)
 

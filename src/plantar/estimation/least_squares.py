@@ -63,9 +63,8 @@ def values_without_each(blocks: Sequence[Block]) -> Array:
     parts = [
         TriangularFactor.of(_rows(block)).among(own, size) for block, own in zip(blocks, places, strict=True)
     ]
-    none = TriangularFactor(np.zeros((size + 1, size + 1)), 0)
-    rests = [sum((*parts[:place], *parts[place + 1 :]), none) for place in range(len(parts))]
-    return np.array([rest.solve()[:columns] for rest in rests])
+    rests = [[*parts[:place], *parts[place + 1 :]] for place in range(len(parts))]
+    return np.array([TriangularFactor.together(rest).solve()[:columns] for rest in rests])
 
 
 def sureness_of_own(blocks: Sequence[Block], column: int) -> Array:
@@ -116,10 +115,9 @@ def _places(blocks: Sequence[Block], shared_offset: bool) -> tuple[list[Array], 
 
 
 def _factor(rows: Sequence[Array], places: Sequence[Array], size: int) -> TriangularFactor:
-    total = TriangularFactor(np.zeros((size + 1, size + 1)), 0)
-    for part, own in zip(rows, places, strict=True):
-        total = total + TriangularFactor.of(part).among(own, size)
-    return total
+    return TriangularFactor.together(
+        [TriangularFactor.of(part).among(own, size) for part, own in zip(rows, places, strict=True)]
+    )
 
 
 def _rows(block: Block) -> Array:

@@ -43,7 +43,7 @@ def fit_stances(blocks: Sequence[Block]) -> LinearFit:
         for block, own in zip(blocks, own_values, strict=True)
     ]
     offsets = [_offset_variance(*each, covariance) for each in zip(blocks, residuals, strict=True)]
-    rows = sum(block.rows for block in blocks)
+    rows = sum(block.rows * block.thinned for block in blocks)
     noise = solution.squares / max(rows - len(problem.products) - problem.common, 1.0)
     stances = np.bincount(problem.recording)
     return LinearFit(

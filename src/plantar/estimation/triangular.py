@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -29,9 +30,14 @@ class TriangularFactor:
         filled = np.vstack([rows, np.zeros((short, rows.shape[1]))]) if short > 0 else rows
         return cls(np.asarray(np.linalg.qr(filled, mode="r")), len(rows))
 
+    @classmethod
+    def together(cls, parts: Sequence[TriangularFactor]) -> TriangularFactor:
+        """The factor of all their rows, one part or more."""
+        stacked = cls.of(np.vstack([part.factor for part in parts]))
+        return replace(stacked, rows=sum(part.rows for part in parts))
+
     def __add__(self, other: TriangularFactor) -> TriangularFactor:
-        stacked = np.vstack([self.factor, other.factor])
-        return TriangularFactor(np.asarray(np.linalg.qr(stacked, mode="r")), self.rows + other.rows)
+        return self.together([self, other])
 
     def among(self, places: Array, size: int) -> TriangularFactor:
         """The same rows as part of a problem with `size` parameters, of which these are the ones at `places` (k,)."""

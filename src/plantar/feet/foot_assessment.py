@@ -93,7 +93,7 @@ def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit, between: Apart)
         *play_notes(thin.fitted, fit, blocks, shared),
         *encoder_play_notes(ready.fitted, fit, blocks, _joints_to(ready.robot, fit.foot), shared),
         *hysteresis_notes(thin.fitted, fit, blocks, shared),
-        *late_recordings(thin.fitted, wide, blocks, shared),
+        *late_recordings(wide, blocks, shared),
     ]
     faults = [
         *data_faults(ready.fitted, fit),

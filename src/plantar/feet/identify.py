@@ -13,7 +13,14 @@ from plantar.feet.foot_fit import FittedFoot, between_all, fit_foot, without_nee
 from plantar.feet.memory_of_others import with_memory_of_others
 from plantar.feet.place.spread import PlaceSpread
 from plantar.feet.prepare import PreparedLogs, prepare_all
-from plantar.feet.put_right.encoders_of_fits import Late, encoders_shown, newton_told, read_at, tried_first
+from plantar.feet.put_right.encoders_of_fits import (
+    Late,
+    encoders_shown,
+    newton_told,
+    read_at,
+    retold,
+    tried_first,
+)
 from plantar.feet.put_right.imu_of_steps import is_worth, put_right, turn_shown
 from plantar.feet.result import feet_result
 from plantar.feet.settings import FeetSettings
@@ -85,8 +92,7 @@ def fit_prepared(
     )
     fitted = with_memory_of_others(feet)
     between = between_all(list(fitted.values()))
-    fitted = {foot: without_needless(one, between) for foot, one in fitted.items()}
-    found = over_cores(assess_foot, fitted.values(), [between] * len(fitted))
+    found = over_cores(lambda one: assess_foot(without_needless(one, between), between), fitted.values())
     ready = _merged(ready, {foot: one.ready for foot, one in fitted.items()})
     return feet_result(robot, ready, found, between)
 
@@ -102,7 +108,7 @@ def _with_encoders_right(
     if shown is None or not shown.is_worth(taken):
         return ready, feet
     progress("fit again with encoders read in time")
-    ready = read_at(ready, shown)
+    ready = retold(read_at(ready, shown))
     return ready, _fitted_feet(ready, progress)
 
 

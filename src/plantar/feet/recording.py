@@ -87,9 +87,7 @@ class Recording:
         return rows
 
     def stride(self, foot: str) -> int:
-        """Samples from one of `rows` to the next; stances are too short to be thinned."""
-        if self.stances[foot] is not None:
-            return 1
+        """Samples from one of `rows` to the next."""
         return max(1, int(1 / (SAMPLES_PER_CYCLE * self.cutoff * self.period)))
 
     def drift(self, foot: str) -> Array:
@@ -114,12 +112,13 @@ class Recording:
         return {}
 
     def decimated(self, foot: str) -> Recording:
-        """What a fit of this foot reads, `rows` alone, and nothing else of the log; itself where these are all.
+        """What a fit of this foot reads, `rows` alone, and nothing else of the log; itself where these are all, or the
+        foot steps: turns of a memory's path are quick then.
 
         What has not passed the fit's filter passes one that is wide enough to leave that one its band.
         """
         stride, bush = self.stride(foot), self.bushes[foot]
-        if stride == 1:
+        if stride == 1 or self.stances[foot] is not None:
             return self
         rows = slice(None, None, stride)
         loads = np.column_stack([bush.wrench, bush.force_z])

@@ -46,12 +46,13 @@ def lacking(linear: Linearised, prepared: Sequence[FilteredDataSet], durations: 
     for place, (each, part) in enumerate(zip(prepared, parts, strict=True)):
         influence = influences[place][:, :count]
         cosines = part.cosines(cosine_count(durations[place]))
+        of_rows = part.spread(cosines)
         forgotten, drift = nuisances[place], each.drift
         walked = part.walked(np.column_stack([forgotten - drift @ (drift.T @ forgotten), drift]))
         beside = np.column_stack([columns[place], forgotten, drift])
         real += np.sum(part.walked(influence) ** 2, axis=0)
         for number, own in enumerate(influence.T):
-            taken, told = np.split(part.sums(beside * own[:, None]).T @ cosines, [len(solved)])
+            taken, told = np.split(beside.T @ (own[:, None] * of_rows), [len(solved)])
             left = part.walk(part.sums(own)[:, None] * cosines) - walked @ told
             taken = solved @ taken
             shown[number] += np.sum(left**2) + np.sum(taken * (together @ taken - 2 * (slow[place].T @ left)))
@@ -68,6 +69,10 @@ class _Stretches:
     def sums(self, columns: Array) -> Array:
         """Sums of columns (rows, ...) over each stretch."""
         return np.asarray(np.add.reduceat(columns, self._first)) if self._rows else columns
+
+    def spread(self, values: Array) -> Array:
+        """Values (stretches, m) at each of the rows, (rows, m)."""
+        return np.repeat(values, self._length, axis=0)[: self._rows]
 
     def walk(self, sums: Array) -> Array:
         """What each step of the walk, one at the start of every stretch, adds to the products with such sums."""

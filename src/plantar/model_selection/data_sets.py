@@ -91,7 +91,8 @@ class DataSet:
 
 @dataclass(frozen=True)
 class FilteredDataSet:
-    """A data set through the fit's filter: `motion` (N,), the used samples, and the `response` (n,) at these.
+    """A data set through the fit's filter: `motion` (N,), of `every` nth sample those that are `used`, and the
+    `response` (n,) at these. The filter leaves no more to a fit; a state's turns take all samples.
 
     A model with memory does not commute with a filter: its state follows the path, and its columns then go through the
     filter that the torque went through. The path itself is filtered too: jitter of the measured angle would wear the
@@ -111,6 +112,7 @@ class FilteredDataSet:
     cutoff: float
     slow: SlowSpan | None
     steps: StepColumns | None = None
+    every: int = 1
 
     @classmethod
     def of(cls, data_set: DataSet, cutoff: float, *, drift: bool = True) -> FilteredDataSet:
@@ -131,12 +133,13 @@ class FilteredDataSet:
         path = slow if data_set.steps is None else quick
         if data_set.drift is not None:
             path = replace(path, deflection=path.deflection - data_set.drift)
-        used = data_set.used & known
-        own = None
-        if drift and data_set.steps is None:
-            time = np.flatnonzero(used).astype(np.float64) * motion.period
-            own = SlowSpan(drift_beside(slow.deflection[used], drift_basis(time)), time, DRIFT_PERIOD)
-        raw = cls(data_set.label, slow, path, smooth[used, 2], used, cutoff, own, data_set.steps)
+        every = max(1, int(1 / (motion.period * SAMPLES_PER_CYCLE * cutoff) + 1e-6))
+        kept, used = smooth[::every], (data_set.used & known)[::every]
+        own, steps = None, None if data_set.steps is None else data_set.steps.thinned(every)
+        if drift and steps is None:
+            time = np.flatnonzero(used).astype(np.float64) * every * motion.period
+            own = SlowSpan(drift_beside(kept[used, 0], drift_basis(time)), time, DRIFT_PERIOD)
+        raw = cls(data_set.label, slow, path, kept[used, 2], used, cutoff, own, steps, every)
         return replace(raw, response=raw.without_nuisance(raw.response))
 
     def without_nuisance(self, rows: Array) -> Array:
@@ -171,7 +174,13 @@ class FilteredDataSet:
     @cached_property
     def base(self) -> Array:
         """The linear columns, deflection and rate, at the used samples, (n, 2)."""
-        return self.without_nuisance(np.column_stack([self.motion.deflection, self.motion.rate])[self.used])
+        columns = np.column_stack([self.motion.deflection, self.motion.rate])
+        return self.without_nuisance(columns[:: self.every][self.used])
+
+    @property
+    def duration(self) -> float:
+        """Of the used samples [s]."""
+        return len(self.response) * self.every * self.motion.period
 
     @cached_property
     def run_of(self) -> Array:
@@ -179,7 +188,7 @@ class FilteredDataSet:
         number = np.full(len(self.motion), -1)
         for place, run in enumerate(self.motion.runs):
             number[run] = place
-        return number[self.used]
+        return number[:: self.every][self.used]
 
 
 def prepare_data_sets(
@@ -200,7 +209,7 @@ def filtered_columns(
     for each, extra in zip(prepared, extras, strict=True):
         last = first + len(each.response)
         if extra.shape[1]:
-            smooth = low_pass(extra, each.motion.period, each.cutoff, SHORTEST_FITTED_RUN)
+            smooth = low_pass(extra, each.motion.period, each.cutoff, SHORTEST_FITTED_RUN, each.every)
             found[first:last] = each.without_nuisance(smooth[each.used])
         first = last
     return found

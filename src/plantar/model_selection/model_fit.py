@@ -175,12 +175,12 @@ def _finished(problem: Problem, point: Point, limits: Array) -> ModelFit:
     linear = problem.linearised(point)
     scale = np.concatenate([np.ones(len(point.values)), point.shape])
     residuals = np.split(point.residuals, np.cumsum(problem.rows[:-1]))
-    durations = [len(r) * e.motion.period for e, r in zip(problem.prepared, residuals, strict=True)]
+    durations = [each.duration for each in problem.prepared]
     covariance, freedom = robust_covariance(linear, residuals, durations)
     lacks = lacking(linear, problem.prepared, durations)
     wide = np.concatenate([lacks * scale, np.ones(len(covariance) - len(scale))])
     covariance = covariance * wide[:, None] * wide[None, :]
-    count, rows = len(scale), len(point.residuals)
+    count, rows = len(scale), sum(len(each.response) * each.every for each in problem.prepared)
     white = point.squares / max(rows - len(covariance), 1) * linear.inverse_diagonal() * scale**2
     labels = [each.label for each in problem.prepared]
     spread = np.sqrt(np.diag(covariance)[count:])

@@ -26,7 +26,9 @@ LEAST_GAIN = 0.10  # of the held-out rms error
 # Of the held-out rms error: a model that cannot be identified but is this much better is mentioned.
 TELLING_GAIN = 0.3
 TOLD = 4.0  # standard deviations from zero, of a term that a model adds to a simpler one
-HOPELESS = 6.0  # times the best model's squares, at its best candidate: such a model is not refined
+# Times the best model's squares, at its best candidate: such a model is not refined. Nor is one, where only a large gain
+# is clear, whose best candidate gains less than is even mentioned: candidates lack little of what such an element shows.
+HOPELESS = 6.0
 
 
 @dataclass(frozen=True)
@@ -115,8 +117,10 @@ def choose_model(
                     untried.append(each.name)
                     continue
             candidate = Candidate.of(each, prepared, folds, shared_offset, simpler)
-        least = min((score.fit.rms for score in scores), default=np.inf) ** 2 * rows
-        refined = not candidate.squares > HOPELESS * least
+        most = HOPELESS * min((score.fit.rms for score in scores), default=np.inf) ** 2 * rows
+        if least_gain > TELLING_GAIN:
+            most = min(most, (1 - TELLING_GAIN) ** 2 * simple[linear].squares)
+        refined = not candidate.squares > most
         problem = Problem(candidate.pieces.model, prepared, shared_offset)
         start = best_candidate(problem, candidate.pieces, candidate.fits)
         fit = refine(problem, start, candidate.limits, refined=refined)

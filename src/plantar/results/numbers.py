@@ -39,10 +39,13 @@ def number(value: float | None, digits: int = 4) -> str:
 
 
 def decimals_for(uncertainty: float) -> int:
-    """Decimals that show `uncertainty` with one digit, or two where the first is 1 or 2."""
+    """Decimals that show `uncertainty` with one digit, or two where the first is 1 or 2.
+
+    From ten on always two: negative decimals, as `round` takes them.
+    """
     exponent = math.floor(math.log10(uncertainty))
     leading = uncertainty / 10.0**exponent
-    return min(12, max(0, (1 if leading < 2.95 else 0) - exponent))
+    return min(12, (1 if leading < 2.95 or exponent > 0 else 0) - exponent)
 
 
 def with_uncertainty(value: float | None, half_width: float | None) -> str:
@@ -74,7 +77,8 @@ def _alike(values: tuple[float, float], uncertainty: float) -> list[str]:
     exponent = math.floor(math.log10(largest)) if largest >= LARGE else 0
     scale = 10.0**exponent
     decimals, mark = decimals_for(uncertainty / scale), f"e{exponent}" if exponent else ""
-    return [_minus(f"{value / scale:.{decimals}f}{mark}") for value in values]
+    rounded = (round(value / scale, decimals) for value in values)
+    return [_minus(f"{value:.{max(0, decimals)}f}{mark}") for value in rounded]
 
 
 def percent(value: float | None) -> str:

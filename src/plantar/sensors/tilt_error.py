@@ -33,7 +33,7 @@ EXPLAINED = 0.3  # share of the disagreement of attitude and gyroscope that show
 # Or so many deviations: beside a noisy gyroscope it explains little, and moves the damping as much.
 SURE = 6.0
 AXES = 2  # of the horizontal plane, in which the vertical leans
-CORRECTED = 1.5  # Hz, up to which the attitude is put right
+CORRECTED = 3.0  # Hz, up to which the attitude is put right: as far as robots sway
 DERIVED = 5.0  # Hz: filter of what is differentiated twice
 # Samples of DERIVED's period: differences of such leave the band below CORRECTED as it is.
 KEPT_PER_PERIOD = 8.0

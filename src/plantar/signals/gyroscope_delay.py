@@ -14,7 +14,7 @@ from plantar.signals.segments import complete, longest_run
 
 BAND = 8.0  # Hz, in which rates are compared
 EDGE, LEAST_EDGES = 0.5, 10  # s that a filter's ends take; how many of them a run must hold
-USUAL = 0.005  # s: a device's own filter; a later one is a fault, or an orientation that follows the accelerometer
+USUAL = 0.005  # s: an orientation's own filter; a later one is a fault, or follows the accelerometer
 LEAST = 0.0005  # s: less moves damping by less than its interval ever shows
 SURE = 3.0  # deviations
 
@@ -33,8 +33,8 @@ class GyroscopeDelay(NamedTuple):
 
 
 def of_a_filter(late: float, std: float) -> bool:
-    """Whether a delay [s] is told from none, and no larger than a device's own filter makes."""
-    return max(SURE * std, LEAST) < abs(late) < USUAL
+    """Whether a delay [s] is told from none, and a filter's: what follows the accelerometer makes a gyroscope early."""
+    return abs(late) > max(SURE * std, LEAST) and late > -USUAL
 
 
 def log_gyroscope_delay(log: MotionLog, imu: str) -> GyroscopeDelay | None:

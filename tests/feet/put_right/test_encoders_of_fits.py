@@ -15,7 +15,14 @@ from plantar.conventions import Array
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.foot_fit import FittedFoot
 from plantar.feet.prepare import PreparedLogs
-from plantar.feet.put_right.encoders_of_fits import Late, encoders_shown, newton_told, read_at, tried_first
+from plantar.feet.put_right.encoders_of_fits import (
+    Late,
+    encoders_shown,
+    newton_told,
+    read_at,
+    retold,
+    tried_first,
+)
 from plantar.feet.recording import Recording
 from plantar.feet.settings import FeetSettings
 from plantar.models import MODELS
@@ -132,3 +139,19 @@ def test_most_robots_read_all_at_once(told: float, first: float) -> None:
 )
 def test_a_fit_is_made_again_for_what_is_clear_and_matters(late: Late, worth: bool) -> None:
     assert late.is_worth(0.0) == worth
+
+
+def test_the_note_says_how_the_logs_are_read_now() -> None:
+    robot: Any = SimpleNamespace(feet={"left": None, "right": None})
+    other = Note("gap", "info", "0.2 s missing")
+    logs = ready(recorded(0.0))
+    told = replace(
+        logs.sensor_delay, note=Note("delay", "info", "wrenches are +5.0 ms late"), feet={"right": 0.007}
+    )
+    before = replace(logs, robot=robot, sensor_delay=told, notes=(other, told.note))
+    after = retold(read_at(before, Late(LATE, 1e-5)))
+    assert after.notes == (other, after.sensor_delay.note)
+    assert after.sensor_delay.note.text == (
+        "wrenches are +5.0 ms late; fits of the standing feet then showed encoders +0.6 ms late beside the IMU, "
+        "and all is read so (wrenches: left +5.0, right +7.0 ms)"
+    )

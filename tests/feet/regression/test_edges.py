@@ -58,9 +58,9 @@ def test_rows_of_a_foot_that_steps_have_stances_weights_and_what_is_not_the_bush
     (block,) = blocks_of([recording], FOOT, "roll")
     assert block.stances is not None
     assert block.common_nuisance is not None
-    assert (len(block.response), block.thinned, block.nuisance) == (COUNT, 1, None)
-    assert np.array_equal(block.stances.weight, WALK.weight)
-    middle = block.common_nuisance[250]
+    assert (len(block.response), block.thinned, block.nuisance) == (COUNT // 2, 2, None)
+    assert np.array_equal(block.stances.weight, WALK.weight[::2])
+    middle = block.common_nuisance[125]
     assert middle == pytest.approx([LOAD, -30.0, TORQUE[250], 7.0, 20.0], rel=1e-6)
     assert list(block.common_spread) == [np.inf, 0.006, 0.02, 0.02, 0.004]  # type: ignore[arg-type]
     assert blocks_of([made_recording("sway", ANGLE, TORQUE)], FOOT, "roll")[0].common_spread is None

@@ -8,16 +8,16 @@ recordings, by more than its interval, or a memory is made up for what they disa
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from plantar.conventions import NORMAL95
 from plantar.estimation import Block, fit_blocks
 from plantar.estimation.least_squares import sureness_of_own
-from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
-from plantar.feet.regression.regression_data import beside, blocks_of
-from plantar.models import KelvinVoigt
+from plantar.feet.regression.regression_data import beside
+from plantar.models import BESIDE, KelvinVoigt
 from plantar.notes import Note
 
 CODE = "recording_late"
@@ -25,17 +25,16 @@ SURE = 5.0  # deviations by which a recording's damping must differ, as delays o
 RATE = 1  # the place of the rate, and of damping, in spring and damper
 
 
-def late_recordings(
-    recordings: Sequence[Recording], wide: AxisFit, tangent: Sequence[Block], shared: bool
-) -> list[Note]:
+def late_recordings(wide: AxisFit, tangent: Sequence[Block], shared: bool) -> list[Note]:
     """A warning of the recording whose damping differs from the others' and moves theirs out of the interval of `wide`.
 
-    tangent: the recordings' `tangent_blocks`: where a memory leaves less than a damping of its own does, it is the
+    tangent: the recordings' `tangent_blocks`, whose torque is about the place that the fit has found: about another,
+    motions about the other axis show as damping. Where a memory leaves less than a damping of its own does, it is the
     memory that makes damping differ. Not of a foot that steps: landings shake its damping more than delays do.
     """
-    blocks = blocks_of(recordings, wide.foot, wide.axis)
-    if blocks[0].stances is not None or shared or len(blocks) < 2:
+    if tangent[0].stances is not None or shared or len(tangent) < 2:
         return []
+    blocks = [_spring_and_damper(block) for block in tangent]
     sureness = sureness_of_own(blocks, RATE)
     most = int(np.argmax(sureness))
     if sureness[most] < SURE:
@@ -52,6 +51,10 @@ def late_recordings(
         "the IMU than theirs. Record it again with clocks and filters as in the others, or leave it out"
     )
     return [Note(CODE, "warning", text)]
+
+
+def _spring_and_damper(block: Block) -> Block:
+    return replace(block, regressor=block.regressor[:, : len(BESIDE)], noise=None)
 
 
 def _with_own_damping(block: Block, own: bool) -> Block:

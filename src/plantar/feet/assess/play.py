@@ -9,6 +9,7 @@ that of the joint's rate, and the damping follows.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from typing import cast
 
 import numpy as np
 
@@ -109,8 +110,11 @@ def encoder_play_notes(
 
 def _joint_rate(recording: Recording, foot: str, joint: str) -> Array:
     """The joint's rate [rad/s] at the rows of a fit, (n,), through its filter; NaN where it is not recorded."""
-    rows, position = recording.rows(foot), recording.log.joint(joint, "position")
-    if position is None:
-        return np.full(int(rows.sum()), np.nan)
-    smooth = low_pass(position, recording.period, recording.cutoff)
-    return np.asarray(differentiate(smooth, recording.period)[rows])
+    key = ("joint rate", foot, joint)  # both axes ask
+    if key not in recording.kept:
+        rows, position = recording.rows(foot), recording.log.joint(joint, "position")
+        rate = np.full(len(rows), np.nan)
+        if position is not None:
+            rate = differentiate(low_pass(position, recording.period, recording.cutoff), recording.period)
+        recording.kept[key] = rate[rows]
+    return cast(Array, recording.kept[key])

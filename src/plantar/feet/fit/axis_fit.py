@@ -85,6 +85,11 @@ def _fitted(
     share = StanceProblem.drawn_together(blocks).own_share if steps else 0.0
     fitted = [recording for recording in recordings if recording.name in linear.offsets]
     data_sets = [data_set_of(each, foot, axis, share) for each in fitted]
+    if asked is None:
+        explained = _explained(linear, blocks)
+        small = not steps and may_hide_a_memory([data_set.motion for data_set in data_sets])
+        if explained <= LEAST_EXPLAINED or (explained >= FULLY_EXPLAINED and not small):
+            return _of_linear(foot, axis, linear, None, _untried(explained))
     placed = _of_linear(foot, axis, linear, None, "")
     if place is not None and not steps:
         placed = _where_a_spring_turns(placed, fitted, place, shared)
@@ -99,10 +104,6 @@ def _fitted(
 
     if asked is not None:
         return found(fit_model(asked, data_sets, cutoff, shared_offset=shared), None, "asked for")
-    explained = _explained(linear, blocks)
-    small = not steps and may_hide_a_memory([data_set.motion for data_set in data_sets])
-    if explained <= LEAST_EXPLAINED or (explained >= FULLY_EXPLAINED and not small):
-        return _of_linear(foot, axis, linear, None, _untried(explained))
     names = CANDIDATES_IN_STANCES if steps else CANDIDATES
     # In short stances a late sensor always looks like one: there it would tell nothing of what it may hide.
     memory = timed if steps else _remembers(data_sets)

@@ -70,6 +70,19 @@ def read_at(ready: PreparedLogs, late: Late) -> PreparedLogs:
     return replace(ready, fitted=read(ready.fitted), unseen=read(ready.unseen), sensor_delay=delay)
 
 
+def retold(ready: PreparedLogs) -> PreparedLogs:
+    """The logs whose note of Newton's law's delays also says at which ones they are read now."""
+    delay, names = ready.sensor_delay, ready.robot.feet
+    each = ", ".join(f"{name} {1e3 * delay.feet.get(name, delay.delay):+.1f}" for name in names)
+    text = (
+        f"{delay.note.text}; fits of the standing feet then showed encoders {1e3 * delay.encoders:+.1f} ms late beside "
+        f"the IMU, and all is read so (wrenches: {each} ms)"
+    )
+    note = replace(delay.note, text=text)
+    notes = tuple(note if one == delay.note else one for one in ready.notes)
+    return replace(ready, notes=notes, sensor_delay=replace(delay, note=note))
+
+
 def encoders_shown(feet: Mapping[str, FittedFoot], told: Late, taken: float) -> Late | None:
     """What Newton's law `told` and all axes of all feet, fitted with encoders `taken` as so late [s], say together.
 

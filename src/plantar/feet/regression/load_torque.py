@@ -6,12 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from plantar.conventions import ROTATIONAL_AXES, Array, Axis
+from plantar.conventions import ROTATIONAL_AXES, Array, Axis, Mask
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit, FittedModel
 from plantar.feet.regression.model_columns import memory_path, own_torque
 from plantar.signals.filters import differentiate
 
+ALL = slice(None)  # rows of a recording
 # By which a centre that is higher turns a horizontal force into torque, of pitch and roll.
 ACROSS = (1.0, -1.0)
 # s: a device's own filter delays an IMU by as much at most, and encoders not at all; what looks later is another fault.
@@ -24,34 +25,35 @@ def load_of(recording: Recording, foot: str) -> Array:
     return recording.loads(foot)[:, 2]
 
 
-def moment_columns(recording: Recording, foot: str, axis: Axis) -> Array:
-    """Torque (N, 2) for each metre by which the bush's centre is beside and above its place in the robot file.
+def moment_columns(recording: Recording, foot: str, axis: Axis, rows: Mask | slice = ALL) -> Array:
+    """Torque (n, 2) for each metre by which the bush's centre is beside and above its place in the robot file.
 
     A centre that is dz higher takes dz·F_x off the pitch torque and adds dz·F_y to the roll torque; the compressed z
     slide is such a height. One that is aside adds a torque as large as the load.
     """
-    column, loads = ROTATIONAL_AXES.index(axis), recording.loads(foot)
+    column, loads = ROTATIONAL_AXES.index(axis), recording.loads(foot)[rows]
     return np.column_stack([loads[:, 2], ACROSS[column] * loads[:, column]])
 
 
-def place_columns(recording: Recording, foot: str, axis: Axis) -> Array:
-    """`moment_columns`, and the other axis' torque, which shows in this one where a sensor is turned, (N, 3)."""
-    return np.column_stack([moment_columns(recording, foot, axis), others_torque(recording, foot, axis)])
+def place_columns(recording: Recording, foot: str, axis: Axis, rows: Mask | slice = ALL) -> Array:
+    """`moment_columns`, and the other axis' torque, which shows in this one where a sensor is turned, (n, 3)."""
+    own = moment_columns(recording, foot, axis, rows)
+    return np.column_stack([own, others_torque(recording, foot, axis, rows)])
 
 
-def step_columns(recording: Recording, foot: str, axis: Axis) -> Array:
+def step_columns(recording: Recording, foot: str, axis: Axis, rows: Mask | slice = ALL) -> Array:
     """`place_columns`, the yaw torque, which shows where a sensor leans about the other axis, and the horizontal force
-    that turns the other axis, which shows by crosstalk alone, (N, 5).
+    that turns the other axis, which shows by crosstalk alone, (n, 5).
 
     A foot that steps turns the robot, and pushes it to all sides: these are as large as the others.
     """
-    loads, along = recording.loads(foot), 1 - ROTATIONAL_AXES.index(axis)
-    return np.column_stack([place_columns(recording, foot, axis), loads[:, 3], loads[:, along]])
+    loads, along = recording.loads(foot)[rows], 1 - ROTATIONAL_AXES.index(axis)
+    return np.column_stack([place_columns(recording, foot, axis, rows), loads[:, 3], loads[:, along]])
 
 
-def others_torque(recording: Recording, foot: str, axis: Axis) -> Array:
-    """The torque about the other axis, (N,) [N·m], 0 where it is not known."""
-    return np.asarray(np.nan_to_num(recording.bushes[foot].torque[:, 1 - ROTATIONAL_AXES.index(axis)]))
+def others_torque(recording: Recording, foot: str, axis: Axis, rows: Mask | slice = ALL) -> Array:
+    """The torque about the other axis, (n,) [N·m], 0 where it is not known."""
+    return np.asarray(np.nan_to_num(recording.bushes[foot].torque[rows, 1 - ROTATIONAL_AXES.index(axis)]))
 
 
 def late_encoder_torque(recording: Recording, fit: AxisFit) -> Array:

@@ -65,11 +65,10 @@ def bush_torque(recording: Recording, fitted: FittedModel, states: Array | None 
 
 def _by_stance(values: Array, used: Mask, number: NDArray[np.intp]) -> Array:
     """The mean of values (N,) over the used samples of each stance, at its samples; NaN elsewhere."""
-    means = np.full(len(values), np.nan)
-    for stance in np.unique(number[used]):
-        own = number == stance
-        means[own] = np.mean(values[own & used])
-    return means
+    stances = int(number.max(initial=-1)) + 2  # the last, -1: in the air
+    count = np.bincount(number[used], minlength=stances)
+    sums = np.bincount(number[used], values[used], stances)
+    return np.asarray((sums / np.where(count > 0, count, np.nan))[number])
 
 
 def unseen_initial_states(fitted: FittedModel, recording: Recording, first: Mask) -> Array | None:

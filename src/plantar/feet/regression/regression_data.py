@@ -79,7 +79,7 @@ def blocks_of(
                 nuisance=_nuisance(recording, foot, column, fit) if drift else None,
                 noise=noise,
                 stances=_stance_rows(recording, foot) if steps else None,
-                common_nuisance=step_columns(recording, foot, axis)[rows] if steps else None,
+                common_nuisance=step_columns(recording, foot, axis, rows) if steps else None,
                 common_spread=PLACE_SPREAD if steps else None,
             )
         )
