@@ -107,7 +107,7 @@ def test_second_points_take_over_where_an_edge_leaves_the_ground(
     stiffness: dict[Axis, float] = {"pitch": 480, "roll": 352}
     load = 280.0
     first = points_for(stiffness, {"pitch": 24, "roll": 28}, sides, depth, 2 * load, 0.2)
-    foot, free = first.taking_over(load), load * depth
+    foot, free = first.taking_over(load, 2.2 * load), load * depth
     assert (foot.sink(load), foot.vertical, foot.turning(axis)) == (
         first.sink(load), first.vertical, first.turning(axis))  # fmt: skip
     assert foot.touching_angle(axis, load) == first.touching_angle(axis, load)
@@ -120,7 +120,7 @@ def test_a_foot_without_a_middle_has_no_second_points() -> None:
     """There the edge that leaves the ground is the sole's own tipping."""
     foot = points_for({"pitch": 480, "roll": 352, "z": 2e4}, {"pitch": 24, "roll": 28}, Sides(0.1, 0.1, 0.07, 0.07),
                       0.02, 560, 0.4)  # fmt: skip
-    assert foot.taking_over(280.0) is foot
+    assert foot.taking_over(280.0, 616.0) is foot
 
 
 def test_a_step_that_does_not_hold_is_not_said_to() -> None:

@@ -50,8 +50,8 @@ DRAWN_LAST = (
     Mutant(
         "exporters/contact/points.py",
         "second points touch too late",
-        "pressed * (1 + 1 / share)",
-        "2 * pressed * (1 + 1 / share)",
+        "max(pressed * (1 + 1 / share)",
+        "max(2 * pressed * (1 + 1 / share)",
         ("exporters/test_contact_fit.py",),
     ),
     Mutant(

@@ -29,6 +29,9 @@ Pair = tuple[float, float]
 SPREAD: Final = 4.0
 # The points may stand this much wider or longer than the sole, where K of roll and pitch do not suit its shape.
 WIDEST: Final = 1.5
+NEARLY_FLAT: Final = (
+    1.3  # times what the edges are pressed in, flat: turned to where K and C are fitted, 1.25 at most
+)
 HARD: Final = 0.001  # m: what a foot sinks under the robot's weight where its vertical stiffness is not known
 
 
@@ -77,22 +80,24 @@ class PointFoot:
         edges = [(abs(arm), p) for arm, p in arms if arm and p.lower >= 0]
         return min((self.sink(load) + p.lower) / arm for arm, p in edges)
 
-    def taking_over(self, load: float) -> PointFoot:
+    def taking_over(self, load: float, most: float) -> PointFoot:
         """With a second point at each edge, which touches when the edge across leaves the ground under a load [N].
 
         It pushes with what that edge held with, so that K and C go on as they were, until the middle leaves the
-        ground too and the sole tips. None on a foot without a middle: there the edge that leaves is the tipping.
+        ground too and the sole tips. None on a foot without a middle: there the edge that leaves is the tipping. Under
+        the largest load that K has to hold at, `most` [N], none touches a foot that is nearly flat.
         """
         edges = [p for p in self.points if p.lower > 0]
         if len(edges) == len(self.points) or not edges:
             return self
-        pressed, second = self.sink(load) + edges[0].lower, []
+        pressed, deepest = (self.sink(one) + edges[0].lower for one in (load, most))
+        second = []
         for p in edges:
             arm = float(np.hypot(p.x, p.y))
             opposite = (-np.sign(p.x), -np.sign(p.y))
             across = next(o for o in edges if (np.sign(o.x), np.sign(o.y)) == opposite)
             share = float(np.hypot(across.x, across.y)) / arm
-            lower = p.lower - pressed * (1 + 1 / share)
+            lower = p.lower - max(pressed * (1 + 1 / share), NEARLY_FLAT * deepest)
             second.append(Point(p.x, p.y, p.stiffness * share, p.damping * share, lower))
         return PointFoot((*self.points, *second), self.depth)
 
