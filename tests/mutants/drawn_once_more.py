@@ -135,10 +135,10 @@ DRAWN_ONCE_MORE = (
         "double=period * int(np.sum(contact.support == SUPPORTS.index(SINGLE)))",
     ),
     Mutant(
-        "model_selection/model_fit.py",
+        "model_selection/data_sets.py",
         "samples for seconds",
-        "durations = [len(r) * e.motion.period for",
-        "durations = [len(r) * 1.0 for",
+        "return len(self.response) * self.every * self.motion.period",
+        "return len(self.response) * self.every * 1.0",
     ),
     Mutant(
         "sensors/accelerometer_delay.py",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -33,8 +33,8 @@ class TriangularFactor:
     @classmethod
     def together(cls, parts: Sequence[TriangularFactor]) -> TriangularFactor:
         """The factor of all their rows, one part or more."""
-        stacked = cls.of(np.vstack([part.factor for part in parts]))
-        return replace(stacked, rows=sum(part.rows for part in parts))
+        stacked = np.vstack([part.factor for part in parts])
+        return cls(np.asarray(np.linalg.qr(stacked, mode="r")), sum(part.rows for part in parts))
 
     def __add__(self, other: TriangularFactor) -> TriangularFactor:
         return self.together([self, other])
