@@ -79,21 +79,21 @@ def test_the_file_that_a_user_gets_turns_as_identified(
 
     step, torque = model.opt.timestep, 3.0
     # The robot's own inertia swings on the foot: friction of its own lets it come to rest, and is taken off C again.
-    swing = 6.0
-    model.dof_damping[3:6] = 60.0
-    times = np.arange(round(5.0 / step)) * step  # it is at rest in its swing after some tenths of a second
+    swing = 12.0
+    model.dof_damping[3:6] = own = 30.0
+    times = np.arange(round(2.2 / step)) * step  # it is at rest in its swing after some tenths of a second
     angles = np.array([pushed(torque * np.cos(swing * time)) for time in times])
     last = times > times[-1] - 3 * 2 * np.pi / swing
     late = times[last] + step
     basis = np.column_stack([np.cos(swing * late), -np.sin(swing * late), np.ones(late.size)])
     real, imaginary, _ = np.linalg.lstsq(basis, angles[last], rcond=None)[0]
     response = torque / complex(real, imaginary)
-    assert response.imag / swing - 60.0 == pytest.approx(c, rel=0.15)
+    assert response.imag / swing - own == pytest.approx(c, rel=0.15)
     ends = []
     for sign in (1, -1):
         mujoco.mj_resetData(model, data)
         mujoco.mj_kinematics(model, data)
-        ends.append(np.mean([pushed(sign * torque) for _ in range(round(2.5 / step))][-200:]))
+        ends.append(np.mean([pushed(sign * torque) for _ in range(round(1.2 / step))][-50:]))
     assert 2 * torque / (ends[0] - ends[1]) == pytest.approx(k, rel=0.05)
 
 
@@ -105,13 +105,13 @@ def test_the_robot_stays_and_only_the_points_touch(exported: tuple[Path, Any], s
     names = {model.geom(geom).name: geom for geom in range(model.ngeom)}
     for side in TRUTH:
         points = [geom for name, geom in names.items() if name.startswith(f"{side}_contact_")]
-        assert 4 <= len(points) <= 9
+        assert 4 <= len(points) <= 17
         assert model.geom_contype[points].all()
     data = mujoco.MjData(model)
     for _ in range(round(3 / step)):
         mujoco.mj_step(model, data)
     touching = {model.geom(geom).name for contact in data.contact for geom in contact.geom} - {"floor"}
-    assert touching == {name for name in names if "_contact_" in name}
+    assert touching == {name for name in names if "_contact_" in name and "_second_" not in name}
     # It stands where it stood, on the points' height: within what the feet sink and the edges reach.
     weight = float(model.body_mass.sum()) * GRAVITY
     force = sum(data.efc_force[contact.efc_address] for contact in data.contact)

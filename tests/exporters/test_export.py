@@ -102,7 +102,8 @@ def test_yaml_says_how_its_terms_add_up(feet: dict[str, Any], tmp_path: Path) ->
     export(feet, "yaml", tmp_path / "slips.yaml")
     text = (tmp_path / "slips.yaml").read_text()
     assert "+ what the bush model makes of slip_angle, slip_torque + offset;" in text
-    assert "slip_torque x e / slip_angle, where e follows the deflection" in text
+    assert "slip_torque x e / slip_angle, e follows the deflection" in text
+    assert "left out" not in text, "a slip is a number like others"
 
 
 def test_usd_counts_angles_in_degrees(feet: dict[str, Any], tmp_path: Path) -> None:

@@ -48,6 +48,13 @@ DRAWN_LAST = (
         ("exporters/test_points.py",),
     ),
     Mutant(
+        "exporters/contact/points.py",
+        "second points touch too late",
+        "max(pressed * (1 + 1 / share)",
+        "max(2 * pressed * (1 + 1 / share)",
+        ("exporters/test_contact_fit.py",),
+    ),
+    Mutant(
         "exporters/contact/springs.py",
         "K's error as a share called percent",
         "is off by {100 * worst:+.1f} %",
@@ -56,9 +63,9 @@ DRAWN_LAST = (
     ),
     Mutant(
         "exporters/contact/fit.py",
-        "K holds up to where a point leaves",
-        "angle = held * foot.touching_angle",
-        "angle = foot.touching_angle",
+        "K holds as far as it was tried",
+        "if not all(errors(one)",
+        "if not any(errors(one)",
         ("exporters/test_points.py",),
     ),
     Mutant(

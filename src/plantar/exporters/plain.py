@@ -11,9 +11,12 @@ from plantar.notes import Notes
 if TYPE_CHECKING:
     from plantar.exporters.job import Job
 
+HYSTERESIS = True  # every number is kept
 KEPT = ("value", "unit", "std", "interval95", "verdict")
 # The model of all with a slip that other targets hold; iwan and bouc_wen bend into the same two numbers.
-ELASTOPLASTIC = "an elastoplastic slip is slip_torque x e / slip_angle, where e follows the deflection within +-slip_angle;"
+ELASTOPLASTIC = (
+    "an elastoplastic slip: slip_torque x e / slip_angle, e follows the deflection within +-slip_angle;"
+)
 
 
 def write(job: Job, notes: Notes) -> str:

@@ -5,7 +5,7 @@ of them touch. A point only pushes: once the centre of pressure comes near an ed
 the foot gets softer. That range is widest where the load stands at the edges, on corners; but corners that turn as
 softly as rubber let the foot sink by millimetres. So the corners stand a little lower and carry a first part of the
 load, and a stiff point under the bush takes the rest. Two more points in front and behind, and at the sides, set the
-damping of pitch and roll apart.
+damping of pitch and roll apart. Where an edge has left the ground, second points go on (`PointFoot.taking_over`).
 """
 
 from __future__ import annotations
@@ -29,6 +29,9 @@ Pair = tuple[float, float]
 SPREAD: Final = 4.0
 # The points may stand this much wider or longer than the sole, where K of roll and pitch do not suit its shape.
 WIDEST: Final = 1.5
+NEARLY_FLAT: Final = (
+    1.3  # times what the edges are pressed in, flat: turned to where K and C are fitted, 1.25 at most
+)
 HARD: Final = 0.001  # m: what a foot sinks under the robot's weight where its vertical stiffness is not known
 
 
@@ -56,11 +59,12 @@ class PointFoot:
     @property
     def vertical(self) -> Pair:
         """Stiffness [N/m] and damping [N·s/m] along z."""
-        return sum(p.stiffness for p in self.points), sum(p.damping for p in self.points)
+        flat = [p for p in self.points if p.lower >= 0]
+        return sum(p.stiffness for p in flat), sum(p.damping for p in flat)
 
     def turning(self, axis: Axis) -> Pair:
-        """Stiffness [N·m/rad] and damping [N·m·s/rad] of pitch or roll about the bush's axis."""
-        pairs = list(zip(self._arms(axis), self.points, strict=True))
+        """Stiffness [N·m/rad] and damping [N·m·s/rad] of pitch or roll about the bush's axis, near flat."""
+        pairs = [(arm, p) for arm, p in zip(self._arms(axis), self.points, strict=True) if p.lower >= 0]
         return sum(p.stiffness * arm**2 for arm, p in pairs), sum(p.damping * arm**2 for arm, p in pairs)
 
     def sink(self, load: float) -> float:
@@ -72,8 +76,30 @@ class PointFoot:
 
     def touching_angle(self, axis: Axis, load: float) -> float:
         """The angle at which the first edge leaves the ground under a load [N], alone in pitch or roll [rad]."""
-        edges = [(abs(arm), p) for arm, p in zip(self._arms(axis), self.points, strict=True) if arm]
+        arms = zip(self._arms(axis), self.points, strict=True)
+        edges = [(abs(arm), p) for arm, p in arms if arm and p.lower >= 0]
         return min((self.sink(load) + p.lower) / arm for arm, p in edges)
+
+    def taking_over(self, load: float, most: float) -> PointFoot:
+        """With a second point at each edge, which touches when the edge across leaves the ground under a load [N].
+
+        It pushes with what that edge held with, so that K and C go on as they were, until the middle leaves the
+        ground too and the sole tips. None on a foot without a middle: there the edge that leaves is the tipping. Under
+        the largest load that K has to hold at, `most` [N], none touches a foot that is nearly flat.
+        """
+        edges = [p for p in self.points if p.lower > 0]
+        if len(edges) == len(self.points) or not edges:
+            return self
+        pressed, deepest = (self.sink(one) + edges[0].lower for one in (load, most))
+        second = []
+        for p in edges:
+            arm = float(np.hypot(p.x, p.y))
+            opposite = (-np.sign(p.x), -np.sign(p.y))
+            across = next(o for o in edges if (np.sign(o.x), np.sign(o.y)) == opposite)
+            share = float(np.hypot(across.x, across.y)) / arm
+            lower = p.lower - max(pressed * (1 + 1 / share), NEARLY_FLAT * deepest)
+            second.append(Point(p.x, p.y, p.stiffness * share, p.damping * share, lower))
+        return PointFoot((*self.points, *second), self.depth)
 
     def _arms(self, axis: Axis) -> list[float]:
         return [p.x if axis == "pitch" else p.y for p in self.points]

@@ -102,7 +102,13 @@ def _insert(
         centre = turn @ np.array([point.x, point.y, RADIUS - found.foot.depth - point.lower])
         # Every attribute that a default class of the model could set is written out.
         place_in = model.moved(foot.rotation @ centre + foot.centre, foot.ankle, name)
-        shape = {"name": f"{_named(foot)}{place}", "type": "sphere", "size": numbers([RADIUS]), "mass": "0"}
+        second = "second_" if point.lower < 0 else ""
+        shape = {
+            "name": f"{_named(foot)}{second}{place}",
+            "type": "sphere",
+            "size": numbers([RADIUS]),
+            "mass": "0",
+        }
         shape |= {"pos": numbers(place_in), "condim": "3", "solmix": "1"}
         ET.SubElement(holder, "geom", shape | touch | contact_attributes(point, inverse_mass))
     if carry(root, holder, foot, model):
@@ -163,8 +169,8 @@ def _said(foot: FootBush, found: Fitted, step: float) -> list[Note]:
     for check in found.checks:
         said = f"{foot.name} {check.axis}: alone in MuJoCo at {LOADS[0]:g} to {LOADS[-1]:g} of the weight "
         said += f"K is right to {100 * check.stiffness_error:.2g} %, C to {100 * check.damping_error:.2g} %, "
-        said += f"at steps of {_steps(check)}; at {LOADS[0]:g} of the weight up to {check.angle:.3f} rad "
-        said += f"({check.torque:.0f} N·m), then points leave the ground and the foot is softer"
+        said += f"at steps of {_steps(check)}, up to {check.angle:.3f} rad ({check.torque:.0f} N·m); beyond, points "
+        said += "leave the ground and others take over, for a robot on two feet"
         notes.info("export_contact", said)
         fits = [one for one in check.steps if one >= step * (1 - 1e-9)]
         if not fits:
