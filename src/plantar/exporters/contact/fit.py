@@ -76,9 +76,8 @@ def fitted(bush: FootBush, weight: float, edges: float = LEAST_LOAD) -> Fitted:
             if damping[axis] > 0 and seen.damping > 0:
                 wanted_c[axis] *= damping[axis] / seen.damping
         foot = points_for(wanted_k, wanted_c, sole, bush.sole_depth, weight, edges)
-    foot = foot.taking_over(
-        load, LOADS[-1] * weight
-    )  # they touch nothing near flat, where the fit turns the foot
+    # Second points touch nothing near flat, where the fit turns the foot.
+    foot = foot.taking_over(load, LOADS[-1] * weight)
     checks = [_check(foot, axis, stiffness[axis], damping[axis], weight) for axis in axes]
     return Fitted(foot, tuple(checks))
 

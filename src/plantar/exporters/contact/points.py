@@ -29,9 +29,8 @@ Pair = tuple[float, float]
 SPREAD: Final = 4.0
 # The points may stand this much wider or longer than the sole, where K of roll and pitch do not suit its shape.
 WIDEST: Final = 1.5
-NEARLY_FLAT: Final = (
-    1.3  # times what the edges are pressed in, flat: turned to where K and C are fitted, 1.25 at most
-)
+# Times what the edges are pressed in, flat: turned to where K and C are fitted, 1.25 at most.
+NEARLY_FLAT: Final = 1.3
 HARD: Final = 0.001  # m: what a foot sinks under the robot's weight where its vertical stiffness is not known
 
 
