@@ -30,7 +30,7 @@ def stance_stiffness(recordings: Sequence[Recording], fit: AxisFit) -> list[Stan
     found: list[tuple[StanceStiffness, float]] = []
     for recording, block in _walks(recordings, fit):
         assert block.stances is not None, "blocks of a foot that steps"
-        time = recording.time[recording.used(fit.foot)]
+        time = recording.time[recording.rows(fit.foot)]
         for rows in block.stances.split():
             if len(rows) < FEWEST_ROWS:
                 continue
