@@ -114,3 +114,15 @@ def test_a_rejected_model_is_told_of_from_three_tenths_on(error: float, told: bo
     )
     small = _caution([scores[0], replace(scores[1], refused=None)], [even, error**2 * even], 0, 0.5)
     assert small is None or "but by too little for steps as short as these" in small
+
+
+def test_a_torque_where_no_angle_is_known_does_not_pass_the_filter() -> None:
+    """Beside a gap of the angle it would spread into samples that a fit takes."""
+    count, period, gap = 6000, 0.001, slice(2000, 2500)
+    angle, torque = np.sin(0.01 * np.arange(count)), np.zeros(count)
+    angle[gap], torque[gap] = np.nan, 1e3
+    thin = DataSet("a", BushMotion(angle, angle, period), torque, np.isfinite(angle)).thinned(5.0)
+    known = np.isfinite(thin.motion.deflection)
+    assert 0 < known.sum() < len(known)
+    np.testing.assert_array_equal(np.isfinite(thin.torque), known)
+    np.testing.assert_allclose(thin.torque[known], 0.0, atol=1e-9)
