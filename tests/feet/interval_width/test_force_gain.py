@@ -6,20 +6,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.stats import norm
 
 from biped import TRUTH, record, sway
 from biped_robot import make_robot, robot_entry
 from feet_trials import LINEAR, codes
 from plantar.conventions import NORMAL95
 from plantar.feet.identify import identify_feet
-from plantar.feet.interval_width.force_gain import (
-    FAULTY,
-    GainError,
-    _mass_deviation,
-    _off_apart,
-    force_gain_errors,
-)
+from plantar.feet.interval_width.force_gain import GainError, _mass_deviation, force_gain_errors
 from plantar.feet.prepare_log import checked, prepare
 from plantar.feet.recording import Recording
 from plantar.logs.motion_log import MotionLog
@@ -100,35 +93,6 @@ def test_the_more_the_weight_misses_the_farther_a_gain_may_be_off(other: float) 
     # Where nothing is missing it does not matter which foot carries it.
     assert GainError(0.0, 0.05, 0.01, other).reach == pytest.approx(reaches[0], rel=0.15)
     assert GainError(-0.1, 0.0, 0.01, other).reach == pytest.approx(np.hypot(0.1 / 0.9, NORMAL95 * 0.01))
-
-
-@pytest.mark.parametrize("apart", [0.0, 0.01, 0.03, 0.1])
-def test_feet_that_agree_have_no_faults_of_their_own(apart: float) -> None:
-    """Two densities of the difference, of sensors off by 10 % each over that of sensors off by 1 %; at most 1."""
-    std, alike = 0.006, 0.1  # of what forces tell of the difference, and of the prior in the solution
-    shrunk = alike**2 / (alike**2 + std**2)
-    direction = np.array([1.0, -1.0]) / np.sqrt(2)
-    covariance = shrunk * std**2 * np.outer(direction, direction) + 1e-4 * np.ones((2, 2))
-    inverse = 1.0 + shrunk * apart / np.sqrt(2) * direction
-    own, none = (norm.pdf(apart / np.sqrt(2), scale=np.hypot(std, size)) for size in (0.1, 0.01))
-    assert _off_apart(inverse, covariance, 0.01) == pytest.approx(min(own / none, 1.0), rel=1e-6)
-
-
-def test_a_weight_that_hardly_moves_tells_little_of_each_foot(weighed: RobotModel) -> None:
-    """Feet that are shown to be alike are in less doubt than those of which nobody knows."""
-    shifted, still = (
-        force_gain_errors(weighed, [prepared(weighed, record(motion))])["left"].faulty
-        for motion in (SHIFTING, sway())
-    )
-    assert shifted < 0.65 * FAULTY
-    assert 0.8 * FAULTY < still <= FAULTY
-
-
-def test_the_fewer_sensors_are_faulty_the_less_a_gain_reaches() -> None:
-    """Beside a weight that misses by 3 %; one that misses by far more is a fault all the same."""
-    doubted, agreeing = (GainError(0.03, 0.006, 0.01, 0.026, FAULTY * left).reach for left in (1.0, 0.56))
-    assert 0.02 < agreeing < 0.85 * doubted
-    assert GainError(0.12, 0.006, 0.01, 0.026, 0.56 * FAULTY).reach == pytest.approx(0.11, abs=0.01)
 
 
 def test_an_exact_sensor_on_a_robot_that_was_weighed_has_no_error() -> None:

@@ -35,23 +35,18 @@ HALVINGS = 50  # of an interval: what is left of it is rounding
 FAULTY = 0.15  # of robots: their force sensors are off by more than the robot file says,
 # By such a share (standard deviation): another unit of load, an old calibration, a wrong amplifier.
 FAULT = 0.1
-# Of these robots: one thing is wrong with all sensors, a unit or how they were calibrated. Of the others each sensor is
-# off by itself.
-ONE_CAUSE = 0.5
 
 
 class GainError(NamedTuple):
     """By which `share` a sensor seems to read too much, with its `std`.
 
-    And the deviations of a `usual` gain and of all `other` reasons for it. `faulty`: how often a gain is off by more
-    than usual while the feet are as far apart as they are, of all robots.
+    And the deviations of a `usual` gain and of all `other` reasons for it.
     """
 
     share: float
     std: float
     usual: float
     other: float
-    faulty: float = FAULTY
 
     @property
     def sure(self) -> bool:
@@ -63,7 +58,7 @@ class GainError(NamedTuple):
         """Share of a foot's numbers by which its sensor's gain puts them wrong, with 95 % probability.
 
         What is seen, d, is the sum of the gain's error and of all else. Most sensors are as good as the robot file
-        says, some far worse; either kind of error has a normal distribution given d. That a gain is off
+        says, FAULTY of them far worse; either kind of error has a normal distribution given d. That a gain is off
         by more than d and something hides it is left out: d and the usual error are all that is added.
         """
         # Nothing is missing, nothing is off.
@@ -72,7 +67,7 @@ class GainError(NamedTuple):
         sizes = np.array([self.usual, FAULT])
         total = np.hypot(sizes, self.other)
         exponents = -0.5 * (seen / total) ** 2
-        odds = np.array([1 - FAULTY, self.faulty]) * np.exp(exponents - exponents.max()) / total
+        odds = np.array([1 - FAULTY, FAULTY]) * np.exp(exponents - exponents.max()) / total
         mean, std = seen * (sizes / total) ** 2, np.maximum(sizes * self.other / total, LEAST_GAIN)
 
         def outside(reach: float) -> float:
@@ -107,37 +102,15 @@ def force_gain_errors(robot: RobotModel, recordings: Sequence[Recording]) -> dic
     inverse, covariance = _inverse_gains(windows, apart / max(ALIKE * own, SURELY_ALIKE) ** 2)
     told_apart = np.abs(apart @ inverse) > NORMAL95 * np.sqrt(np.diag(apart @ covariance @ apart))
     together = 1 / float(inverse.mean()) - 1
-    faulty = FAULTY * (ONE_CAUSE + (1 - ONE_CAUSE) * _off_apart(inverse, covariance, own))
     errors = {}
     for name, gain, std, alone in zip(
         robot.feet, inverse, np.sqrt(np.diag(covariance)), told_apart, strict=True
     ):
         if gain > 0:
-            found = GainError(float(1 / gain - 1), float(std), own, other, faulty)
+            found = GainError(float(1 / gain - 1), float(std), own, other)
             doubted = not (alone or found.sure) and abs(together) > abs(found.share)
             errors[name] = found._replace(share=together) if doubted else found
     return errors
-
-
-def _off_apart(inverse: Array, covariance: Array, usual: float) -> float:
-    """How much less often feet differ as they do where each sensor has a fault of its own than where none has.
-
-    Two sensors hardly ever have faults of one size: feet that agree have none, or have one in common. At most 1: whose
-    gain it is where they differ, their shares show. inverse, covariance: of `_inverse_gains`, whose prior is no
-    evidence and is taken off.
-    """
-    count = len(inverse)
-    # The first direction of the QR of ones is what is common to all feet.
-    differences = np.linalg.qr(np.column_stack([np.ones(count), np.eye(count)[:, 1:]]))[0][:, 1:]
-    known = np.linalg.inv(differences.T @ covariance @ differences)
-    told = known @ (differences.T @ inverse)
-    shown = known - np.eye(count - 1) / max(ALIKE * usual, SURELY_ALIKE) ** 2
-
-    def logarithm(size: float) -> float:
-        wider = np.eye(count - 1) + size**2 * shown
-        return float(size**2 * (told @ np.linalg.solve(wider, told)) - np.linalg.slogdet(wider)[1]) / 2
-
-    return float(np.exp(min(logarithm(FAULT) - logarithm(usual), 0.0)))
 
 
 def _inverse_gains(windows: Sequence[Array], alike: Array) -> tuple[Array, Array]:
