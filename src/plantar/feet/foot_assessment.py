@@ -8,10 +8,9 @@ from plantar.conventions import ROTATIONAL_AXES
 from plantar.feet.assess.contradiction import contradiction
 from plantar.feet.assess.data_faults import OF_MOMENTS, data_faults, doubted
 from plantar.feet.assess.diagnosis import advised, diagnose_axis, mend_first
-from plantar.feet.assess.far_arms import far_arms
 from plantar.feet.assess.late_recordings import late_recordings
 from plantar.feet.assess.left_out import ON_AN_EDGE, mostly_on_an_edge
-from plantar.feet.assess.odd_recordings import odd_recordings
+from plantar.feet.assess.odd_recordings import odd_recordings, odd_walks
 from plantar.feet.assess.parameter_rows import axis_rows, missing_rows, unseen_rows
 from plantar.feet.assess.play import encoder_play_notes, play_notes
 from plantar.feet.assess.residual_table import Predictions
@@ -28,6 +27,7 @@ from plantar.feet.interval_width.imu_turn import imu_turn_causes
 from plantar.feet.interval_width.robot_causes import robot_causes
 from plantar.feet.interval_width.slip_angle import slip_angle_causes
 from plantar.feet.interval_width.systematic import inflated, systematic_causes
+from plantar.feet.place.far_arms import far_arms
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.regression_data import tangent_blocks
 from plantar.notes import Note
@@ -90,12 +90,14 @@ def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit, between: Apart)
     rows = axis_rows(wide, ready.fitted, predictions, contradicted)
     limits = diagnose_axis(fit, wide, causes, rows)
     gain = {foot: error for foot, error in ready.gain_errors.items() if foot == fit.foot}
+    walks = walk_stiffness(ready.recordings, wide)
     own = [
         *play_notes(thin.fitted, fit, blocks, shared),
         *encoder_play_notes(ready.fitted, fit, blocks, _joints_to(ready.robot, fit.foot), shared),
         *hysteresis_notes(thin.fitted, fit, blocks, shared),
         *late_recordings(wide, blocks, shared),
         *odd_recordings(wide, blocks, shared),
+        *odd_walks(wide, walks),
     ]
     faults = [
         *data_faults(ready.fitted, fit),
@@ -119,7 +121,7 @@ def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit, between: Apart)
         diagnosis=[*found.diagnosis, *limits],
         predictions={**found.predictions, **predictions},
         stances=[*found.stances, *stance_stiffness(ready.recordings, wide)],
-        walks=[*found.walks, *walk_stiffness(ready.recordings, wide)],
+        walks=[*found.walks, *walks],
         notes=(*found.notes, *own),
     )
 

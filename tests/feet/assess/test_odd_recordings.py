@@ -12,12 +12,13 @@ from bush_data_sets import Rubber
 from feet_trials import LINEAR, noisy
 from made_recording import FOOT, PERIOD, made_recording, swayed
 from plantar.estimation.random_effects import Differences
-from plantar.feet.assess.odd_recordings import CODE, furthest, odd_recordings
+from plantar.feet.assess.odd_recordings import CODE, furthest, odd_recordings, odd_walks
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.identify import identify_feet
 from plantar.feet.recording import Recording
 from plantar.feet.regression.regression_data import tangent_blocks
 from plantar.feet.settings import FeetSettings
+from plantar.results.walk_rows import WalkStiffness
 from plantar.robot.model import RobotModel
 
 COUNT = 6000
@@ -92,6 +93,30 @@ def test_the_furthest_is_told_as_far_as_the_others_agree(shares: list[float], fo
 def test_what_is_hardly_known_is_not_told() -> None:
     """A tenth, known to 3 %."""
     assert furthest(Differences(np.array([0.0, -0.1, 0.0]), 0.03**2 * (np.eye(3) + 1.0))) is None
+
+
+def test_a_walk_is_told_from_others_by_the_scatter_of_its_stances() -> None:
+    recordings = swaying((PLAIN, 1.0))
+    fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
+    assert fit is not None
+
+    def walks(*rows: tuple[float, float]) -> list[str]:
+        found = [
+            WalkStiffness(
+                f"walk_{k}", "fit", FOOT, "pitch", 9, stiffness, (stiffness - half, stiffness + half)
+            )
+            for k, (stiffness, half) in enumerate(rows)
+        ]
+        unseen = WalkStiffness("unseen", "validate", FOOT, "pitch", 9, 200.0, (190.0, 210.0))
+        return [note.text for note in odd_walks(fit, [*found, unseen])]
+
+    (text,) = walks((420.0, 4.0), (378.0, 4.0), (420.0, 4.0))
+    assert text.startswith(f"walk_1: {FOOT} pitch: stiffness is -10 ± ")
+    (text,) = walks((378.0, 4.0), (420.0, 4.0))
+    assert "walk_0" in text
+    assert "walk_1" in text
+    assert walks((420.0, 40.0), (378.0, 40.0), (420.0, 40.0)) == []
+    assert walks((420.0, 4.0)) == []
 
 
 def test_no_number_of_an_odd_axis_is_usable(robot: RobotModel) -> None:

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from plantar.conventions import Array
+from plantar.conventions import NORMAL95, Array
 from plantar.estimation import Block, fit_blocks, influences_of
 from plantar.estimation.random_effects import Differences, share_between
 from plantar.feet.interval_width.between_recordings import among, beside_one
@@ -20,6 +20,7 @@ from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.regression_data import all_beside
 from plantar.models import BESIDE, KelvinVoigt
 from plantar.notes import Note
+from plantar.results.walk_rows import WalkStiffness
 
 CODE = "recording_odd"
 SURE = 5.0  # deviations by which a recording must differ, those by which the others differ among one another included
@@ -32,8 +33,8 @@ TELLS = 0.01
 
 
 class Odd(NamedTuple):
-    """The recording at `place`, whose stiffness is the `share` (deviation `std`) beside that of the others, which
-    differ by the share `apart`."""
+    """The recording at `place`, whose stiffness is by a `share` (deviation `std`) beside that of the others, which
+    differ among one another by the share `apart`."""
 
     place: int
     share: float
@@ -42,11 +43,10 @@ class Odd(NamedTuple):
 
 
 def odd_recordings(wide: AxisFit, tangent: Sequence[Block], shared: bool) -> list[Note]:
-    """A warning of the recording whose stiffness is far from the others'; of two that differ, of both.
+    """A warning of the standing recording whose stiffness is far from the others'; of two that differ, of both.
 
     tangent: the recordings' `tangent_blocks`. Those are compared that tell the stiffness. Where a memory leaves less
-    than one stiffness more does, it is the memory that makes small motions stiffer than large ones. Not of a foot that
-    steps: see `walks` of the result.
+    than one stiffness more does, it is the memory that makes small motions stiffer than large ones.
     """
     if tangent[0].stances is not None or shared or len(tangent) < 2:
         return []
@@ -57,21 +57,39 @@ def odd_recordings(wide: AxisFit, tangent: Sequence[Block], shared: bool) -> lis
     tell = np.flatnonzero(np.array(told) > TELLS * fit.values[0]).tolist()
     if len(tell) < 2 or not fit.values[0] > 0:
         return []
-    every = beside_one(blocks, torques, tell[0])
-    odd = furthest(among(every, tell))
-    if odd is None:
-        return []
-    place = tell[odd.place]
-    if not isinstance(wide.model, KelvinVoigt):
+    odd = furthest(among(beside_one(blocks, torques, tell[0]), tell))
+    if odd is not None and not isinstance(wide.model, KelvinVoigt):
+        place = tell[odd.place]
         own = [torque[:, None] * float(each == place) for each, torque in enumerate(torques)]
         if fit_blocks(tangent).squares < fit_blocks(all_beside(blocks, own)).squares:
             return []
-    if len(tell) == 2:
-        others = f"{blocks[tell[1 - odd.place]].label}, and nobody knows which is right"
-    else:
-        others = f"{len(tell) - 1} other recordings, which agree within {100 * odd.apart:.2g} % (standard deviation)"
+    return _notes(odd, wide, [blocks[place].label for place in tell])
+
+
+def odd_walks(wide: AxisFit, walks: Sequence[WalkStiffness]) -> list[Note]:
+    """The same of fitted walks, each by itself: by the scatter of its own stances."""
+    fitted = [row for row in walks if row.role == "fit"]
+    stiffness = float(wide.values[0])
+    if len(fitted) < 2 or not stiffness > 0:
+        return []
+    shares = np.array([row.stiffness for row in fitted]) / stiffness
+    # An interval of few stances is wide by Student's quantile, so that few that scatter little by chance are not sure.
+    std = np.array([row.interval95[1] - row.interval95[0] for row in fitted]) / (2 * NORMAL95 * stiffness)
+    covariance = np.diag(std[1:] ** 2) + std[0] ** 2
+    odd = furthest(Differences(shares[1:] - shares[0], covariance))
+    return _notes(odd, wide, [row.motion for row in fitted])
+
+
+def _notes(odd: Odd | None, fit: AxisFit, names: Sequence[str]) -> list[Note]:
+    if odd is None:
+        return []
+    others = (
+        f"{len(names) - 1} other recordings, which agree within {100 * odd.apart:.2g} % (standard deviation)"
+    )
+    if len(names) == 2:
+        others = f"{names[1 - odd.place]}, and nobody knows which is right"
     text = (
-        f"{blocks[place].label}: {wide.foot} {wide.axis}: stiffness is {100 * odd.share:+.2g} ± {100 * odd.std:.2g} % "
+        f"{names[odd.place]}: {fit.foot} {fit.axis}: stiffness is {100 * odd.share:+.2g} ± {100 * odd.std:.2g} % "
         f"beside that of {others}. Was it recorded on another floor, on another sole, or with a joint read otherwise? "
         "Leave it out, or fit it alone"
     )
