@@ -11,11 +11,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import plantar
 from command_line import run
 from plantar.comparison import compare as comparison
 from plantar.comparison.compare import KindScore, compare, pooled
 from plantar.comparison.picture import write_picture
-from plantar.comparison.scenes import AS_IT_WAS, CONTACT, JOINTS, RIGID, WITH_SLIP, scenes
+from plantar.comparison.scenes import AS_IT_WAS, CONTACT, JOINTS, RIGID, WITH_LOOP, scenes
 from plantar.contact.balance import soles_in_root
 from plantar.conventions import Array, rotation_from_rpy
 from plantar.exporters.job import Stance
@@ -144,6 +145,9 @@ def test_the_scenes_are_what_the_exporters_write(result: FeetResult, log: Motion
     assert "left_contact_0" in names[CONTACT]
     assert not {"LLEG_BUSH_PITCH", "left_contact_0"} & names[AS_IT_WAS]
     assert "LLEG_BUSH_PITCH" not in names[CONTACT]
+    tipping = scenes(result, hrp2.robot(), plan_of(hrp2.robot(), log), tips=True)
+    assert tuple(tipping) == (*KINDS, WITH_LOOP), "a sole that tips asks for the loop, whatever the rubber"
+    assert tipping[WITH_LOOP].force is plantar.FootHysteresis
 
 
 @pytest.mark.slow
@@ -152,10 +156,10 @@ def test_a_contact_whose_slip_the_loop_applies_moves_as_the_joints_do(tmp_path: 
     log = played(SLIPPING, 3.5)
     scores, _ = compare(identified(SLIPPING, tmp_path), hrp2.robot(), [log], stance=Stance("bush"))
     chest = {one.feet: one.chest for one in scores}
-    assert tuple(chest) == (*KINDS, WITH_SLIP)
-    assert chest[WITH_SLIP] < 1.5 * chest[JOINTS] + 2e-5  # type: ignore[operator]
-    assert chest[WITH_SLIP] < 0.1 * chest[AS_IT_WAS]  # type: ignore[operator]
-    assert chest[CONTACT] > 3 * chest[WITH_SLIP]  # type: ignore[operator]
+    assert tuple(chest) == (*KINDS, WITH_LOOP)
+    assert chest[WITH_LOOP] < 1.5 * chest[JOINTS] + 2e-5  # type: ignore[operator]
+    assert chest[WITH_LOOP] < 0.1 * chest[AS_IT_WAS]  # type: ignore[operator]
+    assert chest[CONTACT] > 3 * chest[WITH_LOOP]  # type: ignore[operator]
 
 
 def test_feet_that_turn_about_the_bush_stand_lower(result: FeetResult, log: MotionLog) -> None:

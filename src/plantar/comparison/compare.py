@@ -62,8 +62,8 @@ def compare(
     swing: float | None = None,
     stance: Stance = USUAL,
 ) -> tuple[tuple[KindScore, ...], tuple[Replayed, ...]]:
-    """Play each log's joints open loop on the model's rigid feet, on exported joints and on exported contact, of rubber
-    that slips also with its hysteresis.
+    """Play each log's joints open loop on the model's rigid feet, on exported joints and on exported contact; where
+    rubber slips or a sole tips, also on the contact with `FootHysteresis` in the loop.
 
     Args:
         result: of `identify_feet`. robot: that the logs are of. logs: with an attitude of the IMU.
@@ -77,11 +77,13 @@ def compare(
     """
     scores: list[KindScore] = []
     found: list[Replayed] = []
-    for log in logs:
+    edges = [on_an_edge(robot, log) for log in logs]
+    tipping = any(one is not None for one in edges)  # in one log: then all have the same kinds
+    for log, tips in zip(logs, edges, strict=True):
         plan = plan_of(robot, log)
         record = record_of(robot, log, plan)  # before anything is played: a log may hold no attitude
-        made = scenes(result, robot, plan, swing, stance)
-        played, tips = _played(robot, plan, made), on_an_edge(robot, log)
+        made = scenes(result, robot, plan, swing, stance, tipping)
+        played = _played(robot, plan, made)
         fell = {kind: one.fell for kind, one in played.items() if isinstance(one, MotionError)}
         falls = [time for time in fell.values() if time is not None]
         if falls and (until := min(falls) - BEFORE) > SHORTEST:
