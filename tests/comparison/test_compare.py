@@ -19,6 +19,7 @@ from plantar.comparison.picture import write_picture
 from plantar.comparison.scenes import AS_IT_WAS, CONTACT, JOINTS, RIGID, WITH_LOOP, scenes
 from plantar.contact.balance import soles_in_root
 from plantar.conventions import Array, rotation_from_rpy
+from plantar.errors import RobotError
 from plantar.exporters.job import Stance
 from plantar.logs.motion_log import MotionLog, wrench_columns
 from plantar.logs.save import save_log
@@ -258,6 +259,16 @@ def test_the_command_says_what_it_cannot_do(
     assert "valid: mujoco" in capsys.readouterr().err
     assert run("compare", found, robot, file, "-q") == 1
     assert "no attitude" in capsys.readouterr().err
+
+
+def test_robots_that_cannot_stand_and_move_are_refused(result: FeetResult, log: MotionLog) -> None:
+    """A foot alone on a bench, a bolted arm, another robot: one line each, nothing is played."""
+    robot = hrp2.robot()
+    for change in ({"base": "fixed"}, {"feet": {}}):
+        with pytest.raises(RobotError, match="a standing robot whose joints move"):
+            compare(result, replace(robot, **change), [log])
+    with pytest.raises(RobotError, match="'left': the result is of feet called left, right"):
+        compare(result, replace(robot, feet={"l": robot.feet["left"], "right": robot.feet["right"]}), [log])
 
 
 @pytest.mark.slow

@@ -10,7 +10,7 @@ import numpy as np
 
 from plantar.comparison.scenes import RIGID, Played, scenes
 from plantar.comparison.tipping import on_an_edge
-from plantar.errors import MotionError
+from plantar.errors import MotionError, RobotError
 from plantar.exporters.job import USUAL, Stance
 from plantar.logs.motion_log import MotionLog
 from plantar.motions.plan import Plan
@@ -73,8 +73,10 @@ def compare(
     Returns:
         A score for each motion and kind, and what was simulated beside what was recorded, where no robot fell.
 
-    Raises DataError: a log without attitude, or in which no foot carries. ExportError: feet that cannot be exported.
+    Raises RobotError: a robot that cannot stand and move, or not one of the result's feet. DataError: a log without
+    attitude, or in which no foot carries. ExportError: feet that cannot be exported.
     """
+    _check(result, robot)
     scores: list[KindScore] = []
     found: list[Replayed] = []
     edges = [on_an_edge(robot, log) for log in logs]
@@ -100,6 +102,16 @@ def compare(
     return tuple(scores), tuple(found)
 
 
+def _check(result: FeetResult, robot: RobotModel) -> None:
+    feet = sorted({row.foot for row in result.parameters})
+    if not robot.joint_names or not robot.feet or robot.base == "fixed":
+        message = "what is played is a standing robot whose joints move"
+        raise RobotError(message, path=robot.path, valid="a floating base, joints and feet")
+    if missing := [foot for foot in feet if foot not in robot.feet]:
+        message = f"the result is of feet called {', '.join(feet)}"
+        raise RobotError(message, path=robot.path, value=missing[0], valid=", ".join(robot.feet))
+
+
 def _played(robot: RobotModel, plan: Plan, made: Mapping[str, Played]) -> dict[str, Rollout | MotionError]:
     """A rollout for each kind of feet, or how the robot fell."""
 
@@ -109,7 +121,7 @@ def _played(robot: RobotModel, plan: Plan, made: Mapping[str, Played]) -> dict[s
             base = plan.base - np.array([[0, 0, 0, 0], [0, 0, 0, 0], [0, 0, 0, one.lower], [0, 0, 0, 0]])
             return roll_out(robot, replace(plan, base=base), RIGID, one.xml, force=one.force)
         except MotionError as error:
-            return error
+            return error.with_traceback(None)  # which would keep the simulation
 
     return dict(zip(made, on_cores(rolled, tuple(made)), strict=True))
 
