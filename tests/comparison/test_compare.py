@@ -19,7 +19,7 @@ from plantar.comparison.picture import write_picture
 from plantar.comparison.scenes import AS_IT_WAS, CONTACT, JOINTS, RIGID, WITH_LOOP, scenes
 from plantar.contact.balance import soles_in_root
 from plantar.conventions import Array, rotation_from_rpy
-from plantar.errors import RobotError
+from plantar.errors import DataError, RobotError
 from plantar.exporters.job import Stance
 from plantar.logs.motion_log import MotionLog, wrench_columns
 from plantar.logs.save import save_log
@@ -269,6 +269,19 @@ def test_robots_that_cannot_stand_and_move_are_refused(result: FeetResult, log: 
             compare(result, replace(robot, **change), [log])
     with pytest.raises(RobotError, match="'left': the result is of feet called left, right"):
         compare(result, replace(robot, feet={"l": robot.feet["left"], "right": robot.feet["right"]}), [log])
+
+
+def test_logs_that_cannot_be_played_are_refused(result: FeetResult, log: MotionLog) -> None:
+    """In one line each, before anything is simulated."""
+    robot = hrp2.robot()
+    unmoved = {name: values for name, values in log.columns.items() if not name.startswith("joint.")}
+    gone = np.abs(log.time - log.time[0] - 2.0) < 0.2
+    gap = {name: np.where(gone, np.nan, values) for name, values in log.columns.items()}
+    for columns, message in ((unmoved, "holds no joints"), (gap, "t = 1.8.*the joints have a gap")):
+        with pytest.raises(DataError, match=message):
+            compare(result, robot, [replace(log, columns=columns)])
+    with pytest.raises(DataError, match="too short to compare"):
+        compare(result, robot, [first(log, 1.5)])
 
 
 @pytest.mark.slow

@@ -10,7 +10,7 @@ import numpy as np
 
 from plantar.comparison.scenes import RIGID, Played, scenes
 from plantar.comparison.tipping import on_an_edge
-from plantar.errors import MotionError, RobotError
+from plantar.errors import DataError, MotionError, RobotError
 from plantar.exporters.job import USUAL, Stance
 from plantar.logs.motion_log import MotionLog
 from plantar.motions.plan import Plan
@@ -82,7 +82,14 @@ def compare(
     edges = [on_an_edge(robot, log) for log in logs]
     tipping = any(one is not None for one in edges)  # in one log: then all have the same kinds
     for log, tips in zip(logs, edges, strict=True):
+        if not any(log.has(f"joint.{name}.position") for name in robot.joint_names):
+            raise DataError("holds no joints to play", path=log.source)
         plan = plan_of(robot, log)
+        if plan.time[-1] < SHORTEST:
+            valid = f"{SHORTEST:g} s or more"
+            raise DataError(
+                "is too short to compare", path=log.source, value=float(plan.time[-1]), valid=valid
+            )
         record = record_of(robot, log, plan)  # before anything is played: a log may hold no attitude
         made = scenes(result, robot, plan, swing, stance, tipping)
         played = _played(robot, plan, made)
