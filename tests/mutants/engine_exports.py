@@ -64,7 +64,7 @@ ENGINE_EXPORTS = (
     ),
     Mutant(
         "exporters/contact/hysteresis.py", "the points' own push comes on top",
-        "np.maximum(stiffness * sunk - damping * climb[1:], 0.0)", "0.0 * sunk",
+        "(force - pushes.sum()) * normal", "force * normal",
         ("exporters/test_contact_hysteresis.py",),
     ),
     Mutant(
