@@ -69,3 +69,14 @@ def test_rubber_under_a_tipping_sole_yields_by_its_own_bend_and_not_by_the_foots
     assert bent == pytest.approx((K[0] * TOE * (1e-3 + TOE * 0.3) - 5.0) / (K[2] + K[0] * TOE**2))
     law.forget()
     assert law.yielded == [0.0, 0.0]
+
+
+def test_rubber_that_sticks_under_a_tipped_sole_has_not_yielded() -> None:
+    """Hardly loaded, on its toes: the foot has turned by five times the slip angle, its bush by a seventh of it."""
+    law = foot((None, Slip(5.0, 0.01)))
+    lifted, angle = 2e-4 - TOE * 0.05, 0.05
+    bent = K[0] * TOE * (lifted + TOE * angle) / (K[2] + 500.0 + K[0] * TOE**2)
+    wrench = law.wrench(np.array([lifted, 0.0, angle]), STILL)
+    assert wrench[2] == pytest.approx((K[2] + 500.0) * bent)
+    assert wrench[0] == pytest.approx(wrench[2] / TOE)
+    assert law.yielded == [0.0, 0.0]

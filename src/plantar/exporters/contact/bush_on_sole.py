@@ -8,6 +8,8 @@ metric of its compliance, which is the rest position of a bush between ankle and
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -45,24 +47,36 @@ class BushOnSole:
         Args:
             deflection, rate: (3,) of the foot to the ground: compression, roll and pitch [m, rad; m/s, rad/s].
         """
-        wrench = self.stiffness * deflection + self.damping * rate
-        yields = self.stiffness.copy()
+        sides = [0.0, 0.0]  # of roll's and pitch's slip: it sticks, or yields that way
+        sticks = True
+        while sticks:
+            wrench, bent = self._held(deflection, rate, sides)
+            sticks = False
+            for place, slip in enumerate(self.slips):
+                strain = bent[1 + place] - self.yielded[place]
+                if slip is not None and not sides[place] and abs(strain) > slip.angle:
+                    sides[place], sticks = math.copysign(1.0, strain), True
         for place, slip in enumerate(self.slips):
-            if slip is not None:
-                stuck = deflection[1 + place] - self.yielded[place]
-                wrench[1 + place] += slip.stiffness * min(max(stuck, -slip.angle), slip.angle)
-                yields[1 + place] += slip.stiffness if abs(stuck) < slip.angle else 0.0
-        bent = deflection
-        if (self._walls @ wrench).min() < 0:
-            scale = 1 / np.sqrt(yields)
-            held = nnls((self._pushes * scale).T, wrench * scale)[0] @ self._pushes
-            bent = deflection - (wrench - held) / yields  # the sole turns by the rest
-            wrench = held
+            if slip is not None and sides[place]:
+                self.yielded[place] = float(bent[1 + place]) - sides[place] * slip.angle
+        return wrench
+
+    def _held(self, deflection: Array, rate: Array, sides: Sequence[float]) -> tuple[Array, Array]:
+        """The wrench, and how far the bush itself is bent, (3,) each, while slips stick or yield to these sides."""
+        stiffness, wrench = self.stiffness.copy(), self.stiffness * deflection + self.damping * rate
         for place, slip in enumerate(self.slips):
-            if slip is not None:
-                stuck = bent[1 + place] - self.yielded[place]
-                self.yielded[place] = float(bent[1 + place] - min(max(stuck, -slip.angle), slip.angle))
-        return np.asarray(wrench)
+            if slip is None:
+                continue
+            if sides[place]:
+                wrench[1 + place] += sides[place] * slip.torque
+            else:
+                stiffness[1 + place] += slip.stiffness
+                wrench[1 + place] += slip.stiffness * (deflection[1 + place] - self.yielded[place])
+        if (self._walls @ wrench).min() >= 0:
+            return wrench, deflection
+        scale = 1 / np.sqrt(stiffness)
+        held = nnls((self._pushes * scale).T, wrench * scale)[0] @ self._pushes
+        return np.asarray(held), deflection - (wrench - held) / stiffness  # the sole turns by the rest
 
     def forget(self) -> None:
         """Of a foot that was lifted."""
