@@ -11,13 +11,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import plantar
 from command_line import run
 from plantar.comparison import compare as comparison
 from plantar.comparison.compare import KindScore, compare, pooled
 from plantar.comparison.picture import write_picture
-from plantar.comparison.scenes import AS_IT_WAS, CONTACT, JOINTS, RIGID, WITH_SLIP, scenes
+from plantar.comparison.scenes import AS_IT_WAS, CONTACT, JOINTS, RIGID, WITH_LOOP, scenes
 from plantar.contact.balance import soles_in_root
 from plantar.conventions import Array, rotation_from_rpy
+from plantar.errors import DataError, RobotError
 from plantar.exporters.job import Stance
 from plantar.logs.motion_log import MotionLog, wrench_columns
 from plantar.logs.save import save_log
@@ -144,6 +146,9 @@ def test_the_scenes_are_what_the_exporters_write(result: FeetResult, log: Motion
     assert "left_contact_0" in names[CONTACT]
     assert not {"LLEG_BUSH_PITCH", "left_contact_0"} & names[AS_IT_WAS]
     assert "LLEG_BUSH_PITCH" not in names[CONTACT]
+    tipping = scenes(result, hrp2.robot(), plan_of(hrp2.robot(), log), tips=True)
+    assert tuple(tipping) == (*KINDS, WITH_LOOP), "a sole that tips asks for the loop, whatever the rubber"
+    assert tipping[WITH_LOOP].force is plantar.FootHysteresis
 
 
 @pytest.mark.slow
@@ -152,10 +157,10 @@ def test_a_contact_whose_slip_the_loop_applies_moves_as_the_joints_do(tmp_path: 
     log = played(SLIPPING, 3.5)
     scores, _ = compare(identified(SLIPPING, tmp_path), hrp2.robot(), [log], stance=Stance("bush"))
     chest = {one.feet: one.chest for one in scores}
-    assert tuple(chest) == (*KINDS, WITH_SLIP)
-    assert chest[WITH_SLIP] < 1.5 * chest[JOINTS] + 2e-5  # type: ignore[operator]
-    assert chest[WITH_SLIP] < 0.1 * chest[AS_IT_WAS]  # type: ignore[operator]
-    assert chest[CONTACT] > 3 * chest[WITH_SLIP]  # type: ignore[operator]
+    assert tuple(chest) == (*KINDS, WITH_LOOP)
+    assert chest[WITH_LOOP] < 1.5 * chest[JOINTS] + 2e-5  # type: ignore[operator]
+    assert chest[WITH_LOOP] < 0.1 * chest[AS_IT_WAS]  # type: ignore[operator]
+    assert chest[CONTACT] > 3 * chest[WITH_LOOP]  # type: ignore[operator]
 
 
 def test_feet_that_turn_about_the_bush_stand_lower(result: FeetResult, log: MotionLog) -> None:
@@ -254,6 +259,29 @@ def test_the_command_says_what_it_cannot_do(
     assert "valid: mujoco" in capsys.readouterr().err
     assert run("compare", found, robot, file, "-q") == 1
     assert "no attitude" in capsys.readouterr().err
+
+
+def test_robots_that_cannot_stand_and_move_are_refused(result: FeetResult, log: MotionLog) -> None:
+    """A foot alone on a bench, a bolted arm, another robot: one line each, nothing is played."""
+    robot = hrp2.robot()
+    for change in ({"base": "fixed"}, {"feet": {}}):
+        with pytest.raises(RobotError, match="a standing robot whose joints move"):
+            compare(result, replace(robot, **change), [log])
+    with pytest.raises(RobotError, match="'left': the result is of feet called left, right"):
+        compare(result, replace(robot, feet={"l": robot.feet["left"], "right": robot.feet["right"]}), [log])
+
+
+def test_logs_that_cannot_be_played_are_refused(result: FeetResult, log: MotionLog) -> None:
+    """In one line each, before anything is simulated."""
+    robot = hrp2.robot()
+    unmoved = {name: values for name, values in log.columns.items() if not name.startswith("joint.")}
+    gone = np.abs(log.time - log.time[0] - 2.0) < 0.2
+    gap = {name: np.where(gone, np.nan, values) for name, values in log.columns.items()}
+    for columns, message in ((unmoved, "holds no joints"), (gap, "t = 1.8.*the joints have a gap")):
+        with pytest.raises(DataError, match=message):
+            compare(result, robot, [replace(log, columns=columns)])
+    with pytest.raises(DataError, match="too short to compare"):
+        compare(result, robot, [first(log, 1.5)])
 
 
 @pytest.mark.slow

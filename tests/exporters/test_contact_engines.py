@@ -35,7 +35,7 @@ def pushed(
            "centre": CENTRE.tolist(), "axis": bush_rotation(foot)[:, {"roll": 0, "pitch": 1}[axis]].tolist(),
            "load": share * WEIGHT, "torque": TORQUE, "step": step, "stand": STAND, "free": FREE} | more  # fmt: skip
     done = subprocess.run(
-        [python, "-c", program], input=json.dumps(job), capture_output=True, text=True, timeout=300
+        [python, "-c", program], input=json.dumps(job), capture_output=True, text=True, timeout=900
     )
     assert done.returncode == 0, done.stderr[-2000:]
     there, back, free = (np.array(track) for track in json.loads(done.stdout.splitlines()[-1]))

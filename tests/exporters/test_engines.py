@@ -153,7 +153,7 @@ def pushed(
     job = {"file": str(file), "loads": loads, "step": step, "held": held,
            "settle": round(SETTLE / step), "free": round(FREE / step)}  # fmt: skip
     done = subprocess.run(
-        [python, "-c", program], input=json.dumps(job), capture_output=True, text=True, timeout=400
+        [python, "-c", program], input=json.dumps(job), capture_output=True, text=True, timeout=900
     )
     assert done.returncode == 0, done.stderr[-2000:]
     for (foot, axis), poses in zip(cases, json.loads(done.stdout.splitlines()[-1]), strict=True):

@@ -78,8 +78,8 @@ DRAWN_ANEW = (
     Mutant(
         "exporters/spring.py",
         "an unidentifiable pitch for a rigid one",
-        'axis == "z" and mine.get("stiffness", {}).get("verdict")',
-        'mine.get("stiffness", {}).get("verdict")',
+        '(axis == "z" and _may_be_rigid(mine["stiffness"]))',
+        '_may_be_rigid(mine["stiffness"])',
     ),
     Mutant(
         "exporters/kinetics_observer.py",

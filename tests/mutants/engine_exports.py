@@ -52,20 +52,34 @@ ENGINE_EXPORTS = (
     ),
     Mutant(
         "exporters/contact/hysteresis.py", "the slip pushes a rolled foot further over",
-        "zip((-math.asin(y), pitch)", "zip((math.asin(y), pitch)", ("exporters/test_contact_hysteresis.py",),
+        "-math.asin(y), pitch]", "math.asin(y), pitch]", ("exporters/test_contact_hysteresis.py",),
     ),
     Mutant(
         "exporters/contact/hysteresis.py", "a foot in the air remembers how it stood",
-        "                foot.yielded = [0.0, 0.0]\n                data", "                data",
-        ("exporters/test_contact_hysteresis.py",),
+        "                foot.law.forget()\n", "", ("exporters/test_contact_hysteresis.py",),
     ),
     Mutant(
         "exporters/contact/hysteresis.py", "the horizon instead of the ground",
-        "foot.torque(up / math.hypot(*up))", "foot.torque(turn[2])", ("exporters/test_contact_hysteresis.py",),
+        "foot.wrench(normal @ turn,", "foot.wrench(turn[2],", ("exporters/test_contact_hysteresis.py",),
     ),
     Mutant(
-        "exporters/contact/hysteresis.py", "nothing ever yields",
-        "self.yielded[place] = angle - elastic", "self.yielded[place] = 0.0", ("exporters/test_contact_hysteresis.py",),
+        "exporters/contact/hysteresis.py", "the points' own push comes on top",
+        "(force - pushes.sum()) * normal", "force * normal",
+        ("exporters/test_contact_hysteresis.py",),
+    ),
+    Mutant(
+        "exporters/contact/bush_on_sole.py", "nothing ever yields",
+        "self.yielded[place] = float(bent[1 + place])", "self.yielded[place] = 0.0 * float(bent[1 + place])",
+        ("exporters/test_contact_hysteresis.py",),
+    ),
+    Mutant(
+        "exporters/contact/bush_on_sole.py", "a sole that never tips",
+        "(self._walls @ wrench).min() >= 0", "(self._walls @ wrench).min() >= -1e9",
+        ("exporters/test_bush_on_sole.py",),
+    ),
+    Mutant(
+        "exporters/contact/bush_on_sole.py", "rubber that yields by the tipped foot's angle",
+        "strain = bent[1 + place]", "strain = deflection[1 + place]", ("exporters/test_bush_on_sole.py",),
     ),
     Mutant(
         "exporters/bush.py", "a pivot as far under the sole as the bush is above it",

@@ -90,7 +90,7 @@ def run(
             text = (
                 f"{motion}: from {time:.1f} s on a sole of the record stands on its edge and tips by itself; "
             )
-            text += "points under the ankle do not follow that"
+            text += "points under the ankle follow that only with the loop"
             screen.print(text, markup=False, style="yellow")
         for one in scores:
             if one.fell is not None:

@@ -18,7 +18,8 @@ SWING_HELP = (
     "If left out: K and C nearest to the identified motions."
 )
 HYSTERESIS_HELP = (
-    "Rubber that slips, mujoco-contact: leave the slip to plantar.FootHysteresis in your simulation's loop."
+    "mujoco-contact: leave what points cannot be, slip above all, to plantar.FootHysteresis in your simulation's "
+    "loop."
 )
 PIVOT_HELP = (
     "mujoco-contact: 'ground', or 'bush' for feet that turn about the bush centre as the robot's do; "

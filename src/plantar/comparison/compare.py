@@ -10,7 +10,7 @@ import numpy as np
 
 from plantar.comparison.scenes import RIGID, Played, scenes
 from plantar.comparison.tipping import on_an_edge
-from plantar.errors import MotionError
+from plantar.errors import DataError, MotionError, RobotError
 from plantar.exporters.job import USUAL, Stance
 from plantar.logs.motion_log import MotionLog
 from plantar.motions.plan import Plan
@@ -62,8 +62,8 @@ def compare(
     swing: float | None = None,
     stance: Stance = USUAL,
 ) -> tuple[tuple[KindScore, ...], tuple[Replayed, ...]]:
-    """Play each log's joints open loop on the model's rigid feet, on exported joints and on exported contact, of rubber
-    that slips also with its hysteresis.
+    """Play each log's joints open loop on the model's rigid feet, on exported joints and on exported contact; where
+    rubber slips or a sole tips, also on the contact with `FootHysteresis` in the loop.
 
     Args:
         result: of `identify_feet`. robot: that the logs are of. logs: with an attitude of the IMU.
@@ -73,15 +73,26 @@ def compare(
     Returns:
         A score for each motion and kind, and what was simulated beside what was recorded, where no robot fell.
 
-    Raises DataError: a log without attitude, or in which no foot carries. ExportError: feet that cannot be exported.
+    Raises RobotError: a robot that cannot stand and move, or not one of the result's feet. DataError: a log without
+    attitude, or in which no foot carries. ExportError: feet that cannot be exported.
     """
+    _check(result, robot)
     scores: list[KindScore] = []
     found: list[Replayed] = []
-    for log in logs:
+    edges = [on_an_edge(robot, log) for log in logs]
+    tipping = any(one is not None for one in edges)  # in one log: then all have the same kinds
+    for log, tips in zip(logs, edges, strict=True):
+        if not any(log.has(f"joint.{name}.position") for name in robot.joint_names):
+            raise DataError("holds no joints to play", path=log.source)
         plan = plan_of(robot, log)
+        if plan.time[-1] < SHORTEST:
+            valid = f"{SHORTEST:g} s or more"
+            raise DataError(
+                "is too short to compare", path=log.source, value=float(plan.time[-1]), valid=valid
+            )
         record = record_of(robot, log, plan)  # before anything is played: a log may hold no attitude
-        made = scenes(result, robot, plan, swing, stance)
-        played, tips = _played(robot, plan, made), on_an_edge(robot, log)
+        made = scenes(result, robot, plan, swing, stance, tipping)
+        played = _played(robot, plan, made)
         fell = {kind: one.fell for kind, one in played.items() if isinstance(one, MotionError)}
         falls = [time for time in fell.values() if time is not None]
         if falls and (until := min(falls) - BEFORE) > SHORTEST:
@@ -98,6 +109,16 @@ def compare(
     return tuple(scores), tuple(found)
 
 
+def _check(result: FeetResult, robot: RobotModel) -> None:
+    feet = sorted({row.foot for row in result.parameters})
+    if not robot.joint_names or not robot.feet or robot.base == "fixed":
+        message = "what is played is a standing robot whose joints move"
+        raise RobotError(message, path=robot.path, valid="a floating base, joints and feet")
+    if missing := [foot for foot in feet if foot not in robot.feet]:
+        message = f"the result is of feet called {', '.join(feet)}"
+        raise RobotError(message, path=robot.path, value=missing[0], valid=", ".join(robot.feet))
+
+
 def _played(robot: RobotModel, plan: Plan, made: Mapping[str, Played]) -> dict[str, Rollout | MotionError]:
     """A rollout for each kind of feet, or how the robot fell."""
 
@@ -107,7 +128,7 @@ def _played(robot: RobotModel, plan: Plan, made: Mapping[str, Played]) -> dict[s
             base = plan.base - np.array([[0, 0, 0, 0], [0, 0, 0, 0], [0, 0, 0, one.lower], [0, 0, 0, 0]])
             return roll_out(robot, replace(plan, base=base), RIGID, one.xml, force=one.force)
         except MotionError as error:
-            return error
+            return error.with_traceback(None)  # which would keep the simulation
 
     return dict(zip(made, on_cores(rolled, tuple(made)), strict=True))
 

@@ -28,7 +28,7 @@ from plantar.twin.simulation.stepping import Force
 AS_IT_WAS: Final = "rigid, as the model was"
 JOINTS: Final = "exported joints"
 CONTACT: Final = "exported contact"
-WITH_SLIP: Final = "contact, hysteresis"
+WITH_LOOP: Final = "contact, loop"
 RIGID: Final = Physics(bushes=None)
 
 
@@ -43,15 +43,20 @@ class Played:
 
 
 def scenes(
-    result: FeetResult, robot: RobotModel, plan: Plan, swing: float | None = None, stance: Stance = USUAL
+    result: FeetResult,
+    robot: RobotModel,
+    plan: Plan,
+    swing: float | None = None,
+    stance: Stance = USUAL,
+    tips: bool = False,
 ) -> Mapping[str, Played]:
-    """By kind of feet, the scene that `plan` is played on; `WITH_SLIP` only of rubber that slips.
+    """By kind of feet, the scene that `plan` is played on; `WITH_LOOP` only of rubber that slips or a sole that tips.
 
     The exporters extend the rigid scene as they extend a user's model: what is compared is what they write.
 
     Args:
         result: of `identify_feet`. robot, plan: that are played.
-        swing, stance: as of `plantar.export`, for the contact.
+        swing, stance: as of `plantar.export`, for the contact. tips: whether a sole stands on its edge.
     """
     check_swing(swing)
     data, base = open_result(result)
@@ -64,7 +69,7 @@ def scenes(
             kept = asked(target, CONTACT, hysteresis, swing, stance)
             feet, remarks = feet_of_result(data, base, with_offset=False, hysteresis=kept, swing=swing)
             moved = tuple(_on_twin(foot, robot) for foot in feet)
-            return Job(data, moved, model, model.with_name("out.xml"), False, remarks, stance)
+            return Job(data, moved, model, model.with_name("out.xml"), False, remarks, stance, kept)
 
         points, slipping = job(contact, False, swing, stance), job(contact, True, None, stance)
         lower = min(foot.sole_depth for foot in points.feet) if stance.pivot == "bush" else 0.0
@@ -73,8 +78,8 @@ def scenes(
             JOINTS: Played(joints.write(job(joints, False, None, USUAL), Notes())),
             CONTACT: Played(contact.write(points, Notes()), lower),
         }
-        if any(spring.slip for foot in slipping.feet for spring in foot.springs):
-            made[WITH_SLIP] = Played(contact.write(slipping, Notes()), lower, FootHysteresis)
+        if tips or any(spring.slip for foot in slipping.feet for spring in foot.springs):
+            made[WITH_LOOP] = Played(contact.write(slipping, Notes()), lower, FootHysteresis)
         return made
 
 

@@ -72,8 +72,8 @@ def export(
         with_offset: the springs rest at -offset/K; else at 0, since the offset is mostly the sensors' zero.
         swing: for rubber that slips and a target that holds no slip, the amplitude of the motions it is for [rad]: the
             slip becomes their spring and damper. Where left out, K and C are the nearest to the identified motions.
-        hysteresis: for mujoco-contact: leave the slip of rubber to `plantar.FootHysteresis` in the simulation's loop.
-            Joints of mjcf hold it anyway.
+        hysteresis: for mujoco-contact: leave to `plantar.FootHysteresis` in the simulation's loop what points cannot
+            be: rubber that slips, feet that tip. Joints of mjcf hold it anyway.
         pivot: for mujoco-contact: what the foot turns about, "ground" or "bush": the bush's centre, as the robot's feet
             do. The robot then stands lower by the bush's height over the sole.
         least_load: for mujoco-contact: the least load that a foot does not give way under along z, as a share of the
@@ -120,7 +120,7 @@ def export(
         if given is not None and not takes_model:
             raise ExportError("this target takes no model", value=target, valid="no --model")
         said = Notes()
-        text = module.write(Job(data, feet, given, path, with_offset, remarks, stance), said)
+        text = module.write(Job(data, feet, given, path, with_offset, remarks, stance, hysteresis), said)
         notes = (*remarks, *said, *([joints_note(feet)] if target in WITH_JOINTS else []))
     write_text(path, text)
     return unique(notes)

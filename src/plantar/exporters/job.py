@@ -32,7 +32,7 @@ USUAL: Final = Stance()
 @dataclass(frozen=True)
 class Job:
     """What a target is given: the feet, the result, the model to extend, where the file will stand, and for feet on
-    points their `stance`."""
+    points their `stance` and whether the loop is to have their law (`hysteresis`)."""
 
     result: Mapping[str, Any]
     feet: tuple[FootBush, ...]
@@ -41,6 +41,7 @@ class Job:
     with_offset: bool
     remarks: tuple[Note, ...]  # what holds for every target, for the comment at the file's head
     stance: Stance = USUAL
+    hysteresis: bool = False
 
     def head(self, target: str, notes: Notes, *, rests: bool = True, joints: bool = True) -> list[str]:
         """`comment.head` of this export; not `rests`: of a target whose springs have no rest position."""

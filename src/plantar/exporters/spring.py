@@ -93,9 +93,7 @@ def spring_of(
     mine = {str(row["name"]): row for row in rows if row.get("foot") == foot and row.get("axis") == axis}
     where = f"{foot} {axis}"
     found = {name: row["value"] for name, row in mine.items() if row.get("value") is not None}
-    # What hardly gives looks like any large number; in pitch and roll a foot that gives must not be made rigid.
-    nothing_known = axis == "z" and mine.get("stiffness", {}).get("verdict") == "unidentifiable"
-    if "stiffness" not in found or nothing_known:
+    if "stiffness" not in found or (axis == "z" and _may_be_rigid(mine["stiffness"])):
         return None
     values = {name: _number(value, f"{where} {name}") for name, value in found.items()}
     stiffness = values["stiffness"]
@@ -139,6 +137,13 @@ def spring_of(
         text += f" from {min(offsets):.4g} to {max(offsets):.4g}"
         notes.info("export_offset", text)
     return Spring(axis, stiffness, damping, offset if with_offset else 0.0, assumed, slip)
+
+
+def _may_be_rigid(row: Mapping[str, Any]) -> bool:
+    """Whether a z called unidentifiable stays rigid: what hardly gives looks like any large number. An interval with
+    ends says that it gives, though not how much, and the value is nearer to that than a foot that does not."""
+    interval = row.get("interval95")
+    return row.get("verdict") == "unidentifiable" and (interval is None or not np.isfinite(interval).all())
 
 
 def _damping(row: Mapping[str, Any], stiffness: float, where: str, notes: Notes) -> tuple[float, bool]:

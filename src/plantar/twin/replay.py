@@ -20,6 +20,7 @@ from plantar.robot.model import Foot, RobotModel
 from plantar.signals.filters import low_pass
 from plantar.twin.bush import Bush, Feet
 from plantar.twin.holding_torques import holding_torques
+from plantar.twin.log_at import check_whole, log_at
 from plantar.twin.play import Progress, roll_each
 from plantar.twin.robots.foot import cut_feet
 from plantar.twin.robots.from_robot import describe
@@ -126,8 +127,11 @@ class Record:
 
 def record_of(robot: RobotModel, log: MotionLog, plan: Plan) -> Record:
     """A log at the times of its plan. Raises DataError where it holds no attitude."""
-    record = _at(log, log.time[0] + plan.time)
-    return Record(_torques(robot, record), chest_attitude(robot, record))
+    record = log_at(log, log.time[0] + plan.time)
+    made = Record(_torques(robot, record), chest_attitude(robot, record))
+    check_whole(log, "the attitudes", plan.time, made.attitude)
+    check_whole(log, "the wrenches", plan.time, np.column_stack(list(made.torque.values())))
+    return made
 
 
 def beside(robot: RobotModel, plan: Plan, feet: str, rollout: Rollout, record: Record) -> Replayed:
@@ -174,8 +178,9 @@ def plan_of(robot: RobotModel, log: MotionLog, hand: Hand | None = None) -> Plan
     that has none, under those that hold the robot against gravity on the recorded wrenches.
     """
     time = np.arange(int((log.time[-1] - log.time[0]) * RATE + 1e-6) + 1) / RATE
-    recorded = _at(log, log.time[0] + time)
+    recorded = log_at(log, log.time[0] + time)
     positions = recorded.positions(robot)
+    check_whole(log, "the joints", time, positions)
     limits = {body.joint: body.effort for body in describe(robot).bodies[1:]}
     held = holding_torques(robot, recorded)
     for place, joint in enumerate(robot.joint_names):
@@ -215,12 +220,6 @@ def _root(
     ]
     root[2, 3] -= min(0.0, *heights)
     return root
-
-
-def _at(log: MotionLog, time: Array) -> MotionLog:
-    """The log at other times, by straight lines between its samples; the new time starts at 0."""
-    columns = {name: np.interp(time, log.time, values) for name, values in log.columns.items()}
-    return MotionLog(log.name, time - time[0], columns, log.path)
 
 
 def _torques(robot: RobotModel, log: MotionLog) -> dict[tuple[str, str], Array]:

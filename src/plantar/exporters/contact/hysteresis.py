@@ -1,7 +1,8 @@
-"""Rubber that slips, beside MuJoCo's contact: what the file carries of it, and the loop that applies it.
+"""What MuJoCo's contact cannot be of a foot on rubber: what the file carries of it, and the loop that applies it.
 
 A contact has no memory: its force follows from where the foot is and how fast. Slip is memory, so no `solref` holds it.
-The file keeps the slip's numbers and the bush's place; the simulation's own loop adds the torque.
+Points that damp pitch damp z as well, those that leave the ground hold no more, and they do not tip as the sole does.
+The file keeps the bush's numbers, its place and the sole; the simulation's own loop adds what the points lack.
 """
 
 from __future__ import annotations
@@ -16,12 +17,14 @@ import numpy as np
 from plantar.conventions import Array, Axis
 from plantar.errors import ExportError
 from plantar.exporters.bush import FootBush
+from plantar.exporters.contact.bush_on_sole import BushOnSole
+from plantar.exporters.contact.points import PointFoot
 from plantar.exporters.mjcf.file import Compiled
-from plantar.exporters.spring import Slip
+from plantar.exporters.spring import DAMPING_TIME, Slip
 from plantar.exporters.xml_file import numbers
 
 TURNS: Final[tuple[Axis, ...]] = ("roll", "pitch")  # in the order of the bush's axes x and y
-SITE, NUMBERS = "_contact_bush", "_contact_slip"
+SITE, NUMBERS = "_contact_bush", "_contact_law"
 # Cosine between a contact's normal and the sole's: what a sole stands on, not what a toe bumps into.
 FACING: Final = 0.5
 
@@ -34,59 +37,78 @@ def take_out(root: ET.Element, foot: str) -> None:
                 parent.remove(child)
 
 
-def carry(root: ET.Element, holder: ET.Element, foot: FootBush, model: Compiled) -> bool:
-    """Write a foot's slip, if it has one: a site with the bush's axes in the body `holder`, and torque and angle of
-    roll, then of pitch, as a <numeric>. Returns whether there was one."""
+def carry(
+    root: ET.Element, holder: ET.Element, foot: FootBush, turn: Array, points: PointFoot, model: Compiled
+) -> None:
+    """Write the law of a foot: a site with the bush's axes in the body `holder`, and a <numeric>.
+
+    The axes are turned by the springs' rest angles, `turn` (3, 3), as the points are. In the <numeric>: the height of
+    the bush centre at which the ground carries nothing; stiffness, then damping, of z, roll and pitch; torque and angle
+    of the slip of roll, then of pitch, 0 and 1 where there is none; x and y of the sole's corners. What was not
+    identified is as the points have it.
+    """
     slips = [spring.slip if (spring := foot.spring(axis)) else None for axis in TURNS]
-    if not any(slips):
-        return False
     name = str(holder.get("name"))
     centre = model.moved(foot.centre, foot.ankle, name)
-    axes = [model.moved(foot.centre + foot.rotation[:, place], foot.ankle, name) - centre for place in (0, 1)]
+    turned = foot.rotation @ turn
+    axes = [model.moved(foot.centre + turned[:, place], foot.ankle, name) - centre for place in (0, 1)]
     site = {"name": foot.name + SITE, "pos": numbers(centre), "xyaxes": numbers(np.concatenate(axes))}
     ET.SubElement(holder, "site", site | {"size": "0.001", "rgba": "0 0 0 0"})
     section = root.find("custom")
     section = ET.SubElement(root, "custom") if section is None else section
-    data = [number for slip in slips for number in ((slip.torque, slip.angle) if slip else (0.0, 1.0))]
+    up = points.vertical[0]
+    own = (up, DAMPING_TIME * up), *(points.turning(axis) for axis in TURNS)
+    springs = [foot.spring("z"), *(foot.spring(axis) for axis in TURNS)]
+    law = [(s.stiffness, s.damping) if s else held for s, held in zip(springs, own, strict=True)]
+    free = points.depth + points.first_load / law[0][0]
+    data = [free, *(k for k, _ in law), *(c for _, c in law)]
+    data += [number for slip in slips for number in ((slip.torque, slip.angle) if slip else (0.0, 1.0))]
+    data += ((foot.sole - foot.centre) @ foot.rotation)[:, :2].ravel().tolist()
     ET.SubElement(section, "numeric", name=foot.name + NUMBERS, data=numbers(data))
-    return True
 
 
-@dataclass
+@dataclass(frozen=True)
 class _Foot:
-    """One foot's slip by axis, and how far each has yielded [rad]."""
+    """One foot's law, the site of its bush, its body and the tree's root, and the height of the bush centre over the
+    ground at which nothing is carried [m]."""
 
     site: int
     body: int
-    slips: tuple[Slip | None, ...]
-    yielded: list[float]
+    root: int
+    free: float
+    law: BushOnSole
 
-    def torque(self, up: Array) -> Array:
-        """On the foot, in the bush's axes (3,) [N·m]; `up`: the ground's normal in them. Call once a step."""
+    def wrench(self, up: Array, height: float, climb: float, turning: Array) -> tuple[float, Array]:
+        """Force along the ground's normal [N] and torque in the bush's axes (3,) [N·m], the ground's on the foot.
+
+        Args:
+            up: the ground's normal in the bush's axes (3,). height, climb: of the bush centre over the ground, and its
+                rate [m, m/s]. turning: rate of the foot in the bush's axes (3,) [rad/s].
+        """
         x, y, z = up.tolist()
-        pitch, found = math.atan2(x, z), [0.0, 0.0]
-        for place, (angle, slip) in enumerate(zip((-math.asin(y), pitch), self.slips, strict=True)):
-            if slip is None:
-                continue
-            elastic = max(-slip.angle, min(slip.angle, angle - self.yielded[place]))
-            self.yielded[place] = angle - elastic
-            found[place] = slip.stiffness * elastic
+        pitch = math.atan2(x, z)
+        deflection = np.array([self.free - height, -math.asin(y), pitch])
+        force, roll_torque, pitch_torque = self.law.wrench(
+            deflection, np.array([-climb, -turning[0], -turning[1]])
+        )
         # The sole turns as Ry(pitch) Rx(roll): roll is about the axis that pitch has turned.
-        return np.array([found[0] * math.cos(pitch), found[1], -found[0] * math.sin(pitch)])
+        torque = [roll_torque * math.cos(pitch), pitch_torque, -roll_torque * math.sin(pitch)]
+        return float(force), np.array(torque)
 
 
 class FootHysteresis:
-    """The slip of rubber feet in MuJoCo, on a model of `plantar export --to mujoco-contact --hysteresis`.
+    """What points cannot be of rubber feet in MuJoCo, on a model of `plantar export --to mujoco-contact --hysteresis`.
 
-    Call it once a step between `mj_step1` and `mj_step2`: it writes the torque of `data.xfrc_applied` of each foot's
-    body, the ground's on the foot, as an elastoplastic (Jenkins) element of the angle between foot and ground. A foot
-    that touches nothing gets none, and forgets. One object for each `MjData`; for other integrators than RK4.
+    Call it once a step between `mj_step1` and `mj_step2`: it writes `data.xfrc_applied` of each foot's body: how the
+    ground pushes beyond what the points do. That is the slip, an elastoplastic (Jenkins) element of the angle between
+    foot and ground; K where points have left the ground; less damping along z; and a sole that tips. A foot that
+    touches nothing gets none, and forgets. One object for each `MjData`; for other integrators than RK4.
 
     Args:
         model: an `mujoco.MjModel` of the exported file.
 
     Raises:
-        ExportError: the model carries no slip.
+        ExportError: the model carries no law of its feet.
 
     Example:
         >>> import mujoco, plantar
@@ -103,28 +125,63 @@ class FootHysteresis:
     def __init__(self, model: Any) -> None:
         self._feet = tuple(_feet(model))
         if not self._feet:
-            valid = "a file of --to mujoco-contact --hysteresis, of rubber that slips"
-            raise ExportError("the model carries no slip of its feet", valid=valid)
+            valid = "a file of --to mujoco-contact --hysteresis"
+            raise ExportError("the model carries no law of its feet", valid=valid)
+        self._springs = _springs(model)
+        bodies = [foot.body for foot in self._feet]
+        self._owners = np.array([bodies.index(one) if one in bodies else -1 for one in model.geom_bodyid])
 
     def __call__(self, model: Any, data: Any) -> None:
         contact = data.contact
-        bodies = model.geom_bodyid[contact.geom].reshape(-1, 2)
+        geoms, at, sunk = contact.geom, contact.pos, -contact.dist
         normals = contact.frame.reshape(-1, 9)[:, :3]
-        for foot in self._feet:
+        owners = self._owners[geoms].reshape(-1, 2)
+        for place, foot in enumerate(self._feet):
             turn = data.site_xmat[foot.site].reshape(3, 3)
+            mine = owners == place
             facing = normals @ turn[:, 2]
-            ground = (bodies == foot.body).any(axis=1) & (np.abs(facing) > FACING)
-            if not ground.any():
-                foot.yielded = [0.0, 0.0]
-                data.xfrc_applied[foot.body, 3:] = 0.0
+            ground = np.flatnonzero(mine.any(axis=1) & (np.abs(facing) > FACING))
+            if not ground.size:
+                foot.law.forget()
+                data.xfrc_applied[foot.body] = 0.0
                 continue
-            up = np.sign(facing[ground]) @ normals[ground] @ turn
-            data.xfrc_applied[foot.body, 3:] = turn @ foot.torque(up / math.hypot(*up))
+            normal = np.sign(facing[ground]) @ normals[ground]
+            normal /= math.sqrt(normal @ normal)
+            arms = at[ground] - (site := data.site_xpos[foot.site])
+            turning, moving = data.cvel[foot.body, :3], data.cvel[foot.body, 3:]
+            # Rates along the normal, of the bush centre and of the points that touch.
+            leaning = _crossed(normal, turning)
+            climb = float(moving @ normal + (site - data.subtree_com[foot.root]) @ leaning)
+            stiffness, damping = self._springs[geoms[ground][mine[ground]]].T
+            pushes = np.maximum(stiffness * sunk[ground] - damping * (arms @ leaning + climb), 0.0)
+            height = -float(arms[0] @ normal + sunk[ground[0]] / 2)  # a contact stands half way in
+            force, torque = foot.wrench(normal @ turn, height, climb, turning @ turn)
+            lacking = (force - pushes.sum()) * normal
+            applied = data.xfrc_applied[foot.body]
+            applied[:3] = lacking
+            applied[3:] = turn @ torque - _crossed(pushes @ arms, normal)
+            applied[3:] += _crossed(site - data.xipos[foot.body], lacking)
 
     def reset(self) -> None:
         """Forget what has slipped, after `mj_resetData`."""
         for foot in self._feet:
-            foot.yielded = [0.0, 0.0]
+            foot.law.forget()
+
+
+def _crossed(a: Array, b: Array) -> Array:
+    """a × b, (3,): a tenth of the time of NumPy's."""
+    (x, y, z), (u, v, w) = a.tolist(), b.tolist()
+    return np.array([y * w - z * v, z * u - x * w, x * v - y * u])
+
+
+def _springs(model: Any) -> Array:
+    """Stiffness and damping [N/m, N·s/m] of each geom's contact, (n, 2): of `alone.contact_attributes`."""
+    first, second = np.asarray(model.geom_solref).T
+    inverse_mass = (1 - model.geom_solimp[:, 0]) * model.body_invweight0[model.geom_bodyid, 0]
+    direct = first <= 0
+    with np.errstate(divide="ignore", invalid="ignore"):
+        k, c = np.where(direct, -first, (first * second) ** -2.0), np.where(direct, -second, 2 / first)
+        return np.asarray(np.column_stack([k, c]) / inverse_mass[:, None])
 
 
 def _feet(model: Any) -> list[_Foot]:
@@ -133,8 +190,11 @@ def _feet(model: Any) -> list[_Foot]:
         numeric = model.numeric(place)
         if not numeric.name.endswith(NUMBERS):
             continue
-        pairs = np.asarray(numeric.data).reshape(2, 2)
-        slips = tuple(Slip(float(torque), float(angle)) if torque > 0 else None for torque, angle in pairs)
+        data = np.array(numeric.data)
+        pairs, corners = data[7:11].reshape(2, 2), data[11:].reshape(-1, 2)
+        roll, pitch = (Slip(float(torque), float(angle)) if torque > 0 else None for torque, angle in pairs)
         site = model.site(numeric.name.removesuffix(NUMBERS) + SITE)
-        found.append(_Foot(int(site.id), int(site.bodyid[0]), slips, [0.0, 0.0]))
+        law = BushOnSole(data[1:4], data[4:7], (roll, pitch), corners)
+        body = int(site.bodyid[0])
+        found.append(_Foot(int(site.id), body, int(model.body_rootid[body]), float(data[0]), law))
     return found

@@ -61,6 +61,11 @@ class PointFoot:
         flat = [p for p in self.points if p.lower >= 0]
         return sum(p.stiffness for p in flat), sum(p.damping for p in flat)
 
+    @property
+    def first_load(self) -> float:
+        """What the edges carry before the sole's plane is down, flat [N]."""
+        return sum(p.stiffness * p.lower for p in self.points if p.lower > 0)
+
     def turning(self, axis: Axis) -> Pair:
         """Stiffness [N·m/rad] and damping [N·m·s/rad] of pitch or roll about the bush's axis, near flat."""
         pairs = [(arm, p) for arm, p in zip(self._arms(axis), self.points, strict=True) if p.lower >= 0]

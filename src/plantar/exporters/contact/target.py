@@ -47,7 +47,7 @@ def write(job: Job, notes: Notes) -> str:
     turns_in_bush = job.stance.pivot == "bush"
     for foot in job.feet:
         found = fitted(raised(foot) if turns_in_bush else foot, weight, job.stance.least_load)
-        _insert(root, foot, found, model, earlier[foot.name], notes)
+        _insert(root, foot, found, model, earlier[foot.name], job.hysteresis, notes)
         notes += _said(foot, found, float(model.model.opt.timestep))
         if turns_in_bush:
             text = f"{foot.name}: the points stand at the bush centre's height, where the foot turns: the robot stands "
@@ -85,6 +85,7 @@ def _insert(
     found: Fitted,
     model: Compiled,
     earlier: tuple[ET.Element, dict[str, str]] | None,
+    hysteresis: bool,
     notes: Notes,
 ) -> None:
     body = model.body_element(root, foot.ankle)
@@ -111,10 +112,16 @@ def _insert(
         }
         shape |= {"pos": numbers(place_in), "condim": "3", "solmix": "1"}
         ET.SubElement(holder, "geom", shape | touch | contact_attributes(point, inverse_mass))
-    if carry(root, holder, foot, model):
-        text = f"{foot.name}: K and C are those of the rubber without its slip, which the contact cannot hold: call "
-        text += "plantar.FootHysteresis between mj_step1 and mj_step2, else this foot is too soft"
+    if not hysteresis:
+        return
+    carry(root, holder, foot, turn, found.foot, model)
+    text = f"{foot.name}: call plantar.FootHysteresis between mj_step1 and mj_step2: "
+    if any(spring.slip for spring in foot.springs):
+        text += "K and C are those of the rubber without its slip, and this foot is too soft without"
         notes.warning("export_hysteresis", text)
+    else:
+        text += "K goes on where points leave the ground, and the foot tips as its sole does"
+        notes.info("export_hysteresis", text)
 
 
 def _silence(
