@@ -142,8 +142,34 @@ def test_the_height_that_one_axis_shows_far_off_is_expected_of_the_other(
     ready: Any = SimpleNamespace(
         fitted=[recording], settings=FeetSettings(), sensor_delay=SimpleNamespace(doubtful=False)
     )
-    foot_fit._fits(ready, "left", PlaceSpread(0.004, 0.004, 0.01), {}, {})
+    foot_fit._fits(ready, "left", PlaceSpread(0.004, 0.004, 0.01), {})
     assert asked == [("pitch", 0.0), ("roll", 0.0), *([] if steps else [("roll", 0.03)])]
+
+
+def test_without_its_outliers_a_foot_is_fitted_once_more_with_its_models_chosen_anew(
+    ready: PreparedLogs, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Two rounds of outliers: three fits of both axes, none of a model that is asked for."""
+    judged: list[str] = []
+    rounds: list[PreparedLogs] = []
+    fit_both = foot_fit._fits
+
+    def masks(recordings: Any, fit: Any) -> dict[str, Any]:
+        judged.append(fit.reason)
+        off = np.zeros(len(recordings[0].used("left")), dtype=bool)
+        off[300 + len(judged)] = len(judged) <= 4
+        return {recordings[0].name: off} if off.any() else {}
+
+    def fits(thin: PreparedLogs, *given: Any) -> Any:
+        rounds.append(thin)
+        return fit_both(thin, *given)
+
+    monkeypatch.setattr(foot_fit, "outlier_masks", masks)
+    monkeypatch.setattr(foot_fit, "_fits", fits)
+    foot_fit.fit_foot(ready, "left", PlaceSpread(0.0, 0.0, 0.0))
+    assert len(judged) == 6
+    assert "asked for" not in judged
+    assert len(rounds) == 3
 
 
 def test_an_edge_that_takes_most_of_a_foot_comes_first_of_what_to_mend(

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from plantar.model_selection import model_fit
 from plantar.model_selection.data_sets import DataSet, StepColumns, prepare_data_sets
-from plantar.model_selection.model_fit import fit_model
+from plantar.model_selection.model_fit import fit_again, fit_model
 from plantar.model_selection.selection import choose_model
 from plantar.models import MODELS, BushMotion
 
@@ -127,3 +128,16 @@ def test_a_memory_that_could_not_help_enough_is_not_searched_for(least_gain: flo
     tried = models[1].candidates([each.motion for each in prepare_data_sets(sets, 5.0)])
     assert choice.fit.model.name == "kelvin_voigt"
     assert bool(np.isclose(tried, memory.shape, rtol=1e-12).any()) is not searched
+
+
+def test_a_fit_that_had_come_to_rest_looks_for_no_other_landings(monkeypatch: pytest.MonkeyPatch) -> None:
+    """They would only be thrown away."""
+    asked: list[object] = []
+    land = model_fit.landed
+    monkeypatch.setattr(model_fit, "landed", lambda *given: asked.append(given) or land(*given))
+    sets = [walk("walk_1", 1)[0]]
+    before = fit_model(MODELS["elastoplastic"], sets)
+    searched = len(asked)
+    assert 0 < searched <= model_fit.LANDINGS
+    fit_again(before, sets)
+    assert len(asked) == searched

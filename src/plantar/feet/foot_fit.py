@@ -27,7 +27,7 @@ from plantar.feet.prepare import PreparedLogs
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.regression_data import tangent_blocks
-from plantar.models import MODELS, BushModel, KelvinVoigt
+from plantar.models import MODELS, KelvinVoigt
 from plantar.notes import Note
 
 ROUNDS = 3  # of leaving outliers out: a large one hides smaller ones
@@ -51,20 +51,18 @@ def fit_foot(ready: PreparedLogs, foot: str, place: PlaceSpread) -> FittedFoot:
     """Pitch and roll of one foot, and the logs without the samples that leave either model by far.
 
     What is left out is decided for both axes before either is scored. Clean recordings are fitted once; others again
-    without their outliers, under the models first chosen, and at last with the choice made anew.
+    without their outliers, with the choice of models made anew.
     """
     given_up: dict[Axis, str] = {}
-    thin, several = _thin(ready, foot), False
-    fits = _fits(thin, foot, place, {}, given_up)
+    thin = _thin(ready, foot)
+    fits = _fits(thin, foot, place, given_up)
     for _ in range(ROUNDS):
         masks = _outliers(ready, fits, given_up)
         if not any(masks.values()):
             break
-        several = True
         ready = replace(ready, fitted=tuple(_without(one, foot, masks) for one in ready.fitted))
         thin = _thin(ready, foot)
-        fits = _fits(thin, foot, place, {axis: fit.model for axis, fit in fits.items()}, given_up)
-    fits = _fits(thin, foot, place, {}, given_up) if several else fits
+        fits = _fits(thin, foot, place, given_up)
     shared = ready.settings.offset == "shared"
     with gives_up("pitch", given_up):
         if (turned := turned_bush_note(fits, thin.fitted, shared)) is not None:
@@ -135,11 +133,7 @@ def _thin(ready: PreparedLogs, foot: str) -> PreparedLogs:
 
 
 def _fits(
-    ready: PreparedLogs,
-    foot: str,
-    place: PlaceSpread,
-    models: Mapping[Axis, BushModel],
-    given_up: dict[Axis, str],
+    ready: PreparedLogs, foot: str, place: PlaceSpread, given_up: dict[Axis, str]
 ) -> dict[Axis, AxisFit]:
     found: dict[Axis, AxisFit] = {}
     timed = not ready.sensor_delay.doubtful
@@ -151,7 +145,7 @@ def _fits(
             lambda axis, own: (
                 why := dict[Axis, str](),
                 gives_up(axis, why)(
-                    lambda: fit_axis(ready.fitted, foot, axis, ready.settings, models.get(axis), own, timed)
+                    lambda: fit_axis(ready.fitted, foot, axis, ready.settings, None, own, timed)
                 )(),
             ),
             left,

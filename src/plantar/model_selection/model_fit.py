@@ -147,7 +147,8 @@ def refine(
     remembers = problem.model.remembers
     iterations = ITERATIONS if refined and (len(start.shape) or remembers) else 0
     best, point = start, start
-    for search in range(1 if rested else 1 + LANDINGS):
+    landings = 0 if rested or not iterations else LANDINGS
+    for search in range(1 + landings):
         width = WIDEST_SCAN * (NARROWING if rested else 1.0)
         for _ in range(iterations):
             moved = step(problem, point, limits)
@@ -164,7 +165,7 @@ def refine(
             point = moved
         if search and point.squares > (1 - SETTLED) * best.squares:
             break
-        best, again = point, landed(problem, point) if iterations else None
+        best, again = point, landed(problem, point) if search < landings else None
         if again is None:
             break
         point = again
