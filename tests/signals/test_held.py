@@ -53,6 +53,14 @@ def test_a_foot_in_the_air_a_coarse_and_a_slow_channel_are_not_held() -> None:
         assert not held_samples(values, PERIOD).any()
 
 
+@pytest.mark.parametrize(("step", "held"), [(1.0, False), (0.01, True)])
+def test_a_channel_that_stands_within_a_step_of_its_scale_is_not_held(step: float, held: bool) -> None:
+    """Nor one that changes by a step from time to time; one that stops is, where steps are far below its changes."""
+    quiet = 0.3 + 0.1 * np.random.default_rng(1).standard_normal(TIME.size)
+    quiet[:1500] = quiet[0] if held else np.clip(quiet[:1500], 0.0, 0.49)
+    assert held_samples(np.round(quiet / step) * step, PERIOD).any() == held
+
+
 def test_a_log_loses_held_samples_of_sensors_but_none_of_joints() -> None:
     values = WAVE.copy()
     values[700:900] = values[700]

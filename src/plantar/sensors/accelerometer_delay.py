@@ -28,7 +28,6 @@ from plantar.robot.model import RobotModel
 from plantar.sensors.imu_filter import ImuFilter
 from plantar.sensors.tilt_error import DERIVED, TOLD, enough_of, lean_of, stance_leans, unit_quaternions
 from plantar.signals.filters import differentiate, low_pass
-from plantar.signals.gyroscope_delay import LARGEST
 from plantar.signals.resampling import shifted, with_continuous_quaternions
 from plantar.signals.segments import runs
 
@@ -36,6 +35,7 @@ SLOW = 0.15  # Hz: below it an attitude's wander leans more than any delay
 EDGE = 1.0  # s at both ends of a stance: the filters'
 RATE = TOLD  # 1/s and axis, of values that tell something new: half of what the band holds: wander is red
 SURE = 3.0  # deviations
+LARGEST = 0.01  # s: the filter of an accelerometer of its own; later is a fault
 ALIKE = 0.001  # s: standard deviation by which the filters of a device's two sensors differ
 EARLY_ENCODERS = 0.0025  # s: as late an orientation seems beside encoders that are read 5 ms early
 STRAY = 0.0005  # s: what encoders that are a millisecond off, or legs that are, make of it
