@@ -94,7 +94,7 @@ def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit, between: Apart)
     own = [
         *play_notes(thin.fitted, fit, blocks, shared),
         *encoder_play_notes(ready.fitted, fit, blocks, _joints_to(ready.robot, fit.foot), shared),
-        *hysteresis_notes(thin.fitted, fit, blocks, shared),
+        *hysteresis_notes(thin.fitted, wide, blocks, shared),
         *late_recordings(wide, blocks, shared),
     ]
     faults = [

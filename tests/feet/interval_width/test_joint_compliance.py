@@ -64,11 +64,14 @@ def test_what_bends_counts_as_the_bush_and_is_told_by_as_much_as_it_moves(
     for (foot, axis), law in TRUTH.items():
         before, after = (each.parameter(foot, axis, term) for each in (plain, told))
         truth = law.stiffness if term == "stiffness" else law.damping
-        assert before.value is not None and before.std is not None and after.std is not None
+        assert before.value is not None
+        assert before.std is not None
+        assert after.std is not None
         softer = truth - before.value
         assert softer > 0.8 * COMPLIANCE * law.stiffness * truth * (1 if term == "stiffness" else 2)
         assert np.sqrt(after.std**2 - before.std**2) == pytest.approx(softer, rel=0.25)
-        assert after.interval95 is not None and after.interval95[0] < truth < after.interval95[1]
+        assert after.interval95 is not None
+        assert after.interval95[0] < truth < after.interval95[1]
 
 
 def test_it_stands_among_the_causes_with_its_share(results: tuple[FeetResult, FeetResult]) -> None:
