@@ -100,13 +100,13 @@ def filter_delay(
     [s]; 0 where it is not told from none, or larger than a filter's. `told`, `behind`: the `device_delay` of either.
 
     A device filters both of its sensors much alike: a gyroscope whose delay is `shown` tells of the accelerometer,
-    unless the two contradict each other. One whose logs disagree shows an orientation that follows the accelerometer.
+    unless the two contradict each other, or it is late for another reason. One whose logs disagree shows an orientation that follows the accelerometer.
     So does an accelerometer that is early, unless the gyroscope keeps to the orientation.
     """
     late, std, largest = told[0], float(np.hypot(told[1], STRAY)), LARGEST
     if gyroscope is not None and not gyroscope.steady:
         return 0.0, std
-    if gyroscope is not None and gyroscope.shown and std < np.inf:
+    if gyroscope is not None and gyroscope.shown and gyroscope.late < LARGEST and std < np.inf:
         usual = float(np.hypot(gyroscope.std, ALIKE))
         if abs(late - gyroscope.late) < SURE * float(np.hypot(std, usual)):
             share = usual**2 / (usual**2 + std**2)
