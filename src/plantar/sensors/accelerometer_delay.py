@@ -100,8 +100,9 @@ def filter_delay(
     [s]; 0 where it is not told from none, or larger than a filter's. `told`, `behind`: the `device_delay` of either.
 
     A device filters both of its sensors much alike: a gyroscope whose delay is `shown` tells of the accelerometer,
-    unless the two contradict each other, or it is late for another reason. One whose logs disagree shows an orientation that follows the accelerometer.
-    So does an accelerometer that is early, unless the gyroscope keeps to the orientation.
+    unless the two contradict each other, or it is late for another reason. One whose logs disagree shows an orientation
+    that follows the accelerometer. So does an accelerometer that is early, unless the gyroscope keeps to the
+    orientation.
     """
     late, std, largest = told[0], float(np.hypot(told[1], STRAY)), LARGEST
     if gyroscope is not None and not gyroscope.steady:

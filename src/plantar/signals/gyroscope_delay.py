@@ -16,7 +16,8 @@ from plantar.signals.segments import complete, longest_run
 BAND = 8.0  # Hz, in which rates are compared
 EDGE, LEAST_EDGES = 0.5, 10  # s that a filter's ends take; how many of them a run must hold
 USUAL = 0.005  # s: an orientation's own filter; a later one is a fault, or follows the accelerometer
-ROUNDS = 3  # of first-order steps, as long as one is larger than usual
+LEAST_SHARED = 0.02  # of the gyroscope's own squares: less shared by both sensors makes a step a leap
+ROUNDS = 8  # of short steps, as long as one is larger than usual
 LEAST = 0.0005  # s: less moves damping by less than its interval ever shows
 SURE = 3.0  # deviations
 
@@ -55,21 +56,26 @@ def gyroscope_delay(rates: Array, turning: Array, period: float) -> GyroscopeDel
     found = _one_step(rates, turning, period)
     if found is None:
         return None
-    late, total = found.late, found.total
+    late, total = 0.0, found.total
     for _ in range(ROUNDS):
-        if abs(found.late) < USUAL:
+        if abs(found.short) < USUAL:
             break
+        late += found.short
         found = _one_step(shifted(rates, period, late), turning, period)
         if found is None:
             return None
-        late += found.late
-    return GyroscopeDelay(late, found.std, 1 - found.left / total)
+    return GyroscopeDelay(late + found.late, found.std, 1 - found.left / total)
 
 
 class _Step(NamedTuple):
-    """A delay to first order with its deviation [s], and squares of the rates' difference in `total` and `left`."""
+    """A delay to first order with its deviation [s], and squares of the rates' difference in `total` and `left`.
+
+    `short`: a delay that is too short where turns are quick beside it, or noisy. The other is too long where they are
+    quick, and right where they are slow.
+    """
 
     late: float
+    short: float
     std: float
     left: float
     total: float
@@ -85,9 +91,17 @@ def _one_step(rates: Array, turning: Array, period: float) -> _Step | None:
     apart = (smooth - turned)[edge:-edge]
     apart = apart - apart.mean(axis=0)
     # Of both, whose noises are apart: the gyroscope's alone would make slow turns look less late.
-    power, noisy, total = float(np.sum(change * turn)), float(np.sum(change**2)), float(np.sum(apart**2))
-    if power <= 0 or total == 0:
+    both, noisy, total = float(np.sum(change * turn)), float(np.sum(change**2)), float(np.sum(apart**2))
+    if noisy == 0 or total == 0:
         return None
-    late = -float(np.sum(apart * change)) / power
+    power = max(both, LEAST_SHARED * noisy)
+    behind = -float(np.sum(apart * change))
+    late = behind / power
     left = float(np.sum((apart + late * change) ** 2))
-    return _Step(late, float(np.sqrt(left * noisy / (6 * BAND * period * len(apart)))) / power, left, total)
+    return _Step(
+        late,
+        behind / noisy,
+        float(np.sqrt(left * noisy / (6 * BAND * period * len(apart)))) / power,
+        left,
+        total,
+    )
