@@ -1,7 +1,8 @@
 """Joints that bend where their encoders do not see it: encoders on the motor's side of a gear, legs that give way.
 
-The links turn by compliance·torque beyond what is read, of every joint between IMU and foot, with the torque that what
-stands on the floor makes. It counts as the bush's angle: nothing in the logs tells the two apart.
+The links turn by compliance·torque beyond what is read, of every joint of the leg, with the torque that the foot's
+wrench makes in it. It counts as the bush's angle: nothing in the logs tells the two apart. What bends above the URDF's
+root is not known so simply, and left out.
 """
 
 from __future__ import annotations
@@ -26,9 +27,8 @@ from plantar.robot.model import RobotModel
 from plantar.signals.orientation import attitude
 
 NAME = "joint compliance"
-LITTLE = (
-    1e-6  # rad/(N.m), over which a memory's slope is taken: joints bend by a small part of what makes it slip
-)
+# rad/(N.m), over which a memory's slope is taken: joints bend by a small part of what makes it slip.
+LITTLE = 1e-6
 
 
 def joint_compliance_causes(
