@@ -109,22 +109,31 @@ def in_one_log(fault: Change) -> Change:
     return change
 
 
-def clipped(columns: Columns, share: float) -> Change:
-    """Columns cut at a share of their largest reading."""
+def by_largest(columns: Columns, values: Callable[[Array, float], Array]) -> Change:
+    """Other values in some columns, from these and the largest reading of each in any log."""
 
     def change(case: Case) -> Case:
-        limits = {
-            name: share * max(float(np.abs(table[name]).max()) for table in case.tables.values())
+        largest = {
+            name: max(float(np.abs(table[name]).max()) for table in case.tables.values())
             for name in chosen(case, columns)
         }
         return case.with_tables(
             lambda table: {
-                name: np.clip(values, -limits[name], limits[name]) if name in limits else values
-                for name, values in table.items()
+                name: values(old, largest[name]) if name in largest else old for name, old in table.items()
             }
         )
 
     return change
+
+
+def clipped(columns: Columns, share: float) -> Change:
+    """Columns cut at a share of their largest reading."""
+    return by_largest(columns, lambda values, most: np.clip(values, -share * most, share * most))
+
+
+def in_steps(columns: Columns, share: float) -> Change:
+    """Columns in steps of a share of their largest reading, as of a coarse converter."""
+    return by_largest(columns, lambda values, most: share * most * np.round(values / (share * most)))
 
 
 def overwritten(columns: Columns, start: float, stop: float, value: float | None = None) -> Change:
@@ -216,6 +225,20 @@ def with_play(positions: Columns, play: float) -> Change:
         return case.with_tables(each)
 
     return change
+
+
+def lost_frames(columns: Columns, share: float, length: int) -> Change:
+    """A bus that loses this share of its frames, up to `length` in a row: the last values are repeated."""
+
+    def put(values: Array) -> Array:
+        number = np.arange(len(values))
+        # Starts that look as irregular as a bus' do, and are the same each time.
+        starts = np.sin(1e4 * np.sin(number)) > np.cos(np.pi * share / length)
+        lost = np.convolve(starts, np.ones(length))[: len(values)] > 0
+        lost[0] = False
+        return values[np.maximum.accumulate(np.where(lost, 0, number))]
+
+    return altered(columns, put)
 
 
 def timed(new: Callable[[Array], Array]) -> Change:

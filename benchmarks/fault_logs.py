@@ -16,7 +16,9 @@ from fault_changes import (
     every_nth_held,
     exchanged,
     in_one_log,
+    in_steps,
     late,
+    lost_frames,
     low_passed,
     one_after_another,
     overwritten,
@@ -147,7 +149,7 @@ def _delays(what: str, *columns: Columns, ms: tuple[int, ...]) -> tuple[Fault, .
 
 TIMING = (
     *_delays("IMU", imu(), ms=(5, 15, 30, 40, 80, 200)),
-    *_delays("gyroscope", GYROSCOPE, ms=(20,)),
+    *_delays("gyroscope", GYROSCOPE, ms=(20, 40)),
     *_delays("orientation", ORIENTATION, ms=(30,)),
     *_delays("encoders", encoders(), ms=(10, 30, 100)),
     *_delays("left wrench", wrench("left"), ms=(10, 30, 100)),
@@ -177,6 +179,7 @@ SATURATION = (
     Fault("left force z clipped at 50 %", "saturation", clipped(wrench("left", quantity=r"force\.z"), 0.5), STUCK),
     Fault("gyroscope clipped at 30 %", "saturation", clipped(GYROSCOPE, 0.3), STUCK),
     Fault("torques dead below 3 %", "saturation", dead_below(TORQUES, 0.03), (*STUCK, "dead band")),
+    Fault("torques in steps of 1.5 %", "saturation", in_steps(TORQUES, 0.015), (*STUCK, "steps")),
     Fault("torques with 1 % hysteresis", "saturation", with_hysteresis(TORQUES, 0.01), ("hysteresis", *DELAY)),
     Fault("play of 0.1 deg in the left ankle's encoders", "saturation",
           one_after_another(*(with_play(encoder("left", place=place, quantity="position"), 0.1 / DEGREES)
@@ -221,6 +224,8 @@ DROPOUTS = (
     Fault("left ankle pitch zero, 0.2 s every 5 s", "dropouts",
           dropouts(encoder("left", place=ANKLE_PITCH), 0.0), (*GONE, "joint")),
     Fault("rows missing, 1 s every 10 s", "dropouts", rows(lambda time: time % 10 > 1), GONE),
+    Fault("left wrench repeats a fifth, up to 50 ms", "dropouts", lost_frames(wrench("left"), 0.2, 10),
+          (*GONE, *DELAY)),
     Fault("every third row missing", "dropouts", rows(lambda time: np.arange(len(time)) % 3 > 0), ("uneven", *GONE)),
 )  # fmt: skip
 

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any
 
-from fault_case import FEET, Case, Change
+from fault_case import FEET, Case, Change, Table
 
 
 def frame(part: str, key: str, axis: int, by: float, *feet: str) -> Change:
@@ -134,6 +134,28 @@ def trunk_mass(added: float) -> Change:
 def _children(root: ET.Element, link: str) -> list[str]:
     own = [joint for joint in root.findall("joint") if joint.find("parent").get("link") == link]
     return [joint.find("child").get("link") for joint in own]
+
+
+def bent_ankles(compliance: float) -> Change:
+    """Ankles whose encoders sit before a gear that bends [rad/(N.m)], and a robot file that says so."""
+
+    def change(case: Case) -> Case:
+        said = case.with_robot(
+            lambda robot: robot.setdefault("uncertainty", {}).update(joint_compliance=compliance)
+        )
+
+        def each(table: Table) -> Table:
+            table = dict(table)
+            for foot in FEET:
+                torque = table[f"wrench.{case.robot['feet'][foot]['wrench']['name']}.torque.y"]
+                table[f"joint.{case.legs[foot][-2]}.position"] = (
+                    table[f"joint.{case.legs[foot][-2]}.position"] - compliance * torque
+                )
+            return table
+
+        return said.with_tables(each)
+
+    return change
 
 
 def without_arm(root: ET.Element, case: Case) -> None:

@@ -10,6 +10,7 @@ from pathlib import Path
 from fault_case import FEET, Case, Fault, case_of
 from fault_robot_changes import (
     ankle_above,
+    bent_ankles,
     feet_exchanged,
     frame,
     imu_frame,
@@ -87,6 +88,7 @@ MODELS = (
     Fault("masses +10 %", "model", masses(1.1), MODEL),
     Fault("trunk +10 kg", "model", trunk_mass(10.0), MODEL),
     Fault("an arm missing", "model", urdf(without_arm), MODEL),
+    Fault("ankles bend by 1e-4 rad/(N·m), said", "model", bent_ankles(1e-4), ("joint compliance",)),
     Fault("shanks 2 cm longer", "model", longer_shanks(0.02), MODEL),
     Fault("left knee's axis mirrored", "model", turned_axis(KNEE, _mirrored, "left"), MODEL),
     Fault("ankle pitch axes mirrored", "model", turned_axis(ANKLE_PITCH, _mirrored, *FEET), MODEL),

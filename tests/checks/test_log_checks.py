@@ -194,6 +194,18 @@ def test_sensors_mounted_in_other_ways_raise_no_alarm(tmp_path: Path, mounting: 
     assert check_log(make_robot(tmp_path, mounting), record(leaning(), mounting)) == []
 
 
+def test_a_coarse_sensor_that_is_hardly_loaded_is_not_dead(robot: RobotModel, log: MotionLog) -> None:
+    """All of its torques stay within a step or two; beside torques that move freely, one that never changes is dead."""
+    quiet = {
+        name: 0.3 + 0.2 * np.random.default_rng(place).standard_normal(len(log))
+        for place, name in enumerate("yz")
+    }
+    coarse = {f"wrench.left.torque.{axis}": np.round(values) for axis, values in quiet.items()}
+    assert check_log(robot, constant("wrench.left.torque.x")(log.with_columns(coarse))) == []
+    found = check_log(robot, constant("wrench.left.torque.x")(log))
+    assert "dead_channel" in {finding.code for finding in found}
+
+
 def test_a_joint_beyond_its_limit_is_a_warning_only(robot: RobotModel, log: MotionLog) -> None:
     found = check_log(robot, constant("joint.neck.position", 2.6)(log))
     assert [(finding.code, finding.fatal) for finding in found] == [("joint_limit", False)]

@@ -218,6 +218,12 @@ def test_without_a_filter_or_against_it_the_accelerometer_is_believed(gyroscope:
     assert filter_delay((0.0018, 0.0002))[0] == 0.0018
 
 
+def test_a_gyroscope_later_than_a_filter_makes_it_tells_nothing_of_the_accelerometer() -> None:
+    told = (0.003, 0.008)
+    assert filter_delay(told, ImuFilter(0.0099, 1e-4, True))[0] > 0.009
+    assert filter_delay(told, ImuFilter(0.0101, 1e-4, True))[0] == 0.0
+
+
 def test_an_orientation_that_follows_the_accelerometer_makes_it_late_for_nothing() -> None:
     """Gyroscope and orientation are apart by another time in each log then."""
     assert filter_delay((0.004, 0.0002), ImuFilter(0.002, 0.0001, False))[0] == 0.0

@@ -44,7 +44,7 @@ def on_time(log: MotionLog) -> MotionLog:
     return with_gyroscopes_on_time([log], "chest", filter_of([log]))[0]
 
 
-@pytest.mark.parametrize("late", [0.003, -0.002, 0.009])
+@pytest.mark.parametrize("late", [0.003, -0.002, 0.009, 0.04])
 def test_rates_come_at_the_moments_of_the_orientation(late: float) -> None:
     log = log_with(late)
     found = on_time(log)
@@ -60,8 +60,8 @@ def test_rates_come_at_the_moments_of_the_orientation(late: float) -> None:
     assert ("ahead of" if late < 0 else "behind") in found.notes[0].text
 
 
-@pytest.mark.parametrize("late", [0.0, -0.0055, 0.0105])
-def test_none_and_a_fault_are_left_as_they_are(late: float) -> None:
+@pytest.mark.parametrize("late", [0.0, -0.0055])
+def test_none_and_one_that_is_early_are_left_as_they_are(late: float) -> None:
     log = log_with(late)
     assert on_time(log) is log
 
@@ -126,7 +126,7 @@ def test_logs_that_disagree_show_no_filter() -> None:
 @pytest.mark.parametrize(("late", "std", "steady", "shown"), [
     (0.004, 0.0013, True, True), (0.004, 0.0014, True, False), (0.004, 0.0001, False, False),
     (0.00049, 0.0001, True, False), (0.00051, 0.0001, True, True),
-    (0.0099, 0.0001, True, True), (0.0101, 0.0001, True, False),
+    (0.1, 0.0001, True, True),
     (-0.0049, 0.0001, True, True), (-0.0051, 0.0001, True, False),
 ])  # fmt: skip
 def test_a_filter_is_shown_where_it_is_sure_and_a_filter_s(

@@ -53,6 +53,14 @@ def test_a_foot_in_the_air_a_coarse_and_a_slow_channel_are_not_held() -> None:
         assert not held_samples(values, PERIOD).any()
 
 
+@pytest.mark.parametrize(("steps", "held"), [(1, False), (4, True)])
+def test_a_channel_that_stands_within_a_step_of_its_scale_is_not_held(steps: int, held: bool) -> None:
+    """It stands for a second and then flickers, by a step of its scale or by several."""
+    random, number = np.random.default_rng(1), np.arange(TIME.size)
+    flickers = 1.0 + np.where(number % 2, 1 + random.integers(0, steps, TIME.size), 0)
+    assert held_samples(np.where(number % 120 < 100, 1.0, flickers), PERIOD).any() == held
+
+
 def test_a_log_loses_held_samples_of_sensors_but_none_of_joints() -> None:
     values = WAVE.copy()
     values[700:900] = values[700]

@@ -25,6 +25,7 @@ from plantar.logs.freed_memory import return_freed
 from plantar.logs.motion_log import MotionLog, wrench_columns
 from plantar.notes import Finding, Note
 from plantar.robot.model import RobotModel
+from plantar.signals.held import coarse
 from plantar.signals.resampling import sampling
 from plantar.signals.thinning import picked
 
@@ -144,6 +145,10 @@ def _wrenches(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
         )
         parts = wrench_columns(sensor.name)
         dead = [part for span, part in zip(spans, parts, strict=True) if alive and span == 0]
+        # What hardly loads a coarse sensor stays within one of its steps.
+        dead = [
+            part for part in dead if not any(coarse(log.column(other)) for other in _of_its_kind(part, parts))
+        ]
         if log.vertical_only(sensor.name):
             text = (
                 f"columns 'wrench.{sensor.name}.*': vertical force cells, no horizontal force: the bush's torque is "
@@ -168,3 +173,8 @@ def _wrenches(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
             yield Finding("force_unit", f"{text} (valid: N, about {weight:.0f})", True)
         else:
             yield from check_balance(robot, log)
+
+
+def _of_its_kind(column: str, columns: Sequence[str]) -> list[str]:
+    """Which columns of a force sensor are forces, or torques, as this one is."""
+    return [other for other in columns if other.rpartition(".")[0] == column.rpartition(".")[0]]

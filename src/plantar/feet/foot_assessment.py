@@ -24,6 +24,7 @@ from plantar.feet.interval_width.encoder_delay import encoder_delay_causes
 from plantar.feet.interval_width.fading import fading_causes
 from plantar.feet.interval_width.force_gain import force_gain_causes, force_gain_notes, torque_gain_causes
 from plantar.feet.interval_width.imu_turn import imu_turn_causes
+from plantar.feet.interval_width.joint_compliance import joint_compliance_causes
 from plantar.feet.interval_width.robot_causes import robot_causes
 from plantar.feet.interval_width.slip_angle import slip_angle_causes
 from plantar.feet.interval_width.systematic import inflated, systematic_causes
@@ -78,6 +79,7 @@ def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit, between: Apart)
     causes += robot_causes(fit, blocks, ready.robot.uncertainty.wrench_gain, between, shared)
     causes += slip_angle_causes(fit, thin.fitted, shared)
     causes += encoder_delay_causes(fit, blocks, thin.fitted, ready.sensor_delay.encoders_std, shared)
+    causes += joint_compliance_causes(ready.robot, fit, blocks, ready.fitted, shared)
     causes += fading_causes(fit, blocks, thin.fitted, ready.slow_filter, shared)
     causes += imu_turn_causes(fit, thin.fitted, ready.imu_turn)
     causes += force_gain_causes(fit, ready.gain_errors)
@@ -94,7 +96,7 @@ def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit, between: Apart)
     own = [
         *play_notes(thin.fitted, fit, blocks, shared),
         *encoder_play_notes(ready.fitted, fit, blocks, _joints_to(ready.robot, fit.foot), shared),
-        *hysteresis_notes(thin.fitted, fit, blocks, shared),
+        *hysteresis_notes(thin.fitted, wide, blocks, shared),
         *late_recordings(wide, blocks, shared),
         *odd_recordings(wide, blocks, shared),
         *odd_walks(wide, walks),

@@ -19,6 +19,9 @@ class Uncertainty:
     wrench_delay: float = _deviation(0.0075, "s, of the force sensors behind encoders and IMU")
     bush_position: float = _deviation(0.003, "m, each of x, y, z")
     encoder_zero: float = _deviation(0.001, "rad, each joint")
+    joint_compliance: float = _deviation(
+        0.0, "rad/N.m, by which each joint bends beyond its encoder: one before a gear sees none of it"
+    )
     imu_mount: float = _deviation(0.01, "rad, about each axis")
     link_mass: float = _deviation(0.05, "share, of each link's mass")
     total_mass: float = _deviation(0.005, "share, of the robot's `mass` where it was weighed")

@@ -28,7 +28,6 @@ from plantar.robot.model import RobotModel
 from plantar.sensors.imu_filter import ImuFilter
 from plantar.sensors.tilt_error import DERIVED, TOLD, enough_of, lean_of, stance_leans, unit_quaternions
 from plantar.signals.filters import differentiate, low_pass
-from plantar.signals.gyroscope_delay import LARGEST
 from plantar.signals.resampling import shifted, with_continuous_quaternions
 from plantar.signals.segments import runs
 
@@ -36,6 +35,7 @@ SLOW = 0.15  # Hz: below it an attitude's wander leans more than any delay
 EDGE = 1.0  # s at both ends of a stance: the filters'
 RATE = TOLD  # 1/s and axis, of values that tell something new: half of what the band holds: wander is red
 SURE = 3.0  # deviations
+LARGEST = 0.01  # s: the filter of an accelerometer of its own; later is a fault
 ALIKE = 0.001  # s: standard deviation by which the filters of a device's two sensors differ
 EARLY_ENCODERS = 0.0025  # s: as late an orientation seems beside encoders that are read 5 ms early
 STRAY = 0.0005  # s: what encoders that are a millisecond off, or legs that are, make of it
@@ -100,13 +100,14 @@ def filter_delay(
     [s]; 0 where it is not told from none, or larger than a filter's. `told`, `behind`: the `device_delay` of either.
 
     A device filters both of its sensors much alike: a gyroscope whose delay is `shown` tells of the accelerometer,
-    unless the two contradict each other. One whose logs disagree shows an orientation that follows the accelerometer.
-    So does an accelerometer that is early, unless the gyroscope keeps to the orientation.
+    unless the two contradict each other, or it is late for another reason. One whose logs disagree shows an orientation
+    that follows the accelerometer. So does an accelerometer that is early, unless the gyroscope keeps to the
+    orientation.
     """
     late, std, largest = told[0], float(np.hypot(told[1], STRAY)), LARGEST
     if gyroscope is not None and not gyroscope.steady:
         return 0.0, std
-    if gyroscope is not None and gyroscope.shown and std < np.inf:
+    if gyroscope is not None and gyroscope.shown and gyroscope.late < LARGEST and std < np.inf:
         usual = float(np.hypot(gyroscope.std, ALIKE))
         if abs(late - gyroscope.late) < SURE * float(np.hypot(std, usual)):
             share = usual**2 / (usual**2 + std**2)

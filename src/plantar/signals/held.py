@@ -14,6 +14,7 @@ from plantar.signals.segments import runs
 SHORTEST, FEWEST = 0.2, 10  # s and samples at one value: less happens by chance
 LIVELY = 0.9  # share of the other steps that change the value: of a coarse or slow channel nothing is said
 NOTABLE = 0.005  # share of the log
+ONE_STEP = 1.5  # of a scale's steps: a usual change that is smaller is one of them
 
 
 def held_samples(values: Array, period: float, *, full_scale: bool = True) -> Mask:
@@ -24,7 +25,8 @@ def held_samples(values: Array, period: float, *, full_scale: bool = True) -> Ma
     components have not.
     """
     still = (values[1:] == values[:-1]) & (values[1:] != 0)  # a foot in the air may read zero
-    if 2 * np.count_nonzero(still) <= NOTABLE * len(values):  # each belongs to two samples at most
+    # Each belongs to two samples at most.
+    if 2 * np.count_nonzero(still) <= NOTABLE * len(values) or coarse(values):
         return np.zeros(len(values), dtype=bool)
     least = max(FEWEST, round(SHORTEST / period))
     held = np.zeros(len(values), dtype=bool)
@@ -43,6 +45,13 @@ def held_samples(values: Array, period: float, *, full_scale: bool = True) -> Ma
     others = others[np.isfinite(others)]
     lively = others.size >= least and np.mean(others != 0) >= LIVELY
     return held if lively else np.zeros_like(held)
+
+
+def coarse(values: Array) -> bool:
+    """Whether values (N,) usually change by one step of their scale: that, and no fault, makes them stand still."""
+    changes = np.abs(np.diff(values))
+    changes = changes[changes > 0]  # nor NaN
+    return bool(changes.size) and float(np.median(changes)) < ONE_STEP * float(changes.min())
 
 
 def can_be_held(column: str) -> bool:

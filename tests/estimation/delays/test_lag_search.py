@@ -90,3 +90,27 @@ def test_lags_that_miss_a_third_more_are_as_good(second: float, near: int) -> No
     spread = np.sqrt(2 * near * 0.05**2 / (1 + 2 * near))
     assert found.std[0] == pytest.approx(np.hypot(spread, 0.05 / np.sqrt(12)))
     assert found.power[0] == pytest.approx(1 / 1.01)
+
+
+def test_a_foot_late_by_less_than_a_step_of_the_grid_is_found_where_the_load_changes_feet() -> None:
+    """Of feet that hand the weight to each other, whatever the encoders; what nobody told tells nothing."""
+    time = PERIOD * np.arange(400)
+
+    def tones(seed: int, at: Array) -> Array:
+        random = np.random.default_rng(seed)
+        hertz, phase = random.uniform(0.2, 1.0, (3, 6)), random.uniform(0, 2 * np.pi, (3, 6))
+        return np.asarray(np.sin(2 * np.pi * hertz * at[:, None, None] + phase).sum(axis=1))
+
+    def foot(sign: float, by: float) -> Array:
+        own = [tones(0, time + lag - by) / 2 + sign * 3 * tones(1, time + lag - by) for lag in LAGS]
+        return np.array(own)
+
+    late = (0.012, -0.003)
+    measured = np.array([foot(sign, by) for sign, by in zip((1, -1), late, strict=True)])
+    hand = np.where(time[:, None] < 10, 30 * tones(2, time), 0.0)
+    grids = [
+        LagGrid(np.array([tones(0, time)] * 3), np.array([one] * 3), LAGS[:3], LAGS, PERIOD)
+        for one in (measured, measured + hand / 2)
+    ]
+    found = search_lags(grids)
+    np.testing.assert_allclose(found.values[:2], late, atol=0.003)

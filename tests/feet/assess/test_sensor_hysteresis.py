@@ -10,6 +10,7 @@ from made_recording import FOOT, PERIOD, made_recording, swayed
 from plantar.conventions import Array
 from plantar.feet.assess.sensor_hysteresis import HYSTERESIS, hysteresis_notes
 from plantar.feet.fit.axis_fit import fit_axis
+from plantar.feet.interval_width.systematic import Cause, inflated
 from plantar.feet.recording import Recording
 from plantar.feet.regression.regression_data import tangent_blocks
 from plantar.feet.settings import FeetSettings
@@ -28,7 +29,8 @@ def behind(torque: Array, width: float) -> Array:
     return read
 
 
-def said(rubber: Rubber, width: float) -> list[Note]:
+def said(rubber: Rubber, width: float, unsure: float = 0.0) -> list[Note]:
+    """`unsure` [N.m.s/rad]: what other causes add to the deviation of the damping."""
     made: list[Recording] = []
     for seed in (0, 1):
         angle, random = swayed(COUNT, seed=seed), np.random.default_rng(seed)
@@ -37,7 +39,8 @@ def said(rubber: Rubber, width: float) -> list[Note]:
         made.append(made_recording(f"sway_{seed}", angle, read, rate=rate))
     fit = fit_axis(made, FOOT, "pitch", FeetSettings())
     assert fit is not None
-    return hysteresis_notes(made, fit, tangent_blocks(made, fit), False)
+    wide = inflated(fit, [Cause("delay", np.array([0.0, unsure]), 1.0)])
+    return hysteresis_notes(made, wide, tangent_blocks(made, fit), False)
 
 
 @pytest.mark.parametrize("width", [0.1, 0.3])
@@ -45,6 +48,11 @@ def test_hysteresis_of_the_sensor_is_told_with_its_size(width: float) -> None:
     (note,) = said(PLAIN, width)
     assert (note.code, note.severity) == (HYSTERESIS, "warning")
     assert float(note.text.split("stays ")[1].split()[0]) == pytest.approx(width, rel=0.4)
+
+
+def test_hysteresis_whose_damping_the_interval_holds_is_not_told() -> None:
+    """As where sensors may be late by any time: 0.1 N.m takes some 1 N.m.s/rad off the damping."""
+    assert [len(said(PLAIN, 0.1, unsure)) for unsure in (0.05, 5.0)] == [1, 0]
 
 
 @pytest.mark.parametrize(

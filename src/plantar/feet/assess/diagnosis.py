@@ -28,6 +28,8 @@ REMEDY = {
     "torque gain": "check unit and calibration of the torque channels, and correct the logs",
     "encoders' delay": "add a recording of arm sweeps at 0.3 to 1 Hz without an operator: it shows the encoders' time "
     "beside the IMU's; or read both at once",
+    "joint compliance": "read encoders behind the gears, or measure how far joints bend under load: the robot file's "
+    "uncertainty: joint_compliance is what is not known of it",
     "low-pass": "read all sensors behind the same filter, or behind one far above the motion's frequencies",
     "yaw torque zero": "before the next recording, zero the force sensors with the feet in the air",
     "between walks": "add walks: five or more show by themselves how much they differ",
@@ -45,7 +47,7 @@ REMEDY = {
 # Causes that no more of the same motion makes smaller: the advice against them replaces the axis' own.
 OTHER_MOTION_HELPS = (
     "delay", "encoders' delay", "moment arm", "hardening", "yaw torque zero", ZEROS_OF_STANCES, "force gain",
-    "torque gain", "imu turn", "low-pass",
+    "torque gain", "imu turn", "low-pass", "joint compliance",
 )  # fmt: skip
 GAINS = ("force_gain", "torque_gain")  # codes of warnings on a sensor's gain
 NEARLY_ALL = 0.9  # of the variance

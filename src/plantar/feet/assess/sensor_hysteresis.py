@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from plantar.conventions import ROTATIONAL_AXES, Array
+from plantar.conventions import NORMAL95, ROTATIONAL_AXES, Array
 from plantar.estimation import Block, fit_blocks
 from plantar.feet.fit.hidden_memory import has_memory
 from plantar.feet.recording import Recording
@@ -21,19 +21,21 @@ from plantar.notes import Note
 # Of the fast rate (98th percentile), within which its sign changes: behind a filter it is no step.
 SOFT = 0.02
 SURE = 4.0  # deviations of the hysteresis: of healthy feet it is below 3
+RATE = 1  # the place of damping in spring and damper
 HYSTERESIS = "sensor_hysteresis"
 
 
 def hysteresis_notes(
-    recordings: Sequence[Recording], fit: AxisFit, tangents: Sequence[Block], shared: bool
+    recordings: Sequence[Recording], wide: AxisFit, tangents: Sequence[Block], shared: bool
 ) -> list[Note]:
-    """A warning where a standing foot's torque stays behind its angle by the same amount at any speed.
+    """A warning where a standing foot's torque stays behind its angle by the same amount at any speed, and that moves
+    its damping out of the interval of `wide`.
 
     tangents: the recordings' `tangent_blocks`.
     """
-    if tangents[0].stances is not None or has_memory(fit.model):
+    if tangents[0].stances is not None or has_memory(wide.model):
         return []
-    rates = [_rate(one, fit) for one in recordings_of(tangents, recordings)]
+    rates = [_rate(one, wide) for one in recordings_of(tangents, recordings)]
     fast = float(np.percentile(np.abs(np.concatenate(rates)), 98))
     if fast == 0:
         return []
@@ -42,8 +44,11 @@ def hysteresis_notes(
     behind = -float(found.values[-1])
     if behind < SURE * float(found.std[-1]):
         return []
+    moved = float(found.values[RATE] - fit_blocks(tangents, shared_offset=shared).values[RATE])
+    if abs(moved) < NORMAL95 * float(wide.std[RATE]):
+        return []
     text = (
-        f"{fit.foot} {fit.axis}: the torque stays {behind:.2g} N.m behind at each turn of the motion, at any speed: "
+        f"{wide.foot} {wide.axis}: the torque stays {behind:.2g} N.m behind at each turn of the motion, at any speed: "
         "hysteresis of the force sensor, which makes the damping too small (valid: a sensor whose hysteresis is small "
         "beside its torques; or larger motions)"
     )

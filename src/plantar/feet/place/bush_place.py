@@ -42,7 +42,7 @@ def about_its_place(
     if blocks[0].stances is not None or not spread.deviations.any():
         return fit
     chosen = recordings_of(blocks, recordings)
-    columns = [_columns(one, fit)[one.rows(fit.foot)] for one in chosen]
+    columns = [centre_columns(one, fit)[one.rows(fit.foot)] for one in chosen]
     spreads = np.where(that_show(blocks, columns, spread.expected), spread.expected, 0.0)
     size, tried = blocks[0].regressor.shape[1], np.flatnonzero(spreads)
     before = np.array([*fit.moment_arms, fit.turned, *fit.imu_turned])
@@ -124,7 +124,7 @@ def shape_moved(shape: Array, by: Array) -> Array:
     return np.asarray(shape * np.exp(np.clip(by / shape, -1.0, 1.0)))
 
 
-def _columns(recording: Recording, fit: AxisFit) -> Array:
+def centre_columns(recording: Recording, fit: AxisFit) -> Array:
     """Torque (N, 6) for each metre or radian by which the centre, the force sensor and the IMU are elsewhere."""
 
     return np.column_stack([place_columns(recording, fit.foot, fit.axis), imu_columns(recording, fit)])

@@ -57,20 +57,24 @@ def others_torque(recording: Recording, foot: str, axis: Axis, rows: Mask | slic
 
 
 def late_encoder_torque(recording: Recording, fit: AxisFit) -> Array:
-    """Torque (N,) for each second by which encoders are read later than the IMU, 0 where that is not known.
-
-    Beside spring and damper a memory follows the angle, too: until it slips it is a spring. Of a foot that steps it is
-    left out, as are its states (`tangent_blocks`).
-    """
+    """Torque (N,) for each second by which encoders are read later than the IMU, 0 where that is not known."""
     rates = recording.encoder_rates.get(fit.foot)
     if rates is None:
         return np.zeros(len(recording.time))
-    own = rates[:, ROTATIONAL_AXES.index(fit.axis)]
-    torque = fit.values[0] * own + fit.values[1] * differentiate(own, recording.period)
+    return torque_of_angle(recording, fit, rates[:, ROTATIONAL_AXES.index(fit.axis)], LATER)
+
+
+def torque_of_angle(recording: Recording, fit: AxisFit, change: Array, little: float) -> Array:
+    """Torque (N,) for each unit of what changes the bush's angle by `change` (N,) [rad]; 0 where that is NaN.
+
+    Beside spring and damper a memory follows the angle, too: until it slips it is a spring, over a `little` of it. Of a
+    foot that steps it is left out, as are its states (`tangent_blocks`).
+    """
+    torque = fit.values[0] * change + fit.values[1] * differentiate(change, recording.period)
     if len(fit.shape) and recording.stances[fit.foot] is None:
         path = memory_path(recording, fit)
-        moved = [replace(path, deflection=path.deflection + by * own) for by in (-LATER, LATER)]
-        torque += own_torque(recording, fit, moved, fit.shape[None]) @ [-0.5, 0.5] / LATER
+        moved = [replace(path, deflection=path.deflection + by * change) for by in (-little, little)]
+        torque += own_torque(recording, fit, moved, fit.shape[None]) @ [-0.5, 0.5] / little
     return np.asarray(np.nan_to_num(torque))
 
 

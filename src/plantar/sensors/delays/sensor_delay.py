@@ -35,6 +35,7 @@ from plantar.sensors.newton_euler import NewtonEulerResidual
 
 KNOWN_STD = 0.001  # s: better known than this, the delay is corrected without a warning
 CLOCK = 0.06  # of a period: within it, nobody knows when a sample was taken
+ELSEWHERE = 0.1 * STEP  # s: from lags that are farther from where steps have led, others are tried
 SIGNIFICANT = 2.5  # deviations from zero: a poorly known delay is corrected beyond, else only allowed for
 # Predicted over measured squares of the torques, or the reverse; a delay of a second halves them.
 PUSHED = 3.0
@@ -105,7 +106,7 @@ def estimate_wrench_delay(
     if not shown:
         return _unseen(robot, logs) if found is None else _told(robot, found)
     lags = search_lags(shown)
-    if np.abs(lags.values).max() > 0.5 * STEP:
+    if np.abs(lags.values - (0.0 if found is None else found.values)).max() > ELSEWHERE:
         again = refined_delays(robot, logs, each, lags.values)
         if again is not None and (found is None or _surer(again, found)):
             found = again
