@@ -41,7 +41,7 @@ DRAWN_EVERYWHERE = (
         ("feet/interval_width/test_between_walks.py",),
     ),
     Mutant(
-        "feet/interval_width/systematic.py",
+        "feet/interval_width/cause.py",
         "a cause's few degrees of freedom forgotten",
         "np.full_like(added, cause.freedom)",
         "np.full_like(added, np.inf)",

@@ -19,8 +19,9 @@ from plantar.feet.interval_width.between_recordings import (
     axis_differences,
     recordings_apart,
 )
+from plantar.feet.interval_width.cause import inflated
 from plantar.feet.interval_width.robot_causes import robot_causes
-from plantar.feet.interval_width.systematic import inflated, systematic_causes
+from plantar.feet.interval_width.systematic import systematic_causes
 from plantar.feet.place.spread import PlaceSpread
 from plantar.feet.place.turned_bush import turned_bush_note
 from plantar.feet.prepare import PreparedLogs
@@ -125,7 +126,8 @@ def _with_causes(fit: AxisFit, fitted: FittedFoot, between: Apart) -> AxisFit:
     blocks = tangent_blocks(recordings, fit, drift=not shared)
     causes = systematic_causes(fit, blocks, recordings, ready.sensor_delay, ready.vertical, shared)
     return inflated(
-        fit, causes + robot_causes(fit, blocks, ready.robot.uncertainty.wrench_gain, between, shared)
+        fit,
+        causes + robot_causes(fit, blocks, recordings, ready.robot.uncertainty.wrench_gain, between, shared),
     )
 
 

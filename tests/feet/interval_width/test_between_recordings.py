@@ -36,7 +36,9 @@ def share(robot: RobotModel, shares: list[float], prior: float = 0.0) -> float:
     ready = prepare_all(robot, logs, [], LINEAR, lambda _: None)
     fit = fit_axis(ready.fitted, "left", "pitch", LINEAR)
     assert fit is not None
-    (cause,) = between_recordings(fit, tangent_blocks(ready.fitted, fit), Apart(prior, 2), False)
+    (cause,) = between_recordings(
+        fit, tangent_blocks(ready.fitted, fit), ready.fitted, Apart(prior, 2), False
+    )
     return float(cause.share[0] / fit.values[0])
 
 
@@ -87,7 +89,7 @@ def test_a_prior_that_few_recordings_hold_up_is_no_more_sure_than_these() -> Non
     recordings = [made_recording(f"sway_{k}", own, 400.0 * own) for k, own in enumerate(angle)]
     fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
     assert fit is not None
-    (cause,) = between_recordings(fit, tangent_blocks(recordings, fit), Apart(0.05, 2), False)
+    (cause,) = between_recordings(fit, tangent_blocks(recordings, fit), recordings, Apart(0.05, 2), False)
     assert cause.freedom == 2.0
     assert cause.share[0] == pytest.approx(0.05 * 400.0 / np.sqrt(3), rel=0.1)
 
@@ -103,7 +105,7 @@ def test_many_that_differ_say_it_by_what_each_moves() -> None:
         recordings.append(made_recording(f"sway_{seed}", angle, own * angle + slow))
     fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
     assert fit is not None
-    (cause,) = between_recordings(fit, tangent_blocks(recordings, fit), Apart(0.0, 5), False)
+    (cause,) = between_recordings(fit, tangent_blocks(recordings, fit), recordings, Apart(0.0, 5), False)
     assert cause.freedom == pytest.approx(5.0)
     without = [fit_axis([*recordings[:k], *recordings[k + 1 :]], FOOT, "pitch", LINEAR) for k in range(6)]
     values = np.array([one.values for one in without if one is not None])
@@ -123,7 +125,9 @@ def test_a_number_that_hangs_on_one_recording_takes_what_recordings_differ_by() 
     fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
     assert fit is not None
     blocks = tangent_blocks(recordings, fit)
-    alike, apart = (between_recordings(fit, blocks, Apart(share, 5), False)[0] for share in (0.0, 0.03))
+    alike, apart = (
+        between_recordings(fit, blocks, recordings, Apart(share, 5), False)[0] for share in (0.0, 0.03)
+    )
     assert alike.share[0] < 0.005 * 400.0
     assert apart.share[0] == pytest.approx(0.03 * 400.0, rel=0.02)
     assert apart.freedom == 5.0
@@ -134,7 +138,7 @@ def test_few_recordings_differ_by_what_other_axes_show() -> None:
     recordings = [made_recording(f"sway_{k}", own, 400.0 * own) for k, own in enumerate(angle)]
     fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
     assert fit is not None
-    (cause,) = between_recordings(fit, tangent_blocks(recordings, fit), Apart(0.02, 7), False)
+    (cause,) = between_recordings(fit, tangent_blocks(recordings, fit), recordings, Apart(0.02, 7), False)
     assert cause.freedom == 7.0
     assert cause.share[0] == pytest.approx(0.02 * 400.0 / np.sqrt(3), rel=0.1)
 
@@ -149,7 +153,7 @@ def test_recordings_that_hardly_move_say_nothing_of_how_recordings_differ() -> N
         recordings.append(made_recording(f"sway_{seed}", angle, (800.0 if seed else 400.0) * angle + noise))
     fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
     assert fit is not None
-    (cause,) = between_recordings(fit, tangent_blocks(recordings, fit), Apart(0.01, 3), False)
+    (cause,) = between_recordings(fit, tangent_blocks(recordings, fit), recordings, Apart(0.01, 3), False)
     assert cause.share[0] == pytest.approx(0.01 * fit.values[0], rel=0.1)
     assert cause.freedom == 3.0
     assert axis_differences(fit, recordings, False) is None
@@ -166,7 +170,7 @@ def test_of_few_recordings_all_are_compared(count: int, widened: bool) -> None:
         recordings.append(made_recording(f"sway_{seed}", angle, stiffness * angle + noise))
     fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
     assert fit is not None
-    (cause,) = between_recordings(fit, tangent_blocks(recordings, fit), Apart(0.0, 1), False)
+    (cause,) = between_recordings(fit, tangent_blocks(recordings, fit), recordings, Apart(0.0, 1), False)
     assert bool(cause.share[0] > 0.02 * fit.values[0]) is widened
 
 
@@ -203,5 +207,5 @@ def test_few_that_know_most_are_as_far_off_as_all_axes_show(
     fit = fit_axis(recordings, FOOT, "pitch", LINEAR)
     assert fit is not None
     apart = Apart(share, 4, (0.01, 0.06) if share else None)
-    (cause,) = between_recordings(fit, tangent_blocks(recordings, fit), apart, False)
+    (cause,) = between_recordings(fit, tangent_blocks(recordings, fit), recordings, apart, False)
     assert cause.share[0] / fit.values[0] == pytest.approx(told, rel=0.1, abs=0.003)

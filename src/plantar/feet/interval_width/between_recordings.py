@@ -12,7 +12,8 @@ from plantar.estimation import Block, fit_blocks, influences_of
 from plantar.estimation.least_squares import values_without_each
 from plantar.estimation.random_effects import Differences, share_between
 from plantar.estimation.stance_least_squares import FEWEST_RECORDINGS, jackknife
-from plantar.feet.interval_width.systematic import Cause
+from plantar.feet.interval_width.cause import Cause
+from plantar.feet.interval_width.yaw_zero import YawZeros, fit_beside, yaw_zeros
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.regression_data import all_beside, tangent_blocks
@@ -77,10 +78,13 @@ def axis_differences(fit: AxisFit, recordings: Sequence[Recording], shared: bool
     blocks = tangent_blocks(recordings, fit, drift=not shared)
     if not _comparable(blocks, shared):
         return None
-    return differences_of(fit, blocks, effects_of(fit, blocks, influences_of(blocks)))
+    effects = effects_of(fit, blocks, influences_of(blocks))
+    return differences_of(fit, blocks, effects, yaw_zeros(fit, blocks, recordings))
 
 
-def between_recordings(fit: AxisFit, blocks: Sequence[Block], every: Apart, shared: bool) -> list[Cause]:
+def between_recordings(
+    fit: AxisFit, blocks: Sequence[Block], recordings: Sequence[Recording], every: Apart, shared: bool
+) -> list[Cause]:
     """By how much recordings of a foot that stands move the fit beyond their own deviations.
 
     From FEWEST_RECORDINGS on refits without one of them each (jackknife) say it, whatever it is that differs. Fewer are
@@ -98,7 +102,7 @@ def between_recordings(fit: AxisFit, blocks: Sequence[Block], every: Apart, shar
     by_share = np.sqrt(np.sum(effects**2, axis=0))
     std, freedom = np.zeros(len(few)), len(blocks) - 1
     if few.any():
-        own = differences_of(fit, blocks, effects)
+        own = differences_of(fit, blocks, effects, yaw_zeros(fit, blocks, recordings))
         here = [] if own is None else [recordings_apart([own], 0.0)]
         apart = max([*here, every], key=lambda each: each.share)
         std, freedom = apart.share * by_share, apart.others
@@ -119,10 +123,13 @@ def _comparable(blocks: Sequence[Block], shared: bool) -> bool:
     return not shared and len(blocks) > 1 and not many
 
 
-def differences_of(fit: AxisFit, blocks: Sequence[Block], effects: Array) -> AxisDifferences | None:
+def differences_of(
+    fit: AxisFit, blocks: Sequence[Block], effects: Array, zeros: YawZeros | None = None
+) -> AxisDifferences | None:
     """Those of the recordings whose `effects` make more than the share TELLS of K; None where it is but one.
 
-    Of few all are compared, however little they tell: nothing else says how far the one that tells most is off.
+    Of few all are compared, however little they tell: nothing else says how far the one that tells most is off. In
+    these a zero of the yaw torque passes for a stiffness of their own, so that such `zeros` are free beside them.
     """
     least = TELLS * abs(float(fit.values[0])) if len(blocks) >= FEWEST_RECORDINGS else 0.0
     tell = np.flatnonzero(np.abs(effects[:, 0]) > least).tolist()
@@ -130,9 +137,9 @@ def differences_of(fit: AxisFit, blocks: Sequence[Block], effects: Array) -> Axi
         return None
     torques, others = _torques(fit, blocks), [place for place in range(len(blocks)) if place != tell[0]]
     columns = [np.column_stack(each) for each in zip(*(_alone(torques, own) for own in others), strict=True)]
-    found = fit_blocks(all_beside(blocks, columns))
+    values, covariance = fit_beside(zeros, all_beside(blocks, columns))
     ends = blocks[0].regressor.shape[1] + np.array([others.index(place) for place in tell[1:]])
-    differences = Differences(found.values[ends], found.covariance[np.ix_(ends, ends)])
+    differences = Differences(values[ends], covariance[np.ix_(ends, ends)])
     usual = float(fit_blocks(blocks).std[0]) / max(abs(float(fit.values[0])), 1e-300)
     return AxisDifferences(differences, usual, frozenset(blocks[place].label for place in tell))
 

@@ -19,7 +19,7 @@ from plantar.feet.interval_width.between_recordings import (
     differences_of,
     effects_of,
 )
-from plantar.feet.interval_width.systematic import Cause
+from plantar.feet.interval_width.cause import Cause
 from plantar.feet.regression.axis import AxisFit
 
 NAME = "between walks"
