@@ -36,7 +36,7 @@ DRAWN_EVERYWHERE = (
     Mutant(
         "feet/interval_width/between_walks.py",
         "walks that scatter are taken to be as alike as those that agree",
-        "axis.differences.resolution).share",
+        "resolution([axis.differences])).share",
         "axis.usual / 10).share",
         ("feet/interval_width/test_between_walks.py",),
     ),

@@ -79,8 +79,8 @@ def fit_foot(ready: PreparedLogs, foot: str, place: PlaceSpread) -> FittedFoot:
 
 
 def between_all(feet: Sequence[FittedFoot]) -> Apart:
-    """By how much recordings differ, where all axes of all feet show it together, also without any one of them; else
-    what the robot file allows."""
+    """By how much recordings differ as the axes of all feet show it together, whichever one is left out; at least what
+    the robot file allows."""
     told = list[AxisDifferences]()
     for one in feet:
         for axis, fit in one.fits.items():
@@ -90,10 +90,9 @@ def between_all(feet: Sequence[FittedFoot]) -> Apart:
     prior = max(one.ready.robot.uncertainty.between_recordings for one in feet)
     apart = recordings_apart(told, prior)
     # What warms up is the rubber of all axes. One axis that differs alone has that in its own interval.
-    others = ([*told[:place], *told[place + 1 :]] for place in range(len(told)))
-    if all(recordings_apart(each, prior).shown for each in others):
-        return apart
-    return apart._replace(share=prior, shown=None)
+    others = [recordings_apart([*told[:place], *told[place + 1 :]], prior) for place in range(len(told))]
+    least = min((each.share for each in others), default=prior)
+    return apart._replace(share=least, shown=apart.shown if all(each.shown for each in others) else None)
 
 
 def without_needless(fitted: FittedFoot, between: Apart) -> FittedFoot:

@@ -10,7 +10,7 @@ import numpy as np
 from plantar.conventions import Array
 from plantar.estimation import Block, fit_blocks, influences_of
 from plantar.estimation.least_squares import values_without_each
-from plantar.estimation.random_effects import Differences, share_between
+from plantar.estimation.random_effects import Differences, resolution, share_between
 from plantar.estimation.stance_least_squares import FEWEST_RECORDINGS, jackknife
 from plantar.feet.interval_width.cause import Cause
 from plantar.feet.interval_width.yaw_zero import YawZeros, fit_beside, yaw_zeros
@@ -45,15 +45,24 @@ class AxisDifferences(NamedTuple):
 
 
 def recordings_apart(axes: Sequence[AxisDifferences], prior: float) -> Apart:
-    """By which share of spring and damper recordings differ, at least `prior`, as these axes together show it."""
+    """By which share of spring and damper recordings differ, at least `prior`, as these axes together show it.
+
+    Before they are compared, by as much as they can be told apart by: motions that show differences badly leave them.
+    """
     if not axes:
         return Apart(prior, 1)
-    usual = float(np.mean([each.usual for each in axes]))
-    found = share_between([each.differences for each in axes], usual)
+    usual, sets = float(np.mean([each.usual for each in axes])), [each.differences for each in axes]
+    found = share_between(sets, resolution(sets))
     names = frozenset().union(*(each.recordings for each in axes))
     return Apart(
         max(prior, found.share), len(names) - 1, (found.low, found.high) if found.low > usual else None
     )
+
+
+def _alone_apart(axis: AxisDifferences) -> Apart:
+    """By which share recordings differ as one axis shows it: what it shows badly is left to all axes together."""
+    share = share_between([axis.differences], axis.usual).share
+    return Apart(share, len(axis.recordings) - 1)
 
 
 def apart_notes(apart: Apart) -> list[Note]:
@@ -103,7 +112,7 @@ def between_recordings(
     std, freedom = np.zeros(len(few)), len(blocks) - 1
     if few.any():
         own = differences_of(fit, blocks, effects, yaw_zeros(fit, blocks, recordings))
-        here = [] if own is None else [recordings_apart([own], 0.0)]
+        here = [] if own is None else [_alone_apart(own)]
         apart = max([*here, every], key=lambda each: each.share)
         std, freedom = apart.share * by_share, apart.others
     if not few.all():
