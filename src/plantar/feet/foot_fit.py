@@ -87,10 +87,12 @@ def between_all(feet: Sequence[FittedFoot]) -> Apart:
             with gives_up(axis, one.given_up):
                 own = axis_differences(fit, one.thin.fitted, one.ready.settings.offset == "shared")
                 told += [] if own is None else [own]
-    prior = max(one.ready.robot.uncertainty.between_recordings for one in feet)
-    apart = recordings_apart(told, prior)
+    unsure = [one.ready.robot.uncertainty for one in feet]
+    prior, exact = max(each.between_recordings for each in unsure), all(each.exact for each in unsure)
+    apart = recordings_apart(told, prior, exact=exact)
     # What warms up is the rubber of all axes. One axis that differs alone has that in its own interval.
-    others = [recordings_apart([*told[:place], *told[place + 1 :]], prior) for place in range(len(told))]
+    rests = ([*told[:place], *told[place + 1 :]] for place in range(len(told)))
+    others = [recordings_apart(each, prior, exact=exact) for each in rests]
     least = min((each.share for each in others), default=prior)
     return apart._replace(share=least, shown=apart.shown if all(each.shown for each in others) else None)
 

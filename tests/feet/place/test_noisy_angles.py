@@ -69,7 +69,7 @@ def shown(seed: int, wander: float) -> Recording:
 
 
 def test_a_spring_beside_places_is_as_unsure_as_an_attitude_that_wanders() -> None:
-    """Eight columns take up much of a random walk, and what is left tells too little: by that alone errors were 1.8 deviations."""
+    """Eight columns take up much of a random walk, and what is left tells too little: errors were 1.8 deviations."""
     told = []
     for seed in range(24):
         fit = fit_axis([shown(seed, 3e-4)], FOOT, "pitch", LINEAR)

@@ -44,19 +44,19 @@ class AxisDifferences(NamedTuple):
     recordings: frozenset[str]
 
 
-def recordings_apart(axes: Sequence[AxisDifferences], prior: float) -> Apart:
+def recordings_apart(axes: Sequence[AxisDifferences], prior: float, *, exact: bool = False) -> Apart:
     """By which share of spring and damper recordings differ, at least `prior`, as these axes together show it.
 
     Before they are compared, by as much as they can be told apart by: motions that show differences badly leave them.
+    Of a robot that is `exact`ly what its file says, by no more than its stiffness is unsure by.
     """
     if not axes:
         return Apart(prior, 1)
     usual, sets = float(np.mean([each.usual for each in axes])), [each.differences for each in axes]
-    found = share_between(sets, resolution(sets))
+    shown = share_between(sets, usual)
+    share = shown.share if exact else share_between(sets, resolution(sets)).share
     names = frozenset().union(*(each.recordings for each in axes))
-    return Apart(
-        max(prior, found.share), len(names) - 1, (found.low, found.high) if found.low > usual else None
-    )
+    return Apart(max(prior, share), len(names) - 1, (shown.low, shown.high) if shown.low > usual else None)
 
 
 def _alone_apart(axis: AxisDifferences) -> Apart:
