@@ -29,6 +29,7 @@ from plantar.feet.settings import FeetSettings
 from plantar.notes import Note
 from plantar.results.feet import FeetResult
 from plantar.robot.model import RobotModel
+from plantar.robot.uncertainty import EXACT, Uncertainty
 
 BROKEN = ("left", "roll")
 STEPS = ["fit_axis", "outlier_masks", "systematic_causes", "score_axis", "axis_rows", "diagnose_axis"]
@@ -112,13 +113,28 @@ def test_one_axis_that_differs_alone_says_nothing_of_the_others(
         for own in differ
     )
     monkeypatch.setattr(foot_fit, "axis_differences", lambda *_: next(told))
-    robot = SimpleNamespace(uncertainty=SimpleNamespace(between_recordings=0.002))
+    robot = SimpleNamespace(uncertainty=Uncertainty(between_recordings=0.002))
     ready = SimpleNamespace(robot=robot, settings=FeetSettings(), fitted=())
     feet = [FittedFoot(foot, None, {"pitch": None, "roll": None}, {}, ready, ready, ()) for foot in FEET]  # type: ignore[arg-type, dict-item]
     found = between_all(feet)
     assert found.others == 1
     assert (found.shown is not None) == share
     assert found.share > 0.01 if share else found.share == 0.002
+
+
+@pytest.mark.parametrize("exact", [False, True])
+def test_differences_that_hardly_show_are_none_of_a_robot_that_is_what_its_file_says(
+    monkeypatch: pytest.MonkeyPatch, exact: bool
+) -> None:
+    """Two recordings that are alike to 1 %, and a stiffness known to 0.01 %."""
+    alike = AxisDifferences(Differences(np.zeros(1), np.array([[1e-4]])), 1e-4, frozenset("ab"))
+    monkeypatch.setattr(foot_fit, "axis_differences", lambda *_: alike)
+    robot = SimpleNamespace(uncertainty=EXACT if exact else Uncertainty())
+    ready = SimpleNamespace(robot=robot, settings=FeetSettings(), fitted=())
+    feet = [FittedFoot(foot, None, {"pitch": None, "roll": None}, {}, ready, ready, ()) for foot in FEET]  # type: ignore[arg-type, dict-item]
+    found = between_all(feet)
+    assert found.shown is None
+    assert found.share < 0.001 if exact else found.share > 0.003
 
 
 @pytest.mark.parametrize("steps", [False, True])

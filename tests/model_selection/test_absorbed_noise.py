@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from bush_data_sets import PERIOD, Rubber, sway
+from plantar.model_selection import model_fit
 from plantar.model_selection.absorbed_noise import lacking
 from plantar.model_selection.data_sets import DataSet, FilteredDataSet, StepColumns, prepare_data_sets
 from plantar.model_selection.model_fit import fit_model
@@ -50,6 +51,10 @@ def tangent(prepared: list[FilteredDataSet]) -> tuple[Linearised, np.ndarray]:
     return linear, np.column_stack([design, effect[:, None] * own, own])
 
 
+def drifts_of(prepared: list[FilteredDataSet]) -> list[np.ndarray]:
+    return [each.drift for each in prepared]
+
+
 def durations_of(prepared: list[FilteredDataSet]) -> list[float]:
     return [each.used.sum() * each.motion.period for each in prepared]
 
@@ -79,7 +84,7 @@ def test_deviations_lack_what_a_dense_fit_of_noise_shows(sizes: list[float], dur
     """Also where not every cosine is tried: there are 20 in 100 s."""
     prepared = prepared_of(sizes, duration)
     linear, dense = tangent(prepared)
-    found = lacking(linear, prepared, durations_of(prepared))
+    found = lacking(linear, drifts_of(prepared), durations_of(prepared))
     expected = dense_ratio(prepared, dense)
     assert expected.max() > 1.05
     np.testing.assert_allclose(found, np.maximum(expected, 1.0), rtol=0.02)
@@ -87,7 +92,7 @@ def test_deviations_lack_what_a_dense_fit_of_noise_shows(sizes: list[float], dur
 
 def test_a_short_recording_lacks_more_than_a_long_one() -> None:
     short, long = (prepared_of([1.2, 0.5], duration) for duration in (24.0, 240.0))
-    few, many = (lacking(tangent(each)[0], each, durations_of(each)) for each in (short, long))
+    few, many = (lacking(tangent(each)[0], drifts_of(each), durations_of(each)) for each in (short, long))
     assert few[2] > 1.4
     assert (many < 1.2).all()
 
@@ -109,14 +114,20 @@ def test_deviations_of_a_fit_hold_what_an_attitude_wanders_by() -> None:
     assert (rms < 1.5).all(), rms
 
 
-def test_steps_lack_nothing() -> None:
-    prepared = prepared_of([1.3, 0.6], 24.0)
-    linear, _ = tangent(prepared)
+def test_steps_lack_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """There it is not the attitude that makes the noise."""
+    asked: list[int] = []
+    monkeypatch.setattr(
+        model_fit, "lacking", lambda linear, *_: asked.append(linear.size) or np.ones(linear.size)
+    )
+    rng = np.random.default_rng(3)
+    stands = [recorded(rng, size, 24.0) for size in (1.3, 0.6)]
+    none = [np.zeros(len(each.torque), dtype=np.intp) for each in stands]
     steps = [
-        replace(
-            each,
-            steps=StepColumns(np.zeros(len(each.used), dtype=np.intp), np.zeros((len(each.used), 0)), 1.0),
-        )
-        for each in prepared
+        replace(each, steps=StepColumns(stance, np.zeros((len(stance), 0)), 1.0))
+        for each, stance in zip(stands, none, strict=True)
     ]
-    np.testing.assert_array_equal(lacking(linear, steps, durations_of(prepared)), np.ones(3))
+    fit_model(Elastoplastic(), steps)
+    assert not asked
+    fit_model(Elastoplastic(), stands)
+    assert asked

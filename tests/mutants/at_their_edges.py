@@ -154,10 +154,10 @@ AT_THEIR_EDGES = (
         ("feet/interval_width/test_between_recordings.py",),
     ),
     Mutant(
-        "feet/interval_width/systematic.py",
+        "feet/interval_width/yaw_zero.py",
         "offsets of both signs are none",
-        "usual = float(np.sqrt(np.mean(np.square(list(fit.offsets.values())))))",
-        "usual = float(abs(np.mean(list(fit.offsets.values()))))",
+        "float(np.sqrt(np.mean(np.square(list(fit.offsets.values()))))))",
+        "float(abs(np.mean(list(fit.offsets.values())))))",
         ("feet/interval_width/test_systematic.py",),
     ),
     Mutant(

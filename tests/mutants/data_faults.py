@@ -50,7 +50,7 @@ DATA_FAULTS = (
         ("sensors/test_tilt_error.py",),
     ),
     Mutant(
-        "feet/interval_width/systematic.py", "a yaw torque's zero that motions show is not believed",
+        "feet/interval_width/yaw_zero.py", "a yaw torque's zero that motions show is not believed",
         "if usual and found.condition_number <= SINGULAR:", "if False and found.condition_number <= SINGULAR:",
         ("feet/interval_width/test_systematic.py",),
     ),

@@ -128,11 +128,11 @@ FIT = (
         "np.var(clear[:, :2], axis=0) > RELIABLE", "np.std(clear[:, :2], axis=0) > RELIABLE",
     ),
     Mutant(
-        "feet/interval_width/systematic.py", "sine of roll instead of pitch",
-        "np.sin(one.bushes[foot].deflection[used, 0])", "np.sin(one.bushes[foot].deflection[used, 1])",
+        "feet/interval_width/yaw_zero.py", "sine of roll instead of pitch",
+        "one.bushes[foot].deflection[one.rows(foot), 0]", "one.bushes[foot].deflection[one.rows(foot), 1]",
     ),
     Mutant(
-        "feet/interval_width/systematic.py", "degrees of freedom from deviations, not variances",
+        "feet/interval_width/cause.py", "degrees of freedom from deviations, not variances",
         "np.array([np.diag(covariance), added**2])", "np.array([np.diag(covariance), added])",
     ),
     Mutant(

@@ -36,12 +36,12 @@ DRAWN_EVERYWHERE = (
     Mutant(
         "feet/interval_width/between_walks.py",
         "walks that scatter are taken to be as alike as those that agree",
-        "axis.differences.resolution).share",
+        "resolution([axis.differences])).share",
         "axis.usual / 10).share",
         ("feet/interval_width/test_between_walks.py",),
     ),
     Mutant(
-        "feet/interval_width/systematic.py",
+        "feet/interval_width/cause.py",
         "a cause's few degrees of freedom forgotten",
         "np.full_like(added, cause.freedom)",
         "np.full_like(added, np.inf)",

@@ -74,8 +74,29 @@ DRAWN_ONCE_MORE = (
     Mutant(
         "feet/foot_fit.py",
         "the smallest of what robot files allow",
-        "prior = max(one.ready.robot.uncertainty",
-        "prior = min(one.ready.robot.uncertainty",
+        "max(each.between_recordings for each in unsure)",
+        "min(each.between_recordings for each in unsure)",
+    ),
+    Mutant(
+        "feet/interval_width/yaw_zero.py",
+        "zeros pass for recordings that differ",
+        "if zeros is not None and zeros.usual:",
+        "if zeros is None and False:",
+        ("feet/interval_width/test_yaw_zero.py",),
+    ),
+    Mutant(
+        "feet/interval_width/between_recordings.py",
+        "what differences do not show is none",
+        "shown.share if exact else share_between(sets, resolution(sets)).share",
+        "shown.share",
+        ("feet/interval_width/test_between_recordings.py",),
+    ),
+    Mutant(
+        "feet/place/bush_place.py",
+        "a wandering attitude that places take up is forgotten",
+        "wide[: linear.size] = lacking(",
+        "_ = lacking(",
+        ("feet/place/test_noisy_angles.py",),
     ),
     Mutant(
         "feet/foot_fit.py",

@@ -10,8 +10,8 @@ INTERVALS = (
         "moment_arms), vertical.compliance_std[foot]", "moment_arms), 0.0",
     ),
     Mutant(
-        "feet/interval_width/systematic.py", "no cause for the yaw torque's zero",
-        'if fit.axis == "roll":', 'if fit.axis == "none":',
+        "feet/interval_width/yaw_zero.py", "no cause for the yaw torque's zero",
+        'if fit.axis != "roll"', 'if fit.axis != "none"',
     ),
     Mutant(
         "feet/fit/vertical_stiffness.py", "deviation of a reciprocal by the value, not its square",

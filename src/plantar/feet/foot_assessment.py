@@ -20,6 +20,7 @@ from plantar.feet.assess.stance_stiffness import stance_stiffness, walk_stiffnes
 from plantar.feet.foot_fit import FittedFoot
 from plantar.feet.internal_error import gives_up, internal_errors
 from plantar.feet.interval_width.between_recordings import Apart
+from plantar.feet.interval_width.cause import inflated
 from plantar.feet.interval_width.encoder_delay import encoder_delay_causes
 from plantar.feet.interval_width.fading import fading_causes
 from plantar.feet.interval_width.force_gain import force_gain_causes, force_gain_notes, torque_gain_causes
@@ -27,7 +28,7 @@ from plantar.feet.interval_width.imu_turn import imu_turn_causes
 from plantar.feet.interval_width.joint_compliance import joint_compliance_causes
 from plantar.feet.interval_width.robot_causes import robot_causes
 from plantar.feet.interval_width.slip_angle import slip_angle_causes
-from plantar.feet.interval_width.systematic import inflated, systematic_causes
+from plantar.feet.interval_width.systematic import systematic_causes
 from plantar.feet.place.far_arms import far_arms
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.regression_data import tangent_blocks
@@ -76,7 +77,7 @@ def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit, between: Apart)
     shared = ready.settings.offset == "shared"
     blocks = tangent_blocks(thin.fitted, fit, drift=not shared)
     causes = systematic_causes(fit, blocks, thin.fitted, ready.sensor_delay, ready.vertical, shared)
-    causes += robot_causes(fit, blocks, ready.robot.uncertainty.wrench_gain, between, shared)
+    causes += robot_causes(fit, blocks, thin.fitted, ready.robot.uncertainty.wrench_gain, between, shared)
     causes += slip_angle_causes(fit, thin.fitted, shared)
     causes += encoder_delay_causes(fit, blocks, thin.fitted, ready.sensor_delay.encoders_std, shared)
     causes += joint_compliance_causes(ready.robot, fit, blocks, ready.fitted, shared)

@@ -19,8 +19,9 @@ from plantar.feet.interval_width.between_recordings import (
     axis_differences,
     recordings_apart,
 )
+from plantar.feet.interval_width.cause import inflated
 from plantar.feet.interval_width.robot_causes import robot_causes
-from plantar.feet.interval_width.systematic import inflated, systematic_causes
+from plantar.feet.interval_width.systematic import systematic_causes
 from plantar.feet.place.spread import PlaceSpread
 from plantar.feet.place.turned_bush import turned_bush_note
 from plantar.feet.prepare import PreparedLogs
@@ -76,21 +77,22 @@ def fit_foot(ready: PreparedLogs, foot: str, place: PlaceSpread) -> FittedFoot:
 
 
 def between_all(feet: Sequence[FittedFoot]) -> Apart:
-    """By how much recordings differ, where all axes of all feet show it together, also without any one of them; else
-    what the robot file allows."""
+    """By how much recordings differ as the axes of all feet show it together, whichever one is left out; at least what
+    the robot file allows."""
     told = list[AxisDifferences]()
     for one in feet:
         for axis, fit in one.fits.items():
             with gives_up(axis, one.given_up):
                 own = axis_differences(fit, one.thin.fitted, one.ready.settings.offset == "shared")
                 told += [] if own is None else [own]
-    prior = max(one.ready.robot.uncertainty.between_recordings for one in feet)
-    apart = recordings_apart(told, prior)
+    unsure = [one.ready.robot.uncertainty for one in feet]
+    prior, exact = max(each.between_recordings for each in unsure), all(each.exact for each in unsure)
+    apart = recordings_apart(told, prior, exact=exact)
     # What warms up is the rubber of all axes. One axis that differs alone has that in its own interval.
-    others = ([*told[:place], *told[place + 1 :]] for place in range(len(told)))
-    if all(recordings_apart(each, prior).shown for each in others):
-        return apart
-    return apart._replace(share=prior, shown=None)
+    rests = ([*told[:place], *told[place + 1 :]] for place in range(len(told)))
+    others = [recordings_apart(each, prior, exact=exact) for each in rests]
+    least = min((each.share for each in others), default=prior)
+    return apart._replace(share=least, shown=apart.shown if all(each.shown for each in others) else None)
 
 
 def without_needless(fitted: FittedFoot, between: Apart) -> FittedFoot:
@@ -123,7 +125,8 @@ def _with_causes(fit: AxisFit, fitted: FittedFoot, between: Apart) -> AxisFit:
     blocks = tangent_blocks(recordings, fit, drift=not shared)
     causes = systematic_causes(fit, blocks, recordings, ready.sensor_delay, ready.vertical, shared)
     return inflated(
-        fit, causes + robot_causes(fit, blocks, ready.robot.uncertainty.wrench_gain, between, shared)
+        fit,
+        causes + robot_causes(fit, blocks, recordings, ready.robot.uncertainty.wrench_gain, between, shared),
     )
 
 

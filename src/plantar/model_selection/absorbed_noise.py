@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 
 from plantar.conventions import Array
 from plantar.estimation.residual_covariance import cosine_count
-from plantar.model_selection.data_sets import FilteredDataSet
 from plantar.model_selection.partialled_out import Linearised
 
 MOST_TRIED = 16  # cosines of one recording: of long ones, whose many are alike, the sum is known from as many
@@ -24,30 +23,29 @@ MOST_TRIED = 16  # cosines of one recording: of long ones, whose many are alike,
 STRETCHES = 32
 
 
-def lacking(linear: Linearised, prepared: Sequence[FilteredDataSet], durations: Sequence[float]) -> Array:
+def lacking(linear: Linearised, drifts: Sequence[Array], durations: Sequence[float]) -> Array:
     """By which factor deviations (p,) of a fit's parameters are larger than its residuals' scores say; at least 1.
 
-    linear: the fit of the `prepared` recordings about its best point, of `durations` [s] each. The factor is the root
-    of the variance that a random walk makes of the parameters, over what the scores of its residuals say on average.
-    1 where feet step: it is not the attitude that then makes the noise, nor a recording that bounds it.
+    linear: the fit about its best point, of recordings of `durations` [s] each, their orthonormal `drifts` (n, m)
+    projected out. The factor is the root of the variance that a random walk makes of the parameters, over what the
+    scores of its residuals say on average. Not where feet step: it is not the attitude that then makes the noise, nor a
+    recording that bounds it.
     """
     count = linear.size
-    if any(each.steps is not None for each in prepared):
-        return np.ones(count)
     parts = [
-        _Stretches(max(1, len(each.response) // (STRETCHES * cosine_count(span))), len(each.response))
-        for each, span in zip(prepared, durations, strict=True)
+        _Stretches(max(1, len(drift) // (STRETCHES * cosine_count(span))), len(drift))
+        for drift, span in zip(drifts, durations, strict=True)
     ]
     columns = linear.by_recording(linear.columns)
     slow = [part.walked(own) for part, own in zip(parts, columns, strict=True)]
     solved, together = linear.inverse(), sum(own.T @ own for own in slow)
     real, shown = np.zeros(count), np.zeros(count)
     influences, nuisances = linear.influences(), linear.nuisances()
-    for place, (each, part) in enumerate(zip(prepared, parts, strict=True)):
+    for place, (drift, part) in enumerate(zip(drifts, parts, strict=True)):
         influence = influences[place][:, :count]
         cosines = part.cosines(cosine_count(durations[place]))
         of_rows = part.spread(cosines)
-        forgotten, drift = nuisances[place], each.drift
+        forgotten = nuisances[place]
         walked = part.walked(np.column_stack([forgotten - drift @ (drift.T @ forgotten), drift]))
         beside = np.column_stack([columns[place], forgotten, drift])
         real += np.sum(part.walked(influence) ** 2, axis=0)

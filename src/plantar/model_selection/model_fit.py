@@ -178,7 +178,9 @@ def _finished(problem: Problem, point: Point, limits: Array) -> ModelFit:
     residuals = np.split(point.residuals, np.cumsum(problem.rows[:-1]))
     durations = [each.duration for each in problem.prepared]
     covariance, freedom = robust_covariance(linear, residuals, durations)
-    lacks = lacking(linear, problem.prepared, durations)
+    lacks = np.ones(linear.size)
+    if all(each.steps is None for each in problem.prepared):
+        lacks = lacking(linear, [each.drift for each in problem.prepared], durations)
     wide = np.concatenate([lacks * scale, np.ones(len(covariance) - len(scale))])
     covariance = covariance * wide[:, None] * wide[None, :]
     count, rows = len(scale), sum(len(each.response) * each.every for each in problem.prepared)

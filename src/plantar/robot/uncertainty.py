@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 
 def _deviation(default: float, meaning: str) -> float:
@@ -29,6 +29,13 @@ class Uncertainty:
     between_recordings: float = _deviation(
         0.0, "share by which stiffness and damping may differ from recording to recording"
     )
+
+    @property
+    def exact(self) -> bool:
+        """Whether the robot is exactly what its file says, as a simulated one is; what its logs show aside."""
+        return self == replace(
+            EXACT, wrench_delay=self.wrench_delay, between_recordings=self.between_recordings
+        )
 
 
 # Of a robot that is exactly what its file says, as a simulated one is. Its sensors may be late all the same.

@@ -12,7 +12,7 @@ import pytest
 from plantar.feet.assess.data_faults import ADVICE
 from plantar.feet.assess.diagnosis import REMEDY, advised, diagnose_axis, mend_first
 from plantar.feet.interval_width import systematic
-from plantar.feet.interval_width.systematic import Cause
+from plantar.feet.interval_width.cause import Cause
 from plantar.feet.regression.axis import AxisFit
 from plantar.models import KelvinVoigt
 from plantar.notes import Note

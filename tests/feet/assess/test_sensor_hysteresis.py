@@ -10,7 +10,7 @@ from made_recording import FOOT, PERIOD, made_recording, swayed
 from plantar.conventions import Array
 from plantar.feet.assess.sensor_hysteresis import HYSTERESIS, hysteresis_notes
 from plantar.feet.fit.axis_fit import fit_axis
-from plantar.feet.interval_width.systematic import Cause, inflated
+from plantar.feet.interval_width.cause import Cause, inflated
 from plantar.feet.recording import Recording
 from plantar.feet.regression.regression_data import tangent_blocks
 from plantar.feet.settings import FeetSettings

@@ -13,7 +13,7 @@ from plantar.contact.stances import Stances
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.interval_width.between_recordings import Apart, axis_differences
 from plantar.feet.interval_width.between_walks import between_walks
-from plantar.feet.interval_width.systematic import Cause
+from plantar.feet.interval_width.cause import Cause
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.regression_data import tangent_blocks

@@ -16,6 +16,7 @@ from plantar.feet.interval_width.between_recordings import (
     apart_notes,
     recordings_apart,
 )
+from plantar.feet.interval_width.cause import Cause, inflated
 from plantar.feet.interval_width.force_gain import (
     GainError,
     force_gain_causes,
@@ -23,7 +24,6 @@ from plantar.feet.interval_width.force_gain import (
     torque_gain_causes,
 )
 from plantar.feet.interval_width.robot_causes import robot_causes
-from plantar.feet.interval_width.systematic import Cause, inflated
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.regression_data import tangent_blocks
@@ -99,11 +99,11 @@ def test_a_gain_and_a_turned_sensor_add_up(turned: float) -> None:
     """A sensor turned by ψ reads cos ψ of the torque."""
     fit = replace(FIT, turned=turned, offsets={"sway_0": 0.0})
     blocks = tangent_blocks(sways(400.0), fit)
-    causes = robot_causes(fit, blocks, 0.003, Apart(0.0, 1), shared=False)
+    causes = robot_causes(fit, blocks, sways(400.0), 0.003, Apart(0.0, 1), shared=False)
     assert [cause.name for cause in causes] == ["sensor gain"]
     assert causes[0].std == pytest.approx(np.hypot(0.003, 1 - np.cos(turned)))
     assert list(causes[0].share) == pytest.approx([400 * causes[0].std, 20 * causes[0].std])
-    assert bool(robot_causes(fit, blocks, 0.0, Apart(0.0, 1), shared=False)) == (turned > 0)
+    assert bool(robot_causes(fit, blocks, sways(400.0), 0.0, Apart(0.0, 1), shared=False)) == (turned > 0)
 
 
 def test_causes_add_to_the_covariance_and_share_their_freedom() -> None:

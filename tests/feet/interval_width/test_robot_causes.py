@@ -74,9 +74,9 @@ def test_a_turned_sensor_reads_less_by_its_cosine(robot: RobotModel) -> None:
     fit = fit_axis(ready.fitted, "left", "pitch", LINEAR)
     assert fit is not None
     blocks = tangent_blocks(ready.fitted, fit)
-    assert [cause.name for cause in robot_causes(fit, blocks, 0.0, Apart(0.0, 1), False)] == [
+    assert [cause.name for cause in robot_causes(fit, blocks, ready.fitted, 0.0, Apart(0.0, 1), False)] == [
         "between recordings"
     ]
-    cause, _ = robot_causes(replace(fit, turned=0.2), blocks, 0.0, Apart(0.0, 1), False)
+    cause, _ = robot_causes(replace(fit, turned=0.2), blocks, ready.fitted, 0.0, Apart(0.0, 1), False)
     assert cause.std == pytest.approx(1 - np.cos(0.2))
     np.testing.assert_array_equal(cause.effect, fit.values)

@@ -11,11 +11,11 @@ from bush_data_sets import Rubber
 from made_recording import FOOT, PERIOD, made_recording, swayed
 from plantar.feet.assess.diagnosis import REMEDY
 from plantar.feet.fit.axis_fit import fit_axis
+from plantar.feet.interval_width.cause import inflated
 from plantar.feet.interval_width.slip_angle import (
     NAME,
     slip_angle_causes,
 )
-from plantar.feet.interval_width.systematic import inflated
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.settings import FeetSettings

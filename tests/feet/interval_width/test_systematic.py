@@ -19,13 +19,12 @@ from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.fit.vertical_stiffness import VerticalStiffness
 from plantar.feet.identify import identify_feet
 from plantar.feet.interval_width import systematic
+from plantar.feet.interval_width.cause import Cause, inflated
 from plantar.feet.interval_width.systematic import (
-    Cause,
     _by_delay,
     _ends_of_stances,
     _shared_slope,
     _suspected_hardening,
-    inflated,
     systematic_causes,
 )
 from plantar.feet.recording import Recording

@@ -9,7 +9,7 @@ import numpy as np
 
 from plantar.conventions import NORMAL95
 from plantar.feet.assess.data_faults import ADVICE, first_sentence
-from plantar.feet.interval_width.systematic import Cause
+from plantar.feet.interval_width.cause import Cause
 from plantar.feet.regression.axis import AxisFit
 from plantar.notes import Note
 from plantar.results.feet import Diagnosis, Parameter

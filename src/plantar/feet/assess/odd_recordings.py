@@ -127,4 +127,4 @@ def _apart(shares: Array, covariance: Array) -> float:
         return 0.0
     step = np.eye(len(shares))[1:] - np.eye(len(shares))[0]
     beside = Differences(step @ shares, step @ covariance @ step.T)
-    return share_between([beside], beside.resolution).share
+    return share_between([beside], float(np.sqrt(np.mean(np.diag(beside.covariance))))).share

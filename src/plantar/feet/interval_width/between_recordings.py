@@ -10,9 +10,10 @@ import numpy as np
 from plantar.conventions import Array
 from plantar.estimation import Block, fit_blocks, influences_of
 from plantar.estimation.least_squares import values_without_each
-from plantar.estimation.random_effects import Differences, share_between
+from plantar.estimation.random_effects import Differences, resolution, share_between
 from plantar.estimation.stance_least_squares import FEWEST_RECORDINGS, jackknife
-from plantar.feet.interval_width.systematic import Cause
+from plantar.feet.interval_width.cause import Cause
+from plantar.feet.interval_width.yaw_zero import YawZeros, fit_beside, yaw_zeros
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.regression_data import all_beside, tangent_blocks
@@ -43,16 +44,25 @@ class AxisDifferences(NamedTuple):
     recordings: frozenset[str]
 
 
-def recordings_apart(axes: Sequence[AxisDifferences], prior: float) -> Apart:
-    """By which share of spring and damper recordings differ, at least `prior`, as these axes together show it."""
+def recordings_apart(axes: Sequence[AxisDifferences], prior: float, *, exact: bool = False) -> Apart:
+    """By which share of spring and damper recordings differ, at least `prior`, as these axes together show it.
+
+    Before they are compared, by as much as they can be told apart by: motions that show differences badly leave them.
+    Of a robot that is `exact`ly what its file says, by no more than its stiffness is unsure by.
+    """
     if not axes:
         return Apart(prior, 1)
-    usual = float(np.mean([each.usual for each in axes]))
-    found = share_between([each.differences for each in axes], usual)
+    usual, sets = float(np.mean([each.usual for each in axes])), [each.differences for each in axes]
+    shown = share_between(sets, usual)
+    share = shown.share if exact else share_between(sets, resolution(sets)).share
     names = frozenset().union(*(each.recordings for each in axes))
-    return Apart(
-        max(prior, found.share), len(names) - 1, (found.low, found.high) if found.low > usual else None
-    )
+    return Apart(max(prior, share), len(names) - 1, (shown.low, shown.high) if shown.low > usual else None)
+
+
+def _alone_apart(axis: AxisDifferences) -> Apart:
+    """By which share recordings differ as one axis shows it: what it shows badly is left to all axes together."""
+    share = share_between([axis.differences], axis.usual).share
+    return Apart(share, len(axis.recordings) - 1)
 
 
 def apart_notes(apart: Apart) -> list[Note]:
@@ -77,10 +87,13 @@ def axis_differences(fit: AxisFit, recordings: Sequence[Recording], shared: bool
     blocks = tangent_blocks(recordings, fit, drift=not shared)
     if not _comparable(blocks, shared):
         return None
-    return differences_of(fit, blocks, effects_of(fit, blocks, influences_of(blocks)))
+    effects = effects_of(fit, blocks, influences_of(blocks))
+    return differences_of(fit, blocks, effects, yaw_zeros(fit, blocks, recordings))
 
 
-def between_recordings(fit: AxisFit, blocks: Sequence[Block], every: Apart, shared: bool) -> list[Cause]:
+def between_recordings(
+    fit: AxisFit, blocks: Sequence[Block], recordings: Sequence[Recording], every: Apart, shared: bool
+) -> list[Cause]:
     """By how much recordings of a foot that stands move the fit beyond their own deviations.
 
     From FEWEST_RECORDINGS on refits without one of them each (jackknife) say it, whatever it is that differs. Fewer are
@@ -98,8 +111,8 @@ def between_recordings(fit: AxisFit, blocks: Sequence[Block], every: Apart, shar
     by_share = np.sqrt(np.sum(effects**2, axis=0))
     std, freedom = np.zeros(len(few)), len(blocks) - 1
     if few.any():
-        own = differences_of(fit, blocks, effects)
-        here = [] if own is None else [recordings_apart([own], 0.0)]
+        own = differences_of(fit, blocks, effects, yaw_zeros(fit, blocks, recordings))
+        here = [] if own is None else [_alone_apart(own)]
         apart = max([*here, every], key=lambda each: each.share)
         std, freedom = apart.share * by_share, apart.others
     if not few.all():
@@ -119,27 +132,32 @@ def _comparable(blocks: Sequence[Block], shared: bool) -> bool:
     return not shared and len(blocks) > 1 and not many
 
 
-def differences_of(fit: AxisFit, blocks: Sequence[Block], effects: Array) -> AxisDifferences | None:
+def differences_of(
+    fit: AxisFit, blocks: Sequence[Block], effects: Array, zeros: YawZeros | None = None
+) -> AxisDifferences | None:
     """Those of the recordings whose `effects` make more than the share TELLS of K; None where it is but one.
 
-    Of few all are compared, however little they tell: nothing else says how far the one that tells most is off.
+    Of few all are compared, however little they tell: nothing else says how far the one that tells most is off. In
+    these a zero of the yaw torque passes for a stiffness of their own, so that such `zeros` are free beside them.
     """
     least = TELLS * abs(float(fit.values[0])) if len(blocks) >= FEWEST_RECORDINGS else 0.0
     tell = np.flatnonzero(np.abs(effects[:, 0]) > least).tolist()
     if len(tell) < 2:
         return None
-    differences = among(beside_one(blocks, _torques(fit, blocks), tell[0]), tell)
+    differences = among(beside_one(blocks, _torques(fit, blocks), tell[0], zeros), tell)
     usual = float(fit_blocks(blocks).std[0]) / max(abs(float(fit.values[0])), 1e-300)
     return AxisDifferences(differences, usual, frozenset(blocks[place].label for place in tell))
 
 
-def beside_one(blocks: Sequence[Block], torques: Sequence[Array], one: int) -> Differences:
+def beside_one(
+    blocks: Sequence[Block], torques: Sequence[Array], one: int, zeros: YawZeros | None = None
+) -> Differences:
     """Shares of `torques`, (n,) of each block, by which every other recording differs from `one`, in their order."""
     others = [place for place in range(len(blocks)) if place != one]
     columns = [np.column_stack(each) for each in zip(*(_alone(torques, own) for own in others), strict=True)]
-    found, first = fit_blocks(all_beside(blocks, columns)), blocks[0].regressor.shape[1]
-    own = slice(first, first + len(others))
-    return Differences(found.values[own], found.covariance[own, own])
+    values, covariance = fit_beside(zeros, all_beside(blocks, columns))
+    own = slice(blocks[0].regressor.shape[1], None)
+    return Differences(values[own], covariance[own, own])
 
 
 def among(found: Differences, places: Sequence[int]) -> Differences:

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from plantar.estimation import Block, fit_blocks, influences_of
-from plantar.estimation.random_effects import HEAVY, share_between
+from plantar.estimation.random_effects import HEAVY, resolution, share_between
 from plantar.estimation.stance_least_squares import FEWEST_RECORDINGS
 from plantar.feet.interval_width.between_recordings import (
     Apart,
@@ -19,7 +19,7 @@ from plantar.feet.interval_width.between_recordings import (
     differences_of,
     effects_of,
 )
-from plantar.feet.interval_width.systematic import Cause
+from plantar.feet.interval_width.cause import Cause
 from plantar.feet.regression.axis import AxisFit
 
 NAME = "between walks"
@@ -54,5 +54,5 @@ def between_walks(fit: AxisFit, blocks: Sequence[Block], every: Apart) -> list[C
 def _shown(axis: AxisDifferences) -> Apart:
     """By which share walks differ as one axis shows it: before they are compared, by as much as they can be told
     apart by."""
-    share = share_between([axis.differences], axis.differences.resolution).share
+    share = share_between([axis.differences], resolution([axis.differences])).share
     return Apart(share, len(axis.recordings) - 1)

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 from plantar.conventions import Array
 from plantar.estimation import Block, effect_of, fit_blocks, influences_of
-from plantar.feet.interval_width.systematic import SINGULAR, Cause
+from plantar.feet.interval_width.cause import SINGULAR, Cause
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.load_torque import ENCODERS_APART, late_encoder_torque

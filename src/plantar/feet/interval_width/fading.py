@@ -12,7 +12,7 @@ import numpy as np
 
 from plantar.conventions import ROTATIONAL_AXES, UNIFORM
 from plantar.estimation import Block, effect_of, influences_of
-from plantar.feet.interval_width.systematic import Cause
+from plantar.feet.interval_width.cause import Cause
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.regression_data import recordings_of

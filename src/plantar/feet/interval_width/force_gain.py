@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from plantar.conventions import GRAVITY, NORMAL95, Array, Axis
-from plantar.feet.interval_width.systematic import Cause
+from plantar.feet.interval_width.cause import Cause
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.notes import Note

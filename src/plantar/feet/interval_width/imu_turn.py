@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from plantar.estimation import effect_of, influences_of
-from plantar.feet.interval_width.systematic import Cause
+from plantar.feet.interval_width.cause import Cause
 from plantar.feet.place.imu_mount import ImuTurn, turn_columns
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit

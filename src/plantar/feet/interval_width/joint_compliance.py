@@ -17,7 +17,7 @@ from plantar.conventions import ROTATIONAL_AXES, Array
 from plantar.dynamics import Contact, equation_of
 from plantar.dynamics.motion import Motion
 from plantar.estimation import Block, effect_of, influences_of
-from plantar.feet.interval_width.systematic import Cause
+from plantar.feet.interval_width.cause import Cause
 from plantar.feet.place.bush_place import centre_columns
 from plantar.feet.recording import Recording, within_stances
 from plantar.feet.regression.axis import AxisFit

@@ -9,12 +9,18 @@ import numpy as np
 from plantar.estimation import Block
 from plantar.feet.interval_width.between_recordings import Apart, between_recordings
 from plantar.feet.interval_width.between_walks import between_walks
-from plantar.feet.interval_width.systematic import Cause
+from plantar.feet.interval_width.cause import Cause
+from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 
 
 def robot_causes(
-    fit: AxisFit, blocks: Sequence[Block], wrench_gain: float, apart: Apart, shared: bool
+    fit: AxisFit,
+    blocks: Sequence[Block],
+    recordings: Sequence[Recording],
+    wrench_gain: float,
+    apart: Apart,
+    shared: bool,
 ) -> list[Cause]:
     """The force sensors' gain, a turned sensor, and recordings, their `tangent_blocks`, that differ: `apart`, as all
     axes show it."""
@@ -25,4 +31,4 @@ def robot_causes(
     causes = [Cause("sensor gain", fit.values, gain)] if gain else []
     if blocks[0].stances is not None:
         return [*causes, *between_walks(fit, blocks, apart)]
-    return [*causes, *between_recordings(fit, blocks, apart, shared)]
+    return [*causes, *between_recordings(fit, blocks, recordings, apart, shared)]

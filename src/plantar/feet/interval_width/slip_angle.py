@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from plantar.estimation import fit_blocks
-from plantar.feet.interval_width.systematic import Cause
+from plantar.feet.interval_width.cause import Cause
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.regression_data import blocks_of

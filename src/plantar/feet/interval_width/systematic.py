@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from plantar.conventions import NORMAL95, ROTATIONAL_AXES, UNIFORM, Array, Mask
 from plantar.estimation import Block, effect_of, fit_blocks, influences_of
-from plantar.estimation.residual_covariance import pooled_freedom
 from plantar.feet.fit.half_turns import ROUND, slip_angles_spanned
 from plantar.feet.fit.hidden_memory import element_slope, moved_by_memory
 from plantar.feet.fit.vertical_stiffness import VerticalStiffness
+from plantar.feet.interval_width.cause import SINGULAR, Cause
+from plantar.feet.interval_width.yaw_zero import yaw_torque_zero, yaw_zeros
 from plantar.feet.recording import Recording, moment_arm_effect
 from plantar.feet.regression.axis import AxisFit
-from plantar.feet.regression.regression_data import all_beside, beside, recordings_of
+from plantar.feet.regression.regression_data import beside, recordings_of
 from plantar.sensors.delays.sensor_delay import SensorDelay
 from plantar.signals.filters import differentiate
 from plantar.signals.resampling import shifted
@@ -31,24 +32,7 @@ SLOPE_UNSURE = 0.003
 ELEMENT_UNSURE = 0.012
 ANGLE_UNSURE = 0.006
 FEWEST_STANDS = 2  # stances of a foot in one recording, for their zeros to differ
-SINGULAR = 1e6  # condition of the fit beyond which nothing moves enough to tell
 KNOWN = 0.2  # of the stiffness: less sure beside such a term, the motions cannot tell one from the other
-
-
-@dataclass(frozen=True)
-class Cause:
-    """One cause: how far a unit of it moves the model's values (k,), or values and shape (k + s,), its deviation and
-    that one's degrees of freedom."""
-
-    name: str
-    effect: Array
-    std: float
-    freedom: float = np.inf
-
-    @property
-    def share(self) -> Array:
-        """Deviation that it adds to each number."""
-        return np.abs(self.effect) * self.std
 
 
 def systematic_causes(
@@ -92,32 +76,9 @@ def systematic_causes(
     causes += _zeros_of_stances(
         blocks, [run_numbers(one.contacts[foot].loaded)[used] for one, used in parts], shared
     )
-    if fit.axis == "roll":
-        sines = [np.sin(one.bushes[foot].deflection[used, 0]) for one, used in parts]
-        causes.append(_yaw_torque_zero(fit, blocks, influences, sines, shared))
+    if (zeros := yaw_zeros(fit, blocks, recordings)) is not None:
+        causes.append(yaw_torque_zero(zeros, blocks, influences, shared))
     return causes
-
-
-def _yaw_torque_zero(
-    fit: AxisFit,
-    blocks: Sequence[Block],
-    influences: Sequence[Array],
-    sines: Sequence[Array],
-    shared: bool,
-) -> Cause:
-    """What the zero of τ_z may do: roll's torque is cos(pitch)·τ_x - sin(pitch)·τ_z, where it does not stay a constant.
-
-    Each recording has its own, usually as large as the others' zeros, which offsets are; motions that show it smaller
-    are believed. `sines`: of pitch, in the samples of each block.
-    """
-    usual = float(np.sqrt(np.mean(np.square(list(fit.offsets.values())))))
-    columns = [np.outer(sine, own) for sine, own in zip(sines, np.eye(len(blocks)), strict=True)]
-    found, size = fit_blocks(all_beside(blocks, columns), shared_offset=shared), np.full(len(blocks), usual)
-    if usual and found.condition_number <= SINGULAR:
-        zeros, unsure = found.values[-len(blocks) :], found.std[-len(blocks) :]
-        keeps = usual**2 / (usual**2 + unsure**2)
-        size = np.minimum(np.hypot(keeps * zeros, np.sqrt(keeps) * unsure), usual)
-    return Cause("yaw torque zero", np.linalg.norm(effect_of(influences, columns) * size, axis=1), 1.0)
 
 
 def _by_delay(torques: Sequence[tuple[Array, float, Mask]], sensor_delay: SensorDelay) -> list[list[Array]]:
@@ -230,15 +191,3 @@ def _suspected_hardening(fit: AxisFit, blocks: Sequence[Block], shared: bool) ->
     before = np.zeros(size)
     before[: len(fit.values)] = fit.values
     return [Cause("hardening", (found.values[:size] - before) / hardening, abs(hardening))]
-
-
-def inflated(fit: AxisFit, causes: Sequence[Cause]) -> AxisFit:
-    """The fit with the causes inside its covariance."""
-    covariance, freedom = fit.covariance.copy(), fit.freedom
-    for cause in causes:
-        added = np.zeros(len(covariance))
-        added[: len(cause.effect)] = cause.effect * cause.std
-        variances = np.array([np.diag(covariance), added**2])
-        freedom = pooled_freedom(variances, np.vstack([freedom, np.full_like(added, cause.freedom)]))
-        covariance = covariance + np.outer(added, added)
-    return replace(fit, covariance=covariance, freedom=freedom)

@@ -17,6 +17,7 @@ import numpy as np
 from plantar.conventions import UNIFORM, Array
 from plantar.estimation import Block, LinearFit, effect_of, fit_blocks, influences_of
 from plantar.estimation.errors_in_variables import attenuation
+from plantar.estimation.orthonormal import without
 from plantar.feet.place.imu_columns import imu_columns, that_show
 from plantar.feet.place.place_notes import place_notes
 from plantar.feet.place.spread import PlaceSpread
@@ -24,6 +25,8 @@ from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.regression.load_torque import ENCODERS_APART, late_encoder_torque, place_columns
 from plantar.feet.regression.regression_data import all_beside, recordings_of, tangent_blocks
+from plantar.model_selection.absorbed_noise import lacking
+from plantar.model_selection.partialled_out import Linearised
 
 ENCODERS_LATE = UNIFORM * ENCODERS_APART  # s
 SINGULAR = 1e6  # condition of the fit beyond which the motions do not show the place
@@ -98,8 +101,22 @@ def _with_late_encoders(
         # A push bends the foot and turns about the place alike: what noise takes off the one, the other takes up.
         noisy = attenuation(_with_noise(tried, found), found.values, shared_offset=shared)
         if found.condition_number <= SINGULAR and noisy is not None:
-            return found, noisy, np.array(apart)
+            return _with_absorbed_noise(tried, found, shared), noisy, np.array(apart)
     return found, None, np.zeros(0)
+
+
+def _with_absorbed_noise(blocks: Sequence[Block], found: LinearFit, shared: bool) -> LinearFit:
+    """The fit of blocks, as unsure as an attitude that wanders makes it: beside so many columns it takes up some."""
+    drifts = [np.zeros((len(one.response), 0)) if one.nuisance is None else one.nuisance for one in blocks]
+    rows = [
+        without(drift, np.column_stack([one.regressor, one.response]))
+        for one, drift in zip(blocks, drifts, strict=True)
+    ]
+    table = np.vstack(rows)
+    linear = Linearised(table[:, :-1], table[:, -1], [len(own) for own in rows], shared)
+    wide = np.ones(len(found.covariance))
+    wide[: linear.size] = lacking(linear, drifts, [one.duration for one in blocks])
+    return replace(found, covariance=found.covariance * np.outer(wide, wide))
 
 
 def _with_noise(blocks: Sequence[Block], fit: LinearFit) -> list[Block]:

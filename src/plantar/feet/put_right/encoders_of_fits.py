@@ -16,8 +16,8 @@ import numpy as np
 from plantar.estimation import fit_blocks
 from plantar.feet.foot_fit import FittedFoot
 from plantar.feet.internal_error import gives_up
+from plantar.feet.interval_width.cause import SINGULAR
 from plantar.feet.interval_width.encoder_delay import with_late_encoders
-from plantar.feet.interval_width.systematic import SINGULAR
 from plantar.feet.prepare import PreparedLogs
 from plantar.feet.recording import Recording, has_steps
 from plantar.feet.regression.load_torque import ENCODERS_APART
