@@ -10,7 +10,7 @@ import typer
 
 from plantar.cli.console.memory import Memory
 from plantar.cli.console.terminal import console, end_progress, number, progress, table
-from plantar.errors import MissingExtra, PlantarError
+from plantar.errors import PlantarError, needs
 from plantar.exporters.job import LEAST_LOAD, Stance
 from plantar.files import refuse_file, write_text
 from plantar.logs.inputs import open_together
@@ -54,11 +54,9 @@ def run(
 
     Example: plantar compare out/feet/result.json robot.yaml squat.csv --out out/comparison
     """
-    try:
+    with needs("mujoco", "twin", "plantar compare"):
         from plantar.comparison.compare import SIMULATORS, compare, pooled
         from plantar.comparison.picture import write_picture
-    except ImportError as error:
-        raise MissingExtra(error.name or "mujoco", "twin", "plantar compare") from error
     if simulator not in SIMULATORS:
         raise PlantarError("unknown simulator", value=simulator, valid=", ".join(SIMULATORS))
     if out is not None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from plantar.cli.console.terminal import console, end_progress, progress, table
-from plantar.errors import MissingExtra
+from plantar.errors import needs
 from plantar.files import refuse_file
 from plantar.results.io import dump_json
 
@@ -42,11 +42,9 @@ def run(
 
     Example: plantar demo --out out/demo
     """
-    try:
+    with needs("mujoco", "all", "plantar demo"):
         from plantar.campaign import Course, run_campaign
         from plantar.campaign.present import write_campaign_report
-    except ImportError as error:
-        raise MissingExtra(error.name or "mujoco", "all", "plantar demo") from error
     refuse_file(out)
     step = _progress(quiet)
     campaign = run_campaign(out, Course.quick() if quick else None, preset, seed, step)

@@ -9,7 +9,7 @@ import typer
 
 from plantar.choices import one_of
 from plantar.cli.console.terminal import console, end_progress, number, print_notes, progress, table
-from plantar.errors import MissingExtra, PlantarError
+from plantar.errors import PlantarError, needs
 from plantar.files import write_text
 from plantar.logs.save import save_log
 from plantar.notes import Note
@@ -90,12 +90,10 @@ def run(
 
     Example: plantar design robot.yaml --stiffness 500 --out motion.csv
     """
-    try:
+    with needs("mujoco", "twin", "plantar design"):
         from plantar.campaign.scene import write_plan_scene
         from plantar.design.story import DesignSettings, design_motion
         from plantar.design.writing.outputs import check_outputs, write_design
-    except ImportError as error:
-        raise MissingExtra(error.name or "mujoco", "twin", "plantar design") from error
     if out.suffix.lower() != ".csv":
         raise PlantarError("has an unknown ending", path=out, valid=".csv")
     model = load_robot(robot)

@@ -14,7 +14,7 @@ import pyarrow.csv as pa_csv
 import pyarrow.parquet as pa_parquet
 
 from plantar.conventions import Array
-from plantar.errors import LogError, MissingExtra
+from plantar.errors import LogError, needs
 from plantar.files import atomic_write
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers.ros.layouts import IMU, JOINT_STATE, WRENCH, Bytes, layout_of
@@ -58,11 +58,9 @@ def frames_of(robot: RobotModel | None) -> dict[str, str]:
 
 
 def _save_mcap(log: MotionLog, path: Path, frames: Mapping[str, str]) -> tuple[Note, ...]:
-    try:
+    with needs("rosbags", "logs", "writing MCAP"):
         from rosbags.rosbag2 import StoragePlugin, Writer
         from rosbags.typesys import Stores, get_typestore
-    except ImportError as error:
-        raise MissingExtra("rosbags", "logs", "writing MCAP") from error
     stamps = np.rint(log.time * 1e9).astype(np.int64)
     outside = (stamps < 0) | (stamps >= 2**31 * 10**9)
     if outside.any():

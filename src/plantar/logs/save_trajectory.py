@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from plantar.conventions import Array
-from plantar.errors import MissingExtra
+from plantar.errors import needs
 from plantar.files import atomic_write
 
 TOPIC = "/joint_trajectory"
@@ -21,11 +21,9 @@ def save_trajectory(
 
     Raises MissingExtra without rosbags.
     """
-    try:
+    with needs("rosbags", "logs", "writing MCAP"):
         from rosbags.rosbag2 import StoragePlugin, Writer
         from rosbags.typesys import Stores, get_typestore
-    except ImportError as error:
-        raise MissingExtra("rosbags", "logs", "writing MCAP") from error
     store = get_typestore(Stores.ROS2_HUMBLE)
     types = store.types
     moment, duration = types["builtin_interfaces/msg/Time"], types["builtin_interfaces/msg/Duration"]

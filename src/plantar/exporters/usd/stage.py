@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from plantar.errors import ExportError, MissingExtra
+from plantar.errors import ExportError, needs
 from plantar.exporters.bush import FootBush
 from plantar.exporters.shapes import reaches_sole
 from plantar.exporters.urdf.geometry import box_corners
@@ -22,10 +22,8 @@ def layer_above(model: Path) -> tuple[Any, Any]:
 
     Raises ExportError: no stage, other units than metre and kilogram. MissingExtra: no usd-core.
     """
-    try:
+    with needs("pxr", "usd", "export to a USD stage"):
         from pxr import Sdf, Usd
-    except ImportError as error:
-        raise MissingExtra("pxr", "usd", "export to a USD stage") from error
     stage = opened(model)
     layer = Sdf.Layer.CreateAnonymous(".usda")
     layer.subLayerPaths.append(str(model.resolve()))

@@ -17,7 +17,7 @@ from typing import IO, TYPE_CHECKING, Any
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.errors import LogError, MissingExtra
+from plantar.errors import LogError, needs
 from plantar.files import sha256
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import motion_name
@@ -48,10 +48,8 @@ IMU_KEYS = (
 
 def read(path: Path, robot: RobotModel | None, limit: ReadLimit) -> MotionLog:
     """Read a log. LogError: another kind of file, no time, nothing of use. MissingExtra: no msgpack."""
-    try:
+    with needs("msgpack", "logs", "reading mc_rtc logs"):
         import msgpack  # noqa: F401
-    except ImportError as error:
-        raise MissingExtra("msgpack", "logs", "reading mc_rtc logs") from error
     notes: list[Note] = []
     entries = _Entries(path, robot, limit)
     with open(path, "rb") as handle:

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from plantar.conventions import Array
-from plantar.errors import LogError, MissingExtra
+from plantar.errors import LogError, needs
 from plantar.files import sha256
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers import motion_name
@@ -45,10 +45,8 @@ GROUPS = {
 
 def read(path: Path, robot: RobotModel | None, limit: ReadLimit) -> MotionLog:
     """Read a logger's file. LogError: not HDF5, or no signal of use. MissingExtra: no h5py."""
-    try:
+    with needs("h5py", "logs", "reading .mat logs"):
         import h5py
-    except ImportError as error:
-        raise MissingExtra("h5py", "logs", "reading .mat logs") from error
     notes: list[Note] = []
     try:
         with h5py.File(path, "r") as file:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final, Literal
 
-from plantar.errors import MissingExtra
+from plantar.errors import needs
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing
@@ -22,11 +22,9 @@ def panels(
     rows: int, columns: int, size: tuple[float, float], share_x: bool | Literal["col"] = False
 ) -> tuple[Drawing, Any]:
     """A figure of `size` [inches] with (rows, columns) panels. Raises MissingExtra without matplotlib."""
-    try:
+    with needs("matplotlib", "figures", "drawing figures"):
         import matplotlib
         from matplotlib.figure import Figure as Drawing
-    except ImportError as error:
-        raise MissingExtra("matplotlib", "figures", "drawing figures") from error
     with matplotlib.rc_context(STYLE):
         drawing = Drawing(figsize=size, layout="constrained")
         grid = drawing.subplots(rows, columns, squeeze=False, sharex=share_x)
