@@ -6,12 +6,12 @@ frame and a joint's in its child link, unless `relative_to` names another frame 
 
 from __future__ import annotations
 
-import difflib
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
 import numpy as np
 
+from plantar.choices import nearest
 from plantar.conventions import Array
 from plantar.errors import ExportError
 from plantar.exporters.poses import inverse, pose, rpy_of
@@ -33,8 +33,8 @@ class SdfTree:
         if not holding:
             names = [link.get("name", "") for model in models for link in model.findall("link")]
             missing = next((ankle for ankle in ankles if ankle not in names), ankles[0])
-            near = difflib.get_close_matches(missing, names, n=3) or names[:5]
-            raise ExportError(f"has no model with the link '{missing}'", path=path, valid=", ".join(near))
+            message = f"has no model with the link '{missing}'"
+            raise ExportError(message, path=path, valid=nearest(missing, names))
         self.model = holding[0]
         self.links = {e.get("name", ""): e for e in self.model.findall("link")}
         self.joints = {e.get("name", ""): e for e in self.model.findall("joint")}

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
 import numpy as np
 
+from plantar.choices import nearest
 from plantar.conventions import Array
 from plantar.errors import ExportError
 from plantar.exporters.poses import inverse, pose, rpy_of
@@ -31,8 +31,7 @@ class UrdfTree:
 
     def link(self, name: str) -> ET.Element:
         if name not in self.links:
-            near = difflib.get_close_matches(name, self.links, n=3) or list(self.links)[:5]
-            raise ExportError(f"has no link '{name}'", path=self.path, valid=", ".join(near))
+            raise ExportError(f"has no link '{name}'", path=self.path, valid=nearest(name, self.links))
         return self.links[name]
 
     def ends(self, joint: ET.Element) -> tuple[str, str]:

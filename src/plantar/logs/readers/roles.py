@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -106,8 +105,3 @@ def quaternion_from_rpy(rpy: Array) -> Array:
         cr * sp * cy + sr * cp * sy,
         cr * cp * sy - sr * sp * cy,
     ])  # fmt: skip
-
-
-def nearest(name: str, names: Sequence[str]) -> str:
-    """What may have been meant, for an error's last words."""
-    return ", ".join(difflib.get_close_matches(name, names, n=3) or list(names)[:6])
