@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from plantar.cli.console.memory import Memory
+from plantar.cli import options
 from plantar.cli.console.terminal import console, end_progress, number, progress, table
 from plantar.errors import PlantarError, needs
 from plantar.exporters.job import LEAST_LOAD, Stance
@@ -25,8 +25,8 @@ MILLI = 1e3
 
 
 def run(
-    result: Annotated[Path, typer.Argument(help="The result of `identify feet`.", metavar="RESULT.json")],
-    robot: Annotated[Path, typer.Argument(help="Robot file (YAML).", metavar="ROBOT.yaml")],
+    result: options.FeetFile,
+    robot: options.Robot,
     logs: Annotated[
         list[Path], typer.Argument(help="Logs with joints, attitude and wrenches.", metavar="LOG...")
     ],
@@ -37,18 +37,12 @@ def run(
         Path | None,
         typer.Option("--out", metavar="DIR", help="Folder for comparison.svg and comparison.json."),
     ] = None,
-    swing: Annotated[
-        float | None, typer.Option("--swing", help="As of `export`, for the contact; in rad.", metavar="RAD")
-    ] = None,
-    pivot: Annotated[
-        str, typer.Option("--pivot", help="As of `export`, for the contact.", metavar="PIVOT")
-    ] = "ground",
-    least_load: Annotated[
-        float, typer.Option("--least-load", help="As of `export`, for the contact.", metavar="SHARE")
-    ] = LEAST_LOAD,
-    memory: Memory = None,
-    json: Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No table, no progress.")] = False,
+    swing: options.Swing = None,
+    pivot: options.Pivot = "ground",
+    least_load: options.LeastLoad = LEAST_LOAD,
+    memory: options.Memory = None,
+    json: options.Json = False,
+    quiet: options.Quiet = False,
 ) -> None:
     """Play logs' joint motion in MuJoCo on rigid feet, on exported joints and on exported contact, beside the record.
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from plantar.cli import options
 from plantar.cli.console.terminal import console, end_progress, progress, table
 from plantar.errors import needs
 from plantar.files import refuse_file
@@ -33,7 +34,7 @@ def run(
     seed: Annotated[int, typer.Option(help="Of noise, biases and zeros.", min=0)] = 0,
     quick: Annotated[bool, typer.Option("--quick", help="Two motions only: to see it run.")] = False,
     json: Annotated[bool, typer.Option("--json", help="Print result.json instead of tables.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No tables, no progress.")] = False,
+    quiet: options.Quiet = False,
 ) -> None:  # fmt: skip
     """The paper's campaign on a robot in MuJoCo whose feet are known: play, record, identify, validate, report.
 

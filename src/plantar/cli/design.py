@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from plantar.choices import one_of
+from plantar.cli import options
 from plantar.cli.console.terminal import console, end_progress, number, print_notes, progress, table
 from plantar.errors import PlantarError, needs
 from plantar.files import write_text
@@ -78,8 +79,8 @@ def run(
             metavar="MOTIONS", help="'campaign': for comparison, the best of the paper's fourteen motions."
         ),
     ] = None,
-    json: Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")] = False,
+    json: options.Json = False,
+    quiet: options.Quiet = False,
 ) -> None:
     """Make a motion that identifies the feet as well as balance and joint limits allow,
     even if the stiffness is half or twice what you say.

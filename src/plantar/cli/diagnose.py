@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import asdict
-from pathlib import Path
-from typing import Annotated
 
-import typer
 from rich.markup import escape
 
+from plantar.cli import options
 from plantar.cli.console.advice import advised
 from plantar.cli.console.terminal import VERDICT_STYLE, console, number, table
 from plantar.errors import PlantarError
@@ -18,8 +16,8 @@ from plantar.results.usage import used_shares
 
 
 def run(
-    result: Annotated[Path, typer.Argument(help="The result of `identify feet`.", metavar="RESULT.json")],
-    json: Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")] = False,
+    result: options.FeetFile,
+    json: options.Json = False,
 ) -> None:
     """What limits each number of a result, and which recording would make it tighter.
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from plantar.cli import options
 from plantar.cli.console.terminal import console, end_progress, number, progress, table
 from plantar.errors import PlantarError, needs
 from plantar.files import refuse_file
@@ -74,7 +75,7 @@ def run(
     days: Annotated[
         int, typer.Option(metavar="N", help="How many days 'fleet' has: a log a robot and day.", min=1)
     ] = 60,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")] = False,
+    quiet: options.Quiet = False,
 ) -> None:
     """Play motions on the twin, a robot in MuJoCo whose feet are known, and write what it records.
 
