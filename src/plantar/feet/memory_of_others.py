@@ -25,8 +25,8 @@ from plantar.models import KelvinVoigt
 from plantar.models.hysteresis import SURE_SLIP_ANGLE, Hysteretic
 
 NOT_EXCLUDED = (
-    "other axes of this robot show a memory, which these motions neither show nor exclude here: with one, stiffness is "
-    "smaller"
+    "other axes of this robot show hysteresis; the motions about this one neither show nor exclude it: with hysteresis "
+    "the stiffness is smaller"
 )
 
 
