@@ -11,7 +11,7 @@ from plantar.choices import nearest
 from plantar.conventions import Array
 from plantar.errors import ExportError
 from plantar.exporters.poses import inverse, pose, rpy_of
-from plantar.exporters.urdf.geometry import box_corners, mesh_points
+from plantar.exporters.urdf.geometry import mesh_points, solid_corners
 from plantar.exporters.xml_file import load_xml, numbers, vector
 
 PARENTS_SEARCHED = 8  # directories above the URDF in which a package:// path may start
@@ -101,20 +101,10 @@ class UrdfTree:
         if geometry is None or len(geometry) == 0:
             return None
         kind = geometry[0]
-        if kind.tag == "box":
-            return box_corners(vector(kind.get("size"), 3, "box size"))
-        if kind.tag in ("cylinder", "capsule"):
-            radius, length = (vector(kind.get(key), 1, key)[0] for key in ("radius", "length"))
-            return box_corners(
-                np.array([2 * radius, 2 * radius, length + 2 * radius * (kind.tag == "capsule")])
-            )
-        if kind.tag == "sphere":
-            return box_corners(np.full(3, 2 * vector(kind.get("radius"), 1, "sphere radius")[0]))
         if kind.tag == "mesh":
-            return mesh_points(
-                self.mesh_file(kind.get("filename", "")), vector(kind.get("scale"), 3, "scale", 1.0)
-            )
-        return None
+            scale = vector(kind.get("scale"), 3, "scale", 1.0)
+            return mesh_points(self.mesh_file(kind.get("filename", "")), scale)
+        return solid_corners(kind.tag, lambda key, size: vector(kind.get(key), size, f"{kind.tag} {key}"))
 
 
 def origin_of(element: ET.Element) -> Array:
