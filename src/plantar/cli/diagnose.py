@@ -27,7 +27,16 @@ def run(
     diagnosis, used = found.diagnosis, used_shares(found.phases)
     if json:
         rows = [asdict(row) for row in diagnosis]
-        print(dump_json({"schema": "plantar.diagnosis/1", "diagnosis": rows, "served": used}), end="")
+        print(
+            dump_json(
+                {
+                    "schema": "plantar.diagnosis/1",
+                    "diagnosis": rows,
+                    "served": [share.to_dict() for share in used],
+                }
+            ),
+            end="",
+        )
         return
     screen = console()
     verdicts = {(row.foot, row.axis, row.name): row.verdict for row in found.parameters}
@@ -47,9 +56,7 @@ def run(
         screen.print(f"[{VERDICT_STYLE[verdict]}]{names}: {verdict}[/]: {escape(rest)}")
     for limit, advice in {row.limit: row.advice for row in diagnosis if row.advice}.items():
         screen.print(escape(f"Against {limit}: {advice}."))
-    shares = [
-        (s["motion"], s["foot"], f"{s['seconds']:.1f}", f"{s['served']:.1f}", s["reasons"]) for s in used
-    ]
+    shares = [(one.motion, one.foot, f"{one.seconds:.1f}", f"{one.used:.1f}", one.reasons) for one in used]
     screen.print(
         table(
             "\nHow much of each log was used",

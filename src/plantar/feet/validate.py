@@ -102,8 +102,8 @@ def _unscored(
                 continue
             (share,) = used_shares(recording.contacts[foot].phases(recording.name, foot, recording.time))
             text = f"{recording.name}: the {foot} foot is not scored: "
-            text += f"of {share['seconds']:.1f} s {share['served']:.1f} can be used. Left out: "
-            reasons = share["reasons"] or "nothing, but the result has no model of this foot"
+            text += f"of {share.seconds:.1f} s {share.used:.1f} can be used. Left out: "
+            reasons = share.reasons or "nothing, but the result has no model of this foot"
             notes.append(Note("not_scored", "warning", text + reasons))
     return notes
 

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
 from plantar.conventions import Array
-from plantar.errors import needs
-from plantar.files import atomic_write
+from plantar.logs.write_mcap import ros_types, write_mcap
 
 TOPIC = "/joint_trajectory"
 KIND = "trajectory_msgs/msg/JointTrajectory"
@@ -21,10 +19,7 @@ def save_trajectory(
 
     Raises MissingExtra without rosbags.
     """
-    with needs("rosbags", "logs", "writing MCAP"):
-        from rosbags.rosbag2 import StoragePlugin, Writer
-        from rosbags.typesys import Stores, get_typestore
-    store = get_typestore(Stores.ROS2_HUMBLE)
+    store = ros_types()
     types = store.types
     moment, duration = types["builtin_interfaces/msg/Time"], types["builtin_interfaces/msg/Duration"]
     header = types["std_msgs/msg/Header"](stamp=moment(sec=0, nanosec=0), frame_id="")
@@ -36,11 +31,4 @@ def save_trajectory(
         for t, q, v in zip(time.tolist(), positions, velocities, strict=True)
     ]  # fmt: skip
     message = types[KIND](header=header, joint_names=list(joints), points=points)
-    with tempfile.TemporaryDirectory() as folder:
-        bag = Path(folder) / "bag"
-        with Writer(bag, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
-            writer.write(
-                writer.add_connection(TOPIC, KIND, typestore=store), 0, store.serialize_cdr(message, KIND)
-            )
-        with atomic_write(path) as handle:
-            handle.write(next(bag.glob("*.mcap")).read_bytes())
+    write_mcap(path, [(TOPIC, KIND, [store.serialize_cdr(message, KIND)])], [0])
