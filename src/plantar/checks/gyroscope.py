@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from plantar.checks.quaternions import misread, readings, turns_between
 from plantar.conventions import GRAVITY, Array, Mask, rotation_from_quaternion
@@ -15,7 +16,7 @@ from plantar.notes import Finding
 from plantar.signals.gyroscope_delay import USUAL, gyroscope_delay
 from plantar.signals.medians import median
 from plantar.signals.orientation import rates_from
-from plantar.signals.segments import complete
+from plantar.signals.segments import complete, spread_out
 
 WINDOW = 0.5  # s over which the orientation's turn is compared with the gyroscope's integral
 OVERLAP = 5  # windows begin in each window's time
@@ -31,6 +32,10 @@ PLANAR = 0.05  # second over first singular value: turns about one axis do not s
 IMU_LATE, SCALE, FRAME = "imu_late", "gyroscope_scale", "gyroscope_frame"
 BY_LEANS = frozenset({IMU_LATE, SCALE, FRAME})  # an orientation that leans looks like these as well
 EXPLAINED = 0.1  # share of the difference of both rates, by a delay between gyroscope and orientation
+FEWEST_COMPARED, COMPARED = (
+    10,
+    2000,
+)  # samples of orientation and accelerometer: fewer tell nothing; more tell no more
 MEDIAN = 0.6745  # of absolute values over the deviation, of a normal distribution
 REVERSED = -0.9  # correlation, and slope within a factor of two, of an axis that reads the opposite
 
@@ -247,16 +252,20 @@ def _reversed_axes(turns: Turns) -> str:
     return opposite
 
 
+def rows_to_compare(orientation: Array, acceleration: Array) -> NDArray[np.intp] | None:
+    """Samples in which both are known, spread over the log; None where there are too few."""
+    whole = np.flatnonzero(complete(orientation, acceleration))
+    return None if whole.size < FEWEST_COMPARED else spread_out(whole, COMPARED)
+
+
 def _upside_down(name: str, log: MotionLog, orientation: Array) -> bool:
     """Whether the accelerometer leans against the orientation, or there is no telling: then it may be the wrong one."""
-    columns = [f"imu.{name}.linear_acceleration.{axis}" for axis in "xyz"]
-    if not log.has(*columns):
+    if not log.has_imu(name, "linear_acceleration"):
         return True
     acceleration = log.linear_acceleration(name)
-    whole = np.flatnonzero(complete(orientation, acceleration))
-    if whole.size < 10:
+    rows = rows_to_compare(orientation, acceleration)
+    if rows is None:
         return True
-    rows = whole[:: max(1, whole.size // 2000)]
     up = rotation_from_quaternion(orientation[rows])[:, 2]
     felt = acceleration[rows] / GRAVITY
     up, felt = up - up.mean(axis=0), felt - felt.mean(axis=0)

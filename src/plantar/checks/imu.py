@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from plantar.checks.gyroscope import Turns, check_gyroscope
+from plantar.checks.gyroscope import Turns, check_gyroscope, rows_to_compare
 from plantar.checks.quaternions import misread, readings
 from plantar.conventions import GRAVITY, Array, rotation_from_quaternion
-from plantar.logs.motion_log import MotionLog
+from plantar.logs.motion_log import MotionLog, imu_columns
 from plantar.notes import Finding
 from plantar.signals.segments import complete
 
@@ -19,12 +19,11 @@ RIGHT_ANGLE = np.radians(8)  # likewise: less is a mount or an estimator
 
 def check_imu(name: str, log: MotionLog) -> Iterator[Finding]:
     """Findings about one IMU's columns."""
-    gyroscope = [f"imu.{name}.angular_velocity.{axis}" for axis in "xyz"]
-    orientation = log.orientation(name)
-    if log.has(*gyroscope):
-        yield from _dead_channels(log, gyroscope, orientation)
-    accelerometer = [f"imu.{name}.linear_acceleration.{axis}" for axis in "xyz"]
-    problem = _accelerometer_size(name, log) if log.has(*accelerometer) else None
+    orientation, turning = log.orientation(name), log.has_imu(name, "angular_velocity")
+    if turning:
+        yield from _dead_channels(log, imu_columns(name, "angular_velocity"), orientation)
+    accelerometer = log.has_imu(name, "linear_acceleration")
+    problem = _accelerometer_size(name, log) if accelerometer else None
     if problem is not None:
         yield problem
     if orientation is None:
@@ -39,14 +38,14 @@ def check_imu(name: str, log: MotionLog) -> Iterator[Finding]:
         yield Finding("quaternion_norm", f"{columns}: the quaternion's norm is {usual:.3g} (valid: 1)", True)
         return
     orientation = np.where(norm[:, None] > 0.5, orientation, np.nan)
-    turns = Turns.of(log, name, orientation) if log.has(*gyroscope) else None
+    turns = Turns.of(log, name, orientation) if turning else None
     if turns is not None:
         yield from check_gyroscope(name, log, orientation, turns)
-    if log.has(*accelerometer) and problem is None:
+    if accelerometer and problem is None:
         yield from _accelerometer_agrees(name, log, orientation, turns is not None and turns.agree)
 
 
-def _dead_channels(log: MotionLog, columns: list[str], orientation: Array | None) -> Iterator[Finding]:
+def _dead_channels(log: MotionLog, columns: Sequence[str], orientation: Array | None) -> Iterator[Finding]:
     whole = orientation[complete(orientation)] if orientation is not None else np.zeros((0, 4))
     moves = len(whole) > 0 and bool(np.max(np.std(whole, axis=0)) > 1e-3)
     for column in columns:
@@ -78,10 +77,9 @@ def _accelerometer_size(name: str, log: MotionLog) -> Finding | None:
 def _accelerometer_agrees(name: str, log: MotionLog, orientation: Array, turns: bool) -> Iterator[Finding]:
     """The accelerometer's up against the quaternion's, which is as the columns say where the gyroscope `turns` so."""
     acceleration = log.linear_acceleration(name)
-    whole = np.flatnonzero(complete(orientation, acceleration))
-    if whole.size < 10:
+    rows = rows_to_compare(orientation, acceleration)
+    if rows is None:
         return
-    rows = whole[:: max(1, whole.size // 2000)]
     up = acceleration[rows] / np.linalg.norm(acceleration[rows], axis=1, keepdims=True)
     apart = {
         reading: float(

@@ -12,7 +12,7 @@ from plantar.conventions import GRAVITY, Array, rotation_from_quaternion
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.kinematics import centre_of_mass
 from plantar.robot.model import Imu, RobotModel
-from plantar.signals.segments import complete
+from plantar.signals.segments import complete, spread_out
 
 SAMPLES = 50  # spread over the log: enough to tell
 LEAST_TILT = np.radians(0.5)  # usual: less of it is noise of the forces
@@ -126,7 +126,7 @@ def stance_of(robot: RobotModel, log: MotionLog) -> Stance | None:
     whole = complete(orientation, positions, *wrenches)
     whole &= np.linalg.norm(np.nan_to_num(orientation), axis=1) > 0.5
     loaded = whole & (sum(np.abs(w[:, 2]) for w in wrenches) > 0.3 * robot.mass * GRAVITY)
-    rows = np.flatnonzero(loaded)[:: max(1, int(loaded.sum() // SAMPLES))]
+    rows = spread_out(np.flatnonzero(loaded), SAMPLES)
     if rows.size < 10:
         return None
     return Stance(robot, imu, orientation[rows], positions[rows], [wrench[rows] for wrench in wrenches])

@@ -22,7 +22,7 @@ from plantar.conventions import GRAVITY, Array, Mask
 from plantar.logs.motion_log import MotionLog
 from plantar.notes import Finding
 from plantar.robot.model import RobotModel
-from plantar.signals.segments import complete, longest_run, run_numbers
+from plantar.signals.segments import complete, longest_run, run_numbers, spread_out
 
 LOADED = 0.1  # of the weight: a foot that carries more holds its sole still
 CARRIES, IN_AIR = 0.6, 0.2  # of the weight: a foot that carries the robot alone, the other one with its zero
@@ -95,10 +95,10 @@ def check_closed_chain(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
     standing = np.flatnonzero(known)
     alone = np.flatnonzero(whole & (loads.max(axis=0) > CARRIES) & (loads.min(axis=0) < IN_AIR))
     if all(recorded) and alone.size * log.period > LEAST_TIME:
-        some = alone[:: max(1, alone.size // SAMPLES)]
+        some = spread_out(alone, SAMPLES)
         yield from _carried_from_above(stand(some), loads[:, some].argmax(axis=0))
     if all(recorded) and standing.size * log.period > LEAST_TIME:
-        some = standing[:: max(1, standing.size // SAMPLES)]
+        some = spread_out(standing, SAMPLES)
         yield from _exchanged_legs(stand(some), run_numbers(known)[some])
     stands: dict[tuple[int, int], _Stand] = {}
     for foot, joint in compress(joints, recorded):

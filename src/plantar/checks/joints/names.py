@@ -57,7 +57,7 @@ def check_path_joints(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
 
 def recorded_joints(log: MotionLog) -> set[str]:
     """The joints of which a log holds positions."""
-    parts = [name.partition(".")[2].rpartition(".") for name in log.columns if name.startswith("joint.")]
+    parts = [name.removeprefix("joint.").rpartition(".") for name in log.columns if name.startswith("joint.")]
     return {
         joint
         for joint, _, quantity in parts
