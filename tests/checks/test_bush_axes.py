@@ -9,7 +9,7 @@ import pytest
 
 from biped import record, sway
 from biped_robot import FEET, make_robot, robot_entry
-from plantar.checks.bush_axes import check_bush_axes
+from plantar.checks.bush_frames import check_bush_axes
 from plantar.feet.identify import identify_feet
 from plantar.robot.model import RobotModel
 

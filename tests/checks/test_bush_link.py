@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from biped import record, sway
-from plantar.checks.bush_link import check_bush_link
+from plantar.checks.bush_frames import check_bush_link
 from plantar.checks.log_checks import check_log
 from plantar.feet.identify import identify_feet
 from plantar.logs.motion_log import MotionLog

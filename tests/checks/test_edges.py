@@ -12,8 +12,7 @@ from biped import WEIGHT
 from biped_robot import make_robot, robot_entry
 from loaded_log import PERIOD, made
 from plantar.checks.air_readings import check_air_readings
-from plantar.checks.bush_axes import check_bush_axes
-from plantar.checks.bush_link import check_bush_link
+from plantar.checks.bush_frames import check_bush_axes, check_bush_link
 from plantar.checks.stance import StanceSides
 from plantar.conventions import Array
 from plantar.robot.model import RobotModel

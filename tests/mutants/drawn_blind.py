@@ -34,7 +34,7 @@ DRAWN_BLIND = (
         ("fleet/test_summary.py",),
     ),
     Mutant(
-        "checks/bush_axes.py",
+        "checks/bush_frames.py",
         "a bush's place is not turned with its ankle",
         "places[carrier, 0] + turn @ placement.translation",
         "places[carrier, 0] + placement.translation",

@@ -34,7 +34,7 @@ SENSOR_FAULTS = (
         ("signals/test_dropouts.py",),
     ),
     Mutant(
-        "checks/bush_axes.py", "feet beside each other are before each other",
+        "checks/bush_frames.py", "feet beside each other are before each other",
         "if x > BEFORE * y", "if y > BEFORE * x", ("checks/test_bush_axes.py",),
     ),
     Mutant(
@@ -145,7 +145,7 @@ SENSOR_FAULTS = (
         ("sensors/test_sensor_turns.py",),
     ),
     Mutant(
-        "checks/bush_link.py", "joints that stand still turn soles", "if moved > TURNED:", "if moved > 0:",
+        "checks/bush_frames.py", "joints that stand still turn soles", "if moved > TURNED:", "if moved > 0:",
         ("checks/test_bush_link.py",),
     ),
     Mutant(

@@ -7,8 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from plantar.checks.air_readings import check_air_readings
-from plantar.checks.bush_axes import check_bush_axes
-from plantar.checks.bush_link import check_bush_link
+from plantar.checks.bush_frames import check_bush_axes, check_bush_link
 from plantar.checks.channels import check_channels, named
 from plantar.checks.dead_band import check_dead_bands
 from plantar.checks.gaps import check_gaps

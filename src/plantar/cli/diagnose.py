@@ -7,8 +7,8 @@ from dataclasses import asdict
 from rich.markup import escape
 
 from plantar.cli import options
-from plantar.cli.console.advice import advised
 from plantar.cli.console.terminal import VERDICT_STYLE, console, number, table
+from plantar.cli.identify.feet_tables import advised
 from plantar.errors import PlantarError
 from plantar.results.feet import FeetResult
 from plantar.results.io import dump_json

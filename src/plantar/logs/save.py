@@ -17,7 +17,7 @@ from plantar.errors import LogError
 from plantar.files import atomic_write
 from plantar.logs.motion_log import MotionLog
 from plantar.logs.readers.ros.layouts import IMU, JOINT_STATE, WRENCH, Bytes, layout_of
-from plantar.logs.write_mcap import write_mcap
+from plantar.logs.save_ros import write_mcap
 from plantar.notes import Note
 
 if TYPE_CHECKING:

@@ -1,4 +1,8 @@
-"""Axes of the bushes in the robot file: feet that stand beside each other lie along each other's pitch axis."""
+"""Bushes in the robot file: their axes, and the link that carries them.
+
+Feet that stand beside each other lie along each other's pitch axis. The link is the last one of its leg: joints below
+it would turn the sole unseen.
+"""
 
 from __future__ import annotations
 
@@ -12,6 +16,7 @@ from plantar.notes import Finding
 from plantar.robot.model import RobotModel
 
 SAMPLES = 500  # spread over the log: enough to tell its usual posture
+TURNED = 0.02  # rad: as much as a bush turns
 BEFORE = 3.0  # times as far before or behind as beside: no posture of a whole log
 
 
@@ -44,3 +49,21 @@ def _usual(position: Array | None) -> float:
     """The joint's usual position, 0 where it was not recorded."""
     known = np.zeros(0) if position is None else position[np.isfinite(position)]
     return float(np.median(known[:: max(1, len(known) // SAMPLES)])) if known.size else 0.0
+
+
+def check_bush_link(robot: RobotModel, log: MotionLog) -> Iterator[Finding]:
+    """A finding for each foot with a joint below its bush that moves: toes that bend, or the wrong link."""
+    for name, foot in robot.feet.items():
+        carrier, _ = robot.frame(foot.bush)
+        for joint in list(robot.model.subtrees[carrier])[1:] if carrier > 0 else []:
+            position = log.joint(robot.model.names[joint], "position")
+            if position is None or not np.isfinite(position).any():
+                continue
+            moved = float(np.nanmax(position) - np.nanmin(position))
+            if moved > TURNED:
+                text = (
+                    f"robot file, feet.{name}.bush.link: '{foot.bush.link}' has the joint "
+                    f"'{robot.model.names[joint]}' below it: it moves by {moved:.2g} rad and turns the sole unseen "
+                    "(valid: the last link of the leg)"
+                )
+                yield Finding("bush_link", text)

@@ -1,4 +1,4 @@
-"""Messages out as a ROS 2 bag in one MCAP file."""
+"""Messages out as a ROS 2 bag in one MCAP file; among them a planned motion, as one `JointTrajectory`."""
 
 from __future__ import annotations
 
@@ -7,10 +7,13 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from plantar.conventions import Array
 from plantar.errors import needs
 from plantar.files import atomic_write
 
 BLOCK = 2**22  # bytes copied at a time
+TOPIC = "/joint_trajectory"
+KIND = "trajectory_msgs/msg/JointTrajectory"
 Topic = tuple[str, str, Any]  # name, type, and its serialised messages: bytes, or rows of bytes
 
 
@@ -39,3 +42,25 @@ def write_mcap(path: Path, topics: Sequence[Topic], stamps: Sequence[int]) -> No
         with atomic_write(path) as handle, open(next(bag.glob("*.mcap")), "rb") as source:
             while block := source.read(BLOCK):
                 handle.write(block)
+
+
+def save_trajectory(
+    path: Path, joints: Sequence[str], time: Array, positions: Array, velocities: Array
+) -> None:
+    """Positions and velocities (N, n) [rad, rad/s] of `joints` at `time` (N,) [s from the start].
+
+    Raises MissingExtra without rosbags.
+    """
+    store = ros_types()
+    types = store.types
+    moment, duration = types["builtin_interfaces/msg/Time"], types["builtin_interfaces/msg/Duration"]
+    header = types["std_msgs/msg/Header"](stamp=moment(sec=0, nanosec=0), frame_id="")
+    point = types["trajectory_msgs/msg/JointTrajectoryPoint"]
+    none = positions[0, :0]
+    points = [
+        point(positions=q, velocities=v, accelerations=none, effort=none,
+              time_from_start=duration(*divmod(round(t * 1e9), 10**9)))
+        for t, q, v in zip(time.tolist(), positions, velocities, strict=True)
+    ]  # fmt: skip
+    message = types[KIND](header=header, joint_names=list(joints), points=points)
+    write_mcap(path, [(TOPIC, KIND, [store.serialize_cdr(message, KIND)])], [0])
