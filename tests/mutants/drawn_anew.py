@@ -243,7 +243,7 @@ DRAWN_ANEW = (
         "return {row: 1 / max(rms, LEAST_ERROR) ** 2 for",
     ),
     Mutant(
-        "whole_body/sensor_faults.py",
+        "whole_body/sensor_calibration.py",
         "before and after exchanged",
         "{before[channel]:.3g}, and by {after[channel]:.3g} {text}",
         "{after[channel]:.3g}, and by {before[channel]:.3g} {text}",

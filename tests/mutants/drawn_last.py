@@ -76,11 +76,11 @@ DRAWN_LAST = (
         ("whole_body/test_equations.py",),
     ),
     Mutant(
-        "whole_body/sensor_faults.py",
+        "whole_body/sensor_calibration.py",
         "a tilt in radians called degrees",
         "for value in np.degrees(angle))",
         "for value in angle)",
-        ("whole_body/test_sensor_faults.py",),
+        ("whole_body/test_sensor_calibration.py",),
     ),
     Mutant(
         "logs/readers/streams.py",

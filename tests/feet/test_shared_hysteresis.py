@@ -16,10 +16,10 @@ from plantar.conventions import Axis
 from plantar.feet.fit.axis_fit import fit_axis
 from plantar.feet.fit.hidden_memory import TOO_SMALL
 from plantar.feet.foot_fit import FittedFoot
-from plantar.feet.memory_of_others import with_memory_of_others
 from plantar.feet.recording import Recording
 from plantar.feet.regression.axis import AxisFit
 from plantar.feet.settings import FeetSettings
+from plantar.feet.shared_hysteresis import with_shared_hysteresis
 from plantar.models import BoucWen, BushModel, Hardening, KelvinVoigt
 
 RUBBER = Rubber(stiffness=420.0, damping=18.0, slip_torque=4.0, slip_angle=0.006)
@@ -61,7 +61,7 @@ def test_a_memory_that_another_axis_shows_is_taken(
     recordings: list[Recording], clear: AxisFit, spring: AxisFit
 ) -> None:
     feet = {"one": foot(spring, recordings), "other": foot(clear, recordings)}
-    found = with_memory_of_others(feet)["one"].fits["pitch"]
+    found = with_shared_hysteresis(feet)["one"].fits["pitch"]
     assert found.model.name == "elastoplastic"
     assert found.values[0] == pytest.approx(RUBBER.stiffness, rel=0.02)
     assert spring.values[0] > 1.1 * RUBBER.stiffness
@@ -87,7 +87,7 @@ def changed(fit: AxisFit, **scores: object) -> AxisFit:
 
 def of(one: AxisFit, other: AxisFit, recordings: list[Recording], *, steps: bool = False) -> AxisFit:
     feet = {"one": foot(one, recordings, steps=steps), "other": foot(other, recordings)}
-    return with_memory_of_others(feet)["one"].fits["pitch"]
+    return with_shared_hysteresis(feet)["one"].fits["pitch"]
 
 
 def test_no_memory_is_made_up(recordings: list[Recording], clear: AxisFit, spring: AxisFit) -> None:
@@ -99,7 +99,7 @@ def test_no_memory_is_made_up(recordings: list[Recording], clear: AxisFit, sprin
 def test_of_a_foot_that_steps_a_memory_is_taken_as_soon_as_it_predicts_better(
     recordings: list[Recording], clear: AxisFit, spring: AxisFit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("plantar.feet.memory_of_others.fit_axis", lambda *_: clear)
+    monkeypatch.setattr("plantar.feet.shared_hysteresis.fit_axis", lambda *_: clear)
     better = changed(spring, refused=None)
     assert of(better, clear, recordings).model.name == "kelvin_voigt"
     assert of(better, clear, recordings, steps=True).model.name == "elastoplastic"
@@ -212,6 +212,6 @@ def test_where_the_other_axis_bends_the_rubber_and_shows_no_memory_small_motions
     robot = SimpleNamespace(feet={FOOT: SimpleNamespace(sole=SimpleNamespace(polygon=corners))})
     ready: Any = SimpleNamespace(fitted=[], settings=FeetSettings(), robot=robot)
     one = FittedFoot(FOOT, None, {axis: small, other: wide}, {}, ready, ready, ())  # type: ignore[arg-type]
-    found = with_memory_of_others({"one": one})["one"].fits[axis]
+    found = with_shared_hysteresis({"one": one})["one"].fits[axis]
     assert found.choice is not None
     assert (found.choice.caution is None) == dropped

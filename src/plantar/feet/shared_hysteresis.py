@@ -1,4 +1,4 @@
-"""The bushes of one robot are of one rubber: a memory that other axes show is taken where one shows it less clearly.
+"""Bushes of one robot are of one rubber: hysteresis that other axes show is taken where one shows it less clearly.
 
 In short stances, whose first states nobody knows, a memory must gain much before it is believed. Where another axis
 shows it beyond doubt it need not: spring and damper alone would come out too stiff by the element's slope. And where
@@ -30,7 +30,7 @@ NOT_EXCLUDED = (
 )
 
 
-def with_memory_of_others(feet: Mapping[str, FittedFoot]) -> dict[str, FittedFoot]:
+def with_shared_hysteresis(feet: Mapping[str, FittedFoot]) -> dict[str, FittedFoot]:
     """The feet with a memory that another axis has in each axis that is nearer to it than to spring and damper.
 
     An axis that neither shows nor excludes it keeps what it has, with a caution, and so does one whose steps are too

@@ -12,7 +12,7 @@ import small_biped
 from plantar.logs.motion_log import MotionLog
 from plantar.robot.model import RobotModel, load_robot
 from plantar.whole_body.dataset import Body, prepare_whole
-from plantar.whole_body.sensor_faults import calibrate
+from plantar.whole_body.sensor_calibration import calibrate
 from plantar.whole_body.settings import DynamicsSettings
 
 TURN = np.pi / 4  # of the sensors about the vertical: each of their channels is felt in two rows at the base
