@@ -17,7 +17,7 @@ FILES = sorted(SOURCE.rglob("*.py"))
 # A room imports only from rooms that stand before it.
 ROOMS = (
     "conventions", "errors", "choices", "notes", "pages", "files", "handed_back", "cores",
-    "robot", "logs", "signals", "contact", "checks",
+    "robot", "logs", "signals", "contact", "faults",
     "dynamics", "models", "estimation", "model_selection",
     "results", "sensors", "feet", "whole_body",
     "online",
@@ -38,7 +38,7 @@ FULLEST_FOLDER = 16  # Python files
 
 # Rooms that decide numbers: each of their modules is imported by a test of its own room.
 TESTED = (
-    "signals", "contact", "checks", "estimation", "model_selection", "sensors", "feet", "whole_body", "results",
+    "signals", "contact", "faults", "estimation", "model_selection", "sensors", "feet", "whole_body", "results",
     "online", "fleet",
 )  # fmt: skip
 # The one place that catches what nobody thought of: an axis is given up, the result says so.

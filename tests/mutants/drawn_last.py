@@ -20,18 +20,18 @@ DRAWN_LAST = (
         ("feet/assess/test_zero_jumps.py",),
     ),
     Mutant(
-        "checks/imu.py",
+        "faults/imu.py",
         "an attitude may lean by 50 deg",
         "WRONG_ANGLE = np.radians(25)",
         "WRONG_ANGLE = np.radians(50)",
-        ("checks/test_imu.py",),
+        ("faults/test_imu.py",),
     ),
     Mutant(
-        "checks/gaps.py",
+        "faults/gaps.py",
         "gaps from six per cent on",
         "LEAST_LOST = 0.03",
         "LEAST_LOST = 0.06",
-        ("checks/test_gaps.py",),
+        ("faults/test_gaps.py",),
     ),
     Mutant(
         "exporters/contact/points.py",

@@ -22,7 +22,7 @@ HANDED_ON = (
         'STIFF = "0.004 1"', 'STIFF = "0.02 1"', ("exporters/test_simulators.py",),
     ),
     Mutant(
-        "cli/options.py", "seconds taken for milliseconds",
+        "cli/console/options.py", "seconds taken for milliseconds",
         "if 0 < abs(value) < LEAST_DELAY:", "if 0 < abs(value) < 0.0:", ("cli/test_refusals.py",),
     ),
     Mutant(

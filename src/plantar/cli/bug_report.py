@@ -14,7 +14,7 @@ import typer
 import yaml
 
 import plantar
-from plantar.cli import options
+from plantar.cli.console import options
 from plantar.errors import PlantarError
 from plantar.inspection import inspect_log
 from plantar.logs.readers import open_log

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from plantar.cli import options
+from plantar.cli.console import options
 from plantar.errors import PlantarError
 from plantar.logs.readers import motion_name, open_log
 from plantar.logs.save import ENDINGS, save_log

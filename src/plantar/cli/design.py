@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from plantar.choices import one_of
-from plantar.cli import options
+from plantar.cli.console import options
 from plantar.cli.console.terminal import console, end_progress, number, print_notes, progress, table
 from plantar.errors import PlantarError, needs
 from plantar.files import write_text

@@ -6,7 +6,7 @@ from dataclasses import asdict
 
 from rich.markup import escape
 
-from plantar.cli import options
+from plantar.cli.console import options
 from plantar.cli.console.terminal import VERDICT_STYLE, console, number, table
 from plantar.cli.identify.feet_tables import advised
 from plantar.errors import PlantarError

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from plantar.cli import options
+from plantar.cli.console import options
 from plantar.exporters import TARGETS, export
 from plantar.exporters.job import LEAST_LOAD
 

@@ -11,7 +11,7 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from plantar.cli import options
+from plantar.cli.console import options
 from plantar.cli.console.terminal import (
     SEVERITY_STYLE,
     VERDICT_STYLE,

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from plantar.cli import options
+from plantar.cli.console import options
 from plantar.cli.console.terminal import (
     VERDICT_STYLE,
     console,

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from plantar.cli import options
+from plantar.cli.console import options
 from plantar.cli.console.terminal import console, end_progress, number, progress, table
 from plantar.feet.select_motions import UNKNOWN, Choice, Selection, select_motions
 from plantar.logs.inputs import open_together

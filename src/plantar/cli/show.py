@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from plantar.cli import options
+from plantar.cli.console import options
 from plantar.cli.console.terminal import console, number, table
 from plantar.results.feet import FeetResult
 from plantar.results.io import dump_json

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from plantar.cli import options
+from plantar.cli.console import options
 from plantar.cli.console.terminal import console, end_progress, print_notes, progress
 from plantar.cli.identify.feet_tables import validation_table
 from plantar.feet.validate import scored_feet

@@ -1,1 +1,1 @@
-"""What commands share on the terminal: tables, progress, advice."""
+"""What commands share: options, and tables and progress on the terminal."""

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from plantar.cli import options
+from plantar.cli.console import options
 from plantar.cli.console.terminal import progress
 from plantar.cli.fleet.run import Scheduler, WorkerMemory, Workers
 from plantar.cli.identify import identification

@@ -10,7 +10,7 @@ from typing import Annotated
 
 import typer
 
-from plantar.cli import options
+from plantar.cli.console import options
 from plantar.cli.console.terminal import end_progress, progress
 from plantar.files import write_text
 from plantar.fleet.manifest import written

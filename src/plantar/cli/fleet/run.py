@@ -11,7 +11,7 @@ from typing import Annotated, Final
 
 import typer
 
-from plantar.cli import options
+from plantar.cli.console import options
 from plantar.cli.console.terminal import end_progress, progress
 from plantar.cli.fleet.report import PAGE, RUN_FILE, RUN_SCHEMA, print_alarms, write_report
 from plantar.feet.settings import AUTOMATIC, FeetSettings

@@ -9,7 +9,7 @@ from typing import Annotated
 import numpy as np
 import typer
 
-from plantar.cli import options
+from plantar.cli.console import options
 from plantar.cli.console.terminal import progress
 from plantar.cli.identify import identification
 from plantar.cores import begun

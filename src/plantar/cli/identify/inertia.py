@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from plantar.cli import options
+from plantar.cli.console import options
 from plantar.cli.console.terminal import progress
 from plantar.cli.identify import identification
 from plantar.cli.identify.dynamics_tables import print_inertia

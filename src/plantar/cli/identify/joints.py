@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from plantar.cli import options
+from plantar.cli.console import options
 from plantar.cli.console.terminal import progress
 from plantar.cli.identify import identification
 from plantar.cli.identify.dynamics_tables import print_joints
