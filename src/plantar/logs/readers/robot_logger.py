@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -76,11 +77,9 @@ def _signals(
         joints = _names(root, group)
         mine = given.get(name) or (wanted[name],)
         data[name] = (time, values)
+        unnamed = [port.role.startswith("joints.") and not port.joints for port in mine]
         roles[name] = tuple(
-            port
-            if port.joints or not port.role.startswith("joints.")
-            else Port(port.role, port.unit, port.sign, joints, port.take)
-            for port in mine
+            replace(port, joints=joints) if lacks else port for port, lacks in zip(mine, unnamed, strict=True)
         )
     return data, roles
 
@@ -98,11 +97,7 @@ def _signal(group: Any, name: str, limit: ReadLimit) -> tuple[Array, Array]:
         parts.append(np.asarray(source[()], dtype=np.float64))
     time = parts[0].ravel()
     values = parts[1].reshape(parts[1].shape[0], -1)
-    if (
-        values.shape[0] != time.size
-        and values.size % max(time.size, 1) == 0
-        and values.shape[-1] == time.size
-    ):
+    if values.shape[0] != time.size and values.shape[-1] == time.size:
         values = values.T
     if values.shape[0] != time.size:
         raise LogError(f"{name} has {values.shape[0]} samples and {time.size} stamps", path=limit.path)
