@@ -32,10 +32,8 @@ PLANAR = 0.05  # second over first singular value: turns about one axis do not s
 IMU_LATE, SCALE, FRAME = "imu_late", "gyroscope_scale", "gyroscope_frame"
 BY_LEANS = frozenset({IMU_LATE, SCALE, FRAME})  # an orientation that leans looks like these as well
 EXPLAINED = 0.1  # share of the difference of both rates, by a delay between gyroscope and orientation
-FEWEST_COMPARED, COMPARED = (
-    10,
-    2000,
-)  # samples of orientation and accelerometer: fewer tell nothing; more tell no more
+# Samples of orientation and accelerometer: fewer tell nothing; more tell no more.
+FEWEST_COMPARED, COMPARED = 10, 2000
 MEDIAN = 0.6745  # of absolute values over the deviation, of a normal distribution
 REVERSED = -0.9  # correlation, and slope within a factor of two, of an axis that reads the opposite
 

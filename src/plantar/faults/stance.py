@@ -16,10 +16,8 @@ from plantar.signals.segments import complete, spread_out
 
 SAMPLES = 50  # spread over the log: enough to tell
 LEAST_TILT = np.radians(0.5)  # usual: less of it is noise of the forces
-SIMILAR, COHERENT = (
-    1.5,
-    0.9,
-)  # ratio of two tilts, and their correlation whatever the direction, to be compared
+# Ratio of two tilts, and their correlation whatever the direction, to be compared.
+SIMILAR, COHERENT = 1.5, 0.9
 
 
 @dataclass(frozen=True)

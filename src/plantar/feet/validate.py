@@ -118,9 +118,8 @@ def _sensor_delay(stored: DelayEstimate | None) -> SensorDelay:
 
 def _stored_model(result: FeetResult, foot: str, axis: Axis) -> FittedModel | None:
     """The model of one axis as the result holds it, None where a number of it is missing."""
-    plain = AxisModel(
-        foot, axis, KelvinVoigt.name, "", LinearEquivalent(0.0, 0.0)
-    )  # where the result has no entry
+    # Where the result has no entry.
+    plain = AxisModel(foot, axis, KelvinVoigt.name, "", LinearEquivalent(0.0, 0.0))
     entry = next((row for row in result.models if (row.foot, row.axis) == (foot, axis)), plain)
     if entry.model not in MODELS:
         raise DataError(f"the result's model '{entry.model}' is unknown (valid: {', '.join(MODELS)})")

@@ -35,10 +35,8 @@ from plantar.results.feet import FeetResult
 from plantar.results.io import dump_json
 from plantar.robot.model import RobotModel
 
-Passing: Final = (
-    MissingExtra,
-    NoRoom,
-)  # errors of the machine, not of the logs: another run may not have them
+# Errors of the machine, not of the logs: another run may not have them.
+Passing: Final = (MissingExtra, NoRoom)
 ONE_THREAD: Final = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 

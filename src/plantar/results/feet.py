@@ -39,12 +39,8 @@ __all__ = [
 ]  # fmt: skip
 
 FEET_SCHEMA: Final = "plantar.feet/1"
-_IF_ANY: Final = (
-    "comparisons",
-    "stances",
-    "walks",
-    "swing_zeros",
-)  # keys of the file only where there are rows
+# Keys of the file only where there are rows.
+_IF_ANY: Final = ("comparisons", "stances", "walks", "swing_zeros")
 
 
 @dataclass(frozen=True, repr=False)
