@@ -11,6 +11,7 @@ from plantar.feet.assess.diagnosis import advised, diagnose_axis, mend_first
 from plantar.feet.assess.far_arms import far_arms
 from plantar.feet.assess.late_recordings import late_recordings
 from plantar.feet.assess.left_out import ON_AN_EDGE, mostly_on_an_edge
+from plantar.feet.assess.odd_recordings import odd_recordings
 from plantar.feet.assess.parameter_rows import axis_rows, missing_rows, unseen_rows
 from plantar.feet.assess.play import encoder_play_notes, play_notes
 from plantar.feet.assess.residual_table import Predictions
@@ -94,6 +95,7 @@ def _with_axis(found: FootFit, fitted: FittedFoot, fit: AxisFit, between: Apart)
         *encoder_play_notes(ready.fitted, fit, blocks, _joints_to(ready.robot, fit.foot), shared),
         *hysteresis_notes(thin.fitted, fit, blocks, shared),
         *late_recordings(wide, blocks, shared),
+        *odd_recordings(wide, blocks, shared),
     ]
     faults = [
         *data_faults(ready.fitted, fit),

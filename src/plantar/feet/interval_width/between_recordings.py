@@ -128,13 +128,24 @@ def differences_of(fit: AxisFit, blocks: Sequence[Block], effects: Array) -> Axi
     tell = np.flatnonzero(np.abs(effects[:, 0]) > least).tolist()
     if len(tell) < 2:
         return None
-    torques, others = _torques(fit, blocks), [place for place in range(len(blocks)) if place != tell[0]]
-    columns = [np.column_stack(each) for each in zip(*(_alone(torques, own) for own in others), strict=True)]
-    found = fit_blocks(all_beside(blocks, columns))
-    ends = blocks[0].regressor.shape[1] + np.array([others.index(place) for place in tell[1:]])
-    differences = Differences(found.values[ends], found.covariance[np.ix_(ends, ends)])
+    differences = among(beside_one(blocks, _torques(fit, blocks), tell[0]), tell)
     usual = float(fit_blocks(blocks).std[0]) / max(abs(float(fit.values[0])), 1e-300)
     return AxisDifferences(differences, usual, frozenset(blocks[place].label for place in tell))
+
+
+def beside_one(blocks: Sequence[Block], torques: Sequence[Array], one: int) -> Differences:
+    """Shares of `torques`, (n,) of each block, by which every other recording differs from `one`, in their order."""
+    others = [place for place in range(len(blocks)) if place != one]
+    columns = [np.column_stack(each) for each in zip(*(_alone(torques, own) for own in others), strict=True)]
+    found, first = fit_blocks(all_beside(blocks, columns)), blocks[0].regressor.shape[1]
+    own = slice(first, first + len(others))
+    return Differences(found.values[own], found.covariance[own, own])
+
+
+def among(found: Differences, places: Sequence[int]) -> Differences:
+    """Of all recordings beside the one at `places[0]`, those at the other `places`."""
+    own = np.array([place - (place > places[0]) for place in places[1:]])
+    return Differences(found.shares[own], found.covariance[np.ix_(own, own)])
 
 
 def effects_of(fit: AxisFit, blocks: Sequence[Block], influences: Sequence[Array]) -> Array:

@@ -1,0 +1,108 @@
+"""A recording whose stiffness is not that of the others, and stiffness that differs for another reason."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from biped import TRUTH, record, sway
+from bush_data_sets import Rubber
+from feet_trials import LINEAR, noisy
+from made_recording import FOOT, PERIOD, made_recording, swayed
+from plantar.estimation.random_effects import Differences
+from plantar.feet.assess.odd_recordings import CODE, furthest, odd_recordings
+from plantar.feet.fit.axis_fit import fit_axis
+from plantar.feet.identify import identify_feet
+from plantar.feet.recording import Recording
+from plantar.feet.regression.regression_data import tangent_blocks
+from plantar.feet.settings import FeetSettings
+from plantar.robot.model import RobotModel
+
+COUNT = 6000
+PLAIN = Rubber(stiffness=420.0, damping=18.0)
+SOFTER = Rubber(stiffness=378.0, damping=16.2)  # by a tenth
+SLIPPING = Rubber(stiffness=420.0, damping=18.0, slip_torque=4.0, slip_angle=0.006)
+
+
+def swaying(*feet: tuple[Rubber, float]) -> list[Recording]:
+    """A sway on each of these feet, of this size."""
+    made = []
+    for seed, (rubber, size) in enumerate(feet):
+        angle = size * swayed(COUNT, seed=seed)
+        torque = rubber.torque(angle, np.gradient(angle, PERIOD))
+        torque += 0.1 * np.random.default_rng(seed).standard_normal(COUNT)
+        made.append(made_recording(f"sway_{seed}", angle, torque))
+    return made
+
+
+def said(recordings: list[Recording], model: str = "kelvin_voigt") -> list[str]:
+    fit = fit_axis(recordings, FOOT, "pitch", FeetSettings(model=model))
+    assert fit is not None
+    return [note.text for note in odd_recordings(fit, tangent_blocks(recordings, fit), False)]
+
+
+def test_the_odd_one_of_three_is_named_with_how_far_it_is() -> None:
+    (text,) = said(swaying((PLAIN, 1.0), (SOFTER, 1.0), (PLAIN, 1.0)))
+    assert text.startswith(f"sway_1: {FOOT} pitch: stiffness is -10 ± 0.")
+    assert "2 other recordings, which agree within 0." in text
+
+
+def test_of_two_that_differ_nobody_knows_which_is_right() -> None:
+    (text,) = said(swaying((PLAIN, 1.0), (SOFTER, 1.0)))
+    assert all(name in text for name in ("sway_0", "sway_1", "nobody knows which is right"))
+
+
+def test_recordings_that_agree_are_none() -> None:
+    assert said(swaying((PLAIN, 1.0), (PLAIN, 1.0), (PLAIN, 1.0))) == []
+    assert said(swaying((SOFTER, 1.0))) == []
+
+
+def test_a_recording_that_hardly_moves_is_not_compared() -> None:
+    """The softer one moves by a third, by a twentieth of the others."""
+    assert len(said(swaying((PLAIN, 1.0), (SOFTER, 0.33), (PLAIN, 1.0)))) == 1
+    assert said(swaying((PLAIN, 1.0), (SOFTER, 0.05), (PLAIN, 1.0))) == []
+
+
+def test_a_memory_makes_small_motions_stiffer() -> None:
+    recordings = swaying((SLIPPING, 1.0), (SLIPPING, 0.3), (SLIPPING, 1.0))
+    assert len(said(recordings, "kelvin_voigt")) == 1
+    assert said(recordings, "elastoplastic") == []
+
+
+@pytest.mark.parametrize(
+    ("shares", "found"),
+    [
+        ([0.0, -0.1, 0.0], 2),  # places count from the first recording, beside which the shares are
+        ([0.1, 0.1, 0.1], 0),
+        ([0.0, -0.04, 0.0], None),  # less than is told
+        ([0.05, -0.1, 0.0], None),  # the others differ as much
+        ([0.0, 0.0, 0.0], None),
+    ],
+)
+def test_the_furthest_is_told_as_far_as_the_others_agree(shares: list[float], found: int | None) -> None:
+    odd = furthest(Differences(np.array(shares), 0.002**2 * (np.eye(3) + 1.0)))
+    assert (odd and odd.place) == found
+    if odd is not None:
+        assert abs(odd.share) == pytest.approx(0.1, abs=0.003)
+        assert odd.std < 0.01
+
+
+def test_what_is_hardly_known_is_not_told() -> None:
+    """A tenth, known to 3 %."""
+    assert furthest(Differences(np.array([0.0, -0.1, 0.0]), 0.03**2 * (np.eye(3) + 1.0))) is None
+
+
+def test_no_number_of_an_odd_axis_is_usable(robot: RobotModel) -> None:
+    """The left foot stands on something softer in one of three recordings."""
+    softer = {
+        key: replace(law, stiffness=(0.9 if key[0] == "left" else 1.0) * law.stiffness)
+        for key, law in TRUTH.items()
+    }
+    truths = [TRUTH, softer, TRUTH]
+    logs = [noisy(record(sway(f"sway_{seed}", seed, truth=truth)), seed) for seed, truth in enumerate(truths)]
+    result = identify_feet(robot, logs, settings=LINEAR)
+    told = {note.text.split(": stiffness")[0] for note in result.notes if note.code == CODE}
+    assert told == {"sway_1: left pitch", "sway_1: left roll"}
+    assert {row.foot for row in result.parameters if row.axis != "z" and row.verdict == "usable"} == {"right"}
