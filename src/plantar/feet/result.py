@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 
 from plantar.conventions import OFFSET_UNIT
-from plantar.feet.assess.far_arms import far_arms
 from plantar.feet.assess.feasible_advice import hardly_standing, remedies, with_remedies
 from plantar.feet.assess.left_out import unused_logs
 from plantar.feet.assess.residual_table import residual_table
 from plantar.feet.foot_assessment import FootFit
 from plantar.feet.interval_width.between_recordings import Apart, apart_notes
+from plantar.feet.place.far_arms import far_arms
 from plantar.feet.place.imu_mount import ImuTurn
 from plantar.feet.prepare import PreparedLogs
 from plantar.feet.put_right.imu_of_steps import imu_turn_notes
